@@ -1,0 +1,32 @@
+//! The sources of what is computed, one item each. Doc comments cite them by link, which `rustdoc`
+//! checks.
+
+macro_rules! sources {
+    ($($(#[$doc:meta])* $key:ident;)+) => {
+        $($(#[$doc])* #[derive(Debug)] pub enum $key {})+
+    };
+}
+
+sources! {
+    /// R. M. Brach, R. M. Brach, *Vehicle Accident Analysis and Reconstruction Methods*, 2nd ed.,
+    /// SAE International, 2011. Planar impact mechanics, restitution and impulse ratio.
+    Brach2011;
+    /// M. Carpenter, J. Welcher, *Planar impact with the no-slide condition and a friction limit*,
+    /// SAE Technical Paper 2019-01-0422, 2019. Worked barrier example.
+    CarpenterWelcher2019;
+    /// ISO 8855:2011, *Road vehicles: Vehicle dynamics and road-holding ability: Vocabulary*. Axes
+    /// and signs.
+    Iso8855;
+    /// A. Thompson, B. N. Taylor, *Guide for the Use of the International System of Units (SI)*,
+    /// NIST Special Publication 811, 2008. Conversion factors.
+    Nist2008;
+    /// The paper whose two physics-informed networks this program implements: post-impact motion
+    /// from impact forces, 4DOF vehicle model (`eq:4dof`), momentum-conservation collision
+    /// (`eq:collision_model1`). Equation labels are those of its LaTeX source.
+    PitPinnPaper;
+    /// SAE J211-1:2014, *Instrumentation for Impact Test, Part 1: Electronic Instrumentation*,
+    /// appendix C. Channel frequency classes and their digital filter.
+    SaeJ211;
+    /// SAE J670:2008, *Vehicle Dynamics Terminology*.
+    SaeJ670;
+}

@@ -1,0 +1,281 @@
+//! Background work: a named thread, progress with an estimate of the time left, cancelling, and a
+//! panic that becomes a message. Knows no domain and no window; loading files, simulating whole
+//! datasets and training networks all run through [`Job`].
+//!
+//! A long computation takes one callback, reports through it and is told whether to go on:
+//!
+//! ```
+//! use impactlab::jobs::{Job, Progress, Update};
+//! use std::ops::ControlFlow;
+//!
+//! let mut job = Job::spawn("sum", || {}, |report| {
+//!     let mut sum = 0u64;
+//!     for i in 0..10 {
+//!         sum += i;
+//!         if report(Progress::new(i + 1, 10, "adding")).is_break() {
+//!             break;
+//!         }
+//!     }
+//!     sum
+//! })
+//! .expect("a thread can be started");
+//! assert!(matches!(job.wait(), Update::Finished(45)));
+//! ```
+
+use std::ops::ControlFlow;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// How far a computation has come.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Progress {
+    /// Units of work done.
+    pub done: u64,
+    /// Units of work in all; 0 while unknown.
+    pub total: u64,
+    /// What is being done, for a person.
+    pub message: String,
+}
+
+/// The callback that a long computation calls: it reports, and breaks when told to.
+pub type Report<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
+
+impl Progress {
+    /// `done` of `total` units, with a word on what is being done.
+    pub fn new(done: u64, total: u64, message: impl Into<String>) -> Self {
+        Self {
+            done,
+            total,
+            message: message.into(),
+        }
+    }
+
+    /// The share done, 0 to 1; `None` while the total is unknown.
+    pub fn fraction(&self) -> Option<f32> {
+        (self.total > 0).then(|| (self.done as f32 / self.total as f32).min(1.0))
+    }
+
+    /// The time left if the rest goes as fast as what is done: `elapsed · (total − done) / done`.
+    pub fn time_left(&self, elapsed: Duration) -> Option<Duration> {
+        let left = self.total.checked_sub(self.done)?;
+        (self.done > 0).then(|| elapsed.mul_f64(left as f64 / self.done as f64))
+    }
+}
+
+/// What a [`Job`] says when it is polled.
+#[derive(Debug)]
+pub enum Update<T> {
+    /// Still at work; the latest progress is in [`Job::progress`].
+    Running,
+    /// The computation returned, cancelled or not: the value says which.
+    Finished(T),
+    /// The computation panicked with this message.
+    Panicked(String),
+    /// The result was taken by an earlier call.
+    Gone,
+}
+
+enum Message<T> {
+    Progress(Progress),
+    End(Update<T>),
+}
+
+/// A computation on a thread of its own. Dropping it cancels it.
+#[derive(Debug)]
+pub struct Job<T> {
+    name: String,
+    started: Instant,
+    progress: Progress,
+    cancel: Arc<AtomicBool>,
+    receiver: Receiver<Message<T>>,
+}
+
+impl<T: Send + 'static> Job<T> {
+    /// Starts `work` on a thread called `name`. `wake` is called after every report and at the
+    /// end, so that a sleeping window looks again.
+    ///
+    /// # Errors
+    /// The operating system's, if it cannot start a thread.
+    pub fn spawn(
+        name: &str,
+        wake: impl Fn() + Send + 'static,
+        work: impl FnOnce(&mut Report<'_>) -> T + Send + 'static,
+    ) -> std::io::Result<Self> {
+        let cancel = Arc::new(AtomicBool::new(false));
+        let (sender, receiver) = channel();
+        let cancelled = Arc::clone(&cancel);
+        thread::Builder::new()
+            .name(name.to_owned())
+            .spawn(move || {
+                let mut report = |progress: Progress| {
+                    // A dropped receiver means a dropped job, which has set the flag.
+                    let _ = sender.send(Message::Progress(progress));
+                    wake();
+                    if cancelled.load(Ordering::Relaxed) {
+                        ControlFlow::Break(())
+                    } else {
+                        ControlFlow::Continue(())
+                    }
+                };
+                let end = match catch_unwind(AssertUnwindSafe(|| work(&mut report))) {
+                    Ok(value) => Update::Finished(value),
+                    Err(payload) => Update::Panicked(panic_message(&*payload)),
+                };
+                let _ = sender.send(Message::End(end));
+                wake();
+            })?;
+        Ok(Self {
+            name: name.to_owned(),
+            started: Instant::now(),
+            progress: Progress::default(),
+            cancel,
+            receiver,
+        })
+    }
+
+    /// Takes in what has been reported since the last call, without waiting.
+    pub fn poll(&mut self) -> Update<T> {
+        loop {
+            match self.receiver.try_recv() {
+                Ok(Message::Progress(progress)) => self.progress = progress,
+                Ok(Message::End(end)) => return end,
+                Err(TryRecvError::Empty) => return Update::Running,
+                Err(TryRecvError::Disconnected) => return Update::Gone,
+            }
+        }
+    }
+
+    /// Waits for the end.
+    pub fn wait(&mut self) -> Update<T> {
+        loop {
+            match self.wait_for(Duration::from_secs(3600)) {
+                Update::Running => {}
+                end => return end,
+            }
+        }
+    }
+
+    /// Waits for the next report or the end, at most `timeout`.
+    pub fn wait_for(&mut self, timeout: Duration) -> Update<T> {
+        match self.receiver.recv_timeout(timeout) {
+            Ok(Message::Progress(progress)) => {
+                self.progress = progress;
+                Update::Running
+            }
+            Ok(Message::End(end)) => end,
+            Err(RecvTimeoutError::Timeout) => Update::Running,
+            Err(RecvTimeoutError::Disconnected) => Update::Gone,
+        }
+    }
+}
+
+impl<T> Job<T> {
+    /// The name it was started with.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The latest progress taken in by [`Job::poll`].
+    pub fn progress(&self) -> &Progress {
+        &self.progress
+    }
+
+    /// Time since the start.
+    pub fn elapsed(&self) -> Duration {
+        self.started.elapsed()
+    }
+
+    /// Asks the computation to stop at its next report. It still ends with a value.
+    pub fn cancel(&self) {
+        self.cancel.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether [`Job::cancel`] was called.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancel.load(Ordering::Relaxed)
+    }
+}
+
+impl<T> Drop for Job<T> {
+    fn drop(&mut self) {
+        self.cancel();
+    }
+}
+
+fn panic_message(payload: &(dyn std::any::Any + Send)) -> String {
+    let text = payload
+        .downcast_ref::<&str>()
+        .map(|text| (*text).to_owned());
+    text.or_else(|| payload.downcast_ref::<String>().cloned())
+        .unwrap_or_else(|| "a panic without a message".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn count_until_cancelled(report: &mut Report<'_>) -> u64 {
+        for step in 1.. {
+            if report(Progress::new(step, 0, "counting")).is_break() {
+                return step;
+            }
+            thread::sleep(Duration::from_millis(1));
+        }
+        0
+    }
+
+    #[test]
+    fn a_cancelled_job_ends_with_its_value() {
+        let mut job = Job::spawn("count", || {}, count_until_cancelled).unwrap();
+        while job.progress().done < 3 {
+            assert!(matches!(
+                job.wait_for(Duration::from_secs(10)),
+                Update::Running
+            ));
+        }
+        job.cancel();
+        assert!(matches!(job.wait(), Update::Finished(steps) if steps >= 3));
+        assert!(matches!(job.poll(), Update::Gone));
+    }
+
+    #[test]
+    fn dropping_a_job_cancels_it() {
+        let (sender, receiver) = channel();
+        let job = Job::spawn(
+            "count",
+            || {},
+            move |report| {
+                let _ = sender.send(count_until_cancelled(report));
+            },
+        );
+        drop(job);
+        assert!(
+            receiver.recv_timeout(Duration::from_secs(10)).is_ok(),
+            "the thread went on"
+        );
+    }
+
+    #[test]
+    fn a_panic_becomes_a_message() {
+        let mut job: Job<()> = Job::spawn("bad", || {}, |_| panic!("row {}", 7)).unwrap();
+        assert!(matches!(job.wait(), Update::Panicked(text) if text == "row 7"));
+    }
+
+    #[test]
+    fn time_left_extrapolates() {
+        let progress = Progress::new(25, 100, "");
+        assert_eq!(
+            progress.time_left(Duration::from_secs(10)),
+            Some(Duration::from_secs(30))
+        );
+        assert_eq!(progress.fraction(), Some(0.25));
+        assert_eq!(
+            Progress::new(5, 0, "").time_left(Duration::from_secs(1)),
+            None
+        );
+    }
+}

@@ -1,0 +1,3 @@
+//! The `impactlab` program.
+
+fn main() {}

@@ -1,0 +1,205 @@
+//! Physical constants and unit conversion. SI and radians everywhere inside; other units exist
+//! only where a file is read or a number is shown.
+//!
+//! Conversion factors are exact by definition: [`Nist2008`](crate::bibliography::Nist2008), table B.8.
+
+use serde::{Deserialize, Serialize};
+
+/// Standard gravity, m/s²; exact by definition (3rd CGPM, 1901).
+pub const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
+
+const FOOT_M: f64 = 0.3048;
+const INCH_M: f64 = 0.0254;
+const MILE_PER_HOUR_M_S: f64 = 0.447_04;
+const KILOMETRE_PER_HOUR_M_S: f64 = 1.0 / 3.6;
+const POUND_KG: f64 = 0.453_592_37;
+const POUND_FORCE_N: f64 = POUND_KG * STANDARD_GRAVITY_M_S2;
+const SLUG_KG: f64 = POUND_FORCE_N / FOOT_M;
+const DEGREE_RAD: f64 = std::f64::consts::PI / 180.0;
+const REVOLUTION_PER_MINUTE_RAD_S: f64 = std::f64::consts::PI / 30.0;
+
+/// What a number measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Quantity {
+    /// Time, s.
+    Time,
+    /// Length or position, m.
+    Length,
+    /// Linear velocity, m/s.
+    Speed,
+    /// Linear acceleration, m/s².
+    Acceleration,
+    /// Plane angle, rad.
+    Angle,
+    /// Angular velocity, rad/s.
+    AngularVelocity,
+    /// Mass, kg.
+    Mass,
+    /// Moment of inertia, kg m².
+    MomentOfInertia,
+    /// Force, N.
+    Force,
+    /// Moment of force, N m.
+    Moment,
+    /// Linear impulse, N s.
+    Impulse,
+    /// Angular impulse, N m s.
+    AngularImpulse,
+    /// Energy, J.
+    Energy,
+    /// A pure number.
+    Ratio,
+}
+
+/// The units in which a person reads and types numbers.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum UnitSystem {
+    /// m, km/h, deg, kN, kg: the metric units of European reconstruction practice.
+    #[default]
+    Si,
+    /// ft, mph, deg, lbf, lb: US customary units.
+    Us,
+}
+
+/// A unit of a [`Quantity`]: `value_si = value * si_per_unit`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unit {
+    /// What it measures.
+    pub quantity: Quantity,
+    /// As printed behind a number.
+    pub symbol: &'static str,
+    /// SI units (or radians) in one of these.
+    pub si_per_unit: f64,
+}
+
+impl Unit {
+    /// This unit's number as an SI number.
+    pub fn to_si(&self, value: f64) -> f64 {
+        value * self.si_per_unit
+    }
+
+    /// An SI number as this unit's number.
+    pub fn from_si(&self, value_si: f64) -> f64 {
+        value_si / self.si_per_unit
+    }
+}
+
+impl Quantity {
+    /// The unit used inside the program and in the files it writes.
+    pub fn si_unit(self) -> Unit {
+        self.units()[0]
+    }
+
+    /// The unit in which the quantity is shown to a person.
+    pub fn display_unit(self, system: UnitSystem) -> Unit {
+        let symbol = match (self, system) {
+            (Self::Length, UnitSystem::Us) => "ft",
+            (Self::Speed, UnitSystem::Si) => "km/h",
+            (Self::Speed, UnitSystem::Us) => "mph",
+            (Self::Acceleration, _) => "g",
+            (Self::Angle, _) => "deg",
+            (Self::AngularVelocity, _) => "deg/s",
+            (Self::Mass, UnitSystem::Us) => "lb",
+            (Self::MomentOfInertia, UnitSystem::Us) => "slug ft²",
+            (Self::Force, UnitSystem::Si) => "kN",
+            (Self::Force, UnitSystem::Us) => "lbf",
+            (Self::Moment, UnitSystem::Si) => "kN m",
+            (Self::Moment, UnitSystem::Us) => "lbf ft",
+            (Self::Impulse, UnitSystem::Si) => "kN s",
+            (Self::Impulse, UnitSystem::Us) => "lbf s",
+            (Self::AngularImpulse, UnitSystem::Si) => "kN m s",
+            (Self::AngularImpulse, UnitSystem::Us) => "lbf ft s",
+            (Self::Energy, UnitSystem::Si) => "kJ",
+            (Self::Energy, UnitSystem::Us) => "ft lbf",
+            _ => return self.si_unit(),
+        };
+        *self
+            .units()
+            .iter()
+            .find(|unit| unit.symbol == symbol)
+            .unwrap_or(&self.units()[0])
+    }
+
+    /// Every unit of the quantity that files and people use, the SI unit first.
+    pub fn units(self) -> &'static [Unit] {
+        macro_rules! units {
+            ($quantity:ident: $($symbol:literal = $si:expr),+ $(,)?) => {
+                &[$(Unit { quantity: Quantity::$quantity, symbol: $symbol, si_per_unit: $si }),+]
+            };
+        }
+        match self {
+            Self::Time => units!(Time: "s" = 1.0, "ms" = 1e-3, "µs" = 1e-6, "min" = 60.0),
+            Self::Length => units!(Length: "m" = 1.0, "mm" = 1e-3, "cm" = 1e-2, "km" = 1e3,
+                "ft" = FOOT_M, "in" = INCH_M),
+            Self::Speed => units!(Speed: "m/s" = 1.0, "mm/s" = 1e-3, "mm/ms" = 1.0,
+                "km/h" = KILOMETRE_PER_HOUR_M_S, "mph" = MILE_PER_HOUR_M_S, "ft/s" = FOOT_M),
+            Self::Acceleration => units!(Acceleration: "m/s²" = 1.0, "mm/s²" = 1e-3,
+                "g" = STANDARD_GRAVITY_M_S2, "ft/s²" = FOOT_M),
+            Self::Angle => units!(Angle: "rad" = 1.0, "deg" = DEGREE_RAD),
+            Self::AngularVelocity => units!(AngularVelocity: "rad/s" = 1.0, "deg/s" = DEGREE_RAD,
+                "rpm" = REVOLUTION_PER_MINUTE_RAD_S),
+            Self::Mass => units!(Mass: "kg" = 1.0, "g" = 1e-3, "t" = 1e3, "lb" = POUND_KG,
+                "slug" = SLUG_KG),
+            Self::MomentOfInertia => units!(MomentOfInertia: "kg m²" = 1.0,
+                "slug ft²" = SLUG_KG * FOOT_M * FOOT_M, "lb ft²" = POUND_KG * FOOT_M * FOOT_M),
+            Self::Force => units!(Force: "N" = 1.0, "kN" = 1e3, "MN" = 1e6, "lbf" = POUND_FORCE_N,
+                "kip" = 1e3 * POUND_FORCE_N),
+            Self::Moment => units!(Moment: "N m" = 1.0, "kN m" = 1e3, "N mm" = 1e-3,
+                "lbf ft" = POUND_FORCE_N * FOOT_M),
+            Self::Impulse => units!(Impulse: "N s" = 1.0, "kN s" = 1e3, "lbf s" = POUND_FORCE_N),
+            Self::AngularImpulse => units!(AngularImpulse: "N m s" = 1.0, "kN m s" = 1e3,
+                "lbf ft s" = POUND_FORCE_N * FOOT_M),
+            Self::Energy => units!(Energy: "J" = 1.0, "kJ" = 1e3,
+                "ft lbf" = POUND_FORCE_N * FOOT_M),
+            Self::Ratio => units!(Ratio: "" = 1.0, "%" = 0.01),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: [Quantity; 14] = [
+        Quantity::Time,
+        Quantity::Length,
+        Quantity::Speed,
+        Quantity::Acceleration,
+        Quantity::Angle,
+        Quantity::AngularVelocity,
+        Quantity::Mass,
+        Quantity::MomentOfInertia,
+        Quantity::Force,
+        Quantity::Moment,
+        Quantity::Impulse,
+        Quantity::AngularImpulse,
+        Quantity::Energy,
+        Quantity::Ratio,
+    ];
+
+    #[test]
+    fn the_first_unit_is_si_and_all_round_trip() {
+        for quantity in ALL {
+            assert_eq!(quantity.si_unit().si_per_unit, 1.0, "{quantity:?}");
+            for unit in quantity.units() {
+                let back = unit.from_si(unit.to_si(12.5));
+                assert!((back - 12.5).abs() < 1e-12, "{quantity:?} {}", unit.symbol);
+            }
+        }
+    }
+
+    #[test]
+    fn shown_units_are_the_ones_asked_for() {
+        let speed = Quantity::Speed.display_unit(UnitSystem::Us);
+        assert_eq!(speed.symbol, "mph");
+        assert!((speed.from_si(44.704) - 100.0).abs() < 1e-12);
+        assert_eq!(
+            Quantity::Impulse.display_unit(UnitSystem::Si).symbol,
+            "kN s"
+        );
+        for quantity in ALL {
+            let us = quantity.display_unit(UnitSystem::Us);
+            assert!(quantity.units().contains(&us), "{quantity:?}");
+        }
+    }
+}
