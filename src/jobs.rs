@@ -92,6 +92,7 @@ pub struct Job<T> {
     progress: Progress,
     cancel: Arc<AtomicBool>,
     receiver: Receiver<Message<T>>,
+    ended: bool,
 }
 
 impl<T: Send + 'static> Job<T> {
@@ -134,6 +135,7 @@ impl<T: Send + 'static> Job<T> {
             progress: Progress::default(),
             cancel,
             receiver,
+            ended: false,
         })
     }
 
@@ -141,10 +143,12 @@ impl<T: Send + 'static> Job<T> {
     pub fn poll(&mut self) -> Update<T> {
         loop {
             match self.receiver.try_recv() {
-                Ok(Message::Progress(progress)) => self.progress = progress,
-                Ok(Message::End(end)) => return end,
-                Err(TryRecvError::Empty) => return Update::Running,
-                Err(TryRecvError::Disconnected) => return Update::Gone,
+                Ok(message) => match self.take_in(message) {
+                    Update::Running => {}
+                    end => return end,
+                },
+                Err(TryRecvError::Empty) if !self.ended => return Update::Running,
+                Err(_) => return Update::Gone,
             }
         }
     }
@@ -161,14 +165,26 @@ impl<T: Send + 'static> Job<T> {
 
     /// Waits for the next report or the end, at most `timeout`.
     pub fn wait_for(&mut self, timeout: Duration) -> Update<T> {
+        if self.ended {
+            return Update::Gone;
+        }
         match self.receiver.recv_timeout(timeout) {
-            Ok(Message::Progress(progress)) => {
+            Ok(message) => self.take_in(message),
+            Err(RecvTimeoutError::Timeout) => Update::Running,
+            Err(RecvTimeoutError::Disconnected) => Update::Gone,
+        }
+    }
+
+    fn take_in(&mut self, message: Message<T>) -> Update<T> {
+        match message {
+            Message::Progress(progress) => {
                 self.progress = progress;
                 Update::Running
             }
-            Ok(Message::End(end)) => end,
-            Err(RecvTimeoutError::Timeout) => Update::Running,
-            Err(RecvTimeoutError::Disconnected) => Update::Gone,
+            Message::End(end) => {
+                self.ended = true;
+                end
+            }
         }
     }
 }

@@ -6,6 +6,9 @@
 //! 2. [`data`]: files become checked time series in SI units.
 
 pub mod bibliography;
+pub mod compare;
 pub mod data;
 pub mod jobs;
+pub mod numerics;
 pub mod units;
+pub mod vehicle;

@@ -1,6 +1,7 @@
 //! The contact force on the target over time, as the physics wants it.
 
 use crate::data::{Channel, SeriesError, TimeSeries};
+use crate::numerics::interpolate;
 
 /// The axes in which a force history is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,7 +15,7 @@ pub enum ForceAxes {
 /// What one sample of a force history stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sampling {
-    /// The value at the sample's instant; linear in between. Impulse by the trapezoid rule.
+    /// The value at the sample's instant; linear in between.
     Instant,
     /// The mean over an interval centred at the sample's instant.
     CentredMean,
@@ -40,7 +41,7 @@ pub struct ForceHistory {
 }
 
 impl ForceHistory {
-    /// Takes the force out of a series: world axes if `fx_n`, `fy_n` are there, else the body axes.
+    /// Takes the force out of a series: world axes if `fx_n`, `fy_n` are there, else body axes.
     ///
     /// # Errors
     /// [`SeriesError::Missing`] if neither pair is complete.
@@ -59,41 +60,109 @@ impl ForceHistory {
         })
     }
 
-    /// Width of the interval that each sample stands for, s: sums with these weights are the
-    /// integrals over time (trapezoid weights for instants; interval widths for means).
-    pub fn weights_s(&self) -> Vec<f64> {
-        let time = &self.time_s;
-        let n = time.len();
-        if n < 2 {
-            return vec![0.0; n];
-        }
-        let step = |i: usize| time[i + 1] - time[i];
-        (0..n)
-            .map(|i| {
-                let (before, after) = (i.checked_sub(1).map(step), (i + 1 < n).then(|| step(i)));
-                let (edge, full) = (before.or(after).unwrap_or(0.0), after.or(before));
-                match self.sampling {
-                    Sampling::Instant => (before.unwrap_or(0.0) + after.unwrap_or(0.0)) / 2.0,
-                    Sampling::CentredMean => (before.unwrap_or(edge) + after.unwrap_or(edge)) / 2.0,
-                    Sampling::ComingMean => full.unwrap_or(0.0),
-                }
-            })
-            .collect()
-    }
-
-    /// Impulse `P = ∫ F dt`, N s, along x and y of [`ForceHistory::axes`].
-    pub fn impulse_n_s(&self) -> [f64; 2] {
-        let weights = self.weights_s();
-        let sum = |force: &[f64]| force.iter().zip(&weights).map(|(f, w)| f * w).sum();
-        [sum(&self.fx_n), sum(&self.fy_n)]
-    }
-
     /// Largest `|F|`, N, and its time, s. `None` for an empty history.
     pub fn peak(&self) -> Option<(f64, f64)> {
         let magnitudes = self.fx_n.iter().zip(&self.fy_n).map(|(x, y)| x.hypot(*y));
         magnitudes
             .zip(self.time_s.iter().copied())
             .max_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// Impulse `P = ∫ F dt`, N s, along x and y of [`ForceHistory::axes`].
+    pub fn impulse_n_s(&self) -> [f64; 2] {
+        self.cumulative().total_n_s()
+    }
+
+    /// The impulse up to each instant, exact for what the samples mean.
+    pub fn cumulative(&self) -> CumulativeImpulse {
+        let knots_s = self.knots_s();
+        let integrate = |values: &[f64]| self.integrate(&knots_s, values);
+        CumulativeImpulse {
+            px_n_s: integrate(&self.fx_n),
+            py_n_s: integrate(&self.fy_n),
+            angular_n_m_s: self.mz_n_m.as_deref().map(integrate),
+            knots_s,
+        }
+    }
+
+    /// The instants between which the samples say what the mean force is.
+    fn knots_s(&self) -> Vec<f64> {
+        let time = &self.time_s;
+        let (&[first, second, ..], &[.., before_last, last]) = (time.as_slice(), time.as_slice())
+        else {
+            return time.clone();
+        };
+        match self.sampling {
+            Sampling::Instant => time.clone(),
+            Sampling::CentredMean => {
+                let middles = time.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0);
+                let start = first - (second - first) / 2.0;
+                let end = last + (last - before_last) / 2.0;
+                std::iter::once(start).chain(middles).chain([end]).collect()
+            }
+            Sampling::ComingMean => time
+                .iter()
+                .copied()
+                .chain([last + (last - before_last)])
+                .collect(),
+        }
+    }
+
+    fn integrate(&self, knots_s: &[f64], values: &[f64]) -> Vec<f64> {
+        let trapezoid: Vec<f64>;
+        let means = if self.sampling == Sampling::Instant {
+            trapezoid = values
+                .windows(2)
+                .map(|pair| (pair[0] + pair[1]) / 2.0)
+                .collect();
+            trapezoid.as_slice()
+        } else {
+            values
+        };
+        let widths = knots_s.windows(2).map(|pair| pair[1] - pair[0]);
+        let running = means.iter().zip(widths).scan(0.0, |sum, (mean, width)| {
+            *sum += mean * width;
+            Some(*sum)
+        });
+        std::iter::once(0.0).chain(running).collect()
+    }
+}
+
+/// Impulse from the beginning to each of a row of instants; linear in between.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CumulativeImpulse {
+    /// Instants, s, rising.
+    pub knots_s: Vec<f64>,
+    /// Impulse along x, N s.
+    pub px_n_s: Vec<f64>,
+    /// Impulse along y, N s.
+    pub py_n_s: Vec<f64>,
+    /// Angular impulse about the target's CG, N m s, where the moment is known.
+    pub angular_n_m_s: Option<Vec<f64>>,
+}
+
+impl CumulativeImpulse {
+    /// Impulse of the whole history, N s.
+    pub fn total_n_s(&self) -> [f64; 2] {
+        [&self.px_n_s, &self.py_n_s].map(|sum| sum.last().copied().unwrap_or(0.0))
+    }
+
+    /// Mean force `[F_x, F_y]`, N, and yaw moment, N m, over `[from, to]` s, so that a simulation
+    /// receives the whole impulse whatever its step. Zero outside the history.
+    pub fn mean_over(&self, from_s: f64, to_s: f64) -> ([f64; 2], Option<f64>) {
+        let mean = |sum: &[f64]| {
+            let at = |time| interpolate(&self.knots_s, sum, time).unwrap_or(0.0);
+            (at(to_s) - at(from_s)) / (to_s - from_s)
+        };
+        (
+            [mean(&self.px_n_s), mean(&self.py_n_s)],
+            self.angular_n_m_s.as_deref().map(mean),
+        )
+    }
+
+    /// When the history ends, s.
+    pub fn end_s(&self) -> f64 {
+        self.knots_s.last().copied().unwrap_or(f64::NEG_INFINITY)
     }
 }
 
@@ -122,6 +191,41 @@ mod tests {
             let [px, py] = history(sampling).impulse_n_s();
             assert!((px - duration).abs() < 1e-12, "{sampling:?}: {px}");
             assert!((py - 7.0).abs() < 1e-12, "{sampling:?}: {py}");
+        }
+    }
+
+    #[test]
+    fn no_impulse_is_lost_between_steps() {
+        for sampling in [
+            Sampling::Instant,
+            Sampling::CentredMean,
+            Sampling::ComingMean,
+        ] {
+            let history = history(sampling);
+            let cumulative = history.cumulative();
+            let step = 0.007;
+            let sum: f64 = (-20..100)
+                .map(|k| {
+                    step * cumulative
+                        .mean_over(k as f64 * step, (k + 1) as f64 * step)
+                        .0[1]
+                })
+                .sum();
+            assert!(
+                (sum - history.impulse_n_s()[1]).abs() < 1e-12,
+                "{sampling:?}: {sum}"
+            );
+        }
+    }
+
+    #[test]
+    fn an_empty_or_single_sample_has_no_impulse() {
+        for n in [0, 1] {
+            let mut short = history(Sampling::CentredMean);
+            for column in [&mut short.time_s, &mut short.fx_n, &mut short.fy_n] {
+                column.truncate(n);
+            }
+            assert_eq!(short.impulse_n_s(), [0.0, 0.0]);
         }
     }
 

@@ -5,5 +5,5 @@ mod force_history;
 mod series;
 
 pub use channel::Channel;
-pub use force_history::{ForceAxes, ForceHistory, Sampling};
+pub use force_history::{CumulativeImpulse, ForceAxes, ForceHistory, Sampling};
 pub use series::{SeriesError, TimeSeries};

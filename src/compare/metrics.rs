@@ -1,0 +1,128 @@
+//! Error figures of a predicted motion against a reference (METHOD of this project, section 7).
+
+use serde::Serialize;
+
+use crate::data::{Channel, SeriesError, TimeSeries};
+use crate::numerics::{interpolate, wrap_angle_rad};
+
+/// Horizons at which the distance is reported, s.
+pub const HORIZONS_S: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
+
+/// Yaw change beyond which a motion counts as a spin, rad (as in the trajectory datasets).
+pub const SPIN_YAW_CHANGE_RAD: f64 = std::f64::consts::FRAC_PI_2;
+
+/// How far a predicted motion lies from a reference, over the reference's samples.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MotionError {
+    /// Mean over time of the distance in (X, Y), m.
+    pub average_error_m: f64,
+    /// Distance at the last sample, m.
+    pub final_error_m: f64,
+    /// Wrapped difference of yaw at the last sample (prediction − reference), rad.
+    pub final_heading_error_rad: f64,
+    /// Distance at each of [`HORIZONS_S`], m; the last sample stands for a horizon just behind it.
+    pub horizon_error_m: [f64; 4],
+    /// Root mean square error of X, m.
+    pub rmse_x_m: f64,
+    /// Root mean square error of Y, m.
+    pub rmse_y_m: f64,
+    /// Root mean square error of v_x, m/s, where the reference has it.
+    pub rmse_vx_m_s: Option<f64>,
+    /// Root mean square error of v_y, m/s, where the reference has it.
+    pub rmse_vy_m_s: Option<f64>,
+    /// Root mean square error of the yaw rate, rad/s, where the reference has it.
+    pub rmse_yaw_rate_rad_s: Option<f64>,
+}
+
+impl MotionError {
+    /// Compares `predicted` with `reference` at the reference's instants; the prediction is
+    /// interpolated.
+    ///
+    /// # Errors
+    /// [`SeriesError::Missing`] if X, Y or yaw is missing in either.
+    pub fn between(predicted: &TimeSeries, reference: &TimeSeries) -> Result<Self, SeriesError> {
+        let time_s = reference.time_s();
+        let difference = |channel| -> Result<Vec<f64>, SeriesError> {
+            let (predicted, grid) = (predicted.require(channel)?, predicted.time_s());
+            let pairs = time_s.iter().zip(reference.require(channel)?);
+            Ok(pairs
+                .map(|(&t, r)| interpolate(grid, predicted, t).unwrap_or(f64::NAN) - r)
+                .collect())
+        };
+        let (dx, dy) = (difference(Channel::X)?, difference(Channel::Y)?);
+        let distance: Vec<f64> = dx.iter().zip(&dy).map(|(x, y)| x.hypot(*y)).collect();
+        let heading = difference(Channel::Yaw)?
+            .last()
+            .copied()
+            .unwrap_or(f64::NAN);
+        let at = |time| interpolate(time_s, &distance, time).unwrap_or(f64::NAN);
+        let optional = |channel| {
+            difference(channel)
+                .ok()
+                .map(|values| root_mean_square(&values))
+        };
+        Ok(Self {
+            average_error_m: distance.iter().sum::<f64>() / distance.len() as f64,
+            final_error_m: distance.last().copied().unwrap_or(f64::NAN),
+            final_heading_error_rad: wrap_angle_rad(heading),
+            horizon_error_m: HORIZONS_S.map(at),
+            rmse_x_m: root_mean_square(&dx),
+            rmse_y_m: root_mean_square(&dy),
+            rmse_vx_m_s: optional(Channel::Vx),
+            rmse_vy_m_s: optional(Channel::Vy),
+            rmse_yaw_rate_rad_s: optional(Channel::YawRate),
+        })
+    }
+}
+
+fn root_mean_square(values: &[f64]) -> f64 {
+    (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+/// Largest change of yaw from the start, rad.
+///
+/// # Errors
+/// [`SeriesError::Missing`] without a yaw column.
+pub fn largest_yaw_change_rad(motion: &TimeSeries) -> Result<f64, SeriesError> {
+    let yaw = motion.require(Channel::Yaw)?;
+    let first = yaw.first().copied().unwrap_or(0.0);
+    Ok(yaw
+        .iter()
+        .fold(0.0, |largest, yaw| (yaw - first).abs().max(largest)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn motion(offset_m: f64, yaw_rad: f64) -> TimeSeries {
+        let time_s: Vec<f64> = (0..=400).map(|i| f64::from(i) * 0.01).collect();
+        let mut series = TimeSeries::new(time_s.clone()).unwrap();
+        series
+            .insert(Channel::X, time_s.iter().map(|t| 10.0 * t).collect())
+            .unwrap();
+        series
+            .insert(Channel::Y, time_s.iter().map(|t| offset_m * t).collect())
+            .unwrap();
+        series.insert(Channel::Yaw, vec![yaw_rad; 401]).unwrap();
+        series
+    }
+
+    #[test]
+    fn a_steadily_growing_offset_has_known_figures() {
+        let error = MotionError::between(&motion(0.5, 6.2), &motion(0.0, 0.0)).unwrap();
+        assert!((error.average_error_m - 1.0).abs() < 1e-12);
+        assert!((error.final_error_m - 2.0).abs() < 1e-12);
+        assert!((error.final_heading_error_rad - (6.2 - std::f64::consts::TAU)).abs() < 1e-12);
+        for (got, expected) in error.horizon_error_m.iter().zip([0.25, 0.5, 1.0, 2.0]) {
+            assert!((got - expected).abs() < 1e-12);
+        }
+        assert_eq!((error.rmse_x_m, error.rmse_vx_m_s), (0.0, None));
+    }
+
+    #[test]
+    fn a_motion_without_position_is_refused() {
+        let bare = TimeSeries::new(vec![0.0]).unwrap();
+        assert!(MotionError::between(&motion(0.0, 0.0), &bare).is_err());
+    }
+}

@@ -1,0 +1,21 @@
+//! Plane angles.
+
+use std::f64::consts::{PI, TAU};
+
+/// The equal angle in (−π, π].
+pub fn wrap_angle_rad(angle_rad: f64) -> f64 {
+    let wrapped = angle_rad.rem_euclid(TAU);
+    if wrapped > PI { wrapped - TAU } else { wrapped }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wrapping_keeps_the_direction() {
+        for (angle, expected) in [(3.0 * PI, PI), (-PI, PI), (-0.1, -0.1), (7.0, 7.0 - TAU)] {
+            assert!((wrap_angle_rad(angle) - expected).abs() < 1e-12, "{angle}");
+        }
+    }
+}

@@ -1,0 +1,13 @@
+//! Mathematics that knows no vehicle: the scalar, integration, statistics, angles.
+
+mod angle;
+mod interpolation;
+mod ode;
+mod scalar;
+mod statistics;
+
+pub use angle::wrap_angle_rad;
+pub use interpolation::interpolate;
+pub use ode::{Stage, euler_step, rk4_step};
+pub use scalar::Scalar;
+pub use statistics::Summary;

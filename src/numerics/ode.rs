@@ -1,0 +1,78 @@
+//! One step of an explicit integrator, generic over the scalar.
+
+use crate::numerics::Scalar;
+
+/// Where within a step the right-hand side is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// The beginning, t.
+    Start,
+    /// The middle, t + h/2.
+    Middle,
+    /// The end, t + h.
+    End,
+}
+
+/// Explicit Euler step of ẋ = f: `x + h f(x)`. First order.
+pub fn euler_step<T: Scalar, const N: usize>(
+    f: impl Fn(Stage, &[T; N]) -> [T; N],
+    x: &[T; N],
+    h: f64,
+) -> [T; N] {
+    advance(x, &f(Stage::Start, x), h)
+}
+
+/// Classical Runge–Kutta step of ẋ = f. Fourth order in h for a smooth f.
+///
+/// ```text
+/// k₁ = f(t, x)   k₂ = f(t + h/2, x + h/2 k₁)   k₃ = f(t + h/2, x + h/2 k₂)   k₄ = f(t + h, x + h k₃)
+/// x⁺ = x + h/6 (k₁ + 2 k₂ + 2 k₃ + k₄)
+/// ```
+pub fn rk4_step<T: Scalar, const N: usize>(
+    f: impl Fn(Stage, &[T; N]) -> [T; N],
+    x: &[T; N],
+    h: f64,
+) -> [T; N] {
+    let k1 = f(Stage::Start, x);
+    let k2 = f(Stage::Middle, &advance(x, &k1, h / 2.0));
+    let k3 = f(Stage::Middle, &advance(x, &k2, h / 2.0));
+    let k4 = f(Stage::End, &advance(x, &k3, h));
+    std::array::from_fn(|i| x[i] + (k1[i] + (k2[i] + k3[i]) * 2.0 + k4[i]) * (h / 6.0))
+}
+
+fn advance<T: Scalar, const N: usize>(x: &[T; N], k: &[T; N], h: f64) -> [T; N] {
+    std::array::from_fn(|i| x[i] + k[i] * h)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    type Step = fn(&[f64; 2], f64) -> [f64; 2];
+
+    fn oscillator(_: Stage, x: &[f64; 2]) -> [f64; 2] {
+        [x[1], -x[0]]
+    }
+
+    fn error_after_one_second(step: Step, n: usize) -> f64 {
+        let h = 1.0 / n as f64;
+        let end = (0..n).fold([1.0, 0.0], |x, _| step(&x, h));
+        (end[0] - 1.0_f64.cos()).hypot(end[1] + 1.0_f64.sin())
+    }
+
+    #[test]
+    fn halving_the_step_divides_the_error_by_two_to_the_order() {
+        let methods: [(&str, Step, f64); 2] = [
+            ("euler", |x, h| euler_step(oscillator, x, h), 1.0),
+            ("rk4", |x, h| rk4_step(oscillator, x, h), 4.0),
+        ];
+        for (name, step, order) in methods {
+            let ratio = error_after_one_second(step, 50) / error_after_one_second(step, 100);
+            assert!(
+                (ratio.log2() - order).abs() < 0.05,
+                "{name}: order {}",
+                ratio.log2()
+            );
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! Figures that sum up a sample.
+
+use serde::Serialize;
+use statrs::statistics::{Data, Distribution, Max, Min, OrderStatistics};
+
+/// Mean, spread and order statistics of a sample.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Summary {
+    /// Sample size.
+    pub n: usize,
+    /// Arithmetic mean.
+    pub mean: f64,
+    /// Standard deviation (n − 1); 0 for a single value.
+    pub std: f64,
+    /// Median.
+    pub median: f64,
+    /// 90th percentile.
+    pub p90: f64,
+    /// Smallest value.
+    pub min: f64,
+    /// Largest value.
+    pub max: f64,
+}
+
+impl Summary {
+    /// Sums up a sample; `None` if it is empty or holds a NaN.
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+        let values: Vec<f64> = values.into_iter().collect();
+        if values.is_empty() || values.iter().any(|value| value.is_nan()) {
+            return None;
+        }
+        let n = values.len();
+        let mut data = Data::new(values);
+        Some(Self {
+            n,
+            mean: data.mean()?,
+            std: if n > 1 { data.std_dev()? } else { 0.0 },
+            median: data.median(),
+            p90: data.percentile(90),
+            min: data.min(),
+            max: data.max(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_small_sample_by_hand() {
+        let summary = Summary::of([1.0, 2.0, 3.0, 10.0]).unwrap();
+        assert_eq!((summary.n, summary.mean, summary.median), (4, 4.0, 2.5));
+        assert!((summary.std - (50.0_f64 / 3.0).sqrt()).abs() < 1e-12);
+        assert_eq!(Summary::of([5.0]).unwrap().std, 0.0);
+        assert_eq!(Summary::of([]), None);
+        assert_eq!(Summary::of([1.0, f64::NAN]), None);
+    }
+}

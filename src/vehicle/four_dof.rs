@@ -1,0 +1,294 @@
+//! The 4DOF vehicle: longitudinal, lateral, yaw and roll motion under tyre and collision forces.
+//! The one place of the equations of motion; generic over the scalar, so that the same lines
+//! simulate and give exact Jacobians.
+//!
+//! ```text
+//! m (v̇_x − v_y r)   = ΣF_x,tire + F_x,coll
+//! m (v̇_y + v_x r)   = ΣF_y,tire + F_y,coll
+//! I_zz ṙ + I_xz φ̈   = M_z,tire + M_z,coll
+//! I_xx φ̈ + I_xz ṙ   = m_s g h sin φ + m_s h a_y − K_φ φ − B φ̇ + M_x,coll      a_y = v̇_y + v_x r
+//! Ẋ = v_x cos ψ − v_y sin ψ      Ẏ = v_x sin ψ + v_y cos ψ
+//! ```
+//!
+//! Source: `eq:4dof`, `eq:4dof2` of [`PitPinnPaper`](crate::bibliography::PitPinnPaper).
+//! Assumes a rigid sprung mass on a roll axis along x, no pitch, no heave, no tyre relaxation;
+//! leaves out wheel spin, aligning moments and suspension kinematics.
+//! Validated against multibody simulations (`docs/VALIDATION.md`).
+//!
+//! Departures from the paper:
+//! - Roll feels m_s h a_y and the coupling by I_xz is symmetric: the printed equations let nothing
+//!   but the impact ever roll the body, and couple one way only.
+//! - Front tyre forces are turned by δ into body axes.
+//! - Tyres and vertical loads: see `tire.rs` and `loads.rs`.
+//! - The loop loads → tyre forces → loads is resolved by two fixed-point passes from the static
+//!   loads, so that the right-hand side stays a pure function of state and input.
+
+use nalgebra::{SMatrix, SVector};
+use num_dual::DualSVec64;
+
+use crate::numerics::Scalar;
+use crate::units::STANDARD_GRAVITY_M_S2;
+use crate::vehicle::frames::{body_from_world, world_from_body};
+use crate::vehicle::loads::{LoadTransfer, Wheel, vertical_loads_n};
+use crate::vehicle::tire::WheelSlip;
+use crate::vehicle::{N_STATE, VehicleParameters, VehicleState};
+
+/// Passes through loads → forces → loads.
+const LOAD_PASSES: usize = 2;
+
+/// Where the collision force acts on the target.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactPoint {
+    /// Forward of the CG, m.
+    pub x_m: f64,
+    /// To the left of the CG, m.
+    pub y_m: f64,
+    /// Above the ground, m.
+    pub height_m: f64,
+}
+
+/// Collision force ON the vehicle at an instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CollisionForce<T> {
+    /// Force, N, in world or body axes.
+    pub force_n: [T; 2],
+    /// Whether `force_n` stands in world axes and is turned by ψ.
+    pub in_world_axes: bool,
+    /// Yaw moment about the CG, N m; `None`: `x_c F_y − y_c F_x` of the contact point.
+    pub yaw_moment_n_m: Option<T>,
+    /// Where it acts.
+    pub contact: ContactPoint,
+}
+
+/// Input u(t).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VehicleInput<T> {
+    /// Road-wheel angle δ of the front axle, rad, positive to the left.
+    pub steer_rad: T,
+    /// Drive (positive) or brake (negative) force of the front and the rear axle, N.
+    pub axle_drive_n: [T; 2],
+    /// Collision force; `None` without contact.
+    pub collision: Option<CollisionForce<T>>,
+}
+
+impl<T: Scalar> VehicleInput<T> {
+    /// Wheel and throttle released, no contact: what follows a PIT impact.
+    pub fn released() -> Self {
+        Self {
+            steer_rad: T::from(0.0),
+            axle_drive_n: [T::from(0.0); 2],
+            collision: None,
+        }
+    }
+
+    /// The same input in another scalar.
+    pub fn map<U: Scalar>(self, convert: impl Fn(T) -> U + Copy) -> VehicleInput<U> {
+        VehicleInput {
+            steer_rad: convert(self.steer_rad),
+            axle_drive_n: self.axle_drive_n.map(convert),
+            collision: self.collision.map(|collision| CollisionForce {
+                force_n: collision.force_n.map(convert),
+                in_world_axes: collision.in_world_axes,
+                yaw_moment_n_m: collision.yaw_moment_n_m.map(convert),
+                contact: collision.contact,
+            }),
+        }
+    }
+}
+
+/// What the equations of motion give at one state and input.
+#[derive(Debug, Clone, Copy)]
+pub struct Evaluation<T> {
+    /// Time derivative of the state.
+    pub derivative: VehicleState<T>,
+    /// Acceleration of the CG along x and y of the body, m/s².
+    pub acceleration_m_s2: [T; 2],
+    /// Vertical loads, N, in the order of [`Wheel::ALL`].
+    pub vertical_loads_n: [T; 4],
+    /// Collision force in body axes, N.
+    pub collision_force_n: [T; 2],
+    /// Yaw moment of the collision force about the CG, N m.
+    pub collision_yaw_moment_n_m: T,
+}
+
+/// Forces and moments in body axes: `[F_x, F_y]` and `M_z` about the CG.
+#[derive(Clone, Copy)]
+struct Wrench<T> {
+    force_n: [T; 2],
+    yaw_moment_n_m: T,
+}
+
+impl VehicleParameters {
+    /// The right-hand side f(x, u) of the equations of motion.
+    pub fn evaluate<T: Scalar>(&self, x: &VehicleState<T>, u: &VehicleInput<T>) -> Evaluation<T> {
+        let collision = collision_wrench(x.yaw_rad, u.collision.as_ref());
+        let contact_height_m = u
+            .collision
+            .map_or(self.geometry.cg_height_m, |c| c.contact.height_m);
+        let (tires, vertical_loads_n) = self.tire_wrench(x, u, collision.force_n, contact_height_m);
+
+        let mass_kg = self.mass.mass_kg;
+        let ax = (tires.force_n[0] + collision.force_n[0]) / mass_kg;
+        let ay = (tires.force_n[1] + collision.force_n[1]) / mass_kg;
+        let yaw_moment = tires.yaw_moment_n_m + collision.yaw_moment_n_m;
+        let roll_moment = self.roll_moment_n_m(x, ay)
+            - collision.force_n[1] * (contact_height_m - self.suspension.roll_axis_height_m);
+        let [yaw_acceleration, roll_acceleration] = self.solve_yaw_roll(yaw_moment, roll_moment);
+        let [x_dot, y_dot] = world_from_body(x.yaw_rad, [x.vx_m_s, x.vy_m_s]);
+        Evaluation {
+            derivative: VehicleState {
+                vx_m_s: ax + x.vy_m_s * x.yaw_rate_rad_s,
+                vy_m_s: ay - x.vx_m_s * x.yaw_rate_rad_s,
+                yaw_rad: x.yaw_rate_rad_s,
+                yaw_rate_rad_s: yaw_acceleration,
+                roll_rad: x.roll_rate_rad_s,
+                roll_rate_rad_s: roll_acceleration,
+                x_m: x_dot,
+                y_m: y_dot,
+            },
+            acceleration_m_s2: [ax, ay],
+            vertical_loads_n,
+            collision_force_n: collision.force_n,
+            collision_yaw_moment_n_m: collision.yaw_moment_n_m,
+        }
+    }
+
+    /// The right-hand side and its Jacobian ∂f/∂x (`[8, 8]`, order of `eq:state_vector`), exact:
+    /// the same lines, run on dual numbers.
+    pub fn jacobian(
+        &self,
+        x: &VehicleState<f64>,
+        u: &VehicleInput<f64>,
+    ) -> (SVector<f64, N_STATE>, SMatrix<f64, N_STATE, N_STATE>) {
+        let u = u.map(DualSVec64::<N_STATE>::from);
+        let f = |x: SVector<DualSVec64<N_STATE>, N_STATE>| {
+            let state = VehicleState::from_array(x.into());
+            SVector::from(self.evaluate(&state, &u).derivative.to_array())
+        };
+        num_dual::jacobian(f, &SVector::from(x.to_array()))
+    }
+
+    /// Sum of the tyre forces, and the vertical loads under which they arise.
+    fn tire_wrench<T: Scalar>(
+        &self,
+        x: &VehicleState<T>,
+        u: &VehicleInput<T>,
+        collision_force_n: [T; 2],
+        contact_height_m: f64,
+    ) -> (Wrench<T>, [T; 4]) {
+        let (sin_steer, cos_steer) = u.steer_rad.sin_cos();
+        let slips = Wheel::ALL.map(|wheel| self.wheel_slip(wheel, x, [sin_steer, cos_steer]));
+        let cg_height_m = self.geometry.cg_height_m;
+        let contact_arm_m = contact_height_m - cg_height_m;
+        let leaning = self.gravity_roll_moment_n_m(x.roll_rad);
+
+        let mut loads = vertical_loads_n(self, LoadTransfer::none());
+        let mut tires = self.sum_wheels(&slips, &loads, u.axle_drive_n, [sin_steer, cos_steer]);
+        for _ in 0..LOAD_PASSES {
+            let transfer = LoadTransfer {
+                to_front_n_m: collision_force_n[0] * contact_arm_m - tires.force_n[0] * cg_height_m,
+                to_right_n_m: tires.force_n[1] * cg_height_m - collision_force_n[1] * contact_arm_m
+                    + leaning,
+            };
+            loads = vertical_loads_n(self, transfer);
+            tires = self.sum_wheels(&slips, &loads, u.axle_drive_n, [sin_steer, cos_steer]);
+        }
+        (tires, loads)
+    }
+
+    fn wheel_slip<T: Scalar>(
+        &self,
+        wheel: Wheel,
+        x: &VehicleState<T>,
+        [sin_steer, cos_steer]: [T; 2],
+    ) -> WheelSlip<T> {
+        let [px, py] = wheel.position_m(self);
+        let u = x.vx_m_s - x.yaw_rate_rad_s * py;
+        let w = x.vy_m_s + x.yaw_rate_rad_s * px;
+        let tires = &self.tires;
+        if wheel.is_front() {
+            let in_wheel = [cos_steer * u + sin_steer * w, cos_steer * w - sin_steer * u];
+            tires.slip(tires.cornering_coefficient_front_per_rad, in_wheel)
+        } else {
+            tires.slip(tires.cornering_coefficient_rear_per_rad, [u, w])
+        }
+    }
+
+    fn sum_wheels<T: Scalar>(
+        &self,
+        slips: &[WheelSlip<T>; 4],
+        loads_n: &[T; 4],
+        axle_drive_n: [T; 2],
+        [sin_steer, cos_steer]: [T; 2],
+    ) -> Wrench<T> {
+        let zero = T::from(0.0);
+        let mut sum = Wrench {
+            force_n: [zero; 2],
+            yaw_moment_n_m: zero,
+        };
+        for ((wheel, slip), &load) in Wheel::ALL.into_iter().zip(slips).zip(loads_n) {
+            let [drive_front, drive_rear] = axle_drive_n;
+            let [fx, fy] = if wheel.is_front() {
+                let [along, across] = slip.force_n(load, drive_front / 2.0);
+                [
+                    cos_steer * along - sin_steer * across,
+                    sin_steer * along + cos_steer * across,
+                ]
+            } else {
+                slip.force_n(load, drive_rear / 2.0)
+            };
+            let [px, py] = wheel.position_m(self);
+            sum.force_n[0] += fx;
+            sum.force_n[1] += fy;
+            sum.yaw_moment_n_m += fy * px - fx * py;
+        }
+        sum
+    }
+
+    /// Moment of the sprung weight about the roll axis, `m_s g h sin φ`, N m.
+    fn gravity_roll_moment_n_m<T: Scalar>(&self, roll_rad: T) -> T {
+        let sprung_kg = self.mass.sprung_mass_kg;
+        roll_rad.sin() * (sprung_kg * STANDARD_GRAVITY_M_S2 * self.suspension.roll_arm_m)
+    }
+
+    /// Right-hand side of the roll equation without the collision, N m.
+    fn roll_moment_n_m<T: Scalar>(&self, x: &VehicleState<T>, ay_m_s2: T) -> T {
+        let suspension = &self.suspension;
+        self.gravity_roll_moment_n_m(x.roll_rad)
+            + ay_m_s2 * (self.mass.sprung_mass_kg * suspension.roll_arm_m)
+            - x.roll_rad * suspension.roll_stiffness_n_m_rad
+            - x.roll_rate_rad_s * suspension.roll_damping_n_m_s_rad
+    }
+
+    /// Solves the coupled yaw and roll equations for `[ṙ, φ̈]`, rad/s².
+    fn solve_yaw_roll<T: Scalar>(&self, yaw_moment: T, roll_moment: T) -> [T; 2] {
+        let (izz, ixx) = (self.mass.yaw_inertia_kg_m2, self.mass.roll_inertia_kg_m2);
+        let ixz = self.mass.roll_yaw_product_kg_m2;
+        let determinant = izz * ixx - ixz * ixz; // > 0: checked with the parameters
+        [
+            (yaw_moment * ixx - roll_moment * ixz) / determinant,
+            (roll_moment * izz - yaw_moment * ixz) / determinant,
+        ]
+    }
+}
+
+fn collision_wrench<T: Scalar>(yaw_rad: T, collision: Option<&CollisionForce<T>>) -> Wrench<T> {
+    let zero = T::from(0.0);
+    let Some(collision) = collision else {
+        return Wrench {
+            force_n: [zero; 2],
+            yaw_moment_n_m: zero,
+        };
+    };
+    let force_n = if collision.in_world_axes {
+        body_from_world(yaw_rad, collision.force_n)
+    } else {
+        collision.force_n
+    };
+    let ContactPoint { x_m, y_m, .. } = collision.contact;
+    let at_contact = force_n[1] * x_m - force_n[0] * y_m;
+    Wrench {
+        force_n,
+        yaw_moment_n_m: collision.yaw_moment_n_m.unwrap_or(at_contact),
+    }
+}

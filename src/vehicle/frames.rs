@@ -1,0 +1,32 @@
+//! Axes and signs, stated once ([`Iso8855`](crate::bibliography::Iso8855)).
+//!
+//! - World: X along the road at the start, Y to the left, Z up.
+//! - Body, at the centre of gravity (CG): x forward, y left, z up.
+//! - Yaw ψ from X to x, counter-clockwise positive. Roll φ about x, positive leans right.
+
+use crate::numerics::Scalar;
+
+/// Turns a vector from world into body axes: `R(−ψ) v`.
+pub fn body_from_world<T: Scalar>(yaw_rad: T, [x, y]: [T; 2]) -> [T; 2] {
+    let (sin, cos) = yaw_rad.sin_cos();
+    [cos * x + sin * y, cos * y - sin * x]
+}
+
+/// Turns a vector from body into world axes: `R(ψ) v`.
+pub fn world_from_body<T: Scalar>(yaw_rad: T, [x, y]: [T; 2]) -> [T; 2] {
+    let (sin, cos) = yaw_rad.sin_cos();
+    [cos * x - sin * y, sin * x + cos * y]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn forward_of_a_car_turned_left_points_to_the_left() {
+        let [x, y] = world_from_body(std::f64::consts::FRAC_PI_2, [1.0, 0.0]);
+        assert!(x.abs() < 1e-15 && (y - 1.0).abs() < 1e-15);
+        let back: [f64; 2] = body_from_world(0.7, world_from_body(0.7, [3.0, -2.0]));
+        assert!((back[0] - 3.0).abs() < 1e-15 && (back[1] + 2.0).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,165 @@
+//! Vertical loads of the four wheels.
+//!
+//! Source: `eq:tire_model4` of [`PitPinnPaper`](crate::bibliography::PitPinnPaper).
+//! Quasi-static: pitch and roll accelerations do not enter.
+//!
+//! Departures from the paper:
+//! - Load is transferred by the forces that cause it, each at its own height: the tyre forces at
+//!   the ground and the collision force at the contact height. The paper takes the total
+//!   acceleration, so that a hard hit at CG height would lift wheels that it does not lift.
+//! - The split K_f/(K_f + K_r) is the front share of the ROLL stiffness.
+//! - Every load is ≥ 0 and their sum is m g: a wheel that lifts leaves its load to the other wheel
+//!   of the axle, an axle that lifts to the other axle.
+
+use crate::numerics::Scalar;
+use crate::units::STANDARD_GRAVITY_M_S2;
+use crate::vehicle::VehicleParameters;
+
+/// The four wheels, in the order of every array over wheels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Wheel {
+    /// Front left.
+    FrontLeft,
+    /// Front right.
+    FrontRight,
+    /// Rear left.
+    RearLeft,
+    /// Rear right.
+    RearRight,
+}
+
+impl Wheel {
+    /// All wheels, in order.
+    pub const ALL: [Self; 4] = [
+        Self::FrontLeft,
+        Self::FrontRight,
+        Self::RearLeft,
+        Self::RearRight,
+    ];
+
+    /// Whether the wheel is steered.
+    pub fn is_front(self) -> bool {
+        matches!(self, Self::FrontLeft | Self::FrontRight)
+    }
+
+    /// Its position from the CG in body axes, m.
+    pub fn position_m(self, vehicle: &VehicleParameters) -> [f64; 2] {
+        let geometry = &vehicle.geometry;
+        let half_track = geometry.track_width_m / 2.0;
+        let x = if self.is_front() {
+            geometry.cg_to_front_axle_m
+        } else {
+            -geometry.cg_to_rear_axle_m
+        };
+        let left = matches!(self, Self::FrontLeft | Self::RearLeft);
+        [x, if left { half_track } else { -half_track }]
+    }
+}
+
+/// What shifts load between the wheels, as moments about the CG, N m.
+#[derive(Debug, Clone, Copy)]
+pub struct LoadTransfer<T> {
+    /// Moment that loads the front axle: −h_cog ΣF_x,tire + (z_c − h_cog) F_x,coll.
+    pub to_front_n_m: T,
+    /// Moment that loads the right wheels: h_cog ΣF_y,tire − (z_c − h_cog) F_y,coll + m_s g h sin φ.
+    pub to_right_n_m: T,
+}
+
+impl<T: Scalar> LoadTransfer<T> {
+    /// Loads at rest.
+    pub fn none() -> Self {
+        Self {
+            to_front_n_m: T::from(0.0),
+            to_right_n_m: T::from(0.0),
+        }
+    }
+}
+
+/// Vertical load of each wheel, N, in the order of [`Wheel::ALL`].
+///
+/// ```text
+/// F_z,front = (m g l_r + M_front) / (l_f + l_r)      F_z,right − F_z,left = 2 share_axle M_right / w
+/// ```
+pub fn vertical_loads_n<T: Scalar>(
+    vehicle: &VehicleParameters,
+    transfer: LoadTransfer<T>,
+) -> [T; 4] {
+    let weight = vehicle.mass.mass_kg * STANDARD_GRAVITY_M_S2;
+    let geometry = &vehicle.geometry;
+    let front =
+        (transfer.to_front_n_m + weight * geometry.cg_to_rear_axle_m) / geometry.wheelbase_m();
+    let front = clamp(front, T::from(0.0), T::from(weight));
+    let axle = |load: T, share: f64| {
+        let half = load / 2.0;
+        let shift = clamp(
+            transfer.to_right_n_m * (share / geometry.track_width_m),
+            -half,
+            half,
+        );
+        [half - shift, half + shift]
+    };
+    let share = vehicle.suspension.front_roll_stiffness_share;
+    let [front_left, front_right] = axle(front, share);
+    let [rear_left, rear_right] = axle(-(front - weight), 1.0 - share);
+    [front_left, front_right, rear_left, rear_right]
+}
+
+fn clamp<T: Scalar>(value: T, low: T, high: T) -> T {
+    if value < low {
+        low
+    } else if value > high {
+        high
+    } else {
+        value
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vehicle::Preset;
+
+    #[test]
+    fn loads_are_never_negative_and_always_carry_the_weight() {
+        let vehicle = Preset::Reference.parameters();
+        let weight = vehicle.mass.mass_kg * STANDARD_GRAVITY_M_S2;
+        for to_front_n_m in [-1e5, -3e3, 0.0, 5e3, 1e5] {
+            for to_right_n_m in [-1e5, -2e3, 0.0, 4e3, 1e5] {
+                let loads = vertical_loads_n(
+                    &vehicle,
+                    LoadTransfer {
+                        to_front_n_m,
+                        to_right_n_m,
+                    },
+                );
+                assert!(loads.iter().all(|&load| load >= 0.0), "{loads:?}");
+                assert!(
+                    (loads.iter().sum::<f64>() - weight).abs() < 1e-8,
+                    "{loads:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_left_turn_loads_the_right_and_braking_the_front() {
+        let vehicle = Preset::Reference.parameters();
+        let at_rest = vertical_loads_n(&vehicle, LoadTransfer::none());
+        let turning = vertical_loads_n(
+            &vehicle,
+            LoadTransfer {
+                to_right_n_m: 2e3,
+                ..LoadTransfer::none()
+            },
+        );
+        assert!(turning[1] > at_rest[1] && turning[3] > at_rest[3]);
+        let braking = vertical_loads_n(
+            &vehicle,
+            LoadTransfer {
+                to_front_n_m: 2e3,
+                ..LoadTransfer::none()
+            },
+        );
+        assert!(braking[0] > at_rest[0] && braking[2] < at_rest[2]);
+    }
+}

@@ -1,0 +1,27 @@
+//! The vehicle: axes, parameters, tyres, vertical loads, the 4DOF equations of motion and their
+//! integration.
+
+pub mod frames;
+mod loads;
+mod multibody_record;
+mod parameters;
+mod preset;
+mod state;
+mod tire;
+
+mod four_dof;
+mod simulate;
+
+pub use four_dof::{CollisionForce, ContactPoint, Evaluation, VehicleInput};
+pub use loads::Wheel;
+pub use multibody_record::MultibodyRecord;
+pub use parameters::{
+    GeometryParameters, MassParameters, SuspensionParameters, VehicleError, VehicleParameters,
+};
+pub use preset::Preset;
+pub use simulate::{
+    Impact, Integrator, MAX_DURATION_S, Manoeuvre, Motion, MotionFlag, OUTPUT_INTERVAL_S,
+    ROLL_LIMIT_RAD, SimulationError, SteerHistory,
+};
+pub use state::{N_STATE, VehicleState};
+pub use tire::{TireParameters, WheelSlip};

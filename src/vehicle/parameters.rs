@@ -1,0 +1,378 @@
+//! Parameters of the 4DOF vehicle: TOML files with units in the key names, range-checked on load.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::vehicle::tire::TireParameters;
+
+/// One vehicle. SI units; every value lies in the range that [`VehicleParameters::check`] lists.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct VehicleParameters {
+    /// What a list calls it.
+    pub name: String,
+    /// Where the values come from.
+    pub source: String,
+    /// Mass and inertia.
+    pub mass: MassParameters,
+    /// Lengths.
+    pub geometry: GeometryParameters,
+    /// Roll of the sprung mass.
+    pub suspension: SuspensionParameters,
+    /// Tyres and road.
+    pub tires: TireParameters,
+    /// Keys whose values are estimates, with the rule that gave them.
+    #[serde(default)]
+    pub estimates: BTreeMap<String, String>,
+}
+
+/// Mass and inertia of one vehicle.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MassParameters {
+    /// Whole mass m, kg.
+    pub mass_kg: f64,
+    /// Sprung mass m_s, kg.
+    pub sprung_mass_kg: f64,
+    /// Yaw moment of inertia I_zz about the CG, kg m².
+    pub yaw_inertia_kg_m2: f64,
+    /// Roll moment of inertia I_xx about the roll axis, kg m².
+    pub roll_inertia_kg_m2: f64,
+    /// Roll–yaw product of inertia I_xz, kg m².
+    pub roll_yaw_product_kg_m2: f64,
+}
+
+/// Lengths of one vehicle.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GeometryParameters {
+    /// CG to front axle l_f, m.
+    pub cg_to_front_axle_m: f64,
+    /// CG to rear axle l_r, m.
+    pub cg_to_rear_axle_m: f64,
+    /// Track width w, m.
+    pub track_width_m: f64,
+    /// Height of the CG above the ground, m.
+    pub cg_height_m: f64,
+    /// Outer length, m.
+    pub outer_length_m: f64,
+    /// Outer width, m.
+    pub outer_width_m: f64,
+    /// CG to the front end of the body, m.
+    pub cg_to_front_end_m: f64,
+}
+
+/// Roll of the sprung mass of one vehicle.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SuspensionParameters {
+    /// Height of the roll axis below the CG, above the ground, m.
+    pub roll_axis_height_m: f64,
+    /// Arm h from the roll axis to the CG of the sprung mass, m.
+    pub roll_arm_m: f64,
+    /// Roll stiffness K_φ of both axles, N m/rad.
+    pub roll_stiffness_n_m_rad: f64,
+    /// Roll damping B, N m s/rad.
+    pub roll_damping_n_m_s_rad: f64,
+    /// Share of the front axle in the roll stiffness.
+    pub front_roll_stiffness_share: f64,
+}
+
+impl GeometryParameters {
+    /// Wheelbase l_f + l_r, m.
+    pub fn wheelbase_m(&self) -> f64 {
+        self.cg_to_front_axle_m + self.cg_to_rear_axle_m
+    }
+}
+
+/// A vehicle that cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum VehicleError {
+    /// The file cannot be read.
+    #[error("{}: cannot be read", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// The operating system's word.
+        source: std::io::Error,
+    },
+    /// The file is no vehicle.
+    #[error("{}:{line}:{column}: {message}", path.display())]
+    Parse {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+        /// Column, from 1.
+        column: usize,
+        /// The parser's word.
+        message: String,
+    },
+    /// A value lies outside what a road vehicle can have.
+    #[error("{}:{line}: {key} is {value}, expected {low} to {high}", path.display())]
+    Range {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1; 0 where the value stands in no line.
+        line: usize,
+        /// The key, with its table.
+        key: &'static str,
+        /// The value found.
+        value: f64,
+        /// Smallest value allowed.
+        low: f64,
+        /// Largest value allowed.
+        high: f64,
+    },
+}
+
+impl VehicleParameters {
+    /// Reads a vehicle: our own format, or the record of a multibody model that comes with a
+    /// trajectory dataset (see [`MultibodyRecord`](crate::vehicle::MultibodyRecord)).
+    ///
+    /// # Errors
+    /// [`VehicleError`], naming file, line, key, value and range.
+    pub fn load(path: &Path) -> Result<Self, VehicleError> {
+        let text = fs::read_to_string(path).map_err(|source| VehicleError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        Self::parse(&text, path)
+    }
+
+    /// Reads a vehicle from the text of a file; `path` is for messages.
+    ///
+    /// # Errors
+    /// As [`VehicleParameters::load`].
+    pub fn parse(text: &str, path: &Path) -> Result<Self, VehicleError> {
+        let parse_error = |error: toml::de::Error| parse_error(text, path, &error);
+        let table: toml::Table = toml::from_str(text).map_err(parse_error)?;
+        let is_multibody = table
+            .get("mass")
+            .is_some_and(|mass| mass.get("total").is_some());
+        let vehicle: Self = if is_multibody {
+            let record: crate::vehicle::MultibodyRecord =
+                toml::from_str(text).map_err(parse_error)?;
+            record.parameters()
+        } else {
+            toml::from_str(text).map_err(parse_error)?
+        };
+        vehicle.check(text, path)?;
+        Ok(vehicle)
+    }
+
+    /// The same vehicle on a road of this peak friction.
+    pub fn with_friction(mut self, friction: f64) -> Self {
+        self.tires.friction = friction;
+        self
+    }
+
+    /// Checks every value against its range; `text` is where the line is looked up.
+    fn check(&self, text: &str, path: &Path) -> Result<(), VehicleError> {
+        for (key, value, range) in self.ranges() {
+            if !range.contains(&value) {
+                let (low, high) = (*range.start(), *range.end());
+                let (path, line) = (path.to_owned(), line_of(text, key));
+                return Err(VehicleError::Range {
+                    path,
+                    line,
+                    key,
+                    value,
+                    low,
+                    high,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Every value with its range, wide enough for a 1:10 model and a heavy truck.
+    fn ranges(&self) -> Vec<(&'static str, f64, RangeInclusive<f64>)> {
+        let Self {
+            mass,
+            geometry,
+            suspension,
+            tires,
+            ..
+        } = self;
+        let coupling = (mass.yaw_inertia_kg_m2 * mass.roll_inertia_kg_m2)
+            .max(0.0)
+            .sqrt()
+            * 0.95;
+        vec![
+            ("mass.mass_kg", mass.mass_kg, 1.0..=50_000.0),
+            (
+                "mass.sprung_mass_kg",
+                mass.sprung_mass_kg,
+                0.5..=mass.mass_kg,
+            ),
+            ("mass.yaw_inertia_kg_m2", mass.yaw_inertia_kg_m2, 1e-3..=1e6),
+            (
+                "mass.roll_inertia_kg_m2",
+                mass.roll_inertia_kg_m2,
+                1e-3..=1e5,
+            ),
+            (
+                "mass.roll_yaw_product_kg_m2",
+                mass.roll_yaw_product_kg_m2,
+                -coupling..=coupling,
+            ),
+            (
+                "geometry.cg_to_front_axle_m",
+                geometry.cg_to_front_axle_m,
+                0.05..=10.0,
+            ),
+            (
+                "geometry.cg_to_rear_axle_m",
+                geometry.cg_to_rear_axle_m,
+                0.05..=10.0,
+            ),
+            ("geometry.track_width_m", geometry.track_width_m, 0.05..=4.0),
+            ("geometry.cg_height_m", geometry.cg_height_m, 0.01..=3.0),
+            (
+                "geometry.outer_length_m",
+                geometry.outer_length_m,
+                0.1..=25.0,
+            ),
+            ("geometry.outer_width_m", geometry.outer_width_m, 0.05..=4.0),
+            (
+                "geometry.cg_to_front_end_m",
+                geometry.cg_to_front_end_m,
+                0.0..=geometry.outer_length_m,
+            ),
+            (
+                "suspension.roll_axis_height_m",
+                suspension.roll_axis_height_m,
+                -1.0..=2.0,
+            ),
+            ("suspension.roll_arm_m", suspension.roll_arm_m, 0.0..=3.0),
+            (
+                "suspension.roll_stiffness_n_m_rad",
+                suspension.roll_stiffness_n_m_rad,
+                1.0..=1e7,
+            ),
+            (
+                "suspension.roll_damping_n_m_s_rad",
+                suspension.roll_damping_n_m_s_rad,
+                0.0..=1e6,
+            ),
+            (
+                "suspension.front_roll_stiffness_share",
+                suspension.front_roll_stiffness_share,
+                0.0..=1.0,
+            ),
+            (
+                "tires.cornering_coefficient_front_per_rad",
+                tires.cornering_coefficient_front_per_rad,
+                1.0..=60.0,
+            ),
+            (
+                "tires.cornering_coefficient_rear_per_rad",
+                tires.cornering_coefficient_rear_per_rad,
+                1.0..=60.0,
+            ),
+            ("tires.friction", tires.friction, 0.01..=2.0),
+            (
+                "tires.sliding_friction_ratio",
+                tires.sliding_friction_ratio,
+                0.1..=1.0,
+            ),
+            (
+                "tires.rolling_resistance",
+                tires.rolling_resistance,
+                0.0..=0.5,
+            ),
+            (
+                "tires.rolling_resistance_s_m",
+                tires.rolling_resistance_s_m,
+                0.0..=0.01,
+            ),
+            (
+                "tires.rolling_resistance_s2_m2",
+                tires.rolling_resistance_s2_m2,
+                0.0..=0.001,
+            ),
+        ]
+    }
+}
+
+fn parse_error(text: &str, path: &Path, error: &toml::de::Error) -> VehicleError {
+    let before = error
+        .span()
+        .and_then(|span| text.get(..span.start))
+        .unwrap_or("");
+    VehicleError::Parse {
+        path: path.to_owned(),
+        line: before.matches('\n').count() + 1,
+        column: before.chars().rev().take_while(|&c| c != '\n').count() + 1,
+        message: error.message().to_owned(),
+    }
+}
+
+/// Line of a `table.key`, from 1; 0 if it stands in no line.
+fn line_of(text: &str, key: &str) -> usize {
+    let name = key.rsplit('.').next().unwrap_or(key);
+    let is_key = |line: &str| {
+        line.trim_start()
+            .strip_prefix(name)
+            .is_some_and(|rest| rest.trim_start().starts_with('='))
+    };
+    text.lines().position(is_key).map_or(0, |index| index + 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vehicle::Preset;
+
+    fn reference_with(old: &str, new: &str) -> Result<VehicleParameters, VehicleError> {
+        let text = Preset::Reference.text();
+        assert!(text.contains(old), "{old} not in {text}");
+        VehicleParameters::parse(&text.replace(old, new), Path::new("car.toml"))
+    }
+
+    #[test]
+    fn a_value_out_of_range_names_file_line_key_value_and_range() {
+        let error = reference_with("mass_kg = 2000.0", "mass_kg = -3.0").unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "car.toml:5: mass.mass_kg is -3, expected 1 to 50000"
+        );
+        assert!(reference_with("mass_kg = 2000.0", "mass_kg = nan").is_err());
+    }
+
+    #[test]
+    fn text_an_unknown_key_and_a_missing_key_are_found() {
+        let text = reference_with("mass_kg = 2000.0", "mass_kg = \"heavy\"")
+            .unwrap_err()
+            .to_string();
+        assert!(
+            text.starts_with("car.toml:5:11: ") && text.contains("string"),
+            "{text}"
+        );
+        let text = reference_with("mass_kg = 2000.0", "mas_kg = 2000.0")
+            .unwrap_err()
+            .to_string();
+        assert!(
+            text.starts_with("car.toml:5:1: ") && text.contains("mas_kg"),
+            "{text}"
+        );
+        let text = reference_with("mass_kg = 2000.0\n", "")
+            .unwrap_err()
+            .to_string();
+        assert!(
+            text.starts_with("car.toml:4:1: ") && text.contains("mass_kg"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn a_missing_file_is_said_to_be_missing() {
+        let error = VehicleParameters::load(Path::new("no/such.toml")).unwrap_err();
+        assert_eq!(error.to_string(), "no/such.toml: cannot be read");
+    }
+}

@@ -1,0 +1,87 @@
+//! The state of the 4DOF vehicle.
+
+use crate::numerics::Scalar;
+
+/// State x = [v_x, v_y, ψ, r, φ, φ̇, X, Y] (`eq:state_vector`), velocities in body axes.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct VehicleState<T> {
+    /// Forward velocity of the CG, m/s.
+    pub vx_m_s: T,
+    /// Leftward velocity of the CG, m/s.
+    pub vy_m_s: T,
+    /// Yaw ψ, rad.
+    pub yaw_rad: T,
+    /// Yaw rate r, rad/s.
+    pub yaw_rate_rad_s: T,
+    /// Roll φ, rad.
+    pub roll_rad: T,
+    /// Roll rate φ̇, rad/s.
+    pub roll_rate_rad_s: T,
+    /// World position X of the CG, m.
+    pub x_m: T,
+    /// World position Y of the CG, m.
+    pub y_m: T,
+}
+
+/// Number of state components.
+pub const N_STATE: usize = 8;
+
+impl<T: Scalar> VehicleState<T> {
+    /// The state as an array, in the order of `eq:state_vector`.
+    pub fn to_array(self) -> [T; N_STATE] {
+        let Self {
+            vx_m_s,
+            vy_m_s,
+            yaw_rad,
+            yaw_rate_rad_s,
+            roll_rad,
+            roll_rate_rad_s,
+            x_m,
+            y_m,
+        } = self;
+        [
+            vx_m_s,
+            vy_m_s,
+            yaw_rad,
+            yaw_rate_rad_s,
+            roll_rad,
+            roll_rate_rad_s,
+            x_m,
+            y_m,
+        ]
+    }
+
+    /// The state from an array in the order of `eq:state_vector`.
+    pub fn from_array(array: [T; N_STATE]) -> Self {
+        let [
+            vx_m_s,
+            vy_m_s,
+            yaw_rad,
+            yaw_rate_rad_s,
+            roll_rad,
+            roll_rate_rad_s,
+            x_m,
+            y_m,
+        ] = array;
+        Self {
+            vx_m_s,
+            vy_m_s,
+            yaw_rad,
+            yaw_rate_rad_s,
+            roll_rad,
+            roll_rate_rad_s,
+            x_m,
+            y_m,
+        }
+    }
+}
+
+impl VehicleState<f64> {
+    /// Straight ahead along X from the origin at this speed.
+    pub fn driving_straight(speed_m_s: f64) -> Self {
+        Self {
+            vx_m_s: speed_m_s,
+            ..Self::default()
+        }
+    }
+}

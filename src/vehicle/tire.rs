@@ -1,0 +1,196 @@
+//! Force of one tyre on the road plane.
+//!
+//! Computes the lateral force and the rolling resistance of a wheel at any motion of its centre:
+//! rolling forwards or backwards, sliding sideways, at rest.
+//! Source: simplified magic formula of [`PitPinnPaper`](crate::bibliography::PitPinnPaper),
+//! `eq:tire_model`, `eq:tire_model3`.
+//! Assumes a steady state (no relaxation length), no camber, no aligning moment, friction that
+//! does not depend on the load.
+//!
+//! Departures from the paper:
+//! - The leading minus of `eq:tire_model` is dropped: with α = δ − atan(…) it would feed energy in.
+//! - The slip angle is α = −atan2(w, |u| + ε), in the wheel's own axes: right for a wheel that rolls
+//!   backwards (atan(w/u) flips, atan2(w, u) gives a full side force at α = π), and the force fades
+//!   linearly to zero as the wheel comes to rest.
+//! - The stiffness factor is `C = c/μ` with the cornering coefficient c (cornering stiffness over
+//!   load): the slope at zero slip is then the tyre's own, whatever the road's friction is.
+//! - Rolling resistance opposes the motion and vanishes at rest: −f(|u|) F_z tanh(u/u₀).
+//! - Beyond the peak the friction may fall to a sliding value (see [`TireParameters`]).
+
+use serde::{Deserialize, Serialize};
+
+use crate::numerics::Scalar;
+
+/// Regularisation ε of the slip angle, m/s. At standstill the side force is a viscous one of rate
+/// c g / ε ≈ 400 1/s, which the reference step of 1 ms resolves.
+const SLIP_ANGLE_SPEED_M_S: f64 = 0.5;
+
+/// Speed u₀ below which rolling resistance fades, m/s.
+const ROLLING_RESISTANCE_SPEED_M_S: f64 = 0.05;
+
+/// Slip angle over which friction falls from its peak to its sliding value, rad: some twice the
+/// slip at the peak (0.15 to 0.17 for the reference tyres).
+const SLIDING_SLIP_ANGLE_RAD: f64 = 0.35;
+
+/// Tyres of one vehicle; both axles on the same road.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TireParameters {
+    /// Cornering coefficient c of the front tyres, 1/rad: cornering stiffness over vertical load.
+    pub cornering_coefficient_front_per_rad: f64,
+    /// Cornering coefficient c of the rear tyres, 1/rad.
+    pub cornering_coefficient_rear_per_rad: f64,
+    /// Peak friction μ between tyre and road.
+    pub friction: f64,
+    /// Sliding friction over peak friction; 1 switches the fall beyond the peak off.
+    pub sliding_friction_ratio: f64,
+    /// Rolling resistance f_r0.
+    pub rolling_resistance: f64,
+    /// Rolling resistance f_r1, s/m, times the wheel's speed.
+    pub rolling_resistance_s_m: f64,
+    /// Rolling resistance f_r2, s²/m², times its square; may stand for the air drag.
+    pub rolling_resistance_s2_m2: f64,
+}
+
+/// What the motion of a wheel fixes, before its vertical load is known.
+#[derive(Debug, Clone, Copy)]
+pub struct WheelSlip<T> {
+    /// Slip angle α, rad, −π/2 to π/2.
+    pub slip_angle_rad: T,
+    /// Friction μ(α) that this slip can use.
+    friction: T,
+    /// `sin(atan(C α))`, −1 to 1.
+    lateral_share: T,
+    /// Rolling resistance over load, signed against the motion.
+    rolling_share: T,
+}
+
+impl TireParameters {
+    /// Slip of a wheel whose centre moves at `[u, w]` m/s in the wheel's own axes (u along its
+    /// plane, w to the left).
+    pub fn slip<T: Scalar>(
+        &self,
+        cornering_coefficient_per_rad: f64,
+        [u, w]: [T; 2],
+    ) -> WheelSlip<T> {
+        let speed = u.abs();
+        let slip_angle_rad = -w.atan2(speed + SLIP_ANGLE_SPEED_M_S);
+        let beyond_peak = slip_angle_rad * slip_angle_rad / SLIDING_SLIP_ANGLE_RAD.powi(2);
+        let sliding_loss = if self.sliding_friction_ratio < 1.0 {
+            -((-beyond_peak).exp() - 1.0) * (1.0 - self.sliding_friction_ratio)
+        } else {
+            T::from(0.0)
+        };
+        let stiffness = slip_angle_rad * (cornering_coefficient_per_rad / self.friction);
+        let resistance = speed * speed * self.rolling_resistance_s2_m2
+            + speed * self.rolling_resistance_s_m
+            + self.rolling_resistance;
+        WheelSlip {
+            slip_angle_rad,
+            friction: -(sliding_loss - 1.0) * self.friction,
+            // sin(atan(x)) without the detour over the angle
+            lateral_share: stiffness / (stiffness * stiffness + 1.0).sqrt(),
+            rolling_share: -resistance * smooth_sign(u / ROLLING_RESISTANCE_SPEED_M_S),
+        }
+    }
+}
+
+/// tanh, without its detour over cosh², which overflows in the derivative from some 350 on.
+fn smooth_sign<T: Scalar>(x: T) -> T {
+    if x.re().abs() > 20.0 {
+        T::from(x.re().signum())
+    } else {
+        x.tanh()
+    }
+}
+
+impl<T: Scalar> WheelSlip<T> {
+    /// Force `[F_x, F_y]`, N, in the wheel's axes under a vertical load ≥ 0, inside the friction
+    /// circle:
+    ///
+    /// ```text
+    /// F_x = clamp(F_drive − f(|u|) F_z tanh(u/u₀), ±μ F_z)     F_y = sin(atan(C α)) √((μ F_z)² − F_x²)
+    /// ```
+    pub fn force_n(&self, vertical_load_n: T, drive_force_n: T) -> [T; 2] {
+        let limit = self.friction * vertical_load_n;
+        let wanted = self.rolling_share * vertical_load_n + drive_force_n;
+        if wanted.abs() >= limit {
+            // Locked or spinning: nothing is left for the side. A square root of zero has no slope.
+            return [limit * wanted.re().signum(), T::from(0.0)];
+        }
+        [
+            wanted,
+            self.lateral_share * (limit * limit - wanted * wanted).sqrt(),
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const TIRE: TireParameters = TireParameters {
+        cornering_coefficient_front_per_rad: 13.0,
+        cornering_coefficient_rear_per_rad: 20.0,
+        friction: 0.8,
+        sliding_friction_ratio: 0.8,
+        rolling_resistance: 0.01,
+        rolling_resistance_s_m: 1e-4,
+        rolling_resistance_s2_m2: 2e-5,
+    };
+
+    #[test]
+    fn the_slope_at_zero_slip_is_the_cornering_stiffness() {
+        let tire = TireParameters {
+            rolling_resistance_s2_m2: 0.0,
+            ..TIRE
+        };
+        let (u, w) = (1e3, 1e-3);
+        let [fx, fy]: [f64; 2] = tire.slip(13.0, [u, -w]).force_n(5e3, 0.0);
+        let free_of_rolling = (1.0 - (fx / (0.8 * 5e3)).powi(2)).sqrt();
+        assert!(
+            (fy / (13.0 * 5e3 * w / u * free_of_rolling) - 1.0).abs() < 1e-3,
+            "{fy} {fx}"
+        );
+    }
+
+    #[test]
+    fn a_wheel_that_slides_sideways_has_sliding_friction() {
+        let [_, fy]: [f64; 2] = TIRE.slip(20.0, [0.0, 10.0]).force_n(4000.0, 0.0);
+        let [full, sliding] = [0.8 * 4000.0, 0.8 * 0.8 * 4000.0];
+        assert!(
+            fy < 0.0 && fy.abs() < 1.01 * sliding && fy.abs() < full,
+            "{fy}"
+        );
+    }
+
+    #[test]
+    fn a_lifted_wheel_has_no_force() {
+        assert_eq!(TIRE.slip(20.0, [5.0, 3.0]).force_n(0.0, 0.0), [0.0, 0.0]);
+    }
+
+    proptest! {
+        #[test]
+        fn a_tyre_never_puts_energy_in(u in -60.0..60.0, w in -60.0..60.0, load in 0.0..2e4) {
+            let [fx, fy] = TIRE.slip(13.0, [u, w]).force_n(load, 0.0);
+            prop_assert!(fx * u + fy * w <= 0.0);
+        }
+
+        #[test]
+        fn the_force_stays_in_the_friction_circle(
+            u in -60.0..60.0, w in -60.0..60.0, load in 0.0..2e4, drive in -2e4..2e4,
+        ) {
+            let [fx, fy] = TIRE.slip(13.0, [u, w]).force_n(load, drive);
+            prop_assert!(f64::hypot(fx, fy) <= 0.8 * load * (1.0 + 1e-12));
+        }
+
+        #[test]
+        fn backwards_is_the_mirror_of_forwards(u in 0.1..60.0, w in -60.0..60.0) {
+            let [fx, fy]: [f64; 2] = TIRE.slip(13.0, [u, w]).force_n(5e3, 0.0);
+            let [bx, by] = TIRE.slip(13.0, [-u, w]).force_n(5e3, 0.0);
+            prop_assert!((fx + bx).abs() < 1e-9 && (fy - by).abs() < 1e-9);
+        }
+    }
+}
