@@ -20,6 +20,9 @@ sources! {
     /// A. Thompson, B. N. Taylor, *Guide for the Use of the International System of Units (SI)*,
     /// NIST Special Publication 811, 2008. Conversion factors.
     Nist2008;
+    /// M. Okabe, K. Ito, *Color universal design: how to make figures and presentations that are
+    /// friendly to colorblind people*, 2008.
+    OkabeIto2008;
     /// The paper whose two physics-informed networks this program implements: post-impact motion
     /// from impact forces, 4DOF vehicle model (`eq:4dof`), momentum-conservation collision
     /// (`eq:collision_model1`). Equation labels are those of its LaTeX source.

@@ -28,9 +28,10 @@ const SLIP_ANGLE_SPEED_M_S: f64 = 0.5;
 /// Speed u₀ below which rolling resistance fades, m/s.
 const ROLLING_RESISTANCE_SPEED_M_S: f64 = 0.05;
 
-/// Slip angle over which friction falls from its peak to its sliding value, rad: some twice the
-/// slip at the peak (0.15 to 0.17 for the reference tyres).
-const SLIDING_SLIP_ANGLE_RAD: f64 = 0.35;
+/// Slip angle over which friction falls from its peak to its sliding value, rad: some three times the
+/// slip at the peak (0.15 to 0.17 for the reference tyres), as car tyres slide fully at a slip of
+/// 0.6 to 0.8. A choice, not a fit; `docs/VALIDATION.md` says what other values give.
+const SLIDING_SLIP_ANGLE_RAD: f64 = 0.5;
 
 /// Tyres of one vehicle; both axles on the same road.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

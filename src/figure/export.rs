@@ -1,0 +1,67 @@
+//! The numbers of a figure as CSV.
+
+use std::io::Write;
+
+use crate::figure::{Element, Figure};
+
+/// Writes every number of the figure: columns `series`, x and y under the axes' own names and
+/// units, one row a point, in drawing order. A band gives two series, a vertical line a row
+/// without y.
+///
+/// # Errors
+/// The writer's.
+pub fn write_figure_csv(figure: &Figure, writer: impl Write) -> Result<(), csv::Error> {
+    let mut csv = csv::Writer::from_writer(writer);
+    csv.write_record(["series", &figure.x.text(), &figure.y.text()])?;
+    for element in &figure.elements {
+        match element {
+            Element::Line(series)
+            | Element::Points(series)
+            | Element::Polygon(series)
+            | Element::Arrow(series) => {
+                for [x, y] in &series.points {
+                    csv.write_record([&series.name, &x.to_string(), &y.to_string()])?;
+                }
+            }
+            Element::Band(band) => {
+                for (edge, values) in [("low", &band.low), ("high", &band.high)] {
+                    let name = format!("{} ({edge})", band.name);
+                    for (x, y) in band.x.iter().zip(values) {
+                        csv.write_record([&name, &x.to_string(), &y.to_string()])?;
+                    }
+                }
+            }
+            Element::VerticalLine { name, x, .. } => {
+                csv.write_record([name, &x.to_string(), ""])?;
+            }
+        }
+    }
+    csv.flush()?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Axis, Role};
+    use crate::units::{Quantity, UnitSystem};
+
+    #[test]
+    fn the_file_says_units_and_repeats_the_numbers() {
+        let figure = Figure {
+            title: "t".to_owned(),
+            x: Axis::shown("Time", Quantity::Time, UnitSystem::Si),
+            y: Axis::shown("Force", Quantity::Force, UnitSystem::Si),
+            equal_aspect: false,
+            elements: vec![
+                Element::line("F_x, raw", Role::ComponentX, vec![[0.0, 1.5], [0.1, -2.0]]),
+                Element::VerticalLine { name: "start".to_owned(), role: Role::Muted, x: 0.05 },
+            ],
+        };
+        let mut text = Vec::new();
+        write_figure_csv(&figure, &mut text).unwrap();
+        let expected =
+            "series,Time [s],Force [kN]\n\"F_x, raw\",0,1.5\n\"F_x, raw\",0.1,-2\nstart,0.05,\n";
+        assert_eq!(String::from_utf8(text).unwrap(), expected);
+    }
+}

@@ -1,0 +1,73 @@
+//! The contact force over time.
+
+use crate::data::{ForceAxes, ForceHistory};
+use crate::figure::{Axis, Element, Figure, Role};
+use crate::units::{Quantity, UnitSystem};
+
+/// What the force figure shows.
+#[derive(Debug, Clone, Copy)]
+pub struct ForceFigure<'a> {
+    /// Name of the case.
+    pub name: &'a str,
+    /// The history, filtered if a channel class was chosen.
+    pub force: &'a ForceHistory,
+    /// The history before filtering, drawn behind.
+    pub raw: Option<&'a ForceHistory>,
+    /// Start and end of contact, s.
+    pub contact_s: Option<(f64, f64)>,
+    /// Classic pulses over it, by name.
+    pub pulses: &'a [(String, ForceHistory)],
+    /// Units of the axes.
+    pub units: UnitSystem,
+}
+
+/// F_x, F_y and |F| over time in ms, with markers where contact starts and ends.
+pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
+    let x = Axis { label: "Time".to_owned(), unit: milliseconds() };
+    let y = Axis::shown("Force on the target", Quantity::Force, input.units);
+    let axes = match input.force.axes {
+        ForceAxes::World => "world axes",
+        ForceAxes::Body => "heading axes",
+    };
+    let components = |history: &ForceHistory| {
+        let points = |value: &dyn Fn(usize) -> f64| -> Vec<[f64; 2]> {
+            let samples = history.time_s.iter().enumerate();
+            samples.map(|(i, &t)| [x.unit.from_si(t), y.unit.from_si(value(i))]).collect()
+        };
+        [
+            points(&|i| history.fx_n[i]),
+            points(&|i| history.fy_n[i]),
+            points(&|i| history.fx_n[i].hypot(history.fy_n[i])),
+        ]
+    };
+    let mut elements = Vec::new();
+    for points in input.raw.map(components).into_iter().flatten() {
+        elements.push(Element::line("unfiltered", Role::Muted, points));
+    }
+    let names = [("F_x", Role::ComponentX), ("F_y", Role::ComponentY), ("|F|", Role::Resultant)];
+    for ((name, role), points) in names.into_iter().zip(components(input.force)) {
+        elements.push(Element::line(name, role, points));
+    }
+    for (name, pulse) in input.pulses {
+        let [_, _, resultant] = components(pulse);
+        elements.push(Element::dashed(name, Role::Pulse, resultant));
+    }
+    if let Some((start, end)) = input.contact_s {
+        for (name, at) in [("contact starts", start), ("contact ends", end)] {
+            let (name, x) = (name.to_owned(), x.unit.from_si(at));
+            elements.push(Element::VerticalLine { name, role: Role::Muted, x });
+        }
+    }
+    Figure {
+        title: format!("{}: contact force on the target, {axes}", input.name),
+        x,
+        y,
+        equal_aspect: false,
+        elements,
+    }
+}
+
+fn milliseconds() -> crate::units::Unit {
+    let units = Quantity::Time.units();
+    *units.iter().find(|unit| unit.symbol == "ms").unwrap_or(&units[0])
+}

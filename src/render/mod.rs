@@ -1,0 +1,10 @@
+//! Draws figures: one function for the panel on screen and for the picture off-screen.
+
+mod offscreen;
+mod plot;
+mod software;
+pub mod theme;
+
+pub use offscreen::{Canvas, RenderError, draw_offscreen, figure_image, save_png};
+pub use plot::{FigureOptions, FigureResponse, figure_ui};
+pub use software::SoftwareRenderer;

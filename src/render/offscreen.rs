@@ -1,0 +1,116 @@
+//! Pictures without a window.
+
+use std::path::{Path, PathBuf};
+
+use egui::{Color32, Context, Pos2, RawInput, Rect, Ui, Vec2};
+use image::RgbaImage;
+
+use crate::data::write_atomically;
+use crate::figure::Figure;
+use crate::render::{FigureOptions, SoftwareRenderer, figure_ui, theme};
+
+/// Passes until fonts, plot bounds and layout have settled.
+const SETTLING_PASSES: usize = 4;
+
+/// Largest side of a picture, pixels.
+const MAX_SIDE_PX: u32 = 16_384;
+
+/// The ground on which a picture is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Canvas {
+    /// Width and height, pixels.
+    pub size_px: [u32; 2],
+    /// Pixels per point: 2 for print and slides.
+    pub scale: f32,
+    /// Dark theme.
+    pub dark: bool,
+}
+
+impl Default for Canvas {
+    fn default() -> Self {
+        Self { size_px: [1600, 1000], scale: 2.0, dark: false }
+    }
+}
+
+/// A picture that could not be made or saved.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    /// The size cannot be drawn.
+    #[error("a picture of {width} × {height} pixels cannot be drawn; expected 16 to {MAX_SIDE_PX}")]
+    Size {
+        /// Width asked for.
+        width: u32,
+        /// Height asked for.
+        height: u32,
+    },
+    /// The file cannot be written.
+    #[error("{}: cannot be written", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+}
+
+/// Draws any user interface off-screen, on the CPU: the same pixels on every machine.
+///
+/// # Errors
+/// [`RenderError::Size`].
+pub fn draw_offscreen(canvas: Canvas, mut ui: impl FnMut(&mut Ui)) -> Result<RgbaImage, RenderError> {
+    let [width, height] = canvas.size_px;
+    if [width, height].iter().any(|side| !(16..=MAX_SIDE_PX).contains(side)) {
+        return Err(RenderError::Size { width, height });
+    }
+    let context = Context::default();
+    context.set_visuals(theme::visuals(canvas.dark));
+    let mut renderer = SoftwareRenderer::default();
+    let size = Vec2::new(width as f32, height as f32) / canvas.scale;
+    let mut image = RgbaImage::default();
+    for pass in 0..SETTLING_PASSES {
+        let mut input = RawInput {
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, size)),
+            time: Some(pass as f64),
+            ..RawInput::default()
+        };
+        if let Some(viewport) = input.viewports.get_mut(&input.viewport_id) {
+            viewport.native_pixels_per_point = Some(canvas.scale);
+        }
+        let mut output = context.run_ui(input, &mut ui);
+        renderer.update_textures(&mut output.textures_delta);
+        if pass + 1 == SETTLING_PASSES {
+            let primitives = context.tessellate(output.shapes, output.pixels_per_point);
+            let ground = if canvas.dark { Color32::from_gray(27) } else { Color32::WHITE };
+            image = renderer.draw(&primitives, canvas.size_px, output.pixels_per_point, ground);
+        }
+    }
+    Ok(image)
+}
+
+/// Draws a figure with its title.
+///
+/// # Errors
+/// [`RenderError::Size`].
+pub fn figure_image(figure: &Figure, canvas: Canvas) -> Result<RgbaImage, RenderError> {
+    draw_offscreen(canvas, |ui| {
+        let frame = egui::Frame::new().inner_margin(12.0);
+        frame.show(ui, |ui| {
+            ui.label(egui::RichText::new(&figure.title).strong().size(15.0));
+            figure_ui(ui, figure, &FigureOptions::default());
+        });
+    })
+}
+
+/// Saves a picture as PNG, to a temporary name first.
+///
+/// # Errors
+/// [`RenderError::Write`].
+pub fn save_png(image: &RgbaImage, path: &Path) -> Result<(), RenderError> {
+    let encode = |file: &mut dyn std::io::Write| {
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        image.write_to(&mut bytes, image::ImageFormat::Png).map_err(std::io::Error::other)?;
+        file.write_all(&bytes.into_inner())
+    };
+    write_atomically(path, encode)
+        .map_err(|source| RenderError::Write { path: path.to_owned(), source })
+}

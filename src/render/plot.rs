@@ -1,0 +1,131 @@
+//! A figure in egui_plot.
+
+use egui::{Id, Stroke, Ui, Vec2b};
+use egui_plot::{
+    Arrows, FilledArea, Legend, Line, LineStyle as PlotLineStyle, Plot, PlotPoint, PlotPoints,
+    PlotUi, Points, Polygon, VLine,
+};
+
+use crate::figure::{Element, Figure, LineStyle, Role, Series};
+use crate::render::theme;
+
+/// How a figure is placed among others.
+#[derive(Debug, Clone, Default)]
+pub struct FigureOptions {
+    /// Distinguishes plots in one window; the title if empty.
+    pub id: String,
+    /// Plots of one group share cursor and time axis.
+    pub link: Option<Id>,
+    /// A cursor at this x, in the axis' unit.
+    pub cursor_x: Option<f64>,
+    /// Height, points; all there is if `None`.
+    pub height: Option<f32>,
+    /// Fit the view to the data again.
+    pub reset: bool,
+}
+
+/// What the user did in a figure.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct FigureResponse {
+    /// A click or drag that sets the cursor to this x.
+    pub picked_x: Option<f64>,
+    /// A right click asked for the menu.
+    pub rect: Option<egui::Rect>,
+}
+
+/// Draws a figure into the space that is left; a hover reads values in the axes' units.
+pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> FigureResponse {
+    let id = if options.id.is_empty() { &figure.title } else { &options.id };
+    let (x, y) = (figure.x.clone(), figure.y.clone());
+    let readout = move |name: &str, at: PlotPoint| {
+        let head = if name.is_empty() { String::new() } else { format!("{name}\n") };
+        format!("{head}{} {}\n{} {}", number(at.x), x.unit.symbol, number(at.y), y.unit.symbol)
+    };
+    let mut plot = Plot::new(id.as_str())
+        .x_axis_label(figure.x.text())
+        .y_axis_label(figure.y.text())
+        .y_axis_min_width(44.0)
+        .label_formatter(move |position| {
+            let (name, at) = match position {
+                egui_plot::HoverPosition::NearDataPoint { plot_name, position, .. } => {
+                    (*plot_name, *position)
+                }
+                egui_plot::HoverPosition::Elsewhere { position } => ("", *position),
+            };
+            Some(readout(name, at))
+        })
+        .legend(Legend::default())
+        .allow_scroll(false)
+        .allow_drag(Vec2b::new(figure.equal_aspect, figure.equal_aspect));
+    if figure.equal_aspect {
+        plot = plot.data_aspect(1.0);
+    }
+    if let Some(height) = options.height {
+        plot = plot.height(height);
+    }
+    if let Some(group) = options.link {
+        plot = plot.link_axis(group, Vec2b::new(true, false)).link_cursor(group, Vec2b::new(true, false));
+    }
+    if options.reset {
+        plot = plot.reset();
+    }
+    let dark = ui.visuals().dark_mode;
+    let response = plot.show(ui, |plot_ui| {
+        for element in &figure.elements {
+            draw_element(plot_ui, element, dark);
+        }
+        if let Some(x) = options.cursor_x {
+            let color = theme::color(Role::Reference, dark).gamma_multiply(0.6);
+            plot_ui.vline(VLine::new("", x).stroke(Stroke::new(1.0, color)).allow_hover(false));
+        }
+        let picking = plot_ui.response().is_pointer_button_down_on();
+        plot_ui.pointer_coordinate().filter(|_| picking).map(|point| point.x)
+    });
+    FigureResponse { picked_x: response.inner, rect: Some(response.response.rect) }
+}
+
+fn draw_element<'a>(plot: &mut PlotUi<'a>, element: &'a Element, dark: bool) {
+    let color = theme::color(element.role(), dark);
+    let stroke = Stroke::new(theme::line_width(element.role()), color);
+    let style = |series: &Series| match series.style {
+        LineStyle::Solid => PlotLineStyle::Solid,
+        LineStyle::Dashed => PlotLineStyle::dashed_loose(),
+        LineStyle::Dotted => PlotLineStyle::dotted_loose(),
+    };
+    let points = |series: &'a Series| PlotPoints::from(series.points.clone());
+    match element {
+        Element::Line(series) => {
+            plot.line(Line::new(&series.name, points(series)).stroke(stroke).style(style(series)));
+        }
+        Element::Points(series) => {
+            plot.points(Points::new(&series.name, points(series)).color(color).radius(3.0));
+        }
+        Element::Polygon(series) => {
+            let fill = color.gamma_multiply(theme::FILL_OPACITY);
+            let polygon = Polygon::new(&series.name, points(series)).fill_color(fill);
+            plot.polygon(polygon.stroke(stroke).style(style(series)));
+        }
+        Element::Arrow(series) => {
+            if let [from, to] = series.points[..] {
+                let (origin, tip) = (PlotPoints::from(vec![from]), PlotPoints::from(vec![to]));
+                plot.arrows(Arrows::new(&series.name, origin, tip).color(color));
+            }
+        }
+        Element::Band(band) => {
+            let fill = color.gamma_multiply(theme::FILL_OPACITY);
+            plot.add(FilledArea::new(&band.name, &band.x, &band.low, &band.high).fill_color(fill));
+        }
+        Element::VerticalLine { name, x, .. } => {
+            plot.vline(VLine::new(name, *x).stroke(stroke).style(PlotLineStyle::dashed_dense()));
+        }
+    }
+}
+
+/// A number as an analyst reads it: four significant digits.
+pub(crate) fn number(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let decimals = (3 - value.abs().log10().floor() as i32).clamp(0, 6) as usize;
+    format!("{value:.decimals$}")
+}

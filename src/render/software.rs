@@ -1,0 +1,225 @@
+//! Draws egui's triangles on the CPU: pictures without any graphics driver, the same on every
+//! machine. The crate `egui_software_backend` does this for older versions of egui only.
+//!
+//! Colours are premultiplied sRGB and blended in that space, textures are filtered linearly and
+//! clamped, a pixel belongs to a triangle if its centre does: what egui's own renderers do.
+//! Paint callbacks are drawn by no CPU and left out; figures use none.
+
+use std::collections::HashMap;
+
+use egui::epaint::{ClippedPrimitive, ImageDelta, Mesh, Primitive, TextureId, Vertex};
+use egui::{Color32, ColorImage, ImageData, Pos2, Rect, TexturesDelta};
+use image::RgbaImage;
+
+/// The textures that frames have set, and a way to draw frames with them.
+#[derive(Debug, Default)]
+pub struct SoftwareRenderer {
+    textures: HashMap<TextureId, ColorImage>,
+}
+
+impl SoftwareRenderer {
+    /// Takes in new and changed textures and forgets freed ones. Leaves the delta empty.
+    pub fn update_textures(&mut self, delta: &mut TexturesDelta) {
+        for (id, patches) in delta.set.drain() {
+            for patch in patches {
+                self.update_texture(id, patch);
+            }
+        }
+        for id in delta.free.drain() {
+            self.textures.remove(&id);
+        }
+    }
+
+    fn update_texture(&mut self, id: TextureId, patch: ImageDelta) {
+        let ImageData::Color(image) = patch.image;
+        let Some([x0, y0]) = patch.pos else {
+            self.textures.insert(id, (*image).clone());
+            return;
+        };
+        let Some(texture) = self.textures.get_mut(&id) else { return };
+        let (width, texture_width) = (image.size[0], texture.size[0]);
+        for (row, pixels) in image.pixels.chunks_exact(width.max(1)).enumerate() {
+            let start = (y0 + row) * texture_width + x0;
+            if let Some(target) = texture.pixels.get_mut(start..start + width) {
+                target.copy_from_slice(pixels);
+            }
+        }
+    }
+
+    /// Draws a frame over `background`. `size` in pixels.
+    pub fn draw(
+        &self,
+        primitives: &[ClippedPrimitive],
+        [width, height]: [u32; 2],
+        pixels_per_point: f32,
+        background: Color32,
+    ) -> RgbaImage {
+        let mut frame = Frame {
+            width: width as usize,
+            height: height as usize,
+            pixels: vec![background; width as usize * height as usize],
+        };
+        for ClippedPrimitive { clip_rect, primitive } in primitives {
+            let Primitive::Mesh(mesh) = primitive else { continue };
+            if let Some(texture) = self.textures.get(&mesh.texture_id) {
+                frame.draw_mesh(mesh, texture, *clip_rect * pixels_per_point, pixels_per_point);
+            }
+        }
+        let opaque = |color: Color32| [color.r(), color.g(), color.b(), 255];
+        let bytes: Vec<u8> = frame.pixels.into_iter().flat_map(opaque).collect();
+        RgbaImage::from_raw(width, height, bytes).unwrap_or_default()
+    }
+}
+
+struct Frame {
+    width: usize,
+    height: usize,
+    pixels: Vec<Color32>,
+}
+
+impl Frame {
+    fn draw_mesh(&mut self, mesh: &Mesh, texture: &ColorImage, clip: Rect, scale: f32) {
+        for corners in mesh.indices.chunks_exact(3) {
+            let vertex = |corner: usize| mesh.vertices.get(corners[corner] as usize);
+            if let (Some(a), Some(b), Some(c)) = (vertex(0), vertex(1), vertex(2)) {
+                let scaled = [a, b, c].map(|v| Vertex { pos: (v.pos.to_vec2() * scale).to_pos2(), ..*v });
+                self.draw_triangle(scaled, texture, clip);
+            }
+        }
+    }
+
+    fn draw_triangle(&mut self, [a, mut b, mut c]: [Vertex; 3], texture: &ColorImage, clip: Rect) {
+        let mut area = edge(a.pos, b.pos, c.pos);
+        if area < 0.0 {
+            std::mem::swap(&mut b, &mut c);
+            area = -area;
+        }
+        if !(area > 0.0 && area.is_finite()) {
+            return;
+        }
+        let bounds = Rect::from_points(&[a.pos, b.pos, c.pos]).intersect(clip);
+        let pixel_range = |low: f32, high: f32, n: usize| {
+            let first = (low - 0.5).ceil().max(0.0) as usize;
+            let end = ((high - 0.5).floor() + 1.0).clamp(0.0, n as f32) as usize;
+            first..end
+        };
+        let flat = a.color == b.color && b.color == c.color;
+        let untextured = a.uv == b.uv && b.uv == c.uv;
+        let constant_texel = untextured.then(|| sample(texture, a.uv));
+        for y in pixel_range(bounds.min.y, bounds.max.y, self.height) {
+            for x in pixel_range(bounds.min.x, bounds.max.x, self.width) {
+                let p = Pos2::new(x as f32 + 0.5, y as f32 + 0.5);
+                let weights = [edge(b.pos, c.pos, p), edge(c.pos, a.pos, p), edge(a.pos, b.pos, p)];
+                let owns = [(b.pos, c.pos), (c.pos, a.pos), (a.pos, b.pos)]
+                    .into_iter()
+                    .zip(weights)
+                    .all(|((from, to), w)| w > 0.0 || (w == 0.0 && is_top_left(from, to)));
+                if !owns {
+                    continue;
+                }
+                let [wa, wb, wc] = weights.map(|weight| weight / area);
+                let color = if flat { channels(a.color) } else {
+                    mix([channels(a.color), channels(b.color), channels(c.color)], [wa, wb, wc])
+                };
+                let texel = constant_texel.unwrap_or_else(|| {
+                    let uv = a.uv.to_vec2() * wa + b.uv.to_vec2() * wb + c.uv.to_vec2() * wc;
+                    sample(texture, uv.to_pos2())
+                });
+                let pixel = &mut self.pixels[y * self.width + x];
+                *pixel = blend(*pixel, std::array::from_fn(|i| color[i] * texel[i] / 255.0));
+            }
+        }
+    }
+}
+
+/// Twice the signed area of the triangle, positive clockwise on screen (y down).
+fn edge(from: Pos2, to: Pos2, p: Pos2) -> f32 {
+    (to.x - from.x) * (p.y - from.y) - (to.y - from.y) * (p.x - from.x)
+}
+
+/// A pixel centre on a shared edge belongs to one of the two triangles only.
+fn is_top_left(from: Pos2, to: Pos2) -> bool {
+    (from.y == to.y && to.x > from.x) || to.y < from.y
+}
+
+fn channels(color: Color32) -> [f32; 4] {
+    color.to_array().map(f32::from)
+}
+
+fn mix(colors: [[f32; 4]; 3], weights: [f32; 3]) -> [f32; 4] {
+    std::array::from_fn(|i| (0..3).map(|corner| colors[corner][i] * weights[corner]).sum())
+}
+
+/// Linear filtering, clamped at the edges; 0 to 255.
+fn sample(texture: &ColorImage, uv: Pos2) -> [f32; 4] {
+    let [width, height] = texture.size;
+    if width == 0 || height == 0 {
+        return [0.0; 4];
+    }
+    let along = |share: f32, n: usize| {
+        let at = (share * n as f32 - 0.5).clamp(0.0, (n - 1) as f32);
+        let low = at.floor() as usize;
+        (low, (low + 1).min(n - 1), at - at.floor())
+    };
+    let ((x0, x1, fx), (y0, y1, fy)) = (along(uv.x, width), along(uv.y, height));
+    let texel = |x: usize, y: usize| channels(texture.pixels[y * width + x]);
+    let (top, bottom) = ([texel(x0, y0), texel(x1, y0)], [texel(x0, y1), texel(x1, y1)]);
+    std::array::from_fn(|i| {
+        let row = |pair: [[f32; 4]; 2]| pair[0][i] * (1.0 - fx) + pair[1][i] * fx;
+        row(top) * (1.0 - fy) + row(bottom) * fy
+    })
+}
+
+/// Premultiplied source over destination.
+fn blend(under: Color32, over: [f32; 4]) -> Color32 {
+    let keep = 1.0 - over[3] / 255.0;
+    let under = channels(under);
+    let [r, g, b, a] = std::array::from_fn(|i| (over[i] + under[i] * keep).round() as u8);
+    Color32::from_rgba_premultiplied(r, g, b, a)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(color: Color32) -> ClippedPrimitive {
+        let mut mesh = Mesh::default();
+        mesh.add_colored_rect(Rect::from_min_max(Pos2::new(1.0, 1.0), Pos2::new(3.0, 3.0)), color);
+        let clip_rect = Rect::from_min_max(Pos2::ZERO, Pos2::new(2.0, 9.0));
+        ClippedPrimitive { clip_rect, primitive: Primitive::Mesh(mesh) }
+    }
+
+    fn renderer() -> SoftwareRenderer {
+        let white = ColorImage::filled([1, 1], Color32::WHITE);
+        SoftwareRenderer { textures: [(TextureId::default(), white)].into() }
+    }
+
+    #[test]
+    fn pixels_inside_triangle_and_clip_are_blended_once() {
+        let half = Color32::from_rgba_premultiplied(100, 0, 0, 128);
+        let image = renderer().draw(&[square(half)], [8, 8], 2.0, Color32::from_gray(200));
+        for y in 0..8 {
+            for x in 0..8 {
+                let inside = (2..4).contains(&x) && (2..6).contains(&y);
+                let expected = if inside { [200, 100, 100, 255] } else { [200, 200, 200, 255] };
+                assert_eq!(image.get_pixel(x, y).0, expected, "at {x}, {y}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_patch_changes_its_part_of_a_texture() {
+        let mut renderer = renderer();
+        let id = TextureId::Managed(7);
+        let options = egui::TextureOptions::LINEAR;
+        let whole = ColorImage::filled([3, 2], Color32::BLACK);
+        let patch = ColorImage::filled([2, 1], Color32::RED);
+        let mut delta = TexturesDelta::default();
+        delta.push(id, ImageDelta::full(whole, options));
+        delta.push(id, ImageDelta::partial([1, 1], patch, options));
+        renderer.update_textures(&mut delta);
+        let red: Vec<bool> = renderer.textures[&id].pixels.iter().map(|p| *p == Color32::RED).collect();
+        assert_eq!(red, [false, false, false, false, true, true]);
+        assert!(delta.is_empty());
+    }
+}
