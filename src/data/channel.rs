@@ -25,6 +25,22 @@ macro_rules! channels {
                 match self { $(Self::$variant => $name),+ }
             }
 
+            /// The header without its unit: what `--map` and messages call the channel.
+            pub fn short_name(self) -> &'static str {
+                let unit = match self.quantity() {
+                    Quantity::Time => "_s",
+                    Quantity::Length => "_m",
+                    Quantity::Angle => "_rad",
+                    Quantity::Speed => "_m_s",
+                    Quantity::AngularVelocity => "_rad_s",
+                    Quantity::Acceleration => "_m_s2",
+                    Quantity::Force => "_n",
+                    Quantity::Moment => "_nm",
+                    _ => "",
+                };
+                self.header().strip_suffix(unit).unwrap_or(self.header())
+            }
+
             /// What it measures.
             pub fn quantity(self) -> Quantity {
                 match self { $(Self::$variant => Quantity::$quantity),+ }
@@ -55,9 +71,9 @@ channels! {
     /// Roll φ about the forward axis.
     Roll: "roll_rad", Angle, "Roll φ", ["roll", "rollangle", "phi", "wankwinkel"];
     /// Forward velocity of the centre of gravity.
-    Vx: "vx_m_s", Speed, "v_x", ["vx", "vxbody", "velx", "velocityx", "longitudinalvelocity", "u", "speedx"];
+    Vx: "vx_m_s", Speed, "v_x", ["vx", "vxbody", "velx", "velocityx", "longitudinalvelocity", "speedx"];
     /// Leftward velocity of the centre of gravity.
-    Vy: "vy_m_s", Speed, "v_y", ["vy", "vybody", "vely", "velocityy", "lateralvelocity", "v", "speedy"];
+    Vy: "vy_m_s", Speed, "v_y", ["vy", "vybody", "vely", "velocityy", "lateralvelocity", "speedy"];
     /// Yaw rate r.
     YawRate: "yaw_rate_rad_s", AngularVelocity, "Yaw rate r", ["yawrate", "r", "psidot", "wz", "omegaz", "gyroz", "gierrate"];
     /// Roll rate.

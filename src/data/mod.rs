@@ -1,9 +1,38 @@
 //! Files become checked time series in SI units here, and series become files.
 
+mod attributes;
+mod case_attributes;
 mod channel;
+mod column_map;
+mod columns;
+mod dataset;
+mod dialect;
+mod error;
 mod force_history;
+mod loose;
+mod open;
 mod series;
+mod spelling;
+mod table;
+mod text;
+mod write;
 
+pub use attributes::{Attributes, Value};
+pub use case_attributes::{ForceAttributes, Side, TrajectoryAttributes};
 pub use channel::Channel;
+pub use column_map::{ColumnMap, ColumnRef, ColumnSource, MapError};
+pub(crate) use columns::Columns;
+pub use columns::{ColumnProposal, ColumnUse, Note, map_from_proposals, propose_columns};
+pub use dataset::{Case, Dataset, DatasetKind, Outcome};
+pub use dialect::{Dialect, Separator};
+pub use error::DataError;
 pub use force_history::{CumulativeImpulse, ForceAxes, ForceHistory, Sampling};
+pub use loose::{
+    FileKind, Loaded, read_any_series, read_force_file, read_series, read_steer_file,
+    read_trajectory_file,
+};
+pub use open::{Opened, open};
 pub use series::{SeriesError, TimeSeries};
+pub use table::Table;
+pub use text::MAX_FILE_BYTES;
+pub use write::{write_atomically, write_series_csv};

@@ -1,0 +1,307 @@
+//! Which column of a table holds which channel, in which unit.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::Path;
+
+use crate::data::spelling::{self, Meaning};
+use crate::data::{Channel, ColumnMap, ColumnRef, ColumnSource, DataError, Table};
+use crate::units::{Quantity, Unit};
+
+/// Sample values that a mapping dialog shows for a column.
+const SHOWN_SAMPLES: usize = 5;
+
+/// A column that was read, and as what.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColumnUse {
+    /// What it holds.
+    pub channel: Channel,
+    /// Its number, from 1.
+    pub number: usize,
+    /// Its header.
+    pub name: String,
+    /// The unit of its numbers.
+    pub unit: Unit,
+    /// Whether the file or the user named the unit; if not, SI was assumed.
+    pub unit_is_stated: bool,
+}
+
+/// Something that does not keep a file from being read, but that a person should know.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Note {
+    /// No unit was named, so SI was assumed.
+    UnitAssumed(ColumnUse),
+    /// A column that was not needed is left out, since its unit does not measure it.
+    WrongUnit {
+        /// What it was taken for.
+        channel: Channel,
+        /// Its number, from 1.
+        number: usize,
+        /// Its header.
+        name: String,
+        /// The unit as written.
+        unit: String,
+    },
+    /// Columns that were not recognised and are left out.
+    Ignored {
+        /// Their headers.
+        names: Vec<String>,
+    },
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::UnitAssumed(column) => write!(
+                f,
+                "column {} {:?} names no unit; taken as {}",
+                column.number, column.name, column.unit.symbol
+            ),
+            Self::WrongUnit {
+                channel,
+                number,
+                name,
+                unit,
+            } => write!(
+                f,
+                "column {number} {name:?} is left out: {unit:?} is no unit of {}",
+                spelling::quantity_name(channel.quantity())
+            ),
+            Self::Ignored { names } => write!(f, "not recognised: {}", names.join(", ")),
+        }
+    }
+}
+
+/// A column of a file as a mapping dialog shows it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColumnProposal {
+    /// Its number, from 1.
+    pub number: usize,
+    /// Its header, or `column 1` and so on.
+    pub name: String,
+    /// Its first values, as written.
+    pub samples: Vec<String>,
+    /// What it looks like; the unit is `None` if the file names none.
+    pub guess: Option<(Channel, Option<Unit>)>,
+}
+
+/// Looks into a file: its columns, and what they look like.
+///
+/// # Errors
+/// [`DataError`] if the file is not a table.
+pub fn propose_columns(path: &Path) -> Result<Vec<ColumnProposal>, DataError> {
+    let table = Table::read(path)?;
+    let proposal = |(column_idx, name): (usize, &String)| ColumnProposal {
+        number: column_idx + 1,
+        name: name.clone(),
+        samples: (0..table.n_rows().min(SHOWN_SAMPLES))
+            .map(|row_idx| table.cell(row_idx, column_idx).to_owned())
+            .collect(),
+        guess: match column_meaning(&table, column_idx) {
+            Meaning::Channel(channel, unit) => Some((channel, unit)),
+            Meaning::WrongUnit(..) | Meaning::Unknown => None,
+        },
+    };
+    Ok(table.header().iter().enumerate().map(proposal).collect())
+}
+
+/// The mapping that takes every guess of a dialog as it stands.
+pub fn map_from_proposals(proposals: &[ColumnProposal]) -> ColumnMap {
+    let choice = |proposal: &ColumnProposal| {
+        let (channel, unit) = proposal.guess?;
+        let column = ColumnRef::Number(proposal.number);
+        Some((channel, ColumnSource { column, unit }))
+    };
+    proposals.iter().filter_map(choice).collect()
+}
+
+/// What was made of a table's columns.
+#[derive(Debug, Default)]
+pub(crate) struct Columns {
+    pub by_channel: BTreeMap<Channel, ColumnUse>,
+    pub notes: Vec<Note>,
+}
+
+impl Columns {
+    /// Assigns the mapped columns first, then the others by their headers.
+    pub(crate) fn of(table: &Table, map: Option<&ColumnMap>) -> Result<Self, DataError> {
+        let mut columns = Self::default();
+        for (channel, source) in map.iter().flat_map(|map| map.iter()) {
+            let column = mapped_column(table, channel, source)?;
+            columns.by_channel.insert(channel, column);
+        }
+        columns.guess_others(table, map)?;
+        let assumed = columns
+            .by_channel
+            .values()
+            .filter(|column| !column.unit_is_stated);
+        let assumed: Vec<Note> = assumed.cloned().map(Note::UnitAssumed).collect();
+        columns.notes.splice(0..0, assumed);
+        Ok(columns)
+    }
+
+    fn guess_others(&mut self, table: &Table, map: Option<&ColumnMap>) -> Result<(), DataError> {
+        let mapped: Vec<usize> = self
+            .by_channel
+            .values()
+            .map(|column| column.number)
+            .collect();
+        let is_mapped = |channel| map.is_some_and(|map| map.get(channel).is_some());
+        let mut ignored = Vec::new();
+        for (column_idx, name) in table.header().iter().enumerate() {
+            let number = column_idx + 1;
+            if mapped.contains(&number) {
+                continue;
+            }
+            let name = name.clone();
+            match column_meaning(table, column_idx) {
+                Meaning::Channel(channel, unit) if !is_mapped(channel) => {
+                    let column = column_use(channel, number, name, unit);
+                    if let Some(earlier) = self.by_channel.insert(channel, column) {
+                        return Err(ambiguous(table, &self.by_channel[&channel], earlier));
+                    }
+                }
+                Meaning::WrongUnit(channel, unit) if !is_mapped(channel) => {
+                    self.notes.push(Note::WrongUnit {
+                        channel,
+                        number,
+                        name,
+                        unit,
+                    });
+                }
+                _ => ignored.push(name),
+            }
+        }
+        if !ignored.is_empty() {
+            self.notes.push(Note::Ignored { names: ignored });
+        }
+        Ok(())
+    }
+
+    /// The error for a needed channel without a column: its unit is wrong, or it is not there.
+    pub(crate) fn missing(
+        &self,
+        table: &Table,
+        channel: Channel,
+        needed: &'static str,
+    ) -> DataError {
+        let (path, line) = (table.path().to_owned(), table.header_line());
+        let wrong = self.notes.iter().find_map(|note| match note {
+            Note::WrongUnit {
+                channel: of,
+                number,
+                name,
+                unit,
+            } if *of == channel => Some((*number, name.clone(), unit.clone())),
+            _ => None,
+        });
+        match wrong {
+            Some((column, name, unit)) => DataError::UnknownUnit {
+                path,
+                line,
+                column,
+                name,
+                channel,
+                unit,
+                quantity: channel.quantity(),
+            },
+            None => DataError::MissingColumn {
+                path,
+                line,
+                channel,
+                needed,
+                found: table.header().to_vec(),
+            },
+        }
+    }
+}
+
+fn column_use(channel: Channel, number: usize, name: String, unit: Option<Unit>) -> ColumnUse {
+    ColumnUse {
+        channel,
+        number,
+        name,
+        unit: unit.unwrap_or_else(|| channel.quantity().si_unit()),
+        unit_is_stated: unit.is_some(),
+    }
+}
+
+/// What a column's header says, the row of units included.
+fn column_meaning(table: &Table, column_idx: usize) -> Meaning {
+    let name = table.header().get(column_idx).map_or("", String::as_str);
+    match (spelling::meaning(name), table.unit_text(column_idx)) {
+        (Meaning::Channel(channel, None), Some(text)) => {
+            match spelling::unit(channel.quantity(), text) {
+                Some(unit) => Meaning::Channel(channel, Some(unit)),
+                None => Meaning::WrongUnit(channel, text.to_owned()),
+            }
+        }
+        (meaning, _) => meaning,
+    }
+}
+
+fn mapped_column(
+    table: &Table,
+    channel: Channel,
+    source: &ColumnSource,
+) -> Result<ColumnUse, DataError> {
+    let fits = |name: &String| match &source.column {
+        ColumnRef::Number(_) => false,
+        ColumnRef::Name(wanted) => spelling::same_name(name, wanted),
+    };
+    let column_idx = match &source.column {
+        ColumnRef::Number(number) => number.checked_sub(1),
+        ColumnRef::Name(wanted) => {
+            let exact = table.header().iter().position(|name| name == wanted);
+            exact.or_else(|| table.header().iter().position(fits))
+        }
+    };
+    let found = column_idx.and_then(|idx| Some((idx, table.header().get(idx)?.clone())));
+    let (column_idx, name) = found.ok_or_else(|| DataError::NoSuchColumn {
+        path: table.path().to_owned(),
+        line: table.header_line(),
+        channel,
+        column: source.column.to_string(),
+        found: table.header().to_vec(),
+    })?;
+    let number = column_idx + 1;
+    let unit = match source.unit {
+        Some(unit) => Some(unit),
+        None => stated_unit(table, column_idx, channel.quantity()).map_err(|unit| {
+            DataError::UnknownUnit {
+                path: table.path().to_owned(),
+                line: table.header_line(),
+                column: number,
+                name: name.clone(),
+                channel,
+                unit,
+                quantity: channel.quantity(),
+            }
+        })?,
+    };
+    Ok(column_use(channel, number, name, unit))
+}
+
+/// The unit that the file states for a column; the error is a unit of something else.
+fn stated_unit(table: &Table, idx: usize, quantity: Quantity) -> Result<Option<Unit>, String> {
+    if let Some(text) = table.unit_text(idx) {
+        return match spelling::unit(quantity, text) {
+            Some(unit) => Ok(Some(unit)),
+            None => Err(text.to_owned()),
+        };
+    }
+    let name = table.header().get(idx).map_or("", String::as_str);
+    spelling::trailing_unit(name, quantity)
+}
+
+fn ambiguous(table: &Table, later: &ColumnUse, earlier: ColumnUse) -> DataError {
+    DataError::AmbiguousColumn {
+        path: table.path().to_owned(),
+        line: table.header_line(),
+        column: later.number,
+        channel: later.channel,
+        name: later.name.clone(),
+        other_column: earlier.number,
+        other: earlier.name,
+    }
+}

@@ -1,0 +1,299 @@
+//! How people write column headers and units: `Fx [kN]`, `time(ms)`, `yaw_rate_deg_s`, `Fx in kN`.
+
+use crate::data::Channel;
+use crate::units::{Quantity, Unit};
+
+const OPENING: [char; 4] = ['[', '(', '{', '<'];
+const CLOSING: [char; 4] = [']', ')', '}', '>'];
+
+/// What a header says about its column.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Meaning {
+    /// A channel; the unit is `None` if the header names none.
+    Channel(Channel, Option<Unit>),
+    /// A channel in a unit that does not measure it.
+    WrongUnit(Channel, String),
+    /// No channel.
+    Unknown,
+}
+
+/// Reads a header: the longest beginning that names a channel, and what follows as its unit.
+pub(crate) fn meaning(header: &str) -> Meaning {
+    if let Some(&own) = Channel::ALL.iter().find(|own| own.header() == header) {
+        return Meaning::Channel(own, Some(own.quantity().si_unit()));
+    }
+    let mut wrong_unit = None;
+    for (at, _) in header.rmatch_indices(|c: char| !c.is_alphanumeric()) {
+        let (name, rest) = header.split_at(at);
+        if name.rfind(OPENING) > name.rfind(CLOSING) {
+            continue;
+        }
+        let Some(channel) = channel(name) else {
+            continue;
+        };
+        let Some(text) = unit_text(rest) else {
+            return Meaning::Channel(channel, None);
+        };
+        if let Some(unit) = unit(channel.quantity(), text) {
+            return Meaning::Channel(channel, Some(unit));
+        }
+        if is_bracketed(rest) || is_unit(text) {
+            wrong_unit.get_or_insert(Meaning::WrongUnit(channel, text.to_owned()));
+        }
+    }
+    match (channel(header), wrong_unit) {
+        (Some(channel), _) => Meaning::Channel(channel, None),
+        (None, Some(wrong_unit)) => wrong_unit,
+        (None, None) => Meaning::Unknown,
+    }
+}
+
+/// The channel with this name: ours, with or without its unit, or another program's.
+pub(crate) fn channel(name: &str) -> Option<Channel> {
+    let key = letters_and_digits(name);
+    Channel::ALL.iter().copied().find(|channel| {
+        name.eq_ignore_ascii_case(channel.header())
+            || channel.aliases().contains(&key.as_str())
+            || letters_and_digits(channel.short_name()) == key
+    })
+}
+
+/// The unit of `quantity` that is written like this.
+pub(crate) fn unit(quantity: Quantity, text: &str) -> Option<Unit> {
+    // A meganewton and a millinewton differ by nine orders of magnitude and one capital.
+    if text.contains("mN") {
+        return None;
+    }
+    let key = unit_key(text);
+    let key = match (quantity, key.as_str()) {
+        (Quantity::Time, "ss" | "sek") => "s",
+        (Quantity::Time, "millis" | "mss") => "ms",
+        (Quantity::Length, "meter" | "metre" | "meters" | "metres") => "m",
+        (Quantity::Length, "foot" | "feet") => "ft",
+        (Quantity::Length, "inch" | "inches") => "in",
+        (Quantity::Speed, "mps" | "ms1") => "ms",
+        (Quantity::Speed, "kph" | "kmph") => "kmh",
+        (Quantity::Speed, "fps") => "fts",
+        (Quantity::Acceleration, "mss") => "ms2",
+        (Quantity::Acceleration, "gs") => "g",
+        (Quantity::AngularVelocity, "dps" | "degs1") => "degs",
+        (Quantity::AngularVelocity, "rads1" | "1s" | "s1") => "rads",
+        (Quantity::Force, "newton" | "newtons") => "n",
+        (Quantity::Force, "lb" | "lbs") => "lbf",
+        (Quantity::Force, "kips") => "kip",
+        (Quantity::Mass, "lbs") => "lb",
+        (Quantity::Moment, "ftlb" | "ftlbs" | "lbft" | "lbsft" | "ftlbf") => "lbfft",
+        (_, key) => key,
+    };
+    let mut units = quantity.units().iter().copied();
+    units.find(|unit| !key.is_empty() && unit_key(unit.symbol) == key)
+}
+
+/// The unit at the end of a header whose name need not be known: `Kraft X [kN]`.
+///
+/// The error is the text of a unit that does not measure `quantity`.
+pub(crate) fn trailing_unit(header: &str, quantity: Quantity) -> Result<Option<Unit>, String> {
+    let mut wrong = None;
+    for (at, _) in header.match_indices(|c: char| !c.is_alphanumeric()) {
+        let rest = &header[at..];
+        let Some(text) = unit_text(rest) else {
+            continue;
+        };
+        if let Some(unit) = unit(quantity, text) {
+            return Ok(Some(unit));
+        }
+        if is_bracketed(rest) && is_unit(text) {
+            wrong = Some(text.to_owned());
+        }
+    }
+    wrong.map_or(Ok(None), Err)
+}
+
+/// Whether two headers are the same but for case, blanks, signs and a unit in brackets.
+pub(crate) fn same_name(left: &str, right: &str) -> bool {
+    let bare = |name: &str| letters_and_digits(name.split(OPENING).next().unwrap_or(name));
+    letters_and_digits(left) == letters_and_digits(right)
+        || (!bare(left).is_empty() && bare(left) == bare(right))
+}
+
+/// Whether a line is a row of units, as some programs write one beneath the header.
+pub(crate) fn is_unit_row<'a>(cells: impl Iterator<Item = &'a str>) -> bool {
+    let mut any = false;
+    cells
+        .filter_map(|cell| Some((cell, unit_text(cell)?)))
+        .all(|(cell, text)| {
+            any = true;
+            is_bracketed(cell) || is_unit(text)
+        })
+        && any
+}
+
+/// The unit in what follows a name or stands in a row of units; `None` if there is none.
+pub(crate) fn unit_text(rest: &str) -> Option<&str> {
+    let outside = |c: char| c.is_whitespace() || "_,:;/[](){}<>-".contains(c);
+    let text = rest.trim_matches(outside);
+    let text = text.strip_prefix("in ").unwrap_or(text).trim();
+    (!text.is_empty()).then_some(text)
+}
+
+/// What a quantity is called in a message.
+pub(crate) fn quantity_name(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Time => "time",
+        Quantity::Length => "length",
+        Quantity::Speed => "speed",
+        Quantity::Acceleration => "acceleration",
+        Quantity::Angle => "angle",
+        Quantity::AngularVelocity => "angular velocity",
+        Quantity::Mass => "mass",
+        Quantity::MomentOfInertia => "moment of inertia",
+        Quantity::Force => "force",
+        Quantity::Moment => "moment",
+        Quantity::Impulse => "impulse",
+        Quantity::AngularImpulse => "angular impulse",
+        Quantity::Energy => "energy",
+        Quantity::Ratio => "ratio",
+    }
+}
+
+/// The symbols of a quantity's units, for a message.
+pub(crate) fn symbols(quantity: Quantity) -> String {
+    let symbols: Vec<_> = quantity.units().iter().map(|unit| unit.symbol).collect();
+    symbols.join(", ")
+}
+
+fn is_bracketed(text: &str) -> bool {
+    let text = text.trim();
+    text.starts_with(OPENING) && text.ends_with(CLOSING)
+}
+
+fn is_unit(text: &str) -> bool {
+    let quantities = [
+        Quantity::Time,
+        Quantity::Length,
+        Quantity::Speed,
+        Quantity::Acceleration,
+        Quantity::Angle,
+        Quantity::AngularVelocity,
+        Quantity::Mass,
+        Quantity::MomentOfInertia,
+        Quantity::Force,
+        Quantity::Moment,
+        Quantity::Impulse,
+        Quantity::AngularImpulse,
+        Quantity::Energy,
+        Quantity::Ratio,
+    ];
+    quantities
+        .iter()
+        .any(|&quantity| unit(quantity, text).is_some())
+}
+
+fn letters_and_digits(text: &str) -> String {
+    let kept = text.chars().filter(|c| c.is_alphanumeric());
+    kept.flat_map(char::to_lowercase).collect()
+}
+
+/// One spelling for `m/s²`, `m/s^2`, `m_s2`, `m/sec2`; for `deg/s`, `°/s`, `degrees per second`.
+fn unit_key(text: &str) -> String {
+    let text = text.to_lowercase();
+    let text = text
+        .replace('²', "2")
+        .replace('°', "deg")
+        .replace(['µ', 'μ'], "u")
+        .replace("degrees", "deg")
+        .replace("degree", "deg")
+        .replace("radians", "rad")
+        .replace(" per ", "")
+        .replace("seconds", "s")
+        .replace("second", "s")
+        .replace("sec", "s");
+    text.chars()
+        .filter(|c| c.is_alphanumeric() || *c == '%')
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn usual_spellings_are_understood() {
+        for (header, channel, symbol) in [
+            ("Fx [kN]", Channel::Fx, "kN"),
+            ("time(ms)", Channel::Time, "ms"),
+            ("Time", Channel::Time, ""),
+            ("FX_N", Channel::Fx, "N"),
+            ("fx_kn", Channel::Fx, "kN"),
+            ("Fx in kN", Channel::Fx, "kN"),
+            ("Fx / kN", Channel::Fx, "kN"),
+            ("yaw_rate_deg_s", Channel::YawRate, "deg/s"),
+            ("Yaw rate [°/s]", Channel::YawRate, "deg/s"),
+            ("Yaw rate [degrees per second]", Channel::YawRate, "deg/s"),
+            ("vx_km_h", Channel::Vx, "km/h"),
+            ("v_x [kph]", Channel::Vx, "km/h"),
+            ("v_x (m/sec)", Channel::Vx, "m/s"),
+            ("t,ms", Channel::Time, "ms"),
+            ("t [msec]", Channel::Time, "ms"),
+            ("Zeit [s]", Channel::Time, "s"),
+            ("time (seconds)", Channel::Time, "s"),
+            ("ax_m_s2", Channel::Ax, "m/s²"),
+            ("ax (m/s^2)", Channel::Ax, "m/s²"),
+            ("a_y [g]", Channel::Ay, "g"),
+            ("x [m]", Channel::X, "m"),
+            ("X-Position (ft)", Channel::X, "ft"),
+            ("Fy (body) [lbs]", Channel::FyBody, "lbf"),
+            ("Mz [N-m]", Channel::Mz, "N m"),
+            ("Mz (N*m)", Channel::Mz, "N m"),
+            ("Kraft X [kN]", Channel::Fx, "kN"),
+            ("Fx [-]", Channel::Fx, ""),
+        ] {
+            let unit = unit(channel.quantity(), symbol);
+            assert_eq!(meaning(header), Meaning::Channel(channel, unit), "{header}");
+        }
+    }
+
+    #[test]
+    fn wrong_units_are_told_from_other_columns() {
+        for (header, channel, unit) in [
+            ("Fx [m]", Channel::Fx, "m"),
+            ("Fx [mN]", Channel::Fx, "mN"),
+            ("fx_kg", Channel::Fx, "kg"),
+            ("time [furlong]", Channel::Time, "furlong"),
+        ] {
+            let expected = Meaning::WrongUnit(channel, unit.to_owned());
+            assert_eq!(meaning(header), expected, "{header}");
+        }
+        for header in [
+            "case",
+            "v",
+            "p_kpa",
+            "wheel slip",
+            "",
+            "°",
+            "x1",
+            "ratio [-]",
+        ] {
+            assert_eq!(meaning(header), Meaning::Unknown, "{header}");
+        }
+    }
+
+    #[test]
+    fn our_own_headers_are_read_back() {
+        for &channel in Channel::ALL {
+            let si = channel.quantity().si_unit();
+            assert_eq!(
+                meaning(channel.header()),
+                Meaning::Channel(channel, Some(si))
+            );
+            assert_eq!(super::channel(channel.short_name()), Some(channel));
+        }
+    }
+
+    #[test]
+    fn a_row_of_units_has_nothing_else() {
+        let is_row = |text: &str| is_unit_row(text.split(';'));
+        assert!(is_row("s;kN;kN") && is_row("[s];[kN];[?]") && is_row("s;;-;N"));
+        assert!(!is_row("time;kN") && !is_row(";;") && !is_row("1;2"));
+    }
+}

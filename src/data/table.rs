@@ -1,0 +1,398 @@
+//! A text file as a table: header, units, rows of cells, and the line each came from.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use csv::{ReaderBuilder, StringRecord, Trim};
+
+use crate::data::dialect::{Dialect, Separator, comment};
+use crate::data::spelling::{self, Meaning};
+use crate::data::text::{Text, read_text};
+use crate::data::{DataError, spelling::is_unit_row};
+
+/// Lines that are looked at to find separator, header and units.
+const SNIFFED_LINES: usize = 64;
+
+/// The first column of a table of cases.
+pub(crate) const CASE_COLUMN: &str = "case";
+
+/// A delimited text file.
+#[derive(Debug, Clone)]
+pub struct Table {
+    path: PathBuf,
+    encoding: &'static str,
+    dialect: Dialect,
+    header: Header,
+    rows: Vec<Row>,
+}
+
+/// The names of the columns.
+#[derive(Debug, Clone, Default)]
+struct Header {
+    /// Line of the header, or of the first row if there is no header.
+    line: u64,
+    /// Whether the file names its columns.
+    is_written: bool,
+    names: Vec<String>,
+    /// As written in a row beneath the names; empty where there is none.
+    units: Vec<String>,
+}
+
+#[derive(Debug, Clone)]
+struct Row {
+    line: u64,
+    cells: StringRecord,
+}
+
+/// A line of the file, from 1, without comment sign.
+#[derive(Clone, Copy)]
+struct Line<'a> {
+    number: u64,
+    /// Offset of its first byte.
+    start: usize,
+    text: &'a str,
+    is_comment: bool,
+}
+
+impl Table {
+    /// Reads a file: UTF-8, UTF-16 or Windows-1252; separated by comma, semicolon, tab or blanks;
+    /// with decimal point or comma; with comments, a preamble, a row of units, or none of them.
+    ///
+    /// # Errors
+    /// [`DataError`] if it cannot be read, is no text or empty, or a row does not have the
+    /// header's number of fields.
+    pub fn read(path: &Path) -> Result<Self, DataError> {
+        Self::parse(path, &read_text(path)?)
+    }
+
+    fn parse(path: &Path, text: &Text) -> Result<Self, DataError> {
+        let lines = first_lines(&text.text);
+        let plain: Vec<Line<'_>> = lines
+            .iter()
+            .filter(|line| !line.is_comment)
+            .copied()
+            .collect();
+        let Some(first) = plain.first() else {
+            let path = path.to_owned();
+            return Err(DataError::Empty { path });
+        };
+        let texts: Vec<&str> = plain.iter().map(|line| line.text).collect();
+        let dialect = Dialect::sniff(&texts);
+        let (header, body) = find_header(&lines, first, dialect);
+        let mut table = Self {
+            path: path.to_owned(),
+            encoding: text.encoding,
+            dialect,
+            header,
+            rows: Vec::new(),
+        };
+        if let Some(body) = body {
+            table.read_rows(&text.text[body.start..], body.number)?;
+        }
+        Ok(table)
+    }
+
+    /// The file it came from.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The character encoding, such as `UTF-8`.
+    pub fn encoding(&self) -> &'static str {
+        self.encoding
+    }
+
+    /// Separator and decimal sign.
+    pub fn dialect(&self) -> Dialect {
+        self.dialect
+    }
+
+    /// Names of the columns; `column 1` and so on where the file gives none.
+    pub fn header(&self) -> &[String] {
+        &self.header.names
+    }
+
+    /// Whether the file names its columns.
+    pub fn has_header(&self) -> bool {
+        self.header.is_written
+    }
+
+    /// Line of the header, from 1; of the first row if there is no header.
+    pub fn header_line(&self) -> u64 {
+        self.header.line
+    }
+
+    /// The unit written beneath a column's name, if there is a row of units.
+    pub fn unit_text(&self, column_idx: usize) -> Option<&str> {
+        let unit = self.header.units.get(column_idx)?;
+        spelling::unit_text(unit)
+    }
+
+    /// Number of rows.
+    pub fn n_rows(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Line of a row, from 1.
+    pub fn line(&self, row_idx: usize) -> u64 {
+        self.rows.get(row_idx).map_or(0, |row| row.line)
+    }
+
+    /// Text of a cell, without surrounding blanks.
+    pub fn cell(&self, row_idx: usize, column_idx: usize) -> &str {
+        let row = self.rows.get(row_idx);
+        row.and_then(|row| row.cells.get(column_idx))
+            .unwrap_or("")
+            .trim()
+    }
+
+    /// The number in a cell, if there is a finite one.
+    pub fn number(&self, row_idx: usize, column_idx: usize) -> Option<f64> {
+        self.dialect.number(self.cell(row_idx, column_idx))
+    }
+
+    /// All numbers of a column; `unit` is named in the message if one of them is none.
+    ///
+    /// # Errors
+    /// [`DataError::Cell`] at the first cell that is not a finite number.
+    pub fn numbers(&self, column_idx: usize, unit: &'static str) -> Result<Vec<f64>, DataError> {
+        let number = |row_idx| {
+            self.number(row_idx, column_idx)
+                .ok_or_else(|| DataError::Cell {
+                    path: self.path.clone(),
+                    line: self.line(row_idx),
+                    column: column_idx + 1,
+                    name: self
+                        .header
+                        .names
+                        .get(column_idx)
+                        .cloned()
+                        .unwrap_or_default(),
+                    text: self.cell(row_idx, column_idx).to_owned(),
+                    unit,
+                })
+        };
+        (0..self.n_rows()).map(number).collect()
+    }
+
+    /// Reads the rows from `body`, whose first line has the number `first_line`.
+    fn read_rows(&mut self, body: &str, first_line: u64) -> Result<(), DataError> {
+        let spread;
+        let source = match self.dialect.separator {
+            Separator::Blanks => {
+                spread = body.replace('\t', " ");
+                &spread
+            }
+            _ => body,
+        };
+        let mut reader = ReaderBuilder::new()
+            .delimiter(self.dialect.separator.byte())
+            .has_headers(false)
+            .flexible(true)
+            .from_reader(source.as_bytes());
+        let mut cells = StringRecord::new();
+        while reader
+            .read_record(&mut cells)
+            .map_err(|error| DataError::io(&self.path, error.into()))?
+        {
+            if cells.iter().all(|cell| cell.trim().is_empty()) {
+                continue;
+            }
+            if cells.get(0).is_some_and(|cell| comment(cell).is_some()) {
+                continue;
+            }
+            let line = first_line - 1 + line_of(&cells, source);
+            let cells = self.fit(&cells, line)?;
+            self.rows.push(Row { line, cells });
+        }
+        Ok(())
+    }
+
+    /// Gives a row the header's number of fields, or refuses it.
+    fn fit(&self, cells: &StringRecord, line: u64) -> Result<StringRecord, DataError> {
+        let expected = self.header.names.len();
+        let fitted: StringRecord = match self.dialect.separator {
+            Separator::Blanks => cells.iter().filter(|cell| !cell.is_empty()).collect(),
+            _ if ends_in_separator(cells, expected) => cells.iter().take(expected).collect(),
+            _ => cells.clone(),
+        };
+        if fitted.len() == expected {
+            return Ok(fitted);
+        }
+        Err(DataError::RaggedRow {
+            path: self.path.clone(),
+            line,
+            expected,
+            got: fitted.len(),
+        })
+    }
+}
+
+/// Whether the only field too many is an empty last one.
+fn ends_in_separator(cells: &StringRecord, expected: usize) -> bool {
+    cells.len() == expected + 1
+        && cells
+            .iter()
+            .next_back()
+            .is_some_and(|cell| cell.trim().is_empty())
+}
+
+/// The line, from 1, in which a record starts: `csv` counts from before the blank lines above it.
+fn line_of(record: &StringRecord, source: &str) -> u64 {
+    let Some(position) = record.position() else {
+        return 1;
+    };
+    let start = usize::try_from(position.byte()).unwrap_or(usize::MAX);
+    let above = source.as_bytes().get(start..).unwrap_or_default();
+    position.line() + above.iter().take_while(|byte| **byte == b'\n').count() as u64
+}
+
+/// The first lines that are not blank.
+fn first_lines(text: &str) -> Vec<Line<'_>> {
+    let mut start = 0;
+    let mut number = 0;
+    let all = text.split_inclusive('\n').map(|line| {
+        number += 1;
+        let (at, comment) = (start, comment(line));
+        start += line.len();
+        Line {
+            number,
+            start: at,
+            text: comment.unwrap_or(line.trim_end_matches('\n')),
+            is_comment: comment.is_some(),
+        }
+    });
+    all.filter(|line| !line.text.trim().is_empty())
+        .take(SNIFFED_LINES)
+        .collect()
+}
+
+/// Splits one line into its fields.
+fn split(line: &str, separator: Separator) -> Vec<String> {
+    let line = match separator {
+        Separator::Blanks => line.replace('\t', " "),
+        _ => line.to_owned(),
+    };
+    let mut reader = ReaderBuilder::new()
+        .delimiter(separator.byte())
+        .has_headers(false)
+        .trim(Trim::All)
+        .buffer_capacity(line.len() + 1)
+        .from_reader(line.as_bytes());
+    let mut record = StringRecord::new();
+    // Reading from memory, only invalid UTF-8 could fail, and a `str` has none.
+    let _ = reader.read_record(&mut record);
+    let kept = |cell: &&str| separator != Separator::Blanks || !cell.is_empty();
+    record.iter().filter(kept).map(str::to_owned).collect()
+}
+
+/// Finds the header and the first line of the rows.
+///
+/// The table's width is that of most lines with a number. The header is the first line of this
+/// width without a number that names a channel or `case`; else the first such line at all; else
+/// the last line above the numbers with several fields (whose rows are then ragged, which is
+/// reported); else, by the same rules, a comment.
+fn find_header<'a>(
+    lines: &[Line<'a>],
+    first: &Line<'a>,
+    dialect: Dialect,
+) -> (Header, Option<Line<'a>>) {
+    let split: Vec<(Line<'a>, Vec<String>)> = lines
+        .iter()
+        .map(|line| (*line, split(line.text, dialect.separator)))
+        .collect();
+    let is_text = |cells: &[String]| cells.iter().all(|cell| dialect.number(cell).is_none());
+    let width = width(&split, &is_text, first);
+    let first_number = split
+        .iter()
+        .position(|(line, cells)| !line.is_comment && !is_text(cells) && n_named(cells) == width);
+    let above = &split[..first_number.unwrap_or(split.len())];
+    let found = [false, true].into_iter().find_map(|is_comment| {
+        let candidates = || {
+            let above = above.iter().filter(|(_, cells)| is_text(cells));
+            above.filter(move |(line, _)| line.is_comment == is_comment)
+        };
+        let fitting = || candidates().filter(|(_, cells)| n_named(cells) == width);
+        fitting()
+            .find(|(_, cells)| cells.iter().any(|cell| is_name(cell)))
+            .or_else(|| fitting().next())
+            .or_else(|| candidates().rfind(|(_, cells)| first_number.is_some() && cells.len() > 1))
+    });
+    let Some((header_line, names)) = found else {
+        let body = first_number.map_or(*first, |at| split[at].0);
+        return (Header::unwritten(body.number, width), Some(body));
+    };
+    let mut below = split
+        .iter()
+        .filter(|(line, _)| line.number > header_line.number)
+        .filter(|(line, _)| !line.is_comment || header_line.is_comment);
+    let mut body = below.next();
+    let mut units = Vec::new();
+    if let Some((_, cells)) = body
+        && is_unit_row(cells.iter().map(String::as_str))
+    {
+        units = cells.clone();
+        body = below.next();
+    }
+    let header = Header {
+        line: header_line.number,
+        is_written: true,
+        names: named(names),
+        units,
+    };
+    (header, body.map(|(line, _)| *line))
+}
+
+/// The most frequent number of fields among lines with a number, the earlier one at a tie; the
+/// first line's if no line has a number.
+fn width(
+    split: &[(Line<'_>, Vec<String>)],
+    is_text: &dyn Fn(&[String]) -> bool,
+    first: &Line<'_>,
+) -> usize {
+    let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
+    for (line, cells) in split {
+        if !line.is_comment && !is_text(cells) {
+            *counts.entry(n_named(cells)).or_default() += 1;
+        }
+    }
+    let most_frequent = counts.iter().max_by_key(|(_, count)| **count);
+    let first_width = || {
+        let first = split.iter().find(|(line, _)| line.number == first.number);
+        first.map_or(0, |(_, cells)| n_named(cells))
+    };
+    most_frequent.map_or_else(first_width, |(width, _)| *width)
+}
+
+/// Number of fields without an empty one behind a trailing separator.
+fn n_named(cells: &[String]) -> usize {
+    match cells.last() {
+        Some(last) if last.is_empty() => cells.len() - 1,
+        _ => cells.len(),
+    }
+}
+
+fn is_name(cell: &str) -> bool {
+    cell.eq_ignore_ascii_case(CASE_COLUMN) || spelling::meaning(cell) != Meaning::Unknown
+}
+
+/// The names of a header line; a nameless column gets its number.
+fn named(cells: &[String]) -> Vec<String> {
+    let cells = cells.iter().take(n_named(cells));
+    let name = |(i, cell): (usize, &String)| match cell.as_str() {
+        "" => format!("column {}", i + 1),
+        _ => cell.clone(),
+    };
+    cells.enumerate().map(name).collect()
+}
+
+impl Header {
+    fn unwritten(line: u64, width: usize) -> Self {
+        Self {
+            line,
+            is_written: false,
+            names: named(&vec![String::new(); width + 1]),
+            units: Vec::new(),
+        }
+    }
+}
