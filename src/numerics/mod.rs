@@ -1,0 +1,5 @@
+//! Numerical tools that know no vehicle.
+
+mod scalar;
+
+pub use scalar::Scalar;
