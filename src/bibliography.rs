@@ -14,6 +14,9 @@ sources! {
     /// M. Carpenter, J. Welcher, *Planar impact with the no-slide condition and a friction limit*,
     /// SAE Technical Paper 2019-01-0422, 2019. Worked barrier example.
     CarpenterWelcher2019;
+    /// S. Gottschalk, M. C. Lin, D. Manocha, *OBBTree: a hierarchical structure for rapid
+    /// interference detection*, SIGGRAPH 1996. Separating axes of oriented boxes.
+    Gottschalk1996;
     /// ISO 8855:2011, *Road vehicles: Vehicle dynamics and road-holding ability: Vocabulary*. Axes
     /// and signs.
     Iso8855;
@@ -30,6 +33,12 @@ sources! {
     /// SAE J211-1:2014, *Instrumentation for Impact Test, Part 1: Electronic Instrumentation*,
     /// appendix C. Channel frequency classes and their digital filter.
     SaeJ211;
+    /// SAE J224:2017, *Collision Deformation Classification*. Clock directions of the principal
+    /// direction of force.
+    SaeJ224;
     /// SAE J670:2008, *Vehicle Dynamics Terminology*.
     SaeJ670;
+    /// I. E. Sutherland, G. W. Hodgman, *Reentrant polygon clipping*, Communications of the ACM
+    /// 17(1), 1974.
+    SutherlandHodgman1974;
 }

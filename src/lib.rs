@@ -2,13 +2,38 @@
 //!
 //! Data flows one way, and each module names only those above it:
 //!
-//! 1. [`bibliography`], [`units`], [`jobs`]: sources, unit conversion, background work;
-//! 2. [`data`]: files become checked time series in SI units.
+//! 1. [`bibliography`], [`units`]: sources, unit conversion;
+//! 2. [`numerics`], [`jobs`]: integration, statistics; background work;
+//! 3. [`data`]: files become checked time series in SI units;
+//! 4. [`vehicle`]: the one place of the equations of motion;
+//! 5. [`collision`]: the impact itself: impulse, contact geometry, scenarios, pulses, filter;
+//! 6. [`compare`]: simulation against reference;
+//! 7. [`figure`]: what a plot shows, as plain data;
+//! 8. `render` (feature `gui`): one drawing function for the panel and the off-screen picture;
+//! 9. `cli` and `app` (feature `gui`): the command line and the window.
+//!
+//! ```
+//! use impactlab::vehicle::{Integrator, Manoeuvre, Preset, VehicleState};
+//!
+//! let manoeuvre = Manoeuvre {
+//!     initial: VehicleState { yaw_rate_rad_s: 2.0, ..VehicleState::driving_straight(20.0) },
+//!     impact: None,
+//!     steer: None,
+//!     duration_s: 4.0,
+//! };
+//! let motion = Preset::Reference.parameters().simulate(&manoeuvre, Integrator::Rk4)?;
+//! assert_eq!(motion.series.n_samples(), 401);
+//! # Ok::<(), impactlab::vehicle::SimulationError>(())
+//! ```
 
 pub mod bibliography;
+pub mod collision;
 pub mod compare;
 pub mod data;
+pub mod figure;
 pub mod jobs;
 pub mod numerics;
+#[cfg(feature = "gui")]
+pub mod render;
 pub mod units;
 pub mod vehicle;

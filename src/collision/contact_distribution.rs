@@ -1,0 +1,95 @@
+//! How uncertain restitution and friction are.
+
+use serde::{Deserialize, Serialize};
+
+use crate::collision::ImpliedContact;
+
+/// Independent uniform distributions of restitution and friction limit.
+///
+/// The default takes e from 0 to 0.3, the small values that vehicle-to-vehicle impacts at these
+/// closing speeds have ([`Brach2011`](crate::bibliography::Brach2011)), and μ_c from 0.2 to 0.6
+/// about the 0.4 that fits the shipped finite-element runs. Neither is a measurement of a vehicle:
+/// where impulses are known, [`ContactDistribution::fit`] replaces it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ContactDistribution {
+    /// Lowest and highest restitution e.
+    pub restitution: [f64; 2],
+    /// Lowest and highest friction limit μ_c.
+    pub friction_limit: [f64; 2],
+}
+
+impl Default for ContactDistribution {
+    fn default() -> Self {
+        Self {
+            restitution: [0.0, 0.3],
+            friction_limit: [0.2, 0.6],
+        }
+    }
+}
+
+impl ContactDistribution {
+    /// Restitution and friction limit at these quantiles (0 to 1 each): feed it uniform random
+    /// numbers to draw, 0.5 for the median.
+    pub fn quantile(&self, [u_restitution, u_friction]: [f64; 2]) -> (f64, f64) {
+        let at = |[low, high]: [f64; 2], u: f64| low + (high - low) * u;
+        (
+            at(self.restitution, u_restitution),
+            at(self.friction_limit, u_friction),
+        )
+    }
+
+    /// The ranges that hold the middle 90 % of what known impulses imply
+    /// ([`Impact::implied_contact`](crate::collision::Impact::implied_contact)), e cut to 0 to 1.
+    ///
+    /// μ_c comes out low where many impacts do not slide: their impulse ratio is only a lower
+    /// bound of it. `None` without samples.
+    pub fn fit(samples: &[ImpliedContact]) -> Option<Self> {
+        let middle = |of: fn(&ImpliedContact) -> f64| {
+            let mut values: Vec<f64> = samples.iter().map(of).collect();
+            values.sort_by(f64::total_cmp);
+            let last = values.len().checked_sub(1)? as f64;
+            let at = |u: f64| {
+                let position = u * last;
+                let (low, share) = (position.floor() as usize, position.fract());
+                let below = *values.get(low)?;
+                let above = values.get(low + 1).copied().unwrap_or(below);
+                Some(below + share * (above - below))
+            };
+            Some([at(0.05)?, at(0.95)?])
+        };
+        Some(Self {
+            restitution: middle(|s| s.restitution)?.map(|e| e.clamp(0.0, 1.0)),
+            friction_limit: middle(|s| s.impulse_ratio.abs())?,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::collision::{DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION};
+
+    #[test]
+    fn the_single_defaults_are_the_medians() {
+        let (e, mu) = ContactDistribution::default().quantile([0.5, 0.5]);
+        assert!((e - DEFAULT_RESTITUTION).abs() < 1e-15, "{e}");
+        assert!((mu - DEFAULT_FRICTION_LIMIT).abs() < 1e-15, "{mu}");
+    }
+
+    #[test]
+    fn a_fit_holds_the_middle_of_the_samples() {
+        let samples: Vec<_> = (0..=100)
+            .map(|i| ImpliedContact {
+                restitution: f64::from(i) / 100.0 - 0.2,
+                impulse_ratio: -f64::from(i) / 100.0,
+            })
+            .collect();
+        let fit = ContactDistribution::fit(&samples).unwrap();
+        assert_eq!(fit.restitution[0], 0.0);
+        assert!((fit.restitution[1] - 0.75).abs() < 1e-12, "{fit:?}");
+        assert!((fit.friction_limit[0] - 0.05).abs() < 1e-12, "{fit:?}");
+        assert!((fit.friction_limit[1] - 0.95).abs() < 1e-12, "{fit:?}");
+        assert!(ContactDistribution::fit(&[]).is_none());
+    }
+}

@@ -1,0 +1,23 @@
+//! Two vehicles meet: momentum-conservation impact, contact geometry, scenarios, classic pulses and
+//! the crash-test filter.
+
+mod contact_distribution;
+mod footprint;
+mod impact;
+mod pdof;
+mod scenario;
+
+pub use contact_distribution::ContactDistribution;
+pub use footprint::{
+    Contact, Footprint, FootprintError, Pose, Side, StruckSurface, TOUCH_TOLERANCE_M, find_contact,
+    place_touching,
+};
+pub use impact::{
+    BodyAfter, ContactSurface, FrictionModel, Impact, ImpactBody, ImpactError, ImpactSolution,
+    ImpliedContact, Regime, contact_work_j,
+};
+pub use pdof::PrincipalDirectionOfForce;
+pub use scenario::{
+    ContactLocation, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, ImpactCase, Scenario,
+    ScenarioContact, ScenarioError, ScenarioGeometry, ScenarioVehicle,
+};
