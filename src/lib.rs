@@ -17,7 +17,7 @@
 //!
 //! let manoeuvre = Manoeuvre {
 //!     initial: VehicleState { yaw_rate_rad_s: 2.0, ..VehicleState::driving_straight(20.0) },
-//!     impact: None,
+//!     contact_load: None,
 //!     steer: None,
 //!     duration_s: 4.0,
 //! };

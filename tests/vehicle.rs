@@ -4,7 +4,7 @@
 use impactlab::data::{ForceAxes, ForceHistory, Sampling};
 use impactlab::numerics::{Stage, rk4_step};
 use impactlab::vehicle::{
-    CollisionForce, ContactPoint, Impact, Integrator, Manoeuvre, Preset, SteerHistory,
+    CollisionForce, ContactLoad, ContactPoint, Integrator, Manoeuvre, Preset, SteerHistory,
     VehicleInput, VehicleParameters, VehicleState,
 };
 use impactlab::{data::Channel, units::STANDARD_GRAVITY_M_S2};
@@ -34,7 +34,7 @@ fn pit(fy_n: f64, contact: ContactPoint, speed_m_s: f64, duration_s: f64) -> Man
     let force = pit_force(8e3, fy_n);
     Manoeuvre {
         initial: VehicleState::driving_straight(speed_m_s),
-        impact: Some(Impact {
+        contact_load: Some(ContactLoad {
             force,
             contact,
             recorded_moment: false,
@@ -152,7 +152,7 @@ fn a_free_coast_down_is_that_of_rolling_resistance() {
     vehicle.tires.rolling_resistance_s2_m2 = 0.0;
     let manoeuvre = Manoeuvre {
         initial: VehicleState::driving_straight(20.0),
-        impact: None,
+        contact_load: None,
         steer: None,
         duration_s: 10.0,
     };
@@ -180,7 +180,7 @@ fn steady_cornering_is_that_of_the_linear_bicycle() {
     let (speed, steer) = (15.0, 0.002);
     let manoeuvre = Manoeuvre {
         initial: VehicleState::driving_straight(speed),
-        impact: None,
+        contact_load: None,
         steer: Some(SteerHistory {
             time_s: vec![0.0, 0.5],
             steer_rad: vec![0.0, steer],
@@ -222,7 +222,7 @@ fn a_spin_ends_at_rest_and_stays_there() {
                 yaw_rate_rad_s: 8.0,
                 ..VehicleState::driving_straight(8.0)
             },
-            impact: None,
+            contact_load: None,
             steer: None,
             duration_s: 60.0,
         };

@@ -8,6 +8,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::vehicle::GeometryParameters;
+
 /// Vehicles further apart than this do not touch, m: poses measured from photographs or video are
 /// no better.
 pub const TOUCH_TOLERANCE_M: f64 = 0.02;
@@ -122,6 +124,16 @@ impl Side {
             Self::Right => -1.0,
         };
         quarters * std::f64::consts::FRAC_PI_2
+    }
+}
+
+impl From<&GeometryParameters> for Footprint {
+    fn from(geometry: &GeometryParameters) -> Self {
+        Self {
+            length_m: geometry.outer_length_m,
+            width_m: geometry.outer_width_m,
+            cg_from_front_m: geometry.cg_to_front_end_m,
+        }
     }
 }
 

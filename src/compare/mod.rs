@@ -1,5 +1,10 @@
 //! Simulation against reference.
 
 mod metrics;
+mod replay;
 
 pub use metrics::{HORIZONS_S, MotionError, SPIN_YAW_CHANGE_RAD, largest_yaw_change_rad};
+pub use replay::{
+    DatasetReplay, ErrorSummary, Replay, ReplayError, recorded_manoeuvre, replay_case,
+    replay_dataset,
+};

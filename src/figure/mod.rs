@@ -11,4 +11,4 @@ pub use export::write_figure_csv;
 pub use force::{ForceFigure, force_figure};
 pub use model::{Axis, Band, Element, Figure, LineStyle, Role, Series};
 pub use motion::{MOTION_CHANNELS, motion_figure};
-pub use scene::{Footprint, SceneFigure, SceneVehicle, scene_figure};
+pub use scene::{SceneFigure, SceneVehicle, outline_m, pose_at, scene_figure};

@@ -29,7 +29,10 @@ pub struct Axis {
 impl Axis {
     /// An axis in the unit in which the quantity is shown.
     pub fn shown(label: impl Into<String>, quantity: Quantity, units: UnitSystem) -> Self {
-        Self { label: label.into(), unit: quantity.display_unit(units) }
+        Self {
+            label: label.into(),
+            unit: quantity.display_unit(units),
+        }
     }
 
     /// “Label [unit]”.
@@ -131,31 +134,52 @@ pub enum Element {
 impl Element {
     /// A full line.
     pub fn line(name: impl Into<String>, role: Role, points: Vec<[f64; 2]>) -> Self {
-        Self::Line(Series { name: name.into(), role, style: LineStyle::Solid, points })
+        Self::Line(Series {
+            name: name.into(),
+            role,
+            style: LineStyle::Solid,
+            points,
+        })
     }
 
     /// A dashed line.
     pub fn dashed(name: impl Into<String>, role: Role, points: Vec<[f64; 2]>) -> Self {
-        Self::Line(Series { name: name.into(), role, style: LineStyle::Dashed, points })
+        Self::Line(Series {
+            name: name.into(),
+            role,
+            style: LineStyle::Dashed,
+            points,
+        })
     }
 
     /// A closed outline.
     pub fn polygon(name: impl Into<String>, role: Role, points: Vec<[f64; 2]>) -> Self {
-        Self::Polygon(Series { name: name.into(), role, style: LineStyle::Solid, points })
+        Self::Polygon(Series {
+            name: name.into(),
+            role,
+            style: LineStyle::Solid,
+            points,
+        })
     }
 
     /// An arrow.
     pub fn arrow(name: impl Into<String>, role: Role, from: [f64; 2], to: [f64; 2]) -> Self {
         let (name, points) = (name.into(), vec![from, to]);
-        Self::Arrow(Series { name, role, style: LineStyle::Solid, points })
+        Self::Arrow(Series {
+            name,
+            role,
+            style: LineStyle::Solid,
+            points,
+        })
     }
 
     /// Its name in the legend.
     pub fn name(&self) -> &str {
         match self {
-            Self::Line(series) | Self::Points(series) | Self::Polygon(series) | Self::Arrow(series) => {
-                &series.name
-            }
+            Self::Line(series)
+            | Self::Points(series)
+            | Self::Polygon(series)
+            | Self::Arrow(series) => &series.name,
             Self::Band(band) => &band.name,
             Self::VerticalLine { name, .. } => name,
         }
@@ -164,9 +188,10 @@ impl Element {
     /// Meaning of its colour.
     pub fn role(&self) -> Role {
         match self {
-            Self::Line(series) | Self::Points(series) | Self::Polygon(series) | Self::Arrow(series) => {
-                series.role
-            }
+            Self::Line(series)
+            | Self::Points(series)
+            | Self::Polygon(series)
+            | Self::Arrow(series) => series.role,
             Self::Band(band) => band.role,
             Self::VerticalLine { role, .. } => *role,
         }

@@ -1,11 +1,10 @@
 //! The scene from above: paths, vehicles to scale, headings.
 
+use crate::collision::{Footprint, Pose};
 use crate::data::{Channel, TimeSeries};
 use crate::figure::{Axis, Element, Figure, LineStyle, Role, Series};
 use crate::numerics::interpolate;
 use crate::units::{Quantity, Unit, UnitSystem};
-use crate::vehicle::frames::world_from_body;
-use crate::vehicle::GeometryParameters;
 
 /// Interval of the heading ticks along a path, s.
 const HEADING_TICK_INTERVAL_S: f64 = 0.5;
@@ -14,48 +13,21 @@ const HEADING_TICK_LENGTH_M: f64 = 1.0;
 /// Share of the length at which the nose of an outline begins to taper.
 const NOSE_SHARE: f64 = 0.82;
 
-/// Outer dimensions of a vehicle seen from above.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Footprint {
-    /// Outer length, m.
-    pub length_m: f64,
-    /// Outer width, m.
-    pub width_m: f64,
-    /// CG to front end, m.
-    pub cg_to_front_end_m: f64,
-}
-
-impl From<&GeometryParameters> for Footprint {
-    fn from(geometry: &GeometryParameters) -> Self {
-        Self {
-            length_m: geometry.outer_length_m,
-            width_m: geometry.outer_width_m,
-            cg_to_front_end_m: geometry.cg_to_front_end_m,
-        }
-    }
-}
-
-impl Footprint {
-    /// Outline in world axes, m: a rectangle whose front corners are cut, so that one sees which
-    /// way it points.
-    pub fn outline_m(&self, [x, y, yaw_rad]: [f64; 3]) -> Vec<[f64; 2]> {
-        let front = self.cg_to_front_end_m;
-        let (rear, half) = (front - self.length_m, self.width_m / 2.0);
-        let shoulder = rear + NOSE_SHARE * self.length_m;
-        let corners = [
-            [rear, -half],
-            [shoulder, -half],
-            [front, -0.6 * half],
-            [front, 0.6 * half],
-            [shoulder, half],
-            [rear, half],
-        ];
-        let place = |corner| {
-            let [dx, dy] = world_from_body(yaw_rad, corner);
-            [x + dx, y + dy]
-        };
-        corners.map(place).to_vec()
-    }
+/// Outline of a vehicle in world axes, m: its footprint with the front corners cut, so that one
+/// sees which way it points.
+pub fn outline_m(footprint: &Footprint, pose: &Pose) -> Vec<[f64; 2]> {
+    let front = footprint.cg_from_front_m;
+    let (rear, half) = (front - footprint.length_m, footprint.width_m / 2.0);
+    let shoulder = rear + NOSE_SHARE * footprint.length_m;
+    let corners = [
+        [rear, -half],
+        [shoulder, -half],
+        [front, -0.6 * half],
+        [front, 0.6 * half],
+        [shoulder, half],
+        [rear, half],
+    ];
+    corners.map(|corner| pose.world_from_body(corner)).to_vec()
 }
 
 /// One vehicle of a scene.
@@ -80,8 +52,8 @@ pub struct SceneFigure<'a> {
     pub title: &'a str,
     /// The vehicles, from back to front.
     pub vehicles: &'a [SceneVehicle<'a>],
-    /// Vehicles that stand for the moment of impact: name, role, outer dimensions and pose (X, Y, ψ).
-    pub at_impact: &'a [(&'a str, Role, Footprint, [f64; 3])],
+    /// Vehicles that stand for the moment of impact: name, role, footprint and pose.
+    pub at_impact: &'a [(&'a str, Role, Footprint, Pose)],
     /// The moment at which the vehicles are drawn, s.
     pub time_s: f64,
     /// Units of the axes.
@@ -94,12 +66,22 @@ pub fn scene_figure(input: &SceneFigure<'_>) -> Figure {
     let y = Axis::shown("Y, to the left", Quantity::Length, input.units);
     let mut elements = Vec::new();
     for &(name, role, footprint, pose) in input.at_impact {
-        elements.push(Element::polygon(name, role, shown(x.unit, footprint.outline_m(pose))));
+        elements.push(Element::polygon(
+            name,
+            role,
+            shown(x.unit, outline_m(&footprint, &pose)),
+        ));
     }
     for vehicle in input.vehicles {
         elements.extend(vehicle_elements(vehicle, input.time_s, x.unit));
     }
-    Figure { title: input.title.to_owned(), x, y, equal_aspect: true, elements }
+    Figure {
+        title: input.title.to_owned(),
+        x,
+        y,
+        equal_aspect: true,
+        elements,
+    }
 }
 
 fn vehicle_elements(vehicle: &SceneVehicle<'_>, time_s: f64, unit: Unit) -> Vec<Element> {
@@ -120,42 +102,64 @@ fn vehicle_elements(vehicle: &SceneVehicle<'_>, time_s: f64, unit: Unit) -> Vec<
     let n_ticks = ((end - start) / HEADING_TICK_INTERVAL_S).floor() as usize;
     for tick in 1..=n_ticks {
         let at = start + tick as f64 * HEADING_TICK_INTERVAL_S;
-        if let Some([x, y, yaw]) = pose_at(motion, at) {
-            let [dx, dy] = world_from_body(yaw, [HEADING_TICK_LENGTH_M, 0.0]);
-            let points = vec![[x - dx, y - dy], [x + dx, y + dy]];
+        if let Some(pose) = pose_at(motion, at) {
+            let ends = [-HEADING_TICK_LENGTH_M, HEADING_TICK_LENGTH_M];
+            let points = ends
+                .map(|along| pose.world_from_body([along, 0.0]))
+                .to_vec();
             elements.push(Element::Line(series(LineStyle::Solid, points)));
         }
     }
     if let Some(pose) = pose_at(motion, time_s) {
-        let outline = vehicle.footprint.outline_m(pose);
+        let outline = outline_m(&vehicle.footprint, &pose);
         elements.push(Element::Polygon(series(vehicle.style, outline)));
     }
     elements
 }
 
 /// Pose (X, Y, ψ) at a moment; without a yaw column the heading is 0.
-pub(super) fn pose_at(motion: &TimeSeries, time_s: f64) -> Option<[f64; 3]> {
+pub fn pose_at(motion: &TimeSeries, time_s: f64) -> Option<Pose> {
     let at = |channel| interpolate(motion.time_s(), motion.get(channel)?, time_s);
-    Some([at(Channel::X)?, at(Channel::Y)?, at(Channel::Yaw).unwrap_or(0.0)])
+    let yaw_rad = at(Channel::Yaw).unwrap_or(0.0);
+    Some(Pose {
+        x_m: at(Channel::X)?,
+        y_m: at(Channel::Y)?,
+        yaw_rad,
+    })
 }
 
 pub(super) fn shown(unit: Unit, points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
-    points.into_iter().map(|point| point.map(|value| unit.from_si(value))).collect()
+    points
+        .into_iter()
+        .map(|point| point.map(|value| unit.from_si(value)))
+        .collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const CAR: Footprint = Footprint { length_m: 4.5, width_m: 1.8, cg_to_front_end_m: 2.0 };
+    const CAR: Footprint = Footprint {
+        length_m: 4.5,
+        width_m: 1.8,
+        cg_from_front_m: 2.0,
+    };
 
     #[test]
     fn an_outline_has_the_vehicles_length_along_its_heading() {
-        let outline = CAR.outline_m([10.0, 5.0, std::f64::consts::FRAC_PI_2]);
+        let pose = Pose {
+            x_m: 10.0,
+            y_m: 5.0,
+            yaw_rad: std::f64::consts::FRAC_PI_2,
+        };
+        let outline = outline_m(&CAR, &pose);
         let (low, high) = outline.iter().fold((f64::MAX, f64::MIN), |(low, high), p| {
             (low.min(p[1]), high.max(p[1]))
         });
-        assert!((high - 7.0).abs() < 1e-12 && (low - 2.5).abs() < 1e-12, "{low} {high}");
+        assert!(
+            (high - 7.0).abs() < 1e-12 && (low - 2.5).abs() < 1e-12,
+            "{low} {high}"
+        );
     }
 
     #[test]
@@ -168,7 +172,12 @@ mod tests {
         ] {
             motion.insert(channel, values).unwrap();
         }
-        assert_eq!(pose_at(&motion, 1.5), Some([15.0, 0.0, 0.5]));
+        let pose = Pose {
+            x_m: 15.0,
+            y_m: 0.0,
+            yaw_rad: 0.5,
+        };
+        assert_eq!(pose_at(&motion, 1.5), Some(pose));
         let vehicle = SceneVehicle {
             name: "car",
             role: Role::Target,

@@ -1,11 +1,11 @@
 //! Pictures without a window.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use egui::{Color32, Context, Pos2, RawInput, Rect, Ui, Vec2};
 use image::RgbaImage;
 
-use crate::data::write_atomically;
+use crate::data::{DataError, write_atomically};
 use crate::figure::Figure;
 use crate::render::{FigureOptions, SoftwareRenderer, figure_ui, theme};
 
@@ -28,7 +28,11 @@ pub struct Canvas {
 
 impl Default for Canvas {
     fn default() -> Self {
-        Self { size_px: [1600, 1000], scale: 2.0, dark: false }
+        Self {
+            size_px: [1600, 1000],
+            scale: 2.0,
+            dark: false,
+        }
     }
 }
 
@@ -44,22 +48,23 @@ pub enum RenderError {
         height: u32,
     },
     /// The file cannot be written.
-    #[error("{}: cannot be written", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
+    #[error(transparent)]
+    Write(#[from] DataError),
 }
 
 /// Draws any user interface off-screen, on the CPU: the same pixels on every machine.
 ///
 /// # Errors
 /// [`RenderError::Size`].
-pub fn draw_offscreen(canvas: Canvas, mut ui: impl FnMut(&mut Ui)) -> Result<RgbaImage, RenderError> {
+pub fn draw_offscreen(
+    canvas: Canvas,
+    mut ui: impl FnMut(&mut Ui),
+) -> Result<RgbaImage, RenderError> {
     let [width, height] = canvas.size_px;
-    if [width, height].iter().any(|side| !(16..=MAX_SIDE_PX).contains(side)) {
+    if [width, height]
+        .iter()
+        .any(|side| !(16..=MAX_SIDE_PX).contains(side))
+    {
         return Err(RenderError::Size { width, height });
     }
     let context = Context::default();
@@ -80,7 +85,11 @@ pub fn draw_offscreen(canvas: Canvas, mut ui: impl FnMut(&mut Ui)) -> Result<Rgb
         renderer.update_textures(&mut output.textures_delta);
         if pass + 1 == SETTLING_PASSES {
             let primitives = context.tessellate(output.shapes, output.pixels_per_point);
-            let ground = if canvas.dark { Color32::from_gray(27) } else { Color32::WHITE };
+            let ground = if canvas.dark {
+                Color32::from_gray(27)
+            } else {
+                Color32::WHITE
+            };
             image = renderer.draw(&primitives, canvas.size_px, output.pixels_per_point, ground);
         }
     }
@@ -106,11 +115,11 @@ pub fn figure_image(figure: &Figure, canvas: Canvas) -> Result<RgbaImage, Render
 /// # Errors
 /// [`RenderError::Write`].
 pub fn save_png(image: &RgbaImage, path: &Path) -> Result<(), RenderError> {
-    let encode = |file: &mut dyn std::io::Write| {
-        let mut bytes = std::io::Cursor::new(Vec::new());
-        image.write_to(&mut bytes, image::ImageFormat::Png).map_err(std::io::Error::other)?;
-        file.write_all(&bytes.into_inner())
-    };
-    write_atomically(path, encode)
-        .map_err(|source| RenderError::Write { path: path.to_owned(), source })
+    let mut png = std::io::Cursor::new(Vec::new());
+    let encoded = image.write_to(&mut png, image::ImageFormat::Png);
+    write_atomically(path, |file| {
+        encoded.map_err(std::io::Error::other)?;
+        file.write_all(png.get_ref())
+    })?;
+    Ok(())
 }

@@ -35,11 +35,25 @@ pub struct FigureResponse {
 
 /// Draws a figure into the space that is left; a hover reads values in the axes' units.
 pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> FigureResponse {
-    let id = if options.id.is_empty() { &figure.title } else { &options.id };
+    let id = if options.id.is_empty() {
+        &figure.title
+    } else {
+        &options.id
+    };
     let (x, y) = (figure.x.clone(), figure.y.clone());
     let readout = move |name: &str, at: PlotPoint| {
-        let head = if name.is_empty() { String::new() } else { format!("{name}\n") };
-        format!("{head}{} {}\n{} {}", number(at.x), x.unit.symbol, number(at.y), y.unit.symbol)
+        let head = if name.is_empty() {
+            String::new()
+        } else {
+            format!("{name}\n")
+        };
+        format!(
+            "{head}{} {}\n{} {}",
+            number(at.x),
+            x.unit.symbol,
+            number(at.y),
+            y.unit.symbol
+        )
     };
     let mut plot = Plot::new(id.as_str())
         .x_axis_label(figure.x.text())
@@ -47,9 +61,11 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         .y_axis_min_width(44.0)
         .label_formatter(move |position| {
             let (name, at) = match position {
-                egui_plot::HoverPosition::NearDataPoint { plot_name, position, .. } => {
-                    (*plot_name, *position)
-                }
+                egui_plot::HoverPosition::NearDataPoint {
+                    plot_name,
+                    position,
+                    ..
+                } => (*plot_name, *position),
                 egui_plot::HoverPosition::Elsewhere { position } => ("", *position),
             };
             Some(readout(name, at))
@@ -64,7 +80,9 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         plot = plot.height(height);
     }
     if let Some(group) = options.link {
-        plot = plot.link_axis(group, Vec2b::new(true, false)).link_cursor(group, Vec2b::new(true, false));
+        plot = plot
+            .link_axis(group, Vec2b::new(true, false))
+            .link_cursor(group, Vec2b::new(true, false));
     }
     if options.reset {
         plot = plot.reset();
@@ -76,12 +94,22 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         }
         if let Some(x) = options.cursor_x {
             let color = theme::color(Role::Reference, dark).gamma_multiply(0.6);
-            plot_ui.vline(VLine::new("", x).stroke(Stroke::new(1.0, color)).allow_hover(false));
+            plot_ui.vline(
+                VLine::new("", x)
+                    .stroke(Stroke::new(1.0, color))
+                    .allow_hover(false),
+            );
         }
         let picking = plot_ui.response().is_pointer_button_down_on();
-        plot_ui.pointer_coordinate().filter(|_| picking).map(|point| point.x)
+        plot_ui
+            .pointer_coordinate()
+            .filter(|_| picking)
+            .map(|point| point.x)
     });
-    FigureResponse { picked_x: response.inner, rect: Some(response.response.rect) }
+    FigureResponse {
+        picked_x: response.inner,
+        rect: Some(response.response.rect),
+    }
 }
 
 fn draw_element<'a>(plot: &mut PlotUi<'a>, element: &'a Element, dark: bool) {
@@ -95,10 +123,18 @@ fn draw_element<'a>(plot: &mut PlotUi<'a>, element: &'a Element, dark: bool) {
     let points = |series: &'a Series| PlotPoints::from(series.points.clone());
     match element {
         Element::Line(series) => {
-            plot.line(Line::new(&series.name, points(series)).stroke(stroke).style(style(series)));
+            plot.line(
+                Line::new(&series.name, points(series))
+                    .stroke(stroke)
+                    .style(style(series)),
+            );
         }
         Element::Points(series) => {
-            plot.points(Points::new(&series.name, points(series)).color(color).radius(3.0));
+            plot.points(
+                Points::new(&series.name, points(series))
+                    .color(color)
+                    .radius(3.0),
+            );
         }
         Element::Polygon(series) => {
             let fill = color.gamma_multiply(theme::FILL_OPACITY);
@@ -116,7 +152,11 @@ fn draw_element<'a>(plot: &mut PlotUi<'a>, element: &'a Element, dark: bool) {
             plot.add(FilledArea::new(&band.name, &band.x, &band.low, &band.high).fill_color(fill));
         }
         Element::VerticalLine { name, x, .. } => {
-            plot.vline(VLine::new(name, *x).stroke(stroke).style(PlotLineStyle::dashed_dense()));
+            plot.vline(
+                VLine::new(name, *x)
+                    .stroke(stroke)
+                    .style(PlotLineStyle::dashed_dense()),
+            );
         }
     }
 }

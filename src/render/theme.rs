@@ -32,7 +32,11 @@ pub fn color(role: Role, dark: bool) -> Color32 {
 
 /// Width of the line of a role, points.
 pub fn line_width(role: Role) -> f32 {
-    if role == Role::Muted { THIN_LINE_WIDTH } else { LINE_WIDTH }
+    if role == Role::Muted {
+        THIN_LINE_WIDTH
+    } else {
+        LINE_WIDTH
+    }
 }
 
 /// egui's visuals with a plain ground, so that figures look the same on screen and on paper.
@@ -40,7 +44,11 @@ pub fn visuals(dark: bool) -> Visuals {
     if dark {
         Visuals::dark()
     } else {
-        Visuals { panel_fill: Color32::from_gray(250), extreme_bg_color: Color32::WHITE, ..Visuals::light() }
+        Visuals {
+            panel_fill: Color32::from_gray(250),
+            extreme_bg_color: Color32::WHITE,
+            ..Visuals::light()
+        }
     }
 }
 

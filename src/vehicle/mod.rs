@@ -20,7 +20,7 @@ pub use parameters::{
 };
 pub use preset::Preset;
 pub use simulate::{
-    Impact, Integrator, MAX_DURATION_S, Manoeuvre, Motion, MotionFlag, OUTPUT_INTERVAL_S,
+    ContactLoad, Integrator, MAX_DURATION_S, Manoeuvre, Motion, MotionFlag, OUTPUT_INTERVAL_S,
     ROLL_LIMIT_RAD, SimulationError, SteerHistory,
 };
 pub use state::{N_STATE, VehicleState};

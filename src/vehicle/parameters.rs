@@ -190,6 +190,7 @@ impl VehicleParameters {
         Ok(())
     }
 
+    #[expect(clippy::too_many_lines, reason = "a table")]
     /// Every value with its range, wide enough for a 1:10 model and a heavy truck.
     fn ranges(&self) -> Vec<(&'static str, f64, RangeInclusive<f64>)> {
         let Self {

@@ -4,7 +4,7 @@
 //! Over each step the collision force is the mean of its history over that step, so that the whole
 //! impulse arrives whatever the step; steer is taken at the stages.
 
-use crate::data::{Channel, ForceAxes, ForceHistory, SeriesError, TimeSeries};
+use crate::data::{Channel, CumulativeImpulse, ForceAxes, ForceHistory, SeriesError, TimeSeries};
 use crate::numerics::{Stage, euler_step, interpolate, rk4_step};
 use crate::vehicle::{
     CollisionForce, ContactPoint, VehicleInput, VehicleParameters, VehicleState, Wheel,
@@ -38,7 +38,7 @@ impl Integrator {
 
 /// A collision force history and where it acts.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Impact {
+pub struct ContactLoad {
     /// The force on the vehicle.
     pub force: ForceHistory,
     /// Where it acts.
@@ -63,7 +63,7 @@ pub struct Manoeuvre {
     /// State at t = 0.
     pub initial: VehicleState<f64>,
     /// The impact, if there is one.
-    pub impact: Option<Impact>,
+    pub contact_load: Option<ContactLoad>,
     /// Steer; straight ahead without one.
     pub steer: Option<SteerHistory>,
     /// Duration, s.
@@ -176,7 +176,7 @@ impl VehicleParameters {
 /// Inputs of a manoeuvre, made ready for stepping.
 struct Inputs<'a> {
     steer: Option<&'a SteerHistory>,
-    impact: Option<(crate::data::CumulativeImpulse, &'a Impact)>,
+    contact: Option<(CumulativeImpulse, &'a ContactLoad)>,
 }
 
 /// Inputs over one step.
@@ -189,10 +189,10 @@ struct StepInputs {
 
 impl<'a> Inputs<'a> {
     fn new(manoeuvre: &'a Manoeuvre) -> Self {
-        let impact = manoeuvre.impact.as_ref();
+        let contact = manoeuvre.contact_load.as_ref();
         Self {
             steer: manoeuvre.steer.as_ref(),
-            impact: impact.map(|impact| (impact.force.cumulative(), impact)),
+            contact: contact.map(|load| (load.force.cumulative(), load)),
         }
     }
 
@@ -210,16 +210,16 @@ impl<'a> Inputs<'a> {
     }
 
     fn collision_over(&self, start_s: f64, step_s: f64) -> Option<CollisionForce<f64>> {
-        let (cumulative, impact) = self.impact.as_ref()?;
+        let (cumulative, load) = self.contact.as_ref()?;
         if start_s >= cumulative.end_s() {
             return None;
         }
         let (force_n, moment) = cumulative.mean_over(start_s, start_s + step_s);
         Some(CollisionForce {
             force_n,
-            in_world_axes: impact.force.axes == ForceAxes::World,
-            yaw_moment_n_m: moment.filter(|_| impact.recorded_moment),
-            contact: impact.contact,
+            in_world_axes: load.force.axes == ForceAxes::World,
+            yaw_moment_n_m: moment.filter(|_| load.recorded_moment),
+            contact: load.contact,
         })
     }
 }
