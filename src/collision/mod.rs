@@ -1,12 +1,14 @@
 //! Two vehicles meet: momentum-conservation impact, contact geometry, scenarios, classic pulses and
 //! the crash-test filter.
 
+mod impact;
+#[cfg(test)]
+mod impact_tests;
+mod pdof;
+
 mod contact_distribution;
 mod footprint;
-mod impact;
-mod pdof;
 mod scenario;
-
 pub use contact_distribution::ContactDistribution;
 pub use footprint::{
     Contact, Footprint, FootprintError, Pose, Side, StruckSurface, TOUCH_TOLERANCE_M, find_contact,
