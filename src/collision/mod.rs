@@ -9,6 +9,8 @@ mod pdof;
 mod contact_distribution;
 mod footprint;
 mod scenario;
+mod pulse;
+
 pub use contact_distribution::ContactDistribution;
 pub use footprint::{
     Contact, Footprint, FootprintError, Pose, Side, StruckSurface, TOUCH_TOLERANCE_M, find_contact,
@@ -19,6 +21,7 @@ pub use impact::{
     ImpliedContact, Regime, contact_work_j,
 };
 pub use pdof::PrincipalDirectionOfForce;
+pub use pulse::{Pulse, PulseError, PulseShape};
 pub use scenario::{
     ContactLocation, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, ImpactCase, Scenario,
     ScenarioContact, ScenarioError, ScenarioGeometry, ScenarioVehicle,
