@@ -11,6 +11,11 @@ mod footprint;
 mod scenario;
 mod pulse;
 
+mod channel_filter;
+
+pub use channel_filter::{
+    ChannelClass, ChannelFilter, FilterError, filter_channel, filter_history,
+};
 pub use contact_distribution::ContactDistribution;
 pub use footprint::{
     Contact, Footprint, FootprintError, Pose, Side, StruckSurface, TOUCH_TOLERANCE_M, find_contact,
