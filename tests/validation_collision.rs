@@ -1,7 +1,10 @@
 //! The collision layer against published numbers and against the shipped finite-element runs.
 
+use std::path::Path;
+
 use impactlab::collision::{
-    ContactSurface, Footprint, FrictionModel, Impact, ImpactBody, ImpactCase,
+    ContactSurface, Footprint, FrictionModel, Impact, ImpactBody, ImpactCase, ImpactSolution,
+    PrincipalDirectionOfForce, Regime, Scenario,
 };
 use impactlab::units::{Quantity, Unit};
 
@@ -68,6 +71,37 @@ fn carpenter_welcher_barrier() {
             "{got}, printed {printed}"
         );
     }
+}
+
+/// The shipped scenario file of the same example leads to the same numbers.
+#[test]
+fn carpenter_welcher_scenario_file() {
+    let solution = solve_scenario("carpenter_welcher_barrier.toml");
+    let energy = unit(Quantity::Energy, "ft lbf");
+    let impulse = unit(Quantity::Impulse, "lbf s");
+    let normal = impulse.from_si(solution.impulse_normal_n_s);
+    assert!((normal - 5936.161).abs() < 1e-3, "{normal}");
+    let lost = energy.from_si(solution.dissipated_energy_j);
+    assert!((lost - 170_421.5).abs() < 0.05, "{lost}");
+    assert_eq!(solution.regime, Regime::NoSlide);
+}
+
+/// A PIT turns the target's tail away from the bullet: nose to the right for a push from the
+/// right at the rear; force from behind on the right.
+#[test]
+fn a_pit_turns_the_target_towards_the_bullet() {
+    let solution = solve_scenario("pit_right_rear.toml");
+    assert!(solution.impulse_n_s[1] > 1000.0, "{solution:?}");
+    assert!(solution.target.yaw_rate_rad_s < -0.2, "{solution:?}");
+    assert!(solution.dissipated_energy_j > 0.0, "{solution:?}");
+    let clock = solution.target.pdof.map(PrincipalDirectionOfForce::clock);
+    assert!(matches!(clock, Some(3 | 4)), "{solution:?}");
+}
+
+fn solve_scenario(name: &str) -> ImpactSolution {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenarios/");
+    let scenario = Scenario::load(&Path::new(folder).join(name)).expect(name);
+    scenario.solve().expect(name)
 }
 
 /// A column of `cases.csv`.

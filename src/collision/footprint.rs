@@ -113,6 +113,16 @@ impl Side {
     /// All four, counter-clockwise from the front.
     pub const ALL: [Self; 4] = [Self::Front, Self::Left, Self::Rear, Self::Right];
 
+    /// The word for it in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Front => "front",
+            Self::Left => "left",
+            Self::Rear => "rear",
+            Self::Right => "right",
+        }
+    }
+
     /// Angle of the outward normal in body axes, rad.
     pub fn outward_angle_rad(self) -> f64 {
         let quarters = match self {

@@ -9,6 +9,10 @@ mod pdof;
 mod contact_distribution;
 mod footprint;
 mod scenario;
+mod scenario_file;
+mod scenario_write;
+mod toml_section;
+
 mod pulse;
 
 mod channel_filter;
@@ -31,3 +35,4 @@ pub use scenario::{
     ContactLocation, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, ImpactCase, Scenario,
     ScenarioContact, ScenarioError, ScenarioGeometry, ScenarioVehicle,
 };
+pub use scenario_file::ScenarioFileError;

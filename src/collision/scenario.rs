@@ -1,7 +1,8 @@
 //! Two vehicles about to collide, as plain numbers: what a user writes in `SCENARIO.toml`, the app
 //! saves and [`Scenario::solve`] turns into an impact.
 //!
-//! Source of the defaults of restitution and friction: see [`ContactDistribution`].
+//! Source of the defaults of restitution and friction: see
+//! [`ContactDistribution`](crate::collision::ContactDistribution).
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -12,10 +13,12 @@ use crate::collision::{
     ImpactSolution, Pose, Side, find_contact, place_touching,
 };
 
-/// Restitution used where none is given, the middle of [`ContactDistribution::default`].
+/// Restitution used where none is given, the middle of the default
+/// [`ContactDistribution`](crate::collision::ContactDistribution).
 pub const DEFAULT_RESTITUTION: f64 = 0.15;
 
-/// Friction limit used where none is given, the middle of [`ContactDistribution::default`].
+/// Friction limit used where none is given, the middle of the default
+/// [`ContactDistribution`](crate::collision::ContactDistribution).
 pub const DEFAULT_FRICTION_LIMIT: f64 = 0.4;
 
 /// One of the two vehicles.
@@ -44,7 +47,7 @@ pub struct ScenarioVehicle {
 
 /// What says where and how the vehicles touch.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "from", rename_all = "snake_case", deny_unknown_fields)]
+#[serde(tag = "from", rename_all = "snake_case")]
 pub enum ContactLocation {
     /// The outlines of both vehicles, with the bullet's CG here.
     Footprints {
@@ -90,8 +93,8 @@ pub struct ScenarioContact {
     pub friction_model: FrictionModel,
 }
 
-/// Two vehicles about to collide. Read from a file by `from_toml` and
-/// `load`, which check every range.
+/// Two vehicles about to collide. Read from a file by [`Scenario::load`]
+/// and [`Scenario::from_toml`], which check every range; written by [`Scenario::to_toml`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scenario {
