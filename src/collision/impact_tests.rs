@@ -384,14 +384,14 @@ fn senseless_numbers_are_refused_by_name() {
     };
     assert_eq!(
         refused(|i| i.target.mass_kg = 0.0),
-        "mass_kg is 0, expected more than 0"
+        "target: mass_kg is 0, expected more than 0"
     );
     assert_eq!(
         refused(|i| i.surface.restitution = 1.5),
-        "restitution is 1.5, expected 0 to 1"
+        "contact: restitution is 1.5, expected 0 to 1"
     );
     assert_eq!(
         refused(|i| i.bullet.velocity_m_s[1] = f64::NAN),
-        "velocity_m_s[1] is NaN, expected a finite number"
+        "bullet: velocity_m_s[1] is NaN, expected a finite number"
     );
 }
