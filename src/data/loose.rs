@@ -205,7 +205,7 @@ fn si_values(table: &Table, column: &ColumnUse) -> Result<Vec<f64>, DataError> {
 }
 
 /// The largest magnitude, in SI units, that is taken for real; beyond it the unit is wrong. Wide on
-/// purpose: what is merely unusual is for [`crate::data::quality`].
+/// purpose: what is merely unusual is for [`crate::data::check_series`].
 fn largest_plausible(quantity: Quantity) -> f64 {
     match quantity {
         // Heavy trucks against rigid barriers reach a few MN; newtons read as kN exceed this.
