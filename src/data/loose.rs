@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use crate::data::{
-    Channel, ColumnMap, ColumnUse, Columns, DataError, Note, SeriesError, Table, TimeSeries,
+    Channel, ColumnMap, ColumnUse, Columns, DataError, Dialect, Note, SeriesError, Table,
+    TimeSeries,
 };
 use crate::units::Quantity;
 
@@ -32,6 +33,10 @@ pub struct Loaded {
     pub columns: Vec<ColumnUse>,
     /// What a person should know.
     pub notes: Vec<Note>,
+    /// Separator and decimal sign of the file.
+    pub dialect: Dialect,
+    /// Its character encoding, such as `UTF-8`.
+    pub encoding: &'static str,
 }
 
 impl FileKind {
@@ -181,6 +186,8 @@ fn load(
         series,
         columns,
         notes,
+        dialect: table.dialect(),
+        encoding: table.encoding(),
     })
 }
 
