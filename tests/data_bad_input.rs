@@ -1,5 +1,7 @@
 //! Bad files: each is refused with its place and what to do, and none panics.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use std::fs::{self, File};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -35,6 +37,7 @@ fn utf16(text: &str) -> Vec<u8> {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table of files and messages")]
 fn bad_force_files_are_refused_with_their_place() {
     let bad_utf16 = utf16("t [s];Fx [kN];Fy [kN]\r\n0;1;1\r\n0,1;zwölf;1\r\n");
     let cases: &[(&[u8], &str)] = &[
@@ -96,11 +99,11 @@ fn bad_force_files_are_refused_with_their_place() {
         ),
         (
             b"time_s,fx_n,fy_n\n",
-            "f.csv:1: has 0 rows of numbers, expected at least 2",
+            "f.csv:1: rows of numbers below the header: 0, expected at least 2",
         ),
         (
             b"time_s,fx_n,fy_n\n0,1,1\n",
-            "f.csv:1: has 1 rows of numbers, expected at least 2",
+            "f.csv:1: rows of numbers below the header: 1, expected at least 2",
         ),
         (
             b"0,1,1\n0.1,1,1\n",
