@@ -108,7 +108,8 @@ impl Table {
             rows: Vec::new(),
         };
         if let Some(body) = body {
-            table.read_rows(&text.text[body.start..], body.number)?;
+            let rows = text.text.get(body.start..).unwrap_or_default();
+            table.read_rows(rows, body.number)?;
         }
         Ok(table)
     }
@@ -319,8 +320,9 @@ fn find_header<'a>(lines: &[Line<'a>], dialect: Dialect) -> (Header, Option<Line
     let width = width(&split);
     let first_number = split.iter().position(|line| line.has_numbers(width));
     let Some(names) = header_line(&split, width, first_number) else {
-        let plain = || split.iter().position(|line| !line.line.is_comment);
-        let body = first_number.or_else(plain).map(|at| split[at].line);
+        let mut plain = split.iter().filter(|line| !line.line.is_comment);
+        let first_number = first_number.and_then(|at| split.get(at));
+        let body = first_number.or_else(|| plain.next()).map(|line| line.line);
         let line = body.map_or(1, |line| line.number);
         return (Header::unwritten(line, width), body);
     };
@@ -354,7 +356,7 @@ fn header_line<'s, 'a>(
     width: usize,
     first_number: Option<usize>,
 ) -> Option<&'s SplitLine<'a>> {
-    let above = &split[..first_number.unwrap_or(split.len())];
+    let above = || split.iter().take(first_number.unwrap_or(split.len()));
     [false, true].into_iter().find_map(|is_comment| {
         let is_candidate =
             move |line: &&SplitLine<'_>| line.is_text && line.line.is_comment == is_comment;
@@ -363,8 +365,8 @@ fn header_line<'s, 'a>(
         let has_several = |line: &&SplitLine<'_>| first_number.is_some() && line.cells.len() > 1;
         fitting
             .find(|line| line.cells.iter().any(|cell| is_name(cell)))
-            .or_else(|| above.iter().filter(is_candidate).find(fits))
-            .or_else(|| above.iter().filter(is_candidate).rfind(has_several))
+            .or_else(|| above().filter(is_candidate).find(fits))
+            .or_else(|| above().filter(is_candidate).rfind(has_several))
     })
 }
 
