@@ -317,7 +317,7 @@ fn bad_cases_do_not_stop_the_good_ones() {
             },
             &["a", "b", "c"],
             &[
-                r#"cases.csv:1: column "m_b_kg" is missing; add it, without it the collision cannot be computed"#,
+                r#"cases.csv:1: "m_b_kg" is missing; add it, without it the collision cannot be computed"#,
             ],
         ),
         (
@@ -336,6 +336,31 @@ fn bad_cases_do_not_stop_the_good_ones() {
 }
 
 #[test]
+fn tables_of_cases_may_be_sparse_or_in_another_dialect() {
+    let folder = small_dataset();
+    for table in [
+        "case\na\nb\nc\n",
+        "case,side\na,left\nb,\nc,right\n",
+        "case,side,hooked,\na,left,,\nb,,1,\nc,right,0,\n",
+        "\u{feff}case;m_t_kg;remark\r\na;1500,5;\"one; two\"\r\nb;;\r\nc;2000;x\r\n",
+    ] {
+        fs::write(folder.path().join("cases.csv"), table).unwrap();
+        let (names, problems) = load(folder.path());
+        assert_eq!(names, ["a", "b", "c"], "{table:?}: {problems:?}");
+    }
+    let dataset = Dataset::load(folder.path(), &mut |_| ControlFlow::Continue(())).unwrap();
+    let dataset = dataset.complete().unwrap();
+    let attributes = &dataset.case("a").unwrap().attributes;
+    assert_eq!(attributes.number("m_t_kg"), Some(1500.5));
+    assert_eq!(attributes.text("remark"), Some("one; two"));
+    let error = attributes.require("m_b_kg", "nothing moves").unwrap_err();
+    assert_eq!(
+        message(folder.path(), &error),
+        r#"cases.csv:2: "m_b_kg" is missing; add it, without it nothing moves"#
+    );
+}
+
+#[test]
 fn data_sets_without_a_table_are_refused() {
     let folder = small_dataset();
     let mut go_on = |_| ControlFlow::Continue(());
@@ -345,7 +370,7 @@ fn data_sets_without_a_table_are_refused() {
     let error = open(folder.path(), &mut go_on).unwrap_err();
     assert_eq!(
         message(folder.path(), &error),
-        r#"cases.csv:1: column "case" is missing; add it, without it no row can be matched to its file"#
+        r#"cases.csv:1: "case" is missing; add it, without it no row can be matched to its file"#
     );
     fs::remove_file(folder.path().join("cases.csv")).unwrap();
     let error = open(folder.path(), &mut go_on).unwrap_err();

@@ -214,7 +214,7 @@ pub enum DataError {
         source: SeriesError,
     },
     /// A table of cases lacks a column.
-    #[error("{}:{line}: column {name:?} is missing; add it, without it {consequence}", path.display())]
+    #[error("{}:{line}: {name:?} is missing; add it, without it {consequence}", path.display())]
     MissingAttribute {
         /// The table of cases.
         path: PathBuf,
