@@ -72,10 +72,8 @@ pub fn default_layout() -> Layout {
     };
     let (data, cases) = (tabs(&[Pane::Data]), tabs(&[Pane::Cases]));
     let (scene, motion) = (tabs(&[Pane::Scene]), tabs(&[Pane::Motion]));
-    let (force, rest) = (
-        tabs(&[Pane::Force, Pane::Scenario]),
-        tabs(&[Pane::Comparison, Pane::Vehicle]),
-    );
+    let (force, rest) =
+        (tabs(&[Pane::Force, Pane::Scenario]), tabs(&[Pane::Comparison, Pane::Vehicle]));
     let mut column = |top, bottom, share: f32| {
         let mut linear = Linear::new(LinearDir::Vertical, vec![top, bottom]);
         linear.shares.set_share(top, share);
@@ -87,10 +85,7 @@ pub fn default_layout() -> Layout {
         (column(scene, motion, 0.45), 0.43),
         (column(force, rest, 0.5), 0.30),
     ];
-    let mut row = Linear::new(
-        LinearDir::Horizontal,
-        columns.map(|(tile, _)| tile).to_vec(),
-    );
+    let mut row = Linear::new(LinearDir::Horizontal, columns.map(|(tile, _)| tile).to_vec());
     for (tile, share) in columns {
         row.shares.set_share(tile, share);
     }
@@ -136,9 +131,6 @@ impl Behavior<Pane> for PaneContext<'_> {
     }
 
     fn simplification_options(&self) -> SimplificationOptions {
-        SimplificationOptions {
-            all_panes_must_have_tabs: true,
-            ..SimplificationOptions::default()
-        }
+        SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
     }
 }

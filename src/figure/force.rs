@@ -23,10 +23,7 @@ pub struct ForceFigure<'a> {
 
 /// F_x, F_y and |F| over time in ms, with markers where contact starts and ends.
 pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
-    let x = Axis {
-        label: "Time".to_owned(),
-        unit: milliseconds(),
-    };
+    let x = Axis { label: "Time".to_owned(), unit: milliseconds() };
     let y = Axis::shown("Force on the target", Quantity::Force, input.units);
     let axes = match input.force.axes {
         ForceAxes::World => "world axes",
@@ -35,9 +32,7 @@ pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
     let components = |history: &ForceHistory| {
         let points = |value: &dyn Fn(usize) -> f64| -> Vec<[f64; 2]> {
             let samples = history.time_s.iter().enumerate();
-            samples
-                .map(|(i, &t)| [x.unit.from_si(t), y.unit.from_si(value(i))])
-                .collect()
+            samples.map(|(i, &t)| [x.unit.from_si(t), y.unit.from_si(value(i))]).collect()
         };
         [
             points(&|i| history.fx_n[i]),
@@ -49,11 +44,7 @@ pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
     for points in input.raw.map(components).into_iter().flatten() {
         elements.push(Element::line("unfiltered", Role::Muted, points));
     }
-    let names = [
-        ("F_x", Role::ComponentX),
-        ("F_y", Role::ComponentY),
-        ("|F|", Role::Resultant),
-    ];
+    let names = [("F_x", Role::ComponentX), ("F_y", Role::ComponentY), ("|F|", Role::Resultant)];
     for ((name, role), points) in names.into_iter().zip(components(input.force)) {
         elements.push(Element::line(name, role, points));
     }
@@ -64,11 +55,7 @@ pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
     if let Some((start, end)) = input.contact_s {
         for (name, at) in [("contact starts", start), ("contact ends", end)] {
             let (name, x) = (name.to_owned(), x.unit.from_si(at));
-            elements.push(Element::VerticalLine {
-                name,
-                role: Role::Muted,
-                x,
-            });
+            elements.push(Element::VerticalLine { name, role: Role::Muted, x });
         }
     }
     Figure {
@@ -82,8 +69,5 @@ pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
 
 fn milliseconds() -> crate::units::Unit {
     let units = Quantity::Time.units();
-    *units
-        .iter()
-        .find(|unit| unit.symbol == "ms")
-        .unwrap_or(&units[0])
+    *units.iter().find(|unit| unit.symbol == "ms").unwrap_or(&units[0])
 }

@@ -21,24 +21,12 @@ pub fn motion_figure(
     let line = |name: &str, role, style, series: Option<&TimeSeries>| {
         let series = series?;
         let samples = series.time_s().iter().zip(series.get(channel)?);
-        let points = samples
-            .map(|(&t, &v)| [x.unit.from_si(t), y.unit.from_si(v)])
-            .collect();
-        Some(Element::Line(Series {
-            name: name.to_owned(),
-            role,
-            style,
-            points,
-        }))
+        let points = samples.map(|(&t, &v)| [x.unit.from_si(t), y.unit.from_si(v)]).collect();
+        Some(Element::Line(Series { name: name.to_owned(), role, style, points }))
     };
     let elements = [
         line("reference", Role::Reference, LineStyle::Dashed, reference),
-        line(
-            "4DOF simulation",
-            Role::Simulation,
-            LineStyle::Solid,
-            simulation,
-        ),
+        line("4DOF simulation", Role::Simulation, LineStyle::Solid, simulation),
     ];
     Figure {
         title: format!("{} over time", channel.label()),

@@ -15,12 +15,7 @@ const FILTER_HINT: &str = "Filter: c012, hooked, spin=1, m_b_kg>2000";
 
 /// Draws the case table.
 pub fn cases_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext {
-        project,
-        view,
-        session,
-        commands,
-    } = pane;
+    let PaneContext { project, view, session, commands } = pane;
     let Some(checked) = listed_in(&session.sources, view) else {
         ui.label("No data set is open. The cases of a data set are listed here.");
         return;
@@ -46,18 +41,11 @@ pub fn cases_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         Some(Subject::Case { dataset, case }) if *dataset == path => Some(case.as_str()),
         _ => None,
     };
-    let table = Table {
-        rows: &rows,
-        columns: CaseColumn::of(checked.dataset.kind),
-        selected,
-    };
+    let table = Table { rows: &rows, columns: CaseColumn::of(checked.dataset.kind), selected };
     let filter_changed = before != view.filter;
     let picked = table.ui(ui, (view, filter_changed));
     if let Some(case) = picked {
-        commands.push(Command::Select(Subject::Case {
-            dataset: path,
-            case,
-        }));
+        commands.push(Command::Select(Subject::Case { dataset: path, case }));
     }
 }
 
@@ -78,15 +66,9 @@ impl Table<'_> {
                 .sense(Sense::click())
                 .auto_shrink(false)
                 .column(Column::initial(62.0).resizable(true))
-                .columns(
-                    Column::initial(74.0).at_least(36.0).resizable(true),
-                    self.columns.len(),
-                )
+                .columns(Column::initial(74.0).at_least(36.0).resizable(true), self.columns.len())
                 .column(Column::remainder().at_least(120.0));
-            let selected = self
-                .rows
-                .iter()
-                .position(|row| Some(row.name) == self.selected);
+            let selected = self.rows.iter().position(|row| Some(row.name) == self.selected);
             if let Some(index) = selected.filter(|_| filter_changed) {
                 table = table.scroll_to_row(index, None);
             }
@@ -122,11 +104,7 @@ impl Table<'_> {
                 };
                 let text = RichText::new(format!("{title}{arrow}")).strong();
                 let label = egui::Label::new(text).sense(Sense::click()).truncate();
-                if ui
-                    .add(label)
-                    .on_hover_text(format!("Sort by {title}"))
-                    .clicked()
-                {
+                if ui.add(label).on_hover_text(format!("Sort by {title}")).clicked() {
                     sort_by(view, key);
                 }
             });

@@ -16,12 +16,7 @@ const TITLE_HEIGHT: f32 = 30.0;
 
 /// Draws v_x, v_y, yaw rate and roll over time, with a common cursor at the scene's time.
 pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext {
-        view,
-        session,
-        commands,
-        ..
-    } = pane;
+    let PaneContext { view, session, commands, .. } = pane;
     let Some(analysis) = analysis_or_hint(ui, session) else {
         return;
     };
