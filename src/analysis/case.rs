@@ -52,7 +52,7 @@ fn analyse_force_case(case: &Case, settings: &Settings) -> Result<Analysis, Anal
         steer: None,
         duration_s: settings.duration_s,
     };
-    let mut notes = vec!["no recorded motion: the dataset holds the contact force only".to_owned()];
+    let mut notes = Vec::new();
     if attributes.separated == Some(false) {
         notes.push("still in contact when the run ended: the force is cut there".to_owned());
     }

@@ -86,6 +86,9 @@ impl CaseRow<'_> {
     /// A cell as it is shown.
     pub fn text(&self, column: &CaseColumn, units: UnitSystem) -> String {
         if let Some(number) = self.number(column.key) {
+            if column.quantity == Quantity::Ratio {
+                return number.to_string();
+            }
             return significant(column.quantity.display_unit(units).from_si(number));
         }
         match self.case.attributes.get(column.key) {

@@ -65,6 +65,24 @@ pub enum FlagKind {
     Hooked,
 }
 
+impl FlagKind {
+    /// In a word or two, for a table.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::MomentumResidual => "momentum",
+            Self::SamplingGap => "gap",
+            Self::NonUniformSampling => "uneven",
+            Self::Spike => "spike",
+            Self::Drift => "drift",
+            Self::ImplausibleForce => "force?",
+            Self::LongContact => "long",
+            Self::NoForce => "no force",
+            Self::NotSeparated => "cut",
+            Self::Hooked => "hooked",
+        }
+    }
+}
+
 /// How much a flag matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {

@@ -21,6 +21,9 @@ pub struct ForceFigure<'a> {
     pub units: UnitSystem,
 }
 
+/// How much is shown after contact, as a share of its duration.
+const AFTER_CONTACT: f64 = 0.3;
+
 /// F_x, F_y and |F| over time in ms, with markers where contact starts and ends.
 pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
     let x = Axis { label: "Time".to_owned(), unit: milliseconds() };
@@ -29,9 +32,12 @@ pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
         ForceAxes::World => "world axes",
         ForceAxes::Body => "heading axes",
     };
+    // A recording of seconds with a contact of a tenth would show a spike.
+    let end_s =
+        input.contact_s.map_or(f64::INFINITY, |(start, end)| end + AFTER_CONTACT * (end - start));
     let components = |history: &ForceHistory| {
         let points = |value: &dyn Fn(usize) -> f64| -> Vec<[f64; 2]> {
-            let samples = history.time_s.iter().enumerate();
+            let samples = history.time_s.iter().enumerate().take_while(|(_, t)| **t <= end_s);
             samples.map(|(i, &t)| [x.unit.from_si(t), y.unit.from_si(value(i))]).collect()
         };
         [
@@ -44,10 +50,10 @@ pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
     for points in input.raw.map(components).into_iter().flatten() {
         elements.push(Element::line("unfiltered", Role::Muted, points));
     }
-    let names = [("F_x", Role::ComponentX), ("F_y", Role::ComponentY), ("|F|", Role::Resultant)];
-    for ((name, role), points) in names.into_iter().zip(components(input.force)) {
-        elements.push(Element::line(name, role, points));
-    }
+    let [fx, fy, resultant] = components(input.force);
+    elements.push(Element::dashed("|F|", Role::Resultant, resultant));
+    elements.push(Element::line("F_x", Role::ComponentX, fx));
+    elements.push(Element::line("F_y", Role::ComponentY, fy));
     for (name, pulse) in input.pulses {
         let [_, _, resultant] = components(pulse);
         elements.push(Element::dashed(name, Role::Pulse, resultant));

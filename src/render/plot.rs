@@ -18,7 +18,7 @@ const Y_TICK_CELLS: f64 = 4.0;
 const MINOR_DIVISIONS: i64 = 5;
 
 /// How a figure is placed among others.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct FigureOptions {
     /// Distinguishes plots in one window; the title if empty.
     pub id: String,
@@ -30,6 +30,15 @@ pub struct FigureOptions {
     pub height: Option<f32>,
     /// Fit the view to the data again.
     pub reset: bool,
+    /// Whether a legend says what the lines are.
+    pub legend: bool,
+}
+
+impl Default for FigureOptions {
+    fn default() -> Self {
+        let (id, link, cursor_x, height) = (String::new(), None, None, None);
+        Self { id, link, cursor_x, height, reset: false, legend: true }
+    }
 }
 
 /// What the user did in a figure.
@@ -68,12 +77,14 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
             };
             Some(readout(name, at))
         })
-        .legend(Legend::default().follow_insertion_order(true).background_alpha(0.6))
         .x_grid_spacer(|input| grid(input, X_TICK_CELLS))
         .y_grid_spacer(|input| grid(input, Y_TICK_CELLS))
         .grid_fade(0.9)
         .allow_scroll(false)
         .allow_drag(Vec2b::new(figure.equal_aspect, figure.equal_aspect));
+    if options.legend {
+        plot = plot.legend(Legend::default().follow_insertion_order(true).background_alpha(0.6));
+    }
     if figure.equal_aspect {
         plot = plot.data_aspect(1.0);
     }

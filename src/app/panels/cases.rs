@@ -65,9 +65,10 @@ impl Table<'_> {
                 .striped(true)
                 .sense(Sense::click())
                 .auto_shrink(false)
-                .column(Column::initial(62.0).resizable(true))
-                .columns(Column::initial(74.0).at_least(36.0).resizable(true), self.columns.len())
-                .column(Column::remainder().at_least(120.0));
+                .cell_layout(egui::Layout::left_to_right(egui::Align::Center))
+                .column(Column::initial(58.0).resizable(true))
+                .column(Column::initial(64.0).resizable(true).clip(true))
+                .columns(Column::initial(72.0).at_least(36.0).resizable(true), self.columns.len());
             let selected = self.rows.iter().position(|row| Some(row.name) == self.selected);
             if let Some(index) = selected.filter(|_| filter_changed) {
                 table = table.scroll_to_row(index, None);
@@ -92,9 +93,8 @@ impl Table<'_> {
     fn header_ui(&self, header: &mut TableRow<'_, '_>, view: &mut View) {
         let units = view.units;
         let attributes = self.columns.iter().map(|c| (c.key, c.heading(units)));
-        let ends = [("case", "Case".to_owned()), ("flags", "Flags".to_owned())];
-        let [first, last] = ends;
-        for (key, title) in std::iter::once(first).chain(attributes).chain([last]) {
+        let fixed = [("case", "Case".to_owned()), ("flags", "Flags".to_owned())];
+        for (key, title) in fixed.into_iter().chain(attributes) {
             header.col(|ui| {
                 let sorted = view.sort_column.as_deref() == Some(key);
                 let arrow = match (sorted, view.sort_descending) {
@@ -113,16 +113,15 @@ impl Table<'_> {
 
     fn row_ui(&self, row: &mut TableRow<'_, '_>, case: &CaseRow<'_>, units: UnitSystem) {
         row.col(|ui| drop(ui.label(case.name)));
-        for column in self.columns {
-            row.col(|ui| drop(ui.label(case.text(column, units))));
-        }
         row.col(|ui| {
             for flag in case.flags {
                 let color = theme::severity_color(flag.severity, ui.visuals().dark_mode);
-                let label = egui::Label::new(RichText::new(flag.to_string()).color(color));
-                ui.add(label.truncate()).on_hover_text(flag.to_string());
+                ui.colored_label(color, flag.kind.label()).on_hover_text(flag.to_string());
             }
         });
+        for column in self.columns {
+            row.col(|ui| drop(ui.label(case.text(column, units))));
+        }
     }
 }
 

@@ -4,10 +4,10 @@ use egui::{CollapsingHeader, Response, RichText, ScrollArea, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
-use crate::app::error_chain;
 use crate::app::panes::PaneContext;
 use crate::app::source::{CheckedDataset, CheckedFile, Content, Source};
 use crate::app::state::{Project, Subject, View};
+use crate::app::{error_chain, shipped_datasets};
 use crate::data::{DatasetKind, FileKind, Severity};
 use crate::render::theme;
 
@@ -32,6 +32,11 @@ pub fn data_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         if session.sources.is_empty() {
             ui.label("Nothing is open. Open a folder with cases.csv and forces/ or trajectories/, or drop it anywhere in this window.");
+            if let Some(path) = shipped_datasets()
+                && ui.button("Open the shipped data").clicked()
+            {
+                commands.push(Command::Open(vec![path]));
+            }
         }
         for source in &session.sources {
             source_ui(ui, source, (project, view), commands);

@@ -53,7 +53,7 @@ pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 reset: session.fit_plots,
                 ..FigureOptions::default()
             };
-            figure_frame(ui, &figure, &options, commands);
+            figure_frame(ui, (&figure.title, &figure), &options, commands);
         }
         Ok(None) => {}
         Err(error) => {

@@ -49,7 +49,7 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                         reset: session.fit_plots,
                         ..FigureOptions::default()
                     };
-                    figure_frame(ui, &figure, &options, commands);
+                    figure_frame(ui, (&figure.title, &figure), &options, commands);
                 }
             }
             Err(error) => {

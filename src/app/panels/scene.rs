@@ -40,5 +40,5 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         reset: session.fit_plots,
         ..FigureOptions::default()
     };
-    figure_frame(ui, &figure, &options, commands);
+    figure_frame(ui, (&figure.title, &figure), &options, commands);
 }
