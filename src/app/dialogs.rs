@@ -180,30 +180,28 @@ impl MappingDialog {
         else {
             return;
         };
-        ui.label(format!("{}: {}", proposal.number, proposal.name));
+        let name = ui.label(format!("{}: {}", proposal.number, proposal.name));
         ui.weak(proposal.samples.join("  "));
         let label = |choice: Option<Channel>| choice.map_or("nothing needed", Channel::label);
-        ComboBox::from_id_salt(("channel", index)).selected_text(label(*choice)).show_ui(
-            ui,
-            |ui| {
-                for option in std::iter::once(None).chain(CHOICES.map(Some)) {
-                    if ui.selectable_value(choice, option, label(option)).clicked() {
-                        *unit_idx = 0;
-                    }
+        let channels = ComboBox::from_id_salt(("channel", index)).selected_text(label(*choice));
+        let shown = channels.show_ui(ui, |ui| {
+            for option in std::iter::once(None).chain(CHOICES.map(Some)) {
+                if ui.selectable_value(choice, option, label(option)).clicked() {
+                    *unit_idx = 0;
                 }
-            },
-        );
+            }
+        });
+        shown.response.labelled_by(name.id);
         let Some(channel) = *choice else { return };
         let units = channel.quantity().units();
         let selected = units.get(*unit_idx).map_or("", |unit| unit.symbol);
-        ComboBox::from_id_salt(("unit", index)).selected_text(selected).width(64.0).show_ui(
-            ui,
-            |ui| {
-                for (idx, unit) in units.iter().enumerate() {
-                    ui.selectable_value(unit_idx, idx, unit.symbol);
-                }
-            },
-        );
+        let combo = ComboBox::from_id_salt(("unit", index)).selected_text(selected).width(64.0);
+        let shown = combo.show_ui(ui, |ui| {
+            for (idx, unit) in units.iter().enumerate() {
+                ui.selectable_value(unit_idx, idx, unit.symbol);
+            }
+        });
+        shown.response.labelled_by(name.id);
     }
 
     fn map(&self) -> ColumnMap {

@@ -5,6 +5,7 @@ mod plot;
 mod software;
 pub mod theme;
 
+pub use egui_plot::Corner;
 pub use offscreen::{Canvas, RenderError, draw_offscreen, figure_image, save_png};
 pub use plot::{FigureOptions, FigureResponse, figure_ui};
 pub use software::SoftwareRenderer;

@@ -2,11 +2,11 @@
 
 use egui::{Id, Stroke, Ui, Vec2b};
 use egui_plot::{
-    Arrows, FilledArea, GridInput, GridMark, Legend, Line, LineStyle as PlotLineStyle, Plot,
-    PlotPoint, PlotPoints, PlotUi, Points, Polygon, VLine,
+    Arrows, Corner, FilledArea, GridInput, GridMark, Legend, Line, LineStyle as PlotLineStyle,
+    Plot, PlotPoint, PlotPoints, PlotUi, Points, Polygon, VLine,
 };
 
-use crate::figure::{Element, Figure, LineStyle, Role, Series};
+use crate::figure::{Element, Figure, LineStyle, Series};
 use crate::render::theme;
 use crate::units::significant;
 
@@ -30,14 +30,14 @@ pub struct FigureOptions {
     pub height: Option<f32>,
     /// Fit the view to the data again.
     pub reset: bool,
-    /// Whether a legend says what the lines are.
-    pub legend: bool,
+    /// Where a legend says what the lines are; none without a corner.
+    pub legend: Option<Corner>,
 }
 
 impl Default for FigureOptions {
     fn default() -> Self {
         let (id, link, cursor_x, height) = (String::new(), None, None, None);
-        Self { id, link, cursor_x, height, reset: false, legend: true }
+        Self { id, link, cursor_x, height, reset: false, legend: Some(Corner::RightTop) }
     }
 }
 
@@ -82,8 +82,9 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         .grid_fade(0.9)
         .allow_scroll(false)
         .allow_drag(Vec2b::new(figure.equal_aspect, figure.equal_aspect));
-    if options.legend {
-        plot = plot.legend(Legend::default().follow_insertion_order(true).background_alpha(0.6));
+    if let Some(corner) = options.legend {
+        let legend = Legend::default().position(corner).follow_insertion_order(true);
+        plot = plot.legend(legend.background_alpha(0.6));
     }
     if figure.equal_aspect {
         plot = plot.data_aspect(1.0);
@@ -105,8 +106,8 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
             draw_element(plot_ui, element, dark);
         }
         if let Some(x) = options.cursor_x {
-            let color = theme::color(Role::Reference, dark).gamma_multiply(0.6);
-            plot_ui.vline(VLine::new("", x).stroke(Stroke::new(1.0, color)).allow_hover(false));
+            let stroke = Stroke::new(theme::LINE_WIDTH, theme::cursor_color(dark));
+            plot_ui.vline(VLine::new("", x).stroke(stroke).allow_hover(false));
         }
         let picking = plot_ui.response().is_pointer_button_down_on();
         plot_ui.pointer_coordinate().filter(|_| picking).map(|point| point.x)

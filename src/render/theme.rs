@@ -31,6 +31,11 @@ pub fn color(role: Role, dark: bool) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
+/// The colour of the time cursor.
+pub fn cursor_color(dark: bool) -> Color32 {
+    color(Role::Pulse, dark)
+}
+
 /// Width of the line of a role, points.
 pub fn line_width(role: Role) -> f32 {
     if role == Role::Muted { THIN_LINE_WIDTH } else { LINE_WIDTH }

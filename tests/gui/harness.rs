@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use egui::{Color32, Context, FullOutput, TexturesDelta};
 use egui_kittest::{Harness, TestRenderer};
 use image::RgbaImage;
-use impactlab::app::{App, State};
+use impactlab::app::{App, Command, State};
 use impactlab::render::SoftwareRenderer;
 
 /// Longest wait for background work.
@@ -57,4 +57,11 @@ pub fn is_idle(state: &State) -> bool {
     state.session.sources.iter().all(impactlab::app::Source::is_settled)
         && state.session.analysis.job.is_none()
         && state.session.analysis.requested.is_some()
+}
+
+/// Does something as if the user had asked for it.
+pub fn apply(harness: &mut Harness<'_, App>, command: Command) {
+    let context = harness.ctx.clone();
+    harness.state_mut().apply(command, &context);
+    harness.step();
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use egui_kittest::Harness;
 use impactlab::app::{App, Command, Pane, Subject};
 
-use crate::harness::{is_idle, open, step_until};
+use crate::harness::{apply, is_idle, open, step_until};
 
 fn save(harness: &mut Harness<'_, App>, name: &str) {
     let image = harness.render().expect("the software renderer always draws");
@@ -14,12 +14,6 @@ fn save(harness: &mut Harness<'_, App>, name: &str) {
     image.save(folder.join(name)).unwrap();
     let first = image.get_pixel(0, 0);
     assert!(image.pixels().any(|pixel| pixel != first), "{name} is blank");
-}
-
-fn apply(harness: &mut Harness<'_, App>, command: Command) {
-    let context = harness.ctx.clone();
-    harness.state_mut().apply(command, &context);
-    harness.step();
 }
 
 #[test]

@@ -1,1 +1,161 @@
-//! What an analyst does: open, pick, simulate, scrub.
+//! What an analyst does, found by what stands on the screen.
+
+use std::path::PathBuf;
+
+use egui::Key;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use impactlab::app::{App, Command, ReplayStatus, State, Subject};
+use impactlab::data::Severity;
+use impactlab::units::UnitSystem;
+
+use crate::harness::{apply, is_idle, open, step_until};
+
+fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
+    harness.state().state()
+}
+
+fn shows(name: &'static str) -> impl Fn(&State) -> bool {
+    move |state| state.analysis().is_some_and(|a| a.name == name) && is_idle(state)
+}
+
+#[test]
+fn open_pick_simulate_scrub() {
+    let mut harness = open(&["datasets/trajectories-fea"]);
+    step_until(&mut harness, "the first case", shows("FE_c001"));
+
+    // Pick a case by its name in the table.
+    harness.get_by_label("FE_c003").click();
+    step_until(&mut harness, "the case that was clicked", shows("FE_c003"));
+    let analysis = state(&harness).analysis().unwrap();
+    assert!(analysis.simulation.is_some() && analysis.reference.is_some());
+    assert!(analysis.error.as_ref().unwrap().average_error_m < 3.0);
+
+    // Simulate the whole data set.
+    harness.get_by_label("Simulate all 100 cases").click();
+    step_until(&mut harness, "all cases", |state| {
+        state
+            .session
+            .replays
+            .values()
+            .any(|s| matches!(s, ReplayStatus::Done(r) if r.cases.len() == 100))
+    });
+    harness.get_by_label("All 100 cases, average position error");
+
+    // Scrub the time by keys, play and pause.
+    harness.key_press(Key::ArrowRight);
+    harness.step();
+    assert!((state(&harness).session.time_s - 0.05).abs() < 1e-9);
+    harness.key_press(Key::Space);
+    harness.run_steps(8);
+    assert!(state(&harness).session.playing);
+    assert!(state(&harness).session.time_s > 0.1, "{}", state(&harness).session.time_s);
+    harness.get_by_label("Pause").click();
+    harness.run_steps(2);
+    assert!(!state(&harness).session.playing);
+    harness.key_press(Key::Home);
+    harness.step();
+    assert_eq!(state(&harness).session.time_s, 0.0);
+}
+
+#[test]
+fn the_next_case_comes_with_a_key_and_undo_brings_the_last_one_back() {
+    let mut harness = open(&["datasets/fea"]);
+    step_until(&mut harness, "the first case", shows("c001"));
+    harness.run_steps(90); // the past takes a second to settle
+    harness.key_press(Key::ArrowDown);
+    step_until(&mut harness, "the next case", shows("c002"));
+    harness.run_steps(90);
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::Z);
+    step_until(&mut harness, "the case before", shows("c001"));
+}
+
+#[test]
+fn a_filter_narrows_the_table_and_units_change_everywhere() {
+    let mut harness = open(&["datasets/fea"]);
+    step_until(&mut harness, "the first case", shows("c001"));
+    harness.state_mut().state_mut().view.filter = "hooked=1 m_b_kg>2000".to_owned();
+    harness.run_steps(2);
+    assert!(harness.query_by_label("100 of 100 cases").is_none());
+    harness.get_by_label("×").click();
+    harness.run_steps(2);
+    harness.get_by_label("100 of 100 cases");
+    harness.get_by_label("US").click();
+    harness.run_steps(2);
+    assert_eq!(state(&harness).view.units, UnitSystem::Us);
+    assert!(harness.query_all_by_label_contains("lbf").count() > 2);
+}
+
+#[test]
+fn a_bad_file_says_where_and_offers_the_mapping() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("export.csv");
+    std::fs::write(&path, "Zeit;Kraft A;Kraft B\n0;0;0\n1;2,5;40\n2;0;0\n").unwrap();
+    let mut harness = open(&[path.to_str().unwrap()]);
+    step_until(&mut harness, "the mapping dialog", |state| state.session.mapping.is_some());
+    harness.get_by_label("Which column is which?");
+    let message = state(&harness).session.messages.last().unwrap();
+    assert_eq!(message.severity, Severity::Error);
+    assert!(message.text.contains("export.csv:1: no column for"), "{}", message.text);
+
+    let map = "time=1:ms,fx=2:kN,fy=3:kN".parse().unwrap();
+    let kind = impactlab::data::FileKind::Force;
+    apply(&mut harness, Command::OpenMapped(path, kind, map));
+    step_until(&mut harness, "the mapped file", shows("export.csv"));
+    let force = state(&harness).analysis().unwrap().force.as_ref().unwrap();
+    assert!((force.peak().unwrap().0 - 2500.0_f64.hypot(40_000.0)).abs() < 1e-6);
+}
+
+#[test]
+fn a_dropped_file_opens_and_a_figure_is_exported() {
+    let mut harness = open(&["datasets/fea/forces/c001.csv"]);
+    step_until(&mut harness, "the file", shows("c001.csv"));
+    let analysis = state(&harness).analysis().unwrap().clone();
+    let figure = impactlab::figure::analysis_scene_figure(&analysis, 1.0, UnitSystem::Si);
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["scene.png", "scene.csv"] {
+        let path = folder.path().join(name);
+        apply(&mut harness, Command::Export(Box::new(figure.clone()), path.clone()));
+        step_until(&mut harness, "the export", |state| state.session.exports.is_empty());
+        assert!(path.metadata().unwrap().len() > 1000, "{name}");
+    }
+    let png = image::open(folder.path().join("scene.png")).unwrap();
+    assert_eq!((png.width(), png.height()), (1600, 1000));
+    let bad = folder.path().join("no/folder/scene.png");
+    apply(&mut harness, Command::Export(Box::new(figure), bad));
+    step_until(&mut harness, "the failure", |state| {
+        state.session.messages.last().is_some_and(|m| m.severity == Severity::Error)
+    });
+}
+
+#[test]
+fn a_scenario_is_solved_simulated_and_survives_a_restart() {
+    let mut harness = open(&["datasets/fea"]);
+    step_until(&mut harness, "the first case", shows("c001"));
+    apply(&mut harness, Command::Show(impactlab::app::Pane::Scenario));
+    harness.run_steps(3);
+    harness.get_by_label("Momentum solution");
+    harness.get_by_label("Simulate in the scene").click();
+    step_until(&mut harness, "the scenario", shows("PIT, right rear quarter"));
+    let analysis = state(&harness).analysis().unwrap();
+    assert!(analysis.bullet.is_some() && analysis.simulation.is_some());
+
+    let text = harness.state().saved().unwrap();
+    let (restored, sources) = State::restore(&text).unwrap();
+    assert_eq!(restored.project.subject, Some(Subject::Scenario));
+    assert_eq!(restored.view.layout, state(&harness).view.layout);
+    assert_eq!(sources, [PathBuf::from("datasets/fea")]);
+}
+
+#[test]
+fn closing_everything_leaves_an_empty_window_that_says_what_to_do() {
+    let mut harness = open(&["datasets/fea"]);
+    step_until(&mut harness, "the first case", shows("c001"));
+    apply(&mut harness, Command::Close("datasets/fea".into()));
+    harness.run_steps(4);
+    assert!(state(&harness).analysis().is_none());
+    harness.get_by_label("Open the shipped data").click();
+    step_until(&mut harness, "the shipped data", |state| {
+        state.session.sources.len() == 4 && is_idle(state)
+    });
+}

@@ -61,6 +61,8 @@ impl Table<'_> {
         let mut picked = None;
         let units = view.units;
         egui::ScrollArea::horizontal().show(ui, |ui| {
+            // A selectable label would take the click that is meant for its row.
+            ui.style_mut().interaction.selectable_labels = false;
             let mut table = TableBuilder::new(ui)
                 .striped(true)
                 .sense(Sense::click())

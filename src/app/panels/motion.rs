@@ -7,7 +7,7 @@ use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
 use crate::app::widgets::figure_frame;
 use crate::figure::{MOTION_CHANNELS, analysis_motion_figure, analysis_readout};
-use crate::render::FigureOptions;
+use crate::render::{Corner, FigureOptions};
 
 /// Smallest height of one plot, points.
 const MIN_PLOT_HEIGHT: f32 = 110.0;
@@ -31,7 +31,7 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             cursor_x: Some(session.time_s),
             height: Some(height),
             reset: session.fit_plots,
-            legend: channel == MOTION_CHANNELS[0],
+            legend: (channel == MOTION_CHANNELS[0]).then_some(Corner::LeftBottom),
         };
         let heading = analysis_readout(analysis, channel, (session.time_s, view.units));
         let response = figure_frame(ui, (&heading, &figure), &options, commands);

@@ -16,9 +16,9 @@ use crate::render::{FigureOptions, theme};
 use crate::units::{Quantity, UnitSystem};
 
 /// Height of the plan, points.
-const PLAN_HEIGHT: f32 = 260.0;
+const PLAN_HEIGHT: f32 = 200.0;
 
-/// Draws the form, the solution and the plan.
+/// Draws the plan, the solution and the form.
 pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -36,27 +36,29 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 commands.push(Command::Select(Subject::Scenario));
             }
         });
-        vehicles_form(ui, project, view.units);
-        contact_form(ui, project, view.units);
-        ui.separator();
-        match project.scenario.solve() {
-            Ok(solution) => {
-                solution_ui(ui, &solution, view.units);
-                if let Ok(figure) = impact_figure(&project.scenario, &solution, view.units) {
-                    let options = FigureOptions {
-                        id: "impact".to_owned(),
-                        height: Some(PLAN_HEIGHT),
-                        reset: session.fit_plots,
-                        ..FigureOptions::default()
-                    };
-                    figure_frame(ui, (&figure.title, &figure), &options, commands);
-                }
-            }
+        let solution = project.scenario.solve();
+        if let Ok(solution) = &solution
+            && let Ok(figure) = impact_figure(&project.scenario, solution, view.units)
+        {
+            let options = FigureOptions {
+                id: "impact".to_owned(),
+                height: Some(PLAN_HEIGHT),
+                reset: session.fit_plots,
+                legend: None,
+                ..FigureOptions::default()
+            };
+            figure_frame(ui, (&figure.title, &figure), &options, commands);
+        }
+        match &solution {
+            Ok(solution) => solution_ui(ui, solution, view.units),
             Err(error) => {
                 let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-                ui.colored_label(color, crate::app::error_chain(&error));
+                ui.colored_label(color, crate::app::error_chain(error));
             }
         }
+        ui.separator();
+        contact_form(ui, project, view.units);
+        vehicles_form(ui, project, view.units);
     });
 }
 
