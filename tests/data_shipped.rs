@@ -3,7 +3,9 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use impactlab::data::{DatasetKind, ForceAttributes, Opened, TrajectoryAttributes, open};
+use impactlab::data::{
+    Dataset, DatasetKind, FlagKind, ForceAttributes, Opened, TrajectoryAttributes, check_case, open,
+};
 
 #[test]
 fn all_shipped_data_sets_load_without_a_problem() {
@@ -33,4 +35,24 @@ fn all_shipped_data_sets_load_without_a_problem() {
         }
     }
     assert_eq!(reports, 8);
+}
+
+#[test]
+fn clean_cases_raise_no_warning_and_the_others_say_why() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets");
+    let mut go_on = |_| ControlFlow::Continue(());
+    for (name, n_hooked, n_not_separated) in [
+        ("fea", 12, 13),
+        ("fea-wide", 11, 21),
+        ("trajectories-fea", 0, 18),
+        ("trajectories-pulse", 0, 0),
+    ] {
+        let dataset = Dataset::load(&root.join(name), &mut go_on).unwrap();
+        let cases = dataset.complete().unwrap().cases;
+        let flags: Vec<_> = cases.iter().flat_map(check_case).collect();
+        let count = |kind| flags.iter().filter(|flag| flag.kind == kind).count();
+        assert_eq!(count(FlagKind::Hooked), n_hooked, "{name}");
+        assert_eq!(count(FlagKind::NotSeparated), n_not_separated, "{name}");
+        assert_eq!(flags.len(), n_hooked + n_not_separated, "{name}: {flags:?}");
+    }
 }

@@ -9,7 +9,9 @@ use crate::collision::ImpliedContact;
 /// The default takes e from 0 to 0.3, the small values that vehicle-to-vehicle impacts at these
 /// closing speeds have ([`Brach2011`](crate::bibliography::Brach2011)), and μ_c from 0.2 to 0.6
 /// about the 0.4 that fits the shipped finite-element runs. Neither is a measurement of a vehicle:
-/// where impulses are known, [`ContactDistribution::fit`] replaces it.
+/// where impulses are known, [`ContactDistribution::fit`] replaces it. On those runs it finds e from
+/// 0.24 to 0.63, so the default gives impulses that are too small there (median error of the impulse
+/// vector 20 % with the medians of the default, 16 % with e = 0.3).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ContactDistribution {

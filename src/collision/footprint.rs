@@ -115,6 +115,16 @@ impl Side {
     /// All four, counter-clockwise from the front.
     pub const ALL: [Self; 4] = [Self::Front, Self::Left, Self::Rear, Self::Right];
 
+    /// The word for it in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Front => "front",
+            Self::Left => "left",
+            Self::Rear => "rear",
+            Self::Right => "right",
+        }
+    }
+
     /// Angle of the outward normal in body axes, rad.
     pub fn outward_angle_rad(self) -> f64 {
         let quarters = match self {
@@ -367,6 +377,9 @@ fn centroid(polygon: &[[f64; 2]]) -> Option<[f64; 2]> {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+    use proptest::test_runner::RngSeed;
+
     use super::*;
 
     const CAR: Footprint = Footprint {
@@ -459,5 +472,46 @@ mod tests {
         assert_eq!(error.to_string(), "the vehicles are 0.500 m apart");
         assert!(place_touching((&CAR, &here), (Side::Rear, 2.0), (&CAR, 0.3)).is_err());
         assert!(find_contact((&CAR, &here), (&CAR, &pose(f64::NAN, 2.3, 0.0))).is_err());
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig {
+            cases: 1000,
+            rng_seed: RngSeed::Fixed(1),
+            failure_persistence: None,
+            ..ProptestConfig::default()
+        })]
+
+        /// Moving the whole scene moves the contact along; mirroring it mirrors the contact; the
+        /// contact point lies in both outlines.
+        #[test]
+        fn contacts_move_with_the_scene(
+            at in (-3.0..3.0, -3.0..3.0, -4.0..4.0),
+            scene in (-50.0..50.0, -50.0..50.0, -4.0..4.0),
+        ) {
+            let car = |x_m: f64, y_m: f64, yaw_rad: f64| Pose { x_m, y_m, yaw_rad };
+            let (here, there) = (car(0.0, 0.0, 0.0), car(at.0, at.1, at.2));
+            let Ok(contact) = find_contact((&CAR, &here), (&CAR, &there)) else {
+                return Ok(());
+            };
+            for pose in [here, there] {
+                let [x, y] = pose.body_from_world(contact.point_m);
+                prop_assert!((-2.6 - 0.02..2.2 + 0.02).contains(&x) && y.abs() < 0.92, "{x} {y}");
+            }
+            let moved = car(scene.0, scene.1, scene.2);
+            let [x, y] = moved.world_from_body([at.0, at.1]);
+            let bullet = car(x, y, at.2 + scene.2);
+            let other = find_contact((&CAR, &moved), (&CAR, &bullet)).unwrap();
+            prop_assert!((other.depth_m - contact.depth_m).abs() < 1e-9);
+            // Two sides may be equally shallow; then rounding decides.
+            if other.surface == contact.surface {
+                let point = moved.body_from_world(other.point_m);
+                for (got, expected) in point.into_iter().zip(contact.point_m) {
+                    prop_assert!((got - expected).abs() < 1e-6, "{other:?}");
+                }
+            }
+            let image = find_contact((&CAR, &here), (&CAR, &car(at.0, -at.1, -at.2))).unwrap();
+            prop_assert!((image.depth_m - contact.depth_m).abs() < 1e-9);
+        }
     }
 }

@@ -48,7 +48,8 @@ pub enum FrictionModel {
     /// No slide at the end of contact, unless that needs `|P_τ| > μ_c P_n`; then sliding.
     #[default]
     Limit,
-    /// The paper's ablation: always sliding, `P_τ = ±μ_c P_n`. Friction may reverse the sliding
+    /// The paper's ablation: always sliding, `P_τ = ±μ_c P_n`, with the sign that
+    /// [`FrictionModel::Limit`] would take (the paper gives none). Friction may reverse the sliding
     /// that it should only stop, and kinetic energy may grow.
     Paper,
 }
@@ -134,8 +135,10 @@ pub struct ImpactSolution<T = f64> {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ImpactError {
     /// An input outside its range.
-    #[error("{name} is {value}, expected {expected}")]
+    #[error("{of}: {name} is {value}, expected {expected}")]
     Range {
+        /// Whose input: target, bullet or contact.
+        of: &'static str,
         /// Which input.
         name: &'static str,
         /// Its value.
@@ -252,36 +255,28 @@ impl Impact<f64> {
     /// # Errors
     /// [`ImpactError::Range`] names the first input outside its range; [`ImpactError::Jammed`].
     pub fn solve(&self) -> Result<ImpactSolution, ImpactError> {
-        for body in [&self.target, &self.bullet] {
+        for (body, of) in [(&self.target, "target"), (&self.bullet, "bullet")] {
             let [vx, vy] = body.velocity_m_s;
             let [rx, ry] = body.contact_arm_m;
-            check(body.mass_kg, "mass_kg", "more than 0", |x| x > 0.0)?;
             let inertia = body.yaw_inertia_kg_m2;
-            check(inertia, "yaw_inertia_kg_m2", "more than 0", |x| x > 0.0)?;
-            for (value, name) in [
-                (body.heading_rad, "heading_rad"),
-                (vx, "velocity_m_s[0]"),
-                (vy, "velocity_m_s[1]"),
-                (body.yaw_rate_rad_s, "yaw_rate_rad_s"),
-                (rx, "contact_arm_m[0]"),
-                (ry, "contact_arm_m[1]"),
-            ] {
-                check(value, name, "a finite number", |_| true)?;
-            }
+            check(of, "mass_kg", body.mass_kg, Expected::Positive)?;
+            check(of, "yaw_inertia_kg_m2", inertia, Expected::Positive)?;
+            check(of, "heading_rad", body.heading_rad, Expected::Finite)?;
+            check(of, "velocity_m_s[0]", vx, Expected::Finite)?;
+            check(of, "velocity_m_s[1]", vy, Expected::Finite)?;
+            check(of, "yaw_rate_rad_s", body.yaw_rate_rad_s, Expected::Finite)?;
+            check(of, "contact_arm_m[0]", rx, Expected::Finite)?;
+            check(of, "contact_arm_m[1]", ry, Expected::Finite)?;
         }
-        let s = &self.surface;
+        let (s, of) = (&self.surface, "contact");
+        check(of, "normal_angle_rad", s.normal_angle_rad, Expected::Finite)?;
+        check(of, "restitution", s.restitution, Expected::Share)?;
         check(
-            s.normal_angle_rad,
-            "normal_angle_rad",
-            "a finite number",
-            |_| true,
+            of,
+            "friction_limit",
+            s.friction_limit,
+            Expected::NotNegative,
         )?;
-        check(s.restitution, "restitution", "0 to 1", |e| {
-            (0.0..=1.0).contains(&e)
-        })?;
-        check(s.friction_limit, "friction_limit", "0 or more", |mu| {
-            mu >= 0.0
-        })?;
         self.solve_unchecked()
     }
 
@@ -429,21 +424,35 @@ impl<T: Scalar> RestitutionLine<T> {
     }
 }
 
+#[derive(Clone, Copy)]
+enum Expected {
+    Finite,
+    Positive,
+    NotNegative,
+    Share,
+}
+
 fn check(
-    value: f64,
+    of: &'static str,
     name: &'static str,
-    expected: &'static str,
-    in_range: impl Fn(f64) -> bool,
+    value: f64,
+    expected: Expected,
 ) -> Result<(), ImpactError> {
-    if value.is_finite() && in_range(value) {
-        Ok(())
-    } else {
-        Err(ImpactError::Range {
-            name,
-            value,
-            expected,
-        })
+    let (in_range, expected) = match expected {
+        Expected::Finite => (true, "a finite number"),
+        Expected::Positive => (value > 0.0, "more than 0"),
+        Expected::NotNegative => (value >= 0.0, "0 or more"),
+        Expected::Share => ((0.0..=1.0).contains(&value), "0 to 1"),
+    };
+    if value.is_finite() && in_range {
+        return Ok(());
     }
+    Err(ImpactError::Range {
+        of,
+        name,
+        value,
+        expected,
+    })
 }
 
 /// A quarter turn to the left.

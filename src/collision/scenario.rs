@@ -1,7 +1,8 @@
 //! Two vehicles about to collide, as plain numbers: what a user writes in `SCENARIO.toml`, the app
 //! saves and [`Scenario::solve`] turns into an impact.
 //!
-//! Source of the defaults of restitution and friction: see [`ContactDistribution`].
+//! Source of the defaults of restitution and friction: see
+//! [`ContactDistribution`](crate::collision::ContactDistribution).
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -12,10 +13,12 @@ use crate::collision::{
     ImpactSolution, Pose, Side, find_contact, place_touching,
 };
 
-/// Restitution used where none is given, the middle of [`ContactDistribution::default`].
+/// Restitution used where none is given, the middle of the default
+/// [`ContactDistribution`](crate::collision::ContactDistribution).
 pub const DEFAULT_RESTITUTION: f64 = 0.15;
 
-/// Friction limit used where none is given, the middle of [`ContactDistribution::default`].
+/// Friction limit used where none is given, the middle of the default
+/// [`ContactDistribution`](crate::collision::ContactDistribution).
 pub const DEFAULT_FRICTION_LIMIT: f64 = 0.4;
 
 /// One of the two vehicles.
@@ -44,7 +47,7 @@ pub struct ScenarioVehicle {
 
 /// What says where and how the vehicles touch.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "from", rename_all = "snake_case", deny_unknown_fields)]
+#[serde(tag = "from", rename_all = "snake_case")]
 pub enum ContactLocation {
     /// The outlines of both vehicles, with the bullet's CG here.
     Footprints {
@@ -90,8 +93,8 @@ pub struct ScenarioContact {
     pub friction_model: FrictionModel,
 }
 
-/// Two vehicles about to collide. Read from a file by `from_toml` and
-/// `load`, which check every range.
+/// Two vehicles about to collide. Read from a file by [`Scenario::load`]
+/// and [`Scenario::from_toml`], which check every range; written by [`Scenario::to_toml`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scenario {
@@ -122,6 +125,9 @@ pub struct ScenarioGeometry {
     pub contact_point_m: [f64; 2],
     /// Angle Γ of the contact normal, rad, pointing into the target.
     pub normal_angle_rad: f64,
+    /// How deep the outlines overlap, m (negative: a gap within the tolerance); `None` where the
+    /// user gave the contact and the outlines were not asked.
+    pub overlap_m: Option<f64>,
 }
 
 /// A scenario that cannot be solved.
@@ -217,6 +223,7 @@ impl Scenario {
                     bullet: bullet_at(bullet_x_m, bullet_y_m),
                     contact_point_m: target.world_from_body([x_m, y_m]),
                     normal_angle_rad: target.yaw_rad + normal_rad,
+                    overlap_m: None,
                 });
             }
         };
@@ -226,6 +233,7 @@ impl Scenario {
             bullet,
             contact_point_m: contact.point_m,
             normal_angle_rad: contact.normal_angle_rad,
+            overlap_m: Some(contact.depth_m),
         })
     }
 
@@ -282,8 +290,56 @@ pub struct ImpactCase {
 }
 
 impl ImpactCase {
-    /// The scenario with the contact point of the table and the normal across the target (±y, into
-    /// it from the side of the contact). The outlines only serve drawing.
+    /// The impact with the contact point of the table and the normal across the target: ±y, into it
+    /// from the side of the contact. Neither vehicle turns before it.
+    ///
+    /// - `restitution`: e, 0 to 1;
+    /// - `friction_limit`: μ_c, 0 or more.
+    ///
+    /// # Errors
+    /// [`ScenarioError::NoSide`] for a contact at `y = 0`.
+    pub fn to_impact(
+        &self,
+        restitution: f64,
+        friction_limit: f64,
+    ) -> Result<Impact, ScenarioError> {
+        let [x, y] = self.contact_m;
+        Ok(Impact {
+            target: ImpactBody {
+                mass_kg: self.m_t_kg,
+                yaw_inertia_kg_m2: self.izz_t_kg_m2,
+                heading_rad: 0.0,
+                velocity_m_s: self.v_t_m_s,
+                yaw_rate_rad_s: 0.0,
+                contact_arm_m: [x, y],
+            },
+            bullet: ImpactBody {
+                mass_kg: self.m_b_kg,
+                yaw_inertia_kg_m2: self.izz_b_kg_m2,
+                heading_rad: self.theta_b_rad,
+                velocity_m_s: self.v_b_m_s,
+                yaw_rate_rad_s: 0.0,
+                contact_arm_m: [x - self.bullet_m[0], y - self.bullet_m[1]],
+            },
+            surface: ContactSurface {
+                normal_angle_rad: self.normal_rad()?,
+                restitution,
+                friction_limit,
+                friction_model: FrictionModel::Limit,
+            },
+        })
+    }
+
+    fn normal_rad(&self) -> Result<f64, ScenarioError> {
+        let contact_y_m = self.contact_m[1];
+        if contact_y_m == 0.0 || !contact_y_m.is_finite() {
+            return Err(ScenarioError::NoSide { contact_y_m });
+        }
+        Ok(-contact_y_m.signum() * FRAC_PI_2)
+    }
+
+    /// The scenario with the same impact as [`ImpactCase::to_impact`], for showing and saving; the
+    /// outlines only serve drawing.
     ///
     /// # Errors
     /// [`ScenarioError::NoSide`] for a contact at `y = 0`.
@@ -293,9 +349,7 @@ impl ImpactCase {
         (restitution, friction_limit): (f64, f64),
     ) -> Result<Scenario, ScenarioError> {
         let [x_m, y_m] = self.contact_m;
-        if y_m == 0.0 || !y_m.is_finite() {
-            return Err(ScenarioError::NoSide { contact_y_m: y_m });
-        }
+        let normal_rad = self.normal_rad()?;
         let vehicle = |mass_kg, yaw_inertia_kg_m2, [vx_m_s, vy_m_s]: [f64; 2], f: Footprint| {
             ScenarioVehicle {
                 mass_kg,
@@ -323,7 +377,7 @@ impl ImpactCase {
                 location: ContactLocation::Point {
                     x_m,
                     y_m,
-                    normal_rad: -y_m.signum() * FRAC_PI_2,
+                    normal_rad,
                     bullet_x_m: self.bullet_m[0],
                     bullet_y_m: self.bullet_m[1],
                 },

@@ -141,7 +141,7 @@ impl Dataset {
         })?;
         let table = Table::read(&root.join(CASES_FILE))?;
         let mut problems = missing_attributes(&table, kind);
-        let rows = named_rows(&table, kind, &mut problems)?;
+        let rows = named_rows(&table, &mut problems)?;
         let files = CaseFiles::list(root, kind)?;
         problems.extend(files.without_row(&rows, table.path()));
         let vehicle_file = Some(root.join(VEHICLE_FILE)).filter(|path| path.is_file());
@@ -196,12 +196,8 @@ fn missing_attributes(table: &Table, kind: DatasetKind) -> Vec<DataError> {
     missing.map(problem).collect()
 }
 
-/// The rows whose name is good, and whose needed cells are numbers or blank.
-fn named_rows(
-    table: &Table,
-    kind: DatasetKind,
-    problems: &mut Vec<DataError>,
-) -> Result<Vec<NamedRow>, DataError> {
+/// The rows whose name is good.
+fn named_rows(table: &Table, problems: &mut Vec<DataError>) -> Result<Vec<NamedRow>, DataError> {
     let is_case = |name: &String| name.eq_ignore_ascii_case(CASE_COLUMN);
     let case_idx =
         table
@@ -237,19 +233,17 @@ fn named_rows(
             });
         } else {
             first_lines.insert(case.clone(), line);
-            match bad_attribute(&attributes, kind) {
-                Some(problem) => problems.push(problem),
-                None => rows.push(NamedRow {
-                    idx: rows.len(),
-                    name: case,
-                    attributes,
-                }),
-            }
+            rows.push(NamedRow {
+                idx: rows.len(),
+                name: case,
+                attributes,
+            });
         }
     }
     Ok(rows)
 }
 
+/// A needed cell that is neither a number nor blank.
 fn bad_attribute(attributes: &Attributes, kind: DatasetKind) -> Option<DataError> {
     kind.needed_attributes()
         .iter()
@@ -315,6 +309,9 @@ impl CaseFiles {
     }
 
     fn load(&self, row: &NamedRow) -> Result<Case, DataError> {
+        if let Some(problem) = bad_attribute(&row.attributes, self.kind) {
+            return Err(problem);
+        }
         let file = self.path(&row.name);
         if !self.names.contains(&row.name) {
             return Err(DataError::CaseWithoutFile {

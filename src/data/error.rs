@@ -17,6 +17,12 @@ pub enum DataError {
         /// The system's reason.
         source: io::Error,
     },
+    /// There is nothing at this path.
+    #[error("{}: does not exist; check the name", path.display())]
+    NotFound {
+        /// The path.
+        path: PathBuf,
+    },
     /// A folder stands where a file was expected.
     #[error("{}: is a folder, expected a file", path.display())]
     IsDirectory {
@@ -90,8 +96,8 @@ pub enum DataError {
         found: Vec<String>,
     },
     /// Two columns claim to be the same channel.
-    #[error("{}:{line}:{column}: {name:?} and {other:?} in column {other_column} both look like {}; choose one, e.g. --map {0}={other_column}, or in the mapping dialog",
-        channel.short_name(), path.display())]
+    #[error("{}:{line}:{column}: {name:?} and {other:?} in column {other_column} both look like {1}; choose one, e.g. --map {1}={other_column}, or in the mapping dialog",
+        path.display(), channel.short_name())]
     AmbiguousColumn {
         /// The file.
         path: PathBuf,
@@ -280,6 +286,7 @@ impl DataError {
     pub(crate) fn io(path: &Path, source: io::Error) -> Self {
         let path = path.to_owned();
         match source.kind() {
+            io::ErrorKind::NotFound => Self::NotFound { path },
             io::ErrorKind::IsADirectory => Self::IsDirectory { path },
             _ => Self::Io { path, source },
         }

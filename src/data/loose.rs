@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use crate::data::{
-    Channel, ColumnMap, ColumnUse, Columns, DataError, Note, SeriesError, Table, TimeSeries,
+    Channel, ColumnMap, ColumnUse, Columns, DataError, Dialect, Note, SeriesError, Table,
+    TimeSeries,
 };
 use crate::units::Quantity;
 
@@ -32,6 +33,10 @@ pub struct Loaded {
     pub columns: Vec<ColumnUse>,
     /// What a person should know.
     pub notes: Vec<Note>,
+    /// Separator and decimal sign of the file.
+    pub dialect: Dialect,
+    /// Its character encoding, such as `UTF-8`.
+    pub encoding: &'static str,
 }
 
 impl FileKind {
@@ -181,6 +186,8 @@ fn load(
         series,
         columns,
         notes,
+        dialect: table.dialect(),
+        encoding: table.encoding(),
     })
 }
 
@@ -205,7 +212,7 @@ fn si_values(table: &Table, column: &ColumnUse) -> Result<Vec<f64>, DataError> {
 }
 
 /// The largest magnitude, in SI units, that is taken for real; beyond it the unit is wrong. Wide on
-/// purpose: what is merely unusual is for [`crate::data::quality`].
+/// purpose: what is merely unusual is for [`crate::data::check_series`].
 fn largest_plausible(quantity: Quantity) -> f64 {
     match quantity {
         // Heavy trucks against rigid barriers reach a few MN; newtons read as kN exceed this.

@@ -1,0 +1,383 @@
+//! `SCENARIO.toml`: reading with units in the key names.
+//!
+//! ```toml
+//! name = "rear-quarter push"
+//!
+//! [target]                    # and [bullet]
+//! mass_kg = 2000              # mass_lb, mass_slug, mass_t
+//! yaw_inertia_kg_m2 = 3600    # yaw_inertia_slug_ft2
+//! length_m = 4.8              # every length: _m, _mm, _ft, _in …
+//! width_m = 1.85
+//! cg_from_front_m = 2.3
+//! speed_km_h = 54             # along the heading; or vx_… and vy_… in world axes; _m_s, _mph …
+//! heading_deg = 0             # optional; heading_rad
+//! yaw_rate_deg_s = 0          # optional; yaw_rate_rad_s
+//! x_m = 0                     # optional for the target, part of the contact for the bullet
+//! y_m = 0
+//!
+//! [contact]
+//! from = "side"               # side and offset: the bullet is placed so that it touches
+//! side = "right"              # front, left, rear, right
+//! offset_m = -1.5             # from the middle of that side
+//! # from = "footprints"       # bullet.x_m and bullet.y_m say where the bullet is
+//! # from = "point"            # x_m, y_m, normal_deg in the target's axes; bullet.x_m, bullet.y_m
+//! restitution = 0.15          # optional
+//! friction_limit = 0.4        # optional
+//! friction_model = "limit"    # optional; or "paper"
+//! ```
+//!
+//! Each quantity is given once, in any unit of [`Quantity::units`]: the key ends in the unit's
+//! symbol with `_` for `/`, `·` and blanks and digits for powers.
+
+use std::path::{Path, PathBuf};
+
+use crate::collision::toml_section::{Range, Section, Source};
+use crate::collision::{
+    ContactLocation, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, FrictionModel, Scenario,
+    ScenarioContact, ScenarioVehicle, Side,
+};
+use crate::units::Quantity;
+
+/// A scenario file that cannot be read. All but the first read `file:line:column: …`, from 1.
+#[derive(Debug, thiserror::Error)]
+pub enum ScenarioFileError {
+    /// The file cannot be opened or is not text.
+    #[error("{}: cannot be read", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// Not TOML.
+    #[error("{}:{line}:{column}: {message}", path.display())]
+    Syntax {
+        /// The file.
+        path: PathBuf,
+        /// Line.
+        line: usize,
+        /// Column.
+        column: usize,
+        /// The parser's words.
+        message: String,
+    },
+    /// A value of the wrong kind or outside its range.
+    #[error("{}:{line}:{column}: {key} is {value}, expected {expected}", path.display())]
+    Value {
+        /// The file.
+        path: PathBuf,
+        /// Line of the value.
+        line: usize,
+        /// Column of the value.
+        column: usize,
+        /// The key with its table.
+        key: String,
+        /// The value as written.
+        value: String,
+        /// The range, in the key's own unit, or the kind.
+        expected: String,
+    },
+    /// A key that this table does not have, most likely a slip or another unit.
+    #[error("{}:{line}:{column}: {key} is not known here", path.display())]
+    UnknownKey {
+        /// The file.
+        path: PathBuf,
+        /// Line of the key.
+        line: usize,
+        /// Column of the key.
+        column: usize,
+        /// The key with its table.
+        key: String,
+    },
+    /// A key without which the scenario says too little.
+    #[error("{}:{line}:{column}: {key} is missing", path.display())]
+    MissingKey {
+        /// The file.
+        path: PathBuf,
+        /// Line of the table.
+        line: usize,
+        /// Column of the table.
+        column: usize,
+        /// The key with its table, and what may stand for it.
+        key: String,
+    },
+    /// Two keys that say the same thing.
+    #[error("{}:{line}:{column}: {key} and {other} say the same thing, expected one", path.display())]
+    Conflict {
+        /// The file.
+        path: PathBuf,
+        /// Line of the second key.
+        line: usize,
+        /// Column of the second key.
+        column: usize,
+        /// The second key with its table.
+        key: String,
+        /// The first key.
+        other: String,
+    },
+}
+
+const ANY_POSITION_M: Range = Range(-1e6, 1e6);
+const ANY_ANGLE_RAD: Range = Range(-4.0 * std::f64::consts::PI, 4.0 * std::f64::consts::PI);
+const ANY_SPEED_M_S: Range = Range(-150.0, 150.0);
+
+pub(super) const LOCATIONS: [&str; 3] = ["footprints", "side", "point"];
+pub(super) const FRICTION_MODELS: [&str; 2] = ["limit", "paper"];
+
+impl Scenario {
+    /// Reads a scenario file and checks every key and range.
+    ///
+    /// # Errors
+    /// [`ScenarioFileError`].
+    pub fn load(path: &Path) -> Result<Self, ScenarioFileError> {
+        let text = std::fs::read_to_string(path).map_err(|source| ScenarioFileError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        Self::from_toml(&text, path)
+    }
+
+    /// Reads a scenario from text; `path` only names it in errors.
+    ///
+    /// # Errors
+    /// [`ScenarioFileError`], but for [`ScenarioFileError::Read`].
+    pub fn from_toml(text: &str, path: &Path) -> Result<Self, ScenarioFileError> {
+        let source = Source { path, text };
+        let root = source.parse()?;
+        let mut top = Section::root(source, &root);
+        let name = top.string("name")?.unwrap_or_default();
+        let notes = top.string("notes")?.unwrap_or_default();
+        let (mut target, mut bullet) = (top.table("target")?, top.table("bullet")?);
+        let mut contact = top.table("contact")?;
+        top.finish()?;
+        let target_x_m = position(&mut target, "x")?.unwrap_or(0.0);
+        let target_y_m = position(&mut target, "y")?.unwrap_or(0.0);
+        let location = read_location(&mut contact, &mut bullet)?;
+        Ok(Self {
+            name,
+            notes,
+            target_x_m,
+            target_y_m,
+            target: read_vehicle(target)?,
+            bullet: read_vehicle(bullet)?,
+            contact: read_contact(contact, location)?,
+        })
+    }
+}
+
+fn position(section: &mut Section<'_>, base: &str) -> Result<Option<f64>, ScenarioFileError> {
+    section.number(base, Quantity::Length, ANY_POSITION_M)
+}
+
+fn read_vehicle(mut section: Section<'_>) -> Result<ScenarioVehicle, ScenarioFileError> {
+    let s = &mut section;
+    let mass_kg = s.require("mass", Quantity::Mass, Range(1.0, 1e8))?;
+    let inertia = (Quantity::MomentOfInertia, Range(0.1, 1e10));
+    let yaw_inertia_kg_m2 = s.require("yaw_inertia", inertia.0, inertia.1)?;
+    let length_m = s.require("length", Quantity::Length, Range(0.1, 100.0))?;
+    let width_m = s.require("width", Quantity::Length, Range(0.1, 20.0))?;
+    let cg_from_front_m = s.require("cg_from_front", Quantity::Length, Range(0.0, length_m))?;
+    let heading = s.number("heading", Quantity::Angle, ANY_ANGLE_RAD)?;
+    let heading_rad = heading.unwrap_or(0.0);
+    let rate = (Quantity::AngularVelocity, Range(-50.0, 50.0));
+    let yaw_rate_rad_s = s.number("yaw_rate", rate.0, rate.1)?.unwrap_or(0.0);
+    let speed = s.number("speed", Quantity::Speed, ANY_SPEED_M_S)?;
+    let first = s.last_key();
+    let vx = s.number("vx", Quantity::Speed, ANY_SPEED_M_S)?;
+    let vy = s.number("vy", Quantity::Speed, ANY_SPEED_M_S)?;
+    let [vx_m_s, vy_m_s] = match (speed, vx, vy) {
+        (Some(speed), None, None) => [speed * heading_rad.cos(), speed * heading_rad.sin()],
+        (None, Some(vx), Some(vy)) => [vx, vy],
+        (Some(_), _, _) => return Err(s.conflict(&first)),
+        (None, None, None) => return Err(s.missing("speed_m_s (or vx_m_s and vy_m_s)")),
+        (None, None, _) => return Err(s.missing("vx_m_s")),
+        (None, _, None) => return Err(s.missing("vy_m_s")),
+    };
+    section.finish()?;
+    Ok(ScenarioVehicle {
+        mass_kg,
+        yaw_inertia_kg_m2,
+        length_m,
+        width_m,
+        cg_from_front_m,
+        heading_rad,
+        vx_m_s,
+        vy_m_s,
+        yaw_rate_rad_s,
+    })
+}
+
+fn read_location(
+    contact: &mut Section<'_>,
+    bullet: &mut Section<'_>,
+) -> Result<ContactLocation, ScenarioFileError> {
+    let mut bullet_at = || -> Result<(f64, f64), ScenarioFileError> {
+        let x_m = bullet.require("x", Quantity::Length, ANY_POSITION_M)?;
+        Ok((x_m, bullet.require("y", Quantity::Length, ANY_POSITION_M)?))
+    };
+    match contact
+        .choice("from", &LOCATIONS)?
+        .ok_or_else(|| contact.missing("from"))?
+    {
+        0 => {
+            let (bullet_x_m, bullet_y_m) = bullet_at()?;
+            Ok(ContactLocation::Footprints {
+                bullet_x_m,
+                bullet_y_m,
+            })
+        }
+        1 => {
+            let names = Side::ALL.map(Side::name);
+            let idx = contact.choice("side", &names)?;
+            let side = idx.and_then(|idx| Side::ALL.get(idx).copied());
+            Ok(ContactLocation::Side {
+                side: side.ok_or_else(|| contact.missing("side"))?,
+                offset_m: contact.require("offset", Quantity::Length, Range(-50.0, 50.0))?,
+            })
+        }
+        _ => {
+            let (bullet_x_m, bullet_y_m) = bullet_at()?;
+            Ok(ContactLocation::Point {
+                x_m: contact.require("x", Quantity::Length, Range(-100.0, 100.0))?,
+                y_m: contact.require("y", Quantity::Length, Range(-100.0, 100.0))?,
+                normal_rad: contact.require("normal", Quantity::Angle, ANY_ANGLE_RAD)?,
+                bullet_x_m,
+                bullet_y_m,
+            })
+        }
+    }
+}
+
+fn read_contact(
+    mut section: Section<'_>,
+    location: ContactLocation,
+) -> Result<ScenarioContact, ScenarioFileError> {
+    let s = &mut section;
+    let restitution = s.number("restitution", Quantity::Ratio, Range(0.0, 1.0))?;
+    let friction_limit = s.number("friction_limit", Quantity::Ratio, Range(0.0, 10.0))?;
+    let friction_model = match s.choice("friction_model", &FRICTION_MODELS)? {
+        Some(1) => FrictionModel::Paper,
+        _ => FrictionModel::Limit,
+    };
+    section.finish()?;
+    Ok(ScenarioContact {
+        location,
+        restitution: restitution.unwrap_or(DEFAULT_RESTITUTION),
+        friction_limit: friction_limit.unwrap_or(DEFAULT_FRICTION_LIMIT),
+        friction_model,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PIT: &str = include_str!("../../assets/scenarios/pit_right_rear.toml");
+
+    fn read(text: &str) -> Result<Scenario, ScenarioFileError> {
+        Scenario::from_toml(text, Path::new("scenario.toml"))
+    }
+
+    /// What is said of the shipped scenario with one line changed.
+    fn refusal(line: &str, instead: &str) -> String {
+        assert!(PIT.contains(line), "{line}");
+        read(&PIT.replacen(line, instead, 1))
+            .unwrap_err()
+            .to_string()
+    }
+
+    #[test]
+    fn units_are_in_the_keys() {
+        let pit = read(PIT).unwrap();
+        assert!((pit.target.vx_m_s - 15.0).abs() < 1e-12, "{pit:?}");
+        assert!(
+            (pit.bullet.heading_rad - 12_f64.to_radians()).abs() < 1e-15,
+            "{pit:?}"
+        );
+        let speed = pit.bullet.vx_m_s.hypot(pit.bullet.vy_m_s);
+        assert!((speed * 3.6 - 56.5).abs() < 1e-9, "{pit:?}");
+        for (key, value) in [
+            ("speed_m_s", "15"),
+            ("speed_mph", "33.554044380816"),
+            ("vy_m_s = 0\nvx_km_h", "54.0"),
+            ("speed_m_s", "0xF"),
+        ] {
+            let text = PIT.replacen("speed_km_h = 54", &format!("{key} = {value}"), 1);
+            let other = read(&text).unwrap();
+            assert!(
+                (other.target.vx_m_s - 15.0).abs() < 1e-9,
+                "{key}: {other:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_refusal_names_file_place_key_value_and_range() {
+        for (line, instead, expected) in [
+            (
+                "mass_kg = 2000",
+                "mass_kg = -3",
+                "7:11: target.mass_kg is -3, expected 1 to 100000000 kg",
+            ),
+            (
+                "speed_km_h = 54",
+                "speed_mph = 1e3",
+                "13:13: target.speed_mph is 1e3, expected -335.540444 to 335.540444 mph",
+            ),
+            (
+                "cg_from_front_m = 2.35",
+                "cg_from_front_m = 5.0",
+                "11:19: target.cg_from_front_m is 5.0, expected 0 to 4.9 m",
+            ),
+            (
+                "width_m = 1.85",
+                "width_m = nan",
+                "10:11: target.width_m is nan, expected 0.1 to 20 m",
+            ),
+            (
+                "width_m = 1.85",
+                "width_m = \"wide\"",
+                "10:11: target.width_m is \"wide\", expected 0.1 to 20 m",
+            ),
+            ("length_m", "lenght_m", "6:2: target.length_m is missing"),
+            (
+                "heading_deg",
+                "haeding_deg",
+                "12:1: target.haeding_deg is not known here",
+            ),
+            (
+                "speed_km_h = 54",
+                "speed_km_h = 54\nspeed_m_s = 15",
+                "13:1: target.speed_km_h and speed_m_s say the same thing, expected one",
+            ),
+            (
+                "speed_km_h = 54",
+                "speed_km_h = 54\nvx_m_s = 15",
+                "14:1: target.vx_m_s and speed_km_h say the same thing, expected one",
+            ),
+            (
+                "speed_km_h = 54",
+                "vx_m_s = 15",
+                "6:2: target.vy_m_s is missing",
+            ),
+            ("[contact]", "[kontact]", "1:1: [contact] is missing"),
+            (
+                "side = \"right\"",
+                "side = \"starboard\"",
+                "26:8: contact.side is \"starboard\", expected \"front\" or \"left\" or \"rear\" or \
+                 \"right\"",
+            ),
+            ("mass_kg = 2000", "mass_kg = ", "7:11: "),
+        ] {
+            let error = refusal(line, instead);
+            let expected = format!("scenario.toml:{expected}");
+            assert!(error.starts_with(&expected), "{error}\n{expected}");
+        }
+    }
+
+    #[test]
+    fn a_file_that_is_not_there_is_named() {
+        let error = Scenario::load(Path::new("no/such/scenario.toml")).unwrap_err();
+        assert_eq!(error.to_string(), "no/such/scenario.toml: cannot be read");
+    }
+}

@@ -1,0 +1,102 @@
+//! When the vehicles touch. Separation is where the contact force vanishes; contact gaps below
+//! 25 ms belong to one pulse.
+
+use crate::data::{ForceHistory, Sampling};
+
+/// Shortest time without contact that parts two pulses, s.
+pub const MIN_GAP_S: f64 = 0.025;
+
+/// Force below this share of the peak counts as none. Computed contact forces are zero outside the
+/// contact; measured ones are not.
+pub const CONTACT_SHARE_OF_PEAK: f64 = 0.01;
+
+/// Start and end of each contact pulse, s, in order; empty without force.
+pub fn contact_pulses(force: &ForceHistory) -> Vec<(f64, f64)> {
+    let Some((peak_n, _)) = force.peak().filter(|(peak_n, _)| *peak_n > 0.0) else {
+        return Vec::new();
+    };
+    let mut pulses: Vec<(f64, f64)> = Vec::new();
+    for (i, (x, y)) in force.fx_n.iter().zip(&force.fy_n).enumerate() {
+        if x.hypot(*y) <= CONTACT_SHARE_OF_PEAK * peak_n {
+            continue;
+        }
+        let (start, end) = sample_interval_s(force, i);
+        match pulses.last_mut() {
+            Some(pulse) if start - pulse.1 < MIN_GAP_S => pulse.1 = end,
+            _ => pulses.push((start, end)),
+        }
+    }
+    pulses
+}
+
+/// First touch and last separation, s; `None` without force.
+pub fn contact_interval(force: &ForceHistory) -> Option<(f64, f64)> {
+    let pulses = contact_pulses(force);
+    Some((pulses.first()?.0, pulses.last()?.1))
+}
+
+/// The time a sample stands for; for an instant, up to its neighbours, where the force has its
+/// zero.
+fn sample_interval_s(force: &ForceHistory, i: usize) -> (f64, f64) {
+    let time = |i: Option<usize>| i.and_then(|i| force.time_s.get(i)).copied();
+    let now = time(Some(i)).unwrap_or_default();
+    let (before, after) = (time(i.checked_sub(1)), time(Some(i + 1)));
+    let step_after = after.map(|after| after - now);
+    let step_before = before.map(|before| now - before);
+    let (back, forth) = match force.sampling {
+        Sampling::Instant => (step_before, step_after),
+        Sampling::CentredMean => {
+            let half = |step: Option<f64>, other: Option<f64>| step.or(other).map(|s| s / 2.0);
+            (half(step_before, step_after), half(step_after, step_before))
+        }
+        Sampling::ComingMean => (None, step_after.or(step_before)),
+    };
+    (now - back.unwrap_or(0.0), now + forth.unwrap_or(0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::ForceAxes;
+
+    fn history(sampling: Sampling, fy_n: &[f64]) -> ForceHistory {
+        ForceHistory {
+            axes: ForceAxes::World,
+            sampling,
+            time_s: (0..fy_n.len()).map(|i| i as f64 * 0.01).collect(),
+            fx_n: vec![0.0; fy_n.len()],
+            fy_n: fy_n.to_vec(),
+            mz_n_m: None,
+        }
+    }
+
+    #[test]
+    fn the_ends_are_where_the_samples_say_the_force_vanishes() {
+        for (sampling, start, end) in [
+            (Sampling::Instant, 0.01, 0.05),
+            (Sampling::CentredMean, 0.015, 0.045),
+            (Sampling::ComingMean, 0.02, 0.05),
+        ] {
+            let force = history(sampling, &[0.0, 0.0, 5.0, -9.0, 4.0, 0.0]);
+            let (from, to) = contact_interval(&force).unwrap();
+            assert!(
+                (from - start).abs() < 1e-12,
+                "{sampling:?} starts at {from}"
+            );
+            assert!((to - end).abs() < 1e-12, "{sampling:?} ends at {to}");
+        }
+        assert_eq!(
+            contact_interval(&history(Sampling::Instant, &[0.0; 4])),
+            None
+        );
+        assert_eq!(contact_interval(&history(Sampling::Instant, &[])), None);
+    }
+
+    #[test]
+    fn short_gaps_do_not_part_a_pulse() {
+        let short = [0.0, 5.0, 0.0, 0.0, 5.0, 0.0];
+        let long = [0.0, 5.0, 0.0, 0.0, 0.0, 5.0, 0.0];
+        let n_pulses = |fy_n| contact_pulses(&history(Sampling::CentredMean, fy_n)).len();
+        assert_eq!((n_pulses(&short), n_pulses(&long)), (1, 2));
+    }
+}
