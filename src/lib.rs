@@ -27,6 +27,7 @@
 //! ```
 
 pub mod bibliography;
+pub mod cli;
 pub mod collision;
 pub mod compare;
 pub mod data;
