@@ -8,9 +8,10 @@
 //! 4. [`vehicle`]: the one place of the equations of motion;
 //! 5. [`collision`]: the impact itself: impulse, contact geometry, scenarios, pulses, filter;
 //! 6. [`compare`]: simulation against reference;
-//! 7. [`figure`]: what a plot shows, as plain data;
-//! 8. `render` (feature `gui`): one drawing function for the panel and the off-screen picture;
-//! 9. `cli` and `app` (feature `gui`): the command line and the window.
+//! 7. [`analysis`]: one case, from its file to a motion;
+//! 8. [`figure`]: what a plot shows, as plain data;
+//! 9. `render` (feature `gui`): one drawing function for the panel and the off-screen picture;
+//! 10. `cli` and `app` (feature `gui`): the command line and the window.
 //!
 //! ```
 //! use impactlab::vehicle::{Integrator, Manoeuvre, Preset, VehicleState};
@@ -26,6 +27,7 @@
 //! # Ok::<(), impactlab::vehicle::SimulationError>(())
 //! ```
 
+pub mod analysis;
 pub mod bibliography;
 pub mod cli;
 pub mod collision;

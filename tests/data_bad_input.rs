@@ -1,5 +1,7 @@
 //! Bad files: each is refused with its place and what to do, and none panics.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use std::fs::{self, File};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -35,6 +37,7 @@ fn utf16(text: &str) -> Vec<u8> {
 }
 
 #[test]
+#[expect(clippy::too_many_lines, reason = "a table of files and messages")]
 fn bad_force_files_are_refused_with_their_place() {
     let bad_utf16 = utf16("t [s];Fx [kN];Fy [kN]\r\n0;1;1\r\n0,1;zwölf;1\r\n");
     let cases: &[(&[u8], &str)] = &[
@@ -96,11 +99,11 @@ fn bad_force_files_are_refused_with_their_place() {
         ),
         (
             b"time_s,fx_n,fy_n\n",
-            "f.csv:1: has 0 rows of numbers, expected at least 2",
+            "f.csv:1: rows of numbers below the header: 0, expected at least 2",
         ),
         (
             b"time_s,fx_n,fy_n\n0,1,1\n",
-            "f.csv:1: has 1 rows of numbers, expected at least 2",
+            "f.csv:1: rows of numbers below the header: 1, expected at least 2",
         ),
         (
             b"0,1,1\n0.1,1,1\n",
@@ -314,7 +317,7 @@ fn bad_cases_do_not_stop_the_good_ones() {
             },
             &["a", "b", "c"],
             &[
-                r#"cases.csv:1: column "m_b_kg" is missing; add it, without it the collision cannot be computed"#,
+                r#"cases.csv:1: "m_b_kg" is missing; add it, without it the collision cannot be computed"#,
             ],
         ),
         (
@@ -333,6 +336,31 @@ fn bad_cases_do_not_stop_the_good_ones() {
 }
 
 #[test]
+fn tables_of_cases_may_be_sparse_or_in_another_dialect() {
+    let folder = small_dataset();
+    for table in [
+        "case\na\nb\nc\n",
+        "case,side\na,left\nb,\nc,right\n",
+        "case,side,hooked,\na,left,,\nb,,1,\nc,right,0,\n",
+        "\u{feff}case;m_t_kg;remark\r\na;1500,5;\"one; two\"\r\nb;;\r\nc;2000;x\r\n",
+    ] {
+        fs::write(folder.path().join("cases.csv"), table).unwrap();
+        let (names, problems) = load(folder.path());
+        assert_eq!(names, ["a", "b", "c"], "{table:?}: {problems:?}");
+    }
+    let dataset = Dataset::load(folder.path(), &mut |_| ControlFlow::Continue(())).unwrap();
+    let dataset = dataset.complete().unwrap();
+    let attributes = &dataset.case("a").unwrap().attributes;
+    assert_eq!(attributes.number("m_t_kg"), Some(1500.5));
+    assert_eq!(attributes.text("remark"), Some("one; two"));
+    let error = attributes.require("m_b_kg", "nothing moves").unwrap_err();
+    assert_eq!(
+        message(folder.path(), &error),
+        r#"cases.csv:2: "m_b_kg" is missing; add it, without it nothing moves"#
+    );
+}
+
+#[test]
 fn data_sets_without_a_table_are_refused() {
     let folder = small_dataset();
     let mut go_on = |_| ControlFlow::Continue(());
@@ -342,7 +370,7 @@ fn data_sets_without_a_table_are_refused() {
     let error = open(folder.path(), &mut go_on).unwrap_err();
     assert_eq!(
         message(folder.path(), &error),
-        r#"cases.csv:1: column "case" is missing; add it, without it no row can be matched to its file"#
+        r#"cases.csv:1: "case" is missing; add it, without it no row can be matched to its file"#
     );
     fs::remove_file(folder.path().join("cases.csv")).unwrap();
     let error = open(folder.path(), &mut go_on).unwrap_err();

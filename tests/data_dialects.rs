@@ -1,5 +1,7 @@
 //! The same force history in every dialect that people export.
 
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use std::fs;
 
 use approx::assert_relative_eq;
@@ -74,6 +76,7 @@ fn one_history_in_many_dialects() {
             format!("Crash test 12, run 3\nby someone\n\nt_ms;fx_kn;fy_kn\n{milli}"),
             "",
         ),
+        (format!("Speed;50;km/h\nt_ms;fx_kn;fy_kn\n{milli}"), ""),
         (
             format!("Mass;1500\nDate;1.2.2026;\nt_ms;fx_kn;fy_kn\n{milli}"),
             "",

@@ -5,6 +5,6 @@ mod replay;
 
 pub use metrics::{HORIZONS_S, MotionError, SPIN_YAW_CHANGE_RAD, largest_yaw_change_rad};
 pub use replay::{
-    DatasetReplay, ErrorSummary, Replay, ReplayError, recorded_manoeuvre, replay_case,
-    replay_dataset,
+    DatasetReplay, ErrorSummary, Replay, ReplayError, initial_state, recorded_manoeuvre,
+    replay_case, replay_dataset,
 };

@@ -108,8 +108,11 @@ pub fn recorded_manoeuvre(case: &Case) -> Result<Manoeuvre, ReplayError> {
     })
 }
 
-/// State at the first sample; a rate or angle that the file lacks is zero.
-fn initial_state(series: &TimeSeries) -> Result<VehicleState<f64>, SeriesError> {
+/// State at the first sample; a rate or a roll angle that the file lacks is zero.
+///
+/// # Errors
+/// [`SeriesError::Missing`] without pose or velocity.
+pub fn initial_state(series: &TimeSeries) -> Result<VehicleState<f64>, SeriesError> {
     let first = |values: &[f64]| values.first().copied().unwrap_or(0.0);
     let needed = |channel| series.require(channel).map(first);
     let known = |channel| series.get(channel).map_or(0.0, first);

@@ -157,9 +157,10 @@ impl Columns {
             match column_meaning(table, column_idx) {
                 Meaning::Channel(channel, unit) if !is_mapped(channel) => {
                     let column = column_use(channel, number, name, unit);
-                    if let Some(earlier) = self.by_channel.insert(channel, column) {
-                        return Err(ambiguous(table, &self.by_channel[&channel], earlier));
+                    if let Some(earlier) = self.by_channel.get(&channel) {
+                        return Err(ambiguous(table, column, earlier));
                     }
+                    self.by_channel.insert(channel, column);
                 }
                 Meaning::WrongUnit(channel, unit) if !is_mapped(channel) => {
                     self.notes.push(Note::WrongUnit {
@@ -294,14 +295,14 @@ fn stated_unit(table: &Table, idx: usize, quantity: Quantity) -> Result<Option<U
     spelling::trailing_unit(name, quantity)
 }
 
-fn ambiguous(table: &Table, later: &ColumnUse, earlier: ColumnUse) -> DataError {
+fn ambiguous(table: &Table, later: ColumnUse, earlier: &ColumnUse) -> DataError {
     DataError::AmbiguousColumn {
         path: table.path().to_owned(),
         line: table.header_line(),
         column: later.number,
         channel: later.channel,
-        name: later.name.clone(),
+        name: later.name,
         other_column: earlier.number,
-        other: earlier.name,
+        other: earlier.name.clone(),
     }
 }

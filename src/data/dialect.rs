@@ -39,7 +39,7 @@ impl Separator {
     }
 
     /// The fields of a line, quotes not regarded.
-    fn fields(self, line: &str) -> impl Iterator<Item = &str> {
+    pub(crate) fn fields(self, line: &str) -> impl Iterator<Item = &str> {
         let separator = char::from(self.byte());
         let is_separator = move |c: char| match self {
             Self::Blanks => c.is_whitespace(),
@@ -73,12 +73,9 @@ impl Dialect {
                 },
             )
         };
-        let mut separator = Separator::Tab;
-        for other in Separator::ALL {
-            if score(&other) > score(&separator) {
-                separator = other;
-            }
-        }
+        // At a tie, `max_by_key` takes the last one.
+        let last_to_first = Separator::ALL.into_iter().rev();
+        let separator = last_to_first.max_by_key(score).unwrap_or(Separator::Comma);
         let fields = || lines.iter().flat_map(|line| separator.fields(line));
         let written_with = |sign: char| {
             fields().any(|field| field.contains(sign) && parse_number(field, sign == ',').is_some())

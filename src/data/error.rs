@@ -162,7 +162,7 @@ pub enum DataError {
         got: usize,
     },
     /// There are too few rows to make a time series.
-    #[error("{}:{line}: has {got} rows of numbers, expected at least {expected}", path.display())]
+    #[error("{}:{line}: rows of numbers below the header: {got}, expected at least {expected}", path.display())]
     TooFewRows {
         /// The file.
         path: PathBuf,
@@ -214,7 +214,7 @@ pub enum DataError {
         source: SeriesError,
     },
     /// A table of cases lacks a column.
-    #[error("{}:{line}: column {name:?} is missing; add it, without it {consequence}", path.display())]
+    #[error("{}:{line}: {name:?} is missing; add it, without it {consequence}", path.display())]
     MissingAttribute {
         /// The table of cases.
         path: PathBuf,

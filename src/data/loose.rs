@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::data::{
-    Channel, ColumnMap, ColumnUse, Columns, DataError, Dialect, Note, SeriesError, Table,
+    Channel, ColumnMap, ColumnUse, Columns, DataError, Dialect, Note, Sampling, SeriesError, Table,
     TimeSeries,
 };
 use crate::units::Quantity;
@@ -37,6 +37,21 @@ pub struct Loaded {
     pub dialect: Dialect,
     /// Its character encoding, such as `UTF-8`.
     pub encoding: &'static str,
+}
+
+impl Loaded {
+    /// What a force sample of the file stands for. Our own finite-element files, known by the
+    /// target's velocities, hold centred means; a trajectory's heading-axis force is the mean over
+    /// the coming interval; anything else is taken as instants.
+    pub fn force_sampling(&self) -> Sampling {
+        if self.series.get(Channel::TargetVx).is_some() {
+            Sampling::CentredMean
+        } else if self.kind == FileKind::Trajectory && self.series.get(Channel::FxBody).is_some() {
+            Sampling::ComingMean
+        } else {
+            Sampling::Instant
+        }
+    }
 }
 
 impl FileKind {

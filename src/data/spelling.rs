@@ -95,7 +95,7 @@ pub(crate) fn unit(quantity: Quantity, text: &str) -> Option<Unit> {
 pub(crate) fn trailing_unit(header: &str, quantity: Quantity) -> Result<Option<Unit>, String> {
     let mut wrong = None;
     for (at, _) in header.match_indices(|c: char| !c.is_alphanumeric()) {
-        let rest = &header[at..];
+        let (_, rest) = header.split_at(at);
         let Some(text) = unit_text(rest) else {
             continue;
         };

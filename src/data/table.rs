@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use csv::{ReaderBuilder, StringRecord, Trim};
 
+use crate::data::DataError;
 use crate::data::dialect::{Dialect, Separator, comment};
 use crate::data::spelling::{self, Meaning};
 use crate::data::text::{Text, read_text};
-use crate::data::{DataError, spelling::is_unit_row};
 
 /// Lines that are looked at to find separator, header and units.
 const SNIFFED_LINES: usize = 64;
@@ -54,6 +54,31 @@ struct Line<'a> {
     is_comment: bool,
 }
 
+/// A line and its fields.
+struct SplitLine<'a> {
+    line: Line<'a>,
+    cells: Vec<String>,
+    /// Whether no field is a number.
+    is_text: bool,
+}
+
+impl<'a> SplitLine<'a> {
+    fn new(line: Line<'a>, dialect: Dialect) -> Self {
+        let cells = split(line.text, dialect.separator);
+        let is_text = cells.iter().all(|cell| dialect.number(cell).is_none());
+        Self {
+            line,
+            cells,
+            is_text,
+        }
+    }
+
+    /// Whether it is a row of the table with a number in it.
+    fn has_numbers(&self, width: usize) -> bool {
+        !self.line.is_comment && !self.is_text && n_named(&self.cells) == width
+    }
+}
+
 impl Table {
     /// Reads a file: UTF-8, UTF-16 or Windows-1252; separated by comma, semicolon, tab or blanks;
     /// with decimal point or comma; with comments, a preamble, a row of units, or none of them.
@@ -67,18 +92,14 @@ impl Table {
 
     fn parse(path: &Path, text: &Text) -> Result<Self, DataError> {
         let lines = first_lines(&text.text);
-        let plain: Vec<Line<'_>> = lines
-            .iter()
-            .filter(|line| !line.is_comment)
-            .copied()
-            .collect();
-        let Some(first) = plain.first() else {
+        let plain = lines.iter().filter(|line| !line.is_comment);
+        let texts: Vec<&str> = plain.map(|line| line.text).collect();
+        if texts.is_empty() {
             let path = path.to_owned();
             return Err(DataError::Empty { path });
-        };
-        let texts: Vec<&str> = plain.iter().map(|line| line.text).collect();
+        }
         let dialect = Dialect::sniff(&texts);
-        let (header, body) = find_header(&lines, first, dialect);
+        let (header, body) = find_header(&lines, dialect);
         let mut table = Self {
             path: path.to_owned(),
             encoding: text.encoding,
@@ -87,7 +108,8 @@ impl Table {
             rows: Vec::new(),
         };
         if let Some(body) = body {
-            table.read_rows(&text.text[body.start..], body.number)?;
+            let rows = text.text.get(body.start..).unwrap_or_default();
+            table.read_rows(rows, body.number)?;
         }
         Ok(table)
     }
@@ -269,6 +291,9 @@ fn first_lines(text: &str) -> Vec<Line<'_>> {
 
 /// Splits one line into its fields.
 fn split(line: &str, separator: Separator) -> Vec<String> {
+    if !line.contains('"') {
+        return separator.fields(line).map(str::to_owned).collect();
+    }
     let line = match separator {
         Separator::Blanks => line.replace('\t', " "),
         _ => line.to_owned(),
@@ -287,80 +312,74 @@ fn split(line: &str, separator: Separator) -> Vec<String> {
 }
 
 /// Finds the header and the first line of the rows.
-///
-/// The table's width is that of most lines with a number. The header is the first line of this
-/// width without a number that names a channel or `case`; else the first such line at all; else
-/// the last line above the numbers with several fields (whose rows are then ragged, which is
-/// reported); else, by the same rules, a comment.
-fn find_header<'a>(
-    lines: &[Line<'a>],
-    first: &Line<'a>,
-    dialect: Dialect,
-) -> (Header, Option<Line<'a>>) {
-    let split: Vec<(Line<'a>, Vec<String>)> = lines
+fn find_header<'a>(lines: &[Line<'a>], dialect: Dialect) -> (Header, Option<Line<'a>>) {
+    let split: Vec<SplitLine<'a>> = lines
         .iter()
-        .map(|line| (*line, split(line.text, dialect.separator)))
+        .map(|line| SplitLine::new(*line, dialect))
         .collect();
-    let is_text = |cells: &[String]| cells.iter().all(|cell| dialect.number(cell).is_none());
-    let width = width(&split, &is_text, first);
-    let first_number = split
-        .iter()
-        .position(|(line, cells)| !line.is_comment && !is_text(cells) && n_named(cells) == width);
-    let above = &split[..first_number.unwrap_or(split.len())];
-    let found = [false, true].into_iter().find_map(|is_comment| {
-        let candidates = || {
-            let above = above.iter().filter(|(_, cells)| is_text(cells));
-            above.filter(move |(line, _)| line.is_comment == is_comment)
-        };
-        let fitting = || candidates().filter(|(_, cells)| n_named(cells) == width);
-        fitting()
-            .find(|(_, cells)| cells.iter().any(|cell| is_name(cell)))
-            .or_else(|| fitting().next())
-            .or_else(|| candidates().rfind(|(_, cells)| first_number.is_some() && cells.len() > 1))
-    });
-    let Some((header_line, names)) = found else {
-        let body = first_number.map_or(*first, |at| split[at].0);
-        return (Header::unwritten(body.number, width), Some(body));
+    let width = width(&split);
+    let first_number = split.iter().position(|line| line.has_numbers(width));
+    let Some(names) = header_line(&split, width, first_number) else {
+        let mut plain = split.iter().filter(|line| !line.line.is_comment);
+        let first_number = first_number.and_then(|at| split.get(at));
+        let body = first_number.or_else(|| plain.next()).map(|line| line.line);
+        let line = body.map_or(1, |line| line.number);
+        return (Header::unwritten(line, width), body);
     };
     let mut below = split
         .iter()
-        .filter(|(line, _)| line.number > header_line.number)
-        .filter(|(line, _)| !line.is_comment || header_line.is_comment);
+        .filter(|line| line.line.number > names.line.number)
+        .filter(|line| !line.line.is_comment || names.line.is_comment);
     let mut body = below.next();
     let mut units = Vec::new();
-    if let Some((_, cells)) = body
-        && is_unit_row(cells.iter().map(String::as_str))
+    if let Some(line) = body
+        && line.is_text
+        && spelling::is_unit_row(line.cells.iter().map(String::as_str))
     {
-        units = cells.clone();
+        units = line.cells.clone();
         body = below.next();
     }
     let header = Header {
-        line: header_line.number,
+        line: names.line.number,
         is_written: true,
-        names: named(names),
+        names: named(&names.cells),
         units,
     };
-    (header, body.map(|(line, _)| *line))
+    (header, body.map(|line| line.line))
 }
 
-/// The most frequent number of fields among lines with a number, the earlier one at a tie; the
-/// first line's if no line has a number.
-fn width(
-    split: &[(Line<'_>, Vec<String>)],
-    is_text: &dyn Fn(&[String]) -> bool,
-    first: &Line<'_>,
-) -> usize {
+/// The first line of the table's width without a number that names a channel or `case`; else the
+/// first such line above the numbers at all; else the last line above them with several fields
+/// (whose rows are then ragged, which is reported); else, by the same rules, a comment.
+fn header_line<'s, 'a>(
+    split: &'s [SplitLine<'a>],
+    width: usize,
+    first_number: Option<usize>,
+) -> Option<&'s SplitLine<'a>> {
+    let above = || split.iter().take(first_number.unwrap_or(split.len()));
+    [false, true].into_iter().find_map(|is_comment| {
+        let is_candidate =
+            move |line: &&SplitLine<'_>| line.is_text && line.line.is_comment == is_comment;
+        let fits = |line: &&SplitLine<'_>| n_named(&line.cells) == width;
+        let mut fitting = split.iter().filter(is_candidate).filter(fits);
+        let has_several = |line: &&SplitLine<'_>| first_number.is_some() && line.cells.len() > 1;
+        fitting
+            .find(|line| line.cells.iter().any(|cell| is_name(cell)))
+            .or_else(|| above().filter(is_candidate).find(fits))
+            .or_else(|| above().filter(is_candidate).rfind(has_several))
+    })
+}
+
+/// The table's width: the most frequent number of fields among lines with a number, the larger one
+/// at a tie; the first line's if no line has a number.
+fn width(split: &[SplitLine<'_>]) -> usize {
     let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
-    for (line, cells) in split {
-        if !line.is_comment && !is_text(cells) {
-            *counts.entry(n_named(cells)).or_default() += 1;
-        }
+    let plain = || split.iter().filter(|line| !line.line.is_comment);
+    for line in plain().filter(|line| !line.is_text) {
+        *counts.entry(n_named(&line.cells)).or_default() += 1;
     }
     let most_frequent = counts.iter().max_by_key(|(_, count)| **count);
-    let first_width = || {
-        let first = split.iter().find(|(line, _)| line.number == first.number);
-        first.map_or(0, |(_, cells)| n_named(cells))
-    };
+    let first_width = || plain().next().map_or(0, |line| n_named(&line.cells));
     most_frequent.map_or_else(first_width, |(width, _)| *width)
 }
 

@@ -26,9 +26,9 @@ pub(crate) struct Text {
 pub(crate) fn read_text(path: &Path) -> Result<Text, DataError> {
     let to_error = |source| DataError::io(path, source);
     let metadata = std::fs::metadata(path).map_err(to_error)?;
-    let (path_owned, bytes) = (|| path.to_owned(), metadata.len());
     if metadata.is_dir() {
-        return Err(DataError::IsDirectory { path: path_owned() });
+        let path = path.to_owned();
+        return Err(DataError::IsDirectory { path });
     }
     let mut file = File::open(path).map_err(to_error)?;
     let mut content = Vec::new();
@@ -37,12 +37,11 @@ pub(crate) fn read_text(path: &Path) -> Result<Text, DataError> {
         .read_to_end(&mut content)
         .map_err(to_error)?;
     refuse_binary(path, &content)?;
-    if bytes > MAX_FILE_BYTES {
-        let limit = MAX_FILE_BYTES;
+    if metadata.len() > MAX_FILE_BYTES {
         return Err(DataError::TooLarge {
-            path: path_owned(),
-            bytes,
-            limit,
+            path: path.to_owned(),
+            bytes: metadata.len(),
+            limit: MAX_FILE_BYTES,
         });
     }
     file.take(MAX_FILE_BYTES)
@@ -57,7 +56,7 @@ fn decode(bytes: &[u8]) -> Text {
         Ok(_) => (UTF_8, 0),
         Err(_) => (WINDOWS_1252, 0),
     });
-    let (text, _) = encoding.decode_without_bom_handling(&bytes[bom..]);
+    let (text, _) = encoding.decode_without_bom_handling(bytes.get(bom..).unwrap_or_default());
     let text = match text.contains('\r') {
         true => text.replace("\r\n", "\n").replace('\r', "\n"),
         false => text.into_owned(),
@@ -72,12 +71,12 @@ fn refuse_binary(path: &Path, bytes: &[u8]) -> Result<(), DataError> {
         return Ok(());
     }
     let is_binary = |byte: &u8| matches!(byte, 0..=8 | 0x0e..=0x19 | 0x1b..=0x1f);
-    match bytes.iter().position(is_binary) {
+    match bytes.iter().enumerate().find(|(_, byte)| is_binary(byte)) {
         None => Ok(()),
-        Some(offset) => Err(DataError::NotText {
+        Some((offset, &byte)) => Err(DataError::NotText {
             path: path.to_owned(),
             offset,
-            byte: bytes[offset],
+            byte,
         }),
     }
 }

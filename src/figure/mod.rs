@@ -1,14 +1,18 @@
 //! Figures as plain data: what is drawn, in which units, with which meaning of the colours. The
 //! panel on screen, the PNG and the CSV of a figure all come from the same [`Figure`].
 
+mod analysis;
 mod export;
 mod force;
+mod impact;
 mod model;
 mod motion;
 mod scene;
 
+pub use analysis::{analysis_force_figure, analysis_motion_figure, analysis_scene_figure};
 pub use export::write_figure_csv;
 pub use force::{ForceFigure, force_figure};
+pub use impact::impact_figure;
 pub use model::{Axis, Band, Element, Figure, LineStyle, Role, Series};
 pub use motion::{MOTION_CHANNELS, motion_figure};
 pub use scene::{SceneFigure, SceneVehicle, outline_m, pose_at, scene_figure};

@@ -6,6 +6,7 @@
 
 use egui::{Color32, Visuals};
 
+use crate::data::Severity;
 use crate::figure::Role;
 
 /// Width of a plotted line, points.
@@ -61,15 +62,4 @@ pub fn severity_color(severity: Severity, dark: bool) -> Color32 {
     };
     let [r, g, b] = if dark { dark_ground } else { light_ground };
     Color32::from_rgb(r, g, b)
-}
-
-/// How much a message matters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Severity {
-    /// Good to know.
-    Info,
-    /// To be looked at.
-    Warning,
-    /// Something could not be done.
-    Error,
 }

@@ -171,6 +171,27 @@ impl VehicleParameters {
         self
     }
 
+    /// The same kind of vehicle with another mass: what belongs to the mass (sprung mass, roll
+    /// inertia, product of inertia, roll stiffness and damping) scales with it. Yaw inertia scales
+    /// too unless it is given.
+    pub fn with_mass(mut self, mass_kg: f64, yaw_inertia_kg_m2: Option<f64>) -> Self {
+        let ratio = mass_kg / self.mass.mass_kg;
+        let mass = &mut self.mass;
+        mass.yaw_inertia_kg_m2 = yaw_inertia_kg_m2.unwrap_or(mass.yaw_inertia_kg_m2 * ratio);
+        let suspension = &mut self.suspension;
+        for value in [
+            &mut mass.mass_kg,
+            &mut mass.sprung_mass_kg,
+            &mut mass.roll_inertia_kg_m2,
+            &mut mass.roll_yaw_product_kg_m2,
+            &mut suspension.roll_stiffness_n_m_rad,
+            &mut suspension.roll_damping_n_m_s_rad,
+        ] {
+            *value *= ratio;
+        }
+        self
+    }
+
     /// Checks every value against its range; `text` is where the line is looked up.
     fn check(&self, text: &str, path: &Path) -> Result<(), VehicleError> {
         for (key, value, range) in self.ranges() {

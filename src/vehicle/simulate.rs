@@ -4,6 +4,8 @@
 //! Over each step the collision force is the mean of its history over that step, so that the whole
 //! impulse arrives whatever the step; steer is taken at the stages.
 
+use serde::{Deserialize, Serialize};
+
 use crate::data::{Channel, CumulativeImpulse, ForceAxes, ForceHistory, SeriesError, TimeSeries};
 use crate::numerics::{Stage, euler_step, interpolate, rk4_step};
 use crate::vehicle::{
@@ -18,9 +20,10 @@ pub const ROLL_LIMIT_RAD: f64 = 0.26;
 pub const OUTPUT_INTERVAL_S: f64 = 0.01;
 
 /// How the equations of motion are integrated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Integrator {
     /// Classical Runge–Kutta, 1 ms.
+    #[default]
     Rk4,
     /// The paper's baseline (`eq:baseline:4dof`): explicit Euler, 10 ms.
     Euler,

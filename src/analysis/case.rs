@@ -1,0 +1,159 @@
+//! Cases of datasets.
+
+use crate::analysis::{Analysis, AnalysisError, Settings, bullet::bullet_track};
+use crate::collision::Footprint;
+use crate::compare::{recorded_manoeuvre, replay_case};
+use crate::data::{Case, DatasetKind, ForceAttributes};
+use crate::vehicle::{ContactLoad, ContactPoint, Manoeuvre, VehicleState};
+
+/// Analyses a case of a force or a trajectory dataset.
+///
+/// # Errors
+/// [`AnalysisError`] if an attribute or a column is missing or the motion diverges.
+pub fn analyse_case(case: &Case, settings: &Settings) -> Result<Analysis, AnalysisError> {
+    match case.kind {
+        DatasetKind::Trajectory => analyse_trajectory_case(case, settings),
+        DatasetKind::Force => analyse_force_case(case, settings),
+    }
+}
+
+fn analyse_trajectory_case(case: &Case, settings: &Settings) -> Result<Analysis, AnalysisError> {
+    let replay = replay_case(case, &settings.target, settings.integrator)?;
+    let load = recorded_manoeuvre(case)?.contact_load;
+    Ok(Analysis {
+        name: case.name.clone(),
+        vehicle: settings.target.name.clone(),
+        footprint: Footprint::from(&settings.target.geometry),
+        contact: load.as_ref().map(|load| load.contact),
+        force: load.map(|load| load.force),
+        simulation: Some(replay.motion),
+        reference: Some(case.series.clone()),
+        bullet: None,
+        error: Some(replay.error),
+        notes: Vec::new(),
+    })
+}
+
+/// The target starts on X with the case's velocities, and takes the recorded force and moment.
+fn analyse_force_case(case: &Case, settings: &Settings) -> Result<Analysis, AnalysisError> {
+    let attributes = ForceAttributes::read(&case.attributes)?;
+    let force = case.force_history()?;
+    let [mass_kg, _] = attributes.mass_kg;
+    let [yaw_inertia, _] = attributes.yaw_inertia_kg_m2;
+    let vehicle = settings.target.clone().with_mass(mass_kg, yaw_inertia);
+    let [vx_m_s, vy_m_s] = attributes.target_velocity_m_s;
+    let [x_m, y_m] = attributes.contact_m;
+    let height_m = attributes
+        .contact_height_m
+        .unwrap_or(vehicle.geometry.cg_height_m);
+    let contact = ContactPoint { x_m, y_m, height_m };
+    let load = ContactLoad {
+        force: force.clone(),
+        contact,
+        recorded_moment: true,
+    };
+    let manoeuvre = Manoeuvre {
+        initial: VehicleState {
+            vx_m_s,
+            vy_m_s,
+            ..VehicleState::default()
+        },
+        contact_load: Some(load),
+        steer: None,
+        duration_s: settings.duration_s,
+    };
+    let mut notes = vec!["no recorded motion: the dataset holds the contact force only".to_owned()];
+    if attributes.separated == Some(false) {
+        notes.push("still in contact when the run ended: the force is cut there".to_owned());
+    }
+    Ok(Analysis {
+        name: case.name.clone(),
+        footprint: Footprint::from(&vehicle.geometry),
+        simulation: Some(vehicle.simulate(&manoeuvre, settings.integrator)?),
+        vehicle: vehicle.name,
+        force: Some(force),
+        contact: Some(contact),
+        reference: None,
+        bullet: bullet_track(case, &attributes, settings)?,
+        error: None,
+        notes,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+    use std::path::Path;
+
+    use super::*;
+    use crate::data::{Channel, Dataset};
+    use crate::vehicle::frames::world_from_body;
+    use crate::vehicle::{Integrator, Preset};
+
+    fn settings(target: Preset) -> Settings {
+        Settings {
+            target: target.parameters(),
+            bullet: Preset::Bullet2000.parameters(),
+            integrator: Integrator::Rk4,
+            duration_s: 4.0,
+        }
+    }
+
+    fn load(name: &str) -> Dataset {
+        let mut report = |_| ControlFlow::Continue(());
+        Dataset::load(&Path::new("datasets").join(name), &mut report)
+            .unwrap()
+            .complete()
+            .unwrap()
+    }
+
+    #[test]
+    fn on_ice_a_finite_element_case_ends_with_the_recorded_motion() {
+        // The finite-element runs have no tyres: without friction the 4DOF model must meet them.
+        let dataset = load("fea-wide");
+        let mut settings = settings(Preset::Target);
+        let target = &mut settings.target;
+        target.tires.friction = 1e-9;
+        target.tires.rolling_resistance = 0.0;
+        target.mass.roll_yaw_product_kg_m2 = 0.0;
+        for case in dataset.cases.iter().step_by(9) {
+            let analysis = analyse_case(case, &settings).unwrap();
+            let recorded = |name| case.attributes.number(name).unwrap();
+            let motion = analysis.simulation.unwrap().series;
+            let last = |channel| *motion.require(channel).unwrap().last().unwrap();
+            let body = [last(Channel::Vx), last(Channel::Vy)];
+            let [vx, vy] = world_from_body(last(Channel::Yaw), body);
+            for (name, got, expected) in [
+                ("v_x", vx, recorded("target_vx_end_m_s")),
+                ("v_y", vy, recorded("target_vy_end_m_s")),
+                (
+                    "r",
+                    last(Channel::YawRate),
+                    recorded("target_yaw_rate_end_rad_s"),
+                ),
+            ] {
+                assert!(
+                    (got - expected).abs() < 0.01,
+                    "{} {name}: {got} {expected}",
+                    case.name
+                );
+            }
+            let bullet = analysis.bullet.unwrap().motion;
+            let end = case.series.n_samples() - 1;
+            let yaw = bullet.require(Channel::Yaw).unwrap()[end];
+            assert!(
+                (yaw - recorded("bullet_yaw_end_rad")).abs() < 1e-3,
+                "{}: {yaw}",
+                case.name
+            );
+        }
+    }
+
+    #[test]
+    fn a_trajectory_case_has_reference_and_error() {
+        let dataset = load("trajectories-pulse");
+        let analysis = analyse_case(&dataset.cases[0], &settings(Preset::Reference)).unwrap();
+        assert!(analysis.reference.is_some());
+        assert!(analysis.error.unwrap().average_error_m < 1.0);
+    }
+}

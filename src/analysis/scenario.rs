@@ -1,0 +1,163 @@
+//! A scenario of two vehicles: solved, spread over a classic pulse, and driven on.
+
+use serde::{Deserialize, Serialize};
+
+use crate::analysis::{Analysis, AnalysisError, Settings, Track};
+use crate::collision::{Pose, Pulse, PulseShape, Scenario, ScenarioVehicle};
+use crate::data::ForceHistory;
+use crate::vehicle::frames::body_from_world;
+use crate::vehicle::{
+    ContactLoad, ContactPoint, Manoeuvre, Motion, VehicleParameters, VehicleState,
+};
+
+/// Sample interval of the pulse, s.
+const PULSE_INTERVAL_S: f64 = 1e-3;
+
+/// How the impulse of the momentum solution is spread over time.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PulseSetup {
+    /// Shape.
+    pub shape: PulseShape,
+    /// Duration, s.
+    pub duration_s: f64,
+    /// Height above the ground at which it acts, m.
+    pub contact_height_m: f64,
+}
+
+impl Default for PulseSetup {
+    /// A haversine over 0.1 s: durations of the shipped finite-element runs lie around 0.116 s.
+    fn default() -> Self {
+        Self {
+            shape: PulseShape::Haversine,
+            duration_s: 0.1,
+            contact_height_m: 0.52,
+        }
+    }
+}
+
+/// Solves a scenario and simulates both vehicles with the impulse spread over a classic pulse.
+///
+/// # Errors
+/// [`AnalysisError`] if the vehicles do not meet, the pulse is no pulse or a motion diverges.
+pub fn analyse_scenario(
+    scenario: &Scenario,
+    pulse: &PulseSetup,
+    settings: &Settings,
+) -> Result<Analysis, AnalysisError> {
+    let solution = scenario.solve()?;
+    let geometry = scenario.geometry()?;
+    let history = |impulse_n_s| -> Result<ForceHistory, AnalysisError> {
+        let pulse = Pulse::new(pulse.shape, impulse_n_s, 0.0, pulse.duration_s)?;
+        Ok(pulse.to_history(PULSE_INTERVAL_S.min(pulse.end_s() / 20.0))?)
+    };
+    let [px, py] = solution.impulse_n_s;
+    let force = history([px, py])?;
+    let run = |vehicle: &ScenarioVehicle, preset: &VehicleParameters, pose: &Pose, force| {
+        let parameters = preset
+            .clone()
+            .with_mass(vehicle.mass_kg, Some(vehicle.yaw_inertia_kg_m2));
+        let [x_m, y_m] = pose.body_from_world(geometry.contact_point_m);
+        let contact = ContactPoint {
+            x_m,
+            y_m,
+            height_m: pulse.contact_height_m,
+        };
+        let motion = drive_on(vehicle, &parameters, pose, (force, contact), settings)?;
+        Ok::<_, AnalysisError>((motion, contact))
+    };
+    let (target, contact) = run(
+        &scenario.target,
+        &settings.target,
+        &geometry.target,
+        force.clone(),
+    )?;
+    let (bullet, _) = run(
+        &scenario.bullet,
+        &settings.bullet,
+        &geometry.bullet,
+        history([-px, -py])?,
+    )?;
+    Ok(Analysis {
+        name: scenario.name.clone(),
+        vehicle: settings.target.name.clone(),
+        footprint: scenario.target.footprint(),
+        force: Some(force),
+        contact: Some(contact),
+        simulation: Some(target),
+        reference: None,
+        bullet: Some(Track {
+            footprint: scenario.bullet.footprint(),
+            motion: bullet.series,
+        }),
+        error: None,
+        notes: vec![format!(
+            "force: {} of {:.0} ms that carries the impulse of the momentum solution",
+            pulse.shape.label(),
+            pulse.duration_s * 1e3
+        )],
+    })
+}
+
+/// A vehicle of a scenario from first contact on, with wheel and throttle released.
+fn drive_on(
+    vehicle: &ScenarioVehicle,
+    parameters: &VehicleParameters,
+    pose: &Pose,
+    (force, contact): (ForceHistory, ContactPoint),
+    settings: &Settings,
+) -> Result<Motion, AnalysisError> {
+    let velocity = [vehicle.vx_m_s, vehicle.vy_m_s];
+    let [vx_m_s, vy_m_s] = body_from_world(pose.yaw_rad, velocity);
+    let manoeuvre = Manoeuvre {
+        initial: VehicleState {
+            vx_m_s,
+            vy_m_s,
+            yaw_rad: pose.yaw_rad,
+            yaw_rate_rad_s: vehicle.yaw_rate_rad_s,
+            x_m: pose.x_m,
+            y_m: pose.y_m,
+            ..VehicleState::default()
+        },
+        contact_load: Some(ContactLoad {
+            force,
+            contact,
+            recorded_moment: false,
+        }),
+        steer: None,
+        duration_s: settings.duration_s,
+    };
+    Ok(parameters.simulate(&manoeuvre, settings.integrator)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::data::Channel;
+    use crate::vehicle::{Integrator, Preset};
+
+    #[test]
+    fn a_pit_turns_the_target_and_both_go_on() {
+        let scenario = Scenario::load(Path::new("assets/scenarios/pit_right_rear.toml")).unwrap();
+        let settings = Settings {
+            target: Preset::Target.parameters(),
+            bullet: Preset::Bullet2000.parameters(),
+            integrator: Integrator::Rk4,
+            duration_s: 3.0,
+        };
+        let analysis = analyse_scenario(&scenario, &PulseSetup::default(), &settings).unwrap();
+        let solution = scenario.solve().unwrap();
+        let motion = analysis.simulation.unwrap().series;
+        let rate = motion.require(Channel::YawRate).unwrap();
+        let expected = solution.target.yaw_rate_rad_s;
+        assert!(
+            expected < 0.0,
+            "a push on the right rear turns the target to the right"
+        );
+        assert!(rate[10] < 0.5 * expected, "{} against {expected}", rate[10]);
+        let bullet = analysis.bullet.unwrap().motion;
+        assert_eq!(bullet.n_samples(), motion.n_samples());
+        assert!(analysis.contact.unwrap().y_m < 0.0);
+    }
+}

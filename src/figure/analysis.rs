@@ -1,0 +1,79 @@
+//! The figures of an [`Analysis`].
+
+use crate::analysis::Analysis;
+use crate::collision::{ChannelClass, FilterError, filter_history};
+use crate::data::{Channel, ForceHistory, contact_interval};
+use crate::figure::{
+    Figure, ForceFigure, LineStyle, Role, SceneFigure, SceneVehicle, force_figure, motion_figure,
+    scene_figure,
+};
+use crate::units::UnitSystem;
+
+/// The force over time, through a channel class if one is chosen, with classic pulses over it.
+/// `None` if the case has no force.
+///
+/// # Errors
+/// [`FilterError`] if the class does not fit the sampling.
+pub fn analysis_force_figure(
+    analysis: &Analysis,
+    class: Option<ChannelClass>,
+    pulses: &[(String, ForceHistory)],
+    units: UnitSystem,
+) -> Result<Option<Figure>, FilterError> {
+    let Some(raw) = &analysis.force else {
+        return Ok(None);
+    };
+    let filtered = class.map(|class| filter_history(class, raw)).transpose()?;
+    Ok(Some(force_figure(&ForceFigure {
+        name: &analysis.name,
+        force: filtered.as_ref().unwrap_or(raw),
+        raw: filtered.as_ref().map(|_| raw),
+        contact_s: contact_interval(raw),
+        pulses,
+        units,
+    })))
+}
+
+/// One channel over time, simulation and reference.
+pub fn analysis_motion_figure(analysis: &Analysis, channel: Channel, units: UnitSystem) -> Figure {
+    let simulation = analysis.simulation.as_ref().map(|motion| &motion.series);
+    motion_figure(channel, simulation, analysis.reference.as_ref(), units)
+}
+
+/// The scene from above at a moment.
+pub fn analysis_scene_figure(analysis: &Analysis, time_s: f64, units: UnitSystem) -> Figure {
+    let footprint = analysis.footprint;
+    let bullet = analysis.bullet.as_ref().map(|track| SceneVehicle {
+        name: "bullet",
+        role: Role::Bullet,
+        style: LineStyle::Solid,
+        motion: &track.motion,
+        footprint: track.footprint,
+    });
+    let reference = analysis.reference.as_ref().map(|motion| SceneVehicle {
+        name: "reference",
+        role: Role::Reference,
+        style: LineStyle::Dashed,
+        motion,
+        footprint,
+    });
+    let simulation = analysis.simulation.as_ref().map(|motion| SceneVehicle {
+        name: "4DOF simulation",
+        role: Role::Simulation,
+        style: LineStyle::Solid,
+        motion: &motion.series,
+        footprint,
+    });
+    let vehicles: Vec<_> = [bullet, reference, simulation]
+        .into_iter()
+        .flatten()
+        .collect();
+    let title = format!("{}: scene from above at {time_s:.2} s", analysis.name);
+    scene_figure(&SceneFigure {
+        title: &title,
+        vehicles: &vehicles,
+        at_impact: &[],
+        time_s,
+        units,
+    })
+}
