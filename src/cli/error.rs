@@ -4,6 +4,7 @@ use std::error::Error;
 use std::io;
 use std::path::PathBuf;
 
+use crate::analysis::AnalysisError;
 use crate::collision::{FilterError, ScenarioError, ScenarioFileError};
 use crate::compare::ReplayError;
 use crate::data::{DataError, SeriesError};
@@ -54,6 +55,14 @@ pub enum CliError {
     /// A case that cannot be simulated.
     #[error(transparent)]
     Replay(#[from] ReplayError),
+    /// A case or file that cannot be analysed.
+    #[error("{}: cannot be analysed", path.display())]
+    Analysis {
+        /// The file or data set.
+        path: PathBuf,
+        /// Why.
+        source: AnalysisError,
+    },
     /// A vehicle that is neither a preset nor a file.
     #[error("{name:?} is no vehicle; expected a vehicle file or one of {}", presets.join(", "))]
     UnknownVehicle {
@@ -134,6 +143,14 @@ pub enum CliError {
         end_s: f64,
         /// Duration of the simulation, s.
         duration_s: f64,
+    },
+    /// Nothing of what a figure shows is known.
+    #[error("{}: nothing is known of {channel} over time", path.display())]
+    NothingToShow {
+        /// The file or data set.
+        path: PathBuf,
+        /// What the figure should show.
+        channel: &'static str,
     },
     /// A moment outside the recorded motion.
     #[error("--time is {time_s} s, expected between {start_s} s and {end_s} s")]

@@ -8,7 +8,11 @@
 mod run;
 
 mod app;
+mod check;
+mod check_report;
 mod impact;
+mod render;
+mod render_figure;
 mod simulate;
 mod simulate_dataset;
 mod simulate_single;
@@ -16,7 +20,6 @@ mod vehicles;
 
 mod case_choice;
 mod error;
-mod force_source;
 mod output;
 mod progress;
 mod quantity;

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use crate::cli::error::chain;
-use crate::cli::{CliError, app, impact, simulate, vehicles};
+use crate::cli::{CliError, app, check, impact, render, simulate, vehicles};
 
 /// What happens when one vehicle hits another, and in the second after
 #[derive(Debug, Parser)]
@@ -33,10 +33,10 @@ Exit codes: 0 = ok, 1 = the work failed or found problems, 2 = wrong usage";
 #[derive(Debug, Subcommand)]
 enum Command {
     App(app::AppArgs),
-    // LATER Check(check::CheckArgs),
+    Check(check::CheckArgs),
     Impact(impact::ImpactArgs),
     Simulate(Box<simulate::SimulateArgs>),
-    // LATER Render(render::RenderArgs),
+    Render(render::RenderArgs),
     Vehicles(vehicles::VehiclesArgs),
 }
 
@@ -105,10 +105,10 @@ fn dispatch(command: Option<Command>, console: &mut Console<'_>) -> Result<Verdi
     match command {
         None => app::run(app::AppArgs::default()),
         Some(Command::App(args)) => app::run(args),
-        // LATER Some(Command::Check(args)) => check::run(&args, console),
+        Some(Command::Check(args)) => check::run(&args, console),
         Some(Command::Impact(args)) => impact::run(&args, console),
         Some(Command::Simulate(args)) => simulate::run(&args, console),
-        // LATER Some(Command::Render(args)) => render::run(&args, console),
+        Some(Command::Render(args)) => render::run(&args, console),
         Some(Command::Vehicles(args)) => vehicles::run(&args, console),
     }
 }

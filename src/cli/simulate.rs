@@ -6,11 +6,10 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use crate::cli::CliError;
-use crate::cli::force_source::SamplingArg;
 use crate::cli::quantity::{UnitsArg, contact_point, friction, speed_m_s, time_s, yaw_rate_rad_s};
 use crate::cli::run::{Console, Verdict};
 use crate::cli::{simulate_dataset, simulate_single};
-use crate::data::ColumnMap;
+use crate::data::{ColumnMap, Sampling};
 use crate::vehicle::{ContactPoint, Integrator};
 
 /// Simulate the motion after an impact, or compare a whole data set with the simulation
@@ -65,9 +64,9 @@ Examples:
   impactlab simulate --vehicle my-car.toml --speed 20 --steer steer.csv
   impactlab simulate --dataset datasets/trajectories-fea --json
 
-A force sample stands for: the mean around its instant in finite-element files (forces/ of a data
-set, or with target_vx columns); the mean over the coming interval in trajectories (fx_body); else
-the value at its instant. --sampling overrules it.
+A force sample stands for: the mean around its instant in finite-element files (with target_vx
+columns, as in forces/ of the data sets); the mean over the coming interval in trajectories (with
+fx_body); else the value at its instant. --sampling overrules it.
 
 JSON, one vehicle: vehicle, integrator, friction, duration_s, force {path, sampling, axes,
   impulse_n_s [x, y], contact_start_s, contact_end_s, yaw_moment}, delta_v_m_s [x, y] and
@@ -106,7 +105,7 @@ pub(super) struct SingleArgs {
     /// Which column of the force file is what: time=1:ms,fx=Kraft X:kN
     #[arg(long, requires = "force")]
     pub(super) map: Option<ColumnMap>,
-    /// What a force sample stands for; without it, by the kind of file
+    /// What a force sample stands for; without it, as the columns suggest
     #[arg(long, value_enum, requires = "force")]
     pub(super) sampling: Option<SamplingArg>,
     /// Where the force acts: x, y from the CG in body axes (x forward, y left), z above the
@@ -137,6 +136,27 @@ impl From<IntegratorArg> for Integrator {
         match integrator {
             IntegratorArg::Rk4 => Self::Rk4,
             IntegratorArg::Euler => Self::Euler,
+        }
+    }
+}
+
+/// What a force sample stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum SamplingArg {
+    /// The value at its instant
+    Instant,
+    /// The mean over an interval centred at its instant
+    CentredMean,
+    /// The mean from its instant to the next one
+    ComingMean,
+}
+
+impl From<SamplingArg> for Sampling {
+    fn from(sampling: SamplingArg) -> Self {
+        match sampling {
+            SamplingArg::Instant => Self::Instant,
+            SamplingArg::CentredMean => Self::CentredMean,
+            SamplingArg::ComingMean => Self::ComingMean,
         }
     }
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::cli::CliError;
-use crate::cli::case_choice::{find_case, load_dataset};
+use crate::cli::case_choice::{load_dataset, take_case};
 use crate::cli::error::chain;
 use crate::cli::output::{print_json, print_table, word};
 use crate::cli::progress::{complete, with_progress};
@@ -51,7 +51,7 @@ pub(super) fn run(
 ) -> Result<Verdict, CliError> {
     let mut dataset = trajectories(root)?;
     if let Some(name) = &args.case {
-        let case = find_case(&dataset, name)?.clone();
+        let case = take_case(&mut dataset, name)?;
         dataset.cases = vec![case];
         dataset.problems.clear();
     }

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::cli::CliError;
-use crate::cli::force_source::sampling_of;
 use crate::cli::output::{print_facts, print_json, shown, shown_vector, word};
 use crate::cli::run::{Console, Verdict};
 use crate::cli::simulate::{SimulateArgs, SingleArgs};
@@ -166,7 +165,7 @@ fn contact_load(
     let loaded = read_any_series(path, args.map.as_ref())?;
     let sampling = args
         .sampling
-        .map_or_else(|| sampling_of(path, &loaded), Sampling::from);
+        .map_or_else(|| loaded.force_sampling(), Sampling::from);
     let no_force = |source| CliError::Series {
         path: path.to_owned(),
         source,
