@@ -6,22 +6,24 @@ use clap::Args;
 use rayon::prelude::*;
 
 use crate::cli::check_report::{
-    CaseFlag, DatasetReport, FileReport, ProblemReport, Proposal, Report, print_text,
+    CaseFlag, DatasetReport, FileReport, ModelReport, ProblemReport, Proposal, Report, print_text,
 };
 use crate::cli::output::{print_json, word};
 use crate::cli::progress::{complete, with_progress};
 use crate::cli::run::{Console, Verdict};
 use crate::cli::{CliError, error};
+use crate::collision::Scenario;
 use crate::data::{
     Case, ColumnMap, DataError, Dataset, Loaded, Opened, check_case, check_series, open,
     propose_columns, read_any_series,
 };
+use crate::vehicle::VehicleParameters;
 
 /// Say what is in files and data sets, in which units, and what is wrong with them
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct CheckArgs {
-    /// Data sets, folders of data sets, force, trajectory and steer files
+    /// Data sets, folders of data sets; force, trajectory and steer files; scenarios and vehicles
     #[arg(value_name = "PATH", required = true)]
     paths: Vec<PathBuf>,
     /// List the cases without a flag, too
@@ -37,11 +39,12 @@ Examples:
   impactlab check datasets
   impactlab check measured.csv --map \"time=1:ms,fx=Kraft X:kN,fy=Kraft Y:kN\"
 
-JSON: ok; datasets [{path, kind, n_cases, vehicle_file, columns [{column, name, channel, unit}],
-  flags [{case, kind, severity, message, value, limit, time_s}], clean_cases (all with --all),
+JSON: ok; datasets [{path, kind, n_cases, vehicle_file, columns [{name, channel, unit}],
+  flags [{case, kind, severity, message, value, limit, time_s}], n_clean, clean_cases (--all),
   problems}]; files [{path, kind, n_samples, start_s, end_s, encoding, separator, decimal_comma,
-  force_sampling, columns [{..., unit_is_stated}], notes, flags}]; problems [{path, message,
-  columns, map}]
+  force_sampling, columns [{column, name, channel, unit, unit_is_stated}], notes, flags}];
+  models [{path, kind, name}]; problems [{path, message, columns, map}]
+
 Exit code 1 if anything cannot be read or has an error flag.";
 
 /// Checks every path and prints what was found.
@@ -60,6 +63,21 @@ pub(super) fn run(args: &CheckArgs, console: &mut Console<'_>) -> Result<Verdict
 }
 
 fn check_path(path: &Path, args: &CheckArgs, report: &mut Report) -> Result<(), CliError> {
+    if path
+        .extension()
+        .is_some_and(|end| end.eq_ignore_ascii_case("toml"))
+    {
+        match model(path) {
+            Ok(model) => report.models.push(model),
+            Err(error) => report.problems.push(ProblemReport {
+                path: path.to_owned(),
+                message: error::chain(&error),
+                columns: None,
+                map: None,
+            }),
+        }
+        return Ok(());
+    }
     let opened = match &args.map {
         Some(_) if path.is_dir() => {
             let path = path.to_owned();
@@ -83,6 +101,24 @@ fn check_path(path: &Path, args: &CheckArgs, report: &mut Report) -> Result<(), 
         Err(error) => report.problems.push(problem(path, &error)),
     }
     Ok(())
+}
+
+/// Reads a scenario, known by its striking vehicle, or a vehicle.
+fn model(path: &Path) -> Result<ModelReport, CliError> {
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let is_scenario = text
+        .lines()
+        .any(|line| line.trim_start().starts_with("[bullet]"));
+    let (kind, name) = if is_scenario {
+        ("scenario", Scenario::load(path)?.name)
+    } else {
+        ("vehicle", VehicleParameters::load(path)?.name)
+    };
+    Ok(ModelReport {
+        path: path.to_owned(),
+        kind,
+        name,
+    })
 }
 
 fn dataset_report(dataset: &Dataset, all: bool) -> DatasetReport {

@@ -14,7 +14,16 @@ pub(super) struct Report {
     pub(super) ok: bool,
     pub(super) datasets: Vec<DatasetReport>,
     pub(super) files: Vec<FileReport>,
+    pub(super) models: Vec<ModelReport>,
     pub(super) problems: Vec<ProblemReport>,
+}
+
+/// A scenario or vehicle file.
+#[derive(Debug, Serialize)]
+pub(super) struct ModelReport {
+    pub(super) path: PathBuf,
+    pub(super) kind: &'static str,
+    pub(super) name: String,
 }
 
 /// A data set.
@@ -196,19 +205,32 @@ pub(super) fn print_text(out: &mut dyn Write, report: &Report) -> io::Result<()>
         print_proposals(out, problem)?;
         writeln!(out)?;
     }
-    let n_problems = report.problems.len()
-        + report
-            .datasets
-            .iter()
-            .map(|set| set.problems.len())
-            .sum::<usize>();
+    for model in &report.models {
+        writeln!(
+            out,
+            "{}: {}, {:?}\n",
+            model.path.display(),
+            model.kind,
+            model.name
+        )?;
+    }
+    let sets = || report.datasets.iter();
+    let n_problems = report.problems.len() + sets().map(|set| set.problems.len()).sum::<usize>();
+    let n_files = report.files.len() + report.models.len();
     writeln!(
         out,
-        "{} data sets with {} cases, {} files; {n_problems} problems",
-        report.datasets.len(),
-        report.datasets.iter().map(|set| set.n_cases).sum::<usize>(),
-        report.files.len(),
+        "{} with {}, {}; {}",
+        counted(report.datasets.len(), "data set"),
+        counted(sets().map(|set| set.n_cases).sum(), "case"),
+        counted(n_files, "file"),
+        counted(n_problems, "problem"),
     )
+}
+
+/// `1 case`, `2 cases`.
+fn counted(n: usize, what: &str) -> String {
+    let plural = if n == 1 { "" } else { "s" };
+    format!("{n} {what}{plural}")
 }
 
 fn print_dataset(out: &mut dyn Write, set: &DatasetReport) -> io::Result<()> {
@@ -229,10 +251,11 @@ fn print_dataset(out: &mut dyn Write, set: &DatasetReport) -> io::Result<()> {
         ("  columns", columns.join(", ")),
     ];
     print_facts(out, &facts)?;
-    print_flags(out, &set.flags)?;
-    if let Some(clean) = &set.clean_cases {
-        writeln!(out, "  clean: {}", clean.join(", "))?;
-    }
+    print_flags(
+        out,
+        &set.flags,
+        set.clean_cases.as_deref().unwrap_or_default(),
+    )?;
     for problem in &set.problems {
         writeln!(out, "  problem: {problem}")?;
     }
@@ -278,11 +301,12 @@ fn print_file(out: &mut dyn Write, file: &FileReport) -> io::Result<()> {
     for note in &file.notes {
         writeln!(out, "  note: {note}")?;
     }
-    print_flags(out, &file.flags)
+    print_flags(out, &file.flags, &[])
 }
 
-fn print_flags(out: &mut dyn Write, flags: &[CaseFlag]) -> io::Result<()> {
-    if flags.is_empty() {
+/// Prints flags and the cases without one, the flags first.
+fn print_flags(out: &mut dyn Write, flags: &[CaseFlag], clean_cases: &[String]) -> io::Result<()> {
+    if flags.is_empty() && clean_cases.is_empty() {
         return Ok(());
     }
     let row = |flag: &CaseFlag| {
@@ -294,7 +318,9 @@ fn print_flags(out: &mut dyn Write, flags: &[CaseFlag]) -> io::Result<()> {
             flag.message.clone(),
         ]
     };
-    let rows: Vec<_> = flags.iter().map(row).collect();
+    let clean = |case: &String| ["", "clean", case, "", ""].map(str::to_owned).to_vec();
+    let flagged = flags.iter().map(row);
+    let rows: Vec<_> = flagged.chain(clean_cases.iter().map(clean)).collect();
     print_table(out, &["", "severity", "case", "flag", ""], &rows)
 }
 
@@ -319,8 +345,12 @@ fn print_proposals(out: &mut dyn Write, problem: &ProblemReport) -> io::Result<(
         &["", "column", "name", "channel", "unit", "first values"],
         &rows,
     )?;
-    if let Some(map) = &problem.map {
-        writeln!(out, "  recognised so far: --map {map:?}")?;
-    }
-    Ok(())
+    let is_known = |channel: &&str| columns.iter().any(|c| c.channel == Some(*channel));
+    let missing = ["time", "fx", "fy"]
+        .into_iter()
+        .filter(|name| !is_known(name))
+        .map(|name| format!("{name}=COLUMN:UNIT"));
+    let parts: Vec<String> = problem.map.iter().cloned().chain(missing).collect();
+    let map = parts.join(",");
+    writeln!(out, "  for a force file, complete: --map \"{map}\"")
 }

@@ -13,7 +13,7 @@ use crate::cli::vehicle_choice::vehicle;
 use crate::compare::largest_yaw_change_rad;
 use crate::data::{
     Channel, ForceHistory, Sampling, SeriesError, TimeSeries, contact_interval, read_any_series,
-    read_steer_file, write_series_csv,
+    read_force_file, read_steer_file, write_series_csv,
 };
 use crate::numerics::interpolate;
 use crate::units::{Quantity, UnitSystem};
@@ -166,11 +166,15 @@ fn contact_load(
     let sampling = args
         .sampling
         .map_or_else(|| loaded.force_sampling(), Sampling::from);
-    let no_force = |source| CliError::Series {
-        path: path.to_owned(),
-        source,
+    let force = match ForceHistory::from_series(&loaded.series, sampling) {
+        Ok(force) => force,
+        // As a force file it gives the error that says where and what to do.
+        Err(source) => {
+            read_force_file(path, args.map.as_ref())?;
+            let path = path.to_owned();
+            return Err(CliError::Series { path, source });
+        }
     };
-    let force = ForceHistory::from_series(&loaded.series, sampling).map_err(no_force)?;
     if args.contact.is_none() && force.mz_n_m.is_none() {
         let path = path.to_owned();
         return Err(CliError::NoYawMoment { path });
