@@ -6,8 +6,9 @@ use clap::Args;
 use rayon::prelude::*;
 
 use crate::cli::check_report::{
-    CaseFlag, DatasetReport, FileReport, ModelReport, ProblemReport, Proposal, Report, print_text,
+    CaseFlag, DatasetReport, FileReport, ModelReport, ProblemReport, Proposal, Report,
 };
+use crate::cli::check_text::print_text;
 use crate::cli::output::{print_json, word};
 use crate::cli::progress::{complete, with_progress};
 use crate::cli::run::{Console, Verdict};

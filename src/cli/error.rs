@@ -61,7 +61,7 @@ pub enum CliError {
         /// The file or data set.
         path: PathBuf,
         /// Why.
-        source: AnalysisError,
+        source: Box<AnalysisError>,
     },
     /// A vehicle that is neither a preset nor a file.
     #[error("{name:?} is no vehicle; expected a vehicle file or one of {}", presets.join(", "))]

@@ -122,15 +122,15 @@ fn quantity(text: &str, quantity: Quantity) -> Result<f64, QuantityError> {
     };
     let end = text
         .char_indices()
-        .find(|&(at, c)| !is_number(c) && !("eE".contains(c) && is_exponent(at)))
+        .find(|&(at, c)| !(is_number(c) || "eE".contains(c) && is_exponent(at)))
         .map_or(text.len(), |(at, _)| at);
     let (number, unit) = text.split_at(end);
-    let value: f64 = number.parse().or_else(|_| {
-        Err(QuantityError::NoNumber {
+    let Ok(value) = number.parse::<f64>() else {
+        return Err(QuantityError::NoNumber {
             si: quantity.si_unit().symbol,
             units: symbols(quantity),
-        })
-    })?;
+        });
+    };
     let unit = unit.trim();
     if unit.is_empty() {
         return Ok(value);

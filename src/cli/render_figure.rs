@@ -139,7 +139,7 @@ fn analyse(source: &SourceArgs, vehicles: &VehicleArgs) -> Result<Analysis, CliE
     };
     analysis.map_err(|error| CliError::Analysis {
         path: source.path.clone(),
-        source: error,
+        source: Box::new(error),
     })
 }
 

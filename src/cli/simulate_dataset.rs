@@ -12,7 +12,7 @@ use crate::cli::output::{print_json, print_table, word};
 use crate::cli::progress::{complete, with_progress};
 use crate::cli::run::{Console, Verdict};
 use crate::cli::simulate::SimulateArgs;
-use crate::cli::simulate_single::FlagAnswer;
+use crate::cli::simulate_answer::FlagAnswer;
 use crate::cli::vehicle_choice::vehicle_or_own;
 use crate::compare::{DatasetReplay, ErrorSummary, MotionError, Replay, replay_dataset};
 use crate::data::{Dataset, DatasetKind, write_series_csv};
