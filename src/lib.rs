@@ -28,6 +28,8 @@
 //! ```
 
 pub mod analysis;
+#[cfg(feature = "gui")]
+pub mod app;
 pub mod bibliography;
 pub mod cli;
 pub mod collision;

@@ -120,6 +120,17 @@ impl Quantity {
             .unwrap_or(&self.units()[0])
     }
 
+    /// An SI number as a person reads it: “123 kN”.
+    pub fn shown(self, value_si: f64, system: UnitSystem) -> String {
+        let unit = self.display_unit(system);
+        let number = significant(unit.from_si(value_si));
+        if unit.symbol.is_empty() {
+            number
+        } else {
+            format!("{number} {}", unit.symbol)
+        }
+    }
+
     /// Every unit of the quantity that files and people use, the SI unit first.
     pub fn units(self) -> &'static [Unit] {
         macro_rules! units {
@@ -154,6 +165,15 @@ impl Quantity {
             Self::Ratio => units!(Ratio: "" = 1.0, "%" = 0.01),
         }
     }
+}
+
+/// A number with four significant digits, without an exponent: as it stands in a readout.
+pub fn significant(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let decimals = (3 - value.abs().log10().floor() as i32).clamp(0, 6) as usize;
+    format!("{value:.decimals$}")
 }
 
 #[cfg(test)]
@@ -201,5 +221,18 @@ mod tests {
             let us = quantity.display_unit(UnitSystem::Us);
             assert!(quantity.units().contains(&us), "{quantity:?}");
         }
+    }
+
+    #[test]
+    fn numbers_are_shown_with_four_digits() {
+        for (value, expected) in [
+            (123_456.7, "123457"),
+            (12.3456, "12.35"),
+            (-0.012_345_6, "-0.01235"),
+            (0.0, "0"),
+        ] {
+            assert_eq!(significant(value), expected);
+        }
+        assert_eq!(Quantity::Force.shown(12_345.0, UnitSystem::Si), "12.35 kN");
     }
 }

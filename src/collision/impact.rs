@@ -94,6 +94,18 @@ pub enum Regime {
     NotApproaching,
 }
 
+impl Regime {
+    /// For a person.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::NoSlide => "no sliding at the end",
+            Self::Sliding => "sliding throughout",
+            Self::EnergyLimited => "friction limited by energy",
+            Self::NotApproaching => "not approaching: no impact",
+        }
+    }
+}
+
 /// What the impact did to one vehicle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyAfter<T = f64> {

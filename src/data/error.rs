@@ -282,6 +282,18 @@ pub enum DataError {
 }
 
 impl DataError {
+    /// Whether saying which column is which, and in which unit, may help.
+    pub fn needs_mapping(&self) -> bool {
+        matches!(
+            self,
+            Self::NoHeader { .. }
+                | Self::MissingColumn { .. }
+                | Self::AmbiguousColumn { .. }
+                | Self::UnknownUnit { .. }
+                | Self::ImplausibleValue { .. }
+        )
+    }
+
     /// Wraps an error of the operating system.
     pub(crate) fn io(path: &Path, source: io::Error) -> Self {
         let path = path.to_owned();

@@ -8,6 +8,7 @@ use egui_plot::{
 
 use crate::figure::{Element, Figure, LineStyle, Role, Series};
 use crate::render::theme;
+use crate::units::significant;
 
 /// How a figure is placed among others.
 #[derive(Debug, Clone, Default)]
@@ -49,9 +50,9 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         };
         format!(
             "{head}{} {}\n{} {}",
-            number(at.x),
+            significant(at.x),
             x.unit.symbol,
-            number(at.y),
+            significant(at.y),
             y.unit.symbol
         )
     };
@@ -159,13 +160,4 @@ fn draw_element<'a>(plot: &mut PlotUi<'a>, element: &'a Element, dark: bool) {
             );
         }
     }
-}
-
-/// A number as an analyst reads it: four significant digits.
-pub(crate) fn number(value: f64) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    let decimals = (3 - value.abs().log10().floor() as i32).clamp(0, 6) as usize;
-    format!("{value:.decimals$}")
 }

@@ -37,6 +37,16 @@ impl Wheel {
         Self::RearRight,
     ];
 
+    /// Its name.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::FrontLeft => "front left",
+            Self::FrontRight => "front right",
+            Self::RearLeft => "rear left",
+            Self::RearRight => "rear right",
+        }
+    }
+
     /// Whether the wheel is steered.
     pub fn is_front(self) -> bool {
         matches!(self, Self::FrontLeft | Self::FrontRight)

@@ -4,6 +4,8 @@
 //! Over each step the collision force is the mean of its history over that step, so that the whole
 //! impulse arrives whatever the step; steer is taken at the stages.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
 use crate::data::{Channel, CumulativeImpulse, ForceAxes, ForceHistory, SeriesError, TimeSeries};
@@ -90,6 +92,25 @@ pub enum MotionFlag {
         /// Roll, rad.
         roll_rad: f64,
     },
+}
+
+impl fmt::Display for MotionFlag {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::WheelLift { wheel, time_s } => {
+                write!(
+                    f,
+                    "wheel lift: {} carries no load at {time_s:.2} s",
+                    wheel.label()
+                )
+            }
+            Self::RollLimit { time_s, roll_rad } => write!(
+                f,
+                "roll of {:.1} deg at {time_s:.2} s is beyond the model; a rollover is not excluded",
+                roll_rad.to_degrees()
+            ),
+        }
+    }
 }
 
 /// A simulated trajectory.

@@ -1,0 +1,276 @@
+//! The rows of the case table: filtered and sorted. Knows no egui.
+
+use crate::app::source::{CheckedDataset, Source};
+use crate::app::state::{ReplayStatus, State, View};
+use crate::compare::{MotionError, Replay};
+use crate::data::{Case, DatasetKind, Flag, Value};
+use crate::units::{Quantity, UnitSystem, significant};
+
+/// A column of the case table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CaseColumn {
+    /// Key of the attribute, or of a figure of the replay.
+    pub key: &'static str,
+    /// Heading without unit.
+    pub title: &'static str,
+    /// What it measures; the attribute is in SI units.
+    pub quantity: Quantity,
+}
+
+/// Key of the column of average errors.
+pub const AVERAGE_ERROR: &str = "average_error";
+
+const fn column(key: &'static str, title: &'static str, quantity: Quantity) -> CaseColumn {
+    CaseColumn {
+        key,
+        title,
+        quantity,
+    }
+}
+
+const FORCE_COLUMNS: &[CaseColumn] = &[
+    column("bullet_body", "Body", Quantity::Ratio),
+    column("side", "Side", Quantity::Ratio),
+    column("m_b_kg", "Bullet", Quantity::Mass),
+    column("v_tx_m_s", "v_x target", Quantity::Speed),
+    column("theta_b_rad", "θ_b", Quantity::Angle),
+    column("impulse_y_n_s", "P_y", Quantity::Impulse),
+    column("peak_force_n", "Peak", Quantity::Force),
+    column("t_end_s", "End", Quantity::Time),
+];
+
+const TRAJECTORY_COLUMNS: &[CaseColumn] = &[
+    column("side", "Side", Quantity::Ratio),
+    column("speed_m_s", "Speed", Quantity::Speed),
+    column("mu", "μ", Quantity::Ratio),
+    column("impulse_y_n_s", "P_y", Quantity::Impulse),
+    column("spin", "Spin", Quantity::Ratio),
+    column(AVERAGE_ERROR, "Error", Quantity::Length),
+];
+
+/// A row of the case table.
+pub struct CaseRow<'a> {
+    /// Name of the case.
+    pub name: &'a str,
+    /// The case.
+    pub case: &'a Case,
+    /// Its flags.
+    pub flags: &'a [Flag],
+    /// How far its simulation lies from its reference, once it is known.
+    pub error: Option<&'a MotionError>,
+}
+
+impl CaseColumn {
+    /// The columns of a kind of dataset.
+    pub fn of(kind: DatasetKind) -> &'static [Self] {
+        match kind {
+            DatasetKind::Force => FORCE_COLUMNS,
+            DatasetKind::Trajectory => TRAJECTORY_COLUMNS,
+        }
+    }
+
+    /// Heading with unit.
+    pub fn heading(&self, units: UnitSystem) -> String {
+        match self.quantity.display_unit(units).symbol {
+            "" => self.title.to_owned(),
+            symbol => format!("{} [{symbol}]", self.title),
+        }
+    }
+}
+
+impl CaseRow<'_> {
+    /// A number of the row, SI.
+    pub fn number(&self, key: &str) -> Option<f64> {
+        match key {
+            AVERAGE_ERROR => self.error.map(|error| error.average_error_m),
+            _ => self.case.attributes.number(key),
+        }
+    }
+
+    /// A cell as it is shown.
+    pub fn text(&self, column: &CaseColumn, units: UnitSystem) -> String {
+        if let Some(number) = self.number(column.key) {
+            return significant(column.quantity.display_unit(units).from_si(number));
+        }
+        match self.case.attributes.get(column.key) {
+            Some(Value::Text(text)) => text.clone(),
+            _ => String::new(),
+        }
+    }
+
+    /// Whether every word of the filter holds: `key<number`, `key>number`, `key=value`, or a part
+    /// of the name, of a text attribute or of a flag.
+    fn matches(&self, filter: &str) -> bool {
+        filter
+            .split_whitespace()
+            .all(|word| self.matches_word(word))
+    }
+
+    fn matches_word(&self, word: &str) -> bool {
+        for (sign, holds) in [
+            ('<', (|a, b| a < b) as fn(f64, f64) -> bool),
+            ('>', |a, b| a > b),
+            ('=', |a, b| a == b),
+        ] {
+            let Some((key, wanted)) = word.split_once(sign) else {
+                continue;
+            };
+            return match (self.number(key), wanted.parse::<f64>()) {
+                (Some(number), Ok(wanted)) => holds(number, wanted),
+                _ => self
+                    .case
+                    .attributes
+                    .text(key)
+                    .is_some_and(|t| t.eq_ignore_ascii_case(wanted)),
+            };
+        }
+        let word = word.to_lowercase();
+        let contains = |text: &str| text.to_lowercase().contains(&word);
+        let in_attribute = |(_, value): (&str, Option<&Value>)| match value {
+            Some(Value::Text(text)) => contains(text),
+            _ => false,
+        };
+        contains(self.name)
+            || self.case.attributes.iter().any(in_attribute)
+            || self.flags.iter().any(|flag| contains(&flag.to_string()))
+    }
+}
+
+/// The dataset that is listed.
+pub fn listed(state: &State) -> Option<&CheckedDataset> {
+    listed_in(&state.session.sources, &state.view)
+}
+
+/// The dataset that is listed.
+pub fn listed_in<'a>(sources: &'a [Source], view: &View) -> Option<&'a CheckedDataset> {
+    let path = view.listed.as_ref()?;
+    let source = sources.iter().find(|source| source.path == *path)?;
+    source.dataset().map(std::sync::Arc::as_ref)
+}
+
+/// The rows of the dataset that is listed, as filtered and sorted.
+pub fn rows(state: &State) -> Vec<CaseRow<'_>> {
+    let Some(checked) = listed(state) else {
+        return Vec::new();
+    };
+    let replay = state
+        .view
+        .listed
+        .as_ref()
+        .and_then(|path| state.session.replays.get(path));
+    rows_of(checked, replay, &state.view)
+}
+
+/// The rows of a dataset, as filtered and sorted.
+pub fn rows_of<'a>(
+    checked: &'a CheckedDataset,
+    replay: Option<&'a ReplayStatus>,
+    view: &View,
+) -> Vec<CaseRow<'a>> {
+    let replays: &[Replay] = match replay {
+        Some(ReplayStatus::Done(replay)) => &replay.cases,
+        _ => &[],
+    };
+    let by_name: std::collections::BTreeMap<&str, &MotionError> = replays
+        .iter()
+        .map(|replay| (replay.case.as_str(), &replay.error))
+        .collect();
+    let cases = checked.dataset.cases.iter().zip(&checked.flags);
+    let mut rows: Vec<CaseRow<'_>> = cases
+        .map(|(case, flags)| {
+            let error = by_name.get(case.name.as_str()).copied();
+            CaseRow {
+                name: &case.name,
+                case,
+                flags,
+                error,
+            }
+        })
+        .filter(|row| row.matches(&view.filter))
+        .collect();
+    if let Some(key) = &view.sort_column {
+        sort(&mut rows, key, view.sort_descending);
+    }
+    rows
+}
+
+/// Numbers before texts before nothing; rows that tie keep their order.
+fn sort(rows: &mut [CaseRow<'_>], key: &str, descending: bool) {
+    let text = |row: &CaseRow<'_>| match key {
+        "case" => row.name.to_owned(),
+        "flags" => format!("{:03}", 999 - row.flags.len().min(999)),
+        _ => row.case.attributes.text(key).unwrap_or_default().to_owned(),
+    };
+    rows.sort_by(|a, b| {
+        let order = match (a.number(key), b.number(key)) {
+            (Some(a), Some(b)) => a.total_cmp(&b),
+            (Some(_), None) => std::cmp::Ordering::Less,
+            (None, Some(_)) => std::cmp::Ordering::Greater,
+            (None, None) => text(a).cmp(&text(b)),
+        };
+        if descending { order.reverse() } else { order }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+    use std::path::Path;
+
+    use super::*;
+    use crate::data::{Dataset, check_case};
+
+    fn fea() -> CheckedDataset {
+        let mut report = |_| ControlFlow::Continue(());
+        let dataset = Dataset::load(Path::new("datasets/fea"), &mut report).unwrap();
+        let dataset = dataset.complete().unwrap();
+        let flags = dataset.cases.iter().map(check_case).collect();
+        CheckedDataset {
+            dataset,
+            flags,
+            vehicle: None,
+        }
+    }
+
+    fn names(checked: &CheckedDataset, view: &View) -> Vec<String> {
+        rows_of(checked, None, view)
+            .iter()
+            .map(|row| row.name.to_owned())
+            .collect()
+    }
+
+    #[test]
+    fn filters_combine_and_know_attributes_flags_and_names() {
+        let checked = fea();
+        let view = |filter: &str| View {
+            filter: filter.to_owned(),
+            ..View::default()
+        };
+        assert_eq!(names(&checked, &view("")).len(), 100);
+        assert_eq!(names(&checked, &view("c007")), ["c007"]);
+        let hooked = names(&checked, &view("hooked=1"));
+        assert_eq!(hooked.len(), 12);
+        let heavy = names(&checked, &view("hooked=1 m_b_kg>2000"));
+        assert!(!heavy.is_empty() && heavy.len() < hooked.len());
+        assert_eq!(
+            names(&checked, &view("side=LEFT")),
+            names(&checked, &view("side=left"))
+        );
+        assert!(names(&checked, &view("no_such_column>1")).is_empty());
+    }
+
+    #[test]
+    fn sorting_goes_both_ways() {
+        let checked = fea();
+        let mut view = View {
+            sort_column: Some("peak_force_n".to_owned()),
+            ..View::default()
+        };
+        let rising = names(&checked, &view);
+        view.sort_descending = true;
+        let mut falling = names(&checked, &view);
+        falling.reverse();
+        assert_eq!(rising, falling);
+        assert_ne!(rising[0], "c001");
+    }
+}

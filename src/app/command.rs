@@ -1,0 +1,267 @@
+//! What the user can do, and the one place where it is done.
+
+use std::path::PathBuf;
+
+use egui::Context;
+
+use crate::app::dialogs::{FileDialog, MappingDialog, Purpose};
+use crate::app::panes::{Pane, default_layout, show_pane};
+use crate::app::source::{Content, Source};
+use crate::app::state::{ReplayStatus, State, Subject};
+use crate::app::update::target_vehicle;
+use crate::app::{error_chain, export};
+use crate::collision::Scenario;
+use crate::compare::replay_dataset;
+use crate::data::{ColumnMap, FileKind, Severity, write_atomically};
+use crate::figure::Figure;
+use crate::jobs::Job;
+
+/// Step of the arrow keys in the scene, s.
+const TIME_STEP_S: f64 = 0.05;
+
+/// Something the user asks for.
+#[derive(Debug, Clone)]
+pub enum Command {
+    /// Open files or folders.
+    Open(Vec<PathBuf>),
+    /// Close what was opened under this path.
+    Close(PathBuf),
+    /// Ask for a path.
+    Ask(Purpose),
+    /// Look at something.
+    Select(Subject),
+    /// Look at the next (1) or previous (−1) case of the list.
+    SelectNeighbour(isize),
+    /// List the cases of a dataset.
+    List(PathBuf),
+    /// Ask which column of a file is which.
+    AskMapping(PathBuf),
+    /// Read a file with the user's columns.
+    OpenMapped(PathBuf, FileKind, ColumnMap),
+    /// Close the mapping dialog.
+    CancelMapping,
+    /// Simulate every case of a dataset.
+    ReplayDataset(PathBuf),
+    /// Stop simulating a dataset.
+    CancelReplay(PathBuf),
+    /// Go to a moment, s.
+    SetTime(f64),
+    /// Go this many small steps on.
+    StepTime(f64),
+    /// Let time run, or stop it.
+    TogglePlay,
+    /// Fit all plots to their data.
+    FitPlots,
+    /// Write a figure, as PNG or CSV by the path's ending.
+    Export(Box<Figure>, PathBuf),
+    /// Put a figure's numbers on the clipboard.
+    CopyNumbers(Box<Figure>),
+    /// Read the scenario from a file.
+    LoadScenario(PathBuf),
+    /// Write the scenario to a file.
+    SaveScenario(PathBuf),
+    /// Bring a pane to the front.
+    Show(Pane),
+    /// Put all panes back.
+    ResetLayout,
+    /// Forget the messages.
+    DismissMessages,
+    /// Go back a step.
+    Undo,
+    /// Go forth a step.
+    Redo,
+}
+
+impl State {
+    /// Does what was asked for. [`Command::Undo`] and [`Command::Redo`] are the app's, which keeps
+    /// the past.
+    pub fn apply(&mut self, command: Command, context: &Context) {
+        match command {
+            Command::Open(paths) => self.open(paths, context),
+            Command::Close(path) => self.close(&path),
+            Command::Ask(purpose) => self.ask(purpose, context),
+            Command::Select(subject) => self.select(subject),
+            Command::SelectNeighbour(step) => self.select_neighbour(step),
+            Command::List(path) => self.view.listed = Some(path),
+            Command::AskMapping(path) => match MappingDialog::open(path) {
+                Ok(dialog) => self.session.mapping = Some(dialog),
+                Err(error) => self.say(Severity::Error, error_chain(&error)),
+            },
+            Command::OpenMapped(path, kind, map) => {
+                self.session.mapping = None;
+                self.session.sources.retain(|source| source.path != path);
+                let source = Source::load_mapped(path, kind, map, wake(context));
+                self.session.sources.push(source);
+            }
+            Command::CancelMapping => self.session.mapping = None,
+            Command::ReplayDataset(path) => self.replay(path, context),
+            Command::CancelReplay(path) => {
+                if let Some(ReplayStatus::Running(job)) = self.session.replays.get(&path) {
+                    job.cancel();
+                }
+            }
+            Command::SetTime(time_s) => self.session.time_s = time_s,
+            Command::StepTime(steps) => self.step_time(steps),
+            Command::TogglePlay => self.toggle_play(),
+            Command::FitPlots => self.session.fit_plots = true,
+            Command::Export(figure, path) => {
+                match export::spawn(*figure, path, self.view.dark, wake(context)) {
+                    Ok(job) => self.session.exports.push(job),
+                    Err(error) => self.say(Severity::Error, error.to_string()),
+                }
+            }
+            Command::CopyNumbers(figure) => match export::numbers(&figure) {
+                Ok(text) => context.copy_text(text),
+                Err(error) => self.say(Severity::Error, error),
+            },
+            Command::LoadScenario(path) => match Scenario::load(&path) {
+                Ok(scenario) => {
+                    self.project.scenario = scenario;
+                    self.select(Subject::Scenario);
+                }
+                Err(error) => self.say(Severity::Error, error_chain(&error)),
+            },
+            Command::SaveScenario(path) => {
+                let text = self.project.scenario.to_toml();
+                let written = write_atomically(&path, |out| out.write_all(text.as_bytes()));
+                match written {
+                    Ok(()) => self.say(Severity::Info, format!("{} written", path.display())),
+                    Err(error) => self.say(Severity::Error, error_chain(&error)),
+                }
+            }
+            Command::Show(pane) => show_pane(&mut self.view.layout, pane),
+            Command::ResetLayout => self.view.layout = default_layout(),
+            Command::DismissMessages => self.session.messages.clear(),
+            Command::Undo | Command::Redo => {}
+        }
+    }
+
+    fn open(&mut self, paths: Vec<PathBuf>, context: &Context) {
+        for path in paths {
+            if path.extension().is_some_and(|ending| ending == "toml") {
+                self.apply(Command::LoadScenario(path), context);
+                continue;
+            }
+            self.session.sources.retain(|source| source.opened != path);
+            self.session.sources.push(Source::load(path, wake(context)));
+        }
+    }
+
+    fn close(&mut self, path: &PathBuf) {
+        self.session
+            .sources
+            .retain(|source| source.opened != *path && source.path != *path);
+        let is_open = |open: &PathBuf| self.session.sources.iter().any(|s| s.path == *open);
+        let closed = match &self.project.subject {
+            Some(Subject::Case { dataset, .. }) => !is_open(dataset),
+            Some(Subject::File(file)) => !is_open(file),
+            Some(Subject::Scenario) | None => false,
+        };
+        if closed {
+            self.project.subject = None;
+        }
+    }
+
+    fn ask(&mut self, purpose: Purpose, context: &Context) {
+        match FileDialog::open(purpose, wake(context)) {
+            Ok(dialog) => self.session.file_dialog = Some(dialog),
+            Err(error) => self.say(Severity::Error, error.to_string()),
+        }
+    }
+
+    fn select(&mut self, subject: Subject) {
+        if let Subject::Case { dataset, .. } = &subject {
+            self.view.listed = Some(dataset.clone());
+        }
+        if self.project.subject.as_ref() != Some(&subject) {
+            self.project.subject = Some(subject);
+            self.session.time_s = 0.0;
+            self.session.fit_plots = true;
+        }
+    }
+
+    fn select_neighbour(&mut self, step: isize) {
+        let rows = crate::app::case_table::rows(self);
+        let current = match &self.project.subject {
+            Some(Subject::Case { case, .. }) => rows.iter().position(|row| row.name == *case),
+            _ => None,
+        };
+        let next = match current {
+            Some(index) => index.checked_add_signed(step),
+            None => Some(0),
+        };
+        if let (Some(row), Some(dataset)) = (next.and_then(|i| rows.get(i)), &self.view.listed) {
+            let subject = Subject::Case {
+                dataset: dataset.clone(),
+                case: row.name.to_owned(),
+            };
+            self.select(subject);
+        }
+    }
+
+    fn replay(&mut self, path: PathBuf, context: &Context) {
+        let source = self
+            .session
+            .sources
+            .iter()
+            .find(|source| source.path == path);
+        let Some(checked) = source.and_then(Source::dataset).cloned() else {
+            return;
+        };
+        let (choice, integrator) = (self.project.vehicle.clone(), self.project.integrator);
+        let job = Job::spawn("simulate", wake(context), move |report| {
+            let vehicle = target_vehicle(&choice, Some(&checked))?;
+            Ok(replay_dataset(
+                &checked.dataset,
+                &vehicle,
+                integrator,
+                report,
+            ))
+        });
+        match job {
+            Ok(job) => {
+                self.session
+                    .replays
+                    .insert(path, ReplayStatus::Running(job));
+            }
+            Err(error) => self.say(Severity::Error, error.to_string()),
+        }
+    }
+
+    fn step_time(&mut self, steps: f64) {
+        let end = self.end_time_s();
+        self.session.playing = false;
+        self.session.time_s = (self.session.time_s + steps * TIME_STEP_S).clamp(0.0, end);
+    }
+
+    fn toggle_play(&mut self) {
+        let at_end = self.session.time_s >= self.end_time_s();
+        self.session.playing = !self.session.playing;
+        if self.session.playing && at_end {
+            self.session.time_s = 0.0;
+        }
+    }
+
+    /// The last moment of what is looked at, s.
+    pub fn end_time_s(&self) -> f64 {
+        let last = |analysis: &crate::analysis::Analysis| {
+            let simulation = analysis.simulation.as_ref().map(|motion| &motion.series);
+            let series = simulation.or(analysis.reference.as_ref())?;
+            series.time_s().last().copied()
+        };
+        self.analysis().and_then(last).unwrap_or(0.0)
+    }
+}
+
+impl Source {
+    /// Whether it has been loaded, with whatever result.
+    pub fn is_settled(&self) -> bool {
+        !matches!(self.content, Content::Loading(_))
+    }
+}
+
+/// Wakes the window from another thread.
+pub fn wake(context: &Context) -> impl Fn() + Send + 'static {
+    let context = context.clone();
+    move || context.request_repaint()
+}

@@ -1,0 +1,249 @@
+//! Native file dialogs, and the dialog that asks which column is which.
+
+use std::path::PathBuf;
+
+use egui::{ComboBox, Grid, Ui};
+use rfd::AsyncFileDialog;
+
+use crate::app::command::Command;
+use crate::data::{
+    Channel, ColumnMap, ColumnProposal, ColumnRef, ColumnSource, DataError, FileKind,
+    propose_columns,
+};
+use crate::figure::Figure;
+use crate::jobs::{Job, Update};
+
+/// What a path is asked for.
+#[derive(Debug, Clone)]
+pub enum Purpose {
+    /// Open a folder.
+    Folder,
+    /// Open files.
+    Files,
+    /// Save a figure's picture.
+    Picture(Box<Figure>),
+    /// Save a figure's numbers.
+    Numbers(Box<Figure>),
+    /// Save the scenario.
+    Scenario,
+}
+
+/// A native dialog that waits for the user, on a thread of its own.
+pub struct FileDialog {
+    purpose: Purpose,
+    job: Job<Vec<PathBuf>>,
+}
+
+impl FileDialog {
+    /// Opens a dialog.
+    ///
+    /// # Errors
+    /// The operating system's, if no thread can be started.
+    pub fn open(purpose: Purpose, wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+        let asked = purpose.clone();
+        let job = Job::spawn("file dialog", wake, move |_| {
+            pollster::block_on(ask(&asked))
+        })?;
+        Ok(Self { purpose, job })
+    }
+
+    /// What to do now that the user has answered; `None` while the dialog is open.
+    pub fn poll(&mut self) -> Option<Vec<Command>> {
+        match self.job.poll() {
+            Update::Running => None,
+            Update::Finished(paths) => Some(self.commands(paths)),
+            Update::Panicked(_) | Update::Gone => Some(Vec::new()),
+        }
+    }
+
+    fn commands(&self, paths: Vec<PathBuf>) -> Vec<Command> {
+        let Some(first) = paths.first().cloned() else {
+            return Vec::new();
+        };
+        vec![match &self.purpose {
+            Purpose::Folder | Purpose::Files => Command::Open(paths),
+            Purpose::Picture(figure) => Command::Export(figure.clone(), with_ending(first, "png")),
+            Purpose::Numbers(figure) => Command::Export(figure.clone(), with_ending(first, "csv")),
+            Purpose::Scenario => Command::SaveScenario(with_ending(first, "toml")),
+        }]
+    }
+}
+
+fn with_ending(path: PathBuf, ending: &str) -> PathBuf {
+    if path.extension().is_some() {
+        path
+    } else {
+        path.with_extension(ending)
+    }
+}
+
+async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
+    let dialog = AsyncFileDialog::new();
+    let save = |dialog: AsyncFileDialog, name: &str| dialog.set_file_name(name).save_file();
+    let one = match purpose {
+        Purpose::Folder => dialog.set_title("Open a data set").pick_folder().await,
+        Purpose::Files => {
+            let files = dialog
+                .set_title("Open force, trajectory or scenario files")
+                .add_filter(
+                    "tables and scenarios",
+                    &["csv", "txt", "tsv", "dat", "asc", "toml"],
+                )
+                .add_filter("all files", &["*"])
+                .pick_files()
+                .await;
+            return files
+                .unwrap_or_default()
+                .iter()
+                .map(|file| file.path().to_owned())
+                .collect();
+        }
+        Purpose::Picture(_) => save(dialog.add_filter("picture", &["png"]), "figure.png").await,
+        Purpose::Numbers(_) => save(dialog.add_filter("table", &["csv"]), "figure.csv").await,
+        Purpose::Scenario => save(dialog.add_filter("scenario", &["toml"]), "scenario.toml").await,
+    };
+    one.iter().map(|file| file.path().to_owned()).collect()
+}
+
+/// Asks which column of a file is which.
+pub struct MappingDialog {
+    path: PathBuf,
+    proposals: Vec<ColumnProposal>,
+    choices: Vec<Option<Channel>>,
+    units: Vec<usize>,
+    kind: FileKind,
+}
+
+/// What a loose file can hold, in the order of the dialog's lists.
+const CHOICES: [Channel; 14] = [
+    Channel::Time,
+    Channel::Fx,
+    Channel::Fy,
+    Channel::FxBody,
+    Channel::FyBody,
+    Channel::Mz,
+    Channel::X,
+    Channel::Y,
+    Channel::Yaw,
+    Channel::Roll,
+    Channel::Vx,
+    Channel::Vy,
+    Channel::YawRate,
+    Channel::Steer,
+];
+
+impl MappingDialog {
+    /// Looks into a file and proposes what it can.
+    ///
+    /// # Errors
+    /// [`DataError`] if the file is no table.
+    pub fn open(path: PathBuf) -> Result<Self, DataError> {
+        let proposals = propose_columns(&path)?;
+        let choices = proposals
+            .iter()
+            .map(|p| p.guess.map(|(channel, _)| channel))
+            .collect();
+        let unit_index = |proposal: &ColumnProposal| {
+            let (channel, unit) = proposal.guess?;
+            channel
+                .quantity()
+                .units()
+                .iter()
+                .position(|known| Some(*known) == unit)
+        };
+        let units = proposals
+            .iter()
+            .map(|p| unit_index(p).unwrap_or(0))
+            .collect();
+        Ok(Self {
+            path,
+            proposals,
+            choices,
+            units,
+            kind: FileKind::Force,
+        })
+    }
+
+    /// Draws the dialog.
+    pub fn ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        ui.heading("Which column is which?");
+        ui.label(self.path.display().to_string());
+        ui.horizontal(|ui| {
+            ui.label("The file is a");
+            for (kind, label) in [
+                (FileKind::Force, "contact force"),
+                (FileKind::Trajectory, "trajectory"),
+                (FileKind::Steer, "steer history"),
+            ] {
+                ui.radio_value(&mut self.kind, kind, label);
+            }
+        });
+        ui.separator();
+        egui::ScrollArea::both().max_height(360.0).show(ui, |ui| {
+            Grid::new("mapping").striped(true).show(ui, |ui| {
+                for title in ["Column", "First values", "holds", "in"] {
+                    ui.strong(title);
+                }
+                ui.end_row();
+                for index in 0..self.proposals.len() {
+                    self.row_ui(ui, index);
+                    ui.end_row();
+                }
+            });
+        });
+        ui.separator();
+        ui.horizontal(|ui| {
+            if ui.button("Open with these columns").clicked() {
+                let (path, map) = (self.path.clone(), self.map());
+                commands.push(Command::OpenMapped(path, self.kind, map));
+            }
+            if ui.button("Cancel").clicked() {
+                commands.push(Command::CancelMapping);
+            }
+        });
+    }
+
+    fn row_ui(&mut self, ui: &mut Ui, index: usize) {
+        let (Some(proposal), Some(choice), Some(unit_idx)) = (
+            self.proposals.get(index),
+            self.choices.get_mut(index),
+            self.units.get_mut(index),
+        ) else {
+            return;
+        };
+        ui.label(format!("{}: {}", proposal.number, proposal.name));
+        ui.weak(proposal.samples.join("  "));
+        let label = |choice: Option<Channel>| choice.map_or("nothing needed", Channel::label);
+        ComboBox::from_id_salt(("channel", index))
+            .selected_text(label(*choice))
+            .show_ui(ui, |ui| {
+                for option in std::iter::once(None).chain(CHOICES.map(Some)) {
+                    if ui.selectable_value(choice, option, label(option)).clicked() {
+                        *unit_idx = 0;
+                    }
+                }
+            });
+        let Some(channel) = *choice else { return };
+        let units = channel.quantity().units();
+        let selected = units.get(*unit_idx).map_or("", |unit| unit.symbol);
+        ComboBox::from_id_salt(("unit", index))
+            .selected_text(selected)
+            .width(64.0)
+            .show_ui(ui, |ui| {
+                for (idx, unit) in units.iter().enumerate() {
+                    ui.selectable_value(unit_idx, idx, unit.symbol);
+                }
+            });
+    }
+
+    fn map(&self) -> ColumnMap {
+        let rows = self.proposals.iter().zip(&self.choices).zip(&self.units);
+        rows.filter_map(|((proposal, choice), unit_idx)| {
+            let channel = (*choice)?;
+            let unit = channel.quantity().units().get(*unit_idx).copied();
+            let column = ColumnRef::Number(proposal.number);
+            Some((channel, ColumnSource { column, unit }))
+        })
+        .collect()
+    }
+}

@@ -1,0 +1,52 @@
+//! Figures become files, in the background.
+
+use std::path::{Path, PathBuf};
+
+use crate::app::error_chain;
+use crate::data::write_atomically;
+use crate::figure::{Figure, write_figure_csv};
+use crate::jobs::Job;
+use crate::render::{Canvas, figure_image, save_png};
+
+/// Starts writing a figure: its numbers if the path ends in `.csv`, else a picture.
+///
+/// # Errors
+/// The operating system's, if no thread can be started.
+pub fn spawn(
+    figure: Figure,
+    path: PathBuf,
+    dark: bool,
+    wake: impl Fn() + Send + 'static,
+) -> std::io::Result<Job<Result<PathBuf, String>>> {
+    Job::spawn("export", wake, move |_| {
+        write(&figure, &path, dark).map(|()| path)
+    })
+}
+
+fn write(figure: &Figure, path: &Path, dark: bool) -> Result<(), String> {
+    if path
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
+    {
+        let text = numbers(figure)?;
+        return write_atomically(path, |out| out.write_all(text.as_bytes()))
+            .map_err(|error| error_chain(&error));
+    }
+    let canvas = Canvas {
+        dark,
+        ..Canvas::default()
+    };
+    figure_image(figure, canvas)
+        .and_then(|image| save_png(&image, path))
+        .map_err(|error| error_chain(&error))
+}
+
+/// The numbers of a figure as CSV text.
+///
+/// # Errors
+/// A message, if they cannot be written.
+pub fn numbers(figure: &Figure) -> Result<String, String> {
+    let mut bytes = Vec::new();
+    write_figure_csv(figure, &mut bytes).map_err(|error| error_chain(&error))?;
+    String::from_utf8(bytes).map_err(|error| error_chain(&error))
+}

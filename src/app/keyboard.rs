@@ -1,0 +1,64 @@
+//! Keys.
+
+use egui::{Context, Key, KeyboardShortcut, Modifiers};
+
+use crate::app::command::Command;
+use crate::app::dialogs::Purpose;
+
+/// Undo.
+pub const UNDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
+/// Redo.
+pub const REDO: KeyboardShortcut =
+    KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
+/// Open files.
+pub const OPEN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::O);
+/// Open a folder.
+pub const OPEN_FOLDER: KeyboardShortcut =
+    KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::O);
+
+/// The keys that need no modifier, with what they do, for the help.
+pub const PLAIN_KEYS: [(Key, &str); 7] = [
+    (Key::Space, "play or pause"),
+    (Key::ArrowLeft, "a step back in time"),
+    (Key::ArrowRight, "a step on in time"),
+    (Key::Home, "to the impact"),
+    (Key::ArrowUp, "previous case"),
+    (Key::ArrowDown, "next case"),
+    (Key::F, "fit plots to their data"),
+];
+
+/// What the pressed keys ask for. A text field that has the focus keeps its keys.
+pub fn commands(context: &Context, commands: &mut Vec<Command>) {
+    let shortcuts = [
+        (REDO, Command::Redo),
+        (UNDO, Command::Undo),
+        (OPEN_FOLDER, Command::Ask(Purpose::Folder)),
+        (OPEN, Command::Ask(Purpose::Files)),
+    ];
+    for (shortcut, command) in shortcuts {
+        if context.input_mut(|input| input.consume_shortcut(&shortcut)) {
+            commands.push(command);
+        }
+    }
+    if context.egui_wants_keyboard_input() {
+        return;
+    }
+    for (key, _) in PLAIN_KEYS {
+        if context.input_mut(|input| input.consume_key(Modifiers::NONE, key)) {
+            commands.extend(plain(key));
+        }
+    }
+}
+
+fn plain(key: Key) -> Option<Command> {
+    match key {
+        Key::Space => Some(Command::TogglePlay),
+        Key::ArrowLeft => Some(Command::StepTime(-1.0)),
+        Key::ArrowRight => Some(Command::StepTime(1.0)),
+        Key::Home => Some(Command::SetTime(0.0)),
+        Key::ArrowUp => Some(Command::SelectNeighbour(-1)),
+        Key::ArrowDown => Some(Command::SelectNeighbour(1)),
+        Key::F => Some(Command::FitPlots),
+        _ => None,
+    }
+}

@@ -1,0 +1,231 @@
+//! The menu at the top and the status line at the bottom.
+
+use egui::{Align, Button, Layout, MenuBar, Panel, ProgressBar, RichText, Ui};
+
+use crate::app::command::Command;
+use crate::app::dialogs::Purpose;
+use crate::app::keyboard;
+use crate::app::panes::Pane;
+use crate::app::source::{Content, Source};
+use crate::app::state::{ReplayStatus, State};
+use crate::data::Severity;
+use crate::jobs::Job;
+use crate::render::theme;
+use crate::units::UnitSystem;
+
+/// Which way the undo history goes.
+#[derive(Clone, Copy)]
+pub struct History {
+    /// Whether there is something to undo.
+    pub can_undo: bool,
+    /// Whether there is something to redo.
+    pub can_redo: bool,
+}
+
+/// Draws the menu.
+pub fn menu_ui(ui: &mut Ui, state: &mut State, history: History, commands: &mut Vec<Command>) {
+    Panel::top("menu").show(ui, |ui| {
+        MenuBar::new().ui(ui, |ui| {
+            ui.menu_button("File", |ui| file_menu_ui(ui, state, commands));
+            ui.menu_button("Edit", |ui| {
+                edit_item(
+                    ui,
+                    "Undo",
+                    keyboard::UNDO,
+                    (history.can_undo, Command::Undo),
+                    commands,
+                );
+                edit_item(
+                    ui,
+                    "Redo",
+                    keyboard::REDO,
+                    (history.can_redo, Command::Redo),
+                    commands,
+                );
+            });
+            ui.menu_button("View", |ui| view_menu_ui(ui, state, commands));
+            ui.menu_button("Help", help_menu_ui);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                for (system, label) in [(UnitSystem::Us, "US"), (UnitSystem::Si, "SI")] {
+                    ui.selectable_value(&mut state.view.units, system, label)
+                        .on_hover_text("Units of everything on screen");
+                }
+                ui.separator();
+                let label = if state.view.dark { "Light" } else { "Dark" };
+                if ui.button(label).on_hover_text("Change the theme").clicked() {
+                    state.view.dark = !state.view.dark;
+                }
+            });
+        });
+    });
+}
+
+fn edit_item(
+    ui: &mut Ui,
+    label: &str,
+    shortcut: egui::KeyboardShortcut,
+    (enabled, command): (bool, Command),
+    commands: &mut Vec<Command>,
+) {
+    let button = Button::new(label).shortcut_text(ui.ctx().format_shortcut(&shortcut));
+    if ui.add_enabled(enabled, button).clicked() {
+        commands.push(command);
+    }
+}
+
+fn file_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let items = [
+        ("Open folder…", keyboard::OPEN_FOLDER, Purpose::Folder),
+        ("Open files…", keyboard::OPEN, Purpose::Files),
+    ];
+    for (label, shortcut, purpose) in items {
+        edit_item(ui, label, shortcut, (true, Command::Ask(purpose)), commands);
+    }
+    if ui.button("Save scenario…").clicked() {
+        commands.push(Command::Ask(Purpose::Scenario));
+    }
+    ui.separator();
+    ui.add_enabled_ui(!state.session.sources.is_empty(), |ui| {
+        if ui.button("Close all").clicked() {
+            let opened = state
+                .session
+                .sources
+                .iter()
+                .map(|source| source.opened.clone());
+            commands.extend(opened.map(Command::Close));
+        }
+    });
+    if ui.button("Quit").clicked() {
+        ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
+    }
+}
+
+fn view_menu_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
+    for pane in Pane::ALL {
+        if ui.button(pane.title()).clicked() {
+            commands.push(Command::Show(pane));
+        }
+    }
+    ui.separator();
+    if ui.button("Fit plots to their data").clicked() {
+        commands.push(Command::FitPlots);
+    }
+    if ui.button("Put panes back").clicked() {
+        commands.push(Command::ResetLayout);
+    }
+    ui.checkbox(&mut state.view.dark, "Dark theme");
+}
+
+fn help_menu_ui(ui: &mut Ui) {
+    ui.strong("Keys");
+    egui::Grid::new("keys").show(ui, |ui| {
+        for (key, what) in keyboard::PLAIN_KEYS {
+            ui.monospace(key.name());
+            ui.label(what);
+            ui.end_row();
+        }
+    });
+    ui.separator();
+    ui.strong("Plots");
+    ui.label("Hover to read values, click or drag in a time plot to move the cursor,");
+    ui.label("Ctrl + wheel to zoom, right-drag for a zoom box, double click to fit.");
+    ui.separator();
+    ui.label(format!("impactlab {}", env!("CARGO_PKG_VERSION")));
+    ui.label("The shipped data are simulations, not measurements.");
+}
+
+/// Draws the status line: work under way, messages.
+pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    Panel::bottom("status").show(ui, |ui| {
+        for source in &state.session.sources {
+            if let Source {
+                content: Content::Loading(job),
+                opened,
+                ..
+            } = source
+            {
+                let cancel = Command::Close(opened.clone());
+                job_ui(
+                    ui,
+                    &format!("Loading {}", source.name()),
+                    job,
+                    cancel,
+                    commands,
+                );
+            }
+        }
+        for (path, status) in &state.session.replays {
+            if let ReplayStatus::Running(job) = status {
+                let cancel = Command::CancelReplay(path.clone());
+                let name = path
+                    .file_name()
+                    .unwrap_or(path.as_os_str())
+                    .to_string_lossy();
+                job_ui(ui, &format!("Simulating {name}"), job, cancel, commands);
+            }
+        }
+        let Some(latest) = state.session.messages.last() else {
+            ui.weak("Ready. Drop a folder or a file here to open it.");
+            return;
+        };
+        ui.horizontal(|ui| {
+            if ui.small_button("Dismiss").clicked() {
+                commands.push(Command::DismissMessages);
+            }
+            let older = state.session.messages.len() - 1;
+            if older > 0 {
+                let others = state.session.messages.iter().rev().skip(1).take(20);
+                let text: Vec<&str> = others.map(|message| message.text.as_str()).collect();
+                ui.weak(format!("+{older}")).on_hover_text(text.join("\n"));
+            }
+            let color = theme::severity_color(latest.severity, state.view.dark);
+            let text = match latest.severity {
+                Severity::Error => format!("Error: {}", latest.text),
+                Severity::Warning => format!("Warning: {}", latest.text),
+                Severity::Info => latest.text.clone(),
+            };
+            ui.add(egui::Label::new(RichText::new(text).color(color)).wrap());
+        });
+    });
+}
+
+/// A running job: progress, time left, cancel.
+fn job_ui<T>(ui: &mut Ui, what: &str, job: &Job<T>, cancel: Command, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| {
+        if ui.small_button("Cancel").clicked() {
+            commands.push(cancel);
+        }
+        let progress = job.progress();
+        let left = progress.time_left(job.elapsed());
+        let left = left.map_or(String::new(), |t| {
+            format!(", {:.0} s left", t.as_secs_f64().ceil())
+        });
+        let text = format!("{what}: {} of {}{left}", progress.done, progress.total);
+        match progress.fraction() {
+            Some(fraction) => ui.add(ProgressBar::new(fraction).text(text)),
+            None => ui.horizontal(|ui| (ui.spinner(), ui.label(what))).response,
+        };
+    });
+}
+
+/// Says what a drop will do while a file hovers over the window.
+pub fn drop_hint_ui(ui: &Ui) {
+    if ui.ctx().input(|input| input.raw.hovered_files.is_empty()) {
+        return;
+    }
+    let area = ui.ctx().content_rect();
+    let painter = ui.ctx().layer_painter(egui::LayerId::new(
+        egui::Order::Foreground,
+        egui::Id::unique("drop hint"),
+    ));
+    painter.rect_filled(area, 0.0, egui::Color32::from_black_alpha(160));
+    let font = egui::TextStyle::Heading.resolve(ui.style());
+    let text = "Drop to open: a data set folder, a force or trajectory file, a scenario";
+    painter.text(
+        area.center(),
+        egui::Align2::CENTER_CENTER,
+        text,
+        font,
+        egui::Color32::WHITE,
+    );
+}

@@ -1,0 +1,222 @@
+//! The window. It loads, starts jobs, shows figures and edits settings; what is computed comes from
+//! the core, by way of [`jobs`](crate::jobs).
+
+mod case_table;
+mod command;
+mod dialogs;
+mod export;
+mod keyboard;
+mod menu;
+mod panels;
+mod panes;
+mod source;
+mod state;
+mod update;
+mod widgets;
+
+use std::path::PathBuf;
+
+use eframe::CreationContext;
+use egui::util::undoer::Undoer;
+use egui::{Context, Ui};
+use egui_tiles::Tree;
+
+use crate::render::theme;
+
+pub use command::Command;
+pub use panes::Pane;
+pub use source::{Content, Source};
+pub use state::{Project, ReplayStatus, State, Subject, VehicleChoice, View};
+
+/// Key of the saved state.
+const STORAGE_KEY: &str = "impactlab";
+
+/// A window that could not be opened.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "no window could be opened ({0}); a graphics driver may be missing: on Debian or Ubuntu, `apt-get install mesa-vulkan-drivers libvulkan1` brings a software one. Without a window: `impactlab check`, `impactlab render`"
+)]
+pub struct WindowError(String);
+
+/// The app.
+pub struct App {
+    state: State,
+    undoer: Undoer<Project>,
+}
+
+/// Opens the window on these paths, or on what was open last, or on the shipped data.
+///
+/// # Errors
+/// [`WindowError`] without a display or a graphics driver.
+pub fn run(paths: Vec<PathBuf>) -> Result<(), WindowError> {
+    let viewport = egui::ViewportBuilder::default()
+        .with_title("impactlab")
+        .with_app_id("impactlab")
+        .with_inner_size([1440.0, 900.0])
+        .with_min_inner_size([900.0, 600.0])
+        .with_drag_and_drop(true);
+    let options = eframe::NativeOptions {
+        viewport,
+        ..eframe::NativeOptions::default()
+    };
+    eframe::run_native(
+        "impactlab",
+        options,
+        Box::new(|cc| Ok(Box::new(App::new(cc, paths)))),
+    )
+    .map_err(|error| WindowError(error.to_string()))
+}
+
+impl App {
+    /// Starts from the saved state, if there is one.
+    pub fn new(cc: &CreationContext<'_>, paths: Vec<PathBuf>) -> Self {
+        let saved = cc
+            .storage
+            .and_then(|storage| storage.get_string(STORAGE_KEY));
+        let restored = saved.and_then(|text| State::restore(&text));
+        let (mut state, last_open) = restored.unwrap_or_default();
+        let to_open = match (paths.is_empty(), last_open.is_empty()) {
+            (false, _) => paths,
+            (true, false) => last_open,
+            (true, true) => shipped_datasets().into_iter().collect(),
+        };
+        state.apply(Command::Open(to_open), &cc.egui_ctx);
+        Self {
+            state,
+            undoer: Undoer::default(),
+        }
+    }
+
+    /// What the app knows.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// What the app knows, to be changed by a test.
+    pub fn state_mut(&mut self) -> &mut State {
+        &mut self.state
+    }
+
+    /// Does something as if the user had asked for it.
+    pub fn apply(&mut self, command: Command, context: &Context) {
+        match command {
+            Command::Undo => {
+                if let Some(project) = self.undoer.undo(&self.state.project) {
+                    self.state.project = project.clone();
+                }
+            }
+            Command::Redo => {
+                if let Some(project) = self.undoer.redo(&self.state.project) {
+                    self.state.project = project.clone();
+                }
+            }
+            command => self.state.apply(command, context),
+        }
+    }
+
+    /// The state as text, as it is saved.
+    pub fn saved(&self) -> Option<String> {
+        self.state.save()
+    }
+}
+
+impl eframe::App for App {
+    fn logic(&mut self, context: &Context, _frame: &mut eframe::Frame) {
+        let mut commands = Vec::new();
+        self.state.update(context, &mut commands);
+        keyboard::commands(context, &mut commands);
+        let dropped = context.input(|input| input.raw.dropped_files.clone());
+        let paths: Vec<PathBuf> = dropped
+            .into_iter()
+            .map(|file| file.path().to_owned())
+            .collect();
+        if !paths.is_empty() {
+            commands.push(Command::Open(paths));
+        }
+        for command in commands {
+            self.apply(command, context);
+        }
+        let now = context.input(|input| input.time);
+        self.undoer.feed_state(now, &self.state.project);
+    }
+
+    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+        if ui.visuals().dark_mode != self.state.view.dark {
+            ui.ctx().set_visuals(theme::visuals(self.state.view.dark));
+        }
+        let mut commands = Vec::new();
+        let history = menu::History {
+            can_undo: self.undoer.has_undo(&self.state.project),
+            can_redo: self.undoer.has_redo(&self.state.project),
+        };
+        menu::menu_ui(ui, &mut self.state, history, &mut commands);
+        menu::status_ui(ui, &self.state, &mut commands);
+        self.panes_ui(ui, &mut commands);
+        self.mapping_ui(ui, &mut commands);
+        menu::drop_hint_ui(ui);
+        for command in commands {
+            self.apply(command, ui.ctx());
+        }
+    }
+
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        if let Some(text) = self.state.save() {
+            storage.set_string(STORAGE_KEY, text);
+        }
+    }
+}
+
+impl App {
+    fn panes_ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        let State {
+            project,
+            view,
+            session,
+        } = &mut self.state;
+        let mut layout =
+            std::mem::replace(&mut view.layout, Tree::empty(egui::Id::unique("panes")));
+        let mut panes = panes::PaneContext {
+            project,
+            view,
+            session,
+            commands,
+        };
+        egui::CentralPanel::no_frame().show(ui, |ui| layout.ui(&mut panes, ui));
+        self.state.view.layout = layout;
+        self.state.session.fit_plots = false;
+    }
+
+    fn mapping_ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        if let Some(dialog) = &mut self.state.session.mapping {
+            let modal = egui::Modal::new(egui::Id::unique("mapping dialog"));
+            let response = modal.show(ui.ctx(), |ui| dialog.ui(ui, commands));
+            if response.should_close() {
+                commands.push(Command::CancelMapping);
+            }
+        }
+    }
+}
+
+/// The shipped data: beside the current folder, the program, or the sources it was built from.
+fn shipped_datasets() -> Option<PathBuf> {
+    let program = std::env::current_exe().unwrap_or_default();
+    let roots = [PathBuf::from(".")]
+        .into_iter()
+        .chain(program.ancestors().skip(1).map(PathBuf::from))
+        .chain([PathBuf::from(env!("CARGO_MANIFEST_DIR"))]);
+    roots
+        .map(|root| root.join("datasets"))
+        .find(|path| path.join("fea").is_dir())
+}
+
+/// An error with its causes, in a line.
+fn error_chain(error: &dyn std::error::Error) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        text.push_str(": ");
+        text.push_str(&error.to_string());
+        cause = error.source();
+    }
+    text
+}

@@ -1,0 +1,159 @@
+//! The cases of a data set.
+
+use egui::{RichText, Sense, Ui};
+use egui_extras::{Column, TableBuilder, TableRow};
+
+use crate::app::case_table::{CaseColumn, CaseRow, listed_in, rows_of};
+use crate::app::command::Command;
+use crate::app::panes::PaneContext;
+use crate::app::state::{Subject, View};
+use crate::render::theme;
+use crate::units::UnitSystem;
+
+const ROW_HEIGHT: f32 = 20.0;
+const FILTER_HINT: &str = "Filter: c012, hooked, spin=1, m_b_kg>2000";
+
+/// Draws the case table.
+pub fn cases_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
+    let PaneContext {
+        project,
+        view,
+        session,
+        commands,
+    } = pane;
+    let Some(checked) = listed_in(&session.sources, view) else {
+        ui.label("No data set is open. The cases of a data set are listed here.");
+        return;
+    };
+    let Some(path) = view.listed.clone() else {
+        return;
+    };
+    let before = view.filter.clone();
+    ui.horizontal(|ui| {
+        let field = egui::TextEdit::singleline(&mut view.filter).hint_text(FILTER_HINT);
+        let width = ui.available_width() - 30.0;
+        ui.add(field.desired_width(width)).on_hover_text(
+            "Words that must all hold: part of a name or flag, or column=value, column<value, column>value, with the column names of cases.csv in SI units",
+        );
+        if ui.button("×").on_hover_text("Show all cases").clicked() {
+            view.filter.clear();
+        }
+    });
+    let rows = rows_of(checked, session.replays.get(&path), view);
+    let shown = format!("{} of {} cases", rows.len(), checked.dataset.cases.len());
+    ui.weak(shown);
+    let selected = match &project.subject {
+        Some(Subject::Case { dataset, case }) if *dataset == path => Some(case.as_str()),
+        _ => None,
+    };
+    let table = Table {
+        rows: &rows,
+        columns: CaseColumn::of(checked.dataset.kind),
+        selected,
+    };
+    let filter_changed = before != view.filter;
+    let picked = table.ui(ui, (view, filter_changed));
+    if let Some(case) = picked {
+        commands.push(Command::Select(Subject::Case {
+            dataset: path,
+            case,
+        }));
+    }
+}
+
+struct Table<'a> {
+    rows: &'a [CaseRow<'a>],
+    columns: &'static [CaseColumn],
+    selected: Option<&'a str>,
+}
+
+impl Table<'_> {
+    /// Draws the table; gives the case that was clicked.
+    fn ui(&self, ui: &mut Ui, (view, filter_changed): (&mut View, bool)) -> Option<String> {
+        let mut picked = None;
+        let units = view.units;
+        egui::ScrollArea::horizontal().show(ui, |ui| {
+            let mut table = TableBuilder::new(ui)
+                .striped(true)
+                .sense(Sense::click())
+                .auto_shrink(false)
+                .column(Column::initial(62.0).resizable(true))
+                .columns(
+                    Column::initial(74.0).at_least(36.0).resizable(true),
+                    self.columns.len(),
+                )
+                .column(Column::remainder().at_least(120.0));
+            let selected = self
+                .rows
+                .iter()
+                .position(|row| Some(row.name) == self.selected);
+            if let Some(index) = selected.filter(|_| filter_changed) {
+                table = table.scroll_to_row(index, None);
+            }
+            let table = table.header(ROW_HEIGHT, |mut header| self.header_ui(&mut header, view));
+            table.body(|body| {
+                body.rows(ROW_HEIGHT, self.rows.len(), |mut row| {
+                    let Some(case) = self.rows.get(row.index()) else {
+                        return;
+                    };
+                    row.set_selected(Some(case.name) == self.selected);
+                    self.row_ui(&mut row, case, units);
+                    if row.response().clicked() {
+                        picked = Some(case.name.to_owned());
+                    }
+                });
+            });
+        });
+        picked
+    }
+
+    fn header_ui(&self, header: &mut TableRow<'_, '_>, view: &mut View) {
+        let units = view.units;
+        let attributes = self.columns.iter().map(|c| (c.key, c.heading(units)));
+        let ends = [("case", "Case".to_owned()), ("flags", "Flags".to_owned())];
+        let [first, last] = ends;
+        for (key, title) in std::iter::once(first).chain(attributes).chain([last]) {
+            header.col(|ui| {
+                let sorted = view.sort_column.as_deref() == Some(key);
+                let arrow = match (sorted, view.sort_descending) {
+                    (false, _) => "",
+                    (true, false) => " ⏶",
+                    (true, true) => " ⏷",
+                };
+                let text = RichText::new(format!("{title}{arrow}")).strong();
+                let label = egui::Label::new(text).sense(Sense::click()).truncate();
+                if ui
+                    .add(label)
+                    .on_hover_text(format!("Sort by {title}"))
+                    .clicked()
+                {
+                    sort_by(view, key);
+                }
+            });
+        }
+    }
+
+    fn row_ui(&self, row: &mut TableRow<'_, '_>, case: &CaseRow<'_>, units: UnitSystem) {
+        row.col(|ui| drop(ui.label(case.name)));
+        for column in self.columns {
+            row.col(|ui| drop(ui.label(case.text(column, units))));
+        }
+        row.col(|ui| {
+            for flag in case.flags {
+                let color = theme::severity_color(flag.severity, ui.visuals().dark_mode);
+                let label = egui::Label::new(RichText::new(flag.to_string()).color(color));
+                ui.add(label.truncate()).on_hover_text(flag.to_string());
+            }
+        });
+    }
+}
+
+/// Rising, falling, unsorted.
+fn sort_by(view: &mut View, key: &str) {
+    let sorted = view.sort_column.as_deref() == Some(key);
+    (view.sort_column, view.sort_descending) = match (sorted, view.sort_descending) {
+        (false, _) => (Some(key.to_owned()), false),
+        (true, false) => (Some(key.to_owned()), true),
+        (true, true) => (None, false),
+    };
+}

@@ -1,0 +1,198 @@
+//! What is open: data sets with their problems, single files, the scenario.
+
+use egui::{CollapsingHeader, Response, RichText, ScrollArea, Ui};
+
+use crate::app::command::Command;
+use crate::app::dialogs::Purpose;
+use crate::app::error_chain;
+use crate::app::panes::PaneContext;
+use crate::app::source::{CheckedDataset, CheckedFile, Content, Source};
+use crate::app::state::{Project, Subject, View};
+use crate::data::{DatasetKind, FileKind, Severity};
+use crate::render::theme;
+
+/// Problems that the tree spells out.
+const SHOWN_PROBLEMS: usize = 50;
+
+/// Draws the tree of what is open.
+pub fn data_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
+    let PaneContext {
+        project,
+        view,
+        session,
+        commands,
+    } = pane;
+    ui.horizontal(|ui| {
+        let folder = ui
+            .button("Open folder…")
+            .on_hover_text("A data set, or a folder of data sets");
+        if folder.clicked() {
+            commands.push(Command::Ask(Purpose::Folder));
+        }
+        let files = ui.button("Open files…");
+        if files
+            .on_hover_text("Force, trajectory, steer or scenario files")
+            .clicked()
+        {
+            commands.push(Command::Ask(Purpose::Files));
+        }
+    });
+    ui.separator();
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        if session.sources.is_empty() {
+            ui.label("Nothing is open. Open a folder with cases.csv and forces/ or trajectories/, or drop it anywhere in this window.");
+        }
+        for source in &session.sources {
+            source_ui(ui, source, (project, view), commands);
+        }
+        let selected = project.subject == Some(Subject::Scenario);
+        let hint = "Two vehicles of your own: see the Scenario pane";
+        if ui.selectable_label(selected, "Scenario").on_hover_text(hint).clicked() {
+            commands.push(Command::Select(Subject::Scenario));
+        }
+    });
+}
+
+fn source_ui(
+    ui: &mut Ui,
+    source: &Source,
+    (project, view): (&Project, &View),
+    commands: &mut Vec<Command>,
+) {
+    match &source.content {
+        Content::Loading(_) => {
+            ui.horizontal(|ui| (ui.spinner(), ui.label(source.name())));
+        }
+        Content::Dataset(checked) => {
+            let listed = view.listed.as_ref() == Some(&source.path);
+            dataset_ui(ui, source, (checked, listed), commands);
+        }
+        Content::File(file) => {
+            let subject = Subject::File(source.path.clone());
+            let selected = project.subject.as_ref() == Some(&subject);
+            file_ui(ui, source, (file, selected), commands);
+        }
+        Content::Failed(why) => {
+            let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
+            let header = RichText::new(format!("{} (not read)", source.name())).color(color);
+            let header = CollapsingHeader::new(header).id_salt(&source.path);
+            let response = header.show(ui, |ui| {
+                ui.label(why);
+                let can_map = source.path.extension().is_some();
+                if can_map && ui.button("Say which column is which…").clicked() {
+                    commands.push(Command::AskMapping(source.path.clone()));
+                }
+            });
+            source_menu(&response.header_response, source, commands);
+        }
+    }
+}
+
+fn dataset_ui(
+    ui: &mut Ui,
+    source: &Source,
+    (checked, listed): (&CheckedDataset, bool),
+    commands: &mut Vec<Command>,
+) {
+    let dataset = &checked.dataset;
+    let kind = match dataset.kind {
+        DatasetKind::Force => "force curves",
+        DatasetKind::Trajectory => "trajectories",
+    };
+    let text = format!("{} · {} {kind}", source.name(), dataset.cases.len());
+    let response = ui.selectable_label(listed, text);
+    let response = response.on_hover_text(source.path.display().to_string());
+    if response.clicked() {
+        commands.push(Command::List(source.path.clone()));
+    }
+    source_menu(&response, source, commands);
+    ui.indent(&source.path, |ui| {
+        let flagged = checked
+            .flags
+            .iter()
+            .filter(|flags| !flags.is_empty())
+            .count();
+        if flagged > 0 {
+            ui.weak(format!("{flagged} cases with flags"));
+        }
+        match &checked.vehicle {
+            Some(Ok(vehicle)) => drop(ui.weak(format!("vehicle: {}", vehicle.name))),
+            Some(Err(error)) => problem_ui(ui, error),
+            None => {}
+        }
+        let problems = &dataset.problems;
+        if !problems.is_empty() {
+            let title = format!("{} problems", problems.len());
+            CollapsingHeader::new(title)
+                .id_salt((&source.path, "problems"))
+                .show(ui, |ui| {
+                    for problem in problems.iter().take(SHOWN_PROBLEMS) {
+                        problem_ui(ui, &error_chain(problem));
+                    }
+                    if problems.len() > SHOWN_PROBLEMS {
+                        ui.weak(format!("and {} more", problems.len() - SHOWN_PROBLEMS));
+                    }
+                });
+        }
+    });
+}
+
+fn file_ui(
+    ui: &mut Ui,
+    source: &Source,
+    (file, selected): (&CheckedFile, bool),
+    commands: &mut Vec<Command>,
+) {
+    let kind = match file.loaded.kind {
+        FileKind::Force => "force",
+        FileKind::Trajectory => "trajectory",
+        FileKind::Steer => "steer",
+    };
+    let n_samples = file.loaded.series.n_samples();
+    let response = ui.selectable_label(
+        selected,
+        format!("{} · {kind}, {n_samples} samples", source.name()),
+    );
+    let response = response.on_hover_ui(|ui| {
+        ui.label(source.path.display().to_string());
+        for column in &file.loaded.columns {
+            ui.label(format!(
+                "{} ← {:?} in {}",
+                column.channel.label(),
+                column.name,
+                column.unit.symbol
+            ));
+        }
+        for note in &file.loaded.notes {
+            ui.label(note.to_string());
+        }
+    });
+    if response.clicked() {
+        commands.push(Command::Select(Subject::File(source.path.clone())));
+    }
+    source_menu(&response, source, commands);
+    for flag in &file.flags {
+        let color = theme::severity_color(flag.severity, ui.visuals().dark_mode);
+        ui.indent((&source.path, flag.to_string()), |ui| {
+            ui.colored_label(color, flag.to_string())
+        });
+    }
+}
+
+fn problem_ui(ui: &mut Ui, text: &str) {
+    let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
+    ui.colored_label(color, text);
+}
+
+fn source_menu(response: &Response, source: &Source, commands: &mut Vec<Command>) {
+    response.context_menu(|ui| {
+        if source.path.is_absolute() || source.path.components().count() > 0 {
+            if ui.button("Load again").clicked() {
+                commands.push(Command::Open(vec![source.opened.clone()]));
+            }
+            if ui.button("Close").clicked() {
+                commands.push(Command::Close(source.path.clone()));
+            }
+        }
+    });
+}

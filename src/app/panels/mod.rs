@@ -1,0 +1,47 @@
+//! A panel a file: each draws its pane, edits its own settings and asks for the rest.
+
+mod cases;
+mod comparison;
+mod data;
+mod force;
+mod motion;
+mod scenario;
+mod scene;
+mod vehicle;
+
+pub use cases::cases_ui;
+pub use comparison::comparison_ui;
+pub use data::data_ui;
+pub use force::force_ui;
+pub use motion::motion_ui;
+pub use scenario::scenario_ui;
+pub use scene::scene_ui;
+pub use vehicle::vehicle_ui;
+
+use egui::{RichText, Ui};
+
+use crate::analysis::Analysis;
+use crate::app::state::Session;
+use crate::render::theme;
+
+/// The analysis, or a word on why there is none.
+fn analysis_or_hint<'a>(ui: &mut Ui, session: &'a Session) -> Option<&'a Analysis> {
+    match &session.analysis.result {
+        Some(Ok(analysis)) => return Some(analysis),
+        Some(Err(error)) => {
+            let dark = ui.visuals().dark_mode;
+            let color = theme::severity_color(crate::data::Severity::Error, dark);
+            ui.colored_label(color, format!("Not computed: {error}"));
+        }
+        None if session.analysis.job.is_some()
+            || session.sources.iter().any(|s| !s.is_settled()) =>
+        {
+            ui.horizontal(|ui| (ui.spinner(), ui.label("Working…")));
+        }
+        None => {
+            ui.label(RichText::new("Nothing selected").strong());
+            ui.label("Open a data set (File, or drop a folder here) and pick a case, or set up a scenario.");
+        }
+    }
+    None
+}

@@ -1,0 +1,65 @@
+//! The motion over time.
+
+use egui::{Id, Ui};
+
+use crate::app::command::Command;
+use crate::app::panels::analysis_or_hint;
+use crate::app::panes::PaneContext;
+use crate::app::widgets::figure_frame;
+use crate::figure::{MOTION_CHANNELS, analysis_motion_figure};
+use crate::render::FigureOptions;
+
+/// Smallest height of one plot, points.
+const MIN_PLOT_HEIGHT: f32 = 110.0;
+/// Height of a title row, points.
+const TITLE_HEIGHT: f32 = 30.0;
+
+/// Draws v_x, v_y, yaw rate and roll over time, with a common cursor at the scene's time.
+pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
+    let PaneContext {
+        view,
+        session,
+        commands,
+        ..
+    } = pane;
+    let Some(analysis) = analysis_or_hint(ui, session) else {
+        return;
+    };
+    let two_columns = ui.available_width() > 560.0;
+    let rows = if two_columns { 2.0 } else { 4.0 };
+    let height = (ui.available_height() / rows - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT);
+    let mut plot = |ui: &mut Ui, channel| {
+        let figure = analysis_motion_figure(analysis, channel, view.units);
+        let options = FigureOptions {
+            id: figure.title.clone(),
+            link: Some(Id::unique("motion")),
+            cursor_x: Some(session.time_s),
+            height: Some(height),
+            reset: session.fit_plots,
+        };
+        let response = figure_frame(ui, &figure, &options, commands);
+        if let Some(time_s) = response.picked_x {
+            let last = figure_end(&figure);
+            commands.push(Command::SetTime(time_s.clamp(0.0, last)));
+        }
+    };
+    egui::ScrollArea::vertical().show(ui, |ui| {
+        let n_columns = if two_columns { 2 } else { 1 };
+        for row in MOTION_CHANNELS.chunks(n_columns) {
+            ui.columns(n_columns, |columns| {
+                for (column, &channel) in columns.iter_mut().zip(row) {
+                    plot(column, channel);
+                }
+            });
+        }
+    });
+}
+
+/// The last abscissa of a figure.
+fn figure_end(figure: &crate::figure::Figure) -> f64 {
+    let ends = figure.elements.iter().filter_map(|element| match element {
+        crate::figure::Element::Line(series) => series.points.last().map(|point| point[0]),
+        _ => None,
+    });
+    ends.fold(0.0, f64::max)
+}

@@ -1,0 +1,300 @@
+//! The impact solver: two vehicles of the user's own.
+
+use egui::{ComboBox, Grid, ScrollArea, Ui};
+
+use crate::app::command::Command;
+use crate::app::dialogs::Purpose;
+use crate::app::panes::PaneContext;
+use crate::app::state::{Project, Subject};
+use crate::app::widgets::{figure_frame, quantity_field, value_row};
+use crate::collision::{
+    BodyAfter, ContactLocation, ImpactSolution, PulseShape, Scenario, ScenarioVehicle, Side,
+};
+use crate::data::Severity;
+use crate::figure::impact_figure;
+use crate::render::{FigureOptions, theme};
+use crate::units::{Quantity, UnitSystem};
+
+/// Height of the plan, points.
+const PLAN_HEIGHT: f32 = 260.0;
+
+/// Draws the form, the solution and the plan.
+pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
+    let PaneContext {
+        project,
+        view,
+        session,
+        commands,
+    } = pane;
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            ui.strong(&project.scenario.name);
+            if ui.button("Open…").clicked() {
+                commands.push(Command::Ask(Purpose::Files));
+            }
+            if ui.button("Save…").clicked() {
+                commands.push(Command::Ask(Purpose::Scenario));
+            }
+            let shown = project.subject == Some(Subject::Scenario);
+            let hint = "Spread the impulse over a pulse and simulate both vehicles";
+            if !shown
+                && ui
+                    .button("Simulate in the scene")
+                    .on_hover_text(hint)
+                    .clicked()
+            {
+                commands.push(Command::Select(Subject::Scenario));
+            }
+        });
+        vehicles_form(ui, project, view.units);
+        contact_form(ui, project, view.units);
+        ui.separator();
+        match project.scenario.solve() {
+            Ok(solution) => {
+                solution_ui(ui, &solution, view.units);
+                if let Ok(figure) = impact_figure(&project.scenario, &solution, view.units) {
+                    let options = FigureOptions {
+                        id: "impact".to_owned(),
+                        height: Some(PLAN_HEIGHT),
+                        reset: session.fit_plots,
+                        ..FigureOptions::default()
+                    };
+                    figure_frame(ui, &figure, &options, commands);
+                }
+            }
+            Err(error) => {
+                let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
+                ui.colored_label(color, crate::app::error_chain(&error));
+            }
+        }
+    });
+}
+
+fn vehicles_form(ui: &mut Ui, project: &mut Project, units: UnitSystem) {
+    let Scenario { target, bullet, .. } = &mut project.scenario;
+    for (title, vehicle) in [("Target (struck)", target), ("Bullet (strikes)", bullet)] {
+        egui::CollapsingHeader::new(title)
+            .default_open(true)
+            .show(ui, |ui| {
+                Grid::new(title)
+                    .num_columns(2)
+                    .show(ui, |ui| vehicle_form(ui, vehicle, units));
+            });
+    }
+}
+
+fn vehicle_form(ui: &mut Ui, vehicle: &mut ScenarioVehicle, units: UnitSystem) {
+    let mut speed_m_s = vehicle.vx_m_s.hypot(vehicle.vy_m_s);
+    let mut course_rad = vehicle.vy_m_s.atan2(vehicle.vx_m_s);
+    let angle = std::f64::consts::PI;
+    let mut moved = quantity_field(
+        ui,
+        "Speed",
+        &mut speed_m_s,
+        Quantity::Speed,
+        (0.0..=80.0, units),
+    );
+    moved |= quantity_field(
+        ui,
+        "Course (of velocity)",
+        &mut course_rad,
+        Quantity::Angle,
+        (-angle..=angle, units),
+    );
+    if moved {
+        vehicle.vx_m_s = speed_m_s * course_rad.cos();
+        vehicle.vy_m_s = speed_m_s * course_rad.sin();
+    }
+    let fields = [
+        (
+            "Heading",
+            &mut vehicle.heading_rad,
+            Quantity::Angle,
+            -angle..=angle,
+        ),
+        (
+            "Yaw rate",
+            &mut vehicle.yaw_rate_rad_s,
+            Quantity::AngularVelocity,
+            -10.0..=10.0,
+        ),
+        (
+            "Mass",
+            &mut vehicle.mass_kg,
+            Quantity::Mass,
+            50.0..=50_000.0,
+        ),
+        (
+            "Yaw inertia",
+            &mut vehicle.yaw_inertia_kg_m2,
+            Quantity::MomentOfInertia,
+            1.0..=500_000.0,
+        ),
+        (
+            "Length",
+            &mut vehicle.length_m,
+            Quantity::Length,
+            0.5..=25.0,
+        ),
+        ("Width", &mut vehicle.width_m, Quantity::Length, 0.3..=4.0),
+    ];
+    for (label, value, quantity, range) in fields {
+        quantity_field(ui, label, value, quantity, (range, units));
+    }
+    let range = (0.0..=vehicle.length_m, units);
+    quantity_field(
+        ui,
+        "CG behind front",
+        &mut vehicle.cg_from_front_m,
+        Quantity::Length,
+        range,
+    );
+}
+
+fn contact_form(ui: &mut Ui, project: &mut Project, units: UnitSystem) {
+    egui::CollapsingHeader::new("Contact")
+        .default_open(true)
+        .show(ui, |ui| {
+            Grid::new("contact").num_columns(2).show(ui, |ui| {
+                location_form(ui, &mut project.scenario.contact.location, units);
+                let contact = &mut project.scenario.contact;
+                let pulse = &mut project.pulse;
+                let fields = [
+                    (
+                        "Restitution e",
+                        &mut contact.restitution,
+                        Quantity::Ratio,
+                        0.0..=1.0,
+                    ),
+                    (
+                        "Friction limit μ_c",
+                        &mut contact.friction_limit,
+                        Quantity::Ratio,
+                        0.0..=2.0,
+                    ),
+                    (
+                        "Pulse duration",
+                        &mut pulse.duration_s,
+                        Quantity::Time,
+                        0.005..=1.0,
+                    ),
+                    (
+                        "Height above ground",
+                        &mut pulse.contact_height_m,
+                        Quantity::Length,
+                        0.0..=3.0,
+                    ),
+                ];
+                for (label, value, quantity, range) in fields {
+                    quantity_field(ui, label, value, quantity, (range, units));
+                }
+                let name = ui.label("Pulse shape");
+                ComboBox::from_id_salt("pulse shape")
+                    .selected_text(pulse.shape.label())
+                    .show_ui(ui, |ui| {
+                        for shape in PulseShape::ALL {
+                            ui.selectable_value(&mut pulse.shape, shape, shape.label());
+                        }
+                    })
+                    .response
+                    .labelled_by(name.id);
+                ui.end_row();
+            });
+        });
+}
+
+fn location_form(ui: &mut Ui, location: &mut ContactLocation, units: UnitSystem) {
+    let length = |ui: &mut Ui, label: &str, value: &mut f64| {
+        quantity_field(ui, label, value, Quantity::Length, (-20.0..=20.0, units));
+    };
+    match location {
+        ContactLocation::Side { side, offset_m } => {
+            let name = ui.label("Struck side");
+            ComboBox::from_id_salt("side")
+                .selected_text(side.name())
+                .show_ui(ui, |ui| {
+                    for option in Side::ALL {
+                        ui.selectable_value(side, option, option.name());
+                    }
+                })
+                .response
+                .labelled_by(name.id);
+            ui.end_row();
+            length(ui, "Offset from its middle", offset_m);
+        }
+        ContactLocation::Footprints {
+            bullet_x_m,
+            bullet_y_m,
+        } => {
+            length(ui, "Bullet's CG, X", bullet_x_m);
+            length(ui, "Bullet's CG, Y", bullet_y_m);
+        }
+        ContactLocation::Point {
+            x_m,
+            y_m,
+            normal_rad,
+            bullet_x_m,
+            bullet_y_m,
+        } => {
+            length(ui, "Contact ahead of CG", x_m);
+            length(ui, "Contact left of CG", y_m);
+            let angle = std::f64::consts::TAU;
+            let range = (-angle..=angle, units);
+            quantity_field(ui, "Normal", normal_rad, Quantity::Angle, range);
+            length(ui, "Bullet's CG, X", bullet_x_m);
+            length(ui, "Bullet's CG, Y", bullet_y_m);
+        }
+    }
+}
+
+fn solution_ui(ui: &mut Ui, solution: &ImpactSolution, units: UnitSystem) {
+    let [px, py] = solution.impulse_n_s;
+    let impulse = |value| Quantity::Impulse.shown(value, units);
+    ui.strong("Momentum solution");
+    Grid::new("solution")
+        .striped(true)
+        .num_columns(2)
+        .show(ui, |ui| {
+            value_row(
+                ui,
+                "Impulse on target (X, Y)",
+                &format!("{}, {}", impulse(px), impulse(py)),
+            );
+            let parts = [solution.impulse_normal_n_s, solution.impulse_tangential_n_s].map(impulse);
+            value_row(ui, "normal, tangential", &parts.join(", "));
+            value_row(ui, "Regime", solution.regime.label());
+            let closing = Quantity::Speed.shown(solution.closing_velocity_m_s[0].abs(), units);
+            value_row(ui, "Closing speed", &closing);
+            let energy = Quantity::Energy.shown(solution.dissipated_energy_j, units);
+            value_row(ui, "Dissipated energy", &energy);
+            for (name, after) in [("target", &solution.target), ("bullet", &solution.bullet)] {
+                for (label, text) in body_rows(after, units) {
+                    value_row(ui, &format!("{label}, {name}"), &text);
+                }
+            }
+        });
+}
+
+fn body_rows(after: &BodyAfter, units: UnitSystem) -> Vec<(&'static str, String)> {
+    let speed = |value| Quantity::Speed.shown(value, units);
+    let [dx, dy] = after.delta_v_m_s;
+    let [vx, vy] = after.velocity_m_s;
+    let mut rows = vec![
+        (
+            "Δv",
+            format!("{} ({}, {})", speed(dx.hypot(dy)), speed(dx), speed(dy)),
+        ),
+        ("Velocity after", format!("({}, {})", speed(vx), speed(vy))),
+        (
+            "Yaw rate after",
+            Quantity::AngularVelocity.shown(after.yaw_rate_rad_s, units),
+        ),
+    ];
+    rows.extend(after.pdof.map(|pdof| {
+        (
+            "PDOF",
+            format!("{:.0} deg, {} o'clock", pdof.angle_deg(), pdof.clock()),
+        )
+    }));
+    rows
+}

@@ -1,0 +1,51 @@
+//! The scene from above, with its clock.
+
+use egui::{Slider, Ui};
+
+use crate::app::command::Command;
+use crate::app::panels::analysis_or_hint;
+use crate::app::panes::PaneContext;
+use crate::app::widgets::figure_frame;
+use crate::figure::analysis_scene_figure;
+use crate::render::FigureOptions;
+
+/// Draws the scene and the time slider.
+pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
+    let PaneContext {
+        view,
+        session,
+        commands,
+        ..
+    } = pane;
+    let Some(analysis) = analysis_or_hint(ui, session) else {
+        return;
+    };
+    let series = analysis.simulation.as_ref().map(|motion| &motion.series);
+    let Some(series) = series.or(analysis.reference.as_ref()) else {
+        ui.label("There is no motion to show.");
+        return;
+    };
+    let end_s = series.time_s().last().copied().unwrap_or(0.0);
+    ui.horizontal(|ui| {
+        let label = if session.playing { "Pause" } else { "Play" };
+        if ui.button(label).on_hover_text("Space").clicked() {
+            commands.push(Command::TogglePlay);
+        }
+        let name = ui.label("Time");
+        let mut time_s = session.time_s;
+        ui.spacing_mut().slider_width = (ui.available_width() - 90.0).max(80.0);
+        let slider = Slider::new(&mut time_s, 0.0..=end_s)
+            .suffix(" s")
+            .fixed_decimals(2);
+        if ui.add(slider).labelled_by(name.id).changed() {
+            commands.push(Command::SetTime(time_s));
+        }
+    });
+    let figure = analysis_scene_figure(analysis, session.time_s, view.units);
+    let options = FigureOptions {
+        id: "scene".to_owned(),
+        reset: session.fit_plots,
+        ..FigureOptions::default()
+    };
+    figure_frame(ui, &figure, &options, commands);
+}

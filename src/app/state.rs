@@ -1,0 +1,285 @@
+//! What the app knows: the project and the view are saved, the session is not.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use crate::analysis::{Analysis, FileSetup, PulseSetup};
+use crate::app::dialogs::{FileDialog, MappingDialog};
+use crate::app::panes::{Layout, default_layout};
+use crate::app::source::Source;
+use crate::collision::{ChannelClass, Scenario};
+use crate::compare::DatasetReplay;
+use crate::data::{Outcome, Severity};
+use crate::jobs::Job;
+use crate::units::UnitSystem;
+use crate::vehicle::Integrator;
+
+/// Version of the saved state; another one is not read.
+const SAVED_VERSION: u32 = 1;
+
+/// Everything.
+#[derive(Default)]
+pub struct State {
+    /// What the user works on; undo works on this.
+    pub project: Project,
+    /// How it is shown.
+    pub view: View,
+    /// What is loaded, computed and under way.
+    pub session: Session,
+}
+
+/// What is looked at.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Subject {
+    /// A case of a dataset.
+    Case {
+        /// The dataset's folder.
+        dataset: PathBuf,
+        /// Name of the case.
+        case: String,
+    },
+    /// A single file.
+    File(PathBuf),
+    /// The scenario of the scenario panel.
+    Scenario,
+}
+
+/// Which vehicle is struck.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum VehicleChoice {
+    /// The dataset's own, else the target of the finite-element runs.
+    #[default]
+    Automatic,
+    /// A preset, by its id.
+    Preset(String),
+    /// A file.
+    File(PathBuf),
+}
+
+/// What the user works on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Project {
+    /// What is looked at.
+    pub subject: Option<Subject>,
+    /// The struck vehicle.
+    pub vehicle: VehicleChoice,
+    /// The striking vehicle of a scenario, by its preset's id.
+    pub bullet_preset: String,
+    /// How the equations of motion are integrated.
+    pub integrator: Integrator,
+    /// Duration of simulations without a recorded motion, s.
+    pub duration_s: f64,
+    /// Channel class of the force plot.
+    pub channel_class: Option<ChannelClass>,
+    /// Whether classic pulses of the same impulse are drawn over the force.
+    pub show_pulses: bool,
+    /// The scenario of the scenario panel.
+    pub scenario: Scenario,
+    /// How its impulse is spread over time.
+    pub pulse: PulseSetup,
+    /// What single files do not say.
+    pub file_setup: FileSetup,
+}
+
+impl Default for Project {
+    fn default() -> Self {
+        Self {
+            subject: None,
+            vehicle: VehicleChoice::default(),
+            bullet_preset: "bullet-2000".to_owned(),
+            integrator: Integrator::default(),
+            duration_s: 4.0,
+            channel_class: None,
+            show_pulses: false,
+            scenario: Scenario::example(),
+            pulse: PulseSetup::default(),
+            file_setup: FileSetup::default(),
+        }
+    }
+}
+
+/// How things are shown.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct View {
+    /// Units of everything on screen.
+    pub units: UnitSystem,
+    /// Dark theme.
+    pub dark: bool,
+    /// Filter of the case table.
+    pub filter: String,
+    /// Column by which cases are sorted; the table's own order without one.
+    pub sort_column: Option<String>,
+    /// Whether the largest comes first.
+    pub sort_descending: bool,
+    /// The dataset whose cases are listed.
+    pub listed: Option<PathBuf>,
+    /// Where the panes stand.
+    pub layout: Layout,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        Self {
+            units: UnitSystem::default(),
+            dark: false,
+            filter: String::new(),
+            sort_column: None,
+            sort_descending: false,
+            listed: None,
+            layout: default_layout(),
+        }
+    }
+}
+
+/// What is loaded, computed and under way.
+#[derive(Default)]
+pub struct Session {
+    /// What is open, in the order of opening.
+    pub sources: Vec<Source>,
+    /// What was made of the subject.
+    pub analysis: AnalysisStatus,
+    /// Whole datasets, simulated.
+    pub replays: BTreeMap<PathBuf, ReplayStatus>,
+    /// The moment shown in the scene, s.
+    pub time_s: f64,
+    /// Whether time runs.
+    pub playing: bool,
+    /// What the user should know, newest last.
+    pub messages: Vec<Message>,
+    /// A native file dialog that is open.
+    pub file_dialog: Option<FileDialog>,
+    /// A dialog that asks which column is which.
+    pub mapping: Option<MappingDialog>,
+    /// Files being written.
+    pub exports: Vec<Job<Result<PathBuf, String>>>,
+    /// Whether plots should fit their data again in this frame.
+    pub fit_plots: bool,
+}
+
+/// The analysis of the subject.
+#[derive(Default)]
+pub struct AnalysisStatus {
+    /// What the latest request was made for; a change starts a new one.
+    pub requested: Option<Box<Project>>,
+    /// Number of finished sources at the latest request.
+    pub sources_seen: usize,
+    /// The computation under way.
+    pub job: Option<Job<Result<Analysis, String>>>,
+    /// The latest result, or why there is none.
+    pub result: Option<Result<Arc<Analysis>, String>>,
+}
+
+/// A dataset, simulated as a whole.
+pub enum ReplayStatus {
+    /// Under way.
+    Running(Job<Result<Outcome<DatasetReplay>, String>>),
+    /// Done.
+    Done(Arc<DatasetReplay>),
+}
+
+/// Something the user should know.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Message {
+    /// How much it matters.
+    pub severity: Severity,
+    /// What it is.
+    pub text: String,
+}
+
+/// What survives a restart.
+#[derive(Serialize, Deserialize)]
+pub struct Saved {
+    version: u32,
+    project: Project,
+    view: View,
+    sources: Vec<PathBuf>,
+}
+
+impl State {
+    /// What is to be saved, as text.
+    pub fn save(&self) -> Option<String> {
+        let saved = Saved {
+            version: SAVED_VERSION,
+            project: self.project.clone(),
+            view: self.view.clone(),
+            sources: self
+                .session
+                .sources
+                .iter()
+                .map(|source| source.opened.clone())
+                .collect(),
+        };
+        serde_json::to_string(&saved).ok()
+    }
+
+    /// The saved state and the paths that were open. `None` if the text is from another version or
+    /// damaged: the app then starts afresh.
+    pub fn restore(text: &str) -> Option<(Self, Vec<PathBuf>)> {
+        let saved: Saved = serde_json::from_str(text).ok()?;
+        let state = Self {
+            project: saved.project,
+            view: saved.view,
+            session: Session::default(),
+        };
+        let mut sources = saved.sources;
+        sources.dedup();
+        (saved.version == SAVED_VERSION).then_some((state, sources))
+    }
+
+    /// The analysis to show.
+    pub fn analysis(&self) -> Option<&Analysis> {
+        self.session
+            .analysis
+            .result
+            .as_ref()?
+            .as_ref()
+            .ok()
+            .map(Arc::as_ref)
+    }
+
+    /// Tells the user something.
+    pub fn say(&mut self, severity: Severity, text: impl Into<String>) {
+        self.session.messages.push(Message {
+            severity,
+            text: text.into(),
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn project_and_view_survive_a_restart() {
+        let mut state = State::default();
+        state.project.subject = Some(Subject::Case {
+            dataset: PathBuf::from("d"),
+            case: "c001".to_owned(),
+        });
+        state.project.duration_s = 2.5;
+        state.project.channel_class = Some(ChannelClass::Cfc60);
+        state.view.units = UnitSystem::Us;
+        state.view.filter = "spin=1".to_owned();
+        state
+            .session
+            .sources
+            .push(Source::failed(PathBuf::from("a.csv"), "gone".to_owned()));
+        let (restored, sources) = State::restore(&state.save().unwrap()).unwrap();
+        assert_eq!(restored.project, state.project);
+        assert_eq!(restored.view, state.view);
+        assert_eq!(sources, [PathBuf::from("a.csv")]);
+    }
+
+    #[test]
+    fn a_damaged_or_foreign_save_is_not_read() {
+        let text = State::default().save().unwrap();
+        assert!(State::restore(&text[..text.len() / 2]).is_none());
+        assert!(State::restore(&text.replace("\"version\":1", "\"version\":99")).is_none());
+    }
+}

@@ -1,0 +1,40 @@
+//! A figure with its title and the ways to take it along.
+
+use egui::{Align, Layout, RichText, Ui};
+
+use crate::app::command::Command;
+use crate::app::dialogs::Purpose;
+use crate::figure::Figure;
+use crate::render::{FigureOptions, FigureResponse, figure_ui};
+
+/// Draws a figure under its title, with a menu to save its picture or its numbers or to copy them.
+pub fn figure_frame(
+    ui: &mut Ui,
+    figure: &Figure,
+    options: &FigureOptions,
+    commands: &mut Vec<Command>,
+) -> FigureResponse {
+    ui.horizontal(|ui| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.menu_button("Export", |ui| export_menu_ui(ui, figure, commands))
+                .response
+                .on_hover_text("Save or copy this figure");
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                ui.add(egui::Label::new(RichText::new(&figure.title).strong()).truncate());
+            });
+        });
+    });
+    figure_ui(ui, figure, options)
+}
+
+fn export_menu_ui(ui: &mut Ui, figure: &Figure, commands: &mut Vec<Command>) {
+    if ui.button("Save picture (PNG)…").clicked() {
+        commands.push(Command::Ask(Purpose::Picture(Box::new(figure.clone()))));
+    }
+    if ui.button("Save numbers (CSV)…").clicked() {
+        commands.push(Command::Ask(Purpose::Numbers(Box::new(figure.clone()))));
+    }
+    if ui.button("Copy numbers").clicked() {
+        commands.push(Command::CopyNumbers(Box::new(figure.clone())));
+    }
+}

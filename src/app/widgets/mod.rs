@@ -1,0 +1,7 @@
+//! Parts that several panels use.
+
+mod figure_frame;
+mod quantity;
+
+pub use figure_frame::figure_frame;
+pub use quantity::{quantity_field, value_row};

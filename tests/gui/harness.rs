@@ -1,0 +1,69 @@
+//! An app in a test: its own state, no storage, pixels from the software renderer.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use egui::{Color32, Context, FullOutput, TexturesDelta};
+use egui_kittest::{Harness, TestRenderer};
+use image::RgbaImage;
+use impactlab::app::{App, State};
+use impactlab::render::SoftwareRenderer;
+
+/// Longest wait for background work.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+#[derive(Default)]
+struct SoftwareTestRenderer(SoftwareRenderer);
+
+impl TestRenderer for SoftwareTestRenderer {
+    fn handle_delta(&mut self, delta: &mut TexturesDelta) {
+        self.0.update_textures(delta);
+    }
+
+    fn render(&mut self, context: &Context, output: &FullOutput) -> Result<RgbaImage, String> {
+        let primitives = context.tessellate(output.shapes.clone(), output.pixels_per_point);
+        let size = context.content_rect().size() * output.pixels_per_point;
+        let ground = context.global_style().visuals.panel_fill;
+        let size = [size.x.round() as u32, size.y.round() as u32];
+        Ok(self.0.draw(
+            &primitives,
+            size,
+            output.pixels_per_point,
+            Color32::from(ground),
+        ))
+    }
+}
+
+/// Opens the app on these paths.
+pub fn open(paths: &[&str]) -> Harness<'static, App> {
+    let paths: Vec<PathBuf> = paths.iter().map(PathBuf::from).collect();
+    Harness::builder()
+        .with_size([1440.0, 900.0])
+        .with_step_dt(1.0 / 60.0)
+        .renderer(SoftwareTestRenderer::default())
+        .build_eframe(move |cc| App::new(cc, paths))
+}
+
+/// Steps until the state is as wanted.
+pub fn step_until(harness: &mut Harness<'_, App>, what: &str, wanted: impl Fn(&State) -> bool) {
+    let start = Instant::now();
+    while !wanted(harness.state().state()) {
+        assert!(start.elapsed() < PATIENCE, "waited in vain for {what}");
+        harness.step();
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    for _ in 0..4 {
+        harness.step();
+    }
+}
+
+/// Whether nothing is under way.
+pub fn is_idle(state: &State) -> bool {
+    state
+        .session
+        .sources
+        .iter()
+        .all(impactlab::app::Source::is_settled)
+        && state.session.analysis.job.is_none()
+        && state.session.analysis.requested.is_some()
+}

@@ -1,0 +1,5 @@
+//! The app, driven without a display and drawn on the CPU.
+
+mod harness;
+mod pictures;
+mod workflow;

@@ -1,0 +1,1 @@
+//! What an analyst does: open, pick, simulate, scrub.
