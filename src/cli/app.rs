@@ -17,20 +17,24 @@ pub(super) struct AppArgs {
 }
 
 /// Opens the window and waits until it is closed.
+///
+/// # Errors
+/// [`CliError::NoWindow`]: this build has none.
 #[cfg(not(feature = "gui"))]
 pub(super) fn run(_args: AppArgs) -> Result<Verdict, CliError> {
     Err(CliError::NoWindow)
 }
 
 /// Opens the window and waits until it is closed.
+///
+/// # Errors
+/// [`CliError::NoDisplay`], or [`CliError::Window`] with the system's reason.
 #[cfg(feature = "gui")]
 pub(super) fn run(args: AppArgs) -> Result<Verdict, CliError> {
     if !has_display(|name| std::env::var_os(name)) {
         return Err(CliError::NoDisplay);
     }
-    // The window goes here: `crate::app::run(args.paths)?;` with its error as a variant of
-    // `CliError`.
-    let _ = args.paths;
+    crate::app::run(args.paths)?;
     Ok(Verdict::Clean)
 }
 

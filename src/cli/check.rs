@@ -162,14 +162,7 @@ fn file_report(path: &Path, loaded: &Loaded) -> FileReport {
 
 /// A path that cannot be read; if its columns are the reason, with what they look like.
 fn problem(path: &Path, error: &DataError) -> ProblemReport {
-    let is_about_columns = matches!(
-        error,
-        DataError::NoHeader { .. }
-            | DataError::MissingColumn { .. }
-            | DataError::AmbiguousColumn { .. }
-            | DataError::UnknownUnit { .. }
-            | DataError::NoSuchColumn { .. }
-    );
+    let is_about_columns = error.needs_mapping() || matches!(error, DataError::NoSuchColumn { .. });
     let columns = is_about_columns
         .then(|| propose_columns(path).ok())
         .flatten();

@@ -183,6 +183,10 @@ pub enum CliError {
     #[cfg(feature = "gui")]
     #[error(transparent)]
     Render(#[from] crate::render::RenderError),
+    /// A window that could not be opened.
+    #[cfg(feature = "gui")]
+    #[error(transparent)]
+    Window(#[from] crate::app::WindowError),
     /// A window from a build without one.
     #[error(
         "this build has no window; use impactlab check, impact, simulate, render or vehicles \

@@ -165,7 +165,7 @@ fn print_text(
                 contact.restitution, contact.friction_limit
             ),
         ),
-        ("regime", regime(solution.regime).to_owned()),
+        ("regime", solution.regime.label().to_owned()),
         (
             "closing velocity",
             vector(Quantity::Speed, closing, ["normal", "tangential"]),
@@ -212,14 +212,4 @@ fn print_text(
         print_facts(out, &facts)?;
     }
     Ok(())
-}
-
-/// How the contact ended, in words.
-fn regime(regime: Regime) -> &'static str {
-    match regime {
-        Regime::NoSlide => "no slide: the surfaces stick at the end",
-        Regime::Sliding => "sliding: friction at its limit",
-        Regime::EnergyLimited => "energy limited: friction held where it creates no energy",
-        Regime::NotApproaching => "the vehicles do not approach: no impulse",
-    }
 }

@@ -72,7 +72,7 @@ JSON, one vehicle: vehicle, integrator, friction, duration_s, force {path, sampl
   impulse_n_s [x, y], contact_start_s, contact_end_s, yaw_moment}, delta_v_m_s [x, y] and
   delta_v_magnitude_m_s over the contact (null without), end {x_m, y_m, yaw_rad, roll_rad,
   vx_m_s, vy_m_s, yaw_rate_rad_s, speed_m_s}, distance_m, largest_yaw_change_rad,
-  flags [{kind, time_s, wheel or roll_rad}], out
+  flags [{kind, time_s, wheel, roll_rad, message}], out
 
 JSON, data set: dataset, vehicle, integrator, cases [{case, spin, average_error_m, final_error_m,
   final_heading_error_rad, horizon_error_m (at 0.5, 1, 2, 4 s), rmse_*, flags}], overall, spinning

@@ -55,39 +55,34 @@ pub(super) struct End {
     speed_m_s: f64,
 }
 
-/// A [`MotionFlag`] for machines.
+/// A [`MotionFlag`] for machines and, as `message`, for a person.
 #[derive(Debug, Serialize)]
-#[serde(tag = "kind", rename_all = "snake_case")]
-pub(super) enum FlagAnswer {
-    /// A wheel carries no load.
-    WheelLift { time_s: f64, wheel: String },
-    /// Roll beyond what the model covers.
-    RollLimit { time_s: f64, roll_rad: f64 },
+pub(super) struct FlagAnswer {
+    kind: &'static str,
+    time_s: f64,
+    wheel: Option<String>,
+    roll_rad: Option<f64>,
+    pub(super) message: String,
 }
 
 impl From<&MotionFlag> for FlagAnswer {
     fn from(flag: &MotionFlag) -> Self {
-        match *flag {
-            MotionFlag::WheelLift { wheel, time_s } => Self::WheelLift {
-                time_s,
-                wheel: word(&wheel),
+        let message = flag.to_string();
+        match flag {
+            MotionFlag::WheelLift { wheel, time_s } => Self {
+                kind: "wheel_lift",
+                time_s: *time_s,
+                wheel: Some(word(wheel)),
+                roll_rad: None,
+                message,
             },
-            MotionFlag::RollLimit { time_s, roll_rad } => Self::RollLimit { time_s, roll_rad },
-        }
-    }
-}
-
-impl FlagAnswer {
-    /// In words, with the time.
-    pub(super) fn text(&self) -> String {
-        match self {
-            Self::WheelLift { time_s, wheel } => {
-                format!("{} wheel lifts at {time_s:.2} s", wheel.replace('_', " "))
-            }
-            Self::RollLimit { time_s, roll_rad } => format!(
-                "roll reaches {:.1} deg at {time_s:.2} s, beyond the model: a rollover is not excluded",
-                roll_rad.to_degrees()
-            ),
+            MotionFlag::RollLimit { time_s, roll_rad } => Self {
+                kind: "roll_limit",
+                time_s: *time_s,
+                wheel: None,
+                roll_rad: Some(*roll_rad),
+                message,
+            },
         }
     }
 }
@@ -216,7 +211,12 @@ pub(super) fn print_text(
         ),
         ("final speed", number(Quantity::Speed, end.speed_m_s)),
     ]);
-    facts.extend(answer.flags.iter().map(|flag| ("flag", flag.text())));
+    facts.extend(
+        answer
+            .flags
+            .iter()
+            .map(|flag| ("flag", flag.message.clone())),
+    );
     if let Some(path) = &answer.out {
         facts.push(("written", path.display().to_string()));
     }

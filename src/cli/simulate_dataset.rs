@@ -133,7 +133,7 @@ fn print_text(out: &mut dyn Write, answer: &Answer<'_>, units: UnitSystem) -> io
         answer.integrator
     )?;
     let row = |case: &CaseAnswer<'_>| {
-        let flags: Vec<String> = case.flags.iter().map(FlagAnswer::text).collect();
+        let flags: Vec<&str> = case.flags.iter().map(|f| f.message.as_str()).collect();
         let error = case.error;
         vec![
             case.case.to_owned(),
