@@ -27,9 +27,7 @@ fn main() {
 }
 
 fn shipped(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("datasets")
-        .join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets").join(name)
 }
 
 fn load(root: &Path) -> Dataset {
@@ -46,14 +44,7 @@ fn generate(root: &Path) -> Result<(), Box<dyn std::error::Error>> {
     let mut rows = format!("{}\n", lines.next().unwrap_or_default());
     let lines: Vec<&str> = lines.collect();
     fs::create_dir(root.join("forces"))?;
-    for (i, (case, line)) in source
-        .cases
-        .iter()
-        .zip(lines)
-        .cycle()
-        .take(N_GENERATED)
-        .enumerate()
-    {
+    for (i, (case, line)) in source.cases.iter().zip(lines).cycle().take(N_GENERATED).enumerate() {
         let row = line.split_once(',').map_or("", |(_, row)| row);
         rows.push_str(&format!("g{i:05},{row}\n"));
         let series = stronger(&case.series, 1.0 + i as f64 * 1e-5)?;
@@ -83,9 +74,7 @@ fn one_force_file(bencher: Bencher<'_, '_>) {
 #[divan::bench(args = ["fea", "trajectories-fea"], sample_count = 20)]
 fn shipped_100_cases(bencher: Bencher<'_, '_>, name: &str) {
     let root = shipped(name);
-    bencher
-        .counter(ItemsCount::new(100_usize))
-        .bench(|| load(&root));
+    bencher.counter(ItemsCount::new(100_usize)).bench(|| load(&root));
 }
 
 #[divan::bench(sample_count = 20)]

@@ -47,11 +47,7 @@ pub type Report<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
 impl Progress {
     /// `done` of `total` units, with a word on what is being done.
     pub fn new(done: u64, total: u64, message: impl Into<String>) -> Self {
-        Self {
-            done,
-            total,
-            message: message.into(),
-        }
+        Self { done, total, message: message.into() }
     }
 
     /// The share done, 0 to 1; `None` while the total is unknown.
@@ -109,26 +105,24 @@ impl<T: Send + 'static> Job<T> {
         let cancel = Arc::new(AtomicBool::new(false));
         let (sender, receiver) = channel();
         let cancelled = Arc::clone(&cancel);
-        thread::Builder::new()
-            .name(name.to_owned())
-            .spawn(move || {
-                let mut report = |progress: Progress| {
-                    // A dropped receiver means a dropped job, which has set the flag.
-                    let _ = sender.send(Message::Progress(progress));
-                    wake();
-                    if cancelled.load(Ordering::Relaxed) {
-                        ControlFlow::Break(())
-                    } else {
-                        ControlFlow::Continue(())
-                    }
-                };
-                let end = match catch_unwind(AssertUnwindSafe(|| work(&mut report))) {
-                    Ok(value) => Update::Finished(value),
-                    Err(payload) => Update::Panicked(panic_message(&*payload)),
-                };
-                let _ = sender.send(Message::End(end));
+        thread::Builder::new().name(name.to_owned()).spawn(move || {
+            let mut report = |progress: Progress| {
+                // A dropped receiver means a dropped job, which has set the flag.
+                let _ = sender.send(Message::Progress(progress));
                 wake();
-            })?;
+                if cancelled.load(Ordering::Relaxed) {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
+            };
+            let end = match catch_unwind(AssertUnwindSafe(|| work(&mut report))) {
+                Ok(value) => Update::Finished(value),
+                Err(payload) => Update::Panicked(panic_message(&*payload)),
+            };
+            let _ = sender.send(Message::End(end));
+            wake();
+        })?;
         Ok(Self {
             name: name.to_owned(),
             started: Instant::now(),
@@ -223,9 +217,7 @@ impl<T> Drop for Job<T> {
 }
 
 fn panic_message(payload: &(dyn std::any::Any + Send)) -> String {
-    let text = payload
-        .downcast_ref::<&str>()
-        .map(|text| (*text).to_owned());
+    let text = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
     text.or_else(|| payload.downcast_ref::<String>().cloned())
         .unwrap_or_else(|| "a panic without a message".to_owned())
 }
@@ -248,10 +240,7 @@ mod tests {
     fn a_cancelled_job_ends_with_its_value() {
         let mut job = Job::spawn("count", || {}, count_until_cancelled).unwrap();
         while job.progress().done < 3 {
-            assert!(matches!(
-                job.wait_for(Duration::from_secs(10)),
-                Update::Running
-            ));
+            assert!(matches!(job.wait_for(Duration::from_secs(10)), Update::Running));
         }
         job.cancel();
         assert!(matches!(job.wait(), Update::Finished(steps) if steps >= 3));
@@ -269,10 +258,7 @@ mod tests {
             },
         );
         drop(job);
-        assert!(
-            receiver.recv_timeout(Duration::from_secs(10)).is_ok(),
-            "the thread went on"
-        );
+        assert!(receiver.recv_timeout(Duration::from_secs(10)).is_ok(), "the thread went on");
     }
 
     #[test]
@@ -284,14 +270,8 @@ mod tests {
     #[test]
     fn time_left_extrapolates() {
         let progress = Progress::new(25, 100, "");
-        assert_eq!(
-            progress.time_left(Duration::from_secs(10)),
-            Some(Duration::from_secs(30))
-        );
+        assert_eq!(progress.time_left(Duration::from_secs(10)), Some(Duration::from_secs(30)));
         assert_eq!(progress.fraction(), Some(0.25));
-        assert_eq!(
-            Progress::new(5, 0, "").time_left(Duration::from_secs(1)),
-            None
-        );
+        assert_eq!(Progress::new(5, 0, "").time_left(Duration::from_secs(1)), None);
     }
 }

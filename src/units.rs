@@ -113,22 +113,14 @@ impl Quantity {
             (Self::Energy, UnitSystem::Us) => "ft lbf",
             _ => return self.si_unit(),
         };
-        *self
-            .units()
-            .iter()
-            .find(|unit| unit.symbol == symbol)
-            .unwrap_or(&self.units()[0])
+        *self.units().iter().find(|unit| unit.symbol == symbol).unwrap_or(&self.units()[0])
     }
 
     /// An SI number as a person reads it: “123 kN”.
     pub fn shown(self, value_si: f64, system: UnitSystem) -> String {
         let unit = self.display_unit(system);
         let number = significant(unit.from_si(value_si));
-        if unit.symbol.is_empty() {
-            number
-        } else {
-            format!("{number} {}", unit.symbol)
-        }
+        if unit.symbol.is_empty() { number } else { format!("{number} {}", unit.symbol) }
     }
 
     /// Every unit of the quantity that files and people use, the SI unit first.
@@ -213,10 +205,7 @@ mod tests {
         let speed = Quantity::Speed.display_unit(UnitSystem::Us);
         assert_eq!(speed.symbol, "mph");
         assert!((speed.from_si(44.704) - 100.0).abs() < 1e-12);
-        assert_eq!(
-            Quantity::Impulse.display_unit(UnitSystem::Si).symbol,
-            "kN s"
-        );
+        assert_eq!(Quantity::Impulse.display_unit(UnitSystem::Si).symbol, "kN s");
         for quantity in ALL {
             let us = quantity.display_unit(UnitSystem::Us);
             assert!(quantity.units().contains(&us), "{quantity:?}");
@@ -225,12 +214,9 @@ mod tests {
 
     #[test]
     fn numbers_are_shown_with_four_digits() {
-        for (value, expected) in [
-            (123_456.7, "123457"),
-            (12.3456, "12.35"),
-            (-0.012_345_6, "-0.01235"),
-            (0.0, "0"),
-        ] {
+        for (value, expected) in
+            [(123_456.7, "123457"), (12.3456, "12.35"), (-0.012_345_6, "-0.01235"), (0.0, "0")]
+        {
             assert_eq!(significant(value), expected);
         }
         assert_eq!(Quantity::Force.shown(12_345.0, UnitSystem::Si), "12.35 kN");

@@ -89,14 +89,8 @@ fn bad_force_files_are_refused_with_their_place() {
             b"time_s,fx_n,fy_n\n0,1,1,1\n0.1,1,1,1\n",
             "f.csv:2: has 4 fields, the header has 3; complete the row or remove it",
         ),
-        (
-            b"",
-            "f.csv: is empty, expected a header line and rows of numbers",
-        ),
-        (
-            b"\n\n# nothing\n",
-            "f.csv: is empty, expected a header line and rows of numbers",
-        ),
+        (b"", "f.csv: is empty, expected a header line and rows of numbers"),
+        (b"\n\n# nothing\n", "f.csv: is empty, expected a header line and rows of numbers"),
         (
             b"time_s,fx_n,fy_n\n",
             "f.csv:1: rows of numbers below the header: 0, expected at least 2",
@@ -137,10 +131,7 @@ fn bad_force_files_are_refused_with_their_place() {
             b"time_s,fx_n,fy_n,Fx [kN]\n0,1,1,1\n1,1,1,1\n",
             r#"f.csv:1:4: "Fx [kN]" and "fx_n" in column 2 both look like fx; choose one, e.g. --map fx=2, or in the mapping dialog"#,
         ),
-        (
-            &bad_utf16,
-            "f.csv:3:2: \"Fx [kN]\" is \"zw\u{f6}lf\", expected a finite number in kN",
-        ),
+        (&bad_utf16, "f.csv:3:2: \"Fx [kN]\" is \"zw\u{f6}lf\", expected a finite number in kN"),
         (
             b"Zeit [s];Kraft X [kN];Kraft Y [kN]\n0;1;1\n0,1;zw\xf6lf;1\n",
             "f.csv:3:2: \"Kraft X [kN]\" is \"zw\u{f6}lf\", expected a finite number in kN",
@@ -180,14 +171,8 @@ fn what_is_no_file_is_refused() {
     let here = folder.path();
     let refused = |path: &Path| message(here, &read_any_series(path, None).unwrap_err());
     fs::create_dir(here.join("d.csv")).unwrap();
-    assert_eq!(
-        refused(&here.join("d.csv")),
-        "d.csv: is a folder, expected a file"
-    );
-    assert_eq!(
-        refused(&here.join("none.csv")),
-        "none.csv: does not exist; check the name"
-    );
+    assert_eq!(refused(&here.join("d.csv")), "d.csv: is a folder, expected a file");
+    assert_eq!(refused(&here.join("none.csv")), "none.csv: does not exist; check the name");
     let mut go_on = |_| ControlFlow::Continue(());
     let error = open(&here.join("d.csv"), &mut go_on).unwrap_err();
     assert_eq!(
@@ -203,12 +188,7 @@ fn huge_files_are_refused_at_once() {
     let sparse = |name: &str, start: &str| {
         let path = folder.path().join(name);
         fs::write(&path, start).unwrap();
-        File::options()
-            .write(true)
-            .open(&path)
-            .unwrap()
-            .set_len(2 << 30)
-            .unwrap();
+        File::options().write(true).open(&path).unwrap().set_len(2 << 30).unwrap();
         message(folder.path(), &read_any_series(&path, None).unwrap_err())
     };
     assert_eq!(
@@ -226,19 +206,11 @@ fn small_dataset() -> TempDir {
     let folder = folder();
     let header = "case,m_t_kg,m_b_kg,v_tx_m_s,v_ty_m_s,v_bx_m_s,v_by_m_s,theta_b_rad,contact_x_m,contact_y_m";
     let rows = ["a", "b", "c"].map(|case| format!("{case},2000,1500,10,0,12,1,0.2,-1.4,-0.9\n"));
-    fs::write(
-        folder.path().join("cases.csv"),
-        format!("{header}\n{}", rows.concat()),
-    )
-    .unwrap();
+    fs::write(folder.path().join("cases.csv"), format!("{header}\n{}", rows.concat())).unwrap();
     fs::create_dir(folder.path().join("forces")).unwrap();
     for case in ["a", "b", "c"] {
         let content = "time_s,fx_n,fy_n\n0,0,0\n0.1,5,9\n0.2,0,0\n";
-        fs::write(
-            folder.path().join("forces").join(format!("{case}.csv")),
-            content,
-        )
-        .unwrap();
+        fs::write(folder.path().join("forces").join(format!("{case}.csv")), content).unwrap();
     }
     folder
 }
@@ -247,14 +219,8 @@ fn small_dataset() -> TempDir {
 fn load(root: &Path) -> (Vec<String>, Vec<String>) {
     let dataset = Dataset::load(root, &mut |_| ControlFlow::Continue(())).unwrap();
     let dataset = dataset.complete().unwrap();
-    let problems = dataset
-        .problems
-        .iter()
-        .map(|problem| message(root, problem));
-    (
-        dataset.cases.into_iter().map(|case| case.name).collect(),
-        problems.collect(),
-    )
+    let problems = dataset.problems.iter().map(|problem| message(root, problem));
+    (dataset.cases.into_iter().map(|case| case.name).collect(), problems.collect())
 }
 
 fn edit(root: &Path, file: &str, edit: impl Fn(String) -> String) {
@@ -282,11 +248,7 @@ fn bad_cases_do_not_stop_the_good_ones() {
             ],
         ),
         (
-            |root| {
-                edit(root, "cases.csv", |text| {
-                    text.replace("b,2000", "../b,2000")
-                })
-            },
+            |root| edit(root, "cases.csv", |text| text.replace("b,2000", "../b,2000")),
             &["a", "c"],
             &[
                 r#"cases.csv:3:1: case "../b" cannot name a file; use letters, digits, '-', '_' and '.'"#,
@@ -301,20 +263,12 @@ fn bad_cases_do_not_stop_the_good_ones() {
             ],
         ),
         (
-            |root| {
-                edit(root, "cases.csv", |text| {
-                    text.replace("b,2000,1500", "b,2000,heavy")
-                })
-            },
+            |root| edit(root, "cases.csv", |text| text.replace("b,2000,1500", "b,2000,heavy")),
             &["a", "c"],
             &[r#"cases.csv:3:3: "m_b_kg" is "heavy", expected a finite number"#],
         ),
         (
-            |root| {
-                edit(root, "cases.csv", |text| {
-                    text.replace("m_b_kg", "bullet_mass")
-                })
-            },
+            |root| edit(root, "cases.csv", |text| text.replace("m_b_kg", "bullet_mass")),
             &["a", "b", "c"],
             &[
                 r#"cases.csv:1: "m_b_kg" is missing; add it, without it the collision cannot be computed"#,
@@ -364,9 +318,7 @@ fn tables_of_cases_may_be_sparse_or_in_another_dialect() {
 fn data_sets_without_a_table_are_refused() {
     let folder = small_dataset();
     let mut go_on = |_| ControlFlow::Continue(());
-    edit(folder.path(), "cases.csv", |text| {
-        text.replace("case,", "name,")
-    });
+    edit(folder.path(), "cases.csv", |text| text.replace("case,", "name,"));
     let error = open(folder.path(), &mut go_on).unwrap_err();
     assert_eq!(
         message(folder.path(), &error),
@@ -374,10 +326,7 @@ fn data_sets_without_a_table_are_refused() {
     );
     fs::remove_file(folder.path().join("cases.csv")).unwrap();
     let error = open(folder.path(), &mut go_on).unwrap_err();
-    assert_eq!(
-        message(folder.path(), &error),
-        "cases.csv: does not exist; check the name"
-    );
+    assert_eq!(message(folder.path(), &error), "cases.csv: does not exist; check the name");
 }
 
 #[test]

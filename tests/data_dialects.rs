@@ -45,10 +45,7 @@ fn one_history_in_many_dialects() {
     let blanks = "  0   0  0\n 1\t 1.5   0.75\n\n 2 -2.505e-1 -1.2525D-01  \n";
     for (content, map) in [
         (format!("time_s,fx_n,fy_n\n{si}"), ""),
-        (
-            format!("\u{feff}time_s,fx_n,fy_n\r\n{}", si.replace('\n', "\r\n")),
-            "",
-        ),
+        (format!("\u{feff}time_s,fx_n,fy_n\r\n{}", si.replace('\n', "\r\n")), ""),
         (format!("time_s,fx_n,fy_n\n{si}").replace('\n', "\r"), ""),
         (format!("\"Time [s]\",\"Fx [N]\",\"Fy [N]\"\n{si}"), ""),
         (
@@ -58,47 +55,20 @@ fn one_history_in_many_dialects() {
         (format!("t [ms];Fx [kN];Fy [kN]\n{milli}"), ""),
         (format!("t;fx;fy\nms;kN;kN\n{milli}"), ""),
         (format!("t;fx;fy\n[ms];[kN];[kN]\n{milli}"), ""),
-        (
-            format!("t in ms\tFx / kN\tFy / kN\n{}", milli.replace(';', "\t")),
-            "",
-        ),
-        (
-            format!("t,ms;Fx,kN;Fy,kN;\n{}", milli.replace('\n', ";\n")),
-            "",
-        ),
-        (
-            format!("t_ms;fx_kn;fy_kn\n{}", milli.replace('\n', ";\n")),
-            "",
-        ),
+        (format!("t in ms\tFx / kN\tFy / kN\n{}", milli.replace(';', "\t")), ""),
+        (format!("t,ms;Fx,kN;Fy,kN;\n{}", milli.replace('\n', ";\n")), ""),
+        (format!("t_ms;fx_kn;fy_kn\n{}", milli.replace('\n', ";\n")), ""),
         (format!("  t_ms fx_kn   fy_kn\n{blanks}"), ""),
         (format!("# t_ms fx_kn fy_kn\n{blanks}"), ""),
-        (
-            format!("Crash test 12, run 3\nby someone\n\nt_ms;fx_kn;fy_kn\n{milli}"),
-            "",
-        ),
+        (format!("Crash test 12, run 3\nby someone\n\nt_ms;fx_kn;fy_kn\n{milli}"), ""),
         (format!("Speed;50;km/h\nt_ms;fx_kn;fy_kn\n{milli}"), ""),
-        (
-            format!("Mass;1500\nDate;1.2.2026;\nt_ms;fx_kn;fy_kn\n{milli}"),
-            "",
-        ),
-        (
-            format!("% comment\n// t\n!\n$ x\nt_ms;fx_kn;fy_kn\n# late\n{milli};;\n"),
-            "",
-        ),
+        (format!("Mass;1500\nDate;1.2.2026;\nt_ms;fx_kn;fy_kn\n{milli}"), ""),
+        (format!("% comment\n// t\n!\n$ x\nt_ms;fx_kn;fy_kn\n# late\n{milli};;\n"), ""),
         (milli.to_owned(), "time=1:ms,fx=2:kN,fy=3:kN"),
         (si.to_owned(), "time=1,fx=2,fy=3"),
-        (
-            format!("Zeit [ms];Kraft längs [kN];Quer;\n{milli}"),
-            "fx=Kraft längs,fy=quer:kN",
-        ),
-        (
-            format!("Zeit [ms];Kraft längs [kN];Fy [kg]\n{milli}"),
-            "fx=2,fy=Fy:kN",
-        ),
-        (
-            format!("t [ms];fx [kN];fy [kN]\n{milli}").replace(',', "."),
-            "",
-        ),
+        (format!("Zeit [ms];Kraft längs [kN];Quer;\n{milli}"), "fx=Kraft längs,fy=quer:kN"),
+        (format!("Zeit [ms];Kraft längs [kN];Fy [kg]\n{milli}"), "fx=2,fy=Fy:kN"),
+        (format!("t [ms];fx [kN];fy [kN]\n{milli}").replace(',', "."), ""),
     ] {
         assert_is_the_history(&read(&content, map), &content);
     }
@@ -163,15 +133,10 @@ fn a_dialog_is_shown_the_columns_and_can_take_the_guesses() {
     let path = folder.path().join("f.csv");
     fs::write(&path, "Zeit [ms];Kraft 1;Fy [kN]\n0;0,5;7\n1;1,5;8\n").unwrap();
     let mut proposals = propose_columns(&path).unwrap();
-    let names: Vec<&str> = proposals
-        .iter()
-        .map(|column| column.name.as_str())
-        .collect();
+    let names: Vec<&str> = proposals.iter().map(|column| column.name.as_str()).collect();
     assert_eq!(names, ["Zeit [ms]", "Kraft 1", "Fy [kN]"]);
     assert_eq!(proposals[1].samples, ["0,5", "1,5"]);
-    let channels = proposals
-        .iter()
-        .map(|column| column.guess.map(|(channel, _)| channel));
+    let channels = proposals.iter().map(|column| column.guess.map(|(channel, _)| channel));
     assert!(channels.eq([Some(Channel::Time), None, Some(Channel::Fy)]));
     proposals[1].guess = Some((Channel::Fx, None));
     let map = map_from_proposals(&proposals);

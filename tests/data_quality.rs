@@ -41,10 +41,7 @@ fn every_fault_raises_its_flag() {
         (FlagKind::Spike, flags(clock, spiked(40))),
         (FlagKind::Spike, flags(clock, spiked(70))),
         (FlagKind::Spike, flags(clock, spiked(160))),
-        (
-            FlagKind::ImplausibleForce,
-            flags(clock, pulse(|_, force| force * 50.0)),
-        ),
+        (FlagKind::ImplausibleForce, flags(clock, pulse(|_, force| force * 50.0))),
         (FlagKind::LongContact, flags(|i| clock(i) * 1e3, clean())),
         (FlagKind::NoForce, flags(clock, vec![0.0; 200])),
         (FlagKind::NotSeparated, flags(clock, clean()[..90].to_vec())),
@@ -66,19 +63,14 @@ fn an_offset_is_drift_and_hides_the_separation() {
 }
 
 fn shipped_case(dataset: &str) -> Case {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("datasets")
-        .join(dataset);
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets").join(dataset);
     let loaded = Dataset::load(&root, &mut |_| ControlFlow::Continue(())).unwrap();
     loaded.complete().unwrap().cases.swap_remove(0)
 }
 
 #[test]
 fn forces_that_do_not_explain_the_motion_are_flagged() {
-    for (dataset, channel) in [
-        ("fea", Channel::Fy),
-        ("trajectories-pulse", Channel::FyBody),
-    ] {
+    for (dataset, channel) in [("fea", Channel::Fy), ("trajectories-pulse", Channel::FyBody)] {
         for (factor, severity) in [(1.05, Severity::Warning), (-1.0, Severity::Error)] {
             let mut case = shipped_case(dataset);
             let forces = case.series.require(channel).unwrap();
@@ -107,12 +99,7 @@ fn attributes_are_all_kept_in_order() {
     let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/fea/cases.csv");
     let text = fs::read_to_string(table).unwrap();
     let header = text.lines().next().unwrap();
-    assert!(
-        case.attributes
-            .iter()
-            .map(|(name, _)| name)
-            .eq(header.split(','))
-    );
+    assert!(case.attributes.iter().map(|(name, _)| name).eq(header.split(',')));
     assert_eq!(case.attributes.text("bullet_body"), Some("A"));
     assert_eq!(case.attributes.number("m_t_kg"), Some(2000.0));
     assert_eq!(case.attributes.flag("hooked"), Some(false));

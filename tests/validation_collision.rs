@@ -9,11 +9,7 @@ use impactlab::collision::{
 use impactlab::units::{Quantity, Unit};
 
 fn unit(quantity: Quantity, symbol: &str) -> Unit {
-    *quantity
-        .units()
-        .iter()
-        .find(|unit| unit.symbol == symbol)
-        .expect("a unit of the table")
+    *quantity.units().iter().find(|unit| unit.symbol == symbol).expect("a unit of the table")
 }
 
 /// Barrier example of Carpenter and Welcher, SAE 2019-01-0422. The source's axes are x forward,
@@ -66,10 +62,7 @@ fn carpenter_welcher_barrier() {
     // Half of the last printed digit; the last digit of P_n is printed cut, not rounded.
     let tolerances = [5e-4, 1e-3, 5e-5, 5e-5, 5e-3, 0.05];
     for ((got, printed), tolerance) in got.into_iter().zip(printed).zip(tolerances) {
-        assert!(
-            (got - printed).abs() < tolerance,
-            "{got}, printed {printed}"
-        );
+        assert!((got - printed).abs() < tolerance, "{got}, printed {printed}");
     }
 }
 
@@ -134,11 +127,7 @@ fn finite_element_cases() -> (csv::StringRecord, Vec<csv::StringRecord>) {
     (headers, rows.collect())
 }
 
-const OUTLINE: Footprint = Footprint {
-    length_m: 4.8,
-    width_m: 1.85,
-    cg_from_front_m: 2.3,
-};
+const OUTLINE: Footprint = Footprint { length_m: 4.8, width_m: 1.85, cg_from_front_m: 2.3 };
 
 /// The shipped finite-element runs, e = 0.3, μ_c = 0.4, normal across the target. Median error over
 /// all 100 runs: 16.3 % for the impulse vector, 12.6 % for its magnitude, 10.4 % across. The bounds
@@ -179,22 +168,14 @@ fn finite_element_restitution_and_friction() {
         if cell(&headers, row, "hooked") == 1.0 {
             continue;
         }
-        let impact = impact_case(&headers, row)
-            .to_impact(0.0, 0.0)
-            .expect("a side");
+        let impact = impact_case(&headers, row).to_impact(0.0, 0.0).expect("a side");
         let impulse = ["impulse_x_n_s", "impulse_y_n_s"].map(|name| cell(&headers, row, name));
         samples.push(impact.implied_contact(impulse).expect("a push"));
     }
     assert_eq!(samples.len(), 88);
     let fit = ContactDistribution::fit(&samples).expect("samples");
     let [low, high] = fit.restitution;
-    assert!(
-        (low - 0.24).abs() < 0.01 && (high - 0.63).abs() < 0.02,
-        "{fit:?}"
-    );
+    assert!((low - 0.24).abs() < 0.01 && (high - 0.63).abs() < 0.02, "{fit:?}");
     let [low, high] = fit.friction_limit;
-    assert!(
-        (low - 0.06).abs() < 0.01 && (high - 0.55).abs() < 0.02,
-        "{fit:?}"
-    );
+    assert!((low - 0.06).abs() < 0.01 && (high - 0.55).abs() < 0.02, "{fit:?}");
 }

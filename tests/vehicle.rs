@@ -11,11 +11,7 @@ use impactlab::{data::Channel, units::STANDARD_GRAVITY_M_S2};
 use nalgebra::SVector;
 use proptest::prelude::*;
 
-const CONTACT: ContactPoint = ContactPoint {
-    x_m: -1.5,
-    y_m: -0.9,
-    height_m: 0.52,
-};
+const CONTACT: ContactPoint = ContactPoint { x_m: -1.5, y_m: -0.9, height_m: 0.52 };
 
 fn pit_force(fx_n: f64, fy_n: f64) -> ForceHistory {
     let time_s: Vec<f64> = (0..=120).map(|ms| f64::from(ms) * 1e-3).collect();
@@ -34,11 +30,7 @@ fn pit(fy_n: f64, contact: ContactPoint, speed_m_s: f64, duration_s: f64) -> Man
     let force = pit_force(8e3, fy_n);
     Manoeuvre {
         initial: VehicleState::driving_straight(speed_m_s),
-        contact_load: Some(ContactLoad {
-            force,
-            contact,
-            recorded_moment: false,
-        }),
+        contact_load: Some(ContactLoad { force, contact, recorded_moment: false }),
         steer: None,
         duration_s,
     }
@@ -77,23 +69,13 @@ fn the_kinetic_energy_never_rises_without_a_force() {
             ..VehicleState::default()
         };
         let planar = |x: &VehicleState<f64>| {
-            energy_j(
-                &vehicle,
-                &VehicleState {
-                    roll_rad: 0.0,
-                    roll_rate_rad_s: 0.0,
-                    ..*x
-                },
-            )
+            energy_j(&vehicle, &VehicleState { roll_rad: 0.0, roll_rate_rad_s: 0.0, ..*x })
         };
         let mut before = planar(&state);
         for step in 0..6000 {
             let f = |_: Stage, x: &[f64; 8]| {
                 let state = VehicleState::from_array(*x);
-                vehicle
-                    .evaluate(&state, &VehicleInput::released())
-                    .derivative
-                    .to_array()
+                vehicle.evaluate(&state, &VehicleInput::released()).derivative.to_array()
             };
             state = VehicleState::from_array(rk4_step(f, &state.to_array(), 1e-3));
             let after = planar(&state);
@@ -111,16 +93,10 @@ fn the_kinetic_energy_never_rises_without_a_force() {
 #[test]
 fn a_mirrored_impact_gives_the_mirrored_motion() {
     let vehicle = Preset::Reference.parameters();
-    let left = vehicle
-        .simulate(&pit(40e3, CONTACT, 20.0, 4.0), Integrator::Rk4)
-        .unwrap();
-    let mirrored_contact = ContactPoint {
-        y_m: -CONTACT.y_m,
-        ..CONTACT
-    };
-    let right = vehicle
-        .simulate(&pit(-40e3, mirrored_contact, 20.0, 4.0), Integrator::Rk4)
-        .unwrap();
+    let left = vehicle.simulate(&pit(40e3, CONTACT, 20.0, 4.0), Integrator::Rk4).unwrap();
+    let mirrored_contact = ContactPoint { y_m: -CONTACT.y_m, ..CONTACT };
+    let right =
+        vehicle.simulate(&pit(-40e3, mirrored_contact, 20.0, 4.0), Integrator::Rk4).unwrap();
     for (channel, sign) in [
         (Channel::X, 1.0),
         (Channel::Y, -1.0),
@@ -140,10 +116,7 @@ fn a_mirrored_impact_gives_the_mirrored_motion() {
             assert!((a - sign * b).abs() < 1e-12, "{channel:?}: {a} {b}");
         }
     }
-    assert!(
-        left.series.require(Channel::Yaw).unwrap()[400].abs() > 1.0,
-        "no spin, no test"
-    );
+    assert!(left.series.require(Channel::Yaw).unwrap()[400].abs() > 1.0, "no spin, no test");
 }
 
 #[test]
@@ -158,16 +131,9 @@ fn a_free_coast_down_is_that_of_rolling_resistance() {
     };
     let motion = vehicle.simulate(&manoeuvre, Integrator::Rk4).unwrap();
     let deceleration = 0.01 * STANDARD_GRAVITY_M_S2;
-    for (&t, &vx) in motion
-        .series
-        .time_s()
-        .iter()
-        .zip(motion.series.require(Channel::Vx).unwrap())
+    for (&t, &vx) in motion.series.time_s().iter().zip(motion.series.require(Channel::Vx).unwrap())
     {
-        assert!(
-            (vx - (20.0 - deceleration * t)).abs() < 1e-9,
-            "{t} s: {vx} m/s"
-        );
+        assert!((vx - (20.0 - deceleration * t)).abs() < 1e-9, "{t} s: {vx} m/s");
     }
 }
 
@@ -181,24 +147,13 @@ fn steady_cornering_is_that_of_the_linear_bicycle() {
     let manoeuvre = Manoeuvre {
         initial: VehicleState::driving_straight(speed),
         contact_load: None,
-        steer: Some(SteerHistory {
-            time_s: vec![0.0, 0.5],
-            steer_rad: vec![0.0, steer],
-        }),
+        steer: Some(SteerHistory { time_s: vec![0.0, 0.5], steer_rad: vec![0.0, steer] }),
         duration_s: 8.0,
     };
     let motion = vehicle.simulate(&manoeuvre, Integrator::Rk4).unwrap();
-    let rate = *motion
-        .series
-        .require(Channel::YawRate)
-        .unwrap()
-        .last()
-        .unwrap();
+    let rate = *motion.series.require(Channel::YawRate).unwrap().last().unwrap();
 
-    let (lf, lr) = (
-        vehicle.geometry.cg_to_front_axle_m,
-        vehicle.geometry.cg_to_rear_axle_m,
-    );
+    let (lf, lr) = (vehicle.geometry.cg_to_front_axle_m, vehicle.geometry.cg_to_rear_axle_m);
     let wheelbase = lf + lr;
     let axle_load = |arm: f64| vehicle.mass.mass_kg * STANDARD_GRAVITY_M_S2 * arm / wheelbase;
     let front = vehicle.tires.cornering_coefficient_front_per_rad * axle_load(lr);
@@ -218,10 +173,7 @@ fn a_spin_ends_at_rest_and_stays_there() {
     for preset in [Preset::Reference, Preset::ScaledTarget] {
         let vehicle = preset.parameters();
         let manoeuvre = Manoeuvre {
-            initial: VehicleState {
-                yaw_rate_rad_s: 8.0,
-                ..VehicleState::driving_straight(8.0)
-            },
+            initial: VehicleState { yaw_rate_rad_s: 8.0, ..VehicleState::driving_straight(8.0) },
             contact_load: None,
             steer: None,
             duration_s: 60.0,
@@ -241,19 +193,11 @@ fn a_spin_ends_at_rest_and_stays_there() {
             ("r", Channel::YawRate, 1e-3),
             ("roll", Channel::Roll, 1e-3),
         ] {
-            let worst = column(channel)[5000..]
-                .iter()
-                .fold(0.0_f64, |worst, v| worst.max(v.abs()));
-            assert!(
-                worst < bound,
-                "{}: {name} still {worst:e} after 50 s",
-                vehicle.name
-            );
+            let worst = column(channel)[5000..].iter().fold(0.0_f64, |worst, v| worst.max(v.abs()));
+            assert!(worst < bound, "{}: {name} still {worst:e} after 50 s", vehicle.name);
         }
-        let reversals = column(Channel::YawRate)[5000..]
-            .windows(2)
-            .filter(|w| w[0] * w[1] < 0.0)
-            .count();
+        let reversals =
+            column(Channel::YawRate)[5000..].windows(2).filter(|w| w[0] * w[1] < 0.0).count();
         assert!(
             reversals < 5,
             "{}: {reversals} changes of the yaw rate's sign at rest",
@@ -265,22 +209,13 @@ fn a_spin_ends_at_rest_and_stays_there() {
 #[test]
 fn rk4_converges_with_the_fourth_order_in_a_smooth_manoeuvre() {
     let vehicle = Preset::Reference.parameters();
-    let start = VehicleState {
-        vy_m_s: 1.0,
-        yaw_rate_rad_s: 0.4,
-        ..VehicleState::driving_straight(20.0)
-    };
-    let input = VehicleInput {
-        steer_rad: 0.02,
-        ..VehicleInput::released()
-    };
+    let start =
+        VehicleState { vy_m_s: 1.0, yaw_rate_rad_s: 0.4, ..VehicleState::driving_straight(20.0) };
+    let input = VehicleInput { steer_rad: 0.02, ..VehicleInput::released() };
     let end = |n: u32| {
         let h = 0.5 / f64::from(n);
         let f = |_: Stage, x: &[f64; 8]| {
-            vehicle
-                .evaluate(&VehicleState::from_array(*x), &input)
-                .derivative
-                .to_array()
+            vehicle.evaluate(&VehicleState::from_array(*x), &input).derivative.to_array()
         };
         (0..n).fold(start.to_array(), |x, _| rk4_step(f, &x, h))
     };
@@ -302,10 +237,7 @@ fn the_step_of_the_reference_is_fine_enough() {
     };
     let ([x, y], [ex, ey]) = (end(&at_1_ms), end(&at_10_ms));
     let gap = (x - ex).hypot(y - ey);
-    assert!(
-        gap > 1e-3 && gap < 3.0,
-        "Euler at 10 ms is {gap} m from RK4 at 1 ms"
-    );
+    assert!(gap > 1e-3 && gap < 3.0, "Euler at 10 ms is {gap} m from RK4 at 1 ms");
 }
 
 #[test]
@@ -314,9 +246,7 @@ fn the_impulse_changes_the_momentum_by_itself() {
     let mut vehicle = Preset::Reference.parameters().with_friction(1e-9);
     vehicle.tires.rolling_resistance = 0.0;
     vehicle.tires.rolling_resistance_s2_m2 = 0.0;
-    let motion = vehicle
-        .simulate(&pit(40e3, CONTACT, 20.0, 1.0), Integrator::Rk4)
-        .unwrap();
+    let motion = vehicle.simulate(&pit(40e3, CONTACT, 20.0, 1.0), Integrator::Rk4).unwrap();
     let last = |channel| *motion.series.require(channel).unwrap().last().unwrap();
     let (sin, cos) = last(Channel::Yaw).sin_cos();
     let (vx, vy) = (last(Channel::Vx), last(Channel::Vy));
@@ -328,14 +258,7 @@ fn the_impulse_changes_the_momentum_by_itself() {
 
 fn any_state() -> impl Strategy<Value = [f64; 8]> {
     let smooth_u = prop_oneof![-30.0..-1.0, 1.0..30.0];
-    (
-        smooth_u,
-        -15.0..15.0,
-        -3.0..3.0,
-        -3.0..3.0,
-        -0.2..0.2,
-        -0.5..0.5,
-    )
+    (smooth_u, -15.0..15.0, -3.0..3.0, -3.0..3.0, -0.2..0.2, -0.5..0.5)
         .prop_map(|(vx, vy, yaw, r, roll, p)| [vx, vy, yaw, r, roll, p, 5.0, -3.0])
 }
 

@@ -23,10 +23,7 @@ pub(super) fn bullet_track(
     attributes: &ForceAttributes,
     settings: &Settings,
 ) -> Result<Option<Track>, AnalysisError> {
-    let start = [
-        case.attributes.number("bullet_x0_m"),
-        case.attributes.number("bullet_y0_m"),
-    ];
+    let start = [case.attributes.number("bullet_x0_m"), case.attributes.number("bullet_y0_m")];
     let ([Some(x), Some(y)], Some(yaw_rad)) = (start, case.series.get(Channel::BulletYaw)) else {
         return Ok(None);
     };
@@ -44,10 +41,7 @@ pub(super) fn bullet_track(
 /// Integrates the recorded world velocities by the trapezoid rule.
 fn integrate(series: &TimeSeries, start_m: [f64; 2]) -> Option<Recorded> {
     let time_s = series.time_s();
-    let (vx, vy) = (
-        series.get(Channel::BulletVx)?,
-        series.get(Channel::BulletVy)?,
-    );
+    let (vx, vy) = (series.get(Channel::BulletVx)?, series.get(Channel::BulletVy)?);
     let yaw_rad = *series.get(Channel::BulletYaw)?.last()?;
     let yaw_rate_rad_s = *series.get(Channel::BulletYawRate)?.last()?;
     let path = |start: f64, velocity: &[f64]| -> Vec<f64> {

@@ -43,26 +43,16 @@ fn analyse_force_case(case: &Case, settings: &Settings) -> Result<Analysis, Anal
     let vehicle = settings.target.clone().with_mass(mass_kg, yaw_inertia);
     let [vx_m_s, vy_m_s] = attributes.target_velocity_m_s;
     let [x_m, y_m] = attributes.contact_m;
-    let height_m = attributes
-        .contact_height_m
-        .unwrap_or(vehicle.geometry.cg_height_m);
+    let height_m = attributes.contact_height_m.unwrap_or(vehicle.geometry.cg_height_m);
     let contact = ContactPoint { x_m, y_m, height_m };
-    let load = ContactLoad {
-        force: force.clone(),
-        contact,
-        recorded_moment: true,
-    };
+    let load = ContactLoad { force: force.clone(), contact, recorded_moment: true };
     let manoeuvre = Manoeuvre {
-        initial: VehicleState {
-            vx_m_s,
-            vy_m_s,
-            ..VehicleState::default()
-        },
+        initial: VehicleState { vx_m_s, vy_m_s, ..VehicleState::default() },
         contact_load: Some(load),
         steer: None,
         duration_s: settings.duration_s,
     };
-    let mut notes = vec!["no recorded motion: the dataset holds the contact force only".to_owned()];
+    let mut notes = Vec::new();
     if attributes.separated == Some(false) {
         notes.push("still in contact when the run ended: the force is cut there".to_owned());
     }
@@ -101,10 +91,7 @@ mod tests {
 
     fn load(name: &str) -> Dataset {
         let mut report = |_| ControlFlow::Continue(());
-        Dataset::load(&Path::new("datasets").join(name), &mut report)
-            .unwrap()
-            .complete()
-            .unwrap()
+        Dataset::load(&Path::new("datasets").join(name), &mut report).unwrap().complete().unwrap()
     }
 
     #[test]
@@ -126,26 +113,14 @@ mod tests {
             for (name, got, expected) in [
                 ("v_x", vx, recorded("target_vx_end_m_s")),
                 ("v_y", vy, recorded("target_vy_end_m_s")),
-                (
-                    "r",
-                    last(Channel::YawRate),
-                    recorded("target_yaw_rate_end_rad_s"),
-                ),
+                ("r", last(Channel::YawRate), recorded("target_yaw_rate_end_rad_s")),
             ] {
-                assert!(
-                    (got - expected).abs() < 0.01,
-                    "{} {name}: {got} {expected}",
-                    case.name
-                );
+                assert!((got - expected).abs() < 0.01, "{} {name}: {got} {expected}", case.name);
             }
             let bullet = analysis.bullet.unwrap().motion;
             let end = case.series.n_samples() - 1;
             let yaw = bullet.require(Channel::Yaw).unwrap()[end];
-            assert!(
-                (yaw - recorded("bullet_yaw_end_rad")).abs() < 1e-3,
-                "{}: {yaw}",
-                case.name
-            );
+            assert!((yaw - recorded("bullet_yaw_end_rad")).abs() < 1e-3, "{}: {yaw}", case.name);
         }
     }
 

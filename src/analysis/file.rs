@@ -22,11 +22,7 @@ pub struct FileSetup {
 impl Default for FileSetup {
     /// A PIT at 72 km/h against the right rear quarter.
     fn default() -> Self {
-        Self {
-            speed_m_s: 20.0,
-            contact_m: [-1.5, -0.9],
-            contact_height_m: 0.52,
-        }
+        Self { speed_m_s: 20.0, contact_m: [-1.5, -0.9], contact_height_m: 0.52 }
     }
 }
 
@@ -43,11 +39,7 @@ pub fn analyse_file(
     settings: &Settings,
 ) -> Result<Analysis, AnalysisError> {
     let [x_m, y_m] = setup.contact_m;
-    let contact = ContactPoint {
-        x_m,
-        y_m,
-        height_m: setup.contact_height_m,
-    };
+    let contact = ContactPoint { x_m, y_m, height_m: setup.contact_height_m };
     let force = ForceHistory::from_series(&file.series, file.force_sampling()).ok();
     let reference = (file.kind == FileKind::Trajectory).then(|| file.series.clone());
     let mut notes: Vec<String> = file.notes.iter().map(ToString::to_string).collect();
@@ -56,17 +48,10 @@ pub fn analyse_file(
         FileKind::Force | FileKind::Steer => Ok(VehicleState::driving_straight(setup.speed_m_s)),
     };
     let last_s = file.series.time_s().last().copied().unwrap_or(0.0);
-    let duration_s = if reference.is_some() {
-        last_s
-    } else {
-        settings.duration_s
-    };
+    let duration_s = if reference.is_some() { last_s } else { settings.duration_s };
     let simulation = match (initial, &force, file.kind) {
         (Err(SeriesError::Missing { channel }), ..) => {
-            notes.push(format!(
-                "not simulated: column {} is missing",
-                channel.header()
-            ));
+            notes.push(format!("not simulated: column {} is missing", channel.header()));
             None
         }
         (Err(error), ..) => return Err(error.into()),
@@ -88,12 +73,9 @@ pub fn analyse_file(
             Some(settings.target.simulate(&manoeuvre, settings.integrator)?)
         }
     };
-    let error = simulation
-        .as_ref()
-        .zip(reference.as_ref())
-        .and_then(|(simulation, reference)| {
-            MotionError::between(&simulation.series, reference).ok()
-        });
+    let error = simulation.as_ref().zip(reference.as_ref()).and_then(|(simulation, reference)| {
+        MotionError::between(&simulation.series, reference).ok()
+    });
     Ok(Analysis {
         name: name.to_owned(),
         vehicle: settings.target.name.clone(),
@@ -119,14 +101,8 @@ fn steer_history(file: &Loaded) -> Option<SteerHistory> {
         Some(steer) => steer.to_vec(),
         None => {
             let (left, right) = (series.get(Channel::SteerFl)?, series.get(Channel::SteerFr)?);
-            left.iter()
-                .zip(right)
-                .map(|(left, right)| (left + right) / 2.0)
-                .collect()
+            left.iter().zip(right).map(|(left, right)| (left + right) / 2.0).collect()
         }
     };
-    Some(SteerHistory {
-        time_s: series.time_s().to_vec(),
-        steer_rad,
-    })
+    Some(SteerHistory { time_s: series.time_s().to_vec(), steer_rad })
 }

@@ -27,11 +27,7 @@ pub struct PulseSetup {
 impl Default for PulseSetup {
     /// A haversine over 0.1 s: durations of the shipped finite-element runs lie around 0.116 s.
     fn default() -> Self {
-        Self {
-            shape: PulseShape::Haversine,
-            duration_s: 0.1,
-            contact_height_m: 0.52,
-        }
+        Self { shape: PulseShape::Haversine, duration_s: 0.1, contact_height_m: 0.52 }
     }
 }
 
@@ -53,30 +49,16 @@ pub fn analyse_scenario(
     let [px, py] = solution.impulse_n_s;
     let force = history([px, py])?;
     let run = |vehicle: &ScenarioVehicle, preset: &VehicleParameters, pose: &Pose, force| {
-        let parameters = preset
-            .clone()
-            .with_mass(vehicle.mass_kg, Some(vehicle.yaw_inertia_kg_m2));
+        let parameters = preset.clone().with_mass(vehicle.mass_kg, Some(vehicle.yaw_inertia_kg_m2));
         let [x_m, y_m] = pose.body_from_world(geometry.contact_point_m);
-        let contact = ContactPoint {
-            x_m,
-            y_m,
-            height_m: pulse.contact_height_m,
-        };
+        let contact = ContactPoint { x_m, y_m, height_m: pulse.contact_height_m };
         let motion = drive_on(vehicle, &parameters, pose, (force, contact), settings)?;
         Ok::<_, AnalysisError>((motion, contact))
     };
-    let (target, contact) = run(
-        &scenario.target,
-        &settings.target,
-        &geometry.target,
-        force.clone(),
-    )?;
-    let (bullet, _) = run(
-        &scenario.bullet,
-        &settings.bullet,
-        &geometry.bullet,
-        history([-px, -py])?,
-    )?;
+    let (target, contact) =
+        run(&scenario.target, &settings.target, &geometry.target, force.clone())?;
+    let (bullet, _) =
+        run(&scenario.bullet, &settings.bullet, &geometry.bullet, history([-px, -py])?)?;
     Ok(Analysis {
         name: scenario.name.clone(),
         vehicle: settings.target.name.clone(),
@@ -85,10 +67,7 @@ pub fn analyse_scenario(
         contact: Some(contact),
         simulation: Some(target),
         reference: None,
-        bullet: Some(Track {
-            footprint: scenario.bullet.footprint(),
-            motion: bullet.series,
-        }),
+        bullet: Some(Track { footprint: scenario.bullet.footprint(), motion: bullet.series }),
         error: None,
         notes: vec![format!(
             "force: {} of {:.0} ms that carries the impulse of the momentum solution",
@@ -118,11 +97,7 @@ fn drive_on(
             y_m: pose.y_m,
             ..VehicleState::default()
         },
-        contact_load: Some(ContactLoad {
-            force,
-            contact,
-            recorded_moment: false,
-        }),
+        contact_load: Some(ContactLoad { force, contact, recorded_moment: false }),
         steer: None,
         duration_s: settings.duration_s,
     };
@@ -151,10 +126,7 @@ mod tests {
         let motion = analysis.simulation.unwrap().series;
         let rate = motion.require(Channel::YawRate).unwrap();
         let expected = solution.target.yaw_rate_rad_s;
-        assert!(
-            expected < 0.0,
-            "a push on the right rear turns the target to the right"
-        );
+        assert!(expected < 0.0, "a push on the right rear turns the target to the right");
         assert!(rate[10] < 0.5 * expected, "{} against {expected}", rate[10]);
         let bullet = analysis.bullet.unwrap().motion;
         assert_eq!(bullet.n_samples(), motion.n_samples());

@@ -21,11 +21,7 @@ pub struct CaseColumn {
 pub const AVERAGE_ERROR: &str = "average_error";
 
 const fn column(key: &'static str, title: &'static str, quantity: Quantity) -> CaseColumn {
-    CaseColumn {
-        key,
-        title,
-        quantity,
-    }
+    CaseColumn { key, title, quantity }
 }
 
 const FORCE_COLUMNS: &[CaseColumn] = &[
@@ -90,6 +86,9 @@ impl CaseRow<'_> {
     /// A cell as it is shown.
     pub fn text(&self, column: &CaseColumn, units: UnitSystem) -> String {
         if let Some(number) = self.number(column.key) {
+            if column.quantity == Quantity::Ratio {
+                return number.to_string();
+            }
             return significant(column.quantity.display_unit(units).from_si(number));
         }
         match self.case.attributes.get(column.key) {
@@ -101,9 +100,7 @@ impl CaseRow<'_> {
     /// Whether every word of the filter holds: `key<number`, `key>number`, `key=value`, or a part
     /// of the name, of a text attribute or of a flag.
     fn matches(&self, filter: &str) -> bool {
-        filter
-            .split_whitespace()
-            .all(|word| self.matches_word(word))
+        filter.split_whitespace().all(|word| self.matches_word(word))
     }
 
     fn matches_word(&self, word: &str) -> bool {
@@ -117,11 +114,7 @@ impl CaseRow<'_> {
             };
             return match (self.number(key), wanted.parse::<f64>()) {
                 (Some(number), Ok(wanted)) => holds(number, wanted),
-                _ => self
-                    .case
-                    .attributes
-                    .text(key)
-                    .is_some_and(|t| t.eq_ignore_ascii_case(wanted)),
+                _ => self.case.attributes.text(key).is_some_and(|t| t.eq_ignore_ascii_case(wanted)),
             };
         }
         let word = word.to_lowercase();
@@ -153,11 +146,7 @@ pub fn rows(state: &State) -> Vec<CaseRow<'_>> {
     let Some(checked) = listed(state) else {
         return Vec::new();
     };
-    let replay = state
-        .view
-        .listed
-        .as_ref()
-        .and_then(|path| state.session.replays.get(path));
+    let replay = state.view.listed.as_ref().and_then(|path| state.session.replays.get(path));
     rows_of(checked, replay, &state.view)
 }
 
@@ -171,20 +160,13 @@ pub fn rows_of<'a>(
         Some(ReplayStatus::Done(replay)) => &replay.cases,
         _ => &[],
     };
-    let by_name: std::collections::BTreeMap<&str, &MotionError> = replays
-        .iter()
-        .map(|replay| (replay.case.as_str(), &replay.error))
-        .collect();
+    let by_name: std::collections::BTreeMap<&str, &MotionError> =
+        replays.iter().map(|replay| (replay.case.as_str(), &replay.error)).collect();
     let cases = checked.dataset.cases.iter().zip(&checked.flags);
     let mut rows: Vec<CaseRow<'_>> = cases
         .map(|(case, flags)| {
             let error = by_name.get(case.name.as_str()).copied();
-            CaseRow {
-                name: &case.name,
-                case,
-                flags,
-                error,
-            }
+            CaseRow { name: &case.name, case, flags, error }
         })
         .filter(|row| row.matches(&view.filter))
         .collect();
@@ -225,47 +207,31 @@ mod tests {
         let dataset = Dataset::load(Path::new("datasets/fea"), &mut report).unwrap();
         let dataset = dataset.complete().unwrap();
         let flags = dataset.cases.iter().map(check_case).collect();
-        CheckedDataset {
-            dataset,
-            flags,
-            vehicle: None,
-        }
+        CheckedDataset { dataset, flags, vehicle: None }
     }
 
     fn names(checked: &CheckedDataset, view: &View) -> Vec<String> {
-        rows_of(checked, None, view)
-            .iter()
-            .map(|row| row.name.to_owned())
-            .collect()
+        rows_of(checked, None, view).iter().map(|row| row.name.to_owned()).collect()
     }
 
     #[test]
     fn filters_combine_and_know_attributes_flags_and_names() {
         let checked = fea();
-        let view = |filter: &str| View {
-            filter: filter.to_owned(),
-            ..View::default()
-        };
+        let view = |filter: &str| View { filter: filter.to_owned(), ..View::default() };
         assert_eq!(names(&checked, &view("")).len(), 100);
         assert_eq!(names(&checked, &view("c007")), ["c007"]);
         let hooked = names(&checked, &view("hooked=1"));
         assert_eq!(hooked.len(), 12);
         let heavy = names(&checked, &view("hooked=1 m_b_kg>2000"));
         assert!(!heavy.is_empty() && heavy.len() < hooked.len());
-        assert_eq!(
-            names(&checked, &view("side=LEFT")),
-            names(&checked, &view("side=left"))
-        );
+        assert_eq!(names(&checked, &view("side=LEFT")), names(&checked, &view("side=left")));
         assert!(names(&checked, &view("no_such_column>1")).is_empty());
     }
 
     #[test]
     fn sorting_goes_both_ways() {
         let checked = fea();
-        let mut view = View {
-            sort_column: Some("peak_force_n".to_owned()),
-            ..View::default()
-        };
+        let mut view = View { sort_column: Some("peak_force_n".to_owned()), ..View::default() };
         let rising = names(&checked, &view);
         view.sort_descending = true;
         let mut falling = names(&checked, &view);

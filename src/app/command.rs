@@ -148,9 +148,7 @@ impl State {
     }
 
     fn close(&mut self, path: &PathBuf) {
-        self.session
-            .sources
-            .retain(|source| source.opened != *path && source.path != *path);
+        self.session.sources.retain(|source| source.opened != *path && source.path != *path);
         let is_open = |open: &PathBuf| self.session.sources.iter().any(|s| s.path == *open);
         let closed = match &self.project.subject {
             Some(Subject::Case { dataset, .. }) => !is_open(dataset),
@@ -191,38 +189,24 @@ impl State {
             None => Some(0),
         };
         if let (Some(row), Some(dataset)) = (next.and_then(|i| rows.get(i)), &self.view.listed) {
-            let subject = Subject::Case {
-                dataset: dataset.clone(),
-                case: row.name.to_owned(),
-            };
+            let subject = Subject::Case { dataset: dataset.clone(), case: row.name.to_owned() };
             self.select(subject);
         }
     }
 
     fn replay(&mut self, path: PathBuf, context: &Context) {
-        let source = self
-            .session
-            .sources
-            .iter()
-            .find(|source| source.path == path);
+        let source = self.session.sources.iter().find(|source| source.path == path);
         let Some(checked) = source.and_then(Source::dataset).cloned() else {
             return;
         };
         let (choice, integrator) = (self.project.vehicle.clone(), self.project.integrator);
         let job = Job::spawn("simulate", wake(context), move |report| {
             let vehicle = target_vehicle(&choice, Some(&checked))?;
-            Ok(replay_dataset(
-                &checked.dataset,
-                &vehicle,
-                integrator,
-                report,
-            ))
+            Ok(replay_dataset(&checked.dataset, &vehicle, integrator, report))
         });
         match job {
             Ok(job) => {
-                self.session
-                    .replays
-                    .insert(path, ReplayStatus::Running(job));
+                self.session.replays.insert(path, ReplayStatus::Running(job));
             }
             Err(error) => self.say(Severity::Error, error.to_string()),
         }

@@ -41,9 +41,7 @@ impl FileDialog {
     /// The operating system's, if no thread can be started.
     pub fn open(purpose: Purpose, wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let asked = purpose.clone();
-        let job = Job::spawn("file dialog", wake, move |_| {
-            pollster::block_on(ask(&asked))
-        })?;
+        let job = Job::spawn("file dialog", wake, move |_| pollster::block_on(ask(&asked)))?;
         Ok(Self { purpose, job })
     }
 
@@ -70,11 +68,7 @@ impl FileDialog {
 }
 
 fn with_ending(path: PathBuf, ending: &str) -> PathBuf {
-    if path.extension().is_some() {
-        path
-    } else {
-        path.with_extension(ending)
-    }
+    if path.extension().is_some() { path } else { path.with_extension(ending) }
 }
 
 async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
@@ -85,18 +79,11 @@ async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
         Purpose::Files => {
             let files = dialog
                 .set_title("Open force, trajectory or scenario files")
-                .add_filter(
-                    "tables and scenarios",
-                    &["csv", "txt", "tsv", "dat", "asc", "toml"],
-                )
+                .add_filter("tables and scenarios", &["csv", "txt", "tsv", "dat", "asc", "toml"])
                 .add_filter("all files", &["*"])
                 .pick_files()
                 .await;
-            return files
-                .unwrap_or_default()
-                .iter()
-                .map(|file| file.path().to_owned())
-                .collect();
+            return files.unwrap_or_default().iter().map(|file| file.path().to_owned()).collect();
         }
         Purpose::Picture(_) => save(dialog.add_filter("picture", &["png"]), "figure.png").await,
         Purpose::Numbers(_) => save(dialog.add_filter("table", &["csv"]), "figure.csv").await,
@@ -139,29 +126,13 @@ impl MappingDialog {
     /// [`DataError`] if the file is no table.
     pub fn open(path: PathBuf) -> Result<Self, DataError> {
         let proposals = propose_columns(&path)?;
-        let choices = proposals
-            .iter()
-            .map(|p| p.guess.map(|(channel, _)| channel))
-            .collect();
+        let choices = proposals.iter().map(|p| p.guess.map(|(channel, _)| channel)).collect();
         let unit_index = |proposal: &ColumnProposal| {
             let (channel, unit) = proposal.guess?;
-            channel
-                .quantity()
-                .units()
-                .iter()
-                .position(|known| Some(*known) == unit)
+            channel.quantity().units().iter().position(|known| Some(*known) == unit)
         };
-        let units = proposals
-            .iter()
-            .map(|p| unit_index(p).unwrap_or(0))
-            .collect();
-        Ok(Self {
-            path,
-            proposals,
-            choices,
-            units,
-            kind: FileKind::Force,
-        })
+        let units = proposals.iter().map(|p| unit_index(p).unwrap_or(0)).collect();
+        Ok(Self { path, proposals, choices, units, kind: FileKind::Force })
     }
 
     /// Draws the dialog.
@@ -204,36 +175,35 @@ impl MappingDialog {
     }
 
     fn row_ui(&mut self, ui: &mut Ui, index: usize) {
-        let (Some(proposal), Some(choice), Some(unit_idx)) = (
-            self.proposals.get(index),
-            self.choices.get_mut(index),
-            self.units.get_mut(index),
-        ) else {
+        let (Some(proposal), Some(choice), Some(unit_idx)) =
+            (self.proposals.get(index), self.choices.get_mut(index), self.units.get_mut(index))
+        else {
             return;
         };
         ui.label(format!("{}: {}", proposal.number, proposal.name));
         ui.weak(proposal.samples.join("  "));
         let label = |choice: Option<Channel>| choice.map_or("nothing needed", Channel::label);
-        ComboBox::from_id_salt(("channel", index))
-            .selected_text(label(*choice))
-            .show_ui(ui, |ui| {
+        ComboBox::from_id_salt(("channel", index)).selected_text(label(*choice)).show_ui(
+            ui,
+            |ui| {
                 for option in std::iter::once(None).chain(CHOICES.map(Some)) {
                     if ui.selectable_value(choice, option, label(option)).clicked() {
                         *unit_idx = 0;
                     }
                 }
-            });
+            },
+        );
         let Some(channel) = *choice else { return };
         let units = channel.quantity().units();
         let selected = units.get(*unit_idx).map_or("", |unit| unit.symbol);
-        ComboBox::from_id_salt(("unit", index))
-            .selected_text(selected)
-            .width(64.0)
-            .show_ui(ui, |ui| {
+        ComboBox::from_id_salt(("unit", index)).selected_text(selected).width(64.0).show_ui(
+            ui,
+            |ui| {
                 for (idx, unit) in units.iter().enumerate() {
                     ui.selectable_value(unit_idx, idx, unit.symbol);
                 }
-            });
+            },
+        );
     }
 
     fn map(&self) -> ColumnMap {

@@ -18,24 +18,16 @@ pub fn spawn(
     dark: bool,
     wake: impl Fn() + Send + 'static,
 ) -> std::io::Result<Job<Result<PathBuf, String>>> {
-    Job::spawn("export", wake, move |_| {
-        write(&figure, &path, dark).map(|()| path)
-    })
+    Job::spawn("export", wake, move |_| write(&figure, &path, dark).map(|()| path))
 }
 
 fn write(figure: &Figure, path: &Path, dark: bool) -> Result<(), String> {
-    if path
-        .extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
-    {
+    if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv")) {
         let text = numbers(figure)?;
         return write_atomically(path, |out| out.write_all(text.as_bytes()))
             .map_err(|error| error_chain(&error));
     }
-    let canvas = Canvas {
-        dark,
-        ..Canvas::default()
-    };
+    let canvas = Canvas { dark, ..Canvas::default() };
     figure_image(figure, canvas)
         .and_then(|image| save_png(&image, path))
         .map_err(|error| error_chain(&error))

@@ -28,20 +28,8 @@ pub fn menu_ui(ui: &mut Ui, state: &mut State, history: History, commands: &mut 
         MenuBar::new().ui(ui, |ui| {
             ui.menu_button("File", |ui| file_menu_ui(ui, state, commands));
             ui.menu_button("Edit", |ui| {
-                edit_item(
-                    ui,
-                    "Undo",
-                    keyboard::UNDO,
-                    (history.can_undo, Command::Undo),
-                    commands,
-                );
-                edit_item(
-                    ui,
-                    "Redo",
-                    keyboard::REDO,
-                    (history.can_redo, Command::Redo),
-                    commands,
-                );
+                edit_item(ui, "Undo", keyboard::UNDO, (history.can_undo, Command::Undo), commands);
+                edit_item(ui, "Redo", keyboard::REDO, (history.can_redo, Command::Redo), commands);
             });
             ui.menu_button("View", |ui| view_menu_ui(ui, state, commands));
             ui.menu_button("Help", help_menu_ui);
@@ -87,11 +75,7 @@ fn file_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     ui.separator();
     ui.add_enabled_ui(!state.session.sources.is_empty(), |ui| {
         if ui.button("Close all").clicked() {
-            let opened = state
-                .session
-                .sources
-                .iter()
-                .map(|source| source.opened.clone());
+            let opened = state.session.sources.iter().map(|source| source.opened.clone());
             commands.extend(opened.map(Command::Close));
         }
     });
@@ -138,29 +122,15 @@ fn help_menu_ui(ui: &mut Ui) {
 pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     Panel::bottom("status").show(ui, |ui| {
         for source in &state.session.sources {
-            if let Source {
-                content: Content::Loading(job),
-                opened,
-                ..
-            } = source
-            {
+            if let Source { content: Content::Loading(job), opened, .. } = source {
                 let cancel = Command::Close(opened.clone());
-                job_ui(
-                    ui,
-                    &format!("Loading {}", source.name()),
-                    job,
-                    cancel,
-                    commands,
-                );
+                job_ui(ui, &format!("Loading {}", source.name()), job, cancel, commands);
             }
         }
         for (path, status) in &state.session.replays {
             if let ReplayStatus::Running(job) = status {
                 let cancel = Command::CancelReplay(path.clone());
-                let name = path
-                    .file_name()
-                    .unwrap_or(path.as_os_str())
-                    .to_string_lossy();
+                let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
                 job_ui(ui, &format!("Simulating {name}"), job, cancel, commands);
             }
         }
@@ -197,9 +167,8 @@ fn job_ui<T>(ui: &mut Ui, what: &str, job: &Job<T>, cancel: Command, commands: &
         }
         let progress = job.progress();
         let left = progress.time_left(job.elapsed());
-        let left = left.map_or(String::new(), |t| {
-            format!(", {:.0} s left", t.as_secs_f64().ceil())
-        });
+        let left =
+            left.map_or(String::new(), |t| format!(", {:.0} s left", t.as_secs_f64().ceil()));
         let text = format!("{what}: {} of {}{left}", progress.done, progress.total);
         match progress.fraction() {
             Some(fraction) => ui.add(ProgressBar::new(fraction).text(text)),
@@ -214,18 +183,11 @@ pub fn drop_hint_ui(ui: &Ui) {
         return;
     }
     let area = ui.ctx().content_rect();
-    let painter = ui.ctx().layer_painter(egui::LayerId::new(
-        egui::Order::Foreground,
-        egui::Id::unique("drop hint"),
-    ));
+    let painter = ui
+        .ctx()
+        .layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop hint")));
     painter.rect_filled(area, 0.0, egui::Color32::from_black_alpha(160));
     let font = egui::TextStyle::Heading.resolve(ui.style());
     let text = "Drop to open: a data set folder, a force or trajectory file, a scenario";
-    painter.text(
-        area.center(),
-        egui::Align2::CENTER_CENTER,
-        text,
-        font,
-        egui::Color32::WHITE,
-    );
+    painter.text(area.center(), egui::Align2::CENTER_CENTER, text, font, egui::Color32::WHITE);
 }

@@ -55,24 +55,15 @@ pub fn run(paths: Vec<PathBuf>) -> Result<(), WindowError> {
         .with_inner_size([1440.0, 900.0])
         .with_min_inner_size([900.0, 600.0])
         .with_drag_and_drop(true);
-    let options = eframe::NativeOptions {
-        viewport,
-        ..eframe::NativeOptions::default()
-    };
-    eframe::run_native(
-        "impactlab",
-        options,
-        Box::new(|cc| Ok(Box::new(App::new(cc, paths)))),
-    )
-    .map_err(|error| WindowError(error.to_string()))
+    let options = eframe::NativeOptions { viewport, ..eframe::NativeOptions::default() };
+    eframe::run_native("impactlab", options, Box::new(|cc| Ok(Box::new(App::new(cc, paths)))))
+        .map_err(|error| WindowError(error.to_string()))
 }
 
 impl App {
     /// Starts from the saved state, if there is one.
     pub fn new(cc: &CreationContext<'_>, paths: Vec<PathBuf>) -> Self {
-        let saved = cc
-            .storage
-            .and_then(|storage| storage.get_string(STORAGE_KEY));
+        let saved = cc.storage.and_then(|storage| storage.get_string(STORAGE_KEY));
         let restored = saved.and_then(|text| State::restore(&text));
         let (mut state, last_open) = restored.unwrap_or_default();
         let to_open = match (paths.is_empty(), last_open.is_empty()) {
@@ -81,10 +72,7 @@ impl App {
             (true, true) => shipped_datasets().into_iter().collect(),
         };
         state.apply(Command::Open(to_open), &cc.egui_ctx);
-        Self {
-            state,
-            undoer: Undoer::default(),
-        }
+        Self { state, undoer: Undoer::default() }
     }
 
     /// What the app knows.
@@ -126,10 +114,7 @@ impl eframe::App for App {
         self.state.update(context, &mut commands);
         keyboard::commands(context, &mut commands);
         let dropped = context.input(|input| input.raw.dropped_files.clone());
-        let paths: Vec<PathBuf> = dropped
-            .into_iter()
-            .map(|file| file.path().to_owned())
-            .collect();
+        let paths: Vec<PathBuf> = dropped.into_iter().map(|file| file.path().to_owned()).collect();
         if !paths.is_empty() {
             commands.push(Command::Open(paths));
         }
@@ -168,19 +153,10 @@ impl eframe::App for App {
 
 impl App {
     fn panes_ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        let State {
-            project,
-            view,
-            session,
-        } = &mut self.state;
+        let State { project, view, session } = &mut self.state;
         let mut layout =
             std::mem::replace(&mut view.layout, Tree::empty(egui::Id::unique("panes")));
-        let mut panes = panes::PaneContext {
-            project,
-            view,
-            session,
-            commands,
-        };
+        let mut panes = panes::PaneContext { project, view, session, commands };
         egui::CentralPanel::no_frame().show(ui, |ui| layout.ui(&mut panes, ui));
         self.state.view.layout = layout;
         self.state.session.fit_plots = false;
@@ -204,9 +180,7 @@ fn shipped_datasets() -> Option<PathBuf> {
         .into_iter()
         .chain(program.ancestors().skip(1).map(PathBuf::from))
         .chain([PathBuf::from(env!("CARGO_MANIFEST_DIR"))]);
-    roots
-        .map(|root| root.join("datasets"))
-        .find(|path| path.join("fea").is_dir())
+    roots.map(|root| root.join("datasets")).find(|path| path.join("fea").is_dir())
 }
 
 /// An error with its causes, in a line.

@@ -62,20 +62,17 @@ impl Pane {
     }
 }
 
-/// Three columns: data and cases; scene and motion; force and figures, with vehicle and scenario
-/// behind.
+/// Three columns: data and cases, with scenario and vehicle behind; scene and motion; force and
+/// figures.
 pub fn default_layout() -> Layout {
     let mut tiles = Tiles::default();
     let mut tabs = |panes: &[Pane]| {
         let tiles_of_tabs = panes.iter().map(|&pane| tiles.insert_pane(pane)).collect();
         tiles.insert_tab_tile(tiles_of_tabs)
     };
-    let (data, cases) = (tabs(&[Pane::Data]), tabs(&[Pane::Cases]));
+    let (data, cases) = (tabs(&[Pane::Data]), tabs(&[Pane::Cases, Pane::Scenario, Pane::Vehicle]));
     let (scene, motion) = (tabs(&[Pane::Scene]), tabs(&[Pane::Motion]));
-    let (force, rest) = (
-        tabs(&[Pane::Force, Pane::Scenario]),
-        tabs(&[Pane::Comparison, Pane::Vehicle]),
-    );
+    let (force, comparison) = (tabs(&[Pane::Force]), tabs(&[Pane::Comparison]));
     let mut column = |top, bottom, share: f32| {
         let mut linear = Linear::new(LinearDir::Vertical, vec![top, bottom]);
         linear.shares.set_share(top, share);
@@ -83,14 +80,11 @@ pub fn default_layout() -> Layout {
         tiles.insert_new(egui_tiles::Tile::Container(Container::Linear(linear)))
     };
     let columns = [
-        (column(data, cases, 0.32), 0.27),
+        (column(data, cases, 0.28), 0.27),
         (column(scene, motion, 0.45), 0.43),
-        (column(force, rest, 0.5), 0.30),
+        (column(force, comparison, 0.5), 0.30),
     ];
-    let mut row = Linear::new(
-        LinearDir::Horizontal,
-        columns.map(|(tile, _)| tile).to_vec(),
-    );
+    let mut row = Linear::new(LinearDir::Horizontal, columns.map(|(tile, _)| tile).to_vec());
     for (tile, share) in columns {
         row.shares.set_share(tile, share);
     }
@@ -136,9 +130,6 @@ impl Behavior<Pane> for PaneContext<'_> {
     }
 
     fn simplification_options(&self) -> SimplificationOptions {
-        SimplificationOptions {
-            all_panes_must_have_tabs: true,
-            ..SimplificationOptions::default()
-        }
+        SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
     }
 }

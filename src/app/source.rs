@@ -71,11 +71,7 @@ impl Source {
             })
         });
         match job {
-            Ok(job) => Self {
-                opened: path.clone(),
-                path,
-                content: Content::Loading(job),
-            },
+            Ok(job) => Self { opened: path.clone(), path, content: Content::Loading(job) },
             Err(error) => Self::failed(path, error.to_string()),
         }
     }
@@ -93,22 +89,14 @@ impl Source {
             Ok(vec![(target.clone(), checked_file(loaded))])
         });
         match job {
-            Ok(job) => Self {
-                opened: path.clone(),
-                path,
-                content: Content::Loading(job),
-            },
+            Ok(job) => Self { opened: path.clone(), path, content: Content::Loading(job) },
             Err(error) => Self::failed(path, error.to_string()),
         }
     }
 
     /// A source that could not be opened.
     pub fn failed(path: PathBuf, why: String) -> Self {
-        Self {
-            opened: path.clone(),
-            path,
-            content: Content::Failed(why),
-        }
+        Self { opened: path.clone(), path, content: Content::Failed(why) }
     }
 
     /// The last part of its path.
@@ -144,14 +132,7 @@ fn checked_dataset(dataset: Dataset) -> (PathBuf, Content) {
     let load = |path: &PathBuf| VehicleParameters::load(path).map_err(|error| error_chain(&error));
     let vehicle = dataset.vehicle_file.as_ref().map(load);
     let path = dataset.root.clone();
-    (
-        path,
-        Content::Dataset(Arc::new(CheckedDataset {
-            dataset,
-            flags,
-            vehicle,
-        })),
-    )
+    (path, Content::Dataset(Arc::new(CheckedDataset { dataset, flags, vehicle })))
 }
 
 fn checked_file(loaded: Loaded) -> Content {
@@ -161,9 +142,6 @@ fn checked_file(loaded: Loaded) -> Content {
 
 impl From<DataError> for OpenError {
     fn from(error: DataError) -> Self {
-        Self {
-            needs_mapping: error.needs_mapping(),
-            text: error_chain(&error),
-        }
+        Self { needs_mapping: error.needs_mapping(), text: error_chain(&error) }
     }
 }

@@ -207,12 +207,7 @@ impl State {
             version: SAVED_VERSION,
             project: self.project.clone(),
             view: self.view.clone(),
-            sources: self
-                .session
-                .sources
-                .iter()
-                .map(|source| source.opened.clone())
-                .collect(),
+            sources: self.session.sources.iter().map(|source| source.opened.clone()).collect(),
         };
         serde_json::to_string(&saved).ok()
     }
@@ -221,11 +216,7 @@ impl State {
     /// damaged: the app then starts afresh.
     pub fn restore(text: &str) -> Option<(Self, Vec<PathBuf>)> {
         let saved: Saved = serde_json::from_str(text).ok()?;
-        let state = Self {
-            project: saved.project,
-            view: saved.view,
-            session: Session::default(),
-        };
+        let state = Self { project: saved.project, view: saved.view, session: Session::default() };
         let mut sources = saved.sources;
         sources.dedup();
         (saved.version == SAVED_VERSION).then_some((state, sources))
@@ -233,21 +224,12 @@ impl State {
 
     /// The analysis to show.
     pub fn analysis(&self) -> Option<&Analysis> {
-        self.session
-            .analysis
-            .result
-            .as_ref()?
-            .as_ref()
-            .ok()
-            .map(Arc::as_ref)
+        self.session.analysis.result.as_ref()?.as_ref().ok().map(Arc::as_ref)
     }
 
     /// Tells the user something.
     pub fn say(&mut self, severity: Severity, text: impl Into<String>) {
-        self.session.messages.push(Message {
-            severity,
-            text: text.into(),
-        });
+        self.session.messages.push(Message { severity, text: text.into() });
     }
 }
 
@@ -258,18 +240,13 @@ mod tests {
     #[test]
     fn project_and_view_survive_a_restart() {
         let mut state = State::default();
-        state.project.subject = Some(Subject::Case {
-            dataset: PathBuf::from("d"),
-            case: "c001".to_owned(),
-        });
+        state.project.subject =
+            Some(Subject::Case { dataset: PathBuf::from("d"), case: "c001".to_owned() });
         state.project.duration_s = 2.5;
         state.project.channel_class = Some(ChannelClass::Cfc60);
         state.view.units = UnitSystem::Us;
         state.view.filter = "spin=1".to_owned();
-        state
-            .session
-            .sources
-            .push(Source::failed(PathBuf::from("a.csv"), "gone".to_owned()));
+        state.session.sources.push(Source::failed(PathBuf::from("a.csv"), "gone".to_owned()));
         let (restored, sources) = State::restore(&state.save().unwrap()).unwrap();
         assert_eq!(restored.project, state.project);
         assert_eq!(restored.view, state.view);

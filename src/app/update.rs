@@ -28,12 +28,7 @@ impl State {
         self.poll_replays();
         self.poll_exports();
         self.poll_analysis();
-        if let Some(answer) = self
-            .session
-            .file_dialog
-            .as_mut()
-            .and_then(|dialog| dialog.poll())
-        {
+        if let Some(answer) = self.session.file_dialog.as_mut().and_then(|dialog| dialog.poll()) {
             self.session.file_dialog = None;
             commands.extend(answer);
         }
@@ -54,24 +49,15 @@ impl State {
                 Update::Finished(Ok(contents)) => {
                     for (path, content) in contents {
                         let opened = source.opened.clone();
-                        self.session.sources.push(Source {
-                            opened,
-                            path,
-                            content,
-                        });
+                        self.session.sources.push(Source { opened, path, content });
                     }
                 }
-                Update::Finished(Err(OpenError {
-                    text,
-                    needs_mapping,
-                })) => {
+                Update::Finished(Err(OpenError { text, needs_mapping })) => {
                     if needs_mapping {
                         commands.push(Command::AskMapping(source.path.clone()));
                     }
                     self.say(Severity::Error, text.clone());
-                    self.session
-                        .sources
-                        .push(Source::failed(source.opened, text));
+                    self.session.sources.push(Source::failed(source.opened, text));
                 }
                 Update::Panicked(text) => self.fail(source, format!("internal error: {text}")),
                 Update::Gone => self.fail(source, "the loader is gone".to_owned()),
@@ -80,13 +66,8 @@ impl State {
     }
 
     fn fail(&mut self, source: Source, why: String) {
-        self.say(
-            Severity::Error,
-            format!("{}: {why}", source.opened.display()),
-        );
-        self.session
-            .sources
-            .push(Source::failed(source.opened, why));
+        self.say(Severity::Error, format!("{}: {why}", source.opened.display()));
+        self.session.sources.push(Source::failed(source.opened, why));
     }
 
     fn poll_replays(&mut self) {
@@ -152,21 +133,10 @@ impl State {
 
     /// Looks at the first thing that is there, so that a new user sees something.
     fn select_something(&mut self) {
-        if self
-            .view
-            .listed
-            .as_ref()
-            .is_none_or(|path| !self.is_dataset(path))
-        {
-            let first = self
-                .session
-                .sources
-                .iter()
-                .find(|source| source.dataset().is_some());
+        if self.view.listed.as_ref().is_none_or(|path| !self.is_dataset(path)) {
+            let first = self.session.sources.iter().find(|source| source.dataset().is_some());
             let preferred = self.session.sources.iter().find(|source| {
-                source
-                    .dataset()
-                    .is_some_and(|d| d.dataset.kind == DatasetKind::Trajectory)
+                source.dataset().is_some_and(|d| d.dataset.kind == DatasetKind::Trajectory)
             });
             if let Some(source) = preferred.or(first)
                 && self.session.sources.iter().all(Source::is_settled)
@@ -180,12 +150,9 @@ impl State {
                     || matches!(source.content, Content::File(_))
             });
             self.project.subject = source.and_then(|source| match &source.content {
-                Content::Dataset(checked) => {
-                    checked.dataset.cases.first().map(|case| Subject::Case {
-                        dataset: source.path.clone(),
-                        case: case.name.clone(),
-                    })
-                }
+                Content::Dataset(checked) => checked.dataset.cases.first().map(|case| {
+                    Subject::Case { dataset: source.path.clone(), case: case.name.clone() }
+                }),
                 Content::File(_) => Some(Subject::File(source.path.clone())),
                 Content::Loading(_) | Content::Failed(_) => None,
             });
@@ -193,20 +160,12 @@ impl State {
     }
 
     fn is_dataset(&self, path: &PathBuf) -> bool {
-        self.session
-            .sources
-            .iter()
-            .any(|s| s.path == *path && s.dataset().is_some())
+        self.session.sources.iter().any(|s| s.path == *path && s.dataset().is_some())
     }
 
     /// Starts an analysis if the project has changed since the last one, and the data are there.
     fn request_analysis(&mut self, context: &Context) {
-        let settled = self
-            .session
-            .sources
-            .iter()
-            .filter(|source| source.is_settled())
-            .count();
+        let settled = self.session.sources.iter().filter(|source| source.is_settled()).count();
         let status = &self.session.analysis;
         let is_current =
             status.requested.as_deref() == Some(&self.project) && status.sources_seen == settled;
@@ -219,9 +178,7 @@ impl State {
             return;
         };
         let project = self.project.clone();
-        let job = Job::spawn("analyse", wake(context), move |_| {
-            analyse(&material, &project)
-        });
+        let job = Job::spawn("analyse", wake(context), move |_| analyse(&material, &project));
         let status = &mut self.session.analysis;
         status.requested = Some(Box::new(self.project.clone()));
         status.sources_seen = settled;
@@ -281,10 +238,7 @@ fn analyse(material: &Material, project: &Project) -> Result<Analysis, String> {
             analyse_case(case, &settings)
         }
         Material::File(file, path) => {
-            let name = path
-                .file_name()
-                .unwrap_or(path.as_os_str())
-                .to_string_lossy();
+            let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
             analyse_file(&name, &file.loaded, &project.file_setup, &settings)
         }
         Material::Scenario => analyse_scenario(&project.scenario, &project.pulse, &settings),

@@ -141,11 +141,7 @@ impl ChannelFilter {
         // A rate that is exact but for rounding, or for the digits of the time axis, will do.
         let enough = rate_hz >= expected_hz * (1.0 - 1e-6);
         if !(sample_interval_s > 0.0 && enough && rate_hz.is_finite()) {
-            return Err(FilterError::RateTooLow {
-                rate_hz,
-                class_hz,
-                expected_hz,
-            });
+            return Err(FilterError::RateTooLow { rate_hz, class_hz, expected_hz });
         }
         let w_d = TAU * class_hz * DESIGN_RATIO;
         let w_a = (w_d * sample_interval_s / 2.0).tan();
@@ -153,10 +149,7 @@ impl ChannelFilter {
         let a0 = w_a * w_a / d;
         Ok(Self {
             a: [a0, 2.0 * a0, a0],
-            b: [
-                -2.0 * (w_a * w_a - 1.0) / d,
-                (-1.0 + SQRT_2 * w_a - w_a * w_a) / d,
-            ],
+            b: [-2.0 * (w_a * w_a - 1.0) / d, (-1.0 + SQRT_2 * w_a - w_a * w_a) / d],
             n_pad: (PAD_PERIODS * rate_hz / class_hz).ceil() as usize,
         })
     }
@@ -180,9 +173,8 @@ impl ChannelFilter {
         };
         let pad = self.n_pad as i64;
         // Less its first value, so that rounding scales with the signal's swing, not its level.
-        let mut padded: Vec<f64> = (-pad..n as i64 + pad)
-            .map(|i| reflected(samples, i) - first)
-            .collect();
+        let mut padded: Vec<f64> =
+            (-pad..n as i64 + pad).map(|i| reflected(samples, i) - first).collect();
         self.run(&mut padded);
         padded.reverse();
         self.run(&mut padded);
@@ -248,21 +240,14 @@ fn even_step_s(time_s: &[f64]) -> Result<f64, FilterError> {
         _ => 0.0,
     };
     if !(duration_s.is_finite() && duration_s > 0.0) {
-        return Err(FilterError::NoRate {
-            n_samples,
-            duration_s,
-        });
+        return Err(FilterError::NoRate { n_samples, duration_s });
     }
     let expected_s = duration_s / (n_samples - 1) as f64;
     for (i, pair) in time_s.windows(2).enumerate() {
         let step_s = pair[1] - pair[0];
         let off = (step_s - expected_s).abs();
         if off.is_nan() || off > STEP_TOLERANCE * expected_s {
-            return Err(FilterError::Uneven {
-                sample_idx: i + 1,
-                step_s,
-                expected_s,
-            });
+            return Err(FilterError::Uneven { sample_idx: i + 1, step_s, expected_s });
         }
     }
     Ok(expected_s)
@@ -335,11 +320,7 @@ mod tests {
         for class in ChannelClass::ALL {
             for n in [1, 2, 5, 100, 5000] {
                 let constant = vec![123_456.789; n];
-                assert_eq!(
-                    filter(class).apply(&constant).unwrap(),
-                    constant,
-                    "{class:?}"
-                );
+                assert_eq!(filter(class).apply(&constant).unwrap(), constant, "{class:?}");
                 let ramp: Vec<f64> = (0..n).map(|i| 3.0 + 0.5 * i as f64).collect();
                 let filtered = filter(class).apply(&ramp).unwrap();
                 for (i, (y, x)) in filtered.iter().zip(&ramp).enumerate() {
@@ -376,17 +357,11 @@ mod tests {
         let mut uneven = time.clone();
         uneven[50] += 1e-4;
         let error = filter_channel(ChannelClass::Cfc60, &uneven, &zeros).unwrap_err();
-        assert!(
-            matches!(error, FilterError::Uneven { sample_idx: 50, .. }),
-            "{error}"
-        );
+        assert!(matches!(error, FilterError::Uneven { sample_idx: 50, .. }), "{error}");
         let mut broken = zeros.clone();
         broken[7] = f64::NAN;
         let error = filter_channel(ChannelClass::Cfc60, &time, &broken).unwrap_err();
-        assert!(
-            matches!(error, FilterError::NotFinite { sample_idx: 7, .. }),
-            "{error}"
-        );
+        assert!(matches!(error, FilterError::NotFinite { sample_idx: 7, .. }), "{error}");
         assert!(filter_channel(ChannelClass::Cfc60, &time, &zeros[1..]).is_err());
         assert!(filter_channel(ChannelClass::Cfc60, &[0.0], &[0.0]).is_err());
         assert!(filter_channel(ChannelClass::Cfc60, &[], &[]).is_err());

@@ -23,10 +23,7 @@ pub struct ContactDistribution {
 
 impl Default for ContactDistribution {
     fn default() -> Self {
-        Self {
-            restitution: [0.0, 0.3],
-            friction_limit: [0.2, 0.6],
-        }
+        Self { restitution: [0.0, 0.3], friction_limit: [0.2, 0.6] }
     }
 }
 
@@ -35,10 +32,7 @@ impl ContactDistribution {
     /// numbers to draw, 0.5 for the median.
     pub fn quantile(&self, [u_restitution, u_friction]: [f64; 2]) -> (f64, f64) {
         let at = |[low, high]: [f64; 2], u: f64| low + (high - low) * u;
-        (
-            at(self.restitution, u_restitution),
-            at(self.friction_limit, u_friction),
-        )
+        (at(self.restitution, u_restitution), at(self.friction_limit, u_friction))
     }
 
     /// The ranges that hold the middle 90 % of what known impulses imply

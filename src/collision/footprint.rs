@@ -156,31 +156,12 @@ impl Footprint {
         let positive = |x: f64| x.is_finite() && x > 0.0;
         let inside = self.cg_from_front_m >= 0.0 && self.cg_from_front_m <= self.length_m;
         for (ok, name, value, expected) in [
-            (
-                positive(self.length_m),
-                "length_m",
-                self.length_m,
-                "more than 0",
-            ),
-            (
-                positive(self.width_m),
-                "width_m",
-                self.width_m,
-                "more than 0",
-            ),
-            (
-                inside,
-                "cg_from_front_m",
-                self.cg_from_front_m,
-                "0 to length_m",
-            ),
+            (positive(self.length_m), "length_m", self.length_m, "more than 0"),
+            (positive(self.width_m), "width_m", self.width_m, "more than 0"),
+            (inside, "cg_from_front_m", self.cg_from_front_m, "0 to length_m"),
         ] {
             if !ok {
-                return Err(FootprintError::Range {
-                    name,
-                    value,
-                    expected,
-                });
+                return Err(FootprintError::Range { name, value, expected });
             }
         }
         Ok(())
@@ -224,18 +205,10 @@ pub fn find_contact(
 ) -> Result<Contact, FootprintError> {
     for (footprint, pose) in [(target, target_pose), (bullet, bullet_pose)] {
         footprint.check()?;
-        for (value, name) in [
-            (pose.x_m, "x_m"),
-            (pose.y_m, "y_m"),
-            (pose.yaw_rad, "yaw_rad"),
-        ] {
+        for (value, name) in [(pose.x_m, "x_m"), (pose.y_m, "y_m"), (pose.yaw_rad, "yaw_rad")] {
             if !value.is_finite() {
                 let expected = "a finite number";
-                return Err(FootprintError::Range {
-                    name,
-                    value,
-                    expected,
-                });
+                return Err(FootprintError::Range { name, value, expected });
             }
         }
     }
@@ -298,24 +271,14 @@ pub fn place_touching(
         Side::Left | Side::Right => [mx + offset_m, my],
     });
     let inward = direction(target_pose.yaw_rad + side.outward_angle_rad()).map(|c| -c);
-    let turned = Pose {
-        x_m: 0.0,
-        y_m: 0.0,
-        yaw_rad: heading_rad,
-    };
+    let turned = Pose { x_m: 0.0, y_m: 0.0, yaw_rad: heading_rad };
     let corners = bullet.corners_m(&turned);
     let foremost = reach(&corners, inward);
-    let touching: Vec<_> = corners
-        .into_iter()
-        .filter(|&corner| dot(corner, inward) > foremost - 1e-9)
-        .collect();
+    let touching: Vec<_> =
+        corners.into_iter().filter(|&corner| dot(corner, inward) > foremost - 1e-9).collect();
     let n = touching.len().max(1) as f64;
     let middle = [0, 1].map(|i| touching.iter().map(|corner| corner[i]).sum::<f64>() / n);
-    let pose = Pose {
-        x_m: point[0] - middle[0],
-        y_m: point[1] - middle[1],
-        yaw_rad: heading_rad,
-    };
+    let pose = Pose { x_m: point[0] - middle[0], y_m: point[1] - middle[1], yaw_rad: heading_rad };
     find_contact((target, target_pose), (bullet, &pose))?;
     Ok(pose)
 }
@@ -331,10 +294,7 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 
 /// Furthest extent of the corners along a direction.
 fn reach(corners: &[[f64; 2]; 4], along: [f64; 2]) -> f64 {
-    corners
-        .iter()
-        .map(|&corner| dot(corner, along))
-        .fold(f64::NEG_INFINITY, f64::max)
+    corners.iter().map(|&corner| dot(corner, along)).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// What two convex, counter-clockwise polygons share (Sutherland and Hodgman).
@@ -382,11 +342,7 @@ mod tests {
 
     use super::*;
 
-    const CAR: Footprint = Footprint {
-        length_m: 4.8,
-        width_m: 1.8,
-        cg_from_front_m: 2.2,
-    };
+    const CAR: Footprint = Footprint { length_m: 4.8, width_m: 1.8, cg_from_front_m: 2.2 };
 
     fn pose(x_m: f64, y_m: f64, yaw_deg: f64) -> Pose {
         let yaw_rad = yaw_deg.to_radians();
@@ -428,10 +384,7 @@ mod tests {
             assert!(contact.depth_m.abs() < 1e-9, "{contact:?}");
             let [x, y] = target.body_from_world(contact.point_m);
             let expected_y = CAR.side_middle_m(side)[1];
-            assert!(
-                (x + 1.4).abs() < 3e-3 && (y - expected_y).abs() < 1e-3,
-                "{x} {y}"
-            );
+            assert!((x + 1.4).abs() < 3e-3 && (y - expected_y).abs() < 1e-3, "{x} {y}");
         }
     }
 
@@ -451,16 +404,10 @@ mod tests {
                 let heading_rad = f64::from(heading_deg).to_radians();
                 let bullet = place_touching((&CAR, &target), (side, 0.3), (&CAR, heading_rad));
                 let contact = find_contact((&CAR, &target), (&CAR, &bullet.unwrap())).unwrap();
-                assert!(
-                    contact.depth_m.abs() < 1e-9,
-                    "{side:?} {heading_deg}: {contact:?}"
-                );
+                assert!(contact.depth_m.abs() < 1e-9, "{side:?} {heading_deg}: {contact:?}");
                 let normal = direction(contact.normal_angle_rad);
                 let outward = direction(target.yaw_rad + side.outward_angle_rad());
-                assert!(
-                    dot(normal, outward) < -1.0 + 1e-9,
-                    "{side:?} {heading_deg}: {contact:?}"
-                );
+                assert!(dot(normal, outward) < -1.0 + 1e-9, "{side:?} {heading_deg}: {contact:?}");
             }
         }
     }

@@ -239,10 +239,7 @@ impl<T: Scalar> Impact<T> {
     fn apply(&self, [p_n, p_t]: [T; 2], closing: [T; 2], regime: Regime) -> ImpactSolution<T> {
         let normal = self.surface.normal();
         let tangent = perpendicular(normal);
-        let p = [
-            normal[0] * p_n + tangent[0] * p_t,
-            normal[1] * p_n + tangent[1] * p_t,
-        ];
+        let p = [normal[0] * p_n + tangent[0] * p_t, normal[1] * p_n + tangent[1] * p_t];
         ImpactSolution {
             impulse_n_s: p,
             impulse_normal_n_s: p_n,
@@ -283,12 +280,7 @@ impl Impact<f64> {
         let (s, of) = (&self.surface, "contact");
         check(of, "normal_angle_rad", s.normal_angle_rad, Expected::Finite)?;
         check(of, "restitution", s.restitution, Expected::Share)?;
-        check(
-            of,
-            "friction_limit",
-            s.friction_limit,
-            Expected::NotNegative,
-        )?;
+        check(of, "friction_limit", s.friction_limit, Expected::NotNegative)?;
         self.solve_unchecked()
     }
 
@@ -414,9 +406,7 @@ impl<T: Scalar> RestitutionLine<T> {
             return if resistance.re() > 0.0 {
                 Ok((sliding, Regime::Sliding))
             } else {
-                Err(ImpactError::Jammed {
-                    friction_limit: surface.friction_limit.re(),
-                })
+                Err(ImpactError::Jammed { friction_limit: surface.friction_limit.re() })
             };
         }
         let (mut p_t, mut regime) = (no_slide, Regime::NoSlide);
@@ -459,12 +449,7 @@ fn check(
     if value.is_finite() && in_range {
         return Ok(());
     }
-    Err(ImpactError::Range {
-        of,
-        name,
-        value,
-        expected,
-    })
+    Err(ImpactError::Range { of, name, value, expected })
 }
 
 /// A quarter turn to the left.

@@ -11,24 +11,15 @@ use crate::collision::{
 
 fn bodies() -> impl Strategy<Value = ImpactBody> {
     let pair = |most: f64| [-most..most, -most..most];
-    let numbers = (
-        500.0..5000.0,
-        0.5..3.0,
-        -4.0..4.0,
-        pair(40.0),
-        -3.0..3.0,
-        pair(3.0),
-    );
-    numbers.prop_map(
-        |(mass_kg, gyration, heading_rad, velocity_m_s, rate, arm)| ImpactBody {
-            mass_kg,
-            yaw_inertia_kg_m2: mass_kg * gyration,
-            heading_rad,
-            velocity_m_s,
-            yaw_rate_rad_s: rate,
-            contact_arm_m: arm,
-        },
-    )
+    let numbers = (500.0..5000.0, 0.5..3.0, -4.0..4.0, pair(40.0), -3.0..3.0, pair(3.0));
+    numbers.prop_map(|(mass_kg, gyration, heading_rad, velocity_m_s, rate, arm)| ImpactBody {
+        mass_kg,
+        yaw_inertia_kg_m2: mass_kg * gyration,
+        heading_rad,
+        velocity_m_s,
+        yaw_rate_rad_s: rate,
+        contact_arm_m: arm,
+    })
 }
 
 fn impacts(friction_model: FrictionModel) -> impl Strategy<Value = Impact> {
@@ -68,10 +59,7 @@ fn after(impact: &Impact, solution: &ImpactSolution) -> [ImpactBody; 2] {
         yaw_rate_rad_s: to.yaw_rate_rad_s,
         ..body
     };
-    [
-        moved(impact.target, &solution.target),
-        moved(impact.bullet, &solution.bullet),
-    ]
+    [moved(impact.target, &solution.target), moved(impact.bullet, &solution.bullet)]
 }
 
 /// Closing velocity of the contact points after the impact, along normal and tangent, m/s.
@@ -297,19 +285,10 @@ fn a_central_impact_loses_the_textbook_energy() {
         let solution = central(e).solve().unwrap();
         let m_eff = 1000.0 * 3000.0 / 4000.0;
         let lost = 0.5 * m_eff * 12.0_f64.powi(2) * (1.0 - e * e);
-        assert!(
-            (solution.dissipated_energy_j - lost).abs() < 1e-8,
-            "e = {e}: {solution:?}"
-        );
+        assert!((solution.dissipated_energy_j - lost).abs() < 1e-8, "e = {e}: {solution:?}");
         let [dvx, dvy] = solution.target.delta_v_m_s;
-        assert!(
-            (dvx - (1.0 + e) * m_eff * 12.0 / 1000.0).abs() < 1e-12,
-            "e = {e}: {solution:?}"
-        );
-        assert!(
-            dvy.abs() < 1e-12 && solution.target.yaw_rate_rad_s == 0.0,
-            "{solution:?}"
-        );
+        assert!((dvx - (1.0 + e) * m_eff * 12.0 / 1000.0).abs() < 1e-12, "e = {e}: {solution:?}");
+        assert!(dvy.abs() < 1e-12 && solution.target.yaw_rate_rad_s == 0.0, "{solution:?}");
         let clocks = [solution.target.pdof, solution.bullet.pdof].map(|p| p.map(|p| p.clock()));
         assert_eq!(clocks, [Some(6), Some(12)], "e = {e}");
     }
@@ -332,10 +311,7 @@ fn the_work_of_a_force_depends_on_its_impulse_alone() {
         impulse = [impulse[0] + dp[0], impulse[1] + dp[1]];
     }
     let closed = contact_work_j(v0, k, impulse);
-    assert!(
-        (work - closed).abs() < 1e-6 * closed.abs(),
-        "{work} {closed}"
-    );
+    assert!((work - closed).abs() < 1e-6 * closed.abs(), "{work} {closed}");
 }
 
 /// With a perfect rebound, long lever arms and a little sliding, restitution and no slide together
@@ -349,10 +325,7 @@ fn friction_is_held_where_it_would_create_energy() {
     let regimes = [-6.0, -3.0, -1.0, -0.3, 0.0, 0.3, 1.0, 3.0, 6.0].map(|slide| {
         impact.bullet.velocity_m_s[1] = slide;
         let solution = impact.solve().unwrap();
-        assert!(
-            solution.dissipated_energy_j > -1e-9,
-            "{slide}: {solution:?}"
-        );
+        assert!(solution.dissipated_energy_j > -1e-9, "{slide}: {solution:?}");
         solution.regime
     });
     assert!(regimes.contains(&Regime::EnergyLimited), "{regimes:?}");
@@ -382,10 +355,7 @@ fn senseless_numbers_are_refused_by_name() {
         change(&mut impact);
         impact.solve().unwrap_err().to_string()
     };
-    assert_eq!(
-        refused(|i| i.target.mass_kg = 0.0),
-        "target: mass_kg is 0, expected more than 0"
-    );
+    assert_eq!(refused(|i| i.target.mass_kg = 0.0), "target: mass_kg is 0, expected more than 0");
     assert_eq!(
         refused(|i| i.surface.restitution = 1.5),
         "contact: restitution is 1.5, expected 0 to 1"

@@ -48,12 +48,7 @@ pub struct PulseError {
 
 impl PulseShape {
     /// All four, from the roundest to the plainest.
-    pub const ALL: [Self; 4] = [
-        Self::HalfSine,
-        Self::Haversine,
-        Self::Triangle,
-        Self::Square,
-    ];
+    pub const ALL: [Self; 4] = [Self::HalfSine, Self::Haversine, Self::Triangle, Self::Square];
 
     /// What a plot or a table calls it.
     pub fn label(self) -> &'static str {
@@ -119,19 +114,10 @@ impl Pulse {
             (duration_s > 0.0, "duration_s", duration_s, "more than 0"),
         ] {
             if !(ok && value.is_finite()) {
-                return Err(PulseError {
-                    name,
-                    value,
-                    expected,
-                });
+                return Err(PulseError { name, value, expected });
             }
         }
-        Ok(Self {
-            shape,
-            impulse_n_s,
-            start_s,
-            duration_s,
-        })
+        Ok(Self { shape, impulse_n_s, start_s, duration_s })
     }
 
     /// Force on the target at a time, world axes, N.
@@ -140,17 +126,13 @@ impl Pulse {
     /// F(t) = P / Δt · density((t − start) / Δt)
     /// ```
     pub fn force_n(&self, time_s: f64) -> [f64; 2] {
-        let height = self
-            .shape
-            .density((time_s - self.start_s) / self.duration_s);
+        let height = self.shape.density((time_s - self.start_s) / self.duration_s);
         self.impulse_n_s.map(|p| p / self.duration_s * height)
     }
 
     /// Impulse up to a time, in closed form, N s.
     pub fn impulse_until_n_s(&self, time_s: f64) -> [f64; 2] {
-        let area = self
-            .shape
-            .cumulative((time_s - self.start_s) / self.duration_s);
+        let area = self.shape.cumulative((time_s - self.start_s) / self.duration_s);
         self.impulse_n_s.map(|p| p * area)
     }
 
@@ -179,9 +161,8 @@ impl Pulse {
                 expected: "more than 0 and more than a millionth of the pulse's end",
             });
         }
-        let edges: Vec<f64> = (0..=n_samples as usize)
-            .map(|i| i as f64 * sample_interval_s)
-            .collect();
+        let edges: Vec<f64> =
+            (0..=n_samples as usize).map(|i| i as f64 * sample_interval_s).collect();
         // The last edge lies at the end of the pulse or after it, up to rounding.
         let until = |i: usize, axis: usize| match edges.get(i) {
             Some(&edge) if i + 1 < edges.len() => self.impulse_until_n_s(edge)[axis],
@@ -195,9 +176,7 @@ impl Pulse {
         Ok(ForceHistory {
             axes: ForceAxes::World,
             sampling: Sampling::CentredMean,
-            time_s: (0..n_samples as usize)
-                .map(|i| (i as f64 + 0.5) * sample_interval_s)
-                .collect(),
+            time_s: (0..n_samples as usize).map(|i| (i as f64 + 0.5) * sample_interval_s).collect(),
             fx_n: means(0),
             fy_n: means(1),
             mz_n_m: None,
@@ -222,10 +201,7 @@ mod tests {
                 let u = (f64::from(i) + 0.5) / f64::from(n);
                 let end = f64::from(i + 1) / f64::from(n);
                 area += shape.density(u) / f64::from(n);
-                assert!(
-                    (shape.cumulative(end) - area).abs() < 1e-8,
-                    "{shape:?} {end}"
-                );
+                assert!((shape.cumulative(end) - area).abs() < 1e-8, "{shape:?} {end}");
             }
             assert_eq!(shape.cumulative(-0.1), 0.0, "{shape:?}");
             assert_eq!(shape.cumulative(1.1), 1.0, "{shape:?}");

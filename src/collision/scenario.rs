@@ -187,34 +187,20 @@ impl Scenario {
     /// [`ScenarioError::Footprint`] if the outlines make no contact,
     /// [`ScenarioError::NormalPointsOut`] for a user's normal that does not point into the target.
     pub fn geometry(&self) -> Result<ScenarioGeometry, ScenarioError> {
-        let target = Pose {
-            x_m: self.target_x_m,
-            y_m: self.target_y_m,
-            yaw_rad: self.target.heading_rad,
-        };
+        let target =
+            Pose { x_m: self.target_x_m, y_m: self.target_y_m, yaw_rad: self.target.heading_rad };
         let heading_rad = self.bullet.heading_rad;
-        let bullet_at = |x_m, y_m| Pose {
-            x_m,
-            y_m,
-            yaw_rad: heading_rad,
-        };
+        let bullet_at = |x_m, y_m| Pose { x_m, y_m, yaw_rad: heading_rad };
         let outlines = [self.target.footprint(), self.bullet.footprint()];
         let bullet = match self.contact.location {
-            ContactLocation::Footprints {
-                bullet_x_m,
-                bullet_y_m,
-            } => bullet_at(bullet_x_m, bullet_y_m),
+            ContactLocation::Footprints { bullet_x_m, bullet_y_m } => {
+                bullet_at(bullet_x_m, bullet_y_m)
+            }
             ContactLocation::Side { side, offset_m } => {
                 let place = (side, offset_m);
                 place_touching((&outlines[0], &target), place, (&outlines[1], heading_rad))?
             }
-            ContactLocation::Point {
-                x_m,
-                y_m,
-                normal_rad,
-                bullet_x_m,
-                bullet_y_m,
-            } => {
+            ContactLocation::Point { x_m, y_m, normal_rad, bullet_x_m, bullet_y_m } => {
                 let (sin, cos) = normal_rad.sin_cos();
                 if x_m * cos + y_m * sin > 0.0 {
                     let normal_deg = normal_rad.to_degrees();

@@ -130,10 +130,8 @@ impl Scenario {
     /// # Errors
     /// [`ScenarioFileError`].
     pub fn load(path: &Path) -> Result<Self, ScenarioFileError> {
-        let text = std::fs::read_to_string(path).map_err(|source| ScenarioFileError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| ScenarioFileError::Read { path: path.to_owned(), source })?;
         Self::from_toml(&text, path)
     }
 
@@ -215,16 +213,10 @@ fn read_location(
         let x_m = bullet.require("x", Quantity::Length, ANY_POSITION_M)?;
         Ok((x_m, bullet.require("y", Quantity::Length, ANY_POSITION_M)?))
     };
-    match contact
-        .choice("from", &LOCATIONS)?
-        .ok_or_else(|| contact.missing("from"))?
-    {
+    match contact.choice("from", &LOCATIONS)?.ok_or_else(|| contact.missing("from"))? {
         0 => {
             let (bullet_x_m, bullet_y_m) = bullet_at()?;
-            Ok(ContactLocation::Footprints {
-                bullet_x_m,
-                bullet_y_m,
-            })
+            Ok(ContactLocation::Footprints { bullet_x_m, bullet_y_m })
         }
         1 => {
             let names = Side::ALL.map(Side::name);
@@ -281,19 +273,14 @@ mod tests {
     /// What is said of the shipped scenario with one line changed.
     fn refusal(line: &str, instead: &str) -> String {
         assert!(PIT.contains(line), "{line}");
-        read(&PIT.replacen(line, instead, 1))
-            .unwrap_err()
-            .to_string()
+        read(&PIT.replacen(line, instead, 1)).unwrap_err().to_string()
     }
 
     #[test]
     fn units_are_in_the_keys() {
         let pit = read(PIT).unwrap();
         assert!((pit.target.vx_m_s - 15.0).abs() < 1e-12, "{pit:?}");
-        assert!(
-            (pit.bullet.heading_rad - 12_f64.to_radians()).abs() < 1e-15,
-            "{pit:?}"
-        );
+        assert!((pit.bullet.heading_rad - 12_f64.to_radians()).abs() < 1e-15, "{pit:?}");
         let speed = pit.bullet.vx_m_s.hypot(pit.bullet.vy_m_s);
         assert!((speed * 3.6 - 56.5).abs() < 1e-9, "{pit:?}");
         for (key, value) in [
@@ -304,10 +291,7 @@ mod tests {
         ] {
             let text = PIT.replacen("speed_km_h = 54", &format!("{key} = {value}"), 1);
             let other = read(&text).unwrap();
-            assert!(
-                (other.target.vx_m_s - 15.0).abs() < 1e-9,
-                "{key}: {other:?}"
-            );
+            assert!((other.target.vx_m_s - 15.0).abs() < 1e-9, "{key}: {other:?}");
         }
     }
 
@@ -340,11 +324,7 @@ mod tests {
                 "10:11: target.width_m is \"wide\", expected 0.1 to 20 m",
             ),
             ("length_m", "lenght_m", "6:2: target.length_m is missing"),
-            (
-                "heading_deg",
-                "haeding_deg",
-                "12:1: target.haeding_deg is not known here",
-            ),
+            ("heading_deg", "haeding_deg", "12:1: target.haeding_deg is not known here"),
             (
                 "speed_km_h = 54",
                 "speed_km_h = 54\nspeed_m_s = 15",
@@ -355,11 +335,7 @@ mod tests {
                 "speed_km_h = 54\nvx_m_s = 15",
                 "14:1: target.vx_m_s and speed_km_h say the same thing, expected one",
             ),
-            (
-                "speed_km_h = 54",
-                "vx_m_s = 15",
-                "6:2: target.vy_m_s is missing",
-            ),
+            ("speed_km_h = 54", "vx_m_s = 15", "6:2: target.vy_m_s is missing"),
             ("[contact]", "[kontact]", "1:1: [contact] is missing"),
             (
                 "side = \"right\"",

@@ -17,10 +17,7 @@ impl Scenario {
         let mut bullet = vehicle_lines("bullet", &self.bullet);
         let mut contact = Lines("\n[contact]\n".to_owned());
         match self.contact.location {
-            ContactLocation::Footprints {
-                bullet_x_m,
-                bullet_y_m,
-            } => {
+            ContactLocation::Footprints { bullet_x_m, bullet_y_m } => {
                 bullet.number("x_m", bullet_x_m);
                 bullet.number("y_m", bullet_y_m);
                 contact.line("from", quoted(LOCATIONS[0]));
@@ -30,13 +27,7 @@ impl Scenario {
                 contact.line("side", quoted(side.name()));
                 contact.number("offset_m", offset_m);
             }
-            ContactLocation::Point {
-                x_m,
-                y_m,
-                normal_rad,
-                bullet_x_m,
-                bullet_y_m,
-            } => {
+            ContactLocation::Point { x_m, y_m, normal_rad, bullet_x_m, bullet_y_m } => {
                 bullet.number("x_m", bullet_x_m);
                 bullet.number("y_m", bullet_y_m);
                 contact.line("from", quoted(LOCATIONS[2]));
@@ -113,10 +104,7 @@ mod tests {
         scenario.contact.friction_model = FrictionModel::Paper;
         for location in [
             scenario.contact.location,
-            ContactLocation::Footprints {
-                bullet_x_m: 0.1 + 0.2,
-                bullet_y_m: -3.0,
-            },
+            ContactLocation::Footprints { bullet_x_m: 0.1 + 0.2, bullet_y_m: -3.0 },
             ContactLocation::Point {
                 x_m: -1.4,
                 y_m: -0.9,
@@ -129,11 +117,7 @@ mod tests {
             let text = scenario.to_toml();
             assert_eq!(read(&text).unwrap(), scenario, "{text}");
             let json = serde_json::to_string(&scenario).unwrap();
-            assert_eq!(
-                serde_json::from_str::<Scenario>(&json).unwrap(),
-                scenario,
-                "{json}"
-            );
+            assert_eq!(serde_json::from_str::<Scenario>(&json).unwrap(), scenario, "{json}");
         }
     }
 }

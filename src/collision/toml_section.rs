@@ -61,14 +61,7 @@ impl<'a> Section<'a> {
     }
 
     fn new(source: Source<'a>, name: String, at: usize, table: &'a DeTable<'a>) -> Self {
-        Self {
-            source,
-            name,
-            at,
-            table,
-            used: BTreeSet::new(),
-            last_key: String::new(),
-        }
+        Self { source, name, at, table, used: BTreeSet::new(), last_key: String::new() }
     }
 
     /// A table inside this one; it must be there.
@@ -141,8 +134,7 @@ impl<'a> Section<'a> {
         range: Range,
     ) -> Result<f64, ScenarioFileError> {
         let key = key_of(base, &quantity.si_unit());
-        self.number(base, quantity, range)?
-            .ok_or_else(|| self.missing(&key))
+        self.number(base, quantity, range)?.ok_or_else(|| self.missing(&key))
     }
 
     /// Refuses what was not read.
@@ -179,10 +171,7 @@ impl<'a> Section<'a> {
 
     /// The last key that was there says again what `other` says.
     pub fn conflict(&self, other: &str) -> ScenarioFileError {
-        let here = self
-            .table
-            .keys()
-            .find(|key| *key.get_ref() == self.last_key);
+        let here = self.table.keys().find(|key| *key.get_ref() == self.last_key);
         let at = here.map_or(self.at, |key| key.span().start);
         let (line, column) = self.source.line_column(at);
         ScenarioFileError::Conflict {
@@ -245,11 +234,7 @@ impl<'a> Section<'a> {
     }
 
     fn full(&self, key: &str) -> String {
-        if self.name.is_empty() {
-            key.to_owned()
-        } else {
-            format!("{}.{key}", self.name)
-        }
+        if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
     }
 }
 
@@ -260,10 +245,7 @@ fn key_of(base: &str, unit: &Unit) -> String {
         "" => base.to_owned(),
         "%" => format!("{base}_percent"),
         symbol => {
-            let suffix = symbol
-                .replace(['/', ' '], "_")
-                .replace('²', "2")
-                .replace('µ', "u");
+            let suffix = symbol.replace(['/', ' '], "_").replace('²', "2").replace('µ', "u");
             format!("{base}_{suffix}")
         }
     }

@@ -51,16 +51,9 @@ impl MotionError {
         };
         let (dx, dy) = (difference(Channel::X)?, difference(Channel::Y)?);
         let distance: Vec<f64> = dx.iter().zip(&dy).map(|(x, y)| x.hypot(*y)).collect();
-        let heading = difference(Channel::Yaw)?
-            .last()
-            .copied()
-            .unwrap_or(f64::NAN);
+        let heading = difference(Channel::Yaw)?.last().copied().unwrap_or(f64::NAN);
         let at = |time| interpolate(time_s, &distance, time).unwrap_or(f64::NAN);
-        let optional = |channel| {
-            difference(channel)
-                .ok()
-                .map(|values| root_mean_square(&values))
-        };
+        let optional = |channel| difference(channel).ok().map(|values| root_mean_square(&values));
         Ok(Self {
             average_error_m: distance.iter().sum::<f64>() / distance.len() as f64,
             final_error_m: distance.last().copied().unwrap_or(f64::NAN),
@@ -86,9 +79,7 @@ fn root_mean_square(values: &[f64]) -> f64 {
 pub fn largest_yaw_change_rad(motion: &TimeSeries) -> Result<f64, SeriesError> {
     let yaw = motion.require(Channel::Yaw)?;
     let first = yaw.first().copied().unwrap_or(0.0);
-    Ok(yaw
-        .iter()
-        .fold(0.0, |largest, yaw| (yaw - first).abs().max(largest)))
+    Ok(yaw.iter().fold(0.0, |largest, yaw| (yaw - first).abs().max(largest)))
 }
 
 #[cfg(test)]
@@ -98,12 +89,8 @@ mod tests {
     fn motion(offset_m: f64, yaw_rad: f64) -> TimeSeries {
         let time_s: Vec<f64> = (0..=400).map(|i| f64::from(i) * 0.01).collect();
         let mut series = TimeSeries::new(time_s.clone()).unwrap();
-        series
-            .insert(Channel::X, time_s.iter().map(|t| 10.0 * t).collect())
-            .unwrap();
-        series
-            .insert(Channel::Y, time_s.iter().map(|t| offset_m * t).collect())
-            .unwrap();
+        series.insert(Channel::X, time_s.iter().map(|t| 10.0 * t).collect()).unwrap();
+        series.insert(Channel::Y, time_s.iter().map(|t| offset_m * t).collect()).unwrap();
         series.insert(Channel::Yaw, vec![yaw_rad; 401]).unwrap();
         series
     }

@@ -83,26 +83,15 @@ pub struct ErrorSummary {
 /// [`ReplayError`] if an attribute or a column is missing.
 pub fn recorded_manoeuvre(case: &Case) -> Result<Manoeuvre, ReplayError> {
     let attributes = TrajectoryAttributes::read(&case.attributes)?;
-    let in_case = |source| ReplayError::Series {
-        case: case.name.clone(),
-        source,
-    };
+    let in_case = |source| ReplayError::Series { case: case.name.clone(), source };
     let [x_m, y_m] = attributes.contact_m;
-    let contact = ContactPoint {
-        x_m,
-        y_m,
-        height_m: attributes.contact_height_m,
-    };
+    let contact = ContactPoint { x_m, y_m, height_m: attributes.contact_height_m };
     let force = case.force_history().map_err(in_case)?;
     let time_s = case.series.time_s();
     let last = time_s.last().copied().unwrap_or(0.0);
     Ok(Manoeuvre {
         initial: initial_state(&case.series).map_err(in_case)?,
-        contact_load: Some(ContactLoad {
-            force,
-            contact,
-            recorded_moment: true,
-        }),
+        contact_load: Some(ContactLoad { force, contact, recorded_moment: true }),
         steer: None,
         duration_s: last.max(OUTPUT_INTERVAL_S),
     })
@@ -137,28 +126,16 @@ pub fn replay_case(
     vehicle: &VehicleParameters,
     integrator: Integrator,
 ) -> Result<Replay, ReplayError> {
-    let in_case = |source| ReplayError::Series {
-        case: case.name.clone(),
-        source,
-    };
+    let in_case = |source| ReplayError::Series { case: case.name.clone(), source };
     let manoeuvre = recorded_manoeuvre(case)?;
     let friction = TrajectoryAttributes::read(&case.attributes)?.mu;
     let vehicle = vehicle.clone().with_friction(friction);
-    let motion =
-        vehicle
-            .simulate(&manoeuvre, integrator)
-            .map_err(|source| ReplayError::Simulation {
-                case: case.name.clone(),
-                source,
-            })?;
+    let motion = vehicle
+        .simulate(&manoeuvre, integrator)
+        .map_err(|source| ReplayError::Simulation { case: case.name.clone(), source })?;
     let error = MotionError::between(&motion.series, &case.series).map_err(in_case)?;
     let spin = largest_yaw_change_rad(&case.series).map_err(in_case)? > SPIN_YAW_CHANGE_RAD;
-    Ok(Replay {
-        case: case.name.clone(),
-        motion,
-        error,
-        spin,
-    })
+    Ok(Replay { case: case.name.clone(), motion, error, spin })
 }
 
 /// Simulates and compares every case of a dataset in parallel. A case that fails does not stop
@@ -172,10 +149,8 @@ pub fn replay_dataset(
     let mut all = DatasetReplay::default();
     let n_cases = dataset.cases.len() as u64;
     for block in dataset.cases.chunks(BLOCK_CASES) {
-        let results: Vec<_> = block
-            .par_iter()
-            .map(|case| replay_case(case, vehicle, integrator))
-            .collect();
+        let results: Vec<_> =
+            block.par_iter().map(|case| replay_case(case, vehicle, integrator)).collect();
         for result in results {
             match result {
                 Ok(replay) => all.cases.push(replay),

@@ -36,9 +36,7 @@ impl Attributes {
             path: Arc::clone(&path),
             line: table.line(row_idx),
             names: Arc::clone(&names),
-            values: (0..table.header().len())
-                .map(|column| value(row_idx, column))
-                .collect(),
+            values: (0..table.header().len()).map(|column| value(row_idx, column)).collect(),
         };
         (0..table.n_rows()).map(row).collect()
     }
@@ -111,10 +109,7 @@ impl Attributes {
 
     /// Number of a column, from 1; 0 if there is none of this name.
     pub(crate) fn column(&self, name: &str) -> usize {
-        self.names
-            .iter()
-            .position(|column| column == name)
-            .map_or(0, |idx| idx + 1)
+        self.names.iter().position(|column| column == name).map_or(0, |idx| idx + 1)
     }
 
     /// The error for text where a number is needed.

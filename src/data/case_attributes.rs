@@ -98,13 +98,8 @@ impl ForceAttributes {
 
 impl TrajectoryAttributes {
     /// The columns without which [`TrajectoryAttributes::read`] fails.
-    pub const NEEDED: &'static [&'static str] = &[
-        "speed_m_s",
-        "mu",
-        "contact_x_m",
-        "contact_y_m",
-        "contact_height_m",
-    ];
+    pub const NEEDED: &'static [&'static str] =
+        &["speed_m_s", "mu", "contact_x_m", "contact_y_m", "contact_height_m"];
 
     /// Takes them out of a row.
     ///

@@ -87,9 +87,7 @@ impl ColumnMap {
 
     /// All choices, in channel order.
     pub fn iter(&self) -> impl Iterator<Item = (Channel, &ColumnSource)> {
-        self.sources
-            .iter()
-            .map(|(channel, source)| (*channel, source))
+        self.sources.iter().map(|(channel, source)| (*channel, source))
     }
 }
 
@@ -118,17 +116,14 @@ impl FromStr for ColumnMap {
 }
 
 fn choice(part: &str) -> Result<(Channel, ColumnSource), MapError> {
-    let syntax = || MapError::Syntax {
-        part: part.to_owned(),
-    };
+    let syntax = || MapError::Syntax { part: part.to_owned() };
     let (name, column) = part.split_once('=').ok_or_else(syntax)?;
     let (name, column) = (name.trim(), column.trim());
     if name.is_empty() || column.is_empty() {
         return Err(syntax());
     }
-    let channel = spelling::channel(name).ok_or_else(|| MapError::Channel {
-        name: name.to_owned(),
-    })?;
+    let channel =
+        spelling::channel(name).ok_or_else(|| MapError::Channel { name: name.to_owned() })?;
     let with_unit = column.rsplit_once(':').and_then(|(column, text)| {
         let unit = spelling::unit(channel.quantity(), text.trim())?;
         Some((column.trim(), Some(unit)))
@@ -179,10 +174,7 @@ impl From<ColumnMap> for String {
 }
 
 fn short_names() -> String {
-    let names: Vec<_> = Channel::ALL
-        .iter()
-        .map(|channel| channel.short_name())
-        .collect();
+    let names: Vec<_> = Channel::ALL.iter().map(|channel| channel.short_name()).collect();
     names.join(", ")
 }
 
@@ -201,10 +193,7 @@ mod tests {
                 "fx",
                 r#""fx" is no mapping, expected channel=column or channel=column:unit, e.g. fx=Kraft X:kN"#,
             ),
-            (
-                "fx=0",
-                "fx is taken from column 0, but columns are counted from 1",
-            ),
+            ("fx=0", "fx is taken from column 0, but columns are counted from 1"),
             ("fx=1,fx=2", "fx is mapped twice"),
         ] {
             let error = text.parse::<ColumnMap>().unwrap_err();

@@ -57,12 +57,7 @@ impl fmt::Display for Note {
                 "column {} {:?} names no unit; taken as {}",
                 column.number, column.name, column.unit.symbol
             ),
-            Self::WrongUnit {
-                channel,
-                number,
-                name,
-                unit,
-            } => write!(
+            Self::WrongUnit { channel, number, name, unit } => write!(
                 f,
                 "column {number} {name:?} is left out: {unit:?} is no unit of {}",
                 spelling::quantity_name(channel.quantity())
@@ -131,21 +126,14 @@ impl Columns {
             columns.by_channel.insert(channel, column);
         }
         columns.guess_others(table, map)?;
-        let assumed = columns
-            .by_channel
-            .values()
-            .filter(|column| !column.unit_is_stated);
+        let assumed = columns.by_channel.values().filter(|column| !column.unit_is_stated);
         let assumed: Vec<Note> = assumed.cloned().map(Note::UnitAssumed).collect();
         columns.notes.splice(0..0, assumed);
         Ok(columns)
     }
 
     fn guess_others(&mut self, table: &Table, map: Option<&ColumnMap>) -> Result<(), DataError> {
-        let mapped: Vec<usize> = self
-            .by_channel
-            .values()
-            .map(|column| column.number)
-            .collect();
+        let mapped: Vec<usize> = self.by_channel.values().map(|column| column.number).collect();
         let is_mapped = |channel| map.is_some_and(|map| map.get(channel).is_some());
         let mut ignored = Vec::new();
         for (column_idx, name) in table.header().iter().enumerate() {
@@ -163,12 +151,7 @@ impl Columns {
                     self.by_channel.insert(channel, column);
                 }
                 Meaning::WrongUnit(channel, unit) if !is_mapped(channel) => {
-                    self.notes.push(Note::WrongUnit {
-                        channel,
-                        number,
-                        name,
-                        unit,
-                    });
+                    self.notes.push(Note::WrongUnit { channel, number, name, unit });
                 }
                 _ => ignored.push(name),
             }
@@ -188,12 +171,9 @@ impl Columns {
     ) -> DataError {
         let (path, line) = (table.path().to_owned(), table.header_line());
         let wrong = self.notes.iter().find_map(|note| match note {
-            Note::WrongUnit {
-                channel: of,
-                number,
-                name,
-                unit,
-            } if *of == channel => Some((*number, name.clone(), unit.clone())),
+            Note::WrongUnit { channel: of, number, name, unit } if *of == channel => {
+                Some((*number, name.clone(), unit.clone()))
+            }
             _ => None,
         });
         match wrong {

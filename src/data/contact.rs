@@ -79,16 +79,10 @@ mod tests {
         ] {
             let force = history(sampling, &[0.0, 0.0, 5.0, -9.0, 4.0, 0.0]);
             let (from, to) = contact_interval(&force).unwrap();
-            assert!(
-                (from - start).abs() < 1e-12,
-                "{sampling:?} starts at {from}"
-            );
+            assert!((from - start).abs() < 1e-12, "{sampling:?} starts at {from}");
             assert!((to - end).abs() < 1e-12, "{sampling:?} ends at {to}");
         }
-        assert_eq!(
-            contact_interval(&history(Sampling::Instant, &[0.0; 4])),
-            None
-        );
+        assert_eq!(contact_interval(&history(Sampling::Instant, &[0.0; 4])), None);
         assert_eq!(contact_interval(&history(Sampling::Instant, &[])), None);
     }
 

@@ -136,9 +136,8 @@ impl Dataset {
     /// [`DataError::NotRecognised`] if the folder has neither `forces/` nor `trajectories/`;
     /// [`DataError`] if `cases.csv` cannot be read or has no column `case`.
     pub fn load(root: &Path, report: &mut Report<'_>) -> Result<Outcome<Self>, DataError> {
-        let kind = DatasetKind::of_folder(root).ok_or_else(|| DataError::NotRecognised {
-            path: root.to_owned(),
-        })?;
+        let kind = DatasetKind::of_folder(root)
+            .ok_or_else(|| DataError::NotRecognised { path: root.to_owned() })?;
         let table = Table::read(&root.join(CASES_FILE))?;
         let mut problems = missing_attributes(&table, kind);
         let rows = named_rows(&table, &mut problems)?;
@@ -161,13 +160,7 @@ impl Dataset {
                 return Ok(Outcome::Cancelled);
             }
         }
-        Ok(Outcome::Complete(Self {
-            root: root.to_owned(),
-            kind,
-            vehicle_file,
-            cases,
-            problems,
-        }))
+        Ok(Outcome::Complete(Self { root: root.to_owned(), kind, vehicle_file, cases, problems }))
     }
 
     /// The case of this name.
@@ -200,16 +193,12 @@ fn missing_attributes(table: &Table, kind: DatasetKind) -> Vec<DataError> {
 fn named_rows(table: &Table, problems: &mut Vec<DataError>) -> Result<Vec<NamedRow>, DataError> {
     let is_case = |name: &String| name.eq_ignore_ascii_case(CASE_COLUMN);
     let case_idx =
-        table
-            .header()
-            .iter()
-            .position(is_case)
-            .ok_or_else(|| DataError::MissingAttribute {
-                path: table.path().to_owned(),
-                line: table.header_line(),
-                name: CASE_COLUMN.to_owned(),
-                consequence: "no row can be matched to its file",
-            })?;
+        table.header().iter().position(is_case).ok_or_else(|| DataError::MissingAttribute {
+            path: table.path().to_owned(),
+            line: table.header_line(),
+            name: CASE_COLUMN.to_owned(),
+            consequence: "no row can be matched to its file",
+        })?;
     let column = case_idx + 1;
     let mut first_lines: BTreeMap<String, u64> = BTreeMap::new();
     let mut rows = Vec::new();
@@ -217,12 +206,7 @@ fn named_rows(table: &Table, problems: &mut Vec<DataError>) -> Result<Vec<NamedR
         let (path, line) = (|| table.path().to_owned(), attributes.line());
         let case = table.cell(row_idx, case_idx).to_owned();
         if !names_a_file(&case) {
-            problems.push(DataError::CaseName {
-                path: path(),
-                line,
-                column,
-                case,
-            });
+            problems.push(DataError::CaseName { path: path(), line, column, case });
         } else if let Some(&first_line) = first_lines.get(&case) {
             problems.push(DataError::DuplicateCase {
                 path: path(),
@@ -233,11 +217,7 @@ fn named_rows(table: &Table, problems: &mut Vec<DataError>) -> Result<Vec<NamedR
             });
         } else {
             first_lines.insert(case.clone(), line);
-            rows.push(NamedRow {
-                idx: rows.len(),
-                name: case,
-                attributes,
-            });
+            rows.push(NamedRow { idx: rows.len(), name: case, attributes });
         }
     }
     Ok(rows)
@@ -245,12 +225,10 @@ fn named_rows(table: &Table, problems: &mut Vec<DataError>) -> Result<Vec<NamedR
 
 /// A needed cell that is neither a number nor blank.
 fn bad_attribute(attributes: &Attributes, kind: DatasetKind) -> Option<DataError> {
-    kind.needed_attributes()
-        .iter()
-        .find_map(|name| match attributes.get(name)? {
-            Value::Number(_) => None,
-            Value::Text(text) => Some(attributes.not_a_number(name, text)),
-        })
+    kind.needed_attributes().iter().find_map(|name| match attributes.get(name)? {
+        Value::Number(_) => None,
+        Value::Text(text) => Some(attributes.not_a_number(name, text)),
+    })
 }
 
 /// Whether a case name stays inside the folder on every system.
@@ -274,18 +252,12 @@ impl CaseFiles {
         let mut names = BTreeSet::new();
         for entry in std::fs::read_dir(&folder).map_err(to_error)? {
             let path = entry.map_err(to_error)?.path();
-            let is_csv = path
-                .extension()
-                .is_some_and(|end| end.eq_ignore_ascii_case("csv"));
+            let is_csv = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("csv"));
             if let (true, Some(stem)) = (is_csv, path.file_stem()) {
                 names.insert(stem.to_string_lossy().into_owned());
             }
         }
-        Ok(Self {
-            folder,
-            kind,
-            names,
-        })
+        Ok(Self { folder, kind, names })
     }
 
     fn path(&self, case: &str) -> PathBuf {
@@ -298,10 +270,7 @@ impl CaseFiles {
         table: &'a Path,
     ) -> impl Iterator<Item = DataError> + 'a {
         let known: BTreeSet<&str> = rows.iter().map(|row| row.name.as_str()).collect();
-        let stray = self
-            .names
-            .iter()
-            .filter(move |name| !known.contains(name.as_str()));
+        let stray = self.names.iter().filter(move |name| !known.contains(name.as_str()));
         stray.map(|name| DataError::FileWithoutCase {
             path: self.path(name),
             table: table.to_owned(),

@@ -59,19 +59,10 @@ impl Dialect {
             let decimal_comma = *separator != Separator::Comma;
             let fields = lines.iter().flat_map(|line| separator.fields(line));
             let numbers = fields.filter(|field| parse_number(field, decimal_comma).is_some());
-            let first = lines
-                .first()
-                .map_or(0, |line| separator.fields(line).count());
+            let first = lines.first().map_or(0, |line| separator.fields(line).count());
             // Words have blanks between them, fields need not.
             let blanks = *separator == Separator::Blanks;
-            (
-                numbers.count(),
-                if blanks {
-                    (2 * first.min(2)).saturating_sub(1)
-                } else {
-                    2 * first
-                },
-            )
+            (numbers.count(), if blanks { (2 * first.min(2)).saturating_sub(1) } else { 2 * first })
         };
         // At a tie, `max_by_key` takes the last one.
         let last_to_first = Separator::ALL.into_iter().rev();
@@ -171,10 +162,7 @@ mod tests {
             ("case;side\na;left\n", Separator::Semicolon, false),
         ] {
             let lines: Vec<&str> = text.lines().collect();
-            let expected = Dialect {
-                separator,
-                decimal_comma,
-            };
+            let expected = Dialect { separator, decimal_comma };
             assert_eq!(Dialect::sniff(&lines), expected, "{text:?}");
         }
     }

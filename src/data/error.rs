@@ -309,11 +309,8 @@ impl DataError {
 const LISTED: usize = 12;
 
 fn list(names: &[String]) -> String {
-    let mut text: Vec<String> = names
-        .iter()
-        .take(LISTED)
-        .map(|name| format!("{name:.40?}"))
-        .collect();
+    let mut text: Vec<String> =
+        names.iter().take(LISTED).map(|name| format!("{name:.40?}")).collect();
     if names.len() > LISTED {
         text.push(format!("{} more", names.len() - LISTED));
     }

@@ -63,9 +63,7 @@ impl ForceHistory {
     /// Largest `|F|`, N, and its time, s. `None` for an empty history.
     pub fn peak(&self) -> Option<(f64, f64)> {
         let magnitudes = self.fx_n.iter().zip(&self.fy_n).map(|(x, y)| x.hypot(*y));
-        magnitudes
-            .zip(self.time_s.iter().copied())
-            .max_by(|a, b| a.0.total_cmp(&b.0))
+        magnitudes.zip(self.time_s.iter().copied()).max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// Impulse `P = ∫ F dt`, N s, along x and y of [`ForceHistory::axes`].
@@ -100,21 +98,16 @@ impl ForceHistory {
                 let end = last + (last - before_last) / 2.0;
                 std::iter::once(start).chain(middles).chain([end]).collect()
             }
-            Sampling::ComingMean => time
-                .iter()
-                .copied()
-                .chain([last + (last - before_last)])
-                .collect(),
+            Sampling::ComingMean => {
+                time.iter().copied().chain([last + (last - before_last)]).collect()
+            }
         }
     }
 
     fn integrate(&self, knots_s: &[f64], values: &[f64]) -> Vec<f64> {
         let trapezoid: Vec<f64>;
         let means = if self.sampling == Sampling::Instant {
-            trapezoid = values
-                .windows(2)
-                .map(|pair| (pair[0] + pair[1]) / 2.0)
-                .collect();
+            trapezoid = values.windows(2).map(|pair| (pair[0] + pair[1]) / 2.0).collect();
             trapezoid.as_slice()
         } else {
             values
@@ -154,10 +147,7 @@ impl CumulativeImpulse {
             let at = |time| interpolate(&self.knots_s, sum, time).unwrap_or(0.0);
             (at(to_s) - at(from_s)) / (to_s - from_s)
         };
-        (
-            [mean(&self.px_n_s), mean(&self.py_n_s)],
-            self.angular_n_m_s.as_deref().map(mean),
-        )
+        ([mean(&self.px_n_s), mean(&self.py_n_s)], self.angular_n_m_s.as_deref().map(mean))
     }
 
     /// When the history ends, s.
@@ -183,11 +173,9 @@ mod tests {
 
     #[test]
     fn the_impulse_is_the_integral_that_the_samples_mean() {
-        for (sampling, duration) in [
-            (Sampling::Instant, 0.3),
-            (Sampling::CentredMean, 0.4),
-            (Sampling::ComingMean, 0.4),
-        ] {
+        for (sampling, duration) in
+            [(Sampling::Instant, 0.3), (Sampling::CentredMean, 0.4), (Sampling::ComingMean, 0.4)]
+        {
             let [px, py] = history(sampling).impulse_n_s();
             assert!((px - duration).abs() < 1e-12, "{sampling:?}: {px}");
             assert!((py - 7.0).abs() < 1e-12, "{sampling:?}: {py}");
@@ -196,25 +184,14 @@ mod tests {
 
     #[test]
     fn no_impulse_is_lost_between_steps() {
-        for sampling in [
-            Sampling::Instant,
-            Sampling::CentredMean,
-            Sampling::ComingMean,
-        ] {
+        for sampling in [Sampling::Instant, Sampling::CentredMean, Sampling::ComingMean] {
             let history = history(sampling);
             let cumulative = history.cumulative();
             let step = 0.007;
             let sum: f64 = (-20..100)
-                .map(|k| {
-                    step * cumulative
-                        .mean_over(k as f64 * step, (k + 1) as f64 * step)
-                        .0[1]
-                })
+                .map(|k| step * cumulative.mean_over(k as f64 * step, (k + 1) as f64 * step).0[1])
                 .sum();
-            assert!(
-                (sum - history.impulse_n_s()[1]).abs() < 1e-12,
-                "{sampling:?}: {sum}"
-            );
+            assert!((sum - history.impulse_n_s()[1]).abs() < 1e-12, "{sampling:?}: {sum}");
         }
     }
 

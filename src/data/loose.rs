@@ -61,10 +61,7 @@ impl FileKind {
     /// The pairs of channels of which one must be complete, beside the time.
     fn alternatives(self) -> &'static [&'static [Channel]] {
         match self {
-            Self::Force => &[
-                &[Channel::Fx, Channel::Fy],
-                &[Channel::FxBody, Channel::FyBody],
-            ],
+            Self::Force => &[&[Channel::Fx, Channel::Fy], &[Channel::FxBody, Channel::FyBody]],
             Self::Trajectory => &[&[Channel::X, Channel::Y]],
             Self::Steer => &[&[Channel::Steer], &[Channel::SteerFl, Channel::SteerFr]],
         }
@@ -143,12 +140,7 @@ pub fn read_any_series(path: &Path, map: Option<&ColumnMap>) -> Result<Loaded, D
     let columns = Columns::of(&table, map)?;
     let is_complete = |kind: &FileKind| kind.first_missing(&columns).is_none();
     let kind = FileKind::ALL.into_iter().find(is_complete);
-    load(
-        &table,
-        columns,
-        kind.unwrap_or(FileKind::Force),
-        map.is_some(),
-    )
+    load(&table, columns, kind.unwrap_or(FileKind::Force), map.is_some())
 }
 
 fn load(
@@ -160,23 +152,14 @@ fn load(
     let (path, line) = (|| table.path().to_owned(), table.header_line());
     if !table.has_header() && !is_mapped {
         let example = kind.example_map();
-        return Err(DataError::NoHeader {
-            path: path(),
-            line,
-            example,
-        });
+        return Err(DataError::NoHeader { path: path(), line, example });
     }
     if let Some(channel) = kind.first_missing(&columns) {
         return Err(columns.missing(table, channel, kind.needed()));
     }
     if table.n_rows() < MIN_ROWS {
         let (expected, got) = (MIN_ROWS, table.n_rows());
-        return Err(DataError::TooFewRows {
-            path: path(),
-            line,
-            expected,
-            got,
-        });
+        return Err(DataError::TooFewRows { path: path(), line, expected, got });
     }
     let mut series = TimeSeries::default();
     for column in columns.by_channel.values() {
@@ -188,10 +171,7 @@ fn load(
             }
             channel => series
                 .insert(channel, values)
-                .map_err(|source| DataError::Series {
-                    path: path(),
-                    source,
-                })?,
+                .map_err(|source| DataError::Series { path: path(), source })?,
         }
     }
     let Columns { by_channel, notes } = columns;
@@ -249,11 +229,7 @@ fn largest_plausible(quantity: Quantity) -> f64 {
 fn out_of_order(table: &Table, time: &ColumnUse, error: SeriesError) -> DataError {
     let path = table.path().to_owned();
     match error {
-        SeriesError::TimeOrder {
-            sample_idx,
-            before,
-            after,
-        } => DataError::TimeOrder {
+        SeriesError::TimeOrder { sample_idx, before, after } => DataError::TimeOrder {
             path,
             line: table.line(sample_idx),
             column: time.number,

@@ -65,6 +65,24 @@ pub enum FlagKind {
     Hooked,
 }
 
+impl FlagKind {
+    /// In a word or two, for a table.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::MomentumResidual => "momentum",
+            Self::SamplingGap => "gap",
+            Self::NonUniformSampling => "uneven",
+            Self::Spike => "spike",
+            Self::Drift => "drift",
+            Self::ImplausibleForce => "force?",
+            Self::LongContact => "long",
+            Self::NoForce => "no force",
+            Self::NotSeparated => "cut",
+            Self::Hooked => "hooked",
+        }
+    }
+}
+
 /// How much a flag matters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
@@ -102,9 +120,9 @@ pub fn check_case(case: &Case) -> Vec<Flag> {
     if let Ok(force) = case.force_history() {
         let expected = match case.kind {
             DatasetKind::Force => momentum_change_n_s(case),
-            DatasetKind::Trajectory => attributes
-                .number("impulse_x_n_s")
-                .zip(attributes.number("impulse_y_n_s")),
+            DatasetKind::Trajectory => {
+                attributes.number("impulse_x_n_s").zip(attributes.number("impulse_y_n_s"))
+            }
         };
         let axes = match case.kind {
             DatasetKind::Force => ForceAxes::World,
@@ -113,9 +131,7 @@ pub fn check_case(case: &Case) -> Vec<Flag> {
         let expected = expected.filter(|_| force.axes == axes);
         flags.extend(expected.and_then(|expected| momentum_residual(&force, expected)));
     }
-    let separated = attributes
-        .flag("separated")
-        .or(attributes.flag("fe_separated"));
+    let separated = attributes.flag("separated").or(attributes.flag("fe_separated"));
     let is_flagged = flags.iter().any(|flag| flag.kind == FlagKind::NotSeparated);
     if separated == Some(false) && !is_flagged {
         flags.push(stated(FlagKind::NotSeparated, Severity::Warning));
@@ -138,33 +154,18 @@ pub fn check_series(series: &TimeSeries, sampling: Sampling) -> Vec<Flag> {
 impl Flag {
     /// A flag if the value is beyond the limit.
     fn beyond(kind: FlagKind, severity: Severity, value: f64, limit: f64) -> Option<Self> {
-        let flag = Self {
-            kind,
-            severity,
-            value,
-            limit,
-            time_s: None,
-        };
+        let flag = Self { kind, severity, value, limit, time_s: None };
         (value > limit).then_some(flag)
     }
 
     fn at(self, time_s: f64) -> Self {
-        Self {
-            time_s: Some(time_s),
-            ..self
-        }
+        Self { time_s: Some(time_s), ..self }
     }
 }
 
 /// A flag that the table of cases raises.
 fn stated(kind: FlagKind, severity: Severity) -> Flag {
-    Flag {
-        kind,
-        severity,
-        value: 1.0,
-        limit: 0.0,
-        time_s: None,
-    }
+    Flag { kind, severity, value: 1.0, limit: 0.0, time_s: None }
 }
 
 impl fmt::Display for Flag {
@@ -200,17 +201,11 @@ impl fmt::Display for Flag {
                 limit / 1e6
             ),
             FlagKind::LongContact => {
-                write!(
-                    f,
-                    "contact takes {value:.1} s, limit {limit} s; check the unit of time"
-                )
+                write!(f, "contact takes {value:.1} s, limit {limit} s; check the unit of time")
             }
             FlagKind::NoForce => write!(f, "the force is zero throughout"),
             FlagKind::NotSeparated => {
-                write!(
-                    f,
-                    "still in contact at the end: the impulse is not complete"
-                )
+                write!(f, "still in contact at the end: the impulse is not complete")
             }
             FlagKind::Hooked => write!(f, "the bullet's corner stays caught"),
         }?;
@@ -244,10 +239,7 @@ fn check_force(force: &ForceHistory) -> Vec<Flag> {
     };
     let magnitude_n: Vec<f64> = magnitudes(force).collect();
     let Some((start, end)) = contact_interval(force) else {
-        return vec![Flag {
-            value: peak_n,
-            ..stated(FlagKind::NoForce, Severity::Warning)
-        }];
+        return vec![Flag { value: peak_n, ..stated(FlagKind::NoForce, Severity::Warning) }];
     };
     let warning = |kind, value, limit| Flag::beyond(kind, Severity::Warning, value, limit);
     let last_n = magnitude_n.last().copied().unwrap_or(0.0);
@@ -295,10 +287,7 @@ fn spike(force: &ForceHistory, magnitude_n: &[f64]) -> Option<Flag> {
     let mut worst: Option<Flag> = None;
     for axis in [&force.fx_n, &force.fy_n] {
         let deviations: Vec<(f64, f64)> = axis.windows(5).map(deviation).collect();
-        let in_contact = deviations
-            .iter()
-            .enumerate()
-            .filter(|(i, _)| is_contact(i + 2));
+        let in_contact = deviations.iter().enumerate().filter(|(i, _)| is_contact(i + 2));
         let in_contact: Vec<f64> = in_contact.map(|(_, (deviation, _))| *deviation).collect();
         if in_contact.len() < SPIKE_MIN_SAMPLES {
             continue;
@@ -351,12 +340,7 @@ fn momentum_residual(force: &ForceHistory, expected_n_s: (f64, f64)) -> Option<F
         true => Severity::Error,
         false => Severity::Warning,
     };
-    Flag::beyond(
-        FlagKind::MomentumResidual,
-        severity,
-        residual,
-        MOMENTUM_RESIDUAL,
-    )
+    Flag::beyond(FlagKind::MomentumResidual, severity, residual, MOMENTUM_RESIDUAL)
 }
 
 fn median(mut values: Vec<f64>) -> Option<f64> {

@@ -51,17 +51,10 @@ impl TimeSeries {
         for (i, pair) in time_s.windows(2).enumerate() {
             if pair[0].partial_cmp(&pair[1]) != Some(std::cmp::Ordering::Less) {
                 let (before, after) = (pair[0], pair[1]);
-                return Err(SeriesError::TimeOrder {
-                    sample_idx: i + 1,
-                    before,
-                    after,
-                });
+                return Err(SeriesError::TimeOrder { sample_idx: i + 1, before, after });
             }
         }
-        Ok(Self {
-            time_s,
-            columns: BTreeMap::new(),
-        })
+        Ok(Self { time_s, columns: BTreeMap::new() })
     }
 
     /// Adds or replaces a column.
@@ -71,11 +64,7 @@ impl TimeSeries {
     pub fn insert(&mut self, channel: Channel, values: Vec<f64>) -> Result<(), SeriesError> {
         let (expected, got) = (self.time_s.len(), values.len());
         if got != expected {
-            return Err(SeriesError::Length {
-                channel,
-                expected,
-                got,
-            });
+            return Err(SeriesError::Length { channel, expected, got });
         }
         self.columns.insert(channel, values);
         Ok(())
@@ -123,10 +112,7 @@ mod tests {
         assert!(TimeSeries::new(vec![0.0, f64::NAN]).is_err());
         let mut series = TimeSeries::new(vec![0.0, 0.1]).unwrap();
         let error = series.insert(Channel::Fx, vec![1.0]).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "column fx_n has 1 samples, the time axis 2"
-        );
+        assert_eq!(error.to_string(), "column fx_n has 1 samples, the time axis 2");
         series.insert(Channel::Fx, vec![1.0, 2.0]).unwrap();
         assert_eq!(series.require(Channel::Fx).unwrap(), [1.0, 2.0]);
         assert!(series.require(Channel::Fy).is_err());

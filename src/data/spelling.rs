@@ -119,13 +119,10 @@ pub(crate) fn same_name(left: &str, right: &str) -> bool {
 /// Whether a line is a row of units, as some programs write one beneath the header.
 pub(crate) fn is_unit_row<'a>(cells: impl Iterator<Item = &'a str>) -> bool {
     let mut any = false;
-    cells
-        .filter_map(|cell| Some((cell, unit_text(cell)?)))
-        .all(|(cell, text)| {
-            any = true;
-            is_bracketed(cell) || is_unit(text)
-        })
-        && any
+    cells.filter_map(|cell| Some((cell, unit_text(cell)?))).all(|(cell, text)| {
+        any = true;
+        is_bracketed(cell) || is_unit(text)
+    }) && any
 }
 
 /// The unit in what follows a name or stands in a row of units; `None` if there is none.
@@ -184,9 +181,7 @@ fn is_unit(text: &str) -> bool {
         Quantity::Energy,
         Quantity::Ratio,
     ];
-    quantities
-        .iter()
-        .any(|&quantity| unit(quantity, text).is_some())
+    quantities.iter().any(|&quantity| unit(quantity, text).is_some())
 }
 
 fn letters_and_digits(text: &str) -> String {
@@ -208,9 +203,7 @@ fn unit_key(text: &str) -> String {
         .replace("seconds", "s")
         .replace("second", "s")
         .replace("sec", "s");
-    text.chars()
-        .filter(|c| c.is_alphanumeric() || *c == '%')
-        .collect()
+    text.chars().filter(|c| c.is_alphanumeric() || *c == '%').collect()
 }
 
 #[cfg(test)]
@@ -264,16 +257,7 @@ mod tests {
             let expected = Meaning::WrongUnit(channel, unit.to_owned());
             assert_eq!(meaning(header), expected, "{header}");
         }
-        for header in [
-            "case",
-            "v",
-            "p_kpa",
-            "wheel slip",
-            "",
-            "°",
-            "x1",
-            "ratio [-]",
-        ] {
+        for header in ["case", "v", "p_kpa", "wheel slip", "", "°", "x1", "ratio [-]"] {
             assert_eq!(meaning(header), Meaning::Unknown, "{header}");
         }
     }
@@ -282,10 +266,7 @@ mod tests {
     fn our_own_headers_are_read_back() {
         for &channel in Channel::ALL {
             let si = channel.quantity().si_unit();
-            assert_eq!(
-                meaning(channel.header()),
-                Meaning::Channel(channel, Some(si))
-            );
+            assert_eq!(meaning(channel.header()), Meaning::Channel(channel, Some(si)));
             assert_eq!(super::channel(channel.short_name()), Some(channel));
         }
     }

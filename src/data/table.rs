@@ -66,11 +66,7 @@ impl<'a> SplitLine<'a> {
     fn new(line: Line<'a>, dialect: Dialect) -> Self {
         let cells = split(line.text, dialect.separator);
         let is_text = cells.iter().all(|cell| dialect.number(cell).is_none());
-        Self {
-            line,
-            cells,
-            is_text,
-        }
+        Self { line, cells, is_text }
     }
 
     /// Whether it is a row of the table with a number in it.
@@ -163,9 +159,7 @@ impl Table {
     /// Text of a cell, without surrounding blanks.
     pub fn cell(&self, row_idx: usize, column_idx: usize) -> &str {
         let row = self.rows.get(row_idx);
-        row.and_then(|row| row.cells.get(column_idx))
-            .unwrap_or("")
-            .trim()
+        row.and_then(|row| row.cells.get(column_idx)).unwrap_or("").trim()
     }
 
     /// The number in a cell, if there is a finite one.
@@ -179,20 +173,14 @@ impl Table {
     /// [`DataError::Cell`] at the first cell that is not a finite number.
     pub fn numbers(&self, column_idx: usize, unit: &'static str) -> Result<Vec<f64>, DataError> {
         let number = |row_idx| {
-            self.number(row_idx, column_idx)
-                .ok_or_else(|| DataError::Cell {
-                    path: self.path.clone(),
-                    line: self.line(row_idx),
-                    column: column_idx + 1,
-                    name: self
-                        .header
-                        .names
-                        .get(column_idx)
-                        .cloned()
-                        .unwrap_or_default(),
-                    text: self.cell(row_idx, column_idx).to_owned(),
-                    unit,
-                })
+            self.number(row_idx, column_idx).ok_or_else(|| DataError::Cell {
+                path: self.path.clone(),
+                line: self.line(row_idx),
+                column: column_idx + 1,
+                name: self.header.names.get(column_idx).cloned().unwrap_or_default(),
+                text: self.cell(row_idx, column_idx).to_owned(),
+                unit,
+            })
         };
         (0..self.n_rows()).map(number).collect()
     }
@@ -241,22 +229,14 @@ impl Table {
         if fitted.len() == expected {
             return Ok(fitted);
         }
-        Err(DataError::RaggedRow {
-            path: self.path.clone(),
-            line,
-            expected,
-            got: fitted.len(),
-        })
+        Err(DataError::RaggedRow { path: self.path.clone(), line, expected, got: fitted.len() })
     }
 }
 
 /// Whether the only field too many is an empty last one.
 fn ends_in_separator(cells: &StringRecord, expected: usize) -> bool {
     cells.len() == expected + 1
-        && cells
-            .iter()
-            .next_back()
-            .is_some_and(|cell| cell.trim().is_empty())
+        && cells.iter().next_back().is_some_and(|cell| cell.trim().is_empty())
 }
 
 /// The line, from 1, in which a record starts: `csv` counts from before the blank lines above it.
@@ -284,9 +264,7 @@ fn first_lines(text: &str) -> Vec<Line<'_>> {
             is_comment: comment.is_some(),
         }
     });
-    all.filter(|line| !line.text.trim().is_empty())
-        .take(SNIFFED_LINES)
-        .collect()
+    all.filter(|line| !line.text.trim().is_empty()).take(SNIFFED_LINES).collect()
 }
 
 /// Splits one line into its fields.
@@ -313,10 +291,8 @@ fn split(line: &str, separator: Separator) -> Vec<String> {
 
 /// Finds the header and the first line of the rows.
 fn find_header<'a>(lines: &[Line<'a>], dialect: Dialect) -> (Header, Option<Line<'a>>) {
-    let split: Vec<SplitLine<'a>> = lines
-        .iter()
-        .map(|line| SplitLine::new(*line, dialect))
-        .collect();
+    let split: Vec<SplitLine<'a>> =
+        lines.iter().map(|line| SplitLine::new(*line, dialect)).collect();
     let width = width(&split);
     let first_number = split.iter().position(|line| line.has_numbers(width));
     let Some(names) = header_line(&split, width, first_number) else {
@@ -339,12 +315,8 @@ fn find_header<'a>(lines: &[Line<'a>], dialect: Dialect) -> (Header, Option<Line
         units = line.cells.clone();
         body = below.next();
     }
-    let header = Header {
-        line: names.line.number,
-        is_written: true,
-        names: named(&names.cells),
-        units,
-    };
+    let header =
+        Header { line: names.line.number, is_written: true, names: named(&names.cells), units };
     (header, body.map(|line| line.line))
 }
 

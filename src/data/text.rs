@@ -32,10 +32,7 @@ pub(crate) fn read_text(path: &Path) -> Result<Text, DataError> {
     }
     let mut file = File::open(path).map_err(to_error)?;
     let mut content = Vec::new();
-    (&mut file)
-        .take(FIRST_BLOCK_BYTES)
-        .read_to_end(&mut content)
-        .map_err(to_error)?;
+    (&mut file).take(FIRST_BLOCK_BYTES).read_to_end(&mut content).map_err(to_error)?;
     refuse_binary(path, &content)?;
     if metadata.len() > MAX_FILE_BYTES {
         return Err(DataError::TooLarge {
@@ -44,9 +41,7 @@ pub(crate) fn read_text(path: &Path) -> Result<Text, DataError> {
             limit: MAX_FILE_BYTES,
         });
     }
-    file.take(MAX_FILE_BYTES)
-        .read_to_end(&mut content)
-        .map_err(to_error)?;
+    file.take(MAX_FILE_BYTES).read_to_end(&mut content).map_err(to_error)?;
     refuse_binary(path, &content)?;
     Ok(decode(&content))
 }
@@ -73,11 +68,7 @@ fn refuse_binary(path: &Path, bytes: &[u8]) -> Result<(), DataError> {
     let is_binary = |byte: &u8| matches!(byte, 0..=8 | 0x0e..=0x19 | 0x1b..=0x1f);
     match bytes.iter().enumerate().find(|(_, byte)| is_binary(byte)) {
         None => Ok(()),
-        Some((offset, &byte)) => Err(DataError::NotText {
-            path: path.to_owned(),
-            offset,
-            byte,
-        }),
+        Some((offset, &byte)) => Err(DataError::NotText { path: path.to_owned(), offset, byte }),
     }
 }
 
@@ -87,10 +78,7 @@ mod tests {
 
     #[test]
     fn encodings_and_line_ends_become_the_same_text() {
-        let utf16: Vec<u8> = "\u{feff}a;°\nb"
-            .encode_utf16()
-            .flat_map(u16::to_le_bytes)
-            .collect();
+        let utf16: Vec<u8> = "\u{feff}a;°\nb".encode_utf16().flat_map(u16::to_le_bytes).collect();
         for (bytes, encoding) in [
             (&b"a;\xc2\xb0\nb"[..], "UTF-8"),
             (b"\xef\xbb\xbfa;\xc2\xb0\r\nb", "UTF-8"),

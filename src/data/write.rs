@@ -23,9 +23,7 @@ pub fn write_atomically(
     };
     let mut file = NamedTempFile::new_in(folder).map_err(to_error)?;
     let mut buffered = BufWriter::new(file.as_file_mut());
-    write(&mut buffered)
-        .and_then(|()| buffered.flush())
-        .map_err(to_error)?;
+    write(&mut buffered).and_then(|()| buffered.flush()).map_err(to_error)?;
     drop(buffered);
     file.as_file().sync_all().map_err(to_error)?;
     file.persist(path).map_err(|error| to_error(error.error))?;
@@ -39,15 +37,10 @@ pub fn write_atomically(
 /// [`DataError::Io`] with the system's reason.
 pub fn write_series_csv(path: &Path, series: &TimeSeries) -> Result<(), DataError> {
     let channels: Vec<Channel> = series.channels().collect();
-    let columns: Vec<&[f64]> = channels
-        .iter()
-        .filter_map(|&channel| series.get(channel))
-        .collect();
+    let columns: Vec<&[f64]> = channels.iter().filter_map(|&channel| series.get(channel)).collect();
     write_atomically(path, |out| {
         let headers = channels.iter().map(|channel| channel.header());
-        let header: Vec<&str> = std::iter::once(Channel::Time.header())
-            .chain(headers)
-            .collect();
+        let header: Vec<&str> = std::iter::once(Channel::Time.header()).chain(headers).collect();
         writeln!(out, "{}", header.join(","))?;
         for (i, time) in series.time_s().iter().enumerate() {
             write!(out, "{time}")?;

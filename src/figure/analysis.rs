@@ -2,10 +2,10 @@
 
 use crate::analysis::Analysis;
 use crate::collision::{ChannelClass, FilterError, filter_history};
-use crate::data::{Channel, ForceHistory, contact_interval};
+use crate::data::{Channel, ForceHistory, TimeSeries, contact_interval};
 use crate::figure::{
     Figure, ForceFigure, LineStyle, Role, SceneFigure, SceneVehicle, force_figure, motion_figure,
-    scene_figure,
+    motion_readout, scene_figure,
 };
 use crate::units::UnitSystem;
 
@@ -36,8 +36,17 @@ pub fn analysis_force_figure(
 
 /// One channel over time, simulation and reference.
 pub fn analysis_motion_figure(analysis: &Analysis, channel: Channel, units: UnitSystem) -> Figure {
+    motion_figure(channel, motions(analysis), units)
+}
+
+/// One channel at a moment, simulation and reference, in a line.
+pub fn analysis_readout(analysis: &Analysis, channel: Channel, at: (f64, UnitSystem)) -> String {
+    motion_readout(channel, motions(analysis), at)
+}
+
+fn motions(analysis: &Analysis) -> [Option<&TimeSeries>; 2] {
     let simulation = analysis.simulation.as_ref().map(|motion| &motion.series);
-    motion_figure(channel, simulation, analysis.reference.as_ref(), units)
+    [simulation, analysis.reference.as_ref()]
 }
 
 /// The scene from above at a moment.
@@ -64,16 +73,7 @@ pub fn analysis_scene_figure(analysis: &Analysis, time_s: f64, units: UnitSystem
         motion: &motion.series,
         footprint,
     });
-    let vehicles: Vec<_> = [bullet, reference, simulation]
-        .into_iter()
-        .flatten()
-        .collect();
+    let vehicles: Vec<_> = [bullet, reference, simulation].into_iter().flatten().collect();
     let title = format!("{}: scene from above at {time_s:.2} s", analysis.name);
-    scene_figure(&SceneFigure {
-        title: &title,
-        vehicles: &vehicles,
-        at_impact: &[],
-        time_s,
-        units,
-    })
+    scene_figure(&SceneFigure { title: &title, vehicles: &vehicles, at_impact: &[], time_s, units })
 }

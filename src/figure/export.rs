@@ -55,11 +55,7 @@ mod tests {
             equal_aspect: false,
             elements: vec![
                 Element::line("F_x, raw", Role::ComponentX, vec![[0.0, 1.5], [0.1, -2.0]]),
-                Element::VerticalLine {
-                    name: "start".to_owned(),
-                    role: Role::Muted,
-                    x: 0.05,
-                },
+                Element::VerticalLine { name: "start".to_owned(), role: Role::Muted, x: 0.05 },
             ],
         };
         let mut text = Vec::new();

@@ -21,23 +21,24 @@ pub struct ForceFigure<'a> {
     pub units: UnitSystem,
 }
 
+/// How much is shown after contact, as a share of its duration.
+const AFTER_CONTACT: f64 = 0.3;
+
 /// F_x, F_y and |F| over time in ms, with markers where contact starts and ends.
 pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
-    let x = Axis {
-        label: "Time".to_owned(),
-        unit: milliseconds(),
-    };
+    let x = Axis { label: "Time".to_owned(), unit: milliseconds() };
     let y = Axis::shown("Force on the target", Quantity::Force, input.units);
     let axes = match input.force.axes {
         ForceAxes::World => "world axes",
         ForceAxes::Body => "heading axes",
     };
+    // A recording of seconds with a contact of a tenth would show a spike.
+    let end_s =
+        input.contact_s.map_or(f64::INFINITY, |(start, end)| end + AFTER_CONTACT * (end - start));
     let components = |history: &ForceHistory| {
         let points = |value: &dyn Fn(usize) -> f64| -> Vec<[f64; 2]> {
-            let samples = history.time_s.iter().enumerate();
-            samples
-                .map(|(i, &t)| [x.unit.from_si(t), y.unit.from_si(value(i))])
-                .collect()
+            let samples = history.time_s.iter().enumerate().take_while(|(_, t)| **t <= end_s);
+            samples.map(|(i, &t)| [x.unit.from_si(t), y.unit.from_si(value(i))]).collect()
         };
         [
             points(&|i| history.fx_n[i]),
@@ -49,14 +50,10 @@ pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
     for points in input.raw.map(components).into_iter().flatten() {
         elements.push(Element::line("unfiltered", Role::Muted, points));
     }
-    let names = [
-        ("F_x", Role::ComponentX),
-        ("F_y", Role::ComponentY),
-        ("|F|", Role::Resultant),
-    ];
-    for ((name, role), points) in names.into_iter().zip(components(input.force)) {
-        elements.push(Element::line(name, role, points));
-    }
+    let [fx, fy, resultant] = components(input.force);
+    elements.push(Element::dashed("|F|", Role::Resultant, resultant));
+    elements.push(Element::line("F_x", Role::ComponentX, fx));
+    elements.push(Element::line("F_y", Role::ComponentY, fy));
     for (name, pulse) in input.pulses {
         let [_, _, resultant] = components(pulse);
         elements.push(Element::dashed(name, Role::Pulse, resultant));
@@ -64,11 +61,7 @@ pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
     if let Some((start, end)) = input.contact_s {
         for (name, at) in [("contact starts", start), ("contact ends", end)] {
             let (name, x) = (name.to_owned(), x.unit.from_si(at));
-            elements.push(Element::VerticalLine {
-                name,
-                role: Role::Muted,
-                x,
-            });
+            elements.push(Element::VerticalLine { name, role: Role::Muted, x });
         }
     }
     Figure {
@@ -82,8 +75,5 @@ pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
 
 fn milliseconds() -> crate::units::Unit {
     let units = Quantity::Time.units();
-    *units
-        .iter()
-        .find(|unit| unit.symbol == "ms")
-        .unwrap_or(&units[0])
+    *units.iter().find(|unit| unit.symbol == "ms").unwrap_or(&units[0])
 }

@@ -27,70 +27,27 @@ pub fn impact_figure(
     let contact = geometry.contact_point_m;
     let [cx, cy] = contact;
     let (sin, cos) = geometry.normal_angle_rad.sin_cos();
-    let surface = [[cx - sin, cy + cos], [cx + sin, cy - cos]]
-        .map(shown)
-        .to_vec();
+    let surface = [[cx - sin, cy + cos], [cx + sin, cy - cos]].map(shown).to_vec();
     let vehicles = [
-        (
-            "target",
-            Role::Target,
-            scenario.target.footprint(),
-            geometry.target,
-            solution.target,
-        ),
-        (
-            "bullet",
-            Role::Bullet,
-            scenario.bullet.footprint(),
-            geometry.bullet,
-            solution.bullet,
-        ),
+        ("target", Role::Target, scenario.target.footprint(), geometry.target, solution.target),
+        ("bullet", Role::Bullet, scenario.bullet.footprint(), geometry.bullet, solution.bullet),
     ];
     let [target_dv, bullet_dv] = vehicles.map(|(.., after)| after.delta_v_m_s);
-    let longest = [target_dv, bullet_dv]
-        .map(|[x, y]| x.hypot(y))
-        .into_iter()
-        .fold(0.0, f64::max);
+    let longest = [target_dv, bullet_dv].map(|[x, y]| x.hypot(y)).into_iter().fold(0.0, f64::max);
     let scaled = |[dx, dy]: [f64; 2], full: f64| {
-        let scale = if full > 0.0 {
-            ARROW_LENGTH_M / full
-        } else {
-            0.0
-        };
+        let scale = if full > 0.0 { ARROW_LENGTH_M / full } else { 0.0 };
         [dx * scale, dy * scale]
     };
     let mut elements = vec![Element::dashed("contact surface", Role::Muted, surface)];
     for (name, role, footprint, pose, after) in vehicles {
-        let outline = outline_m(&footprint, &pose)
-            .into_iter()
-            .map(shown)
-            .collect();
+        let outline = outline_m(&footprint, &pose).into_iter().map(shown).collect();
         elements.push(Element::polygon(name, role, outline));
         let delta_v = scaled(after.delta_v_m_s, longest);
-        elements.push(arrow(
-            &format!("Δv {name}"),
-            role,
-            [pose.x_m, pose.y_m],
-            delta_v,
-        ));
+        elements.push(arrow(&format!("Δv {name}"), role, [pose.x_m, pose.y_m], delta_v));
     }
     let [px, py] = solution.impulse_n_s;
     let impulse = scaled([px, py], px.hypot(py));
-    elements.push(arrow(
-        "impulse on the target",
-        Role::Resultant,
-        contact,
-        impulse,
-    ));
-    let title = format!(
-        "{}: first contact, impulse and Δv (arrows not to scale)",
-        scenario.name
-    );
-    Ok(Figure {
-        title,
-        x,
-        y,
-        equal_aspect: true,
-        elements,
-    })
+    elements.push(arrow("impulse on the target", Role::Resultant, contact, impulse));
+    let title = format!("{}: first contact, impulse and Δv (arrows not to scale)", scenario.name);
+    Ok(Figure { title, x, y, equal_aspect: true, elements })
 }

@@ -9,10 +9,12 @@ mod model;
 mod motion;
 mod scene;
 
-pub use analysis::{analysis_force_figure, analysis_motion_figure, analysis_scene_figure};
+pub use analysis::{
+    analysis_force_figure, analysis_motion_figure, analysis_readout, analysis_scene_figure,
+};
 pub use export::write_figure_csv;
 pub use force::{ForceFigure, force_figure};
 pub use impact::impact_figure;
 pub use model::{Axis, Band, Element, Figure, LineStyle, Role, Series};
-pub use motion::{MOTION_CHANNELS, motion_figure};
+pub use motion::{MOTION_CHANNELS, motion_figure, motion_readout};
 pub use scene::{SceneFigure, SceneVehicle, outline_m, pose_at, scene_figure};

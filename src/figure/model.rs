@@ -29,10 +29,7 @@ pub struct Axis {
 impl Axis {
     /// An axis in the unit in which the quantity is shown.
     pub fn shown(label: impl Into<String>, quantity: Quantity, units: UnitSystem) -> Self {
-        Self {
-            label: label.into(),
-            unit: quantity.display_unit(units),
-        }
+        Self { label: label.into(), unit: quantity.display_unit(units) }
     }
 
     /// “Label [unit]”.
@@ -134,43 +131,23 @@ pub enum Element {
 impl Element {
     /// A full line.
     pub fn line(name: impl Into<String>, role: Role, points: Vec<[f64; 2]>) -> Self {
-        Self::Line(Series {
-            name: name.into(),
-            role,
-            style: LineStyle::Solid,
-            points,
-        })
+        Self::Line(Series { name: name.into(), role, style: LineStyle::Solid, points })
     }
 
     /// A dashed line.
     pub fn dashed(name: impl Into<String>, role: Role, points: Vec<[f64; 2]>) -> Self {
-        Self::Line(Series {
-            name: name.into(),
-            role,
-            style: LineStyle::Dashed,
-            points,
-        })
+        Self::Line(Series { name: name.into(), role, style: LineStyle::Dashed, points })
     }
 
     /// A closed outline.
     pub fn polygon(name: impl Into<String>, role: Role, points: Vec<[f64; 2]>) -> Self {
-        Self::Polygon(Series {
-            name: name.into(),
-            role,
-            style: LineStyle::Solid,
-            points,
-        })
+        Self::Polygon(Series { name: name.into(), role, style: LineStyle::Solid, points })
     }
 
     /// An arrow.
     pub fn arrow(name: impl Into<String>, role: Role, from: [f64; 2], to: [f64; 2]) -> Self {
         let (name, points) = (name.into(), vec![from, to]);
-        Self::Arrow(Series {
-            name,
-            role,
-            style: LineStyle::Solid,
-            points,
-        })
+        Self::Arrow(Series { name, role, style: LineStyle::Solid, points })
     }
 
     /// Its name in the legend.

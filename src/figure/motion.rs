@@ -2,7 +2,8 @@
 
 use crate::data::{Channel, TimeSeries};
 use crate::figure::{Axis, Element, Figure, LineStyle, Role, Series};
-use crate::units::{Quantity, UnitSystem};
+use crate::numerics::interpolate;
+use crate::units::{Quantity, UnitSystem, significant};
 
 /// The histories that the motion panel shows, from top to bottom.
 pub const MOTION_CHANNELS: [Channel; 4] =
@@ -12,8 +13,7 @@ pub const MOTION_CHANNELS: [Channel; 4] =
 /// out.
 pub fn motion_figure(
     channel: Channel,
-    simulation: Option<&TimeSeries>,
-    reference: Option<&TimeSeries>,
+    [simulation, reference]: [Option<&TimeSeries>; 2],
     units: UnitSystem,
 ) -> Figure {
     let x = Axis::shown("Time", Quantity::Time, units);
@@ -21,24 +21,12 @@ pub fn motion_figure(
     let line = |name: &str, role, style, series: Option<&TimeSeries>| {
         let series = series?;
         let samples = series.time_s().iter().zip(series.get(channel)?);
-        let points = samples
-            .map(|(&t, &v)| [x.unit.from_si(t), y.unit.from_si(v)])
-            .collect();
-        Some(Element::Line(Series {
-            name: name.to_owned(),
-            role,
-            style,
-            points,
-        }))
+        let points = samples.map(|(&t, &v)| [x.unit.from_si(t), y.unit.from_si(v)]).collect();
+        Some(Element::Line(Series { name: name.to_owned(), role, style, points }))
     };
     let elements = [
         line("reference", Role::Reference, LineStyle::Dashed, reference),
-        line(
-            "4DOF simulation",
-            Role::Simulation,
-            LineStyle::Solid,
-            simulation,
-        ),
+        line("4DOF simulation", Role::Simulation, LineStyle::Solid, simulation),
     ];
     Figure {
         title: format!("{} over time", channel.label()),
@@ -47,4 +35,24 @@ pub fn motion_figure(
         equal_aspect: false,
         elements: elements.into_iter().flatten().collect(),
     }
+}
+
+/// The values of a channel at a moment, for a person: “v_x 31.2 · reference 30.4 km/h”.
+pub fn motion_readout(
+    channel: Channel,
+    [simulation, reference]: [Option<&TimeSeries>; 2],
+    (time_s, units): (f64, UnitSystem),
+) -> String {
+    let unit = channel.quantity().display_unit(units);
+    let at = |series: Option<&TimeSeries>| {
+        let series = series?;
+        let value = interpolate(series.time_s(), series.get(channel)?, time_s)?;
+        Some(significant(unit.from_si(value)))
+    };
+    let values = match (at(simulation), at(reference)) {
+        (Some(simulated), Some(recorded)) => format!("{simulated} · reference {recorded}"),
+        (Some(value), None) | (None, Some(value)) => value,
+        (None, None) => return channel.label().to_owned(),
+    };
+    format!("{} {values} {}", channel.label(), unit.symbol)
 }

@@ -66,22 +66,12 @@ pub fn scene_figure(input: &SceneFigure<'_>) -> Figure {
     let y = Axis::shown("Y, to the left", Quantity::Length, input.units);
     let mut elements = Vec::new();
     for &(name, role, footprint, pose) in input.at_impact {
-        elements.push(Element::polygon(
-            name,
-            role,
-            shown(x.unit, outline_m(&footprint, &pose)),
-        ));
+        elements.push(Element::polygon(name, role, shown(x.unit, outline_m(&footprint, &pose))));
     }
     for vehicle in input.vehicles {
         elements.extend(vehicle_elements(vehicle, input.time_s, x.unit));
     }
-    Figure {
-        title: input.title.to_owned(),
-        x,
-        y,
-        equal_aspect: true,
-        elements,
-    }
+    Figure { title: input.title.to_owned(), x, y, equal_aspect: true, elements }
 }
 
 fn vehicle_elements(vehicle: &SceneVehicle<'_>, time_s: f64, unit: Unit) -> Vec<Element> {
@@ -104,9 +94,7 @@ fn vehicle_elements(vehicle: &SceneVehicle<'_>, time_s: f64, unit: Unit) -> Vec<
         let at = start + tick as f64 * HEADING_TICK_INTERVAL_S;
         if let Some(pose) = pose_at(motion, at) {
             let ends = [-HEADING_TICK_LENGTH_M, HEADING_TICK_LENGTH_M];
-            let points = ends
-                .map(|along| pose.world_from_body([along, 0.0]))
-                .to_vec();
+            let points = ends.map(|along| pose.world_from_body([along, 0.0])).to_vec();
             elements.push(Element::Line(series(LineStyle::Solid, points)));
         }
     }
@@ -121,45 +109,27 @@ fn vehicle_elements(vehicle: &SceneVehicle<'_>, time_s: f64, unit: Unit) -> Vec<
 pub fn pose_at(motion: &TimeSeries, time_s: f64) -> Option<Pose> {
     let at = |channel| interpolate(motion.time_s(), motion.get(channel)?, time_s);
     let yaw_rad = at(Channel::Yaw).unwrap_or(0.0);
-    Some(Pose {
-        x_m: at(Channel::X)?,
-        y_m: at(Channel::Y)?,
-        yaw_rad,
-    })
+    Some(Pose { x_m: at(Channel::X)?, y_m: at(Channel::Y)?, yaw_rad })
 }
 
 pub(super) fn shown(unit: Unit, points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
-    points
-        .into_iter()
-        .map(|point| point.map(|value| unit.from_si(value)))
-        .collect()
+    points.into_iter().map(|point| point.map(|value| unit.from_si(value))).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const CAR: Footprint = Footprint {
-        length_m: 4.5,
-        width_m: 1.8,
-        cg_from_front_m: 2.0,
-    };
+    const CAR: Footprint = Footprint { length_m: 4.5, width_m: 1.8, cg_from_front_m: 2.0 };
 
     #[test]
     fn an_outline_has_the_vehicles_length_along_its_heading() {
-        let pose = Pose {
-            x_m: 10.0,
-            y_m: 5.0,
-            yaw_rad: std::f64::consts::FRAC_PI_2,
-        };
+        let pose = Pose { x_m: 10.0, y_m: 5.0, yaw_rad: std::f64::consts::FRAC_PI_2 };
         let outline = outline_m(&CAR, &pose);
-        let (low, high) = outline.iter().fold((f64::MAX, f64::MIN), |(low, high), p| {
-            (low.min(p[1]), high.max(p[1]))
-        });
-        assert!(
-            (high - 7.0).abs() < 1e-12 && (low - 2.5).abs() < 1e-12,
-            "{low} {high}"
-        );
+        let (low, high) = outline
+            .iter()
+            .fold((f64::MAX, f64::MIN), |(low, high), p| (low.min(p[1]), high.max(p[1])));
+        assert!((high - 7.0).abs() < 1e-12 && (low - 2.5).abs() < 1e-12, "{low} {high}");
     }
 
     #[test]
@@ -172,11 +142,7 @@ mod tests {
         ] {
             motion.insert(channel, values).unwrap();
         }
-        let pose = Pose {
-            x_m: 15.0,
-            y_m: 0.0,
-            yaw_rad: 0.5,
-        };
+        let pose = Pose { x_m: 15.0, y_m: 0.0, yaw_rad: 0.5 };
         assert_eq!(pose_at(&motion, 1.5), Some(pose));
         let vehicle = SceneVehicle {
             name: "car",

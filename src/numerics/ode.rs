@@ -68,11 +68,7 @@ mod tests {
         ];
         for (name, step, order) in methods {
             let ratio = error_after_one_second(step, 50) / error_after_one_second(step, 100);
-            assert!(
-                (ratio.log2() - order).abs() < 0.05,
-                "{name}: order {}",
-                ratio.log2()
-            );
+            assert!((ratio.log2() - order).abs() < 0.05, "{name}: order {}", ratio.log2());
         }
     }
 }

@@ -28,11 +28,7 @@ pub struct Canvas {
 
 impl Default for Canvas {
     fn default() -> Self {
-        Self {
-            size_px: [1600, 1000],
-            scale: 2.0,
-            dark: false,
-        }
+        Self { size_px: [1600, 1000], scale: 2.0, dark: false }
     }
 }
 
@@ -61,10 +57,7 @@ pub fn draw_offscreen(
     mut ui: impl FnMut(&mut Ui),
 ) -> Result<RgbaImage, RenderError> {
     let [width, height] = canvas.size_px;
-    if [width, height]
-        .iter()
-        .any(|side| !(16..=MAX_SIDE_PX).contains(side))
-    {
+    if [width, height].iter().any(|side| !(16..=MAX_SIDE_PX).contains(side)) {
         return Err(RenderError::Size { width, height });
     }
     let context = Context::default();
@@ -85,11 +78,7 @@ pub fn draw_offscreen(
         renderer.update_textures(&mut output.textures_delta);
         if pass + 1 == SETTLING_PASSES {
             let primitives = context.tessellate(output.shapes, output.pixels_per_point);
-            let ground = if canvas.dark {
-                Color32::from_gray(27)
-            } else {
-                Color32::WHITE
-            };
+            let ground = if canvas.dark { Color32::from_gray(27) } else { Color32::WHITE };
             image = renderer.draw(&primitives, canvas.size_px, output.pixels_per_point, ground);
         }
     }

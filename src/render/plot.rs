@@ -2,16 +2,23 @@
 
 use egui::{Id, Stroke, Ui, Vec2b};
 use egui_plot::{
-    Arrows, FilledArea, Legend, Line, LineStyle as PlotLineStyle, Plot, PlotPoint, PlotPoints,
-    PlotUi, Points, Polygon, VLine,
+    Arrows, FilledArea, GridInput, GridMark, Legend, Line, LineStyle as PlotLineStyle, Plot,
+    PlotPoint, PlotPoints, PlotUi, Points, Polygon, VLine,
 };
 
 use crate::figure::{Element, Figure, LineStyle, Role, Series};
 use crate::render::theme;
 use crate::units::significant;
 
+/// Smallest distance of labelled ticks, in multiples of egui_plot's smallest grid spacing (8 points).
+const X_TICK_CELLS: f64 = 8.0;
+/// As [`X_TICK_CELLS`], for the vertical axis.
+const Y_TICK_CELLS: f64 = 4.0;
+/// Unlabelled grid lines between two ticks.
+const MINOR_DIVISIONS: i64 = 5;
+
 /// How a figure is placed among others.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct FigureOptions {
     /// Distinguishes plots in one window; the title if empty.
     pub id: String,
@@ -23,6 +30,15 @@ pub struct FigureOptions {
     pub height: Option<f32>,
     /// Fit the view to the data again.
     pub reset: bool,
+    /// Whether a legend says what the lines are.
+    pub legend: bool,
+}
+
+impl Default for FigureOptions {
+    fn default() -> Self {
+        let (id, link, cursor_x, height) = (String::new(), None, None, None);
+        Self { id, link, cursor_x, height, reset: false, legend: true }
+    }
 }
 
 /// What the user did in a figure.
@@ -36,18 +52,10 @@ pub struct FigureResponse {
 
 /// Draws a figure into the space that is left; a hover reads values in the axes' units.
 pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> FigureResponse {
-    let id = if options.id.is_empty() {
-        &figure.title
-    } else {
-        &options.id
-    };
+    let id = if options.id.is_empty() { &figure.title } else { &options.id };
     let (x, y) = (figure.x.clone(), figure.y.clone());
     let readout = move |name: &str, at: PlotPoint| {
-        let head = if name.is_empty() {
-            String::new()
-        } else {
-            format!("{name}\n")
-        };
+        let head = if name.is_empty() { String::new() } else { format!("{name}\n") };
         format!(
             "{head}{} {}\n{} {}",
             significant(at.x),
@@ -62,18 +70,21 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         .y_axis_min_width(44.0)
         .label_formatter(move |position| {
             let (name, at) = match position {
-                egui_plot::HoverPosition::NearDataPoint {
-                    plot_name,
-                    position,
-                    ..
-                } => (*plot_name, *position),
+                egui_plot::HoverPosition::NearDataPoint { plot_name, position, .. } => {
+                    (*plot_name, *position)
+                }
                 egui_plot::HoverPosition::Elsewhere { position } => ("", *position),
             };
             Some(readout(name, at))
         })
-        .legend(Legend::default())
+        .x_grid_spacer(|input| grid(input, X_TICK_CELLS))
+        .y_grid_spacer(|input| grid(input, Y_TICK_CELLS))
+        .grid_fade(0.9)
         .allow_scroll(false)
         .allow_drag(Vec2b::new(figure.equal_aspect, figure.equal_aspect));
+    if options.legend {
+        plot = plot.legend(Legend::default().follow_insertion_order(true).background_alpha(0.6));
+    }
     if figure.equal_aspect {
         plot = plot.data_aspect(1.0);
     }
@@ -95,22 +106,32 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         }
         if let Some(x) = options.cursor_x {
             let color = theme::color(Role::Reference, dark).gamma_multiply(0.6);
-            plot_ui.vline(
-                VLine::new("", x)
-                    .stroke(Stroke::new(1.0, color))
-                    .allow_hover(false),
-            );
+            plot_ui.vline(VLine::new("", x).stroke(Stroke::new(1.0, color)).allow_hover(false));
         }
         let picking = plot_ui.response().is_pointer_button_down_on();
-        plot_ui
-            .pointer_coordinate()
-            .filter(|_| picking)
-            .map(|point| point.x)
+        plot_ui.pointer_coordinate().filter(|_| picking).map(|point| point.x)
     });
-    FigureResponse {
-        picked_x: response.inner,
-        rect: Some(response.response.rect),
+    FigureResponse { picked_x: response.inner, rect: Some(response.response.rect) }
+}
+
+/// Ticks at 1, 2 or 5 times a power of ten, with fainter lines between.
+fn grid(input: GridInput, tick_cells: f64) -> Vec<GridMark> {
+    let wanted = input.base_step_size * tick_cells;
+    let magnitude = 10.0_f64.powf(wanted.log10().floor());
+    let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * magnitude);
+    let tick = steps.into_iter().find(|step| *step >= wanted).unwrap_or(wanted);
+    let minor = tick / MINOR_DIVISIONS as f64;
+    let (low, high) = input.bounds;
+    if !(minor > 0.0 && (high - low) / minor < 1e4) {
+        return Vec::new();
     }
+    let indices = (low / minor).ceil() as i64..=(high / minor).floor() as i64;
+    indices
+        .map(|index| GridMark {
+            value: index as f64 * minor,
+            step_size: if index % MINOR_DIVISIONS == 0 { tick } else { minor },
+        })
+        .collect()
 }
 
 fn draw_element<'a>(plot: &mut PlotUi<'a>, element: &'a Element, dark: bool) {
@@ -124,18 +145,10 @@ fn draw_element<'a>(plot: &mut PlotUi<'a>, element: &'a Element, dark: bool) {
     let points = |series: &'a Series| PlotPoints::from(series.points.clone());
     match element {
         Element::Line(series) => {
-            plot.line(
-                Line::new(&series.name, points(series))
-                    .stroke(stroke)
-                    .style(style(series)),
-            );
+            plot.line(Line::new(&series.name, points(series)).stroke(stroke).style(style(series)));
         }
         Element::Points(series) => {
-            plot.points(
-                Points::new(&series.name, points(series))
-                    .color(color)
-                    .radius(3.0),
-            );
+            plot.points(Points::new(&series.name, points(series)).color(color).radius(3.0));
         }
         Element::Polygon(series) => {
             let fill = color.gamma_multiply(theme::FILL_OPACITY);
@@ -153,11 +166,7 @@ fn draw_element<'a>(plot: &mut PlotUi<'a>, element: &'a Element, dark: bool) {
             plot.add(FilledArea::new(&band.name, &band.x, &band.low, &band.high).fill_color(fill));
         }
         Element::VerticalLine { name, x, .. } => {
-            plot.vline(
-                VLine::new(name, *x)
-                    .stroke(stroke)
-                    .style(PlotLineStyle::dashed_dense()),
-            );
+            plot.vline(VLine::new(name, *x).stroke(stroke).style(PlotLineStyle::dashed_dense()));
         }
     }
 }

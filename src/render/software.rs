@@ -19,10 +19,7 @@ pub struct SoftwareRenderer {
 
 impl SoftwareRenderer {
     /// Takes in new and changed textures and forgets freed ones. Leaves the delta empty.
-    #[expect(
-        clippy::iter_over_hash_type,
-        reason = "textures do not depend on each other"
-    )]
+    #[expect(clippy::iter_over_hash_type, reason = "textures do not depend on each other")]
     pub fn update_textures(&mut self, delta: &mut TexturesDelta) {
         for (id, patches) in delta.set.drain() {
             for patch in patches {
@@ -65,21 +62,12 @@ impl SoftwareRenderer {
             height: height as usize,
             pixels: vec![background; width as usize * height as usize],
         };
-        for ClippedPrimitive {
-            clip_rect,
-            primitive,
-        } in primitives
-        {
+        for ClippedPrimitive { clip_rect, primitive } in primitives {
             let Primitive::Mesh(mesh) = primitive else {
                 continue;
             };
             if let Some(texture) = self.textures.get(&mesh.texture_id) {
-                frame.draw_mesh(
-                    mesh,
-                    texture,
-                    *clip_rect * pixels_per_point,
-                    pixels_per_point,
-                );
+                frame.draw_mesh(mesh, texture, *clip_rect * pixels_per_point, pixels_per_point);
             }
         }
         let opaque = |color: Color32| [color.r(), color.g(), color.b(), 255];
@@ -99,10 +87,8 @@ impl Frame {
         for corners in mesh.indices.chunks_exact(3) {
             let vertex = |corner: usize| mesh.vertices.get(corners[corner] as usize);
             if let (Some(a), Some(b), Some(c)) = (vertex(0), vertex(1), vertex(2)) {
-                let scaled = [a, b, c].map(|v| Vertex {
-                    pos: (v.pos.to_vec2() * scale).to_pos2(),
-                    ..*v
-                });
+                let scaled =
+                    [a, b, c].map(|v| Vertex { pos: (v.pos.to_vec2() * scale).to_pos2(), ..*v });
                 self.draw_triangle(scaled, texture, clip);
             }
         }
@@ -129,11 +115,7 @@ impl Frame {
         for y in pixel_range(bounds.min.y, bounds.max.y, self.height) {
             for x in pixel_range(bounds.min.x, bounds.max.x, self.width) {
                 let p = Pos2::new(x as f32 + 0.5, y as f32 + 0.5);
-                let weights = [
-                    edge(b.pos, c.pos, p),
-                    edge(c.pos, a.pos, p),
-                    edge(a.pos, b.pos, p),
-                ];
+                let weights = [edge(b.pos, c.pos, p), edge(c.pos, a.pos, p), edge(a.pos, b.pos, p)];
                 let owns = [(b.pos, c.pos), (c.pos, a.pos), (a.pos, b.pos)]
                     .into_iter()
                     .zip(weights)
@@ -145,10 +127,7 @@ impl Frame {
                 let color = if flat {
                     channels(a.color)
                 } else {
-                    mix(
-                        [channels(a.color), channels(b.color), channels(c.color)],
-                        [wa, wb, wc],
-                    )
+                    mix([channels(a.color), channels(b.color), channels(c.color)], [wa, wb, wc])
                 };
                 let texel = constant_texel.unwrap_or_else(|| {
                     let uv = a.uv.to_vec2() * wa + b.uv.to_vec2() * wb + c.uv.to_vec2() * wc;
@@ -176,11 +155,7 @@ fn channels(color: Color32) -> [f32; 4] {
 }
 
 fn mix(colors: [[f32; 4]; 3], weights: [f32; 3]) -> [f32; 4] {
-    std::array::from_fn(|i| {
-        (0..3)
-            .map(|corner| colors[corner][i] * weights[corner])
-            .sum()
-    })
+    std::array::from_fn(|i| (0..3).map(|corner| colors[corner][i] * weights[corner]).sum())
 }
 
 /// Linear filtering, clamped at the edges; 0 to 255.
@@ -196,10 +171,7 @@ fn sample(texture: &ColorImage, uv: Pos2) -> [f32; 4] {
     };
     let ((x0, x1, fx), (y0, y1, fy)) = (along(uv.x, width), along(uv.y, height));
     let texel = |x: usize, y: usize| channels(texture.pixels[y * width + x]);
-    let (top, bottom) = (
-        [texel(x0, y0), texel(x1, y0)],
-        [texel(x0, y1), texel(x1, y1)],
-    );
+    let (top, bottom) = ([texel(x0, y0), texel(x1, y0)], [texel(x0, y1), texel(x1, y1)]);
     std::array::from_fn(|i| {
         let row = |pair: [[f32; 4]; 2]| pair[0][i] * (1.0 - fx) + pair[1][i] * fx;
         row(top) * (1.0 - fy) + row(bottom) * fy
@@ -220,22 +192,14 @@ mod tests {
 
     fn square(color: Color32) -> ClippedPrimitive {
         let mut mesh = Mesh::default();
-        mesh.add_colored_rect(
-            Rect::from_min_max(Pos2::new(1.0, 1.0), Pos2::new(3.0, 3.0)),
-            color,
-        );
+        mesh.add_colored_rect(Rect::from_min_max(Pos2::new(1.0, 1.0), Pos2::new(3.0, 3.0)), color);
         let clip_rect = Rect::from_min_max(Pos2::ZERO, Pos2::new(2.0, 9.0));
-        ClippedPrimitive {
-            clip_rect,
-            primitive: Primitive::Mesh(mesh),
-        }
+        ClippedPrimitive { clip_rect, primitive: Primitive::Mesh(mesh) }
     }
 
     fn renderer() -> SoftwareRenderer {
         let white = ColorImage::filled([1, 1], Color32::WHITE);
-        SoftwareRenderer {
-            textures: [(TextureId::default(), white)].into(),
-        }
+        SoftwareRenderer { textures: [(TextureId::default(), white)].into() }
     }
 
     #[test]
@@ -245,11 +209,7 @@ mod tests {
         for y in 0..8 {
             for x in 0..8 {
                 let inside = (2..4).contains(&x) && (2..6).contains(&y);
-                let expected = if inside {
-                    [200, 100, 100, 255]
-                } else {
-                    [200, 200, 200, 255]
-                };
+                let expected = if inside { [200, 100, 100, 255] } else { [200, 200, 200, 255] };
                 assert_eq!(image.get_pixel(x, y).0, expected, "at {x}, {y}");
             }
         }
@@ -266,11 +226,8 @@ mod tests {
         delta.push(id, ImageDelta::full(whole, options));
         delta.push(id, ImageDelta::partial([1, 1], patch, options));
         renderer.update_textures(&mut delta);
-        let red: Vec<bool> = renderer.textures[&id]
-            .pixels
-            .iter()
-            .map(|p| *p == Color32::RED)
-            .collect();
+        let red: Vec<bool> =
+            renderer.textures[&id].pixels.iter().map(|p| *p == Color32::RED).collect();
         assert_eq!(red, [false, false, false, false, true, true]);
         assert!(delta.is_empty());
     }

@@ -33,11 +33,7 @@ pub fn color(role: Role, dark: bool) -> Color32 {
 
 /// Width of the line of a role, points.
 pub fn line_width(role: Role) -> f32 {
-    if role == Role::Muted {
-        THIN_LINE_WIDTH
-    } else {
-        LINE_WIDTH
-    }
+    if role == Role::Muted { THIN_LINE_WIDTH } else { LINE_WIDTH }
 }
 
 /// egui's visuals with a plain ground, so that figures look the same on screen and on paper.

@@ -74,11 +74,7 @@ pub struct VehicleInput<T> {
 impl<T: Scalar> VehicleInput<T> {
     /// Wheel and throttle released, no contact: what follows a PIT impact.
     pub fn released() -> Self {
-        Self {
-            steer_rad: T::from(0.0),
-            axle_drive_n: [T::from(0.0); 2],
-            collision: None,
-        }
+        Self { steer_rad: T::from(0.0), axle_drive_n: [T::from(0.0); 2], collision: None }
     }
 
     /// The same input in another scalar.
@@ -122,9 +118,8 @@ impl VehicleParameters {
     /// The right-hand side f(x, u) of the equations of motion.
     pub fn evaluate<T: Scalar>(&self, x: &VehicleState<T>, u: &VehicleInput<T>) -> Evaluation<T> {
         let collision = collision_wrench(x.yaw_rad, u.collision.as_ref());
-        let contact_height_m = u
-            .collision
-            .map_or(self.geometry.cg_height_m, |c| c.contact.height_m);
+        let contact_height_m =
+            u.collision.map_or(self.geometry.cg_height_m, |c| c.contact.height_m);
         let (tires, vertical_loads_n) = self.tire_wrench(x, u, collision.force_n, contact_height_m);
 
         let mass_kg = self.mass.mass_kg;
@@ -222,18 +217,12 @@ impl VehicleParameters {
         [sin_steer, cos_steer]: [T; 2],
     ) -> Wrench<T> {
         let zero = T::from(0.0);
-        let mut sum = Wrench {
-            force_n: [zero; 2],
-            yaw_moment_n_m: zero,
-        };
+        let mut sum = Wrench { force_n: [zero; 2], yaw_moment_n_m: zero };
         for ((wheel, slip), &load) in Wheel::ALL.into_iter().zip(slips).zip(loads_n) {
             let [drive_front, drive_rear] = axle_drive_n;
             let [fx, fy] = if wheel.is_front() {
                 let [along, across] = slip.force_n(load, drive_front / 2.0);
-                [
-                    cos_steer * along - sin_steer * across,
-                    sin_steer * along + cos_steer * across,
-                ]
+                [cos_steer * along - sin_steer * across, sin_steer * along + cos_steer * across]
             } else {
                 slip.force_n(load, drive_rear / 2.0)
             };
@@ -275,10 +264,7 @@ impl VehicleParameters {
 fn collision_wrench<T: Scalar>(yaw_rad: T, collision: Option<&CollisionForce<T>>) -> Wrench<T> {
     let zero = T::from(0.0);
     let Some(collision) = collision else {
-        return Wrench {
-            force_n: [zero; 2],
-            yaw_moment_n_m: zero,
-        };
+        return Wrench { force_n: [zero; 2], yaw_moment_n_m: zero };
     };
     let force_n = if collision.in_world_axes {
         body_from_world(yaw_rad, collision.force_n)
@@ -287,8 +273,5 @@ fn collision_wrench<T: Scalar>(yaw_rad: T, collision: Option<&CollisionForce<T>>
     };
     let ContactPoint { x_m, y_m, .. } = collision.contact;
     let at_contact = force_n[1] * x_m - force_n[0] * y_m;
-    Wrench {
-        force_n,
-        yaw_moment_n_m: collision.yaw_moment_n_m.unwrap_or(at_contact),
-    }
+    Wrench { force_n, yaw_moment_n_m: collision.yaw_moment_n_m.unwrap_or(at_contact) }
 }

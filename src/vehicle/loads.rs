@@ -30,12 +30,7 @@ pub enum Wheel {
 
 impl Wheel {
     /// All wheels, in order.
-    pub const ALL: [Self; 4] = [
-        Self::FrontLeft,
-        Self::FrontRight,
-        Self::RearLeft,
-        Self::RearRight,
-    ];
+    pub const ALL: [Self; 4] = [Self::FrontLeft, Self::FrontRight, Self::RearLeft, Self::RearRight];
 
     /// Its name.
     pub fn label(self) -> &'static str {
@@ -56,11 +51,8 @@ impl Wheel {
     pub fn position_m(self, vehicle: &VehicleParameters) -> [f64; 2] {
         let geometry = &vehicle.geometry;
         let half_track = geometry.track_width_m / 2.0;
-        let x = if self.is_front() {
-            geometry.cg_to_front_axle_m
-        } else {
-            -geometry.cg_to_rear_axle_m
-        };
+        let x =
+            if self.is_front() { geometry.cg_to_front_axle_m } else { -geometry.cg_to_rear_axle_m };
         let left = matches!(self, Self::FrontLeft | Self::RearLeft);
         [x, if left { half_track } else { -half_track }]
     }
@@ -78,10 +70,7 @@ pub struct LoadTransfer<T> {
 impl<T: Scalar> LoadTransfer<T> {
     /// Loads at rest.
     pub fn none() -> Self {
-        Self {
-            to_front_n_m: T::from(0.0),
-            to_right_n_m: T::from(0.0),
-        }
+        Self { to_front_n_m: T::from(0.0), to_right_n_m: T::from(0.0) }
     }
 }
 
@@ -101,11 +90,7 @@ pub fn vertical_loads_n<T: Scalar>(
     let front = clamp(front, T::from(0.0), T::from(weight));
     let axle = |load: T, share: f64| {
         let half = load / 2.0;
-        let shift = clamp(
-            transfer.to_right_n_m * (share / geometry.track_width_m),
-            -half,
-            half,
-        );
+        let shift = clamp(transfer.to_right_n_m * (share / geometry.track_width_m), -half, half);
         [half - shift, half + shift]
     };
     let share = vehicle.suspension.front_roll_stiffness_share;
@@ -135,18 +120,9 @@ mod tests {
         let weight = vehicle.mass.mass_kg * STANDARD_GRAVITY_M_S2;
         for to_front_n_m in [-1e5, -3e3, 0.0, 5e3, 1e5] {
             for to_right_n_m in [-1e5, -2e3, 0.0, 4e3, 1e5] {
-                let loads = vertical_loads_n(
-                    &vehicle,
-                    LoadTransfer {
-                        to_front_n_m,
-                        to_right_n_m,
-                    },
-                );
+                let loads = vertical_loads_n(&vehicle, LoadTransfer { to_front_n_m, to_right_n_m });
                 assert!(loads.iter().all(|&load| load >= 0.0), "{loads:?}");
-                assert!(
-                    (loads.iter().sum::<f64>() - weight).abs() < 1e-8,
-                    "{loads:?}"
-                );
+                assert!((loads.iter().sum::<f64>() - weight).abs() < 1e-8, "{loads:?}");
             }
         }
     }
@@ -155,21 +131,11 @@ mod tests {
     fn a_left_turn_loads_the_right_and_braking_the_front() {
         let vehicle = Preset::Reference.parameters();
         let at_rest = vertical_loads_n(&vehicle, LoadTransfer::none());
-        let turning = vertical_loads_n(
-            &vehicle,
-            LoadTransfer {
-                to_right_n_m: 2e3,
-                ..LoadTransfer::none()
-            },
-        );
+        let turning =
+            vertical_loads_n(&vehicle, LoadTransfer { to_right_n_m: 2e3, ..LoadTransfer::none() });
         assert!(turning[1] > at_rest[1] && turning[3] > at_rest[3]);
-        let braking = vertical_loads_n(
-            &vehicle,
-            LoadTransfer {
-                to_front_n_m: 2e3,
-                ..LoadTransfer::none()
-            },
-        );
+        let braking =
+            vertical_loads_n(&vehicle, LoadTransfer { to_front_n_m: 2e3, ..LoadTransfer::none() });
         assert!(braking[0] > at_rest[0] && braking[2] < at_rest[2]);
     }
 }

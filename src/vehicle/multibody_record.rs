@@ -93,14 +93,7 @@ impl MultibodyRecord {
     /// The 4DOF vehicle that stands for the multibody model. No trajectory enters: only the data
     /// sheet, by the rules that [`VehicleParameters::estimates`] lists.
     pub fn parameters(&self) -> VehicleParameters {
-        let Self {
-            mass,
-            geometry,
-            wheel,
-            tyre,
-            aero,
-            ..
-        } = self;
+        let Self { mass, geometry, wheel, tyre, aero, .. } = self;
         let sprung_kg = mass.total_kg - mass.unsprung_kg;
         let unsprung_moment = mass.unsprung_kg * wheel.effective_rolling_radius;
         let sprung_height = (mass.total_kg * geometry.cg_height - unsprung_moment) / sprung_kg;
@@ -146,16 +139,10 @@ impl MultibodyRecord {
     fn suspension_parameters(&self, sprung_kg: f64, roll_arm_m: f64) -> SuspensionParameters {
         let (springs, geometry) = (&self.suspension, &self.geometry);
         let axle_stiffness = |spring: f64, track: f64, bar: f64| spring * track * track / 2.0 + bar;
-        let front = axle_stiffness(
-            springs.spring_front,
-            geometry.track_front,
-            springs.anti_roll_bar_front,
-        );
-        let rear = axle_stiffness(
-            springs.spring_rear,
-            geometry.track_rear,
-            springs.anti_roll_bar_rear,
-        );
+        let front =
+            axle_stiffness(springs.spring_front, geometry.track_front, springs.anti_roll_bar_front);
+        let rear =
+            axle_stiffness(springs.spring_rear, geometry.track_rear, springs.anti_roll_bar_rear);
         let gradient_rad_per_g = self.equivalent.roll_gradient_deg_per_g.to_radians();
         let weight_arm = sprung_kg * STANDARD_GRAVITY_M_S2 * roll_arm_m;
         SuspensionParameters {
@@ -170,46 +157,16 @@ impl MultibodyRecord {
 
 fn estimates() -> BTreeMap<String, String> {
     [
-        (
-            "geometry.outer_length_m",
-            "body of the E90 saloon; the model has no outer skin",
-        ),
-        (
-            "geometry.cg_to_front_end_m",
-            "l_f + 0.78 m front overhang of that body",
-        ),
-        (
-            "mass.sprung_mass_kg",
-            "all of \"unsprung and links\" taken as unsprung",
-        ),
-        (
-            "mass.roll_inertia_kg_m2",
-            "I_xx of the whole car + m_s h² (parallel axes)",
-        ),
-        (
-            "suspension.roll_axis_height_m",
-            "usual for strut and double-wishbone axles",
-        ),
-        (
-            "suspension.roll_arm_m",
-            "(m h_cog − m_u r_wheel)/m_s − roll axis height",
-        ),
-        (
-            "suspension.roll_stiffness_n_m_rad",
-            "m_s g h (1/roll gradient + 1): meets the gradient",
-        ),
-        (
-            "suspension.front_roll_stiffness_share",
-            "springs and bars at the wheels: c w²/2 + bar",
-        ),
-        (
-            "tires.friction",
-            "the dataset's usual value; each case states its own",
-        ),
-        (
-            "tires.rolling_resistance_s2_m2",
-            "stands for the air drag: ρ C_d A / (2 m g)",
-        ),
+        ("geometry.outer_length_m", "body of the E90 saloon; the model has no outer skin"),
+        ("geometry.cg_to_front_end_m", "l_f + 0.78 m front overhang of that body"),
+        ("mass.sprung_mass_kg", "all of \"unsprung and links\" taken as unsprung"),
+        ("mass.roll_inertia_kg_m2", "I_xx of the whole car + m_s h² (parallel axes)"),
+        ("suspension.roll_axis_height_m", "usual for strut and double-wishbone axles"),
+        ("suspension.roll_arm_m", "(m h_cog − m_u r_wheel)/m_s − roll axis height"),
+        ("suspension.roll_stiffness_n_m_rad", "m_s g h (1/roll gradient + 1): meets the gradient"),
+        ("suspension.front_roll_stiffness_share", "springs and bars at the wheels: c w²/2 + bar"),
+        ("tires.friction", "the dataset's usual value; each case states its own"),
+        ("tires.rolling_resistance_s2_m2", "stands for the air drag: ρ C_d A / (2 m g)"),
     ]
     .into_iter()
     .map(|(key, rule)| (key.to_owned(), rule.to_owned()))
@@ -231,10 +188,7 @@ mod tests {
             let shipped = Preset::Reference.parameters();
             assert_eq!(derived.name, shipped.name);
             for (derived, shipped) in [
-                (
-                    derived.mass.yaw_inertia_kg_m2,
-                    shipped.mass.yaw_inertia_kg_m2,
-                ),
+                (derived.mass.yaw_inertia_kg_m2, shipped.mass.yaw_inertia_kg_m2),
                 (
                     derived.suspension.roll_stiffness_n_m_rad,
                     shipped.suspension.roll_stiffness_n_m_rad,
@@ -244,10 +198,7 @@ mod tests {
                     shipped.tires.cornering_coefficient_front_per_rad,
                 ),
             ] {
-                assert!(
-                    (derived / shipped - 1.0).abs() < 1e-4,
-                    "{dataset}: {derived} {shipped}"
-                );
+                assert!((derived / shipped - 1.0).abs() < 1e-4, "{dataset}: {derived} {shipped}");
             }
         }
     }

@@ -137,10 +137,8 @@ impl VehicleParameters {
     /// # Errors
     /// [`VehicleError`], naming file, line, key, value and range.
     pub fn load(path: &Path) -> Result<Self, VehicleError> {
-        let text = fs::read_to_string(path).map_err(|source| VehicleError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
+        let text = fs::read_to_string(path)
+            .map_err(|source| VehicleError::Read { path: path.to_owned(), source })?;
         Self::parse(&text, path)
     }
 
@@ -151,9 +149,7 @@ impl VehicleParameters {
     pub fn parse(text: &str, path: &Path) -> Result<Self, VehicleError> {
         let parse_error = |error: toml::de::Error| parse_error(text, path, &error);
         let table: toml::Table = toml::from_str(text).map_err(parse_error)?;
-        let is_multibody = table
-            .get("mass")
-            .is_some_and(|mass| mass.get("total").is_some());
+        let is_multibody = table.get("mass").is_some_and(|mass| mass.get("total").is_some());
         let vehicle: Self = if is_multibody {
             let record: crate::vehicle::MultibodyRecord =
                 toml::from_str(text).map_err(parse_error)?;
@@ -198,14 +194,7 @@ impl VehicleParameters {
             if !range.contains(&value) {
                 let (low, high) = (*range.start(), *range.end());
                 let (path, line) = (path.to_owned(), line_of(text, key));
-                return Err(VehicleError::Range {
-                    path,
-                    line,
-                    key,
-                    value,
-                    low,
-                    high,
-                });
+                return Err(VehicleError::Range { path, line, key, value, low, high });
             }
         }
         Ok(())
@@ -214,74 +203,29 @@ impl VehicleParameters {
     #[expect(clippy::too_many_lines, reason = "a table")]
     /// Every value with its range, wide enough for a 1:10 model and a heavy truck.
     fn ranges(&self) -> Vec<(&'static str, f64, RangeInclusive<f64>)> {
-        let Self {
-            mass,
-            geometry,
-            suspension,
-            tires,
-            ..
-        } = self;
-        let coupling = (mass.yaw_inertia_kg_m2 * mass.roll_inertia_kg_m2)
-            .max(0.0)
-            .sqrt()
-            * 0.95;
+        let Self { mass, geometry, suspension, tires, .. } = self;
+        let coupling = (mass.yaw_inertia_kg_m2 * mass.roll_inertia_kg_m2).max(0.0).sqrt() * 0.95;
         vec![
             ("mass.mass_kg", mass.mass_kg, 1.0..=50_000.0),
-            (
-                "mass.sprung_mass_kg",
-                mass.sprung_mass_kg,
-                0.5..=mass.mass_kg,
-            ),
+            ("mass.sprung_mass_kg", mass.sprung_mass_kg, 0.5..=mass.mass_kg),
             ("mass.yaw_inertia_kg_m2", mass.yaw_inertia_kg_m2, 1e-3..=1e6),
-            (
-                "mass.roll_inertia_kg_m2",
-                mass.roll_inertia_kg_m2,
-                1e-3..=1e5,
-            ),
-            (
-                "mass.roll_yaw_product_kg_m2",
-                mass.roll_yaw_product_kg_m2,
-                -coupling..=coupling,
-            ),
-            (
-                "geometry.cg_to_front_axle_m",
-                geometry.cg_to_front_axle_m,
-                0.05..=10.0,
-            ),
-            (
-                "geometry.cg_to_rear_axle_m",
-                geometry.cg_to_rear_axle_m,
-                0.05..=10.0,
-            ),
+            ("mass.roll_inertia_kg_m2", mass.roll_inertia_kg_m2, 1e-3..=1e5),
+            ("mass.roll_yaw_product_kg_m2", mass.roll_yaw_product_kg_m2, -coupling..=coupling),
+            ("geometry.cg_to_front_axle_m", geometry.cg_to_front_axle_m, 0.05..=10.0),
+            ("geometry.cg_to_rear_axle_m", geometry.cg_to_rear_axle_m, 0.05..=10.0),
             ("geometry.track_width_m", geometry.track_width_m, 0.05..=4.0),
             ("geometry.cg_height_m", geometry.cg_height_m, 0.01..=3.0),
-            (
-                "geometry.outer_length_m",
-                geometry.outer_length_m,
-                0.1..=25.0,
-            ),
+            ("geometry.outer_length_m", geometry.outer_length_m, 0.1..=25.0),
             ("geometry.outer_width_m", geometry.outer_width_m, 0.05..=4.0),
             (
                 "geometry.cg_to_front_end_m",
                 geometry.cg_to_front_end_m,
                 0.0..=geometry.outer_length_m,
             ),
-            (
-                "suspension.roll_axis_height_m",
-                suspension.roll_axis_height_m,
-                -1.0..=2.0,
-            ),
+            ("suspension.roll_axis_height_m", suspension.roll_axis_height_m, -1.0..=2.0),
             ("suspension.roll_arm_m", suspension.roll_arm_m, 0.0..=3.0),
-            (
-                "suspension.roll_stiffness_n_m_rad",
-                suspension.roll_stiffness_n_m_rad,
-                1.0..=1e7,
-            ),
-            (
-                "suspension.roll_damping_n_m_s_rad",
-                suspension.roll_damping_n_m_s_rad,
-                0.0..=1e6,
-            ),
+            ("suspension.roll_stiffness_n_m_rad", suspension.roll_stiffness_n_m_rad, 1.0..=1e7),
+            ("suspension.roll_damping_n_m_s_rad", suspension.roll_damping_n_m_s_rad, 0.0..=1e6),
             (
                 "suspension.front_roll_stiffness_share",
                 suspension.front_roll_stiffness_share,
@@ -298,35 +242,16 @@ impl VehicleParameters {
                 1.0..=60.0,
             ),
             ("tires.friction", tires.friction, 0.01..=2.0),
-            (
-                "tires.sliding_friction_ratio",
-                tires.sliding_friction_ratio,
-                0.1..=1.0,
-            ),
-            (
-                "tires.rolling_resistance",
-                tires.rolling_resistance,
-                0.0..=0.5,
-            ),
-            (
-                "tires.rolling_resistance_s_m",
-                tires.rolling_resistance_s_m,
-                0.0..=0.01,
-            ),
-            (
-                "tires.rolling_resistance_s2_m2",
-                tires.rolling_resistance_s2_m2,
-                0.0..=0.001,
-            ),
+            ("tires.sliding_friction_ratio", tires.sliding_friction_ratio, 0.1..=1.0),
+            ("tires.rolling_resistance", tires.rolling_resistance, 0.0..=0.5),
+            ("tires.rolling_resistance_s_m", tires.rolling_resistance_s_m, 0.0..=0.01),
+            ("tires.rolling_resistance_s2_m2", tires.rolling_resistance_s2_m2, 0.0..=0.001),
         ]
     }
 }
 
 fn parse_error(text: &str, path: &Path, error: &toml::de::Error) -> VehicleError {
-    let before = error
-        .span()
-        .and_then(|span| text.get(..span.start))
-        .unwrap_or("");
+    let before = error.span().and_then(|span| text.get(..span.start)).unwrap_or("");
     VehicleError::Parse {
         path: path.to_owned(),
         line: before.matches('\n').count() + 1,
@@ -339,9 +264,7 @@ fn parse_error(text: &str, path: &Path, error: &toml::de::Error) -> VehicleError
 fn line_of(text: &str, key: &str) -> usize {
     let name = key.rsplit('.').next().unwrap_or(key);
     let is_key = |line: &str| {
-        line.trim_start()
-            .strip_prefix(name)
-            .is_some_and(|rest| rest.trim_start().starts_with('='))
+        line.trim_start().strip_prefix(name).is_some_and(|rest| rest.trim_start().starts_with('='))
     };
     text.lines().position(is_key).map_or(0, |index| index + 1)
 }
@@ -360,36 +283,19 @@ mod tests {
     #[test]
     fn a_value_out_of_range_names_file_line_key_value_and_range() {
         let error = reference_with("mass_kg = 2000.0", "mass_kg = -3.0").unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "car.toml:5: mass.mass_kg is -3, expected 1 to 50000"
-        );
+        assert_eq!(error.to_string(), "car.toml:5: mass.mass_kg is -3, expected 1 to 50000");
         assert!(reference_with("mass_kg = 2000.0", "mass_kg = nan").is_err());
     }
 
     #[test]
     fn text_an_unknown_key_and_a_missing_key_are_found() {
-        let text = reference_with("mass_kg = 2000.0", "mass_kg = \"heavy\"")
-            .unwrap_err()
-            .to_string();
-        assert!(
-            text.starts_with("car.toml:5:11: ") && text.contains("string"),
-            "{text}"
-        );
-        let text = reference_with("mass_kg = 2000.0", "mas_kg = 2000.0")
-            .unwrap_err()
-            .to_string();
-        assert!(
-            text.starts_with("car.toml:5:1: ") && text.contains("mas_kg"),
-            "{text}"
-        );
-        let text = reference_with("mass_kg = 2000.0\n", "")
-            .unwrap_err()
-            .to_string();
-        assert!(
-            text.starts_with("car.toml:4:1: ") && text.contains("mass_kg"),
-            "{text}"
-        );
+        let text =
+            reference_with("mass_kg = 2000.0", "mass_kg = \"heavy\"").unwrap_err().to_string();
+        assert!(text.starts_with("car.toml:5:11: ") && text.contains("string"), "{text}");
+        let text = reference_with("mass_kg = 2000.0", "mas_kg = 2000.0").unwrap_err().to_string();
+        assert!(text.starts_with("car.toml:5:1: ") && text.contains("mas_kg"), "{text}");
+        let text = reference_with("mass_kg = 2000.0\n", "").unwrap_err().to_string();
+        assert!(text.starts_with("car.toml:4:1: ") && text.contains("mass_kg"), "{text}");
     }
 
     #[test]

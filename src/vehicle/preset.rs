@@ -58,9 +58,7 @@ impl Preset {
 
     /// Its parameters.
     pub fn parameters(self) -> VehicleParameters {
-        let path = Path::new("assets/vehicles")
-            .join(self.id())
-            .with_extension("toml");
+        let path = Path::new("assets/vehicles").join(self.id()).with_extension("toml");
         match VehicleParameters::parse(self.text(), &path) {
             Ok(parameters) => parameters,
             Err(error) => unreachable!("a shipped vehicle is bad (a test reads them all): {error}"),
@@ -80,11 +78,7 @@ mod tests {
             let values = toml::Table::try_from(&vehicle).unwrap();
             for key in vehicle.estimates.keys() {
                 let (table, name) = key.split_once('.').unwrap();
-                assert!(
-                    values[table].get(name).is_some(),
-                    "{}: no {key}",
-                    preset.id()
-                );
+                assert!(values[table].get(name).is_some(), "{}: no {key}", preset.id());
             }
         }
     }

@@ -98,11 +98,7 @@ impl fmt::Display for MotionFlag {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::WheelLift { wheel, time_s } => {
-                write!(
-                    f,
-                    "wheel lift: {} carries no load at {time_s:.2} s",
-                    wheel.label()
-                )
+                write!(f, "wheel lift: {} carries no load at {time_s:.2} s", wheel.label())
             }
             Self::RollLimit { time_s, roll_rad } => write!(
                 f,
@@ -174,11 +170,7 @@ impl VehicleParameters {
             recorder.record(time_s, &VehicleState::from_array(state), &coming);
             for step in 0..steps_per_output {
                 let start_s = time_s + step as f64 * integrator.step_s();
-                state = self.step(
-                    &state,
-                    &inputs.over(start_s, integrator.step_s()),
-                    integrator,
-                );
+                state = self.step(&state, &inputs.over(start_s, integrator.step_s()), integrator);
             }
         }
         recorder.finish()
@@ -186,9 +178,7 @@ impl VehicleParameters {
 
     fn step(&self, state: &[f64; 8], inputs: &StepInputs, integrator: Integrator) -> [f64; 8] {
         let f = |stage, x: &[f64; 8]| {
-            self.evaluate(&VehicleState::from_array(*x), &inputs.at(stage))
-                .derivative
-                .to_array()
+            self.evaluate(&VehicleState::from_array(*x), &inputs.at(stage)).derivative.to_array()
         };
         match integrator {
             Integrator::Rk4 => rk4_step(f, state, inputs.step_s),
@@ -256,11 +246,7 @@ impl StepInputs {
             Stage::Middle => middle,
             Stage::End => end,
         };
-        VehicleInput {
-            steer_rad,
-            collision: self.collision,
-            ..VehicleInput::released()
-        }
+        VehicleInput { steer_rad, collision: self.collision, ..VehicleInput::released() }
     }
 }
 
@@ -304,20 +290,13 @@ impl<'a> Recorder<'a> {
     fn new(vehicle: &'a VehicleParameters, n_samples: usize) -> Self {
         let column = |channel| (channel, Vec::with_capacity(n_samples));
         let columns = RECORDED.map(column).into();
-        Self {
-            vehicle,
-            time_s: Vec::with_capacity(n_samples),
-            columns,
-            lift: None,
-            roll: None,
-        }
+        Self { vehicle, time_s: Vec::with_capacity(n_samples), columns, lift: None, roll: None }
     }
 
     fn record(&mut self, time_s: f64, x: &VehicleState<f64>, u: &VehicleInput<f64>) {
         let now = self.vehicle.evaluate(x, u);
-        let contact_arm_m = u.collision.map_or(0.0, |c| {
-            c.contact.height_m - self.vehicle.geometry.cg_height_m
-        });
+        let contact_arm_m =
+            u.collision.map_or(0.0, |c| c.contact.height_m - self.vehicle.geometry.cg_height_m);
         let [ax, ay] = now.acceleration_m_s2;
         let [fx, fy] = now.collision_force_n;
         let [fl, fr, rl, rr] = now.vertical_loads_n;
@@ -348,19 +327,13 @@ impl<'a> Recorder<'a> {
         for ((_, column), value) in self.columns.iter_mut().zip(sample) {
             column.push(value);
         }
-        let lifted = Wheel::ALL
-            .into_iter()
-            .zip(now.vertical_loads_n)
-            .find(|(_, load)| *load <= 0.0);
+        let lifted =
+            Wheel::ALL.into_iter().zip(now.vertical_loads_n).find(|(_, load)| *load <= 0.0);
         if let Some((wheel, _)) = lifted {
-            self.lift
-                .get_or_insert(MotionFlag::WheelLift { wheel, time_s });
+            self.lift.get_or_insert(MotionFlag::WheelLift { wheel, time_s });
         }
         if x.roll_rad.abs() > ROLL_LIMIT_RAD {
-            self.roll.get_or_insert(MotionFlag::RollLimit {
-                time_s,
-                roll_rad: x.roll_rad,
-            });
+            self.roll.get_or_insert(MotionFlag::RollLimit { time_s, roll_rad: x.roll_rad });
         }
     }
 
@@ -369,9 +342,6 @@ impl<'a> Recorder<'a> {
         for (channel, column) in self.columns {
             series.insert(channel, column)?;
         }
-        Ok(Motion {
-            series,
-            flags: self.lift.into_iter().chain(self.roll).collect(),
-        })
+        Ok(Motion { series, flags: self.lift.into_iter().chain(self.roll).collect() })
     }
 }

@@ -29,59 +29,21 @@ pub const N_STATE: usize = 8;
 impl<T: Scalar> VehicleState<T> {
     /// The state as an array, in the order of `eq:state_vector`.
     pub fn to_array(self) -> [T; N_STATE] {
-        let Self {
-            vx_m_s,
-            vy_m_s,
-            yaw_rad,
-            yaw_rate_rad_s,
-            roll_rad,
-            roll_rate_rad_s,
-            x_m,
-            y_m,
-        } = self;
-        [
-            vx_m_s,
-            vy_m_s,
-            yaw_rad,
-            yaw_rate_rad_s,
-            roll_rad,
-            roll_rate_rad_s,
-            x_m,
-            y_m,
-        ]
+        let Self { vx_m_s, vy_m_s, yaw_rad, yaw_rate_rad_s, roll_rad, roll_rate_rad_s, x_m, y_m } =
+            self;
+        [vx_m_s, vy_m_s, yaw_rad, yaw_rate_rad_s, roll_rad, roll_rate_rad_s, x_m, y_m]
     }
 
     /// The state from an array in the order of `eq:state_vector`.
     pub fn from_array(array: [T; N_STATE]) -> Self {
-        let [
-            vx_m_s,
-            vy_m_s,
-            yaw_rad,
-            yaw_rate_rad_s,
-            roll_rad,
-            roll_rate_rad_s,
-            x_m,
-            y_m,
-        ] = array;
-        Self {
-            vx_m_s,
-            vy_m_s,
-            yaw_rad,
-            yaw_rate_rad_s,
-            roll_rad,
-            roll_rate_rad_s,
-            x_m,
-            y_m,
-        }
+        let [vx_m_s, vy_m_s, yaw_rad, yaw_rate_rad_s, roll_rad, roll_rate_rad_s, x_m, y_m] = array;
+        Self { vx_m_s, vy_m_s, yaw_rad, yaw_rate_rad_s, roll_rad, roll_rate_rad_s, x_m, y_m }
     }
 }
 
 impl VehicleState<f64> {
     /// Straight ahead along X from the origin at this speed.
     pub fn driving_straight(speed_m_s: f64) -> Self {
-        Self {
-            vx_m_s: speed_m_s,
-            ..Self::default()
-        }
+        Self { vx_m_s: speed_m_s, ..Self::default() }
     }
 }

@@ -98,11 +98,7 @@ impl TireParameters {
 
 /// tanh, without its detour over cosh², which overflows in the derivative from some 350 on.
 fn smooth_sign<T: Scalar>(x: T) -> T {
-    if x.re().abs() > 20.0 {
-        T::from(x.re().signum())
-    } else {
-        x.tanh()
-    }
+    if x.re().abs() > 20.0 { T::from(x.re().signum()) } else { x.tanh() }
 }
 
 impl<T: Scalar> WheelSlip<T> {
@@ -119,10 +115,7 @@ impl<T: Scalar> WheelSlip<T> {
             // Locked or spinning: nothing is left for the side. A square root of zero has no slope.
             return [limit * wanted.re().signum(), T::from(0.0)];
         }
-        [
-            wanted,
-            self.lateral_share * (limit * limit - wanted * wanted).sqrt(),
-        ]
+        [wanted, self.lateral_share * (limit * limit - wanted * wanted).sqrt()]
     }
 }
 
@@ -144,27 +137,18 @@ mod tests {
 
     #[test]
     fn the_slope_at_zero_slip_is_the_cornering_stiffness() {
-        let tire = TireParameters {
-            rolling_resistance_s2_m2: 0.0,
-            ..TIRE
-        };
+        let tire = TireParameters { rolling_resistance_s2_m2: 0.0, ..TIRE };
         let (u, w) = (1e3, 1e-3);
         let [fx, fy]: [f64; 2] = tire.slip(13.0, [u, -w]).force_n(5e3, 0.0);
         let free_of_rolling = (1.0 - (fx / (0.8 * 5e3)).powi(2)).sqrt();
-        assert!(
-            (fy / (13.0 * 5e3 * w / u * free_of_rolling) - 1.0).abs() < 1e-3,
-            "{fy} {fx}"
-        );
+        assert!((fy / (13.0 * 5e3 * w / u * free_of_rolling) - 1.0).abs() < 1e-3, "{fy} {fx}");
     }
 
     #[test]
     fn a_wheel_that_slides_sideways_has_sliding_friction() {
         let [_, fy]: [f64; 2] = TIRE.slip(20.0, [0.0, 10.0]).force_n(4000.0, 0.0);
         let [full, sliding] = [0.8 * 4000.0, 0.8 * 0.8 * 4000.0];
-        assert!(
-            fy < 0.0 && fy.abs() < 1.01 * sliding && fy.abs() < full,
-            "{fy}"
-        );
+        assert!(fy < 0.0 && fy.abs() < 1.01 * sliding && fy.abs() < full, "{fy}");
     }
 
     #[test]

@@ -25,12 +25,7 @@ impl TestRenderer for SoftwareTestRenderer {
         let size = context.content_rect().size() * output.pixels_per_point;
         let ground = context.global_style().visuals.panel_fill;
         let size = [size.x.round() as u32, size.y.round() as u32];
-        Ok(self.0.draw(
-            &primitives,
-            size,
-            output.pixels_per_point,
-            Color32::from(ground),
-        ))
+        Ok(self.0.draw(&primitives, size, output.pixels_per_point, Color32::from(ground)))
     }
 }
 
@@ -59,11 +54,7 @@ pub fn step_until(harness: &mut Harness<'_, App>, what: &str, wanted: impl Fn(&S
 
 /// Whether nothing is under way.
 pub fn is_idle(state: &State) -> bool {
-    state
-        .session
-        .sources
-        .iter()
-        .all(impactlab::app::Source::is_settled)
+    state.session.sources.iter().all(impactlab::app::Source::is_settled)
         && state.session.analysis.job.is_none()
         && state.session.analysis.requested.is_some()
 }

@@ -8,17 +8,12 @@ use impactlab::app::{App, Command, Pane, Subject};
 use crate::harness::{is_idle, open, step_until};
 
 fn save(harness: &mut Harness<'_, App>, name: &str) {
-    let image = harness
-        .render()
-        .expect("the software renderer always draws");
+    let image = harness.render().expect("the software renderer always draws");
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("pictures");
     std::fs::create_dir_all(&folder).unwrap();
     image.save(folder.join(name)).unwrap();
     let first = image.get_pixel(0, 0);
-    assert!(
-        image.pixels().any(|pixel| pixel != first),
-        "{name} is blank"
-    );
+    assert!(image.pixels().any(|pixel| pixel != first), "{name} is blank");
 }
 
 fn apply(harness: &mut Harness<'_, App>, command: Command) {
@@ -31,42 +26,24 @@ fn apply(harness: &mut Harness<'_, App>, command: Command) {
 fn the_window_on_the_shipped_data() {
     let mut harness = open(&["datasets"]);
     step_until(&mut harness, "the shipped data", is_idle);
-    let case = Subject::Case {
-        dataset: "datasets/trajectories-fea".into(),
-        case: "FE_c002".into(),
-    };
+    let case =
+        Subject::Case { dataset: "datasets/trajectories-fea".into(), case: "FE_c002".into() };
     apply(&mut harness, Command::Select(case));
     step_until(&mut harness, "a trajectory case", |state| {
-        state
-            .analysis()
-            .is_some_and(|analysis| analysis.name == "FE_c002")
-            && is_idle(state)
+        state.analysis().is_some_and(|analysis| analysis.name == "FE_c002") && is_idle(state)
     });
     apply(&mut harness, Command::SetTime(2.0));
     harness.step();
     save(&mut harness, "window.png");
-    apply(
-        &mut harness,
-        Command::ReplayDataset("datasets/trajectories-fea".into()),
-    );
+    apply(&mut harness, Command::ReplayDataset("datasets/trajectories-fea".into()));
     step_until(&mut harness, "the replay", |state| {
-        state
-            .session
-            .replays
-            .values()
-            .all(|s| matches!(s, impactlab::app::ReplayStatus::Done(_)))
+        state.session.replays.values().all(|s| matches!(s, impactlab::app::ReplayStatus::Done(_)))
     });
     harness.state_mut().state_mut().view.dark = true;
-    let fea = Subject::Case {
-        dataset: "datasets/fea".into(),
-        case: "c002".into(),
-    };
+    let fea = Subject::Case { dataset: "datasets/fea".into(), case: "c002".into() };
     apply(&mut harness, Command::Select(fea));
     step_until(&mut harness, "a force case", |state| {
-        state
-            .analysis()
-            .is_some_and(|analysis| analysis.name == "c002")
-            && is_idle(state)
+        state.analysis().is_some_and(|analysis| analysis.name == "c002") && is_idle(state)
     });
     save(&mut harness, "window-dark.png");
     harness.state_mut().state_mut().view.dark = false;
@@ -80,8 +57,6 @@ fn the_window_on_the_shipped_data() {
 #[test]
 fn the_empty_window() {
     let mut harness = open(&["no/such/folder"]);
-    step_until(&mut harness, "the error", |state| {
-        !state.session.messages.is_empty()
-    });
+    step_until(&mut harness, "the error", |state| !state.session.messages.is_empty());
     save(&mut harness, "window-empty.png");
 }

@@ -15,12 +15,7 @@ const FILTER_HINT: &str = "Filter: c012, hooked, spin=1, m_b_kg>2000";
 
 /// Draws the case table.
 pub fn cases_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext {
-        project,
-        view,
-        session,
-        commands,
-    } = pane;
+    let PaneContext { project, view, session, commands } = pane;
     let Some(checked) = listed_in(&session.sources, view) else {
         ui.label("No data set is open. The cases of a data set are listed here.");
         return;
@@ -46,18 +41,11 @@ pub fn cases_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         Some(Subject::Case { dataset, case }) if *dataset == path => Some(case.as_str()),
         _ => None,
     };
-    let table = Table {
-        rows: &rows,
-        columns: CaseColumn::of(checked.dataset.kind),
-        selected,
-    };
+    let table = Table { rows: &rows, columns: CaseColumn::of(checked.dataset.kind), selected };
     let filter_changed = before != view.filter;
     let picked = table.ui(ui, (view, filter_changed));
     if let Some(case) = picked {
-        commands.push(Command::Select(Subject::Case {
-            dataset: path,
-            case,
-        }));
+        commands.push(Command::Select(Subject::Case { dataset: path, case }));
     }
 }
 
@@ -77,16 +65,11 @@ impl Table<'_> {
                 .striped(true)
                 .sense(Sense::click())
                 .auto_shrink(false)
-                .column(Column::initial(62.0).resizable(true))
-                .columns(
-                    Column::initial(74.0).at_least(36.0).resizable(true),
-                    self.columns.len(),
-                )
-                .column(Column::remainder().at_least(120.0));
-            let selected = self
-                .rows
-                .iter()
-                .position(|row| Some(row.name) == self.selected);
+                .cell_layout(egui::Layout::left_to_right(egui::Align::Center))
+                .column(Column::initial(58.0).resizable(true))
+                .column(Column::initial(64.0).resizable(true).clip(true))
+                .columns(Column::initial(72.0).at_least(36.0).resizable(true), self.columns.len());
+            let selected = self.rows.iter().position(|row| Some(row.name) == self.selected);
             if let Some(index) = selected.filter(|_| filter_changed) {
                 table = table.scroll_to_row(index, None);
             }
@@ -110,9 +93,8 @@ impl Table<'_> {
     fn header_ui(&self, header: &mut TableRow<'_, '_>, view: &mut View) {
         let units = view.units;
         let attributes = self.columns.iter().map(|c| (c.key, c.heading(units)));
-        let ends = [("case", "Case".to_owned()), ("flags", "Flags".to_owned())];
-        let [first, last] = ends;
-        for (key, title) in std::iter::once(first).chain(attributes).chain([last]) {
+        let fixed = [("case", "Case".to_owned()), ("flags", "Flags".to_owned())];
+        for (key, title) in fixed.into_iter().chain(attributes) {
             header.col(|ui| {
                 let sorted = view.sort_column.as_deref() == Some(key);
                 let arrow = match (sorted, view.sort_descending) {
@@ -122,11 +104,7 @@ impl Table<'_> {
                 };
                 let text = RichText::new(format!("{title}{arrow}")).strong();
                 let label = egui::Label::new(text).sense(Sense::click()).truncate();
-                if ui
-                    .add(label)
-                    .on_hover_text(format!("Sort by {title}"))
-                    .clicked()
-                {
+                if ui.add(label).on_hover_text(format!("Sort by {title}")).clicked() {
                     sort_by(view, key);
                 }
             });
@@ -135,16 +113,15 @@ impl Table<'_> {
 
     fn row_ui(&self, row: &mut TableRow<'_, '_>, case: &CaseRow<'_>, units: UnitSystem) {
         row.col(|ui| drop(ui.label(case.name)));
-        for column in self.columns {
-            row.col(|ui| drop(ui.label(case.text(column, units))));
-        }
         row.col(|ui| {
             for flag in case.flags {
                 let color = theme::severity_color(flag.severity, ui.visuals().dark_mode);
-                let label = egui::Label::new(RichText::new(flag.to_string()).color(color));
-                ui.add(label.truncate()).on_hover_text(flag.to_string());
+                ui.colored_label(color, flag.kind.label()).on_hover_text(flag.to_string());
             }
         });
+        for column in self.columns {
+            row.col(|ui| drop(ui.label(case.text(column, units))));
+        }
     }
 }
 

@@ -17,12 +17,7 @@ use crate::units::{Quantity, UnitSystem, significant};
 
 /// Draws the error figures.
 pub fn comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext {
-        view,
-        session,
-        commands,
-        ..
-    } = pane;
+    let PaneContext { view, session, commands, .. } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         if let Some(analysis) = analysis_or_hint(ui, session) {
             case_ui(ui, analysis, view.units);
@@ -38,11 +33,7 @@ pub fn comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         match session.replays.get(path) {
             None => {
                 let label = format!("Simulate all {} cases", checked.dataset.cases.len());
-                if ui
-                    .button(label)
-                    .on_hover_text("4DOF against every recorded motion")
-                    .clicked()
-                {
+                if ui.button(label).on_hover_text("4DOF against every recorded motion").clicked() {
                     commands.push(Command::ReplayDataset(path.clone()));
                 }
             }
@@ -83,31 +74,18 @@ fn case_ui(ui: &mut Ui, analysis: &Analysis, units: UnitSystem) {
 fn error_rows(error: &MotionError, units: UnitSystem) -> Vec<(String, String)> {
     let length = |value| Quantity::Length.shown(value, units);
     let mut rows = vec![
-        (
-            "Average position error".to_owned(),
-            length(error.average_error_m),
-        ),
-        (
-            "Final position error".to_owned(),
-            length(error.final_error_m),
-        ),
+        ("Average position error".to_owned(), length(error.average_error_m)),
+        ("Final position error".to_owned(), length(error.final_error_m)),
         (
             "Final heading error".to_owned(),
             Quantity::Angle.shown(error.final_heading_error_rad, units),
         ),
-        (
-            "RMSE X, Y".to_owned(),
-            format!("{}, {}", length(error.rmse_x_m), length(error.rmse_y_m)),
-        ),
+        ("RMSE X, Y".to_owned(), format!("{}, {}", length(error.rmse_x_m), length(error.rmse_y_m))),
     ];
     let optional = [
         ("RMSE v_x", error.rmse_vx_m_s, Quantity::Speed),
         ("RMSE v_y", error.rmse_vy_m_s, Quantity::Speed),
-        (
-            "RMSE yaw rate",
-            error.rmse_yaw_rate_rad_s,
-            Quantity::AngularVelocity,
-        ),
+        ("RMSE yaw rate", error.rmse_yaw_rate_rad_s, Quantity::AngularVelocity),
     ];
     for (label, value, quantity) in optional {
         rows.extend(value.map(|value| (label.to_owned(), quantity.shown(value, units))));
@@ -119,10 +97,7 @@ fn error_rows(error: &MotionError, units: UnitSystem) -> Vec<(String, String)> {
 }
 
 fn dataset_ui(ui: &mut Ui, replay: &DatasetReplay, units: UnitSystem) {
-    ui.strong(format!(
-        "All {} cases, average position error",
-        replay.cases.len()
-    ));
+    ui.strong(format!("All {} cases, average position error", replay.cases.len()));
     let unit = Quantity::Length.display_unit(units);
     Grid::new("dataset error").striped(true).show(ui, |ui| {
         for title in ["", "n", "mean", "std", "median", "p90"] {
@@ -140,17 +115,12 @@ fn dataset_ui(ui: &mut Ui, replay: &DatasetReplay, units: UnitSystem) {
         ];
         for (name, choose) in groups {
             if let Some(summary) = ErrorSummary::of(&replay.cases, choose) {
-                summary_row(ui, name, &summary.average_error_m, |v| {
-                    significant(unit.from_si(v))
-                });
+                summary_row(ui, name, &summary.average_error_m, |v| significant(unit.from_si(v)));
             }
         }
     });
     if !replay.failures.is_empty() {
-        ui.label(format!(
-            "{} cases could not be simulated",
-            replay.failures.len()
-        ));
+        ui.label(format!("{} cases could not be simulated", replay.failures.len()));
     }
 }
 

@@ -4,10 +4,10 @@ use egui::{CollapsingHeader, Response, RichText, ScrollArea, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
-use crate::app::error_chain;
 use crate::app::panes::PaneContext;
 use crate::app::source::{CheckedDataset, CheckedFile, Content, Source};
 use crate::app::state::{Project, Subject, View};
+use crate::app::{error_chain, shipped_datasets};
 use crate::data::{DatasetKind, FileKind, Severity};
 use crate::render::theme;
 
@@ -16,24 +16,15 @@ const SHOWN_PROBLEMS: usize = 50;
 
 /// Draws the tree of what is open.
 pub fn data_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext {
-        project,
-        view,
-        session,
-        commands,
-    } = pane;
+    let PaneContext { project, view, session, commands } = pane;
     ui.horizontal(|ui| {
-        let folder = ui
-            .button("Open folder…")
-            .on_hover_text("A data set, or a folder of data sets");
+        let folder =
+            ui.button("Open folder…").on_hover_text("A data set, or a folder of data sets");
         if folder.clicked() {
             commands.push(Command::Ask(Purpose::Folder));
         }
         let files = ui.button("Open files…");
-        if files
-            .on_hover_text("Force, trajectory, steer or scenario files")
-            .clicked()
-        {
+        if files.on_hover_text("Force, trajectory, steer or scenario files").clicked() {
             commands.push(Command::Ask(Purpose::Files));
         }
     });
@@ -41,6 +32,11 @@ pub fn data_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         if session.sources.is_empty() {
             ui.label("Nothing is open. Open a folder with cases.csv and forces/ or trajectories/, or drop it anywhere in this window.");
+            if let Some(path) = shipped_datasets()
+                && ui.button("Open the shipped data").clicked()
+            {
+                commands.push(Command::Open(vec![path]));
+            }
         }
         for source in &session.sources {
             source_ui(ui, source, (project, view), commands);
@@ -107,11 +103,7 @@ fn dataset_ui(
     }
     source_menu(&response, source, commands);
     ui.indent(&source.path, |ui| {
-        let flagged = checked
-            .flags
-            .iter()
-            .filter(|flags| !flags.is_empty())
-            .count();
+        let flagged = checked.flags.iter().filter(|flags| !flags.is_empty()).count();
         if flagged > 0 {
             ui.weak(format!("{flagged} cases with flags"));
         }
@@ -123,16 +115,14 @@ fn dataset_ui(
         let problems = &dataset.problems;
         if !problems.is_empty() {
             let title = format!("{} problems", problems.len());
-            CollapsingHeader::new(title)
-                .id_salt((&source.path, "problems"))
-                .show(ui, |ui| {
-                    for problem in problems.iter().take(SHOWN_PROBLEMS) {
-                        problem_ui(ui, &error_chain(problem));
-                    }
-                    if problems.len() > SHOWN_PROBLEMS {
-                        ui.weak(format!("and {} more", problems.len() - SHOWN_PROBLEMS));
-                    }
-                });
+            CollapsingHeader::new(title).id_salt((&source.path, "problems")).show(ui, |ui| {
+                for problem in problems.iter().take(SHOWN_PROBLEMS) {
+                    problem_ui(ui, &error_chain(problem));
+                }
+                if problems.len() > SHOWN_PROBLEMS {
+                    ui.weak(format!("and {} more", problems.len() - SHOWN_PROBLEMS));
+                }
+            });
         }
     });
 }
@@ -149,10 +139,8 @@ fn file_ui(
         FileKind::Steer => "steer",
     };
     let n_samples = file.loaded.series.n_samples();
-    let response = ui.selectable_label(
-        selected,
-        format!("{} · {kind}, {n_samples} samples", source.name()),
-    );
+    let response =
+        ui.selectable_label(selected, format!("{} · {kind}, {n_samples} samples", source.name()));
     let response = response.on_hover_ui(|ui| {
         ui.label(source.path.display().to_string());
         for column in &file.loaded.columns {
@@ -173,9 +161,7 @@ fn file_ui(
     source_menu(&response, source, commands);
     for flag in &file.flags {
         let color = theme::severity_color(flag.severity, ui.visuals().dark_mode);
-        ui.indent((&source.path, flag.to_string()), |ui| {
-            ui.colored_label(color, flag.to_string())
-        });
+        ui.indent((&source.path, flag.to_string()), |ui| ui.colored_label(color, flag.to_string()));
     }
 }
 

@@ -16,12 +16,7 @@ const PULSE_INTERVAL_S: f64 = 5e-4;
 
 /// Draws the force plot with its readouts.
 pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext {
-        project,
-        view,
-        session,
-        commands,
-    } = pane;
+    let PaneContext { project, view, session, commands } = pane;
     let Some(analysis) = analysis_or_hint(ui, session) else {
         return;
     };
@@ -43,17 +38,12 @@ pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             .response
             .labelled_by(name.id)
             .on_hover_text("SAE J211 channel frequency class");
-        ui.checkbox(&mut project.show_pulses, "Classic pulses")
-            .on_hover_text(
-                "Half-sine, haversine, triangle and square of the same impulse and duration",
-            );
+        ui.checkbox(&mut project.show_pulses, "Classic pulses").on_hover_text(
+            "Half-sine, haversine, triangle and square of the same impulse and duration",
+        );
     });
     readouts_ui(ui, force, view.units);
-    let pulses = if project.show_pulses {
-        pulses(force)
-    } else {
-        Vec::new()
-    };
+    let pulses = if project.show_pulses { pulses(force) } else { Vec::new() };
     let figure = analysis_force_figure(analysis, project.channel_class, &pulses, view.units);
     match figure {
         Ok(Some(figure)) => {
@@ -63,7 +53,7 @@ pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 reset: session.fit_plots,
                 ..FigureOptions::default()
             };
-            figure_frame(ui, &figure, &options, commands);
+            figure_frame(ui, (&figure.title, &figure), &options, commands);
         }
         Ok(None) => {}
         Err(error) => {
@@ -75,41 +65,29 @@ pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 fn readouts_ui(ui: &mut Ui, force: &ForceHistory, units: UnitSystem) {
     let [px, py] = force.impulse_n_s();
     let impulse = |value| Quantity::Impulse.shown(value, units);
-    Grid::new("force readouts")
-        .num_columns(4)
-        .striped(true)
-        .show(ui, |ui| {
-            let half_rows = [
-                ("Impulse", format!("({}, {})", impulse(px), impulse(py))),
-                ("|Impulse|", impulse(px.hypot(py))),
-                ("Peak |F|", peak_text(force, units)),
-                ("Contact", contact_text(force)),
-                ("PDOF", pdof_text([px, py])),
-            ];
-            for (label, text) in half_rows {
-                value_row(ui, label, &text);
-            }
-        });
+    Grid::new("force readouts").num_columns(4).striped(true).show(ui, |ui| {
+        let half_rows = [
+            ("Impulse", format!("({}, {})", impulse(px), impulse(py))),
+            ("|Impulse|", impulse(px.hypot(py))),
+            ("Peak |F|", peak_text(force, units)),
+            ("Contact", contact_text(force)),
+            ("PDOF", pdof_text([px, py])),
+        ];
+        for (label, text) in half_rows {
+            value_row(ui, label, &text);
+        }
+    });
 }
 
 fn peak_text(force: &ForceHistory, units: UnitSystem) -> String {
     force.peak().map_or("none".to_owned(), |(peak, at)| {
-        format!(
-            "{} at {:.1} ms",
-            Quantity::Force.shown(peak, units),
-            at * 1e3
-        )
+        format!("{} at {:.1} ms", Quantity::Force.shown(peak, units), at * 1e3)
     })
 }
 
 fn contact_text(force: &ForceHistory) -> String {
     contact_interval(force).map_or("none".to_owned(), |(start, end)| {
-        format!(
-            "{:.1} ms, from {:.1} to {:.1} ms",
-            (end - start) * 1e3,
-            start * 1e3,
-            end * 1e3
-        )
+        format!("{:.1} ms, from {:.1} to {:.1} ms", (end - start) * 1e3, start * 1e3, end * 1e3)
     })
 }
 
@@ -127,10 +105,7 @@ fn pulses(force: &ForceHistory) -> Vec<(String, ForceHistory)> {
     };
     let pulse = |shape: PulseShape| {
         let pulse = Pulse::new(shape, force.impulse_n_s(), start, end - start).ok()?;
-        Some((
-            shape.label().to_owned(),
-            pulse.to_history(PULSE_INTERVAL_S).ok()?,
-        ))
+        Some((shape.label().to_owned(), pulse.to_history(PULSE_INTERVAL_S).ok()?))
     };
     PulseShape::ALL.into_iter().filter_map(pulse).collect()
 }

@@ -6,7 +6,7 @@ use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
 use crate::app::widgets::figure_frame;
-use crate::figure::{MOTION_CHANNELS, analysis_motion_figure};
+use crate::figure::{MOTION_CHANNELS, analysis_motion_figure, analysis_readout};
 use crate::render::FigureOptions;
 
 /// Smallest height of one plot, points.
@@ -16,12 +16,7 @@ const TITLE_HEIGHT: f32 = 30.0;
 
 /// Draws v_x, v_y, yaw rate and roll over time, with a common cursor at the scene's time.
 pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext {
-        view,
-        session,
-        commands,
-        ..
-    } = pane;
+    let PaneContext { view, session, commands, .. } = pane;
     let Some(analysis) = analysis_or_hint(ui, session) else {
         return;
     };
@@ -36,8 +31,10 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             cursor_x: Some(session.time_s),
             height: Some(height),
             reset: session.fit_plots,
+            legend: channel == MOTION_CHANNELS[0],
         };
-        let response = figure_frame(ui, &figure, &options, commands);
+        let heading = analysis_readout(analysis, channel, (session.time_s, view.units));
+        let response = figure_frame(ui, (&heading, &figure), &options, commands);
         if let Some(time_s) = response.picked_x {
             let last = figure_end(&figure);
             commands.push(Command::SetTime(time_s.clamp(0.0, last)));

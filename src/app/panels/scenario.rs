@@ -20,12 +20,7 @@ const PLAN_HEIGHT: f32 = 260.0;
 
 /// Draws the form, the solution and the plan.
 pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext {
-        project,
-        view,
-        session,
-        commands,
-    } = pane;
+    let PaneContext { project, view, session, commands } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
             ui.strong(&project.scenario.name);
@@ -37,12 +32,7 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             }
             let shown = project.subject == Some(Subject::Scenario);
             let hint = "Spread the impulse over a pulse and simulate both vehicles";
-            if !shown
-                && ui
-                    .button("Simulate in the scene")
-                    .on_hover_text(hint)
-                    .clicked()
-            {
+            if !shown && ui.button("Simulate in the scene").on_hover_text(hint).clicked() {
                 commands.push(Command::Select(Subject::Scenario));
             }
         });
@@ -59,7 +49,7 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                         reset: session.fit_plots,
                         ..FigureOptions::default()
                     };
-                    figure_frame(ui, &figure, &options, commands);
+                    figure_frame(ui, (&figure.title, &figure), &options, commands);
                 }
             }
             Err(error) => {
@@ -73,13 +63,9 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 fn vehicles_form(ui: &mut Ui, project: &mut Project, units: UnitSystem) {
     let Scenario { target, bullet, .. } = &mut project.scenario;
     for (title, vehicle) in [("Target (struck)", target), ("Bullet (strikes)", bullet)] {
-        egui::CollapsingHeader::new(title)
-            .default_open(true)
-            .show(ui, |ui| {
-                Grid::new(title)
-                    .num_columns(2)
-                    .show(ui, |ui| vehicle_form(ui, vehicle, units));
-            });
+        egui::CollapsingHeader::new(title).default_open(true).show(ui, |ui| {
+            Grid::new(title).num_columns(2).show(ui, |ui| vehicle_form(ui, vehicle, units));
+        });
     }
 }
 
@@ -87,13 +73,8 @@ fn vehicle_form(ui: &mut Ui, vehicle: &mut ScenarioVehicle, units: UnitSystem) {
     let mut speed_m_s = vehicle.vx_m_s.hypot(vehicle.vy_m_s);
     let mut course_rad = vehicle.vy_m_s.atan2(vehicle.vx_m_s);
     let angle = std::f64::consts::PI;
-    let mut moved = quantity_field(
-        ui,
-        "Speed",
-        &mut speed_m_s,
-        Quantity::Speed,
-        (0.0..=80.0, units),
-    );
+    let mut moved =
+        quantity_field(ui, "Speed", &mut speed_m_s, Quantity::Speed, (0.0..=80.0, units));
     moved |= quantity_field(
         ui,
         "Course (of velocity)",
@@ -106,101 +87,48 @@ fn vehicle_form(ui: &mut Ui, vehicle: &mut ScenarioVehicle, units: UnitSystem) {
         vehicle.vy_m_s = speed_m_s * course_rad.sin();
     }
     let fields = [
-        (
-            "Heading",
-            &mut vehicle.heading_rad,
-            Quantity::Angle,
-            -angle..=angle,
-        ),
-        (
-            "Yaw rate",
-            &mut vehicle.yaw_rate_rad_s,
-            Quantity::AngularVelocity,
-            -10.0..=10.0,
-        ),
-        (
-            "Mass",
-            &mut vehicle.mass_kg,
-            Quantity::Mass,
-            50.0..=50_000.0,
-        ),
-        (
-            "Yaw inertia",
-            &mut vehicle.yaw_inertia_kg_m2,
-            Quantity::MomentOfInertia,
-            1.0..=500_000.0,
-        ),
-        (
-            "Length",
-            &mut vehicle.length_m,
-            Quantity::Length,
-            0.5..=25.0,
-        ),
+        ("Heading", &mut vehicle.heading_rad, Quantity::Angle, -angle..=angle),
+        ("Yaw rate", &mut vehicle.yaw_rate_rad_s, Quantity::AngularVelocity, -10.0..=10.0),
+        ("Mass", &mut vehicle.mass_kg, Quantity::Mass, 50.0..=50_000.0),
+        ("Yaw inertia", &mut vehicle.yaw_inertia_kg_m2, Quantity::MomentOfInertia, 1.0..=500_000.0),
+        ("Length", &mut vehicle.length_m, Quantity::Length, 0.5..=25.0),
         ("Width", &mut vehicle.width_m, Quantity::Length, 0.3..=4.0),
     ];
     for (label, value, quantity, range) in fields {
         quantity_field(ui, label, value, quantity, (range, units));
     }
     let range = (0.0..=vehicle.length_m, units);
-    quantity_field(
-        ui,
-        "CG behind front",
-        &mut vehicle.cg_from_front_m,
-        Quantity::Length,
-        range,
-    );
+    quantity_field(ui, "CG behind front", &mut vehicle.cg_from_front_m, Quantity::Length, range);
 }
 
 fn contact_form(ui: &mut Ui, project: &mut Project, units: UnitSystem) {
-    egui::CollapsingHeader::new("Contact")
-        .default_open(true)
-        .show(ui, |ui| {
-            Grid::new("contact").num_columns(2).show(ui, |ui| {
-                location_form(ui, &mut project.scenario.contact.location, units);
-                let contact = &mut project.scenario.contact;
-                let pulse = &mut project.pulse;
-                let fields = [
-                    (
-                        "Restitution e",
-                        &mut contact.restitution,
-                        Quantity::Ratio,
-                        0.0..=1.0,
-                    ),
-                    (
-                        "Friction limit μ_c",
-                        &mut contact.friction_limit,
-                        Quantity::Ratio,
-                        0.0..=2.0,
-                    ),
-                    (
-                        "Pulse duration",
-                        &mut pulse.duration_s,
-                        Quantity::Time,
-                        0.005..=1.0,
-                    ),
-                    (
-                        "Height above ground",
-                        &mut pulse.contact_height_m,
-                        Quantity::Length,
-                        0.0..=3.0,
-                    ),
-                ];
-                for (label, value, quantity, range) in fields {
-                    quantity_field(ui, label, value, quantity, (range, units));
-                }
-                let name = ui.label("Pulse shape");
-                ComboBox::from_id_salt("pulse shape")
-                    .selected_text(pulse.shape.label())
-                    .show_ui(ui, |ui| {
-                        for shape in PulseShape::ALL {
-                            ui.selectable_value(&mut pulse.shape, shape, shape.label());
-                        }
-                    })
-                    .response
-                    .labelled_by(name.id);
-                ui.end_row();
-            });
+    egui::CollapsingHeader::new("Contact").default_open(true).show(ui, |ui| {
+        Grid::new("contact").num_columns(2).show(ui, |ui| {
+            location_form(ui, &mut project.scenario.contact.location, units);
+            let contact = &mut project.scenario.contact;
+            let pulse = &mut project.pulse;
+            let fields = [
+                ("Restitution e", &mut contact.restitution, Quantity::Ratio, 0.0..=1.0),
+                ("Friction limit μ_c", &mut contact.friction_limit, Quantity::Ratio, 0.0..=2.0),
+                ("Pulse duration", &mut pulse.duration_s, Quantity::Time, 0.005..=1.0),
+                ("Height above ground", &mut pulse.contact_height_m, Quantity::Length, 0.0..=3.0),
+            ];
+            for (label, value, quantity, range) in fields {
+                quantity_field(ui, label, value, quantity, (range, units));
+            }
+            let name = ui.label("Pulse shape");
+            ComboBox::from_id_salt("pulse shape")
+                .selected_text(pulse.shape.label())
+                .show_ui(ui, |ui| {
+                    for shape in PulseShape::ALL {
+                        ui.selectable_value(&mut pulse.shape, shape, shape.label());
+                    }
+                })
+                .response
+                .labelled_by(name.id);
+            ui.end_row();
         });
+    });
 }
 
 fn location_form(ui: &mut Ui, location: &mut ContactLocation, units: UnitSystem) {
@@ -222,20 +150,11 @@ fn location_form(ui: &mut Ui, location: &mut ContactLocation, units: UnitSystem)
             ui.end_row();
             length(ui, "Offset from its middle", offset_m);
         }
-        ContactLocation::Footprints {
-            bullet_x_m,
-            bullet_y_m,
-        } => {
+        ContactLocation::Footprints { bullet_x_m, bullet_y_m } => {
             length(ui, "Bullet's CG, X", bullet_x_m);
             length(ui, "Bullet's CG, Y", bullet_y_m);
         }
-        ContactLocation::Point {
-            x_m,
-            y_m,
-            normal_rad,
-            bullet_x_m,
-            bullet_y_m,
-        } => {
+        ContactLocation::Point { x_m, y_m, normal_rad, bullet_x_m, bullet_y_m } => {
             length(ui, "Contact ahead of CG", x_m);
             length(ui, "Contact left of CG", y_m);
             let angle = std::f64::consts::TAU;
@@ -251,28 +170,21 @@ fn solution_ui(ui: &mut Ui, solution: &ImpactSolution, units: UnitSystem) {
     let [px, py] = solution.impulse_n_s;
     let impulse = |value| Quantity::Impulse.shown(value, units);
     ui.strong("Momentum solution");
-    Grid::new("solution")
-        .striped(true)
-        .num_columns(2)
-        .show(ui, |ui| {
-            value_row(
-                ui,
-                "Impulse on target (X, Y)",
-                &format!("{}, {}", impulse(px), impulse(py)),
-            );
-            let parts = [solution.impulse_normal_n_s, solution.impulse_tangential_n_s].map(impulse);
-            value_row(ui, "normal, tangential", &parts.join(", "));
-            value_row(ui, "Regime", solution.regime.label());
-            let closing = Quantity::Speed.shown(solution.closing_velocity_m_s[0].abs(), units);
-            value_row(ui, "Closing speed", &closing);
-            let energy = Quantity::Energy.shown(solution.dissipated_energy_j, units);
-            value_row(ui, "Dissipated energy", &energy);
-            for (name, after) in [("target", &solution.target), ("bullet", &solution.bullet)] {
-                for (label, text) in body_rows(after, units) {
-                    value_row(ui, &format!("{label}, {name}"), &text);
-                }
+    Grid::new("solution").striped(true).num_columns(2).show(ui, |ui| {
+        value_row(ui, "Impulse on target (X, Y)", &format!("{}, {}", impulse(px), impulse(py)));
+        let parts = [solution.impulse_normal_n_s, solution.impulse_tangential_n_s].map(impulse);
+        value_row(ui, "normal, tangential", &parts.join(", "));
+        value_row(ui, "Regime", solution.regime.label());
+        let closing = Quantity::Speed.shown(solution.closing_velocity_m_s[0].abs(), units);
+        value_row(ui, "Closing speed", &closing);
+        let energy = Quantity::Energy.shown(solution.dissipated_energy_j, units);
+        value_row(ui, "Dissipated energy", &energy);
+        for (name, after) in [("target", &solution.target), ("bullet", &solution.bullet)] {
+            for (label, text) in body_rows(after, units) {
+                value_row(ui, &format!("{label}, {name}"), &text);
             }
-        });
+        }
+    });
 }
 
 fn body_rows(after: &BodyAfter, units: UnitSystem) -> Vec<(&'static str, String)> {
@@ -280,21 +192,14 @@ fn body_rows(after: &BodyAfter, units: UnitSystem) -> Vec<(&'static str, String)
     let [dx, dy] = after.delta_v_m_s;
     let [vx, vy] = after.velocity_m_s;
     let mut rows = vec![
-        (
-            "Δv",
-            format!("{} ({}, {})", speed(dx.hypot(dy)), speed(dx), speed(dy)),
-        ),
+        ("Δv", format!("{} ({}, {})", speed(dx.hypot(dy)), speed(dx), speed(dy))),
         ("Velocity after", format!("({}, {})", speed(vx), speed(vy))),
-        (
-            "Yaw rate after",
-            Quantity::AngularVelocity.shown(after.yaw_rate_rad_s, units),
-        ),
+        ("Yaw rate after", Quantity::AngularVelocity.shown(after.yaw_rate_rad_s, units)),
     ];
-    rows.extend(after.pdof.map(|pdof| {
-        (
-            "PDOF",
-            format!("{:.0} deg, {} o'clock", pdof.angle_deg(), pdof.clock()),
-        )
-    }));
+    rows.extend(
+        after
+            .pdof
+            .map(|pdof| ("PDOF", format!("{:.0} deg, {} o'clock", pdof.angle_deg(), pdof.clock()))),
+    );
     rows
 }

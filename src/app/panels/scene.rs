@@ -11,12 +11,7 @@ use crate::render::FigureOptions;
 
 /// Draws the scene and the time slider.
 pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext {
-        view,
-        session,
-        commands,
-        ..
-    } = pane;
+    let PaneContext { view, session, commands, .. } = pane;
     let Some(analysis) = analysis_or_hint(ui, session) else {
         return;
     };
@@ -34,9 +29,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         let name = ui.label("Time");
         let mut time_s = session.time_s;
         ui.spacing_mut().slider_width = (ui.available_width() - 90.0).max(80.0);
-        let slider = Slider::new(&mut time_s, 0.0..=end_s)
-            .suffix(" s")
-            .fixed_decimals(2);
+        let slider = Slider::new(&mut time_s, 0.0..=end_s).suffix(" s").fixed_decimals(2);
         if ui.add(slider).labelled_by(name.id).changed() {
             commands.push(Command::SetTime(time_s));
         }
@@ -47,5 +40,5 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         reset: session.fit_plots,
         ..FigureOptions::default()
     };
-    figure_frame(ui, &figure, &options, commands);
+    figure_frame(ui, (&figure.title, &figure), &options, commands);
 }

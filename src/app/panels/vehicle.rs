@@ -27,19 +27,11 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 .labelled_by(name.id);
             ui.end_row();
             let range = (0.1..=30.0, view.units);
-            quantity_field(
-                ui,
-                "Duration",
-                &mut project.duration_s,
-                Quantity::Time,
-                range,
-            );
+            quantity_field(ui, "Duration", &mut project.duration_s, Quantity::Time, range);
         });
         ui.separator();
         ui.strong("For single force files");
-        Grid::new("file setup")
-            .num_columns(2)
-            .show(ui, |ui| setup_ui(ui, project, view.units));
+        Grid::new("file setup").num_columns(2).show(ui, |ui| setup_ui(ui, project, view.units));
         if let VehicleChoice::Preset(id) = &project.vehicle
             && let Some(preset) = Preset::from_id(id)
         {
@@ -82,20 +74,10 @@ fn setup_ui(ui: &mut Ui, project: &mut Project, units: UnitSystem) {
     let setup = &mut project.file_setup;
     let [x_m, y_m] = &mut setup.contact_m;
     let fields = [
-        (
-            "Speed before impact",
-            &mut setup.speed_m_s,
-            Quantity::Speed,
-            0.0..=80.0,
-        ),
+        ("Speed before impact", &mut setup.speed_m_s, Quantity::Speed, 0.0..=80.0),
         ("Contact ahead of CG", x_m, Quantity::Length, -10.0..=10.0),
         ("Contact left of CG", y_m, Quantity::Length, -3.0..=3.0),
-        (
-            "Contact above ground",
-            &mut setup.contact_height_m,
-            Quantity::Length,
-            0.0..=3.0,
-        ),
+        ("Contact above ground", &mut setup.contact_height_m, Quantity::Length, 0.0..=3.0),
     ];
     for (label, value, quantity, range) in fields {
         quantity_field(ui, label, value, quantity, (range, units));
@@ -109,28 +91,21 @@ fn parameters_ui(ui: &mut Ui, vehicle: &VehicleParameters) {
     let Ok(tables) = toml::Table::try_from(vehicle) else {
         return;
     };
-    Grid::new("parameters")
-        .striped(true)
-        .num_columns(2)
-        .show(ui, |ui| {
-            for (table, values) in &tables {
-                let Some(values) = values.as_table().filter(|_| table != "estimates") else {
-                    continue;
-                };
-                for (key, value) in values {
-                    let estimate = vehicle.estimates.get(&format!("{table}.{key}"));
-                    let mark = if estimate.is_some() {
-                        " (estimate)"
-                    } else {
-                        ""
-                    };
-                    value_row(ui, key, &format!("{value}{mark}"));
-                    if let Some(rule) = estimate {
-                        ui.weak("");
-                        ui.weak(rule);
-                        ui.end_row();
-                    }
+    Grid::new("parameters").striped(true).num_columns(2).show(ui, |ui| {
+        for (table, values) in &tables {
+            let Some(values) = values.as_table().filter(|_| table != "estimates") else {
+                continue;
+            };
+            for (key, value) in values {
+                let estimate = vehicle.estimates.get(&format!("{table}.{key}"));
+                let mark = if estimate.is_some() { " (estimate)" } else { "" };
+                value_row(ui, key, &format!("{value}{mark}"));
+                if let Some(rule) = estimate {
+                    ui.weak("");
+                    ui.weak(rule);
+                    ui.end_row();
                 }
             }
-        });
+        }
+    });
 }

@@ -7,10 +7,10 @@ use crate::app::dialogs::Purpose;
 use crate::figure::Figure;
 use crate::render::{FigureOptions, FigureResponse, figure_ui};
 
-/// Draws a figure under its title, with a menu to save its picture or its numbers or to copy them.
+/// Draws a figure under a heading, with a menu to save its picture or its numbers or to copy them.
 pub fn figure_frame(
     ui: &mut Ui,
-    figure: &Figure,
+    (heading, figure): (&str, &Figure),
     options: &FigureOptions,
     commands: &mut Vec<Command>,
 ) -> FigureResponse {
@@ -20,7 +20,7 @@ pub fn figure_frame(
                 .response
                 .on_hover_text("Save or copy this figure");
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                ui.add(egui::Label::new(RichText::new(&figure.title).strong()).truncate());
+                ui.add(egui::Label::new(RichText::new(heading).strong()).truncate());
             });
         });
     });

@@ -19,15 +19,10 @@ pub fn quantity_field(
     let mut shown = unit.from_si(*value_si);
     let range = unit.from_si(*range_si.start())..=unit.from_si(*range_si.end());
     let span = range.end() - range.start();
-    let field = DragValue::new(&mut shown)
-        .range(range)
-        .speed(span / 1000.0)
-        .max_decimals(3)
-        .suffix(if unit.symbol.is_empty() {
-            String::new()
-        } else {
-            format!(" {}", unit.symbol)
-        });
+    let field =
+        DragValue::new(&mut shown).range(range).speed(span / 1000.0).max_decimals(3).suffix(
+            if unit.symbol.is_empty() { String::new() } else { format!(" {}", unit.symbol) },
+        );
     let changed = ui.add(field).labelled_by(name.id).changed();
     if changed {
         *value_si = unit.to_si(shown);
