@@ -38,11 +38,7 @@ fn hit() -> (VehicleState<f64>, VehicleInput<f64>) {
             force_n: [8e3, 4e4],
             in_world_axes: true,
             yaw_moment_n_m: None,
-            contact: ContactPoint {
-                x_m: -1.5,
-                y_m: -0.9,
-                height_m: 0.52,
-            },
+            contact: ContactPoint { x_m: -1.5, y_m: -0.9, height_m: 0.52 },
         }),
         ..VehicleInput::released()
     };
@@ -57,9 +53,7 @@ fn manoeuvres() -> Vec<Manoeuvre> {
         .complete()
         .expect("nobody cancels");
     let cases = dataset.cases.iter().cycle().take(N_TRAJECTORIES);
-    cases
-        .map(|case| recorded_manoeuvre(case).expect("the shipped cases are complete"))
-        .collect()
+    cases.map(|case| recorded_manoeuvre(case).expect("the shipped cases are complete")).collect()
 }
 
 #[divan::bench]
@@ -100,12 +94,10 @@ fn trajectory_of_4_s(bencher: Bencher<'_, '_>) {
 fn thousand_trajectories_in_parallel(bencher: Bencher<'_, '_>) {
     let vehicle = Preset::Reference.parameters();
     let manoeuvres = manoeuvres();
-    bencher
-        .counter(ItemsCount::new(N_TRAJECTORIES))
-        .bench_local(|| {
-            let simulate = |manoeuvre| vehicle.simulate(manoeuvre, Integrator::Rk4).is_ok();
-            let n_done = manoeuvres.par_iter().map(simulate).filter(|ok| *ok).count();
-            assert_eq!(n_done, N_TRAJECTORIES);
-            n_done
-        });
+    bencher.counter(ItemsCount::new(N_TRAJECTORIES)).bench_local(|| {
+        let simulate = |manoeuvre| vehicle.simulate(manoeuvre, Integrator::Rk4).is_ok();
+        let n_done = manoeuvres.par_iter().map(simulate).filter(|ok| *ok).count();
+        assert_eq!(n_done, N_TRAJECTORIES);
+        n_done
+    });
 }

@@ -31,11 +31,8 @@ impl Ran {
         assert_eq!(self.code, 1, "{}{}", self.out, self.err);
         assert_eq!(self.out, "", "{}", self.err);
         let lines: Vec<&str> = self.err.lines().collect();
-        let [line] = lines[..] else {
-            panic!("expected one line: {}", self.err)
-        };
-        line.strip_prefix("error: ")
-            .expect("an error starts with error:")
+        let [line] = lines[..] else { panic!("expected one line: {}", self.err) };
+        line.strip_prefix("error: ").expect("an error starts with error:")
     }
 }
 
@@ -108,12 +105,7 @@ fn wrong_usage_exits_with_2() {
         &["render", "force", "x.csv", "--out", "x.csv", "--cfc", "61"],
     ] {
         let ran = impactlab(args);
-        assert_eq!(
-            (ran.code, ran.out.as_str()),
-            (2, ""),
-            "{args:?}: {}",
-            ran.err
-        );
+        assert_eq!((ran.code, ran.out.as_str()), (2, ""), "{args:?}: {}", ran.err);
     }
 }
 
@@ -128,23 +120,12 @@ fn shipped_data_sets_are_clean_enough() {
         assert_eq!(set["n_cases"], 100);
         assert_eq!(set["problems"].as_array().unwrap().len(), 0);
         assert!(set["columns"][0]["unit"].is_string());
-        let severities: Vec<&str> = set["flags"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(severity)
-            .collect();
+        let severities: Vec<&str> = set["flags"].as_array().unwrap().iter().map(severity).collect();
         let n_warnings = severities.iter().filter(|s| **s == "warning").count();
-        assert!(
-            severities[..n_warnings].iter().all(|s| *s == "warning"),
-            "not sorted"
-        );
+        assert!(severities[..n_warnings].iter().all(|s| *s == "warning"), "not sorted");
     }
     let all = impactlab(&["check", "datasets/fea", "--all"]).out;
-    assert!(
-        all.lines().any(|line| line.trim() == "clean     c001"),
-        "{all}"
-    );
+    assert!(all.lines().any(|line| line.trim() == "clean     c001"), "{all}");
 }
 
 fn severity(flag: &Value) -> &str {
@@ -154,18 +135,10 @@ fn severity(flag: &Value) -> &str {
 #[test]
 fn columns_that_are_not_recognised_are_proposed_and_can_be_mapped() {
     let folder = TempDir::new().unwrap();
-    let file = write(
-        &folder,
-        "k.csv",
-        "Zeit [ms];Kraft A;Kraft B\n0;0;0\n1;2,5;3\n2;0;0\n",
-    );
+    let file = write(&folder, "k.csv", "Zeit [ms];Kraft A;Kraft B\n0;0;0\n1;2,5;3\n2;0;0\n");
     let ran = impactlab(&["check", text(&file)]);
     assert_eq!(ran.code, 1);
-    assert!(
-        ran.out.contains("time=1:ms,fx=COLUMN:UNIT,fy=COLUMN:UNIT"),
-        "{}",
-        ran.out
-    );
+    assert!(ran.out.contains("time=1:ms,fx=COLUMN:UNIT,fy=COLUMN:UNIT"), "{}", ran.out);
     let map = "fx=Kraft A:kN,fy=3:kN";
     let ran = impactlab(&["check", text(&file), "--map", map, "--json"]);
     let report = ran.json();
@@ -178,22 +151,11 @@ fn columns_that_are_not_recognised_are_proposed_and_can_be_mapped() {
 #[test]
 fn an_impact_is_solved_in_si_and_shown_in_us_units() {
     let answer = impactlab(&["impact", SCENARIO, "--json", "--units", "us"]).json();
-    for key in [
-        "impulse_n_s",
-        "regime",
-        "impulse_normal_n_s",
-        "dissipated_energy_j",
-    ] {
+    for key in ["impulse_n_s", "regime", "impulse_normal_n_s", "dissipated_energy_j"] {
         assert!(!answer[key].is_null(), "{key}");
     }
     for vehicle in ["target", "bullet"] {
-        for key in [
-            "velocity_m_s",
-            "yaw_rate_rad_s",
-            "delta_v_m_s",
-            "pdof_deg",
-            "pdof_clock",
-        ] {
+        for key in ["velocity_m_s", "yaw_rate_rad_s", "delta_v_m_s", "pdof_deg", "pdof_clock"] {
             assert!(!answer[vehicle][key].is_null(), "{vehicle} {key}");
         }
     }
@@ -203,32 +165,20 @@ fn an_impact_is_solved_in_si_and_shown_in_us_units() {
         assert!(us.contains(published), "{published}: {us}");
     }
     let paper = impactlab(&["impact", barrier, "--paper", "--json"]).json();
-    assert_eq!(
-        (&paper["friction_model"], &paper["regime"]),
-        (&"paper".into(), &"sliding".into())
-    );
+    assert_eq!((&paper["friction_model"], &paper["regime"]), (&"paper".into(), &"sliding".into()));
 }
 
 #[test]
 fn the_shipped_trajectories_are_met() {
     let folder = TempDir::new().unwrap();
     let out = folder.path().join("simulated");
-    let args = [
-        "simulate",
-        "--dataset",
-        TRAJECTORIES,
-        "--json",
-        "--out",
-        text(&out),
-    ];
+    let args = ["simulate", "--dataset", TRAJECTORIES, "--json", "--out", text(&out)];
     let ran = impactlab(&args);
     assert_eq!(ran.code, 0, "{}", ran.err);
     let answer = ran.json();
     assert_eq!(answer["cases"].as_array().unwrap().len(), 100);
     assert_eq!(answer["failures"].as_array().unwrap().len(), 0);
-    let mean = answer["overall"]["average_error_m"]["mean"]
-        .as_f64()
-        .unwrap();
+    let mean = answer["overall"]["average_error_m"]["mean"].as_f64().unwrap();
     assert!((0.5..=1.3).contains(&mean), "{mean}");
     assert_eq!(answer["spinning"]["average_error_m"]["n"], 24);
     assert_eq!(answer["not_spinning"]["average_error_m"]["n"], 76);
@@ -242,10 +192,7 @@ fn the_shipped_trajectories_are_met() {
 
 #[test]
 fn a_speed_may_have_a_unit() {
-    assert_eq!(
-        simulate(&["--speed", "20"]),
-        simulate(&["--speed", "72km/h"])
-    );
+    assert_eq!(simulate(&["--speed", "20"]), simulate(&["--speed", "72km/h"]));
 }
 
 #[test]
@@ -261,19 +208,9 @@ fn positive_steer_turns_left() {
 #[test]
 fn a_force_needs_a_moment_or_a_contact_point() {
     let folder = TempDir::new().unwrap();
-    let force = write(
-        &folder,
-        "f.csv",
-        "time_s,fx_n,fy_n\n0,0,0\n0.05,0,40000\n0.1,0,0\n0.2,0,0\n",
-    );
-    let args = [
-        "simulate",
-        "--vehicle",
-        "target-2000",
-        "--speed",
-        "15",
-        "--force",
-    ];
+    let force =
+        write(&folder, "f.csv", "time_s,fx_n,fy_n\n0,0,0\n0.05,0,40000\n0.1,0,0\n0.2,0,0\n");
+    let args = ["simulate", "--vehicle", "target-2000", "--speed", "15", "--force"];
     let ran = impactlab(&[&args[..], &[text(&force)]].concat());
     assert!(ran.error_line().contains("--contact x,y,z"), "{}", ran.err);
     let out = folder.path().join("t.csv");
@@ -284,31 +221,21 @@ fn a_force_needs_a_moment_or_a_contact_point() {
     assert_eq!(answer["force"]["yaw_moment"], "contact_point");
     let impulse = answer["force"]["impulse_n_s"][1].as_f64().unwrap();
     assert!((impulse - 2000.0).abs() < 1e-9, "{impulse}");
-    assert!(
-        answer["end"]["yaw_rad"].as_f64().unwrap() < -0.1,
-        "{answer}"
-    );
+    assert!(answer["end"]["yaw_rad"].as_f64().unwrap() < -0.1, "{answer}");
     let written = fs::read_to_string(&out).unwrap();
     let recorded =
         fs::read_to_string("datasets/trajectories-fea/trajectories/FE_c001.csv").unwrap();
     assert_eq!(written.lines().next(), recorded.lines().next());
     let short = ["--contact", "-1.5,-0.9,0.5", "--duration", "0.05"];
     let ran = impactlab(&[&args[..], &[text(&force)], &short].concat());
-    assert!(
-        ran.error_line().contains("contact from 0 s to 0.1 s"),
-        "{}",
-        ran.err
-    );
+    assert!(ran.error_line().contains("contact from 0 s to 0.1 s"), "{}", ran.err);
 }
 
 #[test]
 fn what_a_force_sample_stands_for_follows_from_the_columns() {
     for (file, sampling) in [
         ("datasets/fea/forces/c001.csv", "centred_mean"),
-        (
-            "datasets/trajectories-fea/trajectories/FE_c001.csv",
-            "coming_mean",
-        ),
+        ("datasets/trajectories-fea/trajectories/FE_c001.csv", "coming_mean"),
     ] {
         let answer = simulate(&["--speed", "12.6", "--force", file]);
         assert_eq!(answer["force"]["sampling"], sampling, "{file}");
@@ -321,11 +248,7 @@ fn what_a_force_sample_stands_for_follows_from_the_columns() {
 #[test]
 fn bad_files_are_named_with_line_and_column() {
     let folder = TempDir::new().unwrap();
-    let force = write(
-        &folder,
-        "f.csv",
-        "time_s,fx_n,fy_n,mz_nm\n0,1,2,0\n0.1,x,3,0\n",
-    );
+    let force = write(&folder, "f.csv", "time_s,fx_n,fy_n,mz_nm\n0,1,2,0\n0.1,x,3,0\n");
     let vehicle = write(&folder, "v.toml", "name = \"x\"\n[mass]\nmass_kg = \"a\"\n");
     let scenario = fs::read_to_string(SCENARIO).unwrap();
     let scenario = scenario.replace("restitution = 0.15", "restitution = 15");
@@ -333,14 +256,8 @@ fn bad_files_are_named_with_line_and_column() {
     let preset = ["--vehicle", "target-2000", "--speed", "15"];
     let simulate = |args: &[&str]| impactlab(&[&["simulate"], args].concat());
     for (ran, place) in [
-        (
-            simulate(&[&preset[..], &["--force", text(&force)]].concat()),
-            "f.csv:3:2: ",
-        ),
-        (
-            simulate(&["--vehicle", text(&vehicle), "--speed", "15"]),
-            "v.toml:3:11: ",
-        ),
+        (simulate(&[&preset[..], &["--force", text(&force)]].concat()), "f.csv:3:2: "),
+        (simulate(&["--vehicle", text(&vehicle), "--speed", "15"]), "v.toml:3:11: "),
         (impactlab(&["impact", text(&scenario)]), "s.toml:28:15: "),
     ] {
         assert!(ran.error_line().contains(place), "{place} {}", ran.err);
@@ -353,27 +270,12 @@ fn bad_files_are_named_with_line_and_column() {
 #[test]
 fn names_that_do_not_exist_are_errors() {
     for (args, part) in [
-        (
-            &["simulate", "--vehicle", "nix", "--speed", "9"][..],
-            "one of reference-2000",
-        ),
-        (
-            &["simulate", "--dataset", "datasets/fea"],
-            "expected one of trajectories",
-        ),
-        (
-            &["simulate", "--dataset", TRAJECTORIES, "--case", "nix"],
-            "no case \"nix\"",
-        ),
+        (&["simulate", "--vehicle", "nix", "--speed", "9"][..], "one of reference-2000"),
+        (&["simulate", "--dataset", "datasets/fea"], "expected one of trajectories"),
+        (&["simulate", "--dataset", TRAJECTORIES, "--case", "nix"], "no case \"nix\""),
         (&["vehicles", "nix"], "one of reference-2000"),
-        (
-            &["impact", "nix.toml"],
-            "nix.toml: cannot be read: because ",
-        ),
-        (
-            &["check", ".", "--map", "fx=1"],
-            "--map is for single files",
-        ),
+        (&["impact", "nix.toml"], "nix.toml: cannot be read: because "),
+        (&["check", ".", "--map", "fx=1"], "--map is for single files"),
     ] {
         let ran = impactlab(args);
         assert!(ran.error_line().contains(part), "{args:?}: {}", ran.err);
@@ -391,27 +293,14 @@ fn a_case_that_cannot_be_read_is_a_failure() {
     for file in ["vehicle.toml", "trajectories/FE_c001.csv"] {
         fs::copy(format!("{TRAJECTORIES}/{file}"), root.join(file)).unwrap();
     }
-    write(
-        &folder,
-        "trajectories/FE_c002.csv",
-        "time_s,x_m,y_m\n0,0,0\n1,a,0\n",
-    );
+    write(&folder, "trajectories/FE_c002.csv", "time_s,x_m,y_m\n0,0,0\n1,a,0\n");
     let ran = impactlab(&["simulate", "--dataset", text(root), "--json"]);
     assert_eq!(ran.code, 1, "{}", ran.err);
     let answer = ran.json();
     assert_eq!(answer["cases"].as_array().unwrap().len(), 1);
-    assert!(
-        answer["failures"][0]
-            .as_str()
-            .unwrap()
-            .contains("FE_c002.csv:3:2: ")
-    );
+    assert!(answer["failures"][0].as_str().unwrap().contains("FE_c002.csv:3:2: "));
     let ran = impactlab(&["simulate", "--dataset", text(root), "--case", "FE_c002"]);
-    assert!(
-        ran.error_line().contains("FE_c002.csv:3:2: "),
-        "{}",
-        ran.err
-    );
+    assert!(ran.error_line().contains("FE_c002.csv:3:2: "), "{}", ran.err);
 }
 
 #[test]
@@ -421,11 +310,7 @@ fn figures_are_written_as_numbers() {
     let yaw_rate = ["--case", "FE_c002", "--channel", "yaw-rate"];
     for (args, header, series) in [
         (
-            [
-                &["force", "datasets/fea", "--case", "c001"][..],
-                &["--cfc", "60"],
-            ]
-            .concat(),
+            [&["force", "datasets/fea", "--case", "c001"][..], &["--cfc", "60"]].concat(),
             "series,Time [ms],Force on the target [kN]",
             "unfiltered,",
         ),
@@ -452,16 +337,7 @@ fn figures_are_written_as_numbers() {
         assert_eq!(csv.lines().next(), Some(header), "{args:?}");
         assert!(csv.lines().any(|line| line.starts_with(series)), "{args:?}");
     }
-    let late = [
-        "render",
-        "scene",
-        TRAJECTORIES,
-        "--case",
-        "FE_c002",
-        "--time",
-        "9",
-        "--out",
-    ];
+    let late = ["render", "scene", TRAJECTORIES, "--case", "FE_c002", "--time", "9", "--out"];
     let ran = impactlab(&[&late[..], &[text(&out)]].concat());
     assert!(ran.error_line().starts_with("--time is 9 s"), "{}", ran.err);
     let ran = impactlab(&["render", "impact", SCENARIO, "--out", "figure.gif"]);
@@ -471,11 +347,7 @@ fn figures_are_written_as_numbers() {
 #[cfg(not(feature = "gui"))]
 #[test]
 fn a_build_without_drawing_says_so() {
-    for args in [
-        &["render", "impact", SCENARIO, "--out", "x.png"][..],
-        &[],
-        &["app"],
-    ] {
+    for args in [&["render", "impact", SCENARIO, "--out", "x.png"][..], &[], &["app"]] {
         let ran = impactlab(args);
         assert!(ran.error_line().starts_with("this build "), "{}", ran.err);
     }
@@ -489,10 +361,7 @@ fn without_a_display_the_headless_commands_are_named() {
     let output = command.output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     let err = String::from_utf8(output.stderr).unwrap();
-    assert!(
-        err.lines().count() == 1 && err.contains("impactlab check datasets"),
-        "{err}"
-    );
+    assert!(err.lines().count() == 1 && err.contains("impactlab check datasets"), "{err}");
 }
 
 #[test]
@@ -502,24 +371,13 @@ fn a_printed_vehicle_is_a_vehicle_file() {
     assert!(list["vehicles"][0]["mass_kg"].is_number());
     let folder = TempDir::new().unwrap();
     let file = write(&folder, "my-car.toml", &impactlab(&["vehicles", id]).out);
-    let ran = impactlab(&[
-        "simulate",
-        "--vehicle",
-        text(&file),
-        "--speed",
-        "10",
-        "--json",
-    ]);
+    let ran = impactlab(&["simulate", "--vehicle", text(&file), "--speed", "10", "--json"]);
     assert_eq!(ran.json(), simulate(&["--speed", "10"]));
 }
 
 #[test]
 fn a_closed_pipe_is_no_panic() {
-    for args in [
-        &["check", "datasets", "--all", "--json"][..],
-        &["vehicles"],
-        &["--help"],
-    ] {
+    for args in [&["check", "datasets", "--all", "--json"][..], &["vehicles"], &["--help"]] {
         let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin!("impactlab"))
             .args(args)
             .stdout(Stdio::piped())
@@ -529,10 +387,6 @@ fn a_closed_pipe_is_no_panic() {
         drop(child.stdout.take());
         let output = child.wait_with_output().unwrap();
         let err = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(
-            (output.status.code(), err.as_str()),
-            (Some(0), ""),
-            "{args:?}"
-        );
+        assert_eq!((output.status.code(), err.as_str()), (Some(0), ""), "{args:?}");
     }
 }

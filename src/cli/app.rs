@@ -54,8 +54,6 @@ mod tests {
     fn an_empty_variable_names_no_display() {
         assert!(!has_display(|_| None));
         assert!(!has_display(|_| Some("".into())));
-        assert!(has_display(
-            |name| (name == "WAYLAND_DISPLAY").then(|| "wayland-0".into())
-        ));
+        assert!(has_display(|name| (name == "WAYLAND_DISPLAY").then(|| "wayland-0".into())));
     }
 }

@@ -38,20 +38,14 @@ pub(super) fn take_case(dataset: &mut Dataset, name: &str) -> Result<Case, CliEr
     }
     let file = format!("{name}.csv");
     let is_about = |text: String| text.contains(&file) || text.contains(&format!("{name:?}"));
-    let at = dataset
-        .problems
-        .iter()
-        .position(|problem| is_about(problem.to_string()));
+    let at = dataset.problems.iter().position(|problem| is_about(problem.to_string()));
     Err(match at {
         Some(at) => dataset.problems.swap_remove(at).into(),
         None => CliError::NoSuchCase {
             path: dataset.root.clone(),
             case: name.to_owned(),
             n_cases: dataset.cases.len(),
-            first: dataset
-                .cases
-                .first()
-                .map_or(String::new(), |case| case.name.clone()),
+            first: dataset.cases.first().map_or(String::new(), |case| case.name.clone()),
         },
     })
 }
@@ -65,10 +59,7 @@ pub(super) fn choose(
     let path_owned = || path.to_owned();
     if !path.is_dir() {
         if let Some(case) = case {
-            return Err(CliError::CaseOfFile {
-                path: path_owned(),
-                case: case.to_owned(),
-            });
+            return Err(CliError::CaseOfFile { path: path_owned(), case: case.to_owned() });
         }
         let loaded = Box::new(read_any_series(path, map)?);
         let stem = path.file_stem().unwrap_or(path.as_os_str());

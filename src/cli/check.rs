@@ -64,10 +64,7 @@ pub(super) fn run(args: &CheckArgs, console: &mut Console<'_>) -> Result<Verdict
 }
 
 fn check_path(path: &Path, args: &CheckArgs, report: &mut Report) -> Result<(), CliError> {
-    if path
-        .extension()
-        .is_some_and(|end| end.eq_ignore_ascii_case("toml"))
-    {
+    if path.extension().is_some_and(|end| end.eq_ignore_ascii_case("toml")) {
         match model(path) {
             Ok(model) => report.models.push(model),
             Err(error) => report.problems.push(ProblemReport {
@@ -107,19 +104,13 @@ fn check_path(path: &Path, args: &CheckArgs, report: &mut Report) -> Result<(), 
 /// Reads a scenario, known by its striking vehicle, or a vehicle.
 fn model(path: &Path) -> Result<ModelReport, CliError> {
     let text = std::fs::read_to_string(path).unwrap_or_default();
-    let is_scenario = text
-        .lines()
-        .any(|line| line.trim_start().starts_with("[bullet]"));
+    let is_scenario = text.lines().any(|line| line.trim_start().starts_with("[bullet]"));
     let (kind, name) = if is_scenario {
         ("scenario", Scenario::load(path)?.name)
     } else {
         ("vehicle", VehicleParameters::load(path)?.name)
     };
-    Ok(ModelReport {
-        path: path.to_owned(),
-        kind,
-        name,
-    })
+    Ok(ModelReport { path: path.to_owned(), kind, name })
 }
 
 fn dataset_report(dataset: &Dataset, all: bool) -> DatasetReport {
@@ -128,9 +119,7 @@ fn dataset_report(dataset: &Dataset, all: bool) -> DatasetReport {
     let mut found: Vec<CaseFlag> = cases()
         .flat_map(|(case, flags)| {
             let name = |case: &Case| Some(case.name.clone());
-            flags
-                .iter()
-                .map(move |flag| CaseFlag::new(name(case), flag))
+            flags.iter().map(move |flag| CaseFlag::new(name(case), flag))
         })
         .collect();
     // Stable, so that cases stay in the order of the table.
@@ -163,9 +152,7 @@ fn file_report(path: &Path, loaded: &Loaded) -> FileReport {
 /// A path that cannot be read; if its columns are the reason, with what they look like.
 fn problem(path: &Path, error: &DataError) -> ProblemReport {
     let is_about_columns = error.needs_mapping() || matches!(error, DataError::NoSuchColumn { .. });
-    let columns = is_about_columns
-        .then(|| propose_columns(path).ok())
-        .flatten();
+    let columns = is_about_columns.then(|| propose_columns(path).ok()).flatten();
     ProblemReport {
         path: path.to_owned(),
         message: error::chain(error),

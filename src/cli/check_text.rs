@@ -24,13 +24,7 @@ pub(super) fn print_text(out: &mut dyn Write, report: &Report) -> io::Result<()>
         writeln!(out)?;
     }
     for model in &report.models {
-        writeln!(
-            out,
-            "{}: {}, {:?}\n",
-            model.path.display(),
-            model.kind,
-            model.name
-        )?;
+        writeln!(out, "{}: {}, {:?}\n", model.path.display(), model.kind, model.name)?;
     }
     let sets = || report.datasets.iter();
     let n_problems = report.problems.len() + sets().map(|set| set.problems.len()).sum::<usize>();
@@ -62,18 +56,11 @@ fn print_dataset(out: &mut dyn Write, set: &DatasetReport) -> io::Result<()> {
     writeln!(out, "{}: {} data set", set.path.display(), set.kind)?;
     let facts = [
         ("  cases", format!("{} ({flagged} with flags)", set.n_cases)),
-        (
-            "  vehicle",
-            vehicle.map_or("not given".to_owned(), |path| path.display().to_string()),
-        ),
+        ("  vehicle", vehicle.map_or("not given".to_owned(), |path| path.display().to_string())),
         ("  columns", columns.join(", ")),
     ];
     print_facts(out, &facts)?;
-    print_flags(
-        out,
-        &set.flags,
-        set.clean_cases.as_deref().unwrap_or_default(),
-    )?;
+    print_flags(out, &set.flags, set.clean_cases.as_deref().unwrap_or_default())?;
     for problem in &set.problems {
         writeln!(out, "  problem: {problem}")?;
     }
@@ -84,19 +71,10 @@ fn print_file(out: &mut dyn Write, file: &FileReport) -> io::Result<()> {
     writeln!(out, "{}: {} file", file.path.display(), file.kind)?;
     let decimal = if file.decimal_comma { "comma" } else { "point" };
     let mut facts = vec![
-        (
-            "  samples",
-            format!(
-                "{} from {} s to {} s",
-                file.n_samples, file.start_s, file.end_s
-            ),
-        ),
+        ("  samples", format!("{} from {} s to {} s", file.n_samples, file.start_s, file.end_s)),
         (
             "  format",
-            format!(
-                "{}, separated by {}, decimal {decimal}",
-                file.encoding, file.separator
-            ),
+            format!("{}, separated by {}, decimal {decimal}", file.encoding, file.separator),
         ),
     ];
     if let Some(sampling) = &file.force_sampling {
@@ -158,11 +136,7 @@ fn print_proposals(out: &mut dyn Write, problem: &ProblemReport) -> io::Result<(
         ]
     };
     let rows: Vec<_> = columns.iter().map(row).collect();
-    print_table(
-        out,
-        &["", "column", "name", "channel", "unit", "first values"],
-        &rows,
-    )?;
+    print_table(out, &["", "column", "name", "channel", "unit", "first values"], &rows)?;
     let is_known = |channel: &&str| columns.iter().any(|c| c.channel == Some(*channel));
     let missing = ["time", "fx", "fy"]
         .into_iter()

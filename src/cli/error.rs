@@ -228,16 +228,12 @@ mod tests {
     fn a_chain_is_one_line_with_every_cause_once() {
         let error = CliError::Series {
             path: PathBuf::from("a.csv"),
-            source: SeriesError::Missing {
-                channel: crate::data::Channel::Fx,
-            },
+            source: SeriesError::Missing { channel: crate::data::Channel::Fx },
         };
         let expected =
             "a.csv: does not have what this needs: because column fx_n is missing".to_owned();
         assert_eq!(chain(&error), expected);
-        let transparent = CliError::from(DataError::Empty {
-            path: PathBuf::from("b\nc.csv"),
-        });
+        let transparent = CliError::from(DataError::Empty { path: PathBuf::from("b\nc.csv") });
         assert!(chain(&transparent).starts_with("b c.csv: is empty"));
         assert!(!chain(&transparent).contains("because"));
     }

@@ -94,10 +94,7 @@ impl From<&BodyAfter> for Body {
 /// Solves the scenario and prints the solution.
 pub(super) fn run(args: &ImpactArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
     let scenario = load(&args.scenario, args.paper)?;
-    let unsolved = |source| CliError::Scenario {
-        path: args.scenario.clone(),
-        source,
-    };
+    let unsolved = |source| CliError::Scenario { path: args.scenario.clone(), source };
     let geometry = scenario.geometry().map_err(unsolved)?;
     let solution = scenario.solve().map_err(unsolved)?;
     if console.json {
@@ -166,26 +163,11 @@ fn print_text(
             ),
         ),
         ("regime", solution.regime.label().to_owned()),
-        (
-            "closing velocity",
-            vector(Quantity::Speed, closing, ["normal", "tangential"]),
-        ),
-        (
-            "impulse",
-            vector(Quantity::Impulse, solution.impulse_n_s, XY),
-        ),
-        (
-            "P_n",
-            number(Quantity::Impulse, solution.impulse_normal_n_s),
-        ),
-        (
-            "P_τ",
-            number(Quantity::Impulse, solution.impulse_tangential_n_s),
-        ),
-        (
-            "energy loss",
-            number(Quantity::Energy, solution.dissipated_energy_j),
-        ),
+        ("closing velocity", vector(Quantity::Speed, closing, ["normal", "tangential"])),
+        ("impulse", vector(Quantity::Impulse, solution.impulse_n_s, XY)),
+        ("P_n", number(Quantity::Impulse, solution.impulse_normal_n_s)),
+        ("P_τ", number(Quantity::Impulse, solution.impulse_tangential_n_s)),
+        ("energy loss", number(Quantity::Energy, solution.dissipated_energy_j)),
     ];
     print_facts(out, &facts)?;
     for (name, body) in [("target", &solution.target), ("bullet", &solution.bullet)] {
@@ -195,18 +177,9 @@ fn print_text(
         writeln!(out, "\n{name}")?;
         let facts = [
             ("  Δv", vector(Quantity::Speed, body.delta_v_m_s, XY)),
-            (
-                "  velocity after",
-                vector(Quantity::Speed, body.velocity_m_s, XY),
-            ),
-            (
-                "  yaw rate after",
-                number(Quantity::AngularVelocity, body.yaw_rate_rad_s),
-            ),
-            (
-                "  yaw rate change",
-                number(Quantity::AngularVelocity, body.delta_yaw_rate_rad_s),
-            ),
+            ("  velocity after", vector(Quantity::Speed, body.velocity_m_s, XY)),
+            ("  yaw rate after", number(Quantity::AngularVelocity, body.yaw_rate_rad_s)),
+            ("  yaw rate change", number(Quantity::AngularVelocity, body.delta_yaw_rate_rad_s)),
             ("  PDOF", pdof),
         ];
         print_facts(out, &facts)?;

@@ -22,9 +22,8 @@ pub(super) fn print_table(
     rows: &[Vec<String>],
 ) -> io::Result<()> {
     let header: Vec<String> = header.iter().map(|&name| name.to_owned()).collect();
-    let columns: Vec<Column> = (0..header.len())
-        .map(|idx| Column::of(&header, rows, idx))
-        .collect();
+    let columns: Vec<Column> =
+        (0..header.len()).map(|idx| Column::of(&header, rows, idx)).collect();
     let titled = header.iter().any(|name| !name.is_empty());
     for row in titled.then_some(&header).into_iter().chain(rows) {
         let cells = row.iter().zip(&columns);
@@ -53,19 +52,12 @@ impl Column {
         let cells = || rows.iter().filter_map(|row| row.get(idx));
         let is_number = |cell: &String| cell.is_empty() || cell.parse::<f64>().is_ok();
         let widths = cells().chain(header.get(idx)).map(|c| c.chars().count());
-        Self {
-            width: widths.max().unwrap_or(0),
-            is_numeric: cells().all(is_number),
-        }
+        Self { width: widths.max().unwrap_or(0), is_numeric: cells().all(is_number) }
     }
 
     fn pad(&self, cell: &str) -> String {
         let width = self.width;
-        if self.is_numeric {
-            format!("{cell:>width$}")
-        } else {
-            format!("{cell:<width$}")
-        }
+        if self.is_numeric { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
     }
 }
 
@@ -89,10 +81,7 @@ pub(super) fn shown_vector(
     let unit = quantity.display_unit(units);
     let [size, x, y] = [x.hypot(y), x, y].map(|value| unit.from_si(value));
     let [first, second] = names;
-    format!(
-        "{size:.3} {} ({first} {x:.3}, {second} {y:.3})",
-        unit.symbol
-    )
+    format!("{size:.3} {} ({first} {x:.3}, {second} {y:.3})", unit.symbol)
 }
 
 /// The name of a variant without fields, as machines like it: `FrontLeft` is `front_left`.

@@ -13,11 +13,7 @@ const TEMPLATE: &str = "{msg} {wide_bar} {pos}/{len} {eta}";
 
 /// Does the work under a progress bar, which is gone afterwards.
 pub(super) fn with_progress<T>(work: impl FnOnce(&mut Report<'_>) -> T) -> T {
-    let bar = if stderr().is_terminal() {
-        ProgressBar::new(0)
-    } else {
-        ProgressBar::hidden()
-    };
+    let bar = if stderr().is_terminal() { ProgressBar::new(0) } else { ProgressBar::hidden() };
     if let Ok(style) = ProgressStyle::with_template(TEMPLATE) {
         bar.set_style(style);
     }

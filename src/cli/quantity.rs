@@ -46,12 +46,7 @@ pub(super) enum QuantityError {
     Unit { unit: String, units: String },
     /// Beyond what makes sense.
     #[error("{value} {si} is outside {low} to {high} {si}")]
-    Range {
-        value: f64,
-        si: &'static str,
-        low: f64,
-        high: f64,
-    },
+    Range { value: f64, si: &'static str, low: f64, high: f64 },
     /// Not three numbers.
     #[error("expected three numbers x,y,z in m, such as -1.5,-0.9,0.5")]
     NoPoint,
@@ -62,11 +57,7 @@ pub(super) enum QuantityError {
 
 /// A speed, m/s unless it says otherwise.
 pub(super) fn speed_m_s(text: &str) -> Result<f64, QuantityError> {
-    in_range(
-        quantity(text, Quantity::Speed)?,
-        Quantity::Speed,
-        SPEED_RANGE_M_S,
-    )
+    in_range(quantity(text, Quantity::Speed)?, Quantity::Speed, SPEED_RANGE_M_S)
 }
 
 /// A yaw rate, rad/s unless it says otherwise.
@@ -82,19 +73,13 @@ pub(super) fn time_s(text: &str) -> Result<f64, QuantityError> {
 
 /// Friction of the road.
 pub(super) fn friction(text: &str) -> Result<f64, QuantityError> {
-    in_range(
-        quantity(text, Quantity::Ratio)?,
-        Quantity::Ratio,
-        FRICTION_RANGE,
-    )
+    in_range(quantity(text, Quantity::Ratio)?, Quantity::Ratio, FRICTION_RANGE)
 }
 
 /// Where a force acts: `x,y,z`, m.
 pub(super) fn contact_point(text: &str) -> Result<ContactPoint, QuantityError> {
-    let numbers: Vec<f64> = text
-        .split(',')
-        .map(|part| quantity(part, Quantity::Length))
-        .collect::<Result<_, _>>()?;
+    let numbers: Vec<f64> =
+        text.split(',').map(|part| quantity(part, Quantity::Length)).collect::<Result<_, _>>()?;
     let [x_m, y_m, height_m] = numbers[..] else {
         return Err(QuantityError::NoPoint);
     };
@@ -140,10 +125,7 @@ fn quantity(text: &str, quantity: Quantity) -> Result<f64, QuantityError> {
         .filter(|known| !known.symbol.is_empty())
         .find(|known| known.symbol.eq_ignore_ascii_case(unit))
         .map(|known| known.to_si(value))
-        .ok_or_else(|| QuantityError::Unit {
-            unit: unit.to_owned(),
-            units: symbols(quantity),
-        })
+        .ok_or_else(|| QuantityError::Unit { unit: unit.to_owned(), units: symbols(quantity) })
 }
 
 fn in_range(
@@ -164,10 +146,7 @@ fn in_range(
 
 fn symbols(quantity: Quantity) -> String {
     let symbols = quantity.units().iter().map(|unit| unit.symbol);
-    symbols
-        .filter(|symbol| !symbol.is_empty())
-        .collect::<Vec<_>>()
-        .join(", ")
+    symbols.filter(|symbol| !symbol.is_empty()).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]

@@ -271,11 +271,8 @@ fn write_csv(figure: &Figure, output: &OutputArgs) -> Result<(), CliError> {
 
 #[cfg(feature = "gui")]
 fn write_png(figure: &Figure, output: &OutputArgs) -> Result<(), CliError> {
-    let canvas = crate::render::Canvas {
-        size_px: output.size,
-        scale: output.scale,
-        dark: output.dark,
-    };
+    let canvas =
+        crate::render::Canvas { size_px: output.size, scale: output.scale, dark: output.dark };
     let image = crate::render::figure_image(figure, canvas)?;
     crate::render::save_png(&image, &output.out)?;
     Ok(())

@@ -36,15 +36,9 @@ pub(super) fn force(
             (name, force, notes(&loaded))
         }
     };
-    let raw = force.map_err(|source| CliError::Series {
-        path: path(),
-        source,
-    })?;
+    let raw = force.map_err(|source| CliError::Series { path: path(), source })?;
     let filtered = class.map(|class| filter_history(class, &raw)).transpose();
-    let filtered = filtered.map_err(|source| CliError::Filter {
-        path: path(),
-        source,
-    })?;
+    let filtered = filtered.map_err(|source| CliError::Filter { path: path(), source })?;
     let title = match class {
         Some(class) => format!("{name}, {}", class.label()),
         None => name,
@@ -91,11 +85,7 @@ pub(super) fn scene(
         let [start_s, end_s] = [shown.time_s().first(), shown.time_s().last()]
             .map(|time| time.copied().unwrap_or_default());
         if !(start_s..=end_s).contains(&time_s) {
-            return Err(CliError::TimeOutside {
-                time_s,
-                start_s,
-                end_s,
-            });
+            return Err(CliError::TimeOutside { time_s, start_s, end_s });
         }
     }
     let figure = analysis_scene_figure(&analysis, time_s, units);
@@ -105,10 +95,7 @@ pub(super) fn scene(
 /// The impact of a scenario.
 pub(super) fn impact(path: &Path, paper: bool, units: UnitSystem) -> Result<Noted, CliError> {
     let scenario = load(path, paper)?;
-    let unsolved = |source| CliError::Scenario {
-        path: path.to_owned(),
-        source,
-    };
+    let unsolved = |source| CliError::Scenario { path: path.to_owned(), source };
     let solution = scenario.solve().map_err(unsolved)?;
     let figure = impact_figure(&scenario, &solution, units).map_err(unsolved)?;
     Ok((figure, Vec::new()))
@@ -137,10 +124,8 @@ fn analyse(source: &SourceArgs, vehicles: &VehicleArgs) -> Result<Analysis, CliE
             analyse_file(&name, &loaded, &setup, &settings(None)?)
         }
     };
-    analysis.map_err(|error| CliError::Analysis {
-        path: source.path.clone(),
-        source: Box::new(error),
-    })
+    analysis
+        .map_err(|error| CliError::Analysis { path: source.path.clone(), source: Box::new(error) })
 }
 
 /// Where the force of a trajectory file acts; anything else than a trajectory is refused, since its

@@ -52,11 +52,7 @@ pub(super) enum Verdict {
 impl Verdict {
     /// The verdict on a list of problems.
     pub(super) fn of(problems: bool) -> Self {
-        if problems {
-            Self::Problems
-        } else {
-            Self::Clean
-        }
+        if problems { Self::Problems } else { Self::Clean }
     }
 }
 
@@ -81,10 +77,7 @@ pub fn run() -> ExitCode {
         }
     };
     let mut out = BufWriter::new(io::stdout().lock());
-    let mut console = Console {
-        json: cli.json,
-        out: &mut out,
-    };
+    let mut console = Console { json: cli.json, out: &mut out };
     let verdict = dispatch(cli.command, &mut console);
     let flushed = out.flush().map_err(CliError::Output);
     match verdict.and_then(|verdict| flushed.map(|()| verdict)) {

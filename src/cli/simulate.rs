@@ -24,11 +24,7 @@ pub(super) struct SimulateArgs {
     #[arg(long, value_name = "NAME", requires = "dataset")]
     pub(super) case: Option<String>,
     /// A vehicle file, or a name from `impactlab vehicles`; a data set has its own
-    #[arg(
-        long,
-        value_name = "V.toml|PRESET",
-        required_unless_present = "dataset"
-    )]
+    #[arg(long, value_name = "V.toml|PRESET", required_unless_present = "dataset")]
     pub(super) vehicle: Option<String>,
     /// How the equations of motion are integrated
     #[arg(long, value_enum, default_value_t)]

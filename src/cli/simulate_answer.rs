@@ -98,23 +98,15 @@ pub(super) fn answer(
     let interval = load.and_then(|load| contact_interval(&load.force));
     let delta_v = interval.map(|interval| delta_v_m_s(series, interval));
     let delta_v = delta_v.transpose()?;
-    let force = args
-        .force
-        .clone()
-        .zip(load)
-        .map(|(path, load)| ForceAnswer {
-            path,
-            sampling: word(&load.force.sampling),
-            axes: word(&load.force.axes),
-            impulse_n_s: load.force.impulse_n_s(),
-            contact_start_s: interval.map(|(start, _)| start),
-            contact_end_s: interval.map(|(_, end)| end),
-            yaw_moment: if load.recorded_moment {
-                "recorded"
-            } else {
-                "contact_point"
-            },
-        });
+    let force = args.force.clone().zip(load).map(|(path, load)| ForceAnswer {
+        path,
+        sampling: word(&load.force.sampling),
+        axes: word(&load.force.axes),
+        impulse_n_s: load.force.impulse_n_s(),
+        contact_start_s: interval.map(|(start, _)| start),
+        contact_end_s: interval.map(|(_, end)| end),
+        yaw_moment: if load.recorded_moment { "recorded" } else { "contact_point" },
+    });
     Ok(Answer {
         vehicle: String::new(),
         integrator: String::new(),
@@ -181,10 +173,7 @@ pub(super) fn print_text(
         ("vehicle", answer.vehicle.clone()),
         (
             "simulation",
-            format!(
-                "{} s, {}, friction {}",
-                answer.duration_s, answer.integrator, answer.friction
-            ),
+            format!("{} s, {}, friction {}", answer.duration_s, answer.integrator, answer.friction),
         ),
     ];
     if let Some(force) = &answer.force {
@@ -205,18 +194,10 @@ pub(super) fn print_text(
         ("end position", vector(Quantity::Length, [end.x_m, end.y_m])),
         ("distance", number(Quantity::Length, answer.distance_m)),
         ("final heading", number(Quantity::Angle, end.yaw_rad)),
-        (
-            "largest yaw change",
-            number(Quantity::Angle, answer.largest_yaw_change_rad),
-        ),
+        ("largest yaw change", number(Quantity::Angle, answer.largest_yaw_change_rad)),
         ("final speed", number(Quantity::Speed, end.speed_m_s)),
     ]);
-    facts.extend(
-        answer
-            .flags
-            .iter()
-            .map(|flag| ("flag", flag.message.clone())),
-    );
+    facts.extend(answer.flags.iter().map(|flag| ("flag", flag.message.clone())));
     if let Some(path) = &answer.out {
         facts.push(("written", path.display().to_string()));
     }

@@ -58,9 +58,8 @@ pub(super) fn run(
     let own = dataset.vehicle_file.as_deref();
     let vehicle = vehicle_or_own(args.vehicle.as_deref(), own, root)?;
     let integrator: Integrator = args.integrator.into();
-    let replay = complete(with_progress(|report| {
-        replay_dataset(&dataset, &vehicle, integrator, report)
-    }))?;
+    let replay =
+        complete(with_progress(|report| replay_dataset(&dataset, &vehicle, integrator, report)))?;
     if let Some(folder) = &args.out {
         write_trajectories(folder, &replay)?;
     }
@@ -100,10 +99,8 @@ fn trajectories(root: &Path) -> Result<Dataset, CliError> {
 }
 
 fn write_trajectories(folder: &Path, replay: &DatasetReplay) -> Result<(), CliError> {
-    std::fs::create_dir_all(folder).map_err(|source| CliError::Folder {
-        path: folder.to_owned(),
-        source,
-    })?;
+    std::fs::create_dir_all(folder)
+        .map_err(|source| CliError::Folder { path: folder.to_owned(), source })?;
     for case in &replay.cases {
         let path = folder.join(format!("{}.csv", case.case));
         write_series_csv(&path, &case.motion.series)?;
@@ -125,13 +122,7 @@ impl<'a> CaseAnswer<'a> {
 fn print_text(out: &mut dyn Write, answer: &Answer<'_>, units: UnitSystem) -> io::Result<()> {
     let length = Quantity::Length.display_unit(units);
     let degrees = Quantity::Angle.display_unit(units);
-    writeln!(
-        out,
-        "{}: {}, {}\n",
-        answer.dataset.display(),
-        answer.vehicle,
-        answer.integrator
-    )?;
+    writeln!(out, "{}: {}, {}\n", answer.dataset.display(), answer.vehicle, answer.integrator)?;
     let row = |case: &CaseAnswer<'_>| {
         let flags: Vec<&str> = case.flags.iter().map(|f| f.message.as_str()).collect();
         let error = case.error;
@@ -156,20 +147,14 @@ fn print_text(out: &mut dyn Write, answer: &Answer<'_>, units: UnitSystem) -> io
         ("spinning", &answer.spinning),
         ("not spinning", &answer.not_spinning),
     ];
-    let summaries = groups
-        .into_iter()
-        .filter_map(|(name, summary)| Some((name, summary.as_ref()?)));
+    let summaries =
+        groups.into_iter().filter_map(|(name, summary)| Some((name, summary.as_ref()?)));
     let rows: Vec<_> = summaries
         .flat_map(|(name, summary)| {
             [
                 summary_row(name, &average, &summary.average_error_m, length.si_per_unit),
                 summary_row(name, &last, &summary.final_error_m, length.si_per_unit),
-                summary_row(
-                    name,
-                    &heading,
-                    &summary.final_heading_error_rad,
-                    degrees.si_per_unit,
-                ),
+                summary_row(name, &heading, &summary.final_heading_error_rad, degrees.si_per_unit),
             ]
         })
         .collect();
@@ -185,15 +170,7 @@ fn print_text(out: &mut dyn Write, answer: &Answer<'_>, units: UnitSystem) -> io
 }
 
 fn summary_row(name: &str, what: &str, summary: &Summary, si_per_unit: f64) -> Vec<String> {
-    let Summary {
-        n,
-        mean,
-        std,
-        median,
-        p90,
-        max,
-        ..
-    } = *summary;
+    let Summary { n, mean, std, median, p90, max, .. } = *summary;
     let figures = [mean, std, median, p90, max].map(|value| format!("{:.3}", value / si_per_unit));
     let words = [name.to_owned(), what.to_owned(), n.to_string()];
     words.into_iter().chain(figures).collect()

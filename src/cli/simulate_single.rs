@@ -35,10 +35,8 @@ pub(super) fn run(args: &SimulateArgs, console: &mut Console<'_>) -> Result<Verd
         friction: vehicle.tires.friction,
         duration_s: single.duration,
         out: args.out.clone(),
-        ..answer(single, &manoeuvre, &motion).map_err(|source| CliError::Series {
-            path: PathBuf::from(&vehicle.name),
-            source,
-        })?
+        ..answer(single, &manoeuvre, &motion)
+            .map_err(|source| CliError::Series { path: PathBuf::from(&vehicle.name), source })?
     };
     if console.json {
         print_json(console.out, &answer)?;
@@ -49,16 +47,9 @@ pub(super) fn run(args: &SimulateArgs, console: &mut Console<'_>) -> Result<Verd
 }
 
 fn manoeuvre(args: &SingleArgs, vehicle: &VehicleParameters) -> Result<Manoeuvre, CliError> {
-    let contact_load = args
-        .force
-        .as_deref()
-        .map(|path| contact_load(path, args, vehicle))
-        .transpose()?;
-    let steer = args
-        .steer
-        .as_deref()
-        .map(|path| steer_history(path, args))
-        .transpose()?;
+    let contact_load =
+        args.force.as_deref().map(|path| contact_load(path, args, vehicle)).transpose()?;
+    let steer = args.steer.as_deref().map(|path| steer_history(path, args)).transpose()?;
     Ok(Manoeuvre {
         initial: VehicleState {
             vy_m_s: args.vy,
@@ -78,9 +69,7 @@ fn contact_load(
     vehicle: &VehicleParameters,
 ) -> Result<ContactLoad, CliError> {
     let loaded = read_any_series(path, args.map.as_ref())?;
-    let sampling = args
-        .sampling
-        .map_or_else(|| loaded.force_sampling(), Sampling::from);
+    let sampling = args.sampling.map_or_else(|| loaded.force_sampling(), Sampling::from);
     let force = match ForceHistory::from_series(&loaded.series, sampling) {
         Ok(force) => force,
         // As a force file it gives the error that says where and what to do.
@@ -106,11 +95,7 @@ fn contact_load(
             });
         }
     }
-    let at_cg = ContactPoint {
-        x_m: 0.0,
-        y_m: 0.0,
-        height_m: vehicle.geometry.cg_height_m,
-    };
+    let at_cg = ContactPoint { x_m: 0.0, y_m: 0.0, height_m: vehicle.geometry.cg_height_m };
     Ok(ContactLoad {
         force,
         contact: args.contact.unwrap_or(at_cg),
@@ -121,10 +106,7 @@ fn contact_load(
 /// The road-wheel angle of a file: the front axle's, or the mean of its wheels.
 fn steer_history(path: &Path, args: &SingleArgs) -> Result<SteerHistory, CliError> {
     let series = read_steer_file(path, args.steer_map.as_ref())?.series;
-    let in_file = |source| CliError::Series {
-        path: path.to_owned(),
-        source,
-    };
+    let in_file = |source| CliError::Series { path: path.to_owned(), source };
     let steer_rad = match series.get(Channel::Steer) {
         Some(steer) => steer.to_vec(),
         None => {
@@ -134,8 +116,5 @@ fn steer_history(path: &Path, args: &SingleArgs) -> Result<SteerHistory, CliErro
             left.iter().zip(right).map(mean).collect()
         }
     };
-    Ok(SteerHistory {
-        time_s: series.time_s().to_vec(),
-        steer_rad,
-    })
+    Ok(SteerHistory { time_s: series.time_s().to_vec(), steer_rad })
 }

@@ -34,8 +34,6 @@ pub(super) fn vehicle_or_own(
     match (name, own) {
         (Some(name), _) => vehicle(name),
         (None, Some(own)) => Ok(VehicleParameters::load(own)?),
-        (None, None) => Err(CliError::NoVehicle {
-            path: path.to_owned(),
-        }),
+        (None, None) => Err(CliError::NoVehicle { path: path.to_owned() }),
     }
 }

@@ -81,10 +81,6 @@ fn print_list(console: &mut Console<'_>) -> Result<(), CliError> {
         ]
     };
     let rows: Vec<_> = vehicles.iter().map(row).collect();
-    print_table(
-        console.out,
-        &["id", "mass [kg]", "estimates", "name"],
-        &rows,
-    )?;
+    print_table(console.out, &["id", "mass [kg]", "estimates", "name"], &rows)?;
     Ok(())
 }
