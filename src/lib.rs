@@ -31,6 +31,7 @@ pub mod analysis;
 #[cfg(feature = "gui")]
 pub mod app;
 pub mod bibliography;
+pub mod cli;
 pub mod collision;
 pub mod compare;
 pub mod data;

@@ -1,3 +1,7 @@
-//! The `impactlab` program.
+//! The `impactlab` program: hands over to the command line, which opens the window if asked to.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    impactlab::cli::run()
+}

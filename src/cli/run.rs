@@ -1,0 +1,107 @@
+//! Which command was asked for, and how the program ends.
+
+use std::io::{self, BufWriter, Write};
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::cli::error::chain;
+use crate::cli::{CliError, app, check, impact, render, simulate, vehicles};
+
+/// What happens when one vehicle hits another, and in the second after
+#[derive(Debug, Parser)]
+#[command(name = "impactlab", version, max_term_width = 100, after_help = EXAMPLES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// Print JSON (SI units, the unit in every key) instead of text
+    #[arg(long, global = true)]
+    json: bool,
+}
+
+const EXAMPLES: &str = "\
+Without a command the window opens.
+
+Examples:
+  impactlab
+  impactlab check datasets
+  impactlab impact assets/scenarios/pit_right_rear.toml
+  impactlab simulate --dataset datasets/trajectories-fea
+
+Exit codes: 0 = ok, 1 = the work failed or found problems, 2 = wrong usage";
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    App(app::AppArgs),
+    Check(check::CheckArgs),
+    Impact(impact::ImpactArgs),
+    Simulate(Box<simulate::SimulateArgs>),
+    Render(render::RenderArgs),
+    Vehicles(vehicles::VehiclesArgs),
+}
+
+/// How a command that did not fail ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// All is well.
+    Clean,
+    /// The work was done and found problems, which were printed.
+    Problems,
+}
+
+impl Verdict {
+    /// The verdict on a list of problems.
+    pub(super) fn of(problems: bool) -> Self {
+        if problems { Self::Problems } else { Self::Clean }
+    }
+}
+
+/// Where a command prints, and how.
+pub(super) struct Console<'a> {
+    /// JSON instead of text.
+    pub(super) json: bool,
+    /// Standard output.
+    pub(super) out: &'a mut dyn Write,
+}
+
+/// Runs the command in the program's arguments.
+///
+/// Returns exit code 0 (ok), 1 (the work failed or found problems) or 2 (wrong usage).
+pub fn run() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(help_or_error) => {
+            // Nobody is left to tell if the output is closed.
+            let _ = help_or_error.print();
+            return ExitCode::from(u8::try_from(help_or_error.exit_code()).unwrap_or(2));
+        }
+    };
+    let mut out = BufWriter::new(io::stdout().lock());
+    let mut console = Console { json: cli.json, out: &mut out };
+    let verdict = dispatch(cli.command, &mut console);
+    let flushed = out.flush().map_err(CliError::Output);
+    match verdict.and_then(|verdict| flushed.map(|()| verdict)) {
+        Ok(Verdict::Clean) => ExitCode::SUCCESS,
+        Ok(Verdict::Problems) => ExitCode::FAILURE,
+        // The reader, such as `head`, has seen enough.
+        Err(CliError::Output(error)) if error.kind() == io::ErrorKind::BrokenPipe => {
+            ExitCode::SUCCESS
+        }
+        Err(error) => {
+            let _ = writeln!(io::stderr(), "error: {}", chain(&error));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn dispatch(command: Option<Command>, console: &mut Console<'_>) -> Result<Verdict, CliError> {
+    match command {
+        None => app::run(app::AppArgs::default()),
+        Some(Command::App(args)) => app::run(args),
+        Some(Command::Check(args)) => check::run(&args, console),
+        Some(Command::Impact(args)) => impact::run(&args, console),
+        Some(Command::Simulate(args)) => simulate::run(&args, console),
+        Some(Command::Render(args)) => render::run(&args, console),
+        Some(Command::Vehicles(args)) => vehicles::run(&args, console),
+    }
+}

@@ -1,0 +1,392 @@
+//! The command line as its users see it: help, exit codes, JSON keys, errors, results.
+//!
+//! Longer than our other files: a test binary of its own for each command would be linked anew.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
+
+use assert_cmd::Command;
+use serde_json::Value;
+use tempfile::TempDir;
+
+const SCENARIO: &str = "assets/scenarios/pit_right_rear.toml";
+const TRAJECTORIES: &str = "datasets/trajectories-fea";
+
+/// What a command printed, and its exit code.
+struct Ran {
+    code: i32,
+    out: String,
+    err: String,
+}
+
+impl Ran {
+    fn json(&self) -> Value {
+        serde_json::from_str(&self.out)
+            .unwrap_or_else(|error| panic!("no JSON: {error}\n{}\n{}", self.out, self.err))
+    }
+
+    /// The error, which is one line on stderr and nothing on stdout.
+    fn error_line(&self) -> &str {
+        assert_eq!(self.code, 1, "{}{}", self.out, self.err);
+        assert_eq!(self.out, "", "{}", self.err);
+        let lines: Vec<&str> = self.err.lines().collect();
+        let [line] = lines[..] else { panic!("expected one line: {}", self.err) };
+        line.strip_prefix("error: ").expect("an error starts with error:")
+    }
+}
+
+fn impactlab(args: &[&str]) -> Ran {
+    let output = Command::cargo_bin("impactlab")
+        .expect("the program was built")
+        .args(args)
+        .output()
+        .expect("the program can be started");
+    Ran {
+        code: output.status.code().expect("no signal ended it"),
+        out: String::from_utf8(output.stdout).expect("UTF-8"),
+        err: String::from_utf8(output.stderr).expect("UTF-8"),
+    }
+}
+
+fn write(folder: &TempDir, name: &str, text: &str) -> PathBuf {
+    let path = folder.path().join(name);
+    fs::write(&path, text).expect("a temporary folder can be written");
+    path
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().expect("temporary paths are UTF-8")
+}
+
+/// A 4 s simulation of the reference car with these options, as JSON.
+fn simulate(options: &[&str]) -> Value {
+    let mut args = vec!["simulate", "--vehicle", "reference-2000", "--json"];
+    args.extend(options);
+    let ran = impactlab(&args);
+    assert_eq!(ran.code, 0, "{options:?}: {}", ran.err);
+    ran.json()
+}
+
+#[test]
+fn every_help_shows_an_example() {
+    for command in [
+        &[][..],
+        &["app"],
+        &["check"],
+        &["impact"],
+        &["simulate"],
+        &["render"],
+        &["render", "force"],
+        &["render", "motion"],
+        &["render", "scene"],
+        &["render", "impact"],
+        &["vehicles"],
+    ] {
+        let ran = impactlab(&[command, &["--help"]].concat());
+        assert_eq!(ran.code, 0, "{command:?}");
+        let example = [&["impactlab"], command].concat().join(" ");
+        let examples = ran.out.split("Example").nth(1).unwrap_or_default();
+        assert!(examples.contains(&example), "{command:?}: {}", ran.out);
+    }
+}
+
+#[test]
+fn wrong_usage_exits_with_2() {
+    for args in [
+        &["simulate", "--quick"][..],
+        &["nonsense"],
+        &["check"],
+        &["simulate", "--vehicle", "reference-2000"],
+        &["simulate", "--vehicle", "reference-2000", "--speed", "20kn"],
+        &["simulate", "--dataset", TRAJECTORIES, "--speed", "20"],
+        &["simulate", "--case", "FE_c001"],
+        &["check", ".", "--map", "fx"],
+        &["render", "force", "x.csv", "--out", "x.csv", "--cfc", "61"],
+    ] {
+        let ran = impactlab(args);
+        assert_eq!((ran.code, ran.out.as_str()), (2, ""), "{args:?}: {}", ran.err);
+    }
+}
+
+#[test]
+fn shipped_data_sets_are_clean_enough() {
+    let ran = impactlab(&["check", "datasets", "--json"]);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    let report = ran.json();
+    assert_eq!(report["ok"], true);
+    assert_eq!(report["datasets"].as_array().unwrap().len(), 4);
+    for set in report["datasets"].as_array().unwrap() {
+        assert_eq!(set["n_cases"], 100);
+        assert_eq!(set["problems"].as_array().unwrap().len(), 0);
+        assert!(set["columns"][0]["unit"].is_string());
+        let severities: Vec<&str> = set["flags"].as_array().unwrap().iter().map(severity).collect();
+        let n_warnings = severities.iter().filter(|s| **s == "warning").count();
+        assert!(severities[..n_warnings].iter().all(|s| *s == "warning"), "not sorted");
+    }
+    let all = impactlab(&["check", "datasets/fea", "--all"]).out;
+    assert!(all.lines().any(|line| line.trim() == "clean     c001"), "{all}");
+}
+
+fn severity(flag: &Value) -> &str {
+    flag["severity"].as_str().unwrap_or_default()
+}
+
+#[test]
+fn columns_that_are_not_recognised_are_proposed_and_can_be_mapped() {
+    let folder = TempDir::new().unwrap();
+    let file = write(&folder, "k.csv", "Zeit [ms];Kraft A;Kraft B\n0;0;0\n1;2,5;3\n2;0;0\n");
+    let ran = impactlab(&["check", text(&file)]);
+    assert_eq!(ran.code, 1);
+    assert!(ran.out.contains("time=1:ms,fx=COLUMN:UNIT,fy=COLUMN:UNIT"), "{}", ran.out);
+    let map = "fx=Kraft A:kN,fy=3:kN";
+    let ran = impactlab(&["check", text(&file), "--map", map, "--json"]);
+    let report = ran.json();
+    let columns = report["files"][0]["columns"].as_array().unwrap();
+    assert_eq!(columns[1]["channel"], "fx");
+    assert_eq!(columns[1]["unit"], "kN");
+    assert_eq!(ran.code, 0);
+}
+
+#[test]
+fn an_impact_is_solved_in_si_and_shown_in_us_units() {
+    let answer = impactlab(&["impact", SCENARIO, "--json", "--units", "us"]).json();
+    for key in ["impulse_n_s", "regime", "impulse_normal_n_s", "dissipated_energy_j"] {
+        assert!(!answer[key].is_null(), "{key}");
+    }
+    for vehicle in ["target", "bullet"] {
+        for key in ["velocity_m_s", "yaw_rate_rad_s", "delta_v_m_s", "pdof_deg", "pdof_clock"] {
+            assert!(!answer[vehicle][key].is_null(), "{vehicle} {key}");
+        }
+    }
+    let barrier = "assets/scenarios/carpenter_welcher_barrier.toml";
+    let us = impactlab(&["impact", barrier, "--units", "us"]).out;
+    for published in ["5936.16", "-351.773", "176.430 deg/s", "170421.5"] {
+        assert!(us.contains(published), "{published}: {us}");
+    }
+    let paper = impactlab(&["impact", barrier, "--paper", "--json"]).json();
+    assert_eq!((&paper["friction_model"], &paper["regime"]), (&"paper".into(), &"sliding".into()));
+}
+
+#[test]
+fn the_shipped_trajectories_are_met() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("simulated");
+    let args = ["simulate", "--dataset", TRAJECTORIES, "--json", "--out", text(&out)];
+    let ran = impactlab(&args);
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    let answer = ran.json();
+    assert_eq!(answer["cases"].as_array().unwrap().len(), 100);
+    assert_eq!(answer["failures"].as_array().unwrap().len(), 0);
+    let mean = answer["overall"]["average_error_m"]["mean"].as_f64().unwrap();
+    assert!((0.5..=1.3).contains(&mean), "{mean}");
+    assert_eq!(answer["spinning"]["average_error_m"]["n"], 24);
+    assert_eq!(answer["not_spinning"]["average_error_m"]["n"], 76);
+    let case = &answer["cases"][0];
+    assert!(case["case"].is_string() && case["spin"].is_boolean());
+    assert!(case["final_error_m"].is_number());
+    assert_eq!(fs::read_dir(&out).unwrap().count(), 100);
+    let single = impactlab(&["simulate", "--dataset", TRAJECTORIES, "--case", "FE_c001"]);
+    assert!(single.out.contains("FE_c001") && !single.out.contains("FE_c002"));
+}
+
+#[test]
+fn a_speed_may_have_a_unit() {
+    assert_eq!(simulate(&["--speed", "20"]), simulate(&["--speed", "72km/h"]));
+}
+
+#[test]
+fn positive_steer_turns_left() {
+    let folder = TempDir::new().unwrap();
+    let steer = write(&folder, "steer.csv", "time_s,steer_deg\n0,0\n0.5,2\n4,2\n");
+    let left = simulate(&["--speed", "15", "--steer", text(&steer)]);
+    assert!(left["end"]["yaw_rad"].as_f64().unwrap() > 0.3, "{left}");
+    assert!(left["end"]["y_m"].as_f64().unwrap() > 3.0, "{left}");
+    assert!(left["force"].is_null() && left["delta_v_m_s"].is_null());
+}
+
+#[test]
+fn a_force_needs_a_moment_or_a_contact_point() {
+    let folder = TempDir::new().unwrap();
+    let force =
+        write(&folder, "f.csv", "time_s,fx_n,fy_n\n0,0,0\n0.05,0,40000\n0.1,0,0\n0.2,0,0\n");
+    let args = ["simulate", "--vehicle", "target-2000", "--speed", "15", "--force"];
+    let ran = impactlab(&[&args[..], &[text(&force)]].concat());
+    assert!(ran.error_line().contains("--contact x,y,z"), "{}", ran.err);
+    let out = folder.path().join("t.csv");
+    let contact = ["--contact", "-1.5,-0.9,0.5", "--out", text(&out), "--json"];
+    let ran = impactlab(&[&args[..], &[text(&force)], &contact].concat());
+    let answer = ran.json();
+    assert_eq!(answer["force"]["sampling"], "instant");
+    assert_eq!(answer["force"]["yaw_moment"], "contact_point");
+    let impulse = answer["force"]["impulse_n_s"][1].as_f64().unwrap();
+    assert!((impulse - 2000.0).abs() < 1e-9, "{impulse}");
+    assert!(answer["end"]["yaw_rad"].as_f64().unwrap() < -0.1, "{answer}");
+    let written = fs::read_to_string(&out).unwrap();
+    let recorded =
+        fs::read_to_string("datasets/trajectories-fea/trajectories/FE_c001.csv").unwrap();
+    assert_eq!(written.lines().next(), recorded.lines().next());
+    let short = ["--contact", "-1.5,-0.9,0.5", "--duration", "0.05"];
+    let ran = impactlab(&[&args[..], &[text(&force)], &short].concat());
+    assert!(ran.error_line().contains("contact from 0 s to 0.1 s"), "{}", ran.err);
+}
+
+#[test]
+fn what_a_force_sample_stands_for_follows_from_the_columns() {
+    for (file, sampling) in [
+        ("datasets/fea/forces/c001.csv", "centred_mean"),
+        ("datasets/trajectories-fea/trajectories/FE_c001.csv", "coming_mean"),
+    ] {
+        let answer = simulate(&["--speed", "12.6", "--force", file]);
+        assert_eq!(answer["force"]["sampling"], sampling, "{file}");
+    }
+    let file = "datasets/fea/forces/c001.csv";
+    let answer = simulate(&["--speed", "12.6", "--force", file, "--sampling", "instant"]);
+    assert_eq!(answer["force"]["sampling"], "instant");
+}
+
+#[test]
+fn bad_files_are_named_with_line_and_column() {
+    let folder = TempDir::new().unwrap();
+    let force = write(&folder, "f.csv", "time_s,fx_n,fy_n,mz_nm\n0,1,2,0\n0.1,x,3,0\n");
+    let vehicle = write(&folder, "v.toml", "name = \"x\"\n[mass]\nmass_kg = \"a\"\n");
+    let scenario = fs::read_to_string(SCENARIO).unwrap();
+    let scenario = scenario.replace("restitution = 0.15", "restitution = 15");
+    let scenario = write(&folder, "s.toml", &scenario);
+    let preset = ["--vehicle", "target-2000", "--speed", "15"];
+    let simulate = |args: &[&str]| impactlab(&[&["simulate"], args].concat());
+    for (ran, place) in [
+        (simulate(&[&preset[..], &["--force", text(&force)]].concat()), "f.csv:3:2: "),
+        (simulate(&["--vehicle", text(&vehicle), "--speed", "15"]), "v.toml:3:11: "),
+        (impactlab(&["impact", text(&scenario)]), "s.toml:28:15: "),
+    ] {
+        assert!(ran.error_line().contains(place), "{place} {}", ran.err);
+    }
+    let checked = impactlab(&["check", text(&force), text(&scenario)]);
+    assert_eq!(checked.code, 1);
+    assert!(checked.out.contains("f.csv:3:2: ") && checked.out.contains("s.toml:28:15: "));
+}
+
+#[test]
+fn names_that_do_not_exist_are_errors() {
+    for (args, part) in [
+        (&["simulate", "--vehicle", "nix", "--speed", "9"][..], "one of reference-2000"),
+        (&["simulate", "--dataset", "datasets/fea"], "expected one of trajectories"),
+        (&["simulate", "--dataset", TRAJECTORIES, "--case", "nix"], "no case \"nix\""),
+        (&["vehicles", "nix"], "one of reference-2000"),
+        (&["impact", "nix.toml"], "nix.toml: cannot be read: because "),
+        (&["check", ".", "--map", "fx=1"], "--map is for single files"),
+    ] {
+        let ran = impactlab(args);
+        assert!(ran.error_line().contains(part), "{args:?}: {}", ran.err);
+    }
+}
+
+#[test]
+fn a_case_that_cannot_be_read_is_a_failure() {
+    let folder = TempDir::new().unwrap();
+    let root = folder.path();
+    fs::create_dir(root.join("trajectories")).unwrap();
+    let table = fs::read_to_string(format!("{TRAJECTORIES}/cases.csv")).unwrap();
+    let table: Vec<&str> = table.lines().take(3).collect();
+    write(&folder, "cases.csv", &table.join("\n"));
+    for file in ["vehicle.toml", "trajectories/FE_c001.csv"] {
+        fs::copy(format!("{TRAJECTORIES}/{file}"), root.join(file)).unwrap();
+    }
+    write(&folder, "trajectories/FE_c002.csv", "time_s,x_m,y_m\n0,0,0\n1,a,0\n");
+    let ran = impactlab(&["simulate", "--dataset", text(root), "--json"]);
+    assert_eq!(ran.code, 1, "{}", ran.err);
+    let answer = ran.json();
+    assert_eq!(answer["cases"].as_array().unwrap().len(), 1);
+    assert!(answer["failures"][0].as_str().unwrap().contains("FE_c002.csv:3:2: "));
+    let ran = impactlab(&["simulate", "--dataset", text(root), "--case", "FE_c002"]);
+    assert!(ran.error_line().contains("FE_c002.csv:3:2: "), "{}", ran.err);
+}
+
+#[test]
+fn figures_are_written_as_numbers() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("figure.csv");
+    let yaw_rate = ["--case", "FE_c002", "--channel", "yaw-rate"];
+    for (args, header, series) in [
+        (
+            [&["force", "datasets/fea", "--case", "c001"][..], &["--cfc", "60"]].concat(),
+            "series,Time [ms],Force on the target [kN]",
+            "unfiltered,",
+        ),
+        (
+            [&["motion", TRAJECTORIES][..], &yaw_rate].concat(),
+            "series,Time [s],Yaw rate r [deg/s]",
+            "reference,",
+        ),
+        (
+            vec!["scene", TRAJECTORIES, "--case", "FE_c002", "--time", "1.5"],
+            "series,\"X, along the road [m]\",\"Y, to the left [m]\"",
+            "4DOF simulation,",
+        ),
+        (
+            vec!["impact", SCENARIO],
+            "series,\"X, along the road [m]\",\"Y, to the left [m]\"",
+            "impulse on the target,",
+        ),
+    ] {
+        let ran = impactlab(&[&["render"], &args[..], &["--out", text(&out), "--json"]].concat());
+        assert_eq!(ran.code, 0, "{args:?}: {}", ran.err);
+        assert!(ran.json()["title"].is_string());
+        let csv = fs::read_to_string(&out).unwrap();
+        assert_eq!(csv.lines().next(), Some(header), "{args:?}");
+        assert!(csv.lines().any(|line| line.starts_with(series)), "{args:?}");
+    }
+    let late = ["render", "scene", TRAJECTORIES, "--case", "FE_c002", "--time", "9", "--out"];
+    let ran = impactlab(&[&late[..], &[text(&out)]].concat());
+    assert!(ran.error_line().starts_with("--time is 9 s"), "{}", ran.err);
+    let ran = impactlab(&["render", "impact", SCENARIO, "--out", "figure.gif"]);
+    assert!(ran.error_line().contains(".png or .csv"), "{}", ran.err);
+}
+
+#[cfg(not(feature = "gui"))]
+#[test]
+fn a_build_without_drawing_says_so() {
+    for args in [&["render", "impact", SCENARIO, "--out", "x.png"][..], &[], &["app"]] {
+        let ran = impactlab(args);
+        assert!(ran.error_line().starts_with("this build "), "{}", ran.err);
+    }
+}
+
+#[cfg(all(feature = "gui", target_os = "linux"))]
+#[test]
+fn without_a_display_the_headless_commands_are_named() {
+    let mut command = Command::cargo_bin("impactlab").unwrap();
+    command.env("DISPLAY", "").env_remove("WAYLAND_DISPLAY");
+    let output = command.output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let err = String::from_utf8(output.stderr).unwrap();
+    assert!(err.lines().count() == 1 && err.contains("impactlab check datasets"), "{err}");
+}
+
+#[test]
+fn a_printed_vehicle_is_a_vehicle_file() {
+    let list = impactlab(&["vehicles", "--json"]).json();
+    let id = list["vehicles"][0]["id"].as_str().unwrap();
+    assert!(list["vehicles"][0]["mass_kg"].is_number());
+    let folder = TempDir::new().unwrap();
+    let file = write(&folder, "my-car.toml", &impactlab(&["vehicles", id]).out);
+    let ran = impactlab(&["simulate", "--vehicle", text(&file), "--speed", "10", "--json"]);
+    assert_eq!(ran.json(), simulate(&["--speed", "10"]));
+}
+
+#[test]
+fn a_closed_pipe_is_no_panic() {
+    for args in [&["check", "datasets", "--all", "--json"][..], &["vehicles"], &["--help"]] {
+        let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin!("impactlab"))
+            .args(args)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        let err = String::from_utf8(output.stderr).unwrap();
+        assert_eq!((output.status.code(), err.as_str()), (Some(0), ""), "{args:?}");
+    }
+}
