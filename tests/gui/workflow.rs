@@ -1,15 +1,13 @@
 //! What an analyst does, found by what stands on the screen.
 
-use std::path::PathBuf;
-
 use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, ReplayStatus, State, Subject};
+use impactlab::app::{App, Command, ReplayStatus, State};
 use impactlab::data::Severity;
 use impactlab::units::UnitSystem;
 
-use crate::harness::{apply, is_idle, open, step_until};
+use crate::harness::{apply, is_idle, open, open_with, step_until};
 
 fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
     harness.state().state()
@@ -129,8 +127,10 @@ fn a_dropped_file_opens_and_a_figure_is_exported() {
 }
 
 #[test]
-fn a_scenario_is_solved_simulated_and_survives_a_restart() {
-    let mut harness = open(&["datasets/fea"]);
+fn a_scenario_is_solved_simulated_and_survives_a_kill() {
+    let folder = tempfile::tempdir().unwrap();
+    let state_file = folder.path().join("new/state.json");
+    let mut harness = open_with(&["datasets/fea"], Some(state_file.clone()));
     step_until(&mut harness, "the first case", shows("c001"));
     apply(&mut harness, Command::Show(impactlab::app::Pane::Scenario));
     harness.run_steps(3);
@@ -140,11 +140,20 @@ fn a_scenario_is_solved_simulated_and_survives_a_restart() {
     let analysis = state(&harness).analysis().unwrap();
     assert!(analysis.bullet.is_some() && analysis.simulation.is_some());
 
-    let text = harness.state().saved().unwrap();
-    let (restored, sources) = State::restore(&text).unwrap();
-    assert_eq!(restored.project.subject, Some(Subject::Scenario));
-    assert_eq!(restored.view.layout, state(&harness).view.layout);
-    assert_eq!(sources, [PathBuf::from("datasets/fea")]);
+    // A second is enough to have it on disk; the app is not closed but dropped, as by a kill.
+    harness.run_steps(90);
+    let deadline = std::time::Instant::now() + std::time::Duration::from_secs(30);
+    while !state_file.exists() && std::time::Instant::now() < deadline {
+        harness.step();
+    }
+    let before = state(&harness).project.clone();
+    let layout = state(&harness).view.layout.clone();
+    drop(harness);
+    let mut harness = open_with(&[], Some(state_file));
+    step_until(&mut harness, "the scenario again", shows("PIT, right rear quarter"));
+    assert_eq!(state(&harness).project, before);
+    assert_eq!(state(&harness).view.layout, layout);
+    assert_eq!(state(&harness).session.sources.len(), 1);
 }
 
 #[test]
