@@ -1,5 +1,8 @@
 //! What an analyst does, found by what stands on the screen.
 
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
 use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -8,6 +11,19 @@ use impactlab::data::Severity;
 use impactlab::units::UnitSystem;
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
+
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
 
 fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
     harness.state().state()
@@ -106,8 +122,15 @@ fn a_bad_file_says_where_and_offers_the_mapping() {
 
 #[test]
 fn a_dropped_file_opens_and_a_figure_is_exported() {
-    let mut harness = open(&["datasets/fea/forces/c001.csv"]);
-    step_until(&mut harness, "the file", shows("c001.csv"));
+    let mut harness = open(&["datasets/fea"]);
+    step_until(&mut harness, "the data set", shows("c001"));
+    let dropped = Dropped(PathBuf::from("datasets/fea/forces/c002.csv"));
+    harness.input_mut().dropped_files.push(Arc::new(dropped));
+    step_until(&mut harness, "the drop", |state| {
+        state.session.sources.len() == 2 && is_idle(state)
+    });
+    harness.get_by_label_contains("c002.csv").click();
+    step_until(&mut harness, "the file", shows("c002.csv"));
     let analysis = state(&harness).analysis().unwrap().clone();
     let figure = impactlab::figure::analysis_scene_figure(&analysis, 1.0, UnitSystem::Si);
     let folder = tempfile::tempdir().unwrap();
