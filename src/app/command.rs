@@ -65,6 +65,8 @@ pub enum Command {
     Show(Pane),
     /// Put all panes back.
     ResetLayout,
+    /// Tell the user something.
+    Say(Severity, String),
     /// Forget the messages.
     DismissMessages,
     /// Go back a step.
@@ -132,6 +134,7 @@ impl State {
             }
             Command::Show(pane) => show_pane(&mut self.view.layout, pane),
             Command::ResetLayout => self.view.layout = default_layout(),
+            Command::Say(severity, text) => self.say(severity, text),
             Command::DismissMessages => self.session.messages.clear(),
             Command::Undo | Command::Redo => {}
         }

@@ -1,17 +1,21 @@
 //! Native file dialogs, and the dialog that asks which column is which.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use egui::{ComboBox, Grid, Ui};
 use rfd::AsyncFileDialog;
 
 use crate::app::command::Command;
 use crate::data::{
-    Channel, ColumnMap, ColumnProposal, ColumnRef, ColumnSource, DataError, FileKind,
+    Channel, ColumnMap, ColumnProposal, ColumnRef, ColumnSource, DataError, FileKind, Severity,
     propose_columns,
 };
 use crate::figure::Figure;
 use crate::jobs::{Job, Update};
+
+/// What to do where the system has no file dialog.
+const NO_DIALOG: &str = "this system showed no file dialog (xdg-desktop-portal brings one); type the path in the Data pane or drop files here; figures are written by `impactlab render` too";
 
 /// What a path is asked for.
 #[derive(Debug, Clone)]
@@ -27,6 +31,9 @@ pub enum Purpose {
     /// Save the scenario.
     Scenario,
 }
+
+/// A dialog that is answered faster than this was never seen: there is no native dialog.
+const UNSEEN: Duration = Duration::from_millis(300);
 
 /// A native dialog that waits for the user, on a thread of its own.
 pub struct FileDialog {
@@ -49,8 +56,13 @@ impl FileDialog {
     pub fn poll(&mut self) -> Option<Vec<Command>> {
         match self.job.poll() {
             Update::Running => None,
+            Update::Finished(paths) if paths.is_empty() && self.job.elapsed() < UNSEEN => {
+                Some(vec![Command::Say(Severity::Warning, NO_DIALOG.to_owned())])
+            }
             Update::Finished(paths) => Some(self.commands(paths)),
-            Update::Panicked(_) | Update::Gone => Some(Vec::new()),
+            Update::Panicked(_) | Update::Gone => {
+                Some(vec![Command::Say(Severity::Warning, NO_DIALOG.to_owned())])
+            }
         }
     }
 

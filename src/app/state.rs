@@ -160,6 +160,8 @@ pub struct Session {
     pub mapping: Option<MappingDialog>,
     /// Files being written.
     pub exports: Vec<Job<Result<PathBuf, String>>>,
+    /// A path that is being typed.
+    pub typed_path: String,
     /// Whether plots should fit their data again in this frame.
     pub fit_plots: bool,
 }

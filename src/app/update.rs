@@ -212,7 +212,7 @@ impl State {
             return;
         }
         let end = self.end_time_s();
-        self.session.time_s += f64::from(context.input(|input| input.stable_dt.min(0.1)));
+        self.session.time_s += f64::from(context.input(|input| input.unstable_dt.min(0.5)));
         if self.session.time_s >= end {
             self.session.time_s = end;
             self.session.playing = false;

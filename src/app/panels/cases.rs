@@ -22,7 +22,7 @@ pub fn cases_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     }
     let before = view.filter.clone();
     filter_ui(ui, view);
-    let filter_changed = before != view.filter;
+    let show_selected = before != view.filter || session.fit_plots;
     let (Some(table), Some(path)) =
         (session.cases.table(&session.sources, &session.replays, view), view.listed.clone())
     else {
@@ -35,7 +35,7 @@ pub fn cases_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     };
     let columns = CaseColumn::of(table.checked.dataset.kind);
     let table = Table { cases: table, columns, selected };
-    if let Some(case) = table.ui(ui, (view, filter_changed)) {
+    if let Some(case) = table.ui(ui, (view, show_selected)) {
         commands.push(Command::Select(Subject::Case { dataset: path, case }));
     }
 }
@@ -61,7 +61,7 @@ struct Table<'a> {
 
 impl Table<'_> {
     /// Draws the table; gives the case that was clicked.
-    fn ui(&self, ui: &mut Ui, (view, filter_changed): (&mut View, bool)) -> Option<String> {
+    fn ui(&self, ui: &mut Ui, (view, show_selected): (&mut View, bool)) -> Option<String> {
         let mut picked = None;
         let units = view.units;
         egui::ScrollArea::horizontal().show(ui, |ui| {
@@ -75,7 +75,7 @@ impl Table<'_> {
                 .column(Column::initial(58.0).resizable(true))
                 .column(Column::initial(64.0).resizable(true).clip(true))
                 .columns(Column::initial(72.0).at_least(36.0).resizable(true), self.columns.len());
-            let selected = self.selected.filter(|_| filter_changed);
+            let selected = self.selected.filter(|_| show_selected);
             if let Some(index) = selected.and_then(|name| self.cases.position(name)) {
                 table = table.scroll_to_row(index, None);
             }

@@ -29,6 +29,15 @@ pub fn data_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             commands.push(Command::Ask(Purpose::Files));
         }
     });
+    let field = egui::TextEdit::singleline(&mut session.typed_path);
+    let hint = "or type a path and press Enter";
+    let typed = ui.add(field.hint_text(hint).desired_width(f32::INFINITY));
+    if typed.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter)) {
+        let path = std::mem::take(&mut session.typed_path);
+        if !path.trim().is_empty() {
+            commands.push(Command::Open(vec![path.trim().into()]));
+        }
+    }
     ui.separator();
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         if session.sources.is_empty() {
