@@ -93,6 +93,7 @@ impl State {
             Command::OpenMapped(path, kind, map) => {
                 self.session.mapping = None;
                 self.session.sources.retain(|source| source.path != path);
+                self.session.look_at = Some(path.clone());
                 let source = Source::load_mapped(path, kind, map, wake(context));
                 self.session.sources.push(source);
             }
@@ -147,6 +148,7 @@ impl State {
                 continue;
             }
             self.session.sources.retain(|source| source.opened != path);
+            self.session.look_at = Some(path.clone());
             self.session.sources.push(Source::load(path, wake(context)));
         }
     }
@@ -171,7 +173,8 @@ impl State {
         }
     }
 
-    fn select(&mut self, subject: Subject) {
+    /// Looks at something, from its beginning.
+    pub(super) fn select(&mut self, subject: Subject) {
         if let Subject::Case { dataset, .. } = &subject {
             self.view.listed = Some(dataset.clone());
         }

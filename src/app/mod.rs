@@ -84,6 +84,9 @@ impl App {
             (true, true) => shipped_datasets().into_iter().collect(),
         };
         state.apply(Command::Open(to_open), &cc.egui_ctx);
+        if state.project.subject.is_some() {
+            state.session.look_at = None; // the last run's subject stays
+        }
         Self { state, undoer: Undoer::default(), store }
     }
 

@@ -160,6 +160,8 @@ pub struct Session {
     pub mapping: Option<MappingDialog>,
     /// Files being written.
     pub exports: Vec<Job<Result<PathBuf, String>>>,
+    /// What the user opened last, to be looked at once it is loaded.
+    pub look_at: Option<PathBuf>,
     /// A path that is being typed.
     pub typed_path: String,
     /// Whether plots should fit their data again in this frame.

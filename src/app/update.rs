@@ -134,36 +134,29 @@ impl State {
         status.job = None;
     }
 
-    /// Looks at the first thing that is there, so that a new user sees something.
+    /// Looks at what the user has just opened, or at anything at all, so that a new user sees
+    /// something.
     fn select_something(&mut self) {
-        if self.view.listed.as_ref().is_none_or(|path| !self.is_dataset(path)) {
-            let first = self.session.sources.iter().find(|source| source.dataset().is_some());
-            let preferred = self.session.sources.iter().find(|source| {
-                source.dataset().is_some_and(|d| d.dataset.kind == DatasetKind::Trajectory)
-            });
-            if let Some(source) = preferred.or(first)
-                && self.session.sources.iter().all(Source::is_settled)
-            {
-                self.view.listed = Some(source.path.clone());
-            }
+        let sources = &self.session.sources;
+        if !sources.iter().all(Source::is_settled) {
+            return;
         }
-        if self.project.subject.is_none() {
-            let source = self.session.sources.iter().find(|source| {
-                Some(&source.path) == self.view.listed.as_ref()
-                    || matches!(source.content, Content::File(_))
-            });
-            self.project.subject = source.and_then(|source| match &source.content {
-                Content::Dataset(checked) => checked.dataset.cases.first().map(|case| {
-                    Subject::Case { dataset: source.path.clone(), case: case.name.clone() }
-                }),
-                Content::File(_) => Some(Subject::File(source.path.clone())),
-                Content::Loading(_) | Content::Failed(_) => None,
-            });
+        let look_at = self.session.look_at.take();
+        let opened = |source: &&Source| Some(&source.opened) == look_at.as_ref();
+        let first = first_subject(sources.iter().filter(opened));
+        if let Some(subject) = first {
+            self.select(subject);
         }
-    }
-
-    fn is_dataset(&self, path: &PathBuf) -> bool {
-        self.session.sources.iter().any(|s| s.path == *path && s.dataset().is_some())
+        if self.project.subject.is_none()
+            && let Some(subject) = first_subject(self.session.sources.iter())
+        {
+            self.select(subject);
+        }
+        let is_listed = |source: &Source| Some(&source.path) == self.view.listed.as_ref();
+        if !self.session.sources.iter().any(|s| is_listed(s) && s.dataset().is_some()) {
+            let dataset = self.session.sources.iter().find(|source| source.dataset().is_some());
+            self.view.listed = dataset.map(|source| source.path.clone());
+        }
     }
 
     /// Starts an analysis if the project has changed since the last one, and the data are there.
@@ -219,6 +212,20 @@ impl State {
         }
         context.request_repaint();
     }
+}
+
+/// The first case of recorded motions, else the first case or file.
+fn first_subject<'a>(sources: impl Iterator<Item = &'a Source>) -> Option<Subject> {
+    let subject = |source: &Source| match &source.content {
+        Content::Dataset(checked) => {
+            let case = checked.dataset.cases.first()?.name.clone();
+            let rank = if checked.dataset.kind == DatasetKind::Trajectory { 0 } else { 1 };
+            Some((rank, Subject::Case { dataset: source.path.clone(), case }))
+        }
+        Content::File(_) => Some((2, Subject::File(source.path.clone()))),
+        Content::Loading(_) | Content::Failed(_) => None,
+    };
+    sources.filter_map(subject).min_by_key(|(rank, _)| *rank).map(|(_, subject)| subject)
 }
 
 fn analyse(material: &Material, project: &Project) -> Result<Analysis, String> {

@@ -129,8 +129,8 @@ fn a_dropped_file_opens_and_a_figure_is_exported() {
     step_until(&mut harness, "the drop", |state| {
         state.session.sources.len() == 2 && is_idle(state)
     });
-    harness.get_by_label_contains("c002.csv").click();
-    step_until(&mut harness, "the file", shows("c002.csv"));
+    step_until(&mut harness, "the file, which is looked at by itself", shows("c002.csv"));
+    harness.get_by_label_contains("c002.csv · force");
     let analysis = state(&harness).analysis().unwrap().clone();
     let figure = impactlab::figure::analysis_scene_figure(&analysis, 1.0, UnitSystem::Si);
     let folder = tempfile::tempdir().unwrap();
