@@ -35,6 +35,7 @@ pub mod cli;
 pub mod collision;
 pub mod compare;
 pub mod data;
+mod error_chain;
 pub mod figure;
 pub mod jobs;
 pub mod numerics;
@@ -42,3 +43,5 @@ pub mod numerics;
 pub mod render;
 pub mod units;
 pub mod vehicle;
+
+pub use error_chain::error_chain;

@@ -274,7 +274,7 @@ fn names_that_do_not_exist_are_errors() {
         (&["simulate", "--dataset", "datasets/fea"], "expected one of trajectories"),
         (&["simulate", "--dataset", TRAJECTORIES, "--case", "nix"], "no case \"nix\""),
         (&["vehicles", "nix"], "one of reference-2000"),
-        (&["impact", "nix.toml"], "nix.toml: cannot be read: because "),
+        (&["impact", "nix.toml"], "nix.toml: cannot be read: "),
         (&["check", ".", "--map", "fx=1"], "--map is for single files"),
     ] {
         let ran = impactlab(args);

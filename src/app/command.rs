@@ -5,14 +5,15 @@ use std::path::PathBuf;
 use egui::Context;
 
 use crate::app::dialogs::{FileDialog, MappingDialog, Purpose};
+use crate::app::export;
 use crate::app::panes::{Pane, default_layout, show_pane};
 use crate::app::source::{Content, Source};
 use crate::app::state::{ReplayStatus, State, Subject};
 use crate::app::update::target_vehicle;
-use crate::app::{error_chain, export};
 use crate::collision::Scenario;
 use crate::compare::replay_dataset;
 use crate::data::{ColumnMap, FileKind, Severity, write_atomically};
+use crate::error_chain;
 use crate::figure::Figure;
 use crate::jobs::Job;
 

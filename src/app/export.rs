@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::app::error_chain;
 use crate::data::write_atomically;
+use crate::error_chain;
 use crate::figure::{Figure, write_figure_csv};
 use crate::jobs::Job;
 use crate::render::{Canvas, figure_image, save_png};

@@ -182,15 +182,3 @@ fn shipped_datasets() -> Option<PathBuf> {
         .chain([PathBuf::from(env!("CARGO_MANIFEST_DIR"))]);
     roots.map(|root| root.join("datasets")).find(|path| path.join("fea").is_dir())
 }
-
-/// An error with its causes, in a line.
-fn error_chain(error: &dyn std::error::Error) -> String {
-    let mut text = error.to_string();
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        text.push_str(": ");
-        text.push_str(&error.to_string());
-        cause = error.source();
-    }
-    text
-}

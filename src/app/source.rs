@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::app::error_chain;
 use crate::data::{
     ColumnMap, DataError, Dataset, FileKind, Flag, Loaded, Opened, Outcome, check_case,
     check_series, open, read_series,
 };
+use crate::error_chain;
 use crate::jobs::Job;
 use crate::vehicle::VehicleParameters;
 

@@ -7,10 +7,10 @@ use egui::Context;
 
 use crate::analysis::{Analysis, Settings, analyse_case, analyse_file, analyse_scenario};
 use crate::app::command::{Command, wake};
-use crate::app::error_chain;
 use crate::app::source::{CheckedDataset, CheckedFile, Content, OpenError, Source};
 use crate::app::state::{Project, ReplayStatus, State, Subject, VehicleChoice};
 use crate::data::{DatasetKind, Outcome, Severity};
+use crate::error_chain;
 use crate::jobs::{Job, Update};
 use crate::vehicle::{Preset, VehicleParameters};
 

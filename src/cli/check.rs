@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use rayon::prelude::*;
 
+use crate::cli::CliError;
 use crate::cli::check_report::{
     CaseFlag, DatasetReport, FileReport, ModelReport, ProblemReport, Proposal, Report,
 };
@@ -12,12 +13,12 @@ use crate::cli::check_text::print_text;
 use crate::cli::output::{print_json, word};
 use crate::cli::progress::{complete, with_progress};
 use crate::cli::run::{Console, Verdict};
-use crate::cli::{CliError, error};
 use crate::collision::Scenario;
 use crate::data::{
     Case, ColumnMap, DataError, Dataset, Loaded, Opened, check_case, check_series, open,
     propose_columns, read_any_series,
 };
+use crate::error_chain;
 use crate::vehicle::VehicleParameters;
 
 /// Say what is in files and data sets, in which units, and what is wrong with them
@@ -69,7 +70,7 @@ fn check_path(path: &Path, args: &CheckArgs, report: &mut Report) -> Result<(), 
             Ok(model) => report.models.push(model),
             Err(error) => report.problems.push(ProblemReport {
                 path: path.to_owned(),
-                message: error::chain(&error),
+                message: error_chain(&error),
                 columns: None,
                 map: None,
             }),
@@ -138,7 +139,7 @@ fn dataset_report(dataset: &Dataset, all: bool) -> DatasetReport {
         flags: found,
         n_clean: clean.len(),
         clean_cases: all.then_some(clean),
-        problems: problems.map(|problem| error::chain(problem)).collect(),
+        problems: problems.map(|problem| error_chain(problem)).collect(),
     }
 }
 
@@ -155,7 +156,7 @@ fn problem(path: &Path, error: &DataError) -> ProblemReport {
     let columns = is_about_columns.then(|| propose_columns(path).ok()).flatten();
     ProblemReport {
         path: path.to_owned(),
-        message: error::chain(error),
+        message: error_chain(error),
         map: columns.as_deref().and_then(Proposal::map),
         columns: columns.map(|columns| columns.iter().map(Proposal::of).collect()),
     }

@@ -1,6 +1,5 @@
 //! Why a command failed, in one line.
 
-use std::error::Error;
 use std::io;
 use std::path::PathBuf;
 
@@ -202,39 +201,4 @@ pub enum CliError {
     /// The work was cancelled.
     #[error("cancelled")]
     Cancelled,
-}
-
-/// An error and its causes in one line: `what: because why: because …`.
-pub(super) fn chain(error: &dyn Error) -> String {
-    let mut text = one_line(&error.to_string());
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        text.push_str(": because ");
-        text.push_str(&one_line(&error.to_string()));
-        cause = error.source();
-    }
-    text
-}
-
-fn one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_chain_is_one_line_with_every_cause_once() {
-        let error = CliError::Series {
-            path: PathBuf::from("a.csv"),
-            source: SeriesError::Missing { channel: crate::data::Channel::Fx },
-        };
-        let expected =
-            "a.csv: does not have what this needs: because column fx_n is missing".to_owned();
-        assert_eq!(chain(&error), expected);
-        let transparent = CliError::from(DataError::Empty { path: PathBuf::from("b\nc.csv") });
-        assert!(chain(&transparent).starts_with("b c.csv: is empty"));
-        assert!(!chain(&transparent).contains("because"));
-    }
 }

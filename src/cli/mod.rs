@@ -1,7 +1,7 @@
 //! The command line: one file per command, which parses, calls the core and prints.
 //!
 //! - Results go to stdout: aligned text, or JSON with `--json` (SI units, the unit in every key).
-//! - Errors go to stderr, once, as one line `error: what: because why`; progress too, if stderr is
+//! - Errors go to stderr, once, as one line `error: what: why`; progress too, if stderr is
 //!   a terminal.
 //! - Exit codes: 0 = all is well; 1 = the work failed or found problems; 2 = wrong usage.
 

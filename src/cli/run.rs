@@ -5,8 +5,8 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::cli::error::chain;
 use crate::cli::{CliError, app, check, impact, render, simulate, vehicles};
+use crate::error_chain;
 
 /// What happens when one vehicle hits another, and in the second after
 #[derive(Debug, Parser)]
@@ -88,7 +88,7 @@ pub fn run() -> ExitCode {
             ExitCode::SUCCESS
         }
         Err(error) => {
-            let _ = writeln!(io::stderr(), "error: {}", chain(&error));
+            let _ = writeln!(io::stderr(), "error: {}", error_chain(&error));
             ExitCode::FAILURE
         }
     }

@@ -7,7 +7,6 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::case_choice::{load_dataset, take_case};
-use crate::cli::error::chain;
 use crate::cli::output::{print_json, print_table, word};
 use crate::cli::progress::{complete, with_progress};
 use crate::cli::run::{Console, Verdict};
@@ -16,6 +15,7 @@ use crate::cli::simulate_answer::FlagAnswer;
 use crate::cli::vehicle_choice::vehicle_or_own;
 use crate::compare::{DatasetReplay, ErrorSummary, MotionError, Replay, replay_dataset};
 use crate::data::{Dataset, DatasetKind, write_series_csv};
+use crate::error_chain;
 use crate::numerics::Summary;
 use crate::units::{Quantity, UnitSystem};
 use crate::vehicle::Integrator;
@@ -63,8 +63,8 @@ pub(super) fn run(
     if let Some(folder) = &args.out {
         write_trajectories(folder, &replay)?;
     }
-    let problems = dataset.problems.iter().map(|problem| chain(problem));
-    let failed = replay.failures.iter().map(|failure| chain(failure));
+    let problems = dataset.problems.iter().map(|problem| error_chain(problem));
+    let failed = replay.failures.iter().map(|failure| error_chain(failure));
     let summary = |choose: fn(&Replay) -> bool| ErrorSummary::of(&replay.cases, choose);
     let answer = Answer {
         dataset: root,

@@ -280,9 +280,9 @@ mod tests {
     fn units_are_in_the_keys() {
         let pit = read(PIT).unwrap();
         assert!((pit.target.vx_m_s - 15.0).abs() < 1e-12, "{pit:?}");
-        assert!((pit.bullet.heading_rad - 12_f64.to_radians()).abs() < 1e-15, "{pit:?}");
+        assert!((pit.bullet.heading_rad - 18_f64.to_radians()).abs() < 1e-15, "{pit:?}");
         let speed = pit.bullet.vx_m_s.hypot(pit.bullet.vy_m_s);
-        assert!((speed * 3.6 - 56.5).abs() < 1e-9, "{pit:?}");
+        assert!((speed * 3.6 - 62.0).abs() < 1e-9, "{pit:?}");
         for (key, value) in [
             ("speed_m_s", "15"),
             ("speed_mph", "33.554044380816"),

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::vehicle::tire::TireParameters;
 
-/// One vehicle. SI units; every value lies in the range that [`VehicleParameters::check`] lists.
+/// One vehicle. SI units; every value lies in a range that is checked on load.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct VehicleParameters {
@@ -200,7 +200,6 @@ impl VehicleParameters {
         Ok(())
     }
 
-    #[expect(clippy::too_many_lines, reason = "a table")]
     /// Every value with its range, wide enough for a 1:10 model and a heavy truck.
     fn ranges(&self) -> Vec<(&'static str, f64, RangeInclusive<f64>)> {
         let Self { mass, geometry, suspension, tires, .. } = self;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use egui::{Color32, Context, FullOutput, TexturesDelta};
+use egui::{Context, FullOutput, TexturesDelta};
 use egui_kittest::{Harness, TestRenderer};
 use image::RgbaImage;
 use impactlab::app::{App, Command, State};
@@ -25,7 +25,7 @@ impl TestRenderer for SoftwareTestRenderer {
         let size = context.content_rect().size() * output.pixels_per_point;
         let ground = context.global_style().visuals.panel_fill;
         let size = [size.x.round() as u32, size.y.round() as u32];
-        Ok(self.0.draw(&primitives, size, output.pixels_per_point, Color32::from(ground)))
+        Ok(self.0.draw(&primitives, size, output.pixels_per_point, ground))
     }
 }
 

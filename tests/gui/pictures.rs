@@ -10,8 +10,8 @@ use crate::harness::{apply, is_idle, open, step_until};
 fn save(harness: &mut Harness<'_, App>, name: &str) {
     let image = harness.render().expect("the software renderer always draws");
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("pictures");
-    std::fs::create_dir_all(&folder).unwrap();
-    image.save(folder.join(name)).unwrap();
+    std::fs::create_dir_all(&folder).expect("a folder for pictures");
+    image.save(folder.join(name)).expect("a picture is written");
     let first = image.get_pixel(0, 0);
     assert!(image.pixels().any(|pixel| pixel != first), "{name} is blank");
 }

@@ -108,7 +108,7 @@ fn dataset_ui(ui: &mut Ui, replay: &DatasetReplay, units: UnitSystem) {
             });
         }
         ui.end_row();
-        let groups: [(&str, fn(&Replay) -> bool); 3] = [
+        let groups: [(&str, Choice); 3] = [
             ("all", |_| true),
             ("spinning", |replay| replay.spin),
             ("not spinning", |replay| !replay.spin),
@@ -123,6 +123,9 @@ fn dataset_ui(ui: &mut Ui, replay: &DatasetReplay, units: UnitSystem) {
         ui.label(format!("{} cases could not be simulated", replay.failures.len()));
     }
 }
+
+/// Whether a case belongs to a group.
+type Choice = fn(&Replay) -> bool;
 
 fn summary_row(ui: &mut Ui, name: &str, summary: &Summary, text: impl Fn(f64) -> String) {
     ui.label(name);

@@ -5,10 +5,11 @@ use egui::{CollapsingHeader, Response, RichText, ScrollArea, Ui};
 use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
 use crate::app::panes::PaneContext;
+use crate::app::shipped_datasets;
 use crate::app::source::{CheckedDataset, CheckedFile, Content, Source};
 use crate::app::state::{Project, Subject, View};
-use crate::app::{error_chain, shipped_datasets};
 use crate::data::{DatasetKind, FileKind, Severity};
+use crate::error_chain;
 use crate::render::theme;
 
 /// Problems that the tree spells out.

@@ -53,7 +53,7 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             Ok(solution) => solution_ui(ui, solution, view.units),
             Err(error) => {
                 let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-                ui.colored_label(color, crate::app::error_chain(error));
+                ui.colored_label(color, crate::error_chain(error));
             }
         }
         ui.separator();
