@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 /// From low to high. Modules of one layer do not know each other.
 const LAYERS: &[&[&str]] = &[
-    &["bibliography", "units"],
+    &["bibliography", "units", "error_chain"],
     &["numerics", "jobs"],
     &["data"],
     &["vehicle"],
