@@ -23,7 +23,7 @@ install() {
     why=$1
     shift
     if ! command -v apt-get >/dev/null; then
-        say "$why may need libraries that Debian calls: $*"
+        say "$why may need what Debian calls $*"
         return 0
     fi
     if [ "$(id -u)" -eq 0 ]; then
