@@ -123,6 +123,13 @@ impl Quantity {
         if unit.symbol.is_empty() { number } else { format!("{number} {}", unit.symbol) }
     }
 
+    /// SI numbers as a person reads them, with one unit: “(1.124, 2.810) kN s”.
+    pub fn shown_vector(self, [x_si, y_si]: [f64; 2], system: UnitSystem) -> String {
+        let unit = self.display_unit(system);
+        let [x, y] = [x_si, y_si].map(|value| significant(unit.from_si(value)));
+        format!("({x}, {y}) {}", unit.symbol)
+    }
+
     /// Every unit of the quantity that files and people use, the SI unit first.
     pub fn units(self) -> &'static [Unit] {
         macro_rules! units {

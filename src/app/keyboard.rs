@@ -40,7 +40,7 @@ pub fn commands(context: &Context, commands: &mut Vec<Command>) {
             commands.push(command);
         }
     }
-    if context.egui_wants_keyboard_input() {
+    if context.text_edit_focused() {
         return;
     }
     for (key, _) in PLAIN_KEYS {

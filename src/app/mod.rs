@@ -157,7 +157,8 @@ impl App {
         let mut layout =
             std::mem::replace(&mut view.layout, Tree::empty(egui::Id::unique("panes")));
         let mut panes = panes::PaneContext { project, view, session, commands };
-        egui::CentralPanel::no_frame().show(ui, |ui| layout.ui(&mut panes, ui));
+        let frame = egui::Frame::new().fill(ui.visuals().panel_fill);
+        egui::CentralPanel::no_frame().frame(frame).show(ui, |ui| layout.ui(&mut panes, ui));
         self.state.view.layout = layout;
         self.state.session.fit_plots = false;
     }

@@ -1,7 +1,7 @@
 //! The momentum solution of a scenario, from above.
 
 use crate::collision::{ImpactSolution, Scenario, ScenarioError};
-use crate::figure::{Axis, Element, Figure, Role, outline_m};
+use crate::figure::{Axis, Element, Figure, LineStyle, Role, vehicle_outline};
 use crate::units::{Quantity, UnitSystem};
 
 /// Length of the longest velocity arrow and of the impulse arrow, m.
@@ -40,8 +40,8 @@ pub fn impact_figure(
     };
     let mut elements = vec![Element::dashed("contact surface", Role::Muted, surface)];
     for (name, role, footprint, pose, after) in vehicles {
-        let outline = outline_m(&footprint, &pose).into_iter().map(shown).collect();
-        elements.push(Element::polygon(name, role, outline));
+        let look = (name, role, LineStyle::Solid);
+        elements.extend(vehicle_outline(look, (&footprint, &pose), x.unit));
         let delta_v = scaled(after.delta_v_m_s, longest);
         elements.push(arrow(&format!("Δv {name}"), role, [pose.x_m, pose.y_m], delta_v));
     }

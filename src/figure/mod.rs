@@ -17,4 +17,4 @@ pub use force::{ForceFigure, force_figure};
 pub use impact::impact_figure;
 pub use model::{Axis, Band, Element, Figure, LineStyle, Role, Series};
 pub use motion::{MOTION_CHANNELS, motion_figure, motion_readout};
-pub use scene::{SceneFigure, SceneVehicle, outline_m, pose_at, scene_figure};
+pub use scene::{SceneFigure, SceneVehicle, pose_at, scene_figure, vehicle_outline};

@@ -10,24 +10,27 @@ use crate::units::{Quantity, Unit, UnitSystem};
 const HEADING_TICK_INTERVAL_S: f64 = 0.5;
 /// Length of a heading tick to each side of the path, m.
 const HEADING_TICK_LENGTH_M: f64 = 1.0;
-/// Share of the length at which the nose of an outline begins to taper.
-const NOSE_SHARE: f64 = 0.82;
+/// Length of the chevron at the front, as a share of the vehicle's.
+const CHEVRON_SHARE: f64 = 0.15;
 
-/// Outline of a vehicle in world axes, m: its footprint with the front corners cut, so that one
-/// sees which way it points.
-pub fn outline_m(footprint: &Footprint, pose: &Pose) -> Vec<[f64; 2]> {
-    let front = footprint.cg_from_front_m;
-    let (rear, half) = (front - footprint.length_m, footprint.width_m / 2.0);
-    let shoulder = rear + NOSE_SHARE * footprint.length_m;
-    let corners = [
-        [rear, -half],
-        [shoulder, -half],
-        [front, -0.6 * half],
-        [front, 0.6 * half],
-        [shoulder, half],
-        [rear, half],
-    ];
-    corners.map(|corner| pose.world_from_body(corner)).to_vec()
+/// A vehicle from above: its footprint, and a chevron that shows which way it points.
+pub fn vehicle_outline(
+    (name, role, style): (&str, Role, LineStyle),
+    (footprint, pose): (&Footprint, &Pose),
+    unit: Unit,
+) -> [Element; 2] {
+    let (front, half) = (footprint.cg_from_front_m, footprint.width_m / 2.0);
+    let shoulder = front - CHEVRON_SHARE * footprint.length_m;
+    let chevron = [[shoulder, -half], [front, 0.0], [shoulder, half]];
+    let chevron = chevron.map(|point| pose.world_from_body(point)).to_vec();
+    let series = |style, points| {
+        let points = shown(unit, points);
+        Series { name: name.to_owned(), role, style, points }
+    };
+    [
+        Element::Polygon(series(style, footprint.corners_m(pose).to_vec())),
+        Element::Line(series(LineStyle::Solid, chevron)),
+    ]
 }
 
 /// One vehicle of a scene.
@@ -66,7 +69,8 @@ pub fn scene_figure(input: &SceneFigure<'_>) -> Figure {
     let y = Axis::shown("Y, to the left", Quantity::Length, input.units);
     let mut elements = Vec::new();
     for &(name, role, footprint, pose) in input.at_impact {
-        elements.push(Element::polygon(name, role, shown(x.unit, outline_m(&footprint, &pose))));
+        let look = (name, role, LineStyle::Solid);
+        elements.extend(vehicle_outline(look, (&footprint, &pose), x.unit));
     }
     for vehicle in input.vehicles {
         elements.extend(vehicle_elements(vehicle, input.time_s, x.unit));
@@ -99,8 +103,8 @@ fn vehicle_elements(vehicle: &SceneVehicle<'_>, time_s: f64, unit: Unit) -> Vec<
         }
     }
     if let Some(pose) = pose_at(motion, time_s) {
-        let outline = outline_m(&vehicle.footprint, &pose);
-        elements.push(Element::Polygon(series(vehicle.style, outline)));
+        let look = (vehicle.name, vehicle.role, vehicle.style);
+        elements.extend(vehicle_outline(look, (&vehicle.footprint, &pose), unit));
     }
     elements
 }
@@ -123,16 +127,6 @@ mod tests {
     const CAR: Footprint = Footprint { length_m: 4.5, width_m: 1.8, cg_from_front_m: 2.0 };
 
     #[test]
-    fn an_outline_has_the_vehicles_length_along_its_heading() {
-        let pose = Pose { x_m: 10.0, y_m: 5.0, yaw_rad: std::f64::consts::FRAC_PI_2 };
-        let outline = outline_m(&CAR, &pose);
-        let (low, high) = outline
-            .iter()
-            .fold((f64::MAX, f64::MIN), |(low, high), p| (low.min(p[1]), high.max(p[1])));
-        assert!((high - 7.0).abs() < 1e-12 && (low - 2.5).abs() < 1e-12, "{low} {high}");
-    }
-
-    #[test]
     fn the_vehicle_stands_where_it_is_at_the_time() {
         let mut motion = TimeSeries::new(vec![0.0, 1.0, 2.0]).unwrap();
         for (channel, values) in [
@@ -152,6 +146,6 @@ mod tests {
             footprint: CAR,
         };
         let elements = vehicle_elements(&vehicle, 1.5, Quantity::Length.si_unit());
-        assert_eq!(elements.len(), 1 + 4 + 1, "a path, four ticks, an outline");
+        assert_eq!(elements.len(), 1 + 4 + 2, "a path, four ticks, an outline with its chevron");
     }
 }

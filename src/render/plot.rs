@@ -100,6 +100,14 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
     if options.reset {
         plot = plot.reset();
     }
+    for element in &figure.elements {
+        // egui_plot fits arrows by their origins only.
+        if let Element::Arrow(series) = element {
+            for [x, y] in &series.points {
+                plot = plot.include_x(*x).include_y(*y);
+            }
+        }
+    }
     let dark = ui.visuals().dark_mode;
     let response = plot.show(ui, |plot_ui| {
         for element in &figure.elements {
@@ -159,7 +167,7 @@ fn draw_element<'a>(plot: &mut PlotUi<'a>, element: &'a Element, dark: bool) {
         Element::Arrow(series) => {
             if let [from, to] = series.points[..] {
                 let (origin, tip) = (PlotPoints::from(vec![from]), PlotPoints::from(vec![to]));
-                plot.arrows(Arrows::new(&series.name, origin, tip).color(color));
+                plot.arrows(Arrows::new(&series.name, origin, tip).color(color).tip_length(10.0));
             }
         }
         Element::Band(band) => {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use egui::{Context, FullOutput, TexturesDelta};
+use egui::{Color32, Context, FullOutput, TexturesDelta};
 use egui_kittest::{Harness, TestRenderer};
 use image::RgbaImage;
 use impactlab::app::{App, Command, State};
@@ -11,6 +11,9 @@ use impactlab::render::SoftwareRenderer;
 
 /// Longest wait for background work.
 const PATIENCE: Duration = Duration::from_secs(60);
+
+/// What a real window shows where nothing is painted.
+const WINDOW_GROUND: Color32 = Color32::BLACK;
 
 #[derive(Default)]
 struct SoftwareTestRenderer(SoftwareRenderer);
@@ -23,9 +26,8 @@ impl TestRenderer for SoftwareTestRenderer {
     fn render(&mut self, context: &Context, output: &FullOutput) -> Result<RgbaImage, String> {
         let primitives = context.tessellate(output.shapes.clone(), output.pixels_per_point);
         let size = context.content_rect().size() * output.pixels_per_point;
-        let ground = context.global_style().visuals.panel_fill;
         let size = [size.x.round() as u32, size.y.round() as u32];
-        Ok(self.0.draw(&primitives, size, output.pixels_per_point, ground))
+        Ok(self.0.draw(&primitives, size, output.pixels_per_point, WINDOW_GROUND))
     }
 }
 

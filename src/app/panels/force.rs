@@ -64,11 +64,10 @@ pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 
 fn readouts_ui(ui: &mut Ui, force: &ForceHistory, units: UnitSystem) {
     let [px, py] = force.impulse_n_s();
-    let impulse = |value| Quantity::Impulse.shown(value, units);
     Grid::new("force readouts").num_columns(4).striped(true).show(ui, |ui| {
         let half_rows = [
-            ("Impulse", format!("({}, {})", impulse(px), impulse(py))),
-            ("|Impulse|", impulse(px.hypot(py))),
+            ("Impulse", Quantity::Impulse.shown_vector([px, py], units)),
+            ("|Impulse|", Quantity::Impulse.shown(px.hypot(py), units)),
             ("Peak |F|", peak_text(force, units)),
             ("Contact", contact_text(force)),
             ("PDOF", pdof_text([px, py])),

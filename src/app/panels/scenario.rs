@@ -8,7 +8,8 @@ use crate::app::panes::PaneContext;
 use crate::app::state::{Project, Subject};
 use crate::app::widgets::{figure_frame, quantity_field, value_row};
 use crate::collision::{
-    BodyAfter, ContactLocation, ImpactSolution, PulseShape, Scenario, ScenarioVehicle, Side,
+    BodyAfter, ContactLocation, ImpactSolution, PrincipalDirectionOfForce, PulseShape, Scenario,
+    ScenarioVehicle, Side,
 };
 use crate::data::Severity;
 use crate::figure::impact_figure;
@@ -169,13 +170,12 @@ fn location_form(ui: &mut Ui, location: &mut ContactLocation, units: UnitSystem)
 }
 
 fn solution_ui(ui: &mut Ui, solution: &ImpactSolution, units: UnitSystem) {
-    let [px, py] = solution.impulse_n_s;
-    let impulse = |value| Quantity::Impulse.shown(value, units);
+    let impulse = |vector| Quantity::Impulse.shown_vector(vector, units);
     ui.strong("Momentum solution");
     Grid::new("solution").striped(true).num_columns(2).show(ui, |ui| {
-        value_row(ui, "Impulse on target (X, Y)", &format!("{}, {}", impulse(px), impulse(py)));
-        let parts = [solution.impulse_normal_n_s, solution.impulse_tangential_n_s].map(impulse);
-        value_row(ui, "normal, tangential", &parts.join(", "));
+        value_row(ui, "Impulse on target", &impulse(solution.impulse_n_s));
+        let parts = [solution.impulse_normal_n_s, solution.impulse_tangential_n_s];
+        value_row(ui, "normal, tangential", &impulse(parts));
         value_row(ui, "Regime", solution.regime.label());
         let closing = Quantity::Speed.shown(solution.closing_velocity_m_s[0].abs(), units);
         value_row(ui, "Closing speed", &closing);
@@ -190,18 +190,17 @@ fn solution_ui(ui: &mut Ui, solution: &ImpactSolution, units: UnitSystem) {
 }
 
 fn body_rows(after: &BodyAfter, units: UnitSystem) -> Vec<(&'static str, String)> {
-    let speed = |value| Quantity::Speed.shown(value, units);
     let [dx, dy] = after.delta_v_m_s;
-    let [vx, vy] = after.velocity_m_s;
+    let vector = |value| Quantity::Speed.shown_vector(value, units);
     let mut rows = vec![
-        ("Δv", format!("{} ({}, {})", speed(dx.hypot(dy)), speed(dx), speed(dy))),
-        ("Velocity after", format!("({}, {})", speed(vx), speed(vy))),
+        ("Δv", Quantity::Speed.shown(dx.hypot(dy), units)),
+        ("Δv (X, Y)", vector(after.delta_v_m_s)),
+        ("Velocity after", vector(after.velocity_m_s)),
         ("Yaw rate after", Quantity::AngularVelocity.shown(after.yaw_rate_rad_s, units)),
     ];
-    rows.extend(
-        after
-            .pdof
-            .map(|pdof| ("PDOF", format!("{:.0} deg, {} o'clock", pdof.angle_deg(), pdof.clock()))),
-    );
+    let pdof = |pdof: PrincipalDirectionOfForce| {
+        ("PDOF", format!("{:.0} deg, {} o'clock", pdof.angle_deg(), pdof.clock()))
+    };
+    rows.extend(after.pdof.map(pdof));
     rows
 }
