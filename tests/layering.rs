@@ -108,8 +108,9 @@ fn violations(module: &str, text: &str) -> Vec<Violation> {
 
 /// The Rust files of a folder and the folders in it.
 fn rust_files(folder: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let entries = fs::read_dir(folder).expect("a folder of sources");
     entries
+        .map(|entry| entry.expect("an entry of a folder").path())
         .flat_map(|path| if path.is_dir() { rust_files(&path) } else { vec![path] })
         .filter(|path| path.extension().is_some_and(|end| end == "rs"))
         .collect()
@@ -117,9 +118,9 @@ fn rust_files(folder: &Path) -> Vec<PathBuf> {
 
 /// The module of a file below `src`: the folder, or the file's own name.
 fn module_of(file: &Path, src: &Path) -> String {
-    let path = file.strip_prefix(src).unwrap().with_extension("");
-    let first = path.components().next().unwrap().as_os_str();
-    first.to_str().unwrap().to_owned()
+    let path = file.strip_prefix(src).expect("a file below src").with_extension("");
+    let first = path.components().next().expect("a name").as_os_str();
+    first.to_string_lossy().into_owned()
 }
 
 #[test]
