@@ -11,6 +11,7 @@ mod panels;
 mod panes;
 mod source;
 mod state;
+mod store;
 mod update;
 mod widgets;
 
@@ -21,6 +22,8 @@ use egui::util::undoer::Undoer;
 use egui::{Context, Ui};
 use egui_tiles::Tree;
 
+use crate::app::store::Store;
+use crate::data::Severity;
 use crate::render::theme;
 
 pub use command::Command;
@@ -28,8 +31,10 @@ pub use panes::Pane;
 pub use source::{Content, Source};
 pub use state::{Project, ReplayStatus, State, Subject, VehicleChoice, View};
 
-/// Key of the saved state.
-const STORAGE_KEY: &str = "impactlab";
+/// The program's name in folders of the user.
+const APP_ID: &str = "impactlab";
+/// The file that keeps the state.
+const STATE_FILE: &str = "state.json";
 
 /// A window that could not be opened.
 #[derive(Debug, thiserror::Error)]
@@ -42,6 +47,7 @@ pub struct WindowError(String);
 pub struct App {
     state: State,
     undoer: Undoer<Project>,
+    store: Option<Store>,
 }
 
 /// Opens the window on these paths, or on what was open last, or on the shipped data.
@@ -56,14 +62,20 @@ pub fn run(paths: Vec<PathBuf>) -> Result<(), WindowError> {
         .with_min_inner_size([900.0, 600.0])
         .with_drag_and_drop(true);
     let options = eframe::NativeOptions { viewport, ..eframe::NativeOptions::default() };
-    eframe::run_native("impactlab", options, Box::new(|cc| Ok(Box::new(App::new(cc, paths)))))
+    let state_file = eframe::storage_dir(APP_ID).map(|folder| folder.join(STATE_FILE));
+    let create = |cc: &CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
+        Ok(Box::new(App::new(cc, paths, state_file)))
+    };
+    eframe::run_native(APP_ID, options, Box::new(create))
         .map_err(|error| WindowError(error.to_string()))
 }
 
 impl App {
-    /// Starts from the saved state, if there is one.
-    pub fn new(cc: &CreationContext<'_>, paths: Vec<PathBuf>) -> Self {
-        let saved = cc.storage.and_then(|storage| storage.get_string(STORAGE_KEY));
+    /// Starts from what the last run left in `state_file`, if there is one, and keeps the state
+    /// there.
+    pub fn new(cc: &CreationContext<'_>, paths: Vec<PathBuf>, state_file: Option<PathBuf>) -> Self {
+        let mut store = state_file.map(Store::new);
+        let saved = store.as_mut().and_then(Store::read);
         let restored = saved.and_then(|text| State::restore(&text));
         let (mut state, last_open) = restored.unwrap_or_default();
         let to_open = match (paths.is_empty(), last_open.is_empty()) {
@@ -72,7 +84,7 @@ impl App {
             (true, true) => shipped_datasets().into_iter().collect(),
         };
         state.apply(Command::Open(to_open), &cc.egui_ctx);
-        Self { state, undoer: Undoer::default() }
+        Self { state, undoer: Undoer::default(), store }
     }
 
     /// What the app knows.
@@ -101,11 +113,6 @@ impl App {
             command => self.state.apply(command, context),
         }
     }
-
-    /// The state as text, as it is saved.
-    pub fn saved(&self) -> Option<String> {
-        self.state.save()
-    }
 }
 
 impl eframe::App for App {
@@ -123,6 +130,11 @@ impl eframe::App for App {
         }
         let now = context.input(|input| input.time);
         self.undoer.feed_state(now, &self.state.project);
+        if let (Some(store), Some(text)) = (&mut self.store, self.state.save())
+            && let Some(failure) = store.keep(text, context)
+        {
+            self.state.say(Severity::Error, failure);
+        }
     }
 
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
@@ -144,9 +156,9 @@ impl eframe::App for App {
         }
     }
 
-    fn save(&mut self, storage: &mut dyn eframe::Storage) {
-        if let Some(text) = self.state.save() {
-            storage.set_string(STORAGE_KEY, text);
+    fn on_exit(&mut self) {
+        if let (Some(store), Some(text)) = (&mut self.store, self.state.save()) {
+            store.finish(&text);
         }
     }
 }

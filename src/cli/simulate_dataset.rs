@@ -40,6 +40,7 @@ struct CaseAnswer<'a> {
     spin: bool,
     #[serde(flatten)]
     error: &'a MotionError,
+    violations: usize,
     flags: Vec<FlagAnswer>,
 }
 
@@ -114,6 +115,7 @@ impl<'a> CaseAnswer<'a> {
             case: &replay.case,
             spin: replay.spin,
             error: &replay.error,
+            violations: replay.violations,
             flags: replay.motion.flags.iter().map(FlagAnswer::from).collect(),
         }
     }

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::data::{Channel, SeriesError, TimeSeries};
 use crate::numerics::{interpolate, wrap_angle_rad};
+use crate::vehicle::VehicleParameters;
 
 /// Horizons at which the distance is reported, s.
 pub const HORIZONS_S: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
@@ -68,6 +69,42 @@ impl MotionError {
     }
 }
 
+/// Growth of kinetic energy per sample that counts as a violation, as a share of the initial one:
+/// far above rounding and what roll hands to yaw through I_xz, far below what an eye would see.
+const VIOLATION_SHARE: f64 = 1e-4;
+
+/// How often the planar kinetic energy grows without a force on the vehicle: samples i whose
+/// contact force is zero over the interval to i + 1 while
+///
+/// ```text
+/// E = m (v_x² + v_y²)/2 + I_zz r²/2        E(i + 1) − E(i) > 10⁻⁴ E(0)
+/// ```
+///
+/// The force columns hold means over the coming interval, as in [`Motion`](crate::vehicle::Motion).
+///
+/// # Errors
+/// [`SeriesError::Missing`] without velocities, yaw rate or force.
+pub fn physical_violations(
+    motion: &TimeSeries,
+    vehicle: &VehicleParameters,
+) -> Result<usize, SeriesError> {
+    let [vx, vy, rate, fx, fy] =
+        [Channel::Vx, Channel::Vy, Channel::YawRate, Channel::FxBody, Channel::FyBody]
+            .map(|channel| motion.require(channel));
+    let (vx, vy, rate, fx, fy) = (vx?, vy?, rate?, fx?, fy?);
+    let (mass, inertia) = (vehicle.mass.mass_kg, vehicle.mass.yaw_inertia_kg_m2);
+    let energy: Vec<f64> = vx
+        .iter()
+        .zip(vy)
+        .zip(rate)
+        .map(|((vx, vy), r)| (mass * (vx * vx + vy * vy) + inertia * r * r) / 2.0)
+        .collect();
+    let limit = VIOLATION_SHARE * energy.first().copied().unwrap_or(0.0);
+    let steps = energy.windows(2).zip(fx.iter().zip(fy));
+    let grows = |pair: &[f64]| pair[1] - pair[0] > limit;
+    Ok(steps.filter(|(pair, (fx, fy))| **fx == 0.0 && **fy == 0.0 && grows(pair)).count())
+}
+
 fn root_mean_square(values: &[f64]) -> f64 {
     (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt()
 }
@@ -105,6 +142,23 @@ mod tests {
             assert!((got - expected).abs() < 1e-12);
         }
         assert_eq!((error.rmse_x_m, error.rmse_vx_m_s), (0.0, None));
+    }
+
+    #[test]
+    fn energy_that_grows_without_a_force_is_counted() {
+        let vehicle = crate::vehicle::Preset::Reference.parameters();
+        let mut series = TimeSeries::new(vec![0.0, 0.01, 0.02, 0.03]).unwrap();
+        // Up under force, up without, down without.
+        for (channel, values) in [
+            (Channel::Vx, vec![10.0, 11.0, 11.5, 11.4]),
+            (Channel::Vy, vec![0.0; 4]),
+            (Channel::YawRate, vec![0.0; 4]),
+            (Channel::FxBody, vec![5e3, 0.0, 0.0, 0.0]),
+            (Channel::FyBody, vec![0.0; 4]),
+        ] {
+            series.insert(channel, values).unwrap();
+        }
+        assert_eq!(physical_violations(&series, &vehicle), Ok(1));
     }
 
     #[test]

@@ -3,7 +3,9 @@
 mod metrics;
 mod replay;
 
-pub use metrics::{HORIZONS_S, MotionError, SPIN_YAW_CHANGE_RAD, largest_yaw_change_rad};
+pub use metrics::{
+    HORIZONS_S, MotionError, SPIN_YAW_CHANGE_RAD, largest_yaw_change_rad, physical_violations,
+};
 pub use replay::{
     DatasetReplay, ErrorSummary, Replay, ReplayError, initial_state, recorded_manoeuvre,
     replay_case, replay_dataset,

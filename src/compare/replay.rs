@@ -4,7 +4,9 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::compare::{MotionError, SPIN_YAW_CHANGE_RAD, largest_yaw_change_rad};
+use crate::compare::{
+    MotionError, SPIN_YAW_CHANGE_RAD, largest_yaw_change_rad, physical_violations,
+};
 use crate::data::{
     Case, Channel, DataError, Dataset, Outcome, SeriesError, TimeSeries, TrajectoryAttributes,
 };
@@ -29,6 +31,8 @@ pub struct Replay {
     pub error: MotionError,
     /// Whether the recorded motion is a spin.
     pub spin: bool,
+    /// How often the simulated kinetic energy grows without a force: see [`physical_violations`].
+    pub violations: usize,
 }
 
 /// A case that cannot be simulated or compared.
@@ -69,12 +73,26 @@ pub struct DatasetReplay {
 pub struct ErrorSummary {
     /// Mean over time of the distance in (X, Y), m.
     pub average_error_m: Summary,
+    /// `1/mean` of the average error, 1/m.
+    pub score_1_m: f64,
     /// Distance at the last sample, m.
     pub final_error_m: Summary,
     /// Size of the final heading error, rad.
     pub final_heading_error_rad: Summary,
+    /// Distance at each of [`HORIZONS_S`](crate::compare::HORIZONS_S), m.
+    pub horizon_error_m: [Summary; 4],
+    /// Root mean square error of X, m.
+    pub rmse_x_m: Summary,
+    /// Root mean square error of Y, m.
+    pub rmse_y_m: Summary,
+    /// Root mean square error of v_x, m/s, where it is known.
+    pub rmse_vx_m_s: Option<Summary>,
+    /// Root mean square error of v_y, m/s, where it is known.
+    pub rmse_vy_m_s: Option<Summary>,
     /// Root mean square error of the yaw rate, rad/s, where it is known.
     pub rmse_yaw_rate_rad_s: Option<Summary>,
+    /// Physical violations of all cases.
+    pub violations: usize,
 }
 
 /// The recorded initial state and force of a case as a manoeuvre of its recorded duration.
@@ -135,7 +153,8 @@ pub fn replay_case(
         .map_err(|source| ReplayError::Simulation { case: case.name.clone(), source })?;
     let error = MotionError::between(&motion.series, &case.series).map_err(in_case)?;
     let spin = largest_yaw_change_rad(&case.series).map_err(in_case)? > SPIN_YAW_CHANGE_RAD;
-    Ok(Replay { case: case.name.clone(), motion, error, spin })
+    let violations = physical_violations(&motion.series, &vehicle).map_err(in_case)?;
+    Ok(Replay { case: case.name.clone(), motion, error, spin, violations })
 }
 
 /// Simulates and compares every case of a dataset in parallel. A case that fails does not stop
@@ -171,18 +190,25 @@ impl ErrorSummary {
         replays: impl IntoIterator<Item = &'a Replay>,
         choose: impl Fn(&Replay) -> bool,
     ) -> Option<Self> {
-        let errors: Vec<&MotionError> = replays
-            .into_iter()
-            .filter(|replay| choose(replay))
-            .map(|replay| &replay.error)
-            .collect();
-        let summary =
-            |figure: fn(&MotionError) -> f64| Summary::of(errors.iter().map(|e| figure(e)));
+        let replays: Vec<&Replay> = replays.into_iter().filter(|replay| choose(replay)).collect();
+        let errors = || replays.iter().map(|replay| &replay.error);
+        let of = |figure: &dyn Fn(&MotionError) -> f64| Summary::of(errors().map(figure));
+        let known =
+            |figure: fn(&MotionError) -> Option<f64>| Summary::of(errors().filter_map(figure));
+        let average_error_m = of(&|error| error.average_error_m)?;
+        let horizon = |index: usize| of(&|error| error.horizon_error_m[index]);
         Some(Self {
-            average_error_m: summary(|error| error.average_error_m)?,
-            final_error_m: summary(|error| error.final_error_m)?,
-            final_heading_error_rad: summary(|error| error.final_heading_error_rad.abs())?,
-            rmse_yaw_rate_rad_s: Summary::of(errors.iter().filter_map(|e| e.rmse_yaw_rate_rad_s)),
+            average_error_m,
+            score_1_m: 1.0 / average_error_m.mean,
+            final_error_m: of(&|error| error.final_error_m)?,
+            final_heading_error_rad: of(&|error| error.final_heading_error_rad.abs())?,
+            horizon_error_m: [horizon(0)?, horizon(1)?, horizon(2)?, horizon(3)?],
+            rmse_x_m: of(&|error| error.rmse_x_m)?,
+            rmse_y_m: of(&|error| error.rmse_y_m)?,
+            rmse_vx_m_s: known(|error| error.rmse_vx_m_s),
+            rmse_vy_m_s: known(|error| error.rmse_vy_m_s),
+            rmse_yaw_rate_rad_s: known(|error| error.rmse_yaw_rate_rad_s),
+            violations: replays.iter().map(|replay| replay.violations).sum(),
         })
     }
 }

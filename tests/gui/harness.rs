@@ -33,12 +33,17 @@ impl TestRenderer for SoftwareTestRenderer {
 
 /// Opens the app on these paths.
 pub fn open(paths: &[&str]) -> Harness<'static, App> {
+    open_with(paths, None)
+}
+
+/// Opens the app on these paths, with its state in a file.
+pub fn open_with(paths: &[&str], state_file: Option<PathBuf>) -> Harness<'static, App> {
     let paths: Vec<PathBuf> = paths.iter().map(PathBuf::from).collect();
     Harness::builder()
         .with_size([1440.0, 900.0])
         .with_step_dt(1.0 / 60.0)
         .renderer(SoftwareTestRenderer::default())
-        .build_eframe(move |cc| App::new(cc, paths))
+        .build_eframe(move |cc| App::new(cc, paths, state_file))
 }
 
 /// Steps until the state is as wanted.

@@ -2,4 +2,5 @@
 
 mod harness;
 mod pictures;
+mod snapshots;
 mod workflow;

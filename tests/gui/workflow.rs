@@ -1,15 +1,29 @@
 //! What an analyst does, found by what stands on the screen.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, ReplayStatus, State, Subject};
+use impactlab::app::{App, Command, ReplayStatus, State};
 use impactlab::data::Severity;
 use impactlab::units::UnitSystem;
 
-use crate::harness::{apply, is_idle, open, step_until};
+use crate::harness::{apply, is_idle, open, open_with, step_until};
+
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
 
 fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
     harness.state().state()
@@ -108,8 +122,15 @@ fn a_bad_file_says_where_and_offers_the_mapping() {
 
 #[test]
 fn a_dropped_file_opens_and_a_figure_is_exported() {
-    let mut harness = open(&["datasets/fea/forces/c001.csv"]);
-    step_until(&mut harness, "the file", shows("c001.csv"));
+    let mut harness = open(&["datasets/fea"]);
+    step_until(&mut harness, "the data set", shows("c001"));
+    let dropped = Dropped(PathBuf::from("datasets/fea/forces/c002.csv"));
+    harness.input_mut().dropped_files.push(Arc::new(dropped));
+    step_until(&mut harness, "the drop", |state| {
+        state.session.sources.len() == 2 && is_idle(state)
+    });
+    harness.get_by_label_contains("c002.csv").click();
+    step_until(&mut harness, "the file", shows("c002.csv"));
     let analysis = state(&harness).analysis().unwrap().clone();
     let figure = impactlab::figure::analysis_scene_figure(&analysis, 1.0, UnitSystem::Si);
     let folder = tempfile::tempdir().unwrap();
@@ -129,8 +150,10 @@ fn a_dropped_file_opens_and_a_figure_is_exported() {
 }
 
 #[test]
-fn a_scenario_is_solved_simulated_and_survives_a_restart() {
-    let mut harness = open(&["datasets/fea"]);
+fn a_scenario_is_solved_simulated_and_survives_a_kill() {
+    let folder = tempfile::tempdir().unwrap();
+    let state_file = folder.path().join("new/state.json");
+    let mut harness = open_with(&["datasets/fea"], Some(state_file.clone()));
     step_until(&mut harness, "the first case", shows("c001"));
     apply(&mut harness, Command::Show(impactlab::app::Pane::Scenario));
     harness.run_steps(3);
@@ -140,11 +163,20 @@ fn a_scenario_is_solved_simulated_and_survives_a_restart() {
     let analysis = state(&harness).analysis().unwrap();
     assert!(analysis.bullet.is_some() && analysis.simulation.is_some());
 
-    let text = harness.state().saved().unwrap();
-    let (restored, sources) = State::restore(&text).unwrap();
-    assert_eq!(restored.project.subject, Some(Subject::Scenario));
-    assert_eq!(restored.view.layout, state(&harness).view.layout);
-    assert_eq!(sources, [PathBuf::from("datasets/fea")]);
+    // A second is enough to have it on disk; the app is not closed but dropped, as by a kill.
+    harness.run_steps(90);
+    let deadline = std::time::Instant::now() + std::time::Duration::from_secs(30);
+    while !state_file.exists() && std::time::Instant::now() < deadline {
+        harness.step();
+    }
+    let before = state(&harness).project.clone();
+    let layout = state(&harness).view.layout.clone();
+    drop(harness);
+    let mut harness = open_with(&[], Some(state_file));
+    step_until(&mut harness, "the scenario again", shows("PIT, right rear quarter"));
+    assert_eq!(state(&harness).project, before);
+    assert_eq!(state(&harness).view.layout, layout);
+    assert_eq!(state(&harness).session.sources.len(), 1);
 }
 
 #[test]

@@ -97,6 +97,7 @@ fn error_rows(error: &MotionError, units: UnitSystem) -> Vec<(String, String)> {
 }
 
 fn dataset_ui(ui: &mut Ui, replay: &DatasetReplay, units: UnitSystem) {
+    let violations: usize = replay.cases.iter().map(|case| case.violations).sum();
     ui.strong(format!("All {} cases, average position error", replay.cases.len()));
     let unit = Quantity::Length.display_unit(units);
     Grid::new("dataset error").striped(true).show(ui, |ui| {
@@ -119,6 +120,7 @@ fn dataset_ui(ui: &mut Ui, replay: &DatasetReplay, units: UnitSystem) {
             }
         }
     });
+    ui.label(format!("Steps in which energy grows without a force: {violations}"));
     if !replay.failures.is_empty() {
         ui.label(format!("{} cases could not be simulated", replay.failures.len()));
     }

@@ -1,0 +1,65 @@
+//! Every kind of figure, pixel by pixel against a picture that was looked at. A wanted change is
+//! taken over with `UPDATE_SNAPSHOTS=1`.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use egui_kittest::image_snapshot;
+use impactlab::analysis::{Analysis, Settings, analyse_case};
+use impactlab::collision::{ChannelClass, Scenario};
+use impactlab::data::{Channel, Dataset};
+use impactlab::figure::{
+    Figure, analysis_force_figure, analysis_motion_figure, analysis_scene_figure, impact_figure,
+};
+use impactlab::render::{Canvas, figure_image};
+use impactlab::units::UnitSystem;
+use impactlab::vehicle::{Integrator, Preset};
+
+fn analysis(dataset: &str, case: &str) -> Analysis {
+    let mut report = |_| ControlFlow::Continue(());
+    let root = Path::new("datasets").join(dataset);
+    let dataset = Dataset::load(&root, &mut report).expect("shipped data").complete();
+    let settings = Settings {
+        target: Preset::Reference.parameters(),
+        bullet: Preset::Bullet2000.parameters(),
+        integrator: Integrator::Rk4,
+        duration_s: 4.0,
+    };
+    let dataset = dataset.expect("nothing cancels");
+    analyse_case(dataset.case(case).expect("a shipped case"), &settings).expect("it runs")
+}
+
+fn check(figure: &Figure, dark: bool, name: &str) {
+    let canvas = Canvas { size_px: [480, 300], scale: 1.0, dark };
+    image_snapshot(&figure_image(figure, canvas).expect("a picture"), name);
+}
+
+#[test]
+fn force() {
+    let analysis = analysis("fea", "c002");
+    let class = Some(ChannelClass::Cfc60);
+    let figure = analysis_force_figure(&analysis, class, &[], UnitSystem::Si).expect("it filters");
+    check(&figure.expect("a force"), false, "force");
+}
+
+#[test]
+fn motion() {
+    let analysis = analysis("trajectories-pulse", "P001");
+    check(&analysis_motion_figure(&analysis, Channel::YawRate, UnitSystem::Us), true, "motion");
+}
+
+#[test]
+fn scene_with_bullet_and_scene_with_reference() {
+    let force_case = analysis("fea", "c002");
+    check(&analysis_scene_figure(&force_case, 0.4, UnitSystem::Si), false, "scene_bullet");
+    let trajectory = analysis("trajectories-fea", "FE_c002");
+    check(&analysis_scene_figure(&trajectory, 2.0, UnitSystem::Us), true, "scene_reference");
+}
+
+#[test]
+fn impact() {
+    let scenario = Scenario::example();
+    let solution = scenario.solve().expect("the example is solved");
+    let figure = impact_figure(&scenario, &solution, UnitSystem::Si).expect("they touch");
+    check(&figure, false, "impact");
+}
