@@ -85,6 +85,24 @@ impl Unit {
 }
 
 impl Quantity {
+    /// Every quantity.
+    pub const ALL: [Self; 14] = [
+        Self::Time,
+        Self::Length,
+        Self::Speed,
+        Self::Acceleration,
+        Self::Angle,
+        Self::AngularVelocity,
+        Self::Mass,
+        Self::MomentOfInertia,
+        Self::Force,
+        Self::Moment,
+        Self::Impulse,
+        Self::AngularImpulse,
+        Self::Energy,
+        Self::Ratio,
+    ];
+
     /// The unit used inside the program and in the files it writes.
     pub fn si_unit(self) -> Unit {
         self.units()[0]
@@ -179,26 +197,9 @@ pub fn significant(value: f64) -> String {
 mod tests {
     use super::*;
 
-    const ALL: [Quantity; 14] = [
-        Quantity::Time,
-        Quantity::Length,
-        Quantity::Speed,
-        Quantity::Acceleration,
-        Quantity::Angle,
-        Quantity::AngularVelocity,
-        Quantity::Mass,
-        Quantity::MomentOfInertia,
-        Quantity::Force,
-        Quantity::Moment,
-        Quantity::Impulse,
-        Quantity::AngularImpulse,
-        Quantity::Energy,
-        Quantity::Ratio,
-    ];
-
     #[test]
     fn the_first_unit_is_si_and_all_round_trip() {
-        for quantity in ALL {
+        for quantity in Quantity::ALL {
             assert_eq!(quantity.si_unit().si_per_unit, 1.0, "{quantity:?}");
             for unit in quantity.units() {
                 let back = unit.from_si(unit.to_si(12.5));
@@ -213,7 +214,7 @@ mod tests {
         assert_eq!(speed.symbol, "mph");
         assert!((speed.from_si(44.704) - 100.0).abs() < 1e-12);
         assert_eq!(Quantity::Impulse.display_unit(UnitSystem::Si).symbol, "kN s");
-        for quantity in ALL {
+        for quantity in Quantity::ALL {
             let us = quantity.display_unit(UnitSystem::Us);
             assert!(quantity.units().contains(&us), "{quantity:?}");
         }

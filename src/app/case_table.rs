@@ -1,8 +1,11 @@
 //! The rows of the case table: filtered and sorted. Knows no egui.
 
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
 use crate::app::source::{CheckedDataset, Source};
-use crate::app::state::{ReplayStatus, State, View};
-use crate::compare::{MotionError, Replay};
+use crate::app::state::{ReplayStatus, Replays, View};
+use crate::compare::{DatasetReplay, MotionError};
 use crate::data::{Case, DatasetKind, Flag, Value};
 use crate::units::{Quantity, UnitSystem, significant};
 
@@ -129,9 +132,104 @@ impl CaseRow<'_> {
     }
 }
 
-/// The dataset that is listed.
-pub fn listed(state: &State) -> Option<&CheckedDataset> {
-    listed_in(&state.session.sources, &state.view)
+/// A finished replay with its cases by name.
+pub struct FinishedReplay {
+    /// The replay.
+    pub replay: DatasetReplay,
+    by_case: BTreeMap<String, usize>,
+}
+
+impl FinishedReplay {
+    /// Looks the cases up by name from now on.
+    pub fn new(replay: DatasetReplay) -> Self {
+        let names = replay.cases.iter().enumerate();
+        let by_case = names.map(|(index, replay)| (replay.case.clone(), index)).collect();
+        Self { replay, by_case }
+    }
+
+    fn error(&self, case: &str) -> Option<&MotionError> {
+        let index = self.by_case.get(case)?;
+        self.replay.cases.get(*index).map(|replay| &replay.error)
+    }
+}
+
+/// Which cases are listed, in which order. Kept between frames: filtering and sorting 10 000 cases
+/// takes longer than a frame may.
+#[derive(Default)]
+pub struct CaseList {
+    key: Option<ListKey>,
+    order: Vec<usize>,
+}
+
+/// What the order was made for.
+#[derive(PartialEq)]
+struct ListKey {
+    path: PathBuf,
+    n_cases: usize,
+    n_errors: usize,
+    filter: String,
+    sort: Option<(String, bool)>,
+}
+
+/// The listed data set, ready to be shown.
+#[derive(Clone, Copy)]
+pub struct CaseTable<'a> {
+    /// The data set.
+    pub checked: &'a CheckedDataset,
+    errors: Option<&'a FinishedReplay>,
+    order: &'a [usize],
+}
+
+impl CaseList {
+    /// Makes the order anew if what it was made for has changed.
+    pub fn update(&mut self, sources: &[Source], replays: &Replays, view: &View) {
+        let (Some(path), Some(checked)) = (&view.listed, listed_in(sources, view)) else {
+            *self = Self::default();
+            return;
+        };
+        let errors = finished(replays, path);
+        let key = ListKey {
+            path: path.clone(),
+            n_cases: checked.dataset.cases.len(),
+            n_errors: errors.map_or(0, |errors| errors.replay.cases.len()),
+            filter: view.filter.clone(),
+            sort: view.sort_column.clone().map(|key| (key, view.sort_descending)),
+        };
+        if self.key.as_ref() != Some(&key) {
+            self.order = order(checked, errors, view);
+            self.key = Some(key);
+        }
+    }
+
+    /// The table in this order.
+    pub fn table<'a>(
+        &'a self,
+        sources: &'a [Source],
+        replays: &'a Replays,
+        view: &View,
+    ) -> Option<CaseTable<'a>> {
+        let checked = listed_in(sources, view)?;
+        let errors = finished(replays, view.listed.as_ref()?);
+        Some(CaseTable { checked, errors, order: &self.order })
+    }
+}
+
+impl<'a> CaseTable<'a> {
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.order.len()
+    }
+
+    /// A row.
+    pub fn row(&self, index: usize) -> Option<CaseRow<'a>> {
+        row(self.checked, self.errors, *self.order.get(index)?)
+    }
+
+    /// Where a case stands.
+    pub fn position(&self, name: &str) -> Option<usize> {
+        let cases = &self.checked.dataset.cases;
+        self.order.iter().position(|&case| cases.get(case).is_some_and(|case| case.name == name))
+    }
 }
 
 /// The dataset that is listed.
@@ -141,49 +239,43 @@ pub fn listed_in<'a>(sources: &'a [Source], view: &View) -> Option<&'a CheckedDa
     source.dataset().map(std::sync::Arc::as_ref)
 }
 
-/// The rows of the dataset that is listed, as filtered and sorted.
-pub fn rows(state: &State) -> Vec<CaseRow<'_>> {
-    let Some(checked) = listed(state) else {
-        return Vec::new();
-    };
-    let replay = state.view.listed.as_ref().and_then(|path| state.session.replays.get(path));
-    rows_of(checked, replay, &state.view)
+fn finished<'a>(replays: &'a Replays, path: &PathBuf) -> Option<&'a FinishedReplay> {
+    match replays.get(path)? {
+        ReplayStatus::Done(finished) => Some(finished),
+        ReplayStatus::Running(_) => None,
+    }
 }
 
-/// The rows of a dataset, as filtered and sorted.
-pub fn rows_of<'a>(
+fn row<'a>(
     checked: &'a CheckedDataset,
-    replay: Option<&'a ReplayStatus>,
-    view: &View,
-) -> Vec<CaseRow<'a>> {
-    let replays: &[Replay] = match replay {
-        Some(ReplayStatus::Done(replay)) => &replay.cases,
-        _ => &[],
-    };
-    let by_name: std::collections::BTreeMap<&str, &MotionError> =
-        replays.iter().map(|replay| (replay.case.as_str(), &replay.error)).collect();
-    let cases = checked.dataset.cases.iter().zip(&checked.flags);
-    let mut rows: Vec<CaseRow<'_>> = cases
-        .map(|(case, flags)| {
-            let error = by_name.get(case.name.as_str()).copied();
-            CaseRow { name: &case.name, case, flags, error }
-        })
-        .filter(|row| row.matches(&view.filter))
+    errors: Option<&'a FinishedReplay>,
+    index: usize,
+) -> Option<CaseRow<'a>> {
+    let (case, flags) = (checked.dataset.cases.get(index)?, checked.flags.get(index)?);
+    let error = errors.and_then(|errors| errors.error(&case.name));
+    Some(CaseRow { name: &case.name, case, flags, error })
+}
+
+fn order(checked: &CheckedDataset, errors: Option<&FinishedReplay>, view: &View) -> Vec<usize> {
+    let all = 0..checked.dataset.cases.len();
+    let mut rows: Vec<(usize, CaseRow<'_>)> = all
+        .filter_map(|index| Some((index, row(checked, errors, index)?)))
+        .filter(|(_, row)| row.matches(&view.filter))
         .collect();
     if let Some(key) = &view.sort_column {
         sort(&mut rows, key, view.sort_descending);
     }
-    rows
+    rows.into_iter().map(|(index, _)| index).collect()
 }
 
 /// Numbers before texts before nothing; rows that tie keep their order.
-fn sort(rows: &mut [CaseRow<'_>], key: &str, descending: bool) {
+fn sort(rows: &mut [(usize, CaseRow<'_>)], key: &str, descending: bool) {
     let text = |row: &CaseRow<'_>| match key {
         "case" => row.name.to_owned(),
         "flags" => format!("{:03}", 999 - row.flags.len().min(999)),
         _ => row.case.attributes.text(key).unwrap_or_default().to_owned(),
     };
-    rows.sort_by(|a, b| {
+    rows.sort_by(|(_, a), (_, b)| {
         let order = match (a.number(key), b.number(key)) {
             (Some(a), Some(b)) => a.total_cmp(&b),
             (Some(_), None) => std::cmp::Ordering::Less,
@@ -211,7 +303,8 @@ mod tests {
     }
 
     fn names(checked: &CheckedDataset, view: &View) -> Vec<String> {
-        rows_of(checked, None, view).iter().map(|row| row.name.to_owned()).collect()
+        let name = |index: usize| checked.dataset.cases[index].name.clone();
+        order(checked, None, view).into_iter().map(name).collect()
     }
 
     #[test]

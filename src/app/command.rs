@@ -8,7 +8,7 @@ use crate::app::dialogs::{FileDialog, MappingDialog, Purpose};
 use crate::app::export;
 use crate::app::panes::{Pane, default_layout, show_pane};
 use crate::app::source::{Content, Source};
-use crate::app::state::{ReplayStatus, State, Subject};
+use crate::app::state::{ReplayStatus, Session, State, Subject};
 use crate::app::update::target_vehicle;
 use crate::collision::Scenario;
 use crate::compare::replay_dataset;
@@ -180,16 +180,18 @@ impl State {
     }
 
     fn select_neighbour(&mut self, step: isize) {
-        let rows = crate::app::case_table::rows(self);
+        let Session { cases, sources, replays, .. } = &self.session;
+        let Some(table) = cases.table(sources, replays, &self.view) else { return };
         let current = match &self.project.subject {
-            Some(Subject::Case { case, .. }) => rows.iter().position(|row| row.name == *case),
+            Some(Subject::Case { case, .. }) => table.position(case),
             _ => None,
         };
         let next = match current {
             Some(index) => index.checked_add_signed(step),
             None => Some(0),
         };
-        if let (Some(row), Some(dataset)) = (next.and_then(|i| rows.get(i)), &self.view.listed) {
+        let row = next.and_then(|index| table.row(index));
+        if let (Some(row), Some(dataset)) = (row, &self.view.listed) {
             let subject = Subject::Case { dataset: dataset.clone(), case: row.name.to_owned() };
             self.select(subject);
         }

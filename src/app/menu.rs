@@ -171,7 +171,7 @@ fn job_ui<T>(ui: &mut Ui, what: &str, job: &Job<T>, cancel: Command, commands: &
             left.map_or(String::new(), |t| format!(", {:.0} s left", t.as_secs_f64().ceil()));
         let text = format!("{what}: {} of {}{left}", progress.done, progress.total);
         match progress.fraction() {
-            Some(fraction) => ui.add(ProgressBar::new(fraction).text(text)),
+            Some(fraction) => ui.add(ProgressBar::new(fraction).desired_width(420.0).text(text)),
             None => ui.horizontal(|ui| (ui.spinner(), ui.label(what))).response,
         };
     });

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{Analysis, FileSetup, PulseSetup};
+use crate::app::case_table::{CaseList, FinishedReplay};
 use crate::app::dialogs::{FileDialog, MappingDialog};
 use crate::app::panes::{Layout, default_layout};
 use crate::app::source::Source;
@@ -144,7 +145,9 @@ pub struct Session {
     /// What was made of the subject.
     pub analysis: AnalysisStatus,
     /// Whole datasets, simulated.
-    pub replays: BTreeMap<PathBuf, ReplayStatus>,
+    pub replays: Replays,
+    /// Which cases of the listed data set are shown, in which order.
+    pub cases: CaseList,
     /// The moment shown in the scene, s.
     pub time_s: f64,
     /// Whether time runs.
@@ -179,8 +182,11 @@ pub enum ReplayStatus {
     /// Under way.
     Running(Job<Result<Outcome<DatasetReplay>, String>>),
     /// Done.
-    Done(Arc<DatasetReplay>),
+    Done(FinishedReplay),
 }
+
+/// The replays by data set.
+pub type Replays = BTreeMap<PathBuf, ReplayStatus>;
 
 /// Something the user should know.
 #[derive(Debug, Clone, PartialEq)]

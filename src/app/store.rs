@@ -1,7 +1,7 @@
 //! Keeps the state on disk: a moment after every change, so that a kill loses nothing, and by a
 //! temporary name, so that a kill leaves no half file.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use egui::Context;
@@ -78,7 +78,7 @@ impl Store {
     }
 }
 
-fn write(path: &PathBuf, text: &str) -> Result<(), DataError> {
+fn write(path: &Path, text: &str) -> Result<(), DataError> {
     if let Some(folder) = path.parent() {
         // If this fails, writing says so.
         let _ = std::fs::create_dir_all(folder);

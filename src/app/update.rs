@@ -6,9 +6,10 @@ use std::sync::Arc;
 use egui::Context;
 
 use crate::analysis::{Analysis, Settings, analyse_case, analyse_file, analyse_scenario};
+use crate::app::case_table::FinishedReplay;
 use crate::app::command::{Command, wake};
 use crate::app::source::{CheckedDataset, CheckedFile, Content, OpenError, Source};
-use crate::app::state::{Project, ReplayStatus, State, Subject, VehicleChoice};
+use crate::app::state::{Project, ReplayStatus, Session, State, Subject, VehicleChoice};
 use crate::data::{DatasetKind, Outcome, Severity};
 use crate::error_chain;
 use crate::jobs::{Job, Update};
@@ -33,6 +34,8 @@ impl State {
             commands.extend(answer);
         }
         self.select_something();
+        let Session { cases, sources, replays, .. } = &mut self.session;
+        cases.update(sources, replays, &self.view);
         self.request_analysis(context);
         self.advance_time(context);
     }
@@ -82,7 +85,7 @@ impl State {
                 Update::Finished(Ok(Outcome::Complete(replay))) => {
                     let failures = replay.failures.iter().map(|failure| error_chain(failure));
                     news.extend(failures.map(|text| (path.clone(), Some(text), false)));
-                    *status = ReplayStatus::Done(Arc::new(replay));
+                    *status = ReplayStatus::Done(FinishedReplay::new(replay));
                 }
                 Update::Finished(Ok(Outcome::Cancelled)) => news.push((path.clone(), None, true)),
                 Update::Panicked(text) => {

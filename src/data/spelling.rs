@@ -165,23 +165,7 @@ fn is_bracketed(text: &str) -> bool {
 }
 
 fn is_unit(text: &str) -> bool {
-    let quantities = [
-        Quantity::Time,
-        Quantity::Length,
-        Quantity::Speed,
-        Quantity::Acceleration,
-        Quantity::Angle,
-        Quantity::AngularVelocity,
-        Quantity::Mass,
-        Quantity::MomentOfInertia,
-        Quantity::Force,
-        Quantity::Moment,
-        Quantity::Impulse,
-        Quantity::AngularImpulse,
-        Quantity::Energy,
-        Quantity::Ratio,
-    ];
-    quantities.iter().any(|&quantity| unit(quantity, text).is_some())
+    Quantity::ALL.into_iter().any(|quantity| unit(quantity, text).is_some())
 }
 
 fn letters_and_digits(text: &str) -> String {

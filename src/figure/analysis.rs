@@ -36,7 +36,7 @@ pub fn analysis_force_figure(
 
 /// One channel over time, simulation and reference.
 pub fn analysis_motion_figure(analysis: &Analysis, channel: Channel, units: UnitSystem) -> Figure {
-    motion_figure(channel, motions(analysis), units)
+    motion_figure((&analysis.name, channel), motions(analysis), units)
 }
 
 /// One channel at a moment, simulation and reference, in a line.

@@ -48,6 +48,6 @@ pub fn impact_figure(
     let [px, py] = solution.impulse_n_s;
     let impulse = scaled([px, py], px.hypot(py));
     elements.push(arrow("impulse on the target", Role::Resultant, contact, impulse));
-    let title = format!("{}: first contact, impulse and Δv (arrows not to scale)", scenario.name);
+    let title = format!("{}: impulse and Δv at first contact", scenario.name);
     Ok(Figure { title, x, y, equal_aspect: true, elements })
 }

@@ -12,7 +12,7 @@ pub const MOTION_CHANNELS: [Channel; 4] =
 /// One channel over time: simulation full, reference dashed. A series without the channel is left
 /// out.
 pub fn motion_figure(
-    channel: Channel,
+    (name, channel): (&str, Channel),
     [simulation, reference]: [Option<&TimeSeries>; 2],
     units: UnitSystem,
 ) -> Figure {
@@ -29,7 +29,7 @@ pub fn motion_figure(
         line("4DOF simulation", Role::Simulation, LineStyle::Solid, simulation),
     ];
     Figure {
-        title: format!("{} over time", channel.label()),
+        title: format!("{name}: {} over time", channel.label()),
         x: x.clone(),
         y: y.clone(),
         equal_aspect: false,

@@ -1,11 +1,11 @@
 //! Draws figures: one function for the panel on screen and for the picture off-screen.
 
+mod legend;
 mod offscreen;
 mod plot;
 mod software;
 pub mod theme;
 
-pub use egui_plot::Corner;
 pub use offscreen::{Canvas, RenderError, draw_offscreen, figure_image, save_png};
 pub use plot::{FigureOptions, FigureResponse, figure_ui};
 pub use software::SoftwareRenderer;

@@ -2,11 +2,12 @@
 
 use egui::{Id, Stroke, Ui, Vec2b};
 use egui_plot::{
-    Arrows, Corner, FilledArea, GridInput, GridMark, Legend, Line, LineStyle as PlotLineStyle,
-    Plot, PlotPoint, PlotPoints, PlotUi, Points, Polygon, VLine,
+    Arrows, FilledArea, GridInput, GridMark, Legend, Line, LineStyle as PlotLineStyle, Plot,
+    PlotPoint, PlotPoints, PlotUi, Points, Polygon, VLine,
 };
 
 use crate::figure::{Element, Figure, LineStyle, Series};
+use crate::render::legend::emptiest_corner;
 use crate::render::theme;
 use crate::units::significant;
 
@@ -30,14 +31,14 @@ pub struct FigureOptions {
     pub height: Option<f32>,
     /// Fit the view to the data again.
     pub reset: bool,
-    /// Where a legend says what the lines are; none without a corner.
-    pub legend: Option<Corner>,
+    /// Whether a legend says what the lines are.
+    pub legend: bool,
 }
 
 impl Default for FigureOptions {
     fn default() -> Self {
         let (id, link, cursor_x, height) = (String::new(), None, None, None);
-        Self { id, link, cursor_x, height, reset: false, legend: Some(Corner::RightTop) }
+        Self { id, link, cursor_x, height, reset: false, legend: true }
     }
 }
 
@@ -80,11 +81,13 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         .x_grid_spacer(|input| grid(input, X_TICK_CELLS))
         .y_grid_spacer(|input| grid(input, Y_TICK_CELLS))
         .grid_fade(0.9)
+        .x_axis_formatter(|mark, _| tick_label(mark))
+        .y_axis_formatter(|mark, _| tick_label(mark))
         .allow_scroll(false)
         .allow_drag(Vec2b::new(figure.equal_aspect, figure.equal_aspect));
-    if let Some(corner) = options.legend {
-        let legend = Legend::default().position(corner).follow_insertion_order(true);
-        plot = plot.legend(legend.background_alpha(0.6));
+    if options.legend {
+        let legend = Legend::default().position(emptiest_corner(figure));
+        plot = plot.legend(legend.follow_insertion_order(true).background_alpha(0.6));
     }
     if figure.equal_aspect {
         plot = plot.data_aspect(1.0);
@@ -141,6 +144,14 @@ fn grid(input: GridInput, tick_cells: f64) -> Vec<GridMark> {
             step_size: if index % MINOR_DIVISIONS == 0 { tick } else { minor },
         })
         .collect()
+}
+
+/// As many decimals as the distance of the ticks needs.
+fn tick_label(mark: GridMark) -> String {
+    let decimals = (-mark.step_size.log10().floor()).clamp(0.0, 9.0) as usize;
+    let label = format!("{:.decimals$}", mark.value);
+    let is_negative_zero = label.starts_with('-') && label.bytes().all(|b| b"-0.".contains(&b));
+    if is_negative_zero { label.replace('-', "") } else { label }
 }
 
 fn draw_element<'a>(plot: &mut PlotUi<'a>, element: &'a Element, dark: bool) {

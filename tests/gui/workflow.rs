@@ -52,7 +52,7 @@ fn open_pick_simulate_scrub() {
             .session
             .replays
             .values()
-            .any(|s| matches!(s, ReplayStatus::Done(r) if r.cases.len() == 100))
+            .any(|s| matches!(s, ReplayStatus::Done(r) if r.replay.cases.len() == 100))
     });
     harness.get_by_label("All 100 cases, average position error");
 

@@ -3,7 +3,7 @@
 use egui::{RichText, Sense, Ui};
 use egui_extras::{Column, TableBuilder, TableRow};
 
-use crate::app::case_table::{CaseColumn, CaseRow, listed_in, rows_of};
+use crate::app::case_table::{CaseColumn, CaseRow, CaseTable, listed_in};
 use crate::app::command::Command;
 use crate::app::panes::PaneContext;
 use crate::app::state::{Subject, View};
@@ -16,14 +16,31 @@ const FILTER_HINT: &str = "Filter: c012, hooked, spin=1, m_b_kg>2000";
 /// Draws the case table.
 pub fn cases_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands } = pane;
-    let Some(checked) = listed_in(&session.sources, view) else {
+    if listed_in(&session.sources, view).is_none() {
         ui.label("No data set is open. The cases of a data set are listed here.");
         return;
-    };
-    let Some(path) = view.listed.clone() else {
+    }
+    let before = view.filter.clone();
+    filter_ui(ui, view);
+    let filter_changed = before != view.filter;
+    let (Some(table), Some(path)) =
+        (session.cases.table(&session.sources, &session.replays, view), view.listed.clone())
+    else {
         return;
     };
-    let before = view.filter.clone();
+    ui.weak(format!("{} of {} cases", table.len(), table.checked.dataset.cases.len()));
+    let selected = match &project.subject {
+        Some(Subject::Case { dataset, case }) if *dataset == path => Some(case.as_str()),
+        _ => None,
+    };
+    let columns = CaseColumn::of(table.checked.dataset.kind);
+    let table = Table { cases: table, columns, selected };
+    if let Some(case) = table.ui(ui, (view, filter_changed)) {
+        commands.push(Command::Select(Subject::Case { dataset: path, case }));
+    }
+}
+
+fn filter_ui(ui: &mut Ui, view: &mut View) {
     ui.horizontal(|ui| {
         let field = egui::TextEdit::singleline(&mut view.filter).hint_text(FILTER_HINT);
         let width = ui.available_width() - 30.0;
@@ -34,23 +51,10 @@ pub fn cases_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             view.filter.clear();
         }
     });
-    let rows = rows_of(checked, session.replays.get(&path), view);
-    let shown = format!("{} of {} cases", rows.len(), checked.dataset.cases.len());
-    ui.weak(shown);
-    let selected = match &project.subject {
-        Some(Subject::Case { dataset, case }) if *dataset == path => Some(case.as_str()),
-        _ => None,
-    };
-    let table = Table { rows: &rows, columns: CaseColumn::of(checked.dataset.kind), selected };
-    let filter_changed = before != view.filter;
-    let picked = table.ui(ui, (view, filter_changed));
-    if let Some(case) = picked {
-        commands.push(Command::Select(Subject::Case { dataset: path, case }));
-    }
 }
 
 struct Table<'a> {
-    rows: &'a [CaseRow<'a>],
+    cases: CaseTable<'a>,
     columns: &'static [CaseColumn],
     selected: Option<&'a str>,
 }
@@ -71,18 +75,16 @@ impl Table<'_> {
                 .column(Column::initial(58.0).resizable(true))
                 .column(Column::initial(64.0).resizable(true).clip(true))
                 .columns(Column::initial(72.0).at_least(36.0).resizable(true), self.columns.len());
-            let selected = self.rows.iter().position(|row| Some(row.name) == self.selected);
-            if let Some(index) = selected.filter(|_| filter_changed) {
+            let selected = self.selected.filter(|_| filter_changed);
+            if let Some(index) = selected.and_then(|name| self.cases.position(name)) {
                 table = table.scroll_to_row(index, None);
             }
             let table = table.header(ROW_HEIGHT, |mut header| self.header_ui(&mut header, view));
             table.body(|body| {
-                body.rows(ROW_HEIGHT, self.rows.len(), |mut row| {
-                    let Some(case) = self.rows.get(row.index()) else {
-                        return;
-                    };
+                body.rows(ROW_HEIGHT, self.cases.len(), |mut row| {
+                    let Some(case) = self.cases.row(row.index()) else { return };
                     row.set_selected(Some(case.name) == self.selected);
-                    self.row_ui(&mut row, case, units);
+                    self.row_ui(&mut row, &case, units);
                     if row.response().clicked() {
                         picked = Some(case.name.to_owned());
                     }

@@ -41,7 +41,7 @@ pub fn comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 ui.horizontal(|ui| (ui.spinner(), ui.label("Simulating…")));
             }
             Some(ReplayStatus::Done(replay)) => {
-                dataset_ui(ui, replay, view.units);
+                dataset_ui(ui, &replay.replay, view.units);
                 if ui.button("Simulate again").clicked() {
                     commands.push(Command::ReplayDataset(path.clone()));
                 }

@@ -7,7 +7,7 @@ use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
 use crate::app::widgets::figure_frame;
 use crate::figure::{MOTION_CHANNELS, analysis_motion_figure, analysis_readout};
-use crate::render::{Corner, FigureOptions};
+use crate::render::FigureOptions;
 
 /// Smallest height of one plot, points.
 const MIN_PLOT_HEIGHT: f32 = 110.0;
@@ -26,12 +26,12 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let mut plot = |ui: &mut Ui, channel| {
         let figure = analysis_motion_figure(analysis, channel, view.units);
         let options = FigureOptions {
-            id: figure.title.clone(),
+            id: channel.label().to_owned(),
             link: Some(Id::unique("motion")),
             cursor_x: Some(session.time_s),
             height: Some(height),
             reset: session.fit_plots,
-            legend: (channel == MOTION_CHANNELS[0]).then_some(Corner::LeftBottom),
+            legend: channel == MOTION_CHANNELS[0],
         };
         let heading = analysis_readout(analysis, channel, (session.time_s, view.units));
         let response = figure_frame(ui, (&heading, &figure), &options, commands);

@@ -45,7 +45,7 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 id: "impact".to_owned(),
                 height: Some(PLAN_HEIGHT),
                 reset: session.fit_plots,
-                legend: None,
+                legend: false,
                 ..FigureOptions::default()
             };
             figure_frame(ui, (&figure.title, &figure), &options, commands);

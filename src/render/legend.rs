@@ -1,0 +1,92 @@
+//! Where a legend hides least.
+
+use egui_plot::Corner;
+
+use crate::figure::{Element, Figure, Series};
+
+/// Share of width and height that a legend may take.
+const LEGEND_SHARE: [f64; 2] = [0.4, 0.45];
+/// Points into which a segment is cut, so that long segments count along their length.
+const SEGMENT_POINTS: usize = 16;
+/// From the most to the least usual.
+const CORNERS: [Corner; 4] =
+    [Corner::RightTop, Corner::LeftTop, Corner::RightBottom, Corner::LeftBottom];
+
+/// The corner of a figure with the fewest points; of several, the most usual.
+pub fn emptiest_corner(figure: &Figure) -> Corner {
+    let points: Vec<[f64; 2]> = figure.elements.iter().flat_map(points).collect();
+    let range = |axis: usize| {
+        let values = points.iter().map(|point| point[axis]);
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
+    };
+    let ranges = [range(0), range(1)];
+    let share = |point: &[f64; 2], axis: usize| {
+        let (low, high) = ranges[axis];
+        (point[axis] - low) / (high - low)
+    };
+    let hidden = |corner: &Corner| {
+        let is_right = matches!(corner, Corner::RightTop | Corner::RightBottom);
+        let is_top = matches!(corner, Corner::RightTop | Corner::LeftTop);
+        let is_behind = |point: &&[f64; 2]| {
+            let [x, y] = [share(point, 0), share(point, 1)];
+            let from_side = if is_right { 1.0 - x } else { x };
+            let from_edge = if is_top { 1.0 - y } else { y };
+            from_side < LEGEND_SHARE[0] && from_edge < LEGEND_SHARE[1]
+        };
+        points.iter().filter(is_behind).count()
+    };
+    CORNERS.into_iter().min_by_key(hidden).unwrap_or(Corner::RightTop)
+}
+
+fn points(element: &Element) -> Vec<[f64; 2]> {
+    match element {
+        Element::Points(series) => series.points.clone(),
+        Element::Line(series) | Element::Polygon(series) | Element::Arrow(series) => along(series),
+        Element::Band(band) => {
+            let edge = |edge: &[f64]| band.x.iter().copied().zip(edge.iter().copied()).collect();
+            let (low, high): (Vec<_>, Vec<_>) = (edge(&band.low), edge(&band.high));
+            low.into_iter().chain(high).map(|(x, y)| [x, y]).collect()
+        }
+        Element::VerticalLine { .. } => Vec::new(),
+    }
+}
+
+fn along(series: &Series) -> Vec<[f64; 2]> {
+    let cut = |pair: &[[f64; 2]]| {
+        let ([x0, y0], [x1, y1]) = (pair[0], pair[1]);
+        (0..SEGMENT_POINTS).map(move |index| {
+            let share = index as f64 / SEGMENT_POINTS as f64;
+            [x0 + (x1 - x0) * share, y0 + (y1 - y0) * share]
+        })
+    };
+    series.points.windows(2).flat_map(cut).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Axis, Role};
+    use crate::units::{Quantity, UnitSystem};
+
+    fn figure(points: Vec<[f64; 2]>) -> Figure {
+        let axis = Axis::shown("x", Quantity::Ratio, UnitSystem::Si);
+        Figure {
+            title: String::new(),
+            x: axis.clone(),
+            y: axis,
+            equal_aspect: false,
+            elements: vec![Element::line("line", Role::Simulation, points)],
+        }
+    }
+
+    #[test]
+    fn the_legend_goes_where_the_line_is_not() {
+        let falling = figure(vec![[0.0, 1.0], [1.0, 0.0]]);
+        assert_eq!(emptiest_corner(&falling), Corner::RightTop);
+        let rising = figure(vec![[0.0, 0.0], [1.0, 1.0]]);
+        assert_eq!(emptiest_corner(&rising), Corner::LeftTop);
+        let hook = figure(vec![[0.0, 0.0], [0.0, 1.0], [1.0, 1.0]]);
+        assert_eq!(emptiest_corner(&hook), Corner::RightBottom);
+        assert_eq!(emptiest_corner(&figure(Vec::new())), Corner::RightTop);
+    }
+}
