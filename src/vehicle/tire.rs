@@ -75,7 +75,8 @@ impl TireParameters {
         [u, w]: [T; 2],
     ) -> WheelSlip<T> {
         let speed = u.abs();
-        let slip_angle_rad = -w.atan2(speed + SLIP_ANGLE_SPEED_M_S);
+        // atan2(w, |u| + ε): the second argument is positive, and atan is the faster half of it.
+        let slip_angle_rad = -(w / (speed + SLIP_ANGLE_SPEED_M_S)).atan();
         let beyond_peak = slip_angle_rad * slip_angle_rad / SLIDING_SLIP_ANGLE_RAD.powi(2);
         let sliding_loss = if self.sliding_friction_ratio < 1.0 {
             -((-beyond_peak).exp() - 1.0) * (1.0 - self.sliding_friction_ratio)
