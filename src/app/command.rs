@@ -208,10 +208,10 @@ impl State {
         let Some(checked) = source.and_then(Source::dataset).cloned() else {
             return;
         };
-        let (choice, integrator) = (self.project.vehicle.clone(), self.project.integrator);
+        let project = self.project.clone();
         let job = Job::spawn("simulate", wake(context), move |report| {
-            let vehicle = target_vehicle(&choice, Some(&checked))?;
-            Ok(replay_dataset(&checked.dataset, &vehicle, integrator, report))
+            let vehicle = target_vehicle(&project, Some(&checked))?;
+            Ok(replay_dataset(&checked.dataset, &vehicle, project.integrator, report))
         });
         match job {
             Ok(job) => {

@@ -16,7 +16,7 @@ use crate::compare::DatasetReplay;
 use crate::data::{Outcome, Severity};
 use crate::jobs::Job;
 use crate::units::UnitSystem;
-use crate::vehicle::Integrator;
+use crate::vehicle::{Equations, Integrator};
 
 /// Version of the saved state; another one is not read.
 const SAVED_VERSION: u32 = 1;
@@ -70,6 +70,8 @@ pub struct Project {
     pub vehicle: VehicleChoice,
     /// The striking vehicle of a scenario, by its preset's id.
     pub bullet_preset: String,
+    /// Which equations of motion.
+    pub equations: Equations,
     /// How the equations of motion are integrated.
     pub integrator: Integrator,
     /// Duration of simulations without a recorded motion, s.
@@ -92,6 +94,7 @@ impl Default for Project {
             subject: None,
             vehicle: VehicleChoice::default(),
             bullet_preset: "bullet-2000".to_owned(),
+            equations: Equations::default(),
             integrator: Integrator::default(),
             duration_s: 4.0,
             channel_class: None,

@@ -13,7 +13,7 @@ use crate::app::state::{Project, ReplayStatus, Session, State, Subject, VehicleC
 use crate::data::{DatasetKind, Outcome, Severity};
 use crate::error_chain;
 use crate::jobs::{Job, Update};
-use crate::vehicle::{Preset, VehicleParameters};
+use crate::vehicle::{Equations, Preset, VehicleParameters};
 
 /// What an analysis is made from, ready to be sent to another thread.
 enum Material {
@@ -235,7 +235,7 @@ fn analyse(material: &Material, project: &Project) -> Result<Analysis, String> {
     };
     let bullet = Preset::from_id(&project.bullet_preset).unwrap_or(Preset::Bullet2000);
     let settings = Settings {
-        target: target_vehicle(&project.vehicle, own)?,
+        target: target_vehicle(project, own)?,
         bullet: bullet.parameters(),
         integrator: project.integrator,
         duration_s: project.duration_s,
@@ -261,6 +261,17 @@ fn analyse(material: &Material, project: &Project) -> Result<Analysis, String> {
 /// # Errors
 /// A message, if its file cannot be read.
 pub fn target_vehicle(
+    project: &Project,
+    own: Option<&CheckedDataset>,
+) -> Result<VehicleParameters, String> {
+    let vehicle = chosen_vehicle(&project.vehicle, own)?;
+    Ok(match project.equations {
+        Equations::Corrected => vehicle, // or as its file says
+        Equations::Paper => vehicle.with_equations(Equations::Paper),
+    })
+}
+
+fn chosen_vehicle(
     choice: &VehicleChoice,
     own: Option<&CheckedDataset>,
 ) -> Result<VehicleParameters, String> {

@@ -10,7 +10,7 @@ use crate::cli::quantity::{UnitsArg, contact_point, friction, speed_m_s, time_s,
 use crate::cli::run::{Console, Verdict};
 use crate::cli::{simulate_dataset, simulate_single};
 use crate::data::{ColumnMap, Sampling};
-use crate::vehicle::{ContactPoint, Integrator};
+use crate::vehicle::{ContactPoint, Equations, Integrator};
 
 /// Simulate the motion after an impact, or compare a whole data set with the simulation
 #[derive(Debug, Args)]
@@ -29,6 +29,9 @@ pub(super) struct SimulateArgs {
     /// How the equations of motion are integrated
     #[arg(long, value_enum, default_value_t)]
     pub(super) integrator: IntegratorArg,
+    /// Which equations of motion
+    #[arg(long, value_enum)]
+    pub(super) equations: Option<EquationsArg>,
     /// Write the trajectory as CSV, 100 Hz (with --dataset: every trajectory, into this folder)
     #[arg(long, value_name = "PATH")]
     pub(super) out: Option<PathBuf>,
@@ -64,13 +67,13 @@ A force sample stands for: the mean around its instant in finite-element files (
 columns, as in forces/ of the data sets); the mean over the coming interval in trajectories (with
 fx_body); else the value at its instant. --sampling overrules it.
 
-JSON, one vehicle: vehicle, integrator, friction, duration_s, force {path, sampling, axes,
+JSON, one vehicle: vehicle, equations, integrator, friction, duration_s, force {path, sampling, axes,
   impulse_n_s [x, y], contact_start_s, contact_end_s, yaw_moment}, delta_v_m_s [x, y] and
   delta_v_magnitude_m_s over the contact (null without), end {x_m, y_m, yaw_rad, roll_rad,
   vx_m_s, vy_m_s, yaw_rate_rad_s, speed_m_s}, distance_m, largest_yaw_change_rad,
   flags [{kind, time_s, wheel, roll_rad, message}], out
 
-JSON, data set: dataset, vehicle, integrator, cases [{case, spin, average_error_m, final_error_m,
+JSON, data set: dataset, vehicle, equations, integrator, cases [{case, spin, average_error_m, final_error_m,
   final_heading_error_rad, horizon_error_m (at 0.5, 1, 2, 4 s), rmse_*, flags}], overall, spinning
   and not_spinning {average_error_m, final_error_m, final_heading_error_rad,
   rmse_yaw_rate_rad_s: each {n, mean, std, median, p90, min, max}}, failures [text], out
@@ -134,6 +137,24 @@ impl From<IntegratorArg> for Integrator {
         match integrator {
             IntegratorArg::Rk4 => Self::Rk4,
             IntegratorArg::Euler => Self::Euler,
+        }
+    }
+}
+
+/// Which equations of motion; without the option, the vehicle file says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum EquationsArg {
+    /// The paper's, mended
+    Corrected,
+    /// The paper's, as printed: an ablation that diverges
+    Paper,
+}
+
+impl From<EquationsArg> for Equations {
+    fn from(equations: EquationsArg) -> Self {
+        match equations {
+            EquationsArg::Corrected => Self::Corrected,
+            EquationsArg::Paper => Self::Paper,
         }
     }
 }

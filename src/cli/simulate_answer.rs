@@ -18,6 +18,7 @@ use crate::vehicle::{Manoeuvre, Motion, MotionFlag};
 #[derive(Debug, Serialize)]
 pub(super) struct Answer {
     pub(super) vehicle: String,
+    pub(super) equations: String,
     pub(super) integrator: String,
     pub(super) friction: f64,
     pub(super) duration_s: f64,
@@ -87,7 +88,7 @@ impl From<&MotionFlag> for FlagAnswer {
     }
 }
 
-/// What follows from the motion; name, integrator, friction and files are filled in by the caller.
+/// What follows from the motion; name, equations, integrator, friction and files are filled in by the caller.
 pub(super) fn answer(
     args: &SingleArgs,
     manoeuvre: &Manoeuvre,
@@ -109,6 +110,7 @@ pub(super) fn answer(
     });
     Ok(Answer {
         vehicle: String::new(),
+        equations: String::new(),
         integrator: String::new(),
         friction: 0.0,
         duration_s: 0.0,
@@ -173,7 +175,10 @@ pub(super) fn print_text(
         ("vehicle", answer.vehicle.clone()),
         (
             "simulation",
-            format!("{} s, {}, friction {}", answer.duration_s, answer.integrator, answer.friction),
+            format!(
+                "{} s, {} equations, {}, friction {}",
+                answer.duration_s, answer.equations, answer.integrator, answer.friction
+            ),
         ),
     ];
     if let Some(force) = &answer.force {

@@ -12,7 +12,7 @@ use crate::cli::progress::{complete, with_progress};
 use crate::cli::run::{Console, Verdict};
 use crate::cli::simulate::SimulateArgs;
 use crate::cli::simulate_answer::FlagAnswer;
-use crate::cli::vehicle_choice::vehicle_or_own;
+use crate::cli::vehicle_choice::{under, vehicle_or_own};
 use crate::compare::{DatasetReplay, ErrorSummary, MotionError, Replay, replay_dataset};
 use crate::data::{Dataset, DatasetKind, write_series_csv};
 use crate::error_chain;
@@ -25,6 +25,7 @@ use crate::vehicle::Integrator;
 struct Answer<'a> {
     dataset: &'a Path,
     vehicle: String,
+    equations: String,
     integrator: String,
     cases: Vec<CaseAnswer<'a>>,
     overall: Option<ErrorSummary>,
@@ -58,6 +59,7 @@ pub(super) fn run(
     }
     let own = dataset.vehicle_file.as_deref();
     let vehicle = vehicle_or_own(args.vehicle.as_deref(), own, root)?;
+    let vehicle = under(vehicle, args.equations);
     let integrator: Integrator = args.integrator.into();
     let replay =
         complete(with_progress(|report| replay_dataset(&dataset, &vehicle, integrator, report)))?;
@@ -70,6 +72,7 @@ pub(super) fn run(
     let answer = Answer {
         dataset: root,
         vehicle: vehicle.name.clone(),
+        equations: word(&vehicle.equations),
         integrator: word(&integrator),
         cases: replay.cases.iter().map(CaseAnswer::of).collect(),
         overall: summary(|_| true),

@@ -7,7 +7,7 @@ use crate::cli::output::{print_json, word};
 use crate::cli::run::{Console, Verdict};
 use crate::cli::simulate::{SimulateArgs, SingleArgs};
 use crate::cli::simulate_answer::{Answer, answer, print_text};
-use crate::cli::vehicle_choice::vehicle;
+use crate::cli::vehicle_choice::{under, vehicle};
 use crate::data::{
     Channel, ForceHistory, Sampling, contact_interval, read_any_series, read_force_file,
     read_steer_file, write_series_csv,
@@ -19,7 +19,8 @@ use crate::vehicle::{
 /// Simulates one vehicle, writes and prints what came out.
 pub(super) fn run(args: &SimulateArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
     let single = &args.single;
-    let mut vehicle = vehicle(args.vehicle.as_deref().unwrap_or_default())?;
+    let vehicle = vehicle(args.vehicle.as_deref().unwrap_or_default())?;
+    let mut vehicle = under(vehicle, args.equations);
     if let Some(friction) = single.friction {
         vehicle = vehicle.with_friction(friction);
     }
@@ -31,6 +32,7 @@ pub(super) fn run(args: &SimulateArgs, console: &mut Console<'_>) -> Result<Verd
     }
     let answer = Answer {
         vehicle: vehicle.name.clone(),
+        equations: word(&vehicle.equations),
         integrator: word(&integrator),
         friction: vehicle.tires.friction,
         duration_s: single.duration,

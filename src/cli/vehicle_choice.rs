@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::cli::CliError;
+use crate::cli::simulate::EquationsArg;
 use crate::vehicle::{Preset, VehicleParameters};
 
 /// The vehicle that `--vehicle` names: a preset, else a file.
@@ -15,6 +16,17 @@ pub(super) fn vehicle(name: &str) -> Result<VehicleParameters, CliError> {
         return Ok(VehicleParameters::load(path)?);
     }
     Err(unknown(name))
+}
+
+/// The vehicle under the equations that `--equations` names, else those of its file.
+pub(super) fn under(
+    vehicle: VehicleParameters,
+    equations: Option<EquationsArg>,
+) -> VehicleParameters {
+    match equations {
+        Some(equations) => vehicle.with_equations(equations.into()),
+        None => vehicle,
+    }
 }
 
 /// The error for a name that is no vehicle.

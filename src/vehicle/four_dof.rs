@@ -22,6 +22,8 @@
 //! - Tyres and vertical loads: see `tire.rs` and `loads.rs`.
 //! - The loop loads → tyre forces → loads is resolved by two fixed-point passes from the static
 //!   loads, so that the right-hand side stays a pure function of state and input.
+//!
+//! The printed form stays selectable as an ablation: `as_printed.rs`.
 
 use nalgebra::{SMatrix, SVector};
 use num_dual::DualSVec64;
@@ -31,10 +33,10 @@ use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::frames::{body_from_world, world_from_body};
 use crate::vehicle::loads::{LoadTransfer, Wheel, vertical_loads_n};
 use crate::vehicle::tire::WheelSlip;
-use crate::vehicle::{N_STATE, VehicleParameters, VehicleState};
+use crate::vehicle::{Equations, N_STATE, VehicleParameters, VehicleState};
 
 /// Passes through loads → forces → loads.
-const LOAD_PASSES: usize = 2;
+pub(super) const LOAD_PASSES: usize = 2;
 
 /// Where the collision force acts on the target.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -109,14 +111,17 @@ pub struct Evaluation<T> {
 
 /// Forces and moments in body axes: `[F_x, F_y]` and `M_z` about the CG.
 #[derive(Clone, Copy)]
-struct Wrench<T> {
-    force_n: [T; 2],
-    yaw_moment_n_m: T,
+pub(super) struct Wrench<T> {
+    pub(super) force_n: [T; 2],
+    pub(super) yaw_moment_n_m: T,
 }
 
 impl VehicleParameters {
     /// The right-hand side f(x, u) of the equations of motion.
     pub fn evaluate<T: Scalar>(&self, x: &VehicleState<T>, u: &VehicleInput<T>) -> Evaluation<T> {
+        if self.equations == Equations::Paper {
+            return self.evaluate_as_printed(x, u);
+        }
         let collision = collision_wrench(x.yaw_rad, u.collision.as_ref());
         let contact_height_m =
             u.collision.map_or(self.geometry.cg_height_m, |c| c.contact.height_m);
@@ -235,7 +240,7 @@ impl VehicleParameters {
     }
 
     /// Moment of the sprung weight about the roll axis, `m_s g h sin φ`, N m.
-    fn gravity_roll_moment_n_m<T: Scalar>(&self, roll_rad: T) -> T {
+    pub(super) fn gravity_roll_moment_n_m<T: Scalar>(&self, roll_rad: T) -> T {
         let sprung_kg = self.mass.sprung_mass_kg;
         roll_rad.sin() * (sprung_kg * STANDARD_GRAVITY_M_S2 * self.suspension.roll_arm_m)
     }
@@ -261,7 +266,11 @@ impl VehicleParameters {
     }
 }
 
-fn collision_wrench<T: Scalar>(yaw_rad: T, collision: Option<&CollisionForce<T>>) -> Wrench<T> {
+/// The collision force in body axes and its yaw moment about the CG.
+pub(super) fn collision_wrench<T: Scalar>(
+    yaw_rad: T,
+    collision: Option<&CollisionForce<T>>,
+) -> Wrench<T> {
     let zero = T::from(0.0);
     let Some(collision) = collision else {
         return Wrench { force_n: [zero; 2], yaw_moment_n_m: zero };

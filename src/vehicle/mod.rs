@@ -9,9 +9,11 @@ mod preset;
 mod state;
 mod tire;
 
+mod as_printed;
 mod four_dof;
 mod simulate;
 
+pub use as_printed::Equations;
 pub use four_dof::{CollisionForce, ContactPoint, Evaluation, VehicleInput};
 pub use loads::Wheel;
 pub use multibody_record::MultibodyRecord;

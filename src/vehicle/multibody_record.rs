@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 use crate::units::STANDARD_GRAVITY_M_S2;
+use crate::vehicle::Equations;
 use crate::vehicle::parameters::{
     GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters,
 };
@@ -104,6 +105,7 @@ impl MultibodyRecord {
             name: "Reference car (multibody, 2000 kg)".to_owned(),
             source: "vehicle.toml of the trajectory dataset: values of the multibody model at rest"
                 .to_owned(),
+            equations: Equations::default(),
             mass: MassParameters {
                 mass_kg: mass.total_kg,
                 sprung_mass_kg: sprung_kg,

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use crate::vehicle::Equations;
 use crate::vehicle::tire::TireParameters;
 
 /// One vehicle. SI units; every value lies in a range that is checked on load.
@@ -17,6 +18,9 @@ pub struct VehicleParameters {
     pub name: String,
     /// Where the values come from.
     pub source: String,
+    /// Which equations of motion; the corrected ones unless the file says `equations = "paper"`.
+    #[serde(default, skip_serializing_if = "is_corrected")]
+    pub equations: Equations,
     /// Mass and inertia.
     pub mass: MassParameters,
     /// Lengths.
@@ -167,6 +171,12 @@ impl VehicleParameters {
         self
     }
 
+    /// The same vehicle under these equations of motion; an explicit choice overrides its file's.
+    pub fn with_equations(mut self, equations: Equations) -> Self {
+        self.equations = equations;
+        self
+    }
+
     /// The same kind of vehicle with another mass: what belongs to the mass (sprung mass, roll
     /// inertia, product of inertia, roll stiffness and damping) scales with it. Yaw inertia scales
     /// too unless it is given.
@@ -247,6 +257,10 @@ impl VehicleParameters {
             ("tires.rolling_resistance_s2_m2", tires.rolling_resistance_s2_m2, 0.0..=0.001),
         ]
     }
+}
+
+fn is_corrected(equations: &Equations) -> bool {
+    *equations == Equations::Corrected
 }
 
 fn parse_error(text: &str, path: &Path, error: &toml::de::Error) -> VehicleError {

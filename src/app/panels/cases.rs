@@ -73,7 +73,7 @@ impl Table<'_> {
                 .auto_shrink(false)
                 .cell_layout(egui::Layout::left_to_right(egui::Align::Center))
                 .column(Column::initial(58.0).resizable(true))
-                .column(Column::initial(64.0).resizable(true).clip(true))
+                .column(Column::initial(84.0).resizable(true).clip(true))
                 .columns(Column::initial(72.0).at_least(36.0).resizable(true), self.columns.len());
             let selected = self.selected.filter(|_| show_selected);
             if let Some(index) = selected.and_then(|name| self.cases.position(name)) {

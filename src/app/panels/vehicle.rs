@@ -6,7 +6,7 @@ use crate::app::panes::PaneContext;
 use crate::app::state::{Project, VehicleChoice};
 use crate::app::widgets::{quantity_field, value_row};
 use crate::units::{Quantity, UnitSystem};
-use crate::vehicle::{Integrator, Preset, VehicleParameters};
+use crate::vehicle::{Equations, Integrator, Preset, VehicleParameters};
 
 /// Draws the choice of vehicle and integrator, and the parameters.
 pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
@@ -14,18 +14,10 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         Grid::new("vehicle choice").num_columns(2).show(ui, |ui| {
             choice_ui(ui, project);
-            let name = ui.label("Integration");
-            ComboBox::from_id_salt("integrator")
-                .selected_text(integrator_label(project.integrator))
-                .show_ui(ui, |ui| {
-                    for integrator in [Integrator::Rk4, Integrator::Euler] {
-                        let label = integrator_label(integrator);
-                        ui.selectable_value(&mut project.integrator, integrator, label);
-                    }
-                })
-                .response
-                .labelled_by(name.id);
-            ui.end_row();
+            let equations = [Equations::Corrected, Equations::Paper];
+            list_ui(ui, "Equations", &mut project.equations, (&equations, equations_label));
+            let integrators = [Integrator::Rk4, Integrator::Euler];
+            list_ui(ui, "Integration", &mut project.integrator, (&integrators, integrator_label));
             let range = (0.1..=30.0, view.units);
             quantity_field(ui, "Duration", &mut project.duration_s, Quantity::Time, range);
         });
@@ -61,6 +53,33 @@ fn choice_ui(ui: &mut Ui, project: &mut Project) {
         .response
         .labelled_by(name.id);
     ui.end_row();
+}
+
+/// A labelled choice of a few values in a two-column grid.
+fn list_ui<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    title: &str,
+    value: &mut T,
+    (options, label): (&[T], fn(T) -> &'static str),
+) {
+    let name = ui.label(title);
+    ComboBox::from_id_salt(title)
+        .selected_text(label(*value))
+        .show_ui(ui, |ui| {
+            for &option in options {
+                ui.selectable_value(value, option, label(option));
+            }
+        })
+        .response
+        .labelled_by(name.id);
+    ui.end_row();
+}
+
+fn equations_label(equations: Equations) -> &'static str {
+    match equations {
+        Equations::Corrected => "4DOF, corrected",
+        Equations::Paper => "4DOF as the paper prints it (diverges)",
+    }
 }
 
 fn integrator_label(integrator: Integrator) -> &'static str {
