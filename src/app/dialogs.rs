@@ -194,7 +194,7 @@ impl MappingDialog {
         };
         let name = ui.label(format!("{}: {}", proposal.number, proposal.name));
         ui.weak(proposal.samples.join("  "));
-        let label = |choice: Option<Channel>| choice.map_or("nothing needed", Channel::label);
+        let label = |choice: Option<Channel>| choice.map_or("not used", Channel::label);
         let channels = ComboBox::from_id_salt(("channel", index)).selected_text(label(*choice));
         let shown = channels.show_ui(ui, |ui| {
             for option in std::iter::once(None).chain(CHOICES.map(Some)) {

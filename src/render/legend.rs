@@ -6,6 +6,8 @@ use crate::figure::{Element, Figure, Series};
 
 /// Share of width and height that a legend may take.
 const LEGEND_SHARE: [f64; 2] = [0.4, 0.45];
+/// Segments of a line that are looked at.
+const MAX_SEGMENTS: usize = 400;
 /// Points into which a segment is cut, so that long segments count along their length.
 const SEGMENT_POINTS: usize = 16;
 /// From the most to the least usual.
@@ -59,7 +61,9 @@ fn along(series: &Series) -> Vec<[f64; 2]> {
             [x0 + (x1 - x0) * share, y0 + (y1 - y0) * share]
         })
     };
-    series.points.windows(2).flat_map(cut).collect()
+    let stride = (series.points.len() / MAX_SEGMENTS).max(1);
+    let points: Vec<[f64; 2]> = series.points.iter().copied().step_by(stride).collect();
+    points.windows(2).flat_map(cut).collect()
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ mod offscreen;
 mod plot;
 mod software;
 pub mod theme;
+mod thin;
 
 pub use offscreen::{Canvas, RenderError, draw_offscreen, figure_image, save_png};
 pub use plot::{FigureOptions, FigureResponse, figure_ui};

@@ -9,6 +9,7 @@ use egui_plot::{
 use crate::figure::{Element, Figure, LineStyle, Series};
 use crate::render::legend::emptiest_corner;
 use crate::render::theme;
+use crate::render::thin::thinned;
 use crate::units::significant;
 
 /// Smallest distance of labelled ticks, in multiples of egui_plot's smallest grid spacing (8 points).
@@ -162,7 +163,7 @@ fn draw_element<'a>(plot: &mut PlotUi<'a>, element: &'a Element, dark: bool) {
         LineStyle::Dashed => PlotLineStyle::dashed_loose(),
         LineStyle::Dotted => PlotLineStyle::dotted_loose(),
     };
-    let points = |series: &'a Series| PlotPoints::from(series.points.clone());
+    let points = |series: &Series| PlotPoints::from(thinned(&series.points).into_owned());
     match element {
         Element::Line(series) => {
             plot.line(Line::new(&series.name, points(series)).stroke(stroke).style(style(series)));

@@ -103,28 +103,24 @@ fn setup_ui(ui: &mut Ui, project: &mut Project, units: UnitSystem) {
     }
 }
 
-/// The parameters as the file has them; estimates say by which rule.
+/// The parameters as the file has them, and by which rule the estimates came about.
 fn parameters_ui(ui: &mut Ui, vehicle: &VehicleParameters) {
     ui.strong(&vehicle.name);
     ui.weak(&vehicle.source);
-    let Ok(tables) = toml::Table::try_from(vehicle) else {
-        return;
-    };
+    let Ok(tables) = toml::Table::try_from(vehicle) else { return };
     Grid::new("parameters").striped(true).num_columns(2).show(ui, |ui| {
         for (table, values) in &tables {
-            let Some(values) = values.as_table().filter(|_| table != "estimates") else {
-                continue;
-            };
+            let Some(values) = values.as_table().filter(|_| table != "estimates") else { continue };
             for (key, value) in values {
-                let estimate = vehicle.estimates.get(&format!("{table}.{key}"));
-                let mark = if estimate.is_some() { " (estimate)" } else { "" };
+                let is_estimate = vehicle.estimates.contains_key(&format!("{table}.{key}"));
+                let mark = if is_estimate { " (estimate)" } else { "" };
                 value_row(ui, key, &format!("{value}{mark}"));
-                if let Some(rule) = estimate {
-                    ui.weak("");
-                    ui.weak(rule);
-                    ui.end_row();
-                }
             }
+        }
+    });
+    egui::CollapsingHeader::new("Rules of the estimates").show(ui, |ui| {
+        for (key, rule) in &vehicle.estimates {
+            ui.add(egui::Label::new(format!("{key}: {rule}")).wrap());
         }
     });
 }
