@@ -8,7 +8,7 @@ use crate::app::dialogs::{FileDialog, MappingDialog, Purpose};
 use crate::app::export;
 use crate::app::panes::{Pane, default_layout, show_pane};
 use crate::app::source::{Content, Source};
-use crate::app::state::{ReplayStatus, Session, State, Subject};
+use crate::app::state::{ReplayStatus, Session, State, Subject, VehicleChoice};
 use crate::app::update::target_vehicle;
 use crate::collision::Scenario;
 use crate::compare::replay_dataset;
@@ -16,6 +16,7 @@ use crate::data::{ColumnMap, FileKind, Severity, write_atomically};
 use crate::error_chain;
 use crate::figure::Figure;
 use crate::jobs::Job;
+use crate::vehicle::VehicleParameters;
 
 /// Step of the arrow keys in the scene, s.
 const TIME_STEP_S: f64 = 0.05;
@@ -57,8 +58,6 @@ pub enum Command {
     Export(Box<Figure>, PathBuf),
     /// Put a figure's numbers on the clipboard.
     CopyNumbers(Box<Figure>),
-    /// Read the scenario from a file.
-    LoadScenario(PathBuf),
     /// Write the scenario to a file.
     SaveScenario(PathBuf),
     /// Bring a pane to the front.
@@ -118,13 +117,6 @@ impl State {
                 Ok(text) => context.copy_text(text),
                 Err(error) => self.say(Severity::Error, error),
             },
-            Command::LoadScenario(path) => match Scenario::load(&path) {
-                Ok(scenario) => {
-                    self.project.scenario = scenario;
-                    self.select(Subject::Scenario);
-                }
-                Err(error) => self.say(Severity::Error, error_chain(&error)),
-            },
             Command::SaveScenario(path) => {
                 let text = self.project.scenario.to_toml();
                 let written = write_atomically(&path, |out| out.write_all(text.as_bytes()));
@@ -144,12 +136,28 @@ impl State {
     fn open(&mut self, paths: Vec<PathBuf>, context: &Context) {
         for path in paths {
             if path.extension().is_some_and(|ending| ending == "toml") {
-                self.apply(Command::LoadScenario(path), context);
+                self.open_model(path);
                 continue;
             }
             self.session.sources.retain(|source| source.opened != path);
             self.session.look_at = Some(path.clone());
             self.session.sources.push(Source::load(path, wake(context)));
+        }
+    }
+
+    /// Takes a TOML file for a vehicle if it is one, else for a scenario. Such files are small.
+    fn open_model(&mut self, path: PathBuf) {
+        if let Ok(vehicle) = VehicleParameters::load(&path) {
+            self.project.vehicle = VehicleChoice::File(path);
+            self.say(Severity::Info, format!("struck vehicle: {}", vehicle.name));
+            return;
+        }
+        match Scenario::load(&path) {
+            Ok(scenario) => {
+                self.project.scenario = scenario;
+                self.select(Subject::Scenario);
+            }
+            Err(error) => self.say(Severity::Error, error_chain(&error)),
         }
     }
 

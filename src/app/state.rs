@@ -68,7 +68,7 @@ pub struct Project {
     pub subject: Option<Subject>,
     /// The struck vehicle.
     pub vehicle: VehicleChoice,
-    /// The striking vehicle of a scenario, by its preset's id.
+    /// The striking vehicle, where it is simulated, by its preset's id.
     pub bullet_preset: String,
     /// Which equations of motion.
     pub equations: Equations,

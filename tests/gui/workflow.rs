@@ -180,6 +180,21 @@ fn a_scenario_is_solved_simulated_and_survives_a_kill() {
 }
 
 #[test]
+fn a_vehicle_file_becomes_the_struck_vehicle_and_a_scenario_file_the_scenario() {
+    let mut harness = open(&["datasets/fea"]);
+    step_until(&mut harness, "the first case", shows("c001"));
+    apply(&mut harness, Command::Open(vec!["assets/vehicles/scaled-target-100.toml".into()]));
+    step_until(&mut harness, "the case with the other vehicle", |state| {
+        is_idle(state) && state.analysis().is_some_and(|a| a.vehicle.starts_with("Scaled target"))
+    });
+    apply(&mut harness, Command::Open(vec!["assets/scenarios/pit_right_rear.toml".into()]));
+    step_until(&mut harness, "the scenario", shows("PIT, right rear quarter"));
+    apply(&mut harness, Command::Open(vec!["Cargo.toml".into()]));
+    let message = state(&harness).session.messages.last().unwrap();
+    assert!(message.severity == Severity::Error && message.text.contains("Cargo.toml:"));
+}
+
+#[test]
 fn closing_everything_leaves_an_empty_window_that_says_what_to_do() {
     let mut harness = open(&["datasets/fea"]);
     step_until(&mut harness, "the first case", shows("c001"));

@@ -38,7 +38,9 @@ fn choice_ui(ui: &mut Ui, project: &mut Project) {
     let label = match &project.vehicle {
         VehicleChoice::Automatic => "as the data set says".to_owned(),
         VehicleChoice::Preset(id) => id.clone(),
-        VehicleChoice::File(path) => path.display().to_string(),
+        VehicleChoice::File(path) => {
+            path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+        }
     };
     ComboBox::from_id_salt("vehicle")
         .selected_text(label)
@@ -51,7 +53,21 @@ fn choice_ui(ui: &mut Ui, project: &mut Project) {
             }
         })
         .response
-        .labelled_by(name.id);
+        .labelled_by(name.id)
+        .on_hover_text("A vehicle file of your own: open it, or drop it here");
+    ui.end_row();
+    let name = ui.label("Striking vehicle");
+    ComboBox::from_id_salt("bullet")
+        .selected_text(&project.bullet_preset)
+        .show_ui(ui, |ui| {
+            for preset in Preset::ALL {
+                let id = preset.id().to_owned();
+                ui.selectable_value(&mut project.bullet_preset, id, preset.id());
+            }
+        })
+        .response
+        .labelled_by(name.id)
+        .on_hover_text("With the mass and yaw inertia of the case or the scenario");
     ui.end_row();
 }
 
