@@ -75,5 +75,5 @@ pub fn analysis_scene_figure(analysis: &Analysis, time_s: f64, units: UnitSystem
     });
     let vehicles: Vec<_> = [bullet, reference, simulation].into_iter().flatten().collect();
     let title = format!("{}: scene from above at {time_s:.2} s", analysis.name);
-    scene_figure(&SceneFigure { title: &title, vehicles: &vehicles, at_impact: &[], time_s, units })
+    scene_figure(&SceneFigure { title: &title, vehicles: &vehicles, time_s, units })
 }

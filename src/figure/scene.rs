@@ -55,8 +55,6 @@ pub struct SceneFigure<'a> {
     pub title: &'a str,
     /// The vehicles, from back to front.
     pub vehicles: &'a [SceneVehicle<'a>],
-    /// Vehicles that stand for the moment of impact: name, role, footprint and pose.
-    pub at_impact: &'a [(&'a str, Role, Footprint, Pose)],
     /// The moment at which the vehicles are drawn, s.
     pub time_s: f64,
     /// Units of the axes.
@@ -68,10 +66,6 @@ pub fn scene_figure(input: &SceneFigure<'_>) -> Figure {
     let x = Axis::shown("X, along the road", Quantity::Length, input.units);
     let y = Axis::shown("Y, to the left", Quantity::Length, input.units);
     let mut elements = Vec::new();
-    for &(name, role, footprint, pose) in input.at_impact {
-        let look = (name, role, LineStyle::Solid);
-        elements.extend(vehicle_outline(look, (&footprint, &pose), x.unit));
-    }
     for vehicle in input.vehicles {
         elements.extend(vehicle_elements(vehicle, input.time_s, x.unit));
     }

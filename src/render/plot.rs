@@ -48,8 +48,6 @@ impl Default for FigureOptions {
 pub struct FigureResponse {
     /// A click or drag that sets the cursor to this x.
     pub picked_x: Option<f64>,
-    /// A right click asked for the menu.
-    pub rect: Option<egui::Rect>,
 }
 
 /// Draws a figure into the space that is left; a hover reads values in the axes' units.
@@ -124,7 +122,7 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         let picking = plot_ui.response().is_pointer_button_down_on();
         plot_ui.pointer_coordinate().filter(|_| picking).map(|point| point.x)
     });
-    FigureResponse { picked_x: response.inner, rect: Some(response.response.rect) }
+    FigureResponse { picked_x: response.inner }
 }
 
 /// Ticks at 1, 2 or 5 times a power of ten, with fainter lines between.

@@ -12,7 +12,6 @@ use serde::{Deserialize, Serialize};
 use crate::numerics::Scalar;
 use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::four_dof::{LOAD_PASSES, collision_wrench};
-use crate::vehicle::frames::world_from_body;
 use crate::vehicle::loads::Wheel;
 use crate::vehicle::{Evaluation, VehicleInput, VehicleParameters, VehicleState};
 
@@ -48,7 +47,6 @@ impl VehicleParameters {
                 loads = self.loads_as_printed(acceleration, x.roll_rad);
             }
         }
-        let [ax, ay] = acceleration;
         let yaw_acceleration = yaw_moment / self.mass.yaw_inertia_kg_m2;
         let suspension = &self.suspension;
         let contact_height_m = u.collision.map_or(0.0, |c| c.contact.height_m);
@@ -57,18 +55,9 @@ impl VehicleParameters {
             - x.roll_rate_rad_s * suspension.roll_damping_n_m_s_rad
             - collision.force_n[1] * (contact_height_m - suspension.roll_axis_height_m)
             - yaw_acceleration * self.mass.roll_yaw_product_kg_m2;
-        let [x_dot, y_dot] = world_from_body(x.yaw_rad, [x.vx_m_s, x.vy_m_s]);
+        let roll_acceleration = roll_moment / self.mass.roll_inertia_kg_m2;
         Evaluation {
-            derivative: VehicleState {
-                vx_m_s: ax + x.vy_m_s * x.yaw_rate_rad_s,
-                vy_m_s: ay - x.vx_m_s * x.yaw_rate_rad_s,
-                yaw_rad: x.yaw_rate_rad_s,
-                yaw_rate_rad_s: yaw_acceleration,
-                roll_rad: x.roll_rate_rad_s,
-                roll_rate_rad_s: roll_moment / self.mass.roll_inertia_kg_m2,
-                x_m: x_dot,
-                y_m: y_dot,
-            },
+            derivative: x.derivative(acceleration, [yaw_acceleration, roll_acceleration]),
             acceleration_m_s2: acceleration,
             vertical_loads_n: loads,
             collision_force_n: collision.force_n,

@@ -30,7 +30,7 @@ use num_dual::DualSVec64;
 
 use crate::numerics::Scalar;
 use crate::units::STANDARD_GRAVITY_M_S2;
-use crate::vehicle::frames::{body_from_world, world_from_body};
+use crate::vehicle::frames::body_from_world;
 use crate::vehicle::loads::{LoadTransfer, Wheel, vertical_loads_n};
 use crate::vehicle::tire::WheelSlip;
 use crate::vehicle::{Equations, N_STATE, VehicleParameters, VehicleState};
@@ -134,18 +134,8 @@ impl VehicleParameters {
         let roll_moment = self.roll_moment_n_m(x, ay)
             - collision.force_n[1] * (contact_height_m - self.suspension.roll_axis_height_m);
         let [yaw_acceleration, roll_acceleration] = self.solve_yaw_roll(yaw_moment, roll_moment);
-        let [x_dot, y_dot] = world_from_body(x.yaw_rad, [x.vx_m_s, x.vy_m_s]);
         Evaluation {
-            derivative: VehicleState {
-                vx_m_s: ax + x.vy_m_s * x.yaw_rate_rad_s,
-                vy_m_s: ay - x.vx_m_s * x.yaw_rate_rad_s,
-                yaw_rad: x.yaw_rate_rad_s,
-                yaw_rate_rad_s: yaw_acceleration,
-                roll_rad: x.roll_rate_rad_s,
-                roll_rate_rad_s: roll_acceleration,
-                x_m: x_dot,
-                y_m: y_dot,
-            },
+            derivative: x.derivative([ax, ay], [yaw_acceleration, roll_acceleration]),
             acceleration_m_s2: [ax, ay],
             vertical_loads_n,
             collision_force_n: collision.force_n,

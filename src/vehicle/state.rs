@@ -1,6 +1,7 @@
 //! The state of the 4DOF vehicle.
 
 use crate::numerics::Scalar;
+use crate::vehicle::frames::world_from_body;
 
 /// State x = [v_x, v_y, ψ, r, φ, φ̇, X, Y] (`eq:state_vector`), velocities in body axes.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -38,6 +39,32 @@ impl<T: Scalar> VehicleState<T> {
     pub fn from_array(array: [T; N_STATE]) -> Self {
         let [vx_m_s, vy_m_s, yaw_rad, yaw_rate_rad_s, roll_rad, roll_rate_rad_s, x_m, y_m] = array;
         Self { vx_m_s, vy_m_s, yaw_rad, yaw_rate_rad_s, roll_rad, roll_rate_rad_s, x_m, y_m }
+    }
+}
+
+impl<T: Scalar> VehicleState<T> {
+    /// ẋ from the acceleration `[a_x, a_y]` of the CG in body axes, m/s², and `[ṙ, φ̈]`, rad/s².
+    ///
+    /// ```text
+    /// v̇_x = a_x + v_y r      v̇_y = a_y − v_x r
+    /// Ẋ = v_x cos ψ − v_y sin ψ      Ẏ = v_x sin ψ + v_y cos ψ
+    /// ```
+    pub(super) fn derivative(
+        &self,
+        [ax, ay]: [T; 2],
+        [yaw_acceleration, roll_acceleration]: [T; 2],
+    ) -> Self {
+        let [x_dot, y_dot] = world_from_body(self.yaw_rad, [self.vx_m_s, self.vy_m_s]);
+        Self {
+            vx_m_s: ax + self.vy_m_s * self.yaw_rate_rad_s,
+            vy_m_s: ay - self.vx_m_s * self.yaw_rate_rad_s,
+            yaw_rad: self.yaw_rate_rad_s,
+            yaw_rate_rad_s: yaw_acceleration,
+            roll_rad: self.roll_rate_rad_s,
+            roll_rate_rad_s: roll_acceleration,
+            x_m: x_dot,
+            y_m: y_dot,
+        }
     }
 }
 
