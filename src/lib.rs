@@ -7,11 +7,12 @@
 //! 3. [`data`]: files become checked time series in SI units;
 //! 4. [`vehicle`]: the one place of the equations of motion;
 //! 5. [`collision`]: the impact itself: impulse, contact geometry, scenarios, pulses, filter;
-//! 6. [`compare`]: simulation against reference;
-//! 7. [`analysis`]: one case, from its file to a motion;
-//! 8. [`figure`]: what a plot shows, as plain data;
-//! 9. `render` (feature `gui`): one drawing function for the panel and the off-screen picture;
-//! 10. `cli` and `app` (feature `gui`): the command line and the window.
+//! 6. [`uncertainty`]: distributions of whole force curves;
+//! 7. [`compare`]: simulation against reference;
+//! 8. [`analysis`]: one case, from its file to a motion;
+//! 9. [`figure`]: what a plot shows, as plain data;
+//! 10. `render` (feature `gui`): one drawing function for the panel and the off-screen picture;
+//! 11. `cli` and `app` (feature `gui`): the command line and the window.
 //!
 //! ```
 //! use impactlab::vehicle::{Integrator, Manoeuvre, Preset, VehicleState};
@@ -41,6 +42,7 @@ pub mod jobs;
 pub mod numerics;
 #[cfg(feature = "gui")]
 pub mod render;
+pub mod uncertainty;
 pub mod units;
 pub mod vehicle;
 

@@ -13,6 +13,7 @@ const LAYERS: &[&[&str]] = &[
     &["data"],
     &["vehicle"],
     &["collision"],
+    &["uncertainty"],
     &["compare"],
     &["analysis"],
     &["figure"],
