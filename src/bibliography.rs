@@ -14,9 +14,21 @@ sources! {
     /// M. Carpenter, J. Welcher, *Planar impact with the no-slide condition and a friction limit*,
     /// SAE Technical Paper 2019-01-0422, 2019. Worked barrier example.
     CarpenterWelcher2019;
+    /// T. Gneiting, A. E. Raftery, *Strictly proper scoring rules, prediction, and estimation*,
+    /// Journal of the American Statistical Association 102(477), 2007. Continuous ranked
+    /// probability score, energy score.
+    GneitingRaftery2007;
+    /// G. H. Golub, C. F. Van Loan, *Matrix Computations*, 4th ed., Johns Hopkins University Press,
+    /// 2013. Woodbury's identity.
+    GolubVanLoan2013;
     /// S. Gottschalk, M. C. Lin, D. Manocha, *OBBTree: a hierarchical structure for rapid
     /// interference detection*, SIGGRAPH 1996. Separating axes of oriented boxes.
     Gottschalk1996;
+    /// E. P. Grimit, T. Gneiting, V. J. Berrocal, N. A. Johnson, *The continuous ranked probability
+    /// score for circular variables and its application to mesoscale forecast ensemble
+    /// verification*, Quarterly Journal of the Royal Meteorological Society 132, 2006. The score of a
+    /// mixture of normals in closed form.
+    Grimit2006;
     /// ISO 8855:2011, *Road vehicles: Vehicle dynamics and road-holding ability: Vocabulary*. Axes
     /// and signs.
     Iso8855;

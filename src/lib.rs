@@ -8,6 +8,7 @@
 //! 4. [`vehicle`]: the one place of the equations of motion;
 //! 5. [`collision`]: the impact itself: impulse, contact geometry, scenarios, pulses, filter;
 //! 6. [`nn`]: layers, parameters, optimiser and files of the networks;
+//!    [`uncertainty`]: distributions of whole force curves;
 //! 7. [`compare`]: simulation against reference;
 //! 8. [`analysis`]: one case, from its file to a motion;
 //! 9. [`figure`]: what a plot shows, as plain data;
@@ -43,6 +44,7 @@ pub mod nn;
 pub mod numerics;
 #[cfg(feature = "gui")]
 pub mod render;
+pub mod uncertainty;
 pub mod units;
 pub mod vehicle;
 

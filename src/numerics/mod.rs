@@ -2,12 +2,14 @@
 
 mod angle;
 mod interpolation;
+mod normal;
 mod ode;
 mod scalar;
 mod statistics;
 
 pub use angle::wrap_angle_rad;
 pub use interpolation::interpolate;
+pub use normal::{normal_cdf, normal_density, normal_quantile};
 pub use ode::{Stage, euler_step, rk4_step};
 pub use scalar::Scalar;
-pub use statistics::Summary;
+pub use statistics::{Summary, quantile_of_sorted};

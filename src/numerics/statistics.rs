@@ -43,6 +43,21 @@ impl Summary {
     }
 }
 
+/// Quantile of values in rising order, linear between neighbours: `probability` 0 is the smallest,
+/// 1 the largest. `None` without values.
+///
+/// ```
+/// # use impactlab::numerics::quantile_of_sorted;
+/// assert_eq!(quantile_of_sorted(&[1.0, 2.0, 4.0], 0.75), Some(3.0));
+/// ```
+pub fn quantile_of_sorted(values: &[f64], probability: f64) -> Option<f64> {
+    let last = values.len().checked_sub(1)?;
+    let position = probability.clamp(0.0, 1.0) * last as f64;
+    let low = position.floor() as usize;
+    let (&below, &above) = (values.get(low)?, values.get((low + 1).min(last))?);
+    Some(below + position.fract() * (above - below))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,0 +1,110 @@
+//! Log density of a whole curve without forming its covariance: a low-rank update of a diagonal
+//! matrix (Woodbury's identity and the matrix determinant lemma).
+//!
+//! Source: [`GolubVanLoan2013`](crate::bibliography::GolubVanLoan2013), section 2.1.4.
+
+use std::f64::consts::TAU;
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::uncertainty::{CurveComponent, CurveMixture, ForceCurve, MixtureError};
+
+impl CurveMixture {
+    /// Natural logarithm of the density of a curve and its duration, forces in N, duration in s.
+    ///
+    /// ```text
+    /// ln p(y) = ln Σ_k π_k N(y; m_k, U_k U_kᵀ + D_k)
+    /// ```
+    ///
+    /// # Errors
+    /// [`MixtureError::Shape`] for a curve over another grid.
+    pub fn log_density(&self, curve: &ForceCurve) -> Result<f64, MixtureError> {
+        let values = curve.to_values();
+        let mut logs = Vec::with_capacity(self.components().len());
+        for (component, of) in self.components().iter().enumerate() {
+            let (expected, got) = (of.mean.len(), values.len());
+            if got != expected {
+                return Err(MixtureError::Shape { component, what: "curve", expected, got });
+            }
+            logs.push(of.weight.ln() + of.log_density(&values));
+        }
+        let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        Ok(largest + logs.iter().map(|log| (log - largest).exp()).sum::<f64>().ln())
+    }
+}
+
+impl CurveComponent {
+    /// Log density of a row of values, without the component's weight.
+    ///
+    /// ```text
+    /// r = y − m     A = I + Uᵀ D⁻¹ U = L Lᵀ     b = Uᵀ D⁻¹ r
+    /// −2 ln N = n ln 2π + Σ ln d_i + 2 Σ ln L_jj + rᵀ D⁻¹ r − |L⁻¹ b|²
+    /// ```
+    fn log_density(&self, values: &[f64]) -> f64 {
+        let n_factors = self.factors.ncols();
+        let residual: Vec<f64> = values.iter().zip(&self.mean).map(|(y, m)| y - m).collect();
+        let mut inner = DMatrix::identity(n_factors, n_factors);
+        let mut projected = DVector::zeros(n_factors);
+        for (a, column) in self.factors.column_iter().enumerate() {
+            let weighted: Vec<f64> =
+                column.iter().zip(&self.variance).map(|(u, d)| u / d).collect();
+            projected[a] = weighted.iter().zip(&residual).map(|(w, r)| w * r).sum();
+            for (b, other) in self.factors.column_iter().enumerate().take(a + 1) {
+                let sum: f64 = weighted.iter().zip(other.iter()).map(|(w, u)| w * u).sum();
+                inner[(a, b)] += sum;
+                if a != b {
+                    inner[(b, a)] += sum;
+                }
+            }
+        }
+        let own: f64 = residual.iter().zip(&self.variance).map(|(r, d)| r * r / d).sum();
+        let log_own: f64 = self.variance.iter().map(|d| d.ln()).sum();
+        // `inner` is the identity plus a Gram matrix, so positive definite for finite factors.
+        let Some(cholesky) = inner.cholesky() else { return f64::NAN };
+        let explained = cholesky.solve(&projected).dot(&projected);
+        let log_determinant = log_own + 2.0 * cholesky.l_dirty().diagonal().map(f64::ln).sum();
+        -(values.len() as f64 * TAU.ln() + log_determinant + own - explained) / 2.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::uncertainty::mixture::tests::example;
+
+    /// The density by the covariance in full.
+    fn dense_log_density(mixture: &CurveMixture, values: &[f64]) -> f64 {
+        let density = |component: &CurveComponent| {
+            let covariance = &component.factors * component.factors.transpose()
+                + DMatrix::from_diagonal(&component.variance.clone().into());
+            let residual =
+                DVector::from_row_slice(values) - DVector::from_row_slice(&component.mean);
+            let quadratic = residual.dot(&(covariance.clone().try_inverse().unwrap() * &residual));
+            let log = values.len() as f64 * TAU.ln() + covariance.determinant().ln() + quadratic;
+            component.weight * (-log / 2.0).exp()
+        };
+        mixture.components().iter().map(density).sum::<f64>().ln()
+    }
+
+    #[test]
+    fn it_is_that_of_the_covariance_in_full() {
+        let mixture = example(3, 6);
+        for shift in [0.0, 0.3, -1.0] {
+            let mut values = mixture.components()[1].mean.clone();
+            for (i, value) in values.iter_mut().enumerate() {
+                *value *= 1.0 + 0.05 * shift * (i as f64).cos();
+            }
+            let log = mixture.log_density(&ForceCurve::from_values(&values)).unwrap();
+            let dense = dense_log_density(&mixture, &values);
+            assert!((log - dense).abs() < 1e-7 * dense.abs(), "{shift}: {log}, dense {dense}");
+        }
+    }
+
+    #[test]
+    fn a_far_curve_has_a_finite_log_density() {
+        let mixture = example(2, 50);
+        let far = ForceCurve { fx_n: vec![1e7; 50], fy_n: vec![-1e7; 50], duration_s: 3.0 };
+        assert!(mixture.log_density(&far).unwrap().is_finite());
+        assert!(mixture.log_density(&ForceCurve::default()).is_err());
+    }
+}

@@ -1,0 +1,381 @@
+//! Distribution of a whole force curve and its duration.
+//!
+//! ```text
+//! y = [F_x(t₁) … F_x(t_T), F_y(t₁) … F_y(t_T), duration]
+//! p(y) = Σ_k π_k N(y; m_k, U_k U_kᵀ + diag d_k)
+//! ```
+//!
+//! The component is chosen once per curve and its few latent factors `U_k` act on all instants, so
+//! the spread of a curve does not average out in its impulse as independent draws at each instant
+//! would. METHOD of this project, section 4; the paper's mixture
+//! ([`PitPinnPaper`](crate::bibliography::PitPinnPaper), `eq:gmmfunction`) has its deviations on
+//! the diagonal of each covariance.
+//!
+//! Left out: bounds. A duration or a force drawn far from its mean may have the wrong sign.
+
+use nalgebra::DMatrix;
+
+use crate::uncertainty::{CURVE_INTERVAL_S, ForceCurve, NormalMixture, NormalPart};
+
+/// One component of a [`CurveMixture`]; with T instants a row has 2T + 1 values, forces in N, the
+/// duration in s.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurveComponent {
+    /// Share π of the mixture, 0 to 1.
+    pub weight: f64,
+    /// Mean curve, `[2T + 1]`.
+    pub mean: Vec<f64>,
+    /// Latent factors U, `[2T + 1, q]`, a column each: what one standard deviation of a factor adds.
+    pub factors: DMatrix<f64>,
+    /// Variance d of what is independent in each value, `[2T + 1]`, positive.
+    pub variance: Vec<f64>,
+}
+
+/// A mixture of [`CurveComponent`]s: weights that sum to one, equal shapes, positive variances.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurveMixture {
+    components: Vec<CurveComponent>,
+}
+
+/// Numbers that make no mixture.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MixtureError {
+    /// No components.
+    #[error("a mixture of no components")]
+    Empty,
+    /// A weight below zero or not finite.
+    #[error("weight of component {component} is {weight}, expected 0 or more")]
+    Weight {
+        /// Index of the component.
+        component: usize,
+        /// Its weight.
+        weight: f64,
+    },
+    /// Weights that sum to zero.
+    #[error("the weights sum to zero")]
+    NoWeight,
+    /// A mean, a row of factors or a variance is missing or too many.
+    #[error("component {component}: {what} has {got} values, expected {expected}")]
+    Shape {
+        /// Index of the component.
+        component: usize,
+        /// Which of its fields.
+        what: &'static str,
+        /// Values needed.
+        expected: usize,
+        /// Values there.
+        got: usize,
+    },
+    /// A variance that is not a positive number.
+    #[error(
+        "component {component}: variance of value {value_idx} is {variance}, expected more than 0"
+    )]
+    Variance {
+        /// Index of the component.
+        component: usize,
+        /// Index of the value.
+        value_idx: usize,
+        /// Its variance.
+        variance: f64,
+    },
+    /// A mean or a factor that is not finite.
+    #[error("component {component}: {what} holds a number that is not finite")]
+    NotFinite {
+        /// Index of the component.
+        component: usize,
+        /// Which of its fields.
+        what: &'static str,
+    },
+    /// A band that is none.
+    #[error("level of a band is {level}, expected between 0 and 1")]
+    Level {
+        /// The level.
+        level: f64,
+    },
+}
+
+impl MixtureError {
+    /// The sum of weights, if they are fit for a mixture.
+    pub(crate) fn check_weights(weights: &[f64]) -> Result<f64, Self> {
+        for (component, &weight) in weights.iter().enumerate() {
+            if !(weight >= 0.0 && weight.is_finite()) {
+                return Err(Self::Weight { component, weight });
+            }
+        }
+        let sum: f64 = weights.iter().sum();
+        match (weights.is_empty(), sum > 0.0) {
+            (true, _) => Err(Self::Empty),
+            (_, false) => Err(Self::NoWeight),
+            _ => Ok(sum),
+        }
+    }
+}
+
+impl CurveMixture {
+    /// A mixture of these components; the weights are scaled to sum to one.
+    ///
+    /// # Errors
+    /// [`MixtureError`] names the first component that does not fit.
+    pub fn new(mut components: Vec<CurveComponent>) -> Result<Self, MixtureError> {
+        let weights: Vec<f64> = components.iter().map(|component| component.weight).collect();
+        let sum = MixtureError::check_weights(&weights)?;
+        let expected = components.first().map_or(0, |first| first.mean.len() / 2 * 2 + 1);
+        for (component, of) in components.iter_mut().enumerate() {
+            of.weight /= sum;
+            of.check(component, expected)?;
+        }
+        Ok(Self { components })
+    }
+
+    /// One mixture of several, e.g. of an ensemble or over values of an unknown input.
+    ///
+    /// - `weighted`: share of each, 0 or more; scaled to sum to one.
+    ///
+    /// # Errors
+    /// [`MixtureError`] for weights that are none or mixtures over different grids.
+    pub fn merge(weighted: Vec<(f64, Self)>) -> Result<Self, MixtureError> {
+        let weights: Vec<f64> = weighted.iter().map(|(weight, _)| *weight).collect();
+        MixtureError::check_weights(&weights)?;
+        let components = weighted.into_iter().flat_map(|(share, mixture)| {
+            let scale = move |component: CurveComponent| CurveComponent {
+                weight: component.weight * share,
+                ..component
+            };
+            mixture.components.into_iter().map(scale)
+        });
+        Self::new(components.collect())
+    }
+
+    /// Its components.
+    pub fn components(&self) -> &[CurveComponent] {
+        &self.components
+    }
+
+    /// Instants T of the time grid.
+    pub fn n_instants(&self) -> usize {
+        self.components.first().map_or(0, |first| first.mean.len() / 2)
+    }
+
+    /// Mean curve and mean duration.
+    pub fn mean(&self) -> ForceCurve {
+        let mut mean = vec![0.0; 2 * self.n_instants() + 1];
+        for component in &self.components {
+            for (sum, value) in mean.iter_mut().zip(&component.mean) {
+                *sum += component.weight * value;
+            }
+        }
+        ForceCurve::from_values(&mean)
+    }
+
+    /// Standard deviation of each force and of the duration: within the components and between.
+    pub fn std(&self) -> ForceCurve {
+        let mean = self.mean().to_values();
+        let mut variance = vec![0.0; mean.len()];
+        for component in &self.components {
+            let within = component.total_variance();
+            let values = variance.iter_mut().zip(&mean).zip(component.mean.iter().zip(within));
+            for ((sum, mean), (value, within)) in values {
+                *sum += component.weight * (within + (value - mean).powi(2));
+            }
+        }
+        let std: Vec<f64> = variance.into_iter().map(f64::sqrt).collect();
+        ForceCurve::from_values(&std)
+    }
+
+    /// Mirror image left to right: `F_y` changes its sign.
+    #[must_use]
+    pub fn mirrored(mut self) -> Self {
+        let n_instants = self.n_instants();
+        for component in &mut self.components {
+            for value in component.mean.iter_mut().skip(n_instants).take(n_instants) {
+                *value = -*value;
+            }
+            component.factors.rows_mut(n_instants, n_instants).neg_mut();
+        }
+        self
+    }
+
+    /// Distribution of one value of the row: F_x at instant i for `i`, F_y for `T + i`, the
+    /// duration for `2T`. `None` past the end.
+    pub fn value(&self, value_idx: usize) -> Option<NormalMixture> {
+        let part = |component: &CurveComponent| {
+            let row = component.factors.row_iter().nth(value_idx)?;
+            let variance = component.variance.get(value_idx)? + row.norm_squared();
+            let (weight, mean) = (component.weight, *component.mean.get(value_idx)?);
+            Some(NormalPart { weight, mean, std: variance.sqrt() })
+        };
+        let parts: Option<Vec<_>> = self.components.iter().map(part).collect();
+        Some(NormalMixture::from_checked(parts?))
+    }
+
+    /// Distribution of the duration, s.
+    pub fn duration_s(&self) -> NormalMixture {
+        self.linear(&|value_idx| if value_idx == 2 * self.n_instants() { 1.0 } else { 0.0 })
+    }
+
+    /// Distribution of the impulse along x (`axis` 0) or y (1), N s: exact, as the impulse is a
+    /// weighted sum of forces.
+    pub fn impulse(&self, axis: usize) -> NormalMixture {
+        let n_instants = self.n_instants();
+        self.linear(&|value_idx| match value_idx.checked_sub(axis * n_instants) {
+            Some(idx) if idx < n_instants => CURVE_INTERVAL_S,
+            _ => 0.0,
+        })
+    }
+
+    /// Distribution of `Σ_i c_i y_i`, exact.
+    ///
+    /// ```text
+    /// Σ_k π_k N(cᵀ m_k, |U_kᵀ c|² + Σ_i c_i² d_ki)
+    /// ```
+    pub fn linear(&self, coefficient: &dyn Fn(usize) -> f64) -> NormalMixture {
+        let part = |component: &CurveComponent| {
+            let c: Vec<f64> = (0..component.mean.len()).map(coefficient).collect();
+            let dot = |values: &mut dyn Iterator<Item = &f64>| -> f64 {
+                values.zip(&c).map(|(value, c)| value * c).sum()
+            };
+            let factors = component.factors.column_iter();
+            let shared: f64 = factors.map(|column| dot(&mut column.iter()).powi(2)).sum();
+            let own: f64 = component.variance.iter().zip(&c).map(|(d, c)| c * c * d).sum();
+            NormalPart {
+                weight: component.weight,
+                mean: dot(&mut component.mean.iter()),
+                std: (shared + own).sqrt(),
+            }
+        };
+        NormalMixture::from_checked(self.components.iter().map(part).collect())
+    }
+}
+
+impl CurveComponent {
+    /// Variance of each value: that of the factors and its own.
+    pub(crate) fn total_variance(&self) -> Vec<f64> {
+        let mut variance = self.variance.clone();
+        for column in self.factors.column_iter() {
+            for (sum, factor) in variance.iter_mut().zip(column.iter()) {
+                *sum += factor * factor;
+            }
+        }
+        variance
+    }
+
+    fn check(&self, component: usize, expected: usize) -> Result<(), MixtureError> {
+        for (what, got) in [
+            ("mean", self.mean.len()),
+            ("factors", self.factors.nrows()),
+            ("variance", self.variance.len()),
+        ] {
+            if got != expected {
+                return Err(MixtureError::Shape { component, what, expected, got });
+            }
+        }
+        let finite = [
+            ("mean", self.mean.iter().all(|value| value.is_finite())),
+            ("factors", self.factors.iter().all(|value| value.is_finite())),
+        ];
+        if let Some((what, _)) = finite.into_iter().find(|(_, finite)| !finite) {
+            return Err(MixtureError::NotFinite { component, what });
+        }
+        let is_bad = |variance: &f64| !(*variance > 0.0 && variance.is_finite());
+        match self.variance.iter().copied().enumerate().find(|(_, variance)| is_bad(variance)) {
+            Some((value_idx, variance)) => {
+                Err(MixtureError::Variance { component, value_idx, variance })
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// A smooth mixture over `n_instants` with two factors and different components.
+    pub(crate) fn example(n_components: usize, n_instants: usize) -> CurveMixture {
+        let component = |k: usize| {
+            let (k, n) = (k as f64, n_instants as f64);
+            let row = |of: &dyn Fn(f64) -> [f64; 3]| -> Vec<f64> {
+                let values: Vec<[f64; 3]> = (0..n_instants).map(|i| of(i as f64 / n)).collect();
+                let axis = |axis: usize| values.iter().map(move |value| value[axis]);
+                axis(0).chain(axis(1)).chain([of(0.0)[2]]).collect()
+            };
+            let bump = |u: f64| (std::f64::consts::PI * u).sin();
+            let mean = row(&|u| [(4.0 + k) * 1e3 * bump(u), (20.0 - 3.0 * k) * 1e3 * bump(u), 0.1]);
+            let first = row(&|u| [500.0 * bump(u), 3e3 * bump(u), 0.01]);
+            let second = row(&|u| [800.0 * bump(2.0 * u), 1e3 * bump(2.0 * u), -0.02]);
+            let variance = row(&|u| [1e4 + 2e4 * u, 4e4 + k, 1e-4]);
+            let factors = DMatrix::from_iterator(mean.len(), 2, first.into_iter().chain(second));
+            CurveComponent { weight: 1.0 + k, mean, factors, variance }
+        };
+        CurveMixture::new((0..n_components).map(component).collect()).unwrap()
+    }
+
+    #[test]
+    fn moments_agree_with_those_of_each_value() {
+        let mixture = example(3, 5);
+        let (mean, std) = (mixture.mean().to_values(), mixture.std().to_values());
+        for (i, (mean, std)) in mean.iter().zip(&std).enumerate() {
+            let value = mixture.value(i).unwrap();
+            assert!((value.mean() - mean).abs() <= 1e-9 * mean.abs(), "value {i}");
+            assert!((value.std() - std).abs() < 1e-9 * std, "value {i}");
+        }
+        assert_eq!(mixture.value(11), None);
+        assert!((mixture.duration_s().std() - std[10]).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_impulse_has_the_covariance_of_the_sum() {
+        let mixture = example(2, 40);
+        for axis in [0, 1] {
+            for (k, part) in mixture.impulse(axis).parts().iter().enumerate() {
+                let component = &mixture.components()[k];
+                let dense = &component.factors * component.factors.transpose()
+                    + DMatrix::from_diagonal(&component.variance.clone().into());
+                let block = dense.view((axis * 40, axis * 40), (40, 40));
+                let expected = block.sum().sqrt() * CURVE_INTERVAL_S;
+                assert!((part.std - expected).abs() < 1e-9 * expected, "axis {axis}, {k}");
+            }
+            let [p_mean, p] = [mixture.mean().impulse_n_s()[axis], mixture.impulse(axis).mean()];
+            assert!((p_mean - p).abs() < 1e-9, "axis {axis}: {p_mean} {p}");
+        }
+    }
+
+    #[test]
+    fn merging_weights_the_parts() {
+        let (one, two) = (example(1, 4), example(3, 4));
+        let merged = CurveMixture::merge(vec![(1.0, one.clone()), (3.0, two.clone())]).unwrap();
+        assert_eq!(merged.components().len(), 4);
+        let expected = (one.mean().fy_n[1] + 3.0 * two.mean().fy_n[1]) / 4.0;
+        assert!((merged.mean().fy_n[1] - expected).abs() < 1e-9);
+        assert!(CurveMixture::merge(vec![(1.0, one), (1.0, example(1, 5))]).is_err());
+        assert_eq!(CurveMixture::merge(vec![]), Err(MixtureError::Empty));
+    }
+
+    #[test]
+    fn mirrored_twice_is_the_same() {
+        let mixture = example(2, 4);
+        let mirrored = mixture.clone().mirrored();
+        assert_eq!(mirrored.mean(), mixture.mean().mirrored());
+        assert_eq!(mirrored.impulse(1).mean(), -mixture.impulse(1).mean());
+        assert_eq!(mirrored.mirrored(), mixture);
+    }
+
+    #[test]
+    fn senseless_components_are_refused() {
+        let good = || example(1, 2).components()[0].clone();
+        let refused = |bad: CurveComponent| CurveMixture::new(vec![bad]).unwrap_err();
+        let mut bad = good();
+        bad.variance[1] = 0.0;
+        assert!(matches!(refused(bad), MixtureError::Variance { value_idx: 1, .. }));
+        let mut bad = good();
+        bad.variance.pop();
+        assert!(matches!(refused(bad), MixtureError::Shape { expected: 5, got: 4, .. }));
+        let mut bad = good();
+        bad.mean[0] = f64::NAN;
+        assert!(matches!(refused(bad), MixtureError::NotFinite { what: "mean", .. }));
+        let bad = CurveComponent { weight: -1.0, ..good() };
+        assert!(matches!(refused(bad), MixtureError::Weight { .. }));
+        assert_eq!(refused(CurveComponent { weight: 0.0, ..good() }), MixtureError::NoWeight);
+        assert_eq!(CurveMixture::new(vec![]), Err(MixtureError::Empty));
+    }
+}

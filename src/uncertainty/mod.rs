@@ -1,0 +1,33 @@
+//! How sure a prediction is: distributions of whole force curves.
+//!
+//! ```
+//! use impactlab::uncertainty::{CurveComponent, CurveMixture};
+//! use nalgebra::DMatrix;
+//! use rand::SeedableRng;
+//!
+//! // Two instants: [F_x(t₁), F_x(t₂), F_y(t₁), F_y(t₂), duration]; one factor scales the curve.
+//! let mean = vec![0.0, 0.0, 10e3, 20e3, 0.1];
+//! let factors = DMatrix::from_column_slice(5, 1, &[0.0, 0.0, 1e3, 2e3, 0.0]);
+//! let component = CurveComponent { weight: 1.0, mean, factors, variance: vec![1.0, 1.0, 1.0, 1.0, 1e-4] };
+//! let mixture = CurveMixture::new(vec![component])?;
+//! assert_eq!(mixture.mean().fy_n, [10e3, 20e3]);
+//! let [low, high] = mixture.impulse(1).interval(0.9);
+//! assert!(low < 30.0 && 30.0 < high);
+//! let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
+//! assert_eq!(mixture.sample(20, &mut rng).len(), 20);
+//! # Ok::<(), impactlab::uncertainty::MixtureError>(())
+//! ```
+
+mod curve;
+mod normal_mixture;
+
+mod bands;
+mod density;
+mod mixture;
+mod sample;
+
+pub use bands::{Band, CurveBands};
+pub use curve::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
+pub use mixture::{CurveComponent, CurveMixture, MixtureError};
+pub use normal_mixture::{NormalMixture, NormalPart};
+pub use sample::CurveFigures;

@@ -1,0 +1,189 @@
+//! Mixture of normal distributions of one quantity.
+//!
+//! Source of the score: [`Grimit2006`](crate::bibliography::Grimit2006).
+
+use crate::numerics::{normal_cdf, normal_density, normal_quantile};
+use crate::uncertainty::MixtureError;
+
+/// Steps that a quantile may take: bisection alone would need 60 to the last bit.
+const MAX_STEPS: usize = 100;
+
+/// One normal distribution of a mixture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NormalPart {
+    /// Share, 0 to 1.
+    pub weight: f64,
+    /// Mean.
+    pub mean: f64,
+    /// Standard deviation, positive.
+    pub std: f64,
+}
+
+/// `Σ_k w_k N(m_k, s_k²)` with weights that sum to one and positive deviations.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NormalMixture {
+    parts: Vec<NormalPart>,
+}
+
+impl NormalMixture {
+    /// A mixture of these; the weights are scaled to sum to one.
+    ///
+    /// # Errors
+    /// [`MixtureError`] for no part, a weight below zero, weights that sum to nothing, or a
+    /// deviation that is not positive.
+    pub fn new(mut parts: Vec<NormalPart>) -> Result<Self, MixtureError> {
+        let weights: Vec<f64> = parts.iter().map(|part| part.weight).collect();
+        let sum = MixtureError::check_weights(&weights)?;
+        for (component, part) in parts.iter_mut().enumerate() {
+            part.weight /= sum;
+            if !(part.std > 0.0 && part.std.is_finite() && part.mean.is_finite()) {
+                let (value_idx, variance) = (0, part.std * part.std);
+                return Err(MixtureError::Variance { component, value_idx, variance });
+            }
+        }
+        Ok(Self { parts })
+    }
+
+    /// For parts that a checked mixture gives.
+    pub(crate) fn from_checked(parts: Vec<NormalPart>) -> Self {
+        Self { parts }
+    }
+
+    /// Its normal distributions.
+    pub fn parts(&self) -> &[NormalPart] {
+        &self.parts
+    }
+
+    /// Mean.
+    pub fn mean(&self) -> f64 {
+        self.sum(|part| part.mean)
+    }
+
+    /// Standard deviation: within the parts and between them.
+    pub fn std(&self) -> f64 {
+        let mean = self.mean();
+        self.sum(|part| part.std.powi(2) + (part.mean - mean).powi(2)).sqrt()
+    }
+
+    /// Density at a value.
+    pub fn density(&self, value: f64) -> f64 {
+        self.sum(|part| normal_density((value - part.mean) / part.std) / part.std)
+    }
+
+    /// Probability of a value up to this one.
+    pub fn cdf(&self, value: f64) -> f64 {
+        self.sum(|part| normal_cdf((value - part.mean) / part.std))
+    }
+
+    /// The value with this probability below it, 0 to 1 without the ends, to 1e-12 of the
+    /// probability. It lies between the smallest and the largest quantile of the parts; Newton's
+    /// method, kept inside by bisection.
+    pub fn quantile(&self, probability: f64) -> f64 {
+        let z = normal_quantile(probability);
+        let ends = self.parts.iter().map(|part| part.mean + z * part.std);
+        let (mut low, mut high) = ends
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), end| {
+                (low.min(end), high.max(end))
+            });
+        let mut value = (self.mean() + z * self.std()).clamp(low, high);
+        for _ in 0..MAX_STEPS {
+            let excess = self.cdf(value) - probability;
+            if excess.abs() < 1e-12 || high - low <= 1e-14 * (low.abs() + high.abs()) {
+                break;
+            }
+            if excess > 0.0 {
+                high = value;
+            } else {
+                low = value;
+            }
+            let newton = value - excess / self.density(value);
+            value = if newton > low && newton < high { newton } else { (low + high) / 2.0 };
+        }
+        value
+    }
+
+    /// The central interval that holds this share, 0 to 1.
+    pub fn interval(&self, level: f64) -> [f64; 2] {
+        [self.quantile((1.0 - level) / 2.0), self.quantile((1.0 + level) / 2.0)]
+    }
+
+    /// Continuous ranked probability score of an observed value; smaller is better, same unit.
+    ///
+    /// ```text
+    /// CRPS = Σ_k w_k A(y − m_k, s_k²) − ½ Σ_j Σ_k w_j w_k A(m_j − m_k, s_j² + s_k²)
+    /// A(m, s²) = 2 s φ(m/s) + m (2 Φ(m/s) − 1)
+    /// ```
+    ///
+    /// Source: [`Grimit2006`](crate::bibliography::Grimit2006).
+    pub fn crps(&self, observed: f64) -> f64 {
+        let to_observed = self.sum(|part| mean_distance(observed - part.mean, part.std));
+        let among = self.sum(|a| self.sum(|b| mean_distance(a.mean - b.mean, a.std.hypot(b.std))));
+        to_observed - among / 2.0
+    }
+
+    fn sum(&self, of: impl Fn(&NormalPart) -> f64) -> f64 {
+        self.parts.iter().map(|part| part.weight * of(part)).sum()
+    }
+}
+
+/// Mean of `|X|` for a normal X.
+fn mean_distance(mean: f64, std: f64) -> f64 {
+    let z = mean / std;
+    2.0 * std * normal_density(z) + mean * (2.0 * normal_cdf(z) - 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mixture(parts: &[[f64; 3]]) -> NormalMixture {
+        let part = |&[weight, mean, std]: &[f64; 3]| NormalPart { weight, mean, std };
+        NormalMixture::new(parts.iter().map(part).collect()).unwrap()
+    }
+
+    #[test]
+    fn a_single_part_is_the_normal_distribution() {
+        let normal = mixture(&[[3.0, 10.0, 2.0]]);
+        assert_eq!((normal.mean(), normal.std()), (10.0, 2.0));
+        let [low, high] = normal.interval(0.95);
+        assert!((low - (10.0 - 2.0 * 1.959_963_985)).abs() < 1e-8, "{low}");
+        assert!((high - (10.0 + 2.0 * 1.959_963_985)).abs() < 1e-8, "{high}");
+        // CRPS of a standard normal at its mean: 2φ(0) − 1/√π.
+        let expected = 2.0 * (2.0 * 0.398_942_280_4 - 0.564_189_583_5);
+        assert!((normal.crps(10.0) - expected).abs() < 1e-8);
+    }
+
+    #[test]
+    fn quantiles_invert_the_probability_also_between_far_parts() {
+        let far = mixture(&[[0.5, -50.0, 0.1], [0.3, 0.0, 1.0], [0.2, 1e4, 30.0]]);
+        for probability in [0.001, 0.025, 0.4999, 0.5, 0.5001, 0.79, 0.9, 0.999] {
+            let value = far.quantile(probability);
+            assert!((far.cdf(value) - probability).abs() < 1e-9, "{probability}: {value}");
+        }
+    }
+
+    #[test]
+    fn the_score_is_the_integral_of_its_definition() {
+        let two = mixture(&[[0.7, 0.0, 1.0], [0.3, 4.0, 0.5]]);
+        for observed in [-2.0, 0.3, 4.0, 9.0] {
+            let step = 1e-3;
+            let integral: f64 = (-20_000..20_000)
+                .map(|i| {
+                    let x = (f64::from(i) + 0.5) * step;
+                    let above = if x >= observed { 1.0 } else { 0.0 };
+                    (two.cdf(x) - above).powi(2) * step
+                })
+                .sum();
+            let score = two.crps(observed);
+            assert!((score - integral).abs() < 1e-5, "{observed}: {score}, integral {integral}");
+        }
+    }
+
+    #[test]
+    fn bad_parts_are_refused() {
+        for parts in [&[][..], &[[1.0, 0.0, 0.0]], &[[-1.0, 0.0, 1.0]], &[[0.0, 0.0, 1.0]]] {
+            let part = |&[weight, mean, std]: &[f64; 3]| NormalPart { weight, mean, std };
+            assert!(NormalMixture::new(parts.iter().map(part).collect()).is_err(), "{parts:?}");
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! Coherent draws of whole curves, and what follows from them.
+
+use rand::{Rng, RngExt};
+use rand_distr::StandardNormal;
+
+use crate::numerics::quantile_of_sorted;
+use crate::uncertainty::{CurveMixture, ForceCurve};
+
+/// Figures of drawn curves, one entry a draw.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct CurveFigures {
+    /// Impulse `[P_x, P_y]`, N s.
+    pub impulse_n_s: Vec<[f64; 2]>,
+    /// Largest `|F|`, N.
+    pub peak_n: Vec<f64>,
+    /// When it is reached, s.
+    pub peak_time_s: Vec<f64>,
+    /// Duration, s.
+    pub duration_s: Vec<f64>,
+}
+
+impl CurveMixture {
+    /// Draws whole curves: a component each, then its factors and what is independent.
+    ///
+    /// ```text
+    /// k ~ π     y = m_k + U_k z + √d_k ⊙ ε     z, ε ~ N(0, 1)
+    /// ```
+    ///
+    /// A duration that comes out negative is drawn as zero.
+    pub fn sample(&self, n_samples: usize, rng: &mut impl Rng) -> Vec<ForceCurve> {
+        let mut drawn = Vec::with_capacity(n_samples);
+        let deviations: Vec<Vec<f64>> = self
+            .components()
+            .iter()
+            .map(|component| component.variance.iter().map(|d| d.sqrt()).collect())
+            .collect();
+        for _ in 0..n_samples {
+            let k = self.draw_component(rng);
+            let (component, own) = (&self.components()[k], &deviations[k]);
+            let mut values = component.mean.clone();
+            for column in component.factors.column_iter() {
+                let z: f64 = rng.sample(StandardNormal);
+                for (value, factor) in values.iter_mut().zip(column.iter()) {
+                    *value += z * factor;
+                }
+            }
+            for (value, deviation) in values.iter_mut().zip(own) {
+                let noise: f64 = rng.sample(StandardNormal);
+                *value += deviation * noise;
+            }
+            let mut curve = ForceCurve::from_values(&values);
+            curve.duration_s = curve.duration_s.max(0.0);
+            drawn.push(curve);
+        }
+        drawn
+    }
+
+    /// Impulse, peak, its time and duration of drawn curves.
+    pub fn sample_figures(&self, n_samples: usize, rng: &mut impl Rng) -> CurveFigures {
+        CurveFigures::of(&self.sample(n_samples, rng))
+    }
+
+    /// Index of a component, drawn by the weights.
+    fn draw_component(&self, rng: &mut impl Rng) -> usize {
+        let mut left: f64 = rng.random();
+        for (k, component) in self.components().iter().enumerate() {
+            left -= component.weight;
+            if left < 0.0 {
+                return k;
+            }
+        }
+        self.components().len() - 1
+    }
+}
+
+impl CurveFigures {
+    /// Of these curves.
+    pub fn of(curves: &[ForceCurve]) -> Self {
+        let peaks = curves.iter().map(ForceCurve::peak);
+        let (peak_n, peak_time_s) = peaks.unzip();
+        Self {
+            impulse_n_s: curves.iter().map(ForceCurve::impulse_n_s).collect(),
+            peak_n,
+            peak_time_s,
+            duration_s: curves.iter().map(|curve| curve.duration_s).collect(),
+        }
+    }
+
+    /// Size of the impulse of each draw, N s.
+    pub fn impulse_magnitude_n_s(&self) -> Vec<f64> {
+        self.impulse_n_s.iter().map(|[x, y]| x.hypot(*y)).collect()
+    }
+
+    /// Central interval of one of its figures; `None` without draws.
+    ///
+    /// - `level`: share that it holds, 0 to 1.
+    pub fn interval(figure: &[f64], level: f64) -> Option<[f64; 2]> {
+        let mut sorted = figure.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let at = |probability| quantile_of_sorted(&sorted, probability);
+        Some([at((1.0 - level) / 2.0)?, at((1.0 + level) / 2.0)?])
+    }
+
+    /// Median of one of its figures; `None` without draws.
+    pub fn median(figure: &[f64]) -> Option<f64> {
+        Self::interval(figure, 0.0).map(|[median, _]| median)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+    use crate::uncertainty::mixture::tests::example;
+
+    #[test]
+    fn draws_have_the_moments_of_the_mixture() {
+        let mixture = example(3, 20);
+        let n = 20_000;
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
+        let drawn = mixture.sample(n, &mut rng);
+        let figures = CurveFigures::of(&drawn);
+        // Bounds: four standard errors of a mean; the impulse's spread to 3 %, some six of its own.
+        for axis in [0, 1] {
+            let exact = mixture.impulse(axis);
+            let impulses = figures.impulse_n_s.iter().map(|p| p[axis]);
+            let mean = impulses.clone().sum::<f64>() / n as f64;
+            let variance = impulses.map(|p| (p - mean).powi(2)).sum::<f64>() / n as f64;
+            let error = (mean - exact.mean()) / (exact.std() / (n as f64).sqrt());
+            assert!(error.abs() < 4.0, "axis {axis}: {error} standard errors");
+            let ratio = variance.sqrt() / exact.std();
+            assert!((ratio - 1.0).abs() < 0.03, "axis {axis}: spread {ratio} of the exact one");
+        }
+        let durations = mixture.duration_s();
+        let [low, high] = CurveFigures::interval(&figures.duration_s, 0.8).unwrap();
+        for (got, probability) in [(low, 0.1), (high, 0.9)] {
+            // Four standard errors of a share.
+            let error = (durations.cdf(got) - probability).abs();
+            assert!(error < 4.0 * (0.09 / n as f64).sqrt(), "{probability}: {error}");
+        }
+    }
+
+    #[test]
+    fn the_same_seed_draws_the_same() {
+        let mixture = example(2, 10);
+        let draw = |seed| mixture.sample_figures(5, &mut ChaCha8Rng::seed_from_u64(seed));
+        assert_eq!(draw(3), draw(3));
+        assert_ne!(draw(3), draw(4));
+    }
+
+    #[test]
+    fn intervals_of_a_row() {
+        let row: Vec<f64> = (0..=100).rev().map(f64::from).collect();
+        let [low, high] = CurveFigures::interval(&row, 0.9).unwrap();
+        assert!((low - 5.0).abs() < 1e-9 && (high - 95.0).abs() < 1e-9, "{low} {high}");
+        assert_eq!(CurveFigures::median(&row), Some(50.0));
+        assert_eq!(CurveFigures::median(&[]), None);
+    }
+}
