@@ -2,6 +2,7 @@
 
 mod angle;
 mod interpolation;
+mod least_squares;
 mod normal;
 mod ode;
 mod scalar;
@@ -9,6 +10,7 @@ mod statistics;
 
 pub use angle::wrap_angle_rad;
 pub use interpolation::interpolate;
+pub use least_squares::{LeastSquares, levenberg_marquardt};
 pub use normal::{normal_cdf, normal_density, normal_quantile};
 pub use ode::{Stage, euler_step, rk4_step};
 pub use scalar::Scalar;
