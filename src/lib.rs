@@ -8,11 +8,12 @@
 //! 4. [`vehicle`]: the one place of the equations of motion;
 //! 5. [`collision`]: the impact itself: impulse, contact geometry, scenarios, pulses, filter;
 //! 6. [`uncertainty`]: distributions of whole force curves;
-//! 7. [`compare`]: simulation against reference;
-//! 8. [`analysis`]: one case, from its file to a motion;
-//! 9. [`figure`]: what a plot shows, as plain data;
-//! 10. `render` (feature `gui`): one drawing function for the panel and the off-screen picture;
-//! 11. `cli` and `app` (feature `gui`): the command line and the window.
+//! 7. [`force`]: models of the contact force, and their evaluation;
+//! 8. [`compare`]: simulation against reference;
+//! 9. [`analysis`]: one case, from its file to a motion;
+//! 10. [`figure`]: what a plot shows, as plain data;
+//! 11. `render` (feature `gui`): one drawing function for the panel and the off-screen picture;
+//! 12. `cli` and `app` (feature `gui`): the command line and the window.
 //!
 //! ```
 //! use impactlab::vehicle::{Integrator, Manoeuvre, Preset, VehicleState};
@@ -38,6 +39,7 @@ pub mod compare;
 pub mod data;
 mod error_chain;
 pub mod figure;
+pub mod force;
 pub mod jobs;
 pub mod numerics;
 #[cfg(feature = "gui")]

@@ -14,6 +14,7 @@ const LAYERS: &[&[&str]] = &[
     &["vehicle"],
     &["collision"],
     &["uncertainty"],
+    &["force"],
     &["compare"],
     &["analysis"],
     &["figure"],

@@ -1,0 +1,10 @@
+//! The contact force before it happens: cases to learn from, models, and how well they do.
+
+mod scenario;
+
+mod case;
+mod split;
+
+pub use case::{ForceCase, ForceCaseError, curve_on_grid};
+pub use scenario::ForceScenario;
+pub use split::{Split, TEST_SHARE, folds, split};
