@@ -5,6 +5,11 @@ mod scenario;
 mod case;
 mod split;
 
+mod prediction;
+
+pub mod metrics;
+
 pub use case::{ForceCase, ForceCaseError, curve_on_grid};
+pub use prediction::Prediction;
 pub use scenario::ForceScenario;
 pub use split::{Split, TEST_SHARE, folds, split};
