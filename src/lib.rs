@@ -14,6 +14,7 @@
 //! 9. [`figure`]: what a plot shows, as plain data;
 //! 10. `render` (feature `gui`): one drawing function for the panel and the off-screen picture;
 //! 11. `cli` and `app` (feature `gui`): the command line and the window.
+//!    [`force`]: the force network, its baselines and how well they do;
 //!
 //! ```
 //! use impactlab::vehicle::{Integrator, Manoeuvre, Preset, VehicleState};
@@ -39,6 +40,7 @@ pub mod compare;
 pub mod data;
 mod error_chain;
 pub mod figure;
+pub mod force;
 pub mod jobs;
 pub mod nn;
 pub mod numerics;

@@ -25,9 +25,11 @@ mod bands;
 mod density;
 mod mixture;
 mod sample;
+mod scores;
 
 pub use bands::{Band, CurveBands};
 pub use curve::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
 pub use mixture::{CurveComponent, CurveMixture, MixtureError};
 pub use normal_mixture::{NormalMixture, NormalPart};
 pub use sample::CurveFigures;
+pub use scores::{distance_n, energy_score_n, sample_crps};
