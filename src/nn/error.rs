@@ -1,6 +1,10 @@
-//! What can go wrong while a network is built, run, trained or loaded.
+//! What can go wrong while a network is built, run, trained, saved or loaded.
 
-/// Why a network could not be built, run, trained or loaded.
+use std::path::PathBuf;
+
+use crate::data::DataError;
+
+/// Why a network could not be built, run, trained, saved or loaded.
 #[derive(Debug, thiserror::Error)]
 pub enum NnError {
     /// An operation on tensors failed.
@@ -97,5 +101,97 @@ pub enum NnError {
         index: usize,
         /// What.
         value: f64,
+    },
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    File(#[from] DataError),
+    /// A file was read, but holds no model that can be used.
+    #[error("{}: cannot be used as a model", path.display())]
+    InFile {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: Box<NnError>,
+    },
+    /// More bytes than a model has.
+    #[error("has {bytes} bytes or more, at most {limit} are read")]
+    TooLarge {
+        /// Bytes that were seen.
+        bytes: u64,
+        /// The largest size that is read.
+        limit: u64,
+    },
+    /// The first bytes are not those of the format.
+    #[error("is not a safetensors file")]
+    NotSafetensors,
+    /// The header cannot be understood.
+    #[error("the header is damaged")]
+    Header(#[source] serde_json::Error),
+    /// Header and contents contradict each other.
+    #[error("the tensors are damaged")]
+    Layout(#[source] safetensors::SafeTensorError),
+    /// The end is missing.
+    #[error("is truncated: expected {expected} bytes, has {got}")]
+    Truncated {
+        /// As the header says; at least so many if the header itself ends early.
+        expected: u64,
+        /// The size.
+        got: u64,
+    },
+    /// Something follows the end.
+    #[error("is too long: expected {expected} bytes, has {got}")]
+    TrailingBytes {
+        /// As the header says.
+        expected: u64,
+        /// The size.
+        got: u64,
+    },
+    /// The contents are not those that were written.
+    #[error("is damaged: the checksum is {got}, expected {expected}")]
+    Checksum {
+        /// SHA-256 as it was written.
+        expected: String,
+        /// SHA-256 of what is there.
+        got: String,
+    },
+    /// A piece of metadata is not there.
+    #[error("the metadata key {key:?} is missing")]
+    MissingMetadata {
+        /// Its key.
+        key: String,
+    },
+    /// A piece of metadata has another form than expected, or cannot be written.
+    #[error("the metadata {key:?} cannot be understood")]
+    Metadata {
+        /// Its key.
+        key: String,
+        /// Why.
+        source: serde_json::Error,
+    },
+    /// A model for something else.
+    #[error("is a model of the kind {got:?}, expected {expected:?}")]
+    WrongKind {
+        /// The kind that is needed.
+        expected: String,
+        /// The kind that it is.
+        got: String,
+    },
+    /// A model as another version of the program writes it.
+    #[error("has format version {got} of {kind:?}, this program reads version {expected}")]
+    WrongVersion {
+        /// The kind of model.
+        kind: String,
+        /// The version that is read.
+        expected: u32,
+        /// The version that it has.
+        got: u32,
+    },
+    /// A tensor with a dimension of length 0.
+    #[error("the tensor {name:?} is empty: its shape is {shape:?}")]
+    EmptyTensor {
+        /// The tensor.
+        name: String,
+        /// Its shape.
+        shape: Vec<usize>,
     },
 }

@@ -25,6 +25,10 @@
 mod activation;
 mod adam_moments;
 mod attention;
+mod checkpoint;
+mod checkpoint_bytes;
+#[cfg(test)]
+mod checkpoint_tests;
 mod element;
 mod encoding;
 mod error;
@@ -45,6 +49,7 @@ mod softmax;
 
 pub use activation::Activation;
 pub use attention::{Attention, AttentionConfig};
+pub use checkpoint::{Checkpoint, MAX_MODEL_BYTES, ModelKind};
 pub use encoding::positional_encoding;
 pub use error::NnError;
 pub use init::Init;
