@@ -9,6 +9,7 @@ mod error;
 mod scenario;
 
 mod case;
+mod load;
 mod split;
 
 mod config;
@@ -37,6 +38,7 @@ pub use centre::{CentreCurve, CentreModel};
 pub use config::{Centre, CrushConfig, ForceConfig, LossWeights, NetworkConfig, TrainingConfig};
 pub use error::ForceError;
 pub use features::{OpenFeatures, OutsideTraining, Standardisation};
+pub use load::LoadError;
 pub use loss::LossTerms;
 pub use model::ForceModel;
 pub use predict::ForcePrediction;
