@@ -42,6 +42,9 @@ sources! {
     /// from impact forces, 4DOF vehicle model (`eq:4dof`), momentum-conservation collision
     /// (`eq:collision_model1`). Equation labels are those of its LaTeX source.
     PitPinnPaper;
+    /// C. E. Rasmussen, C. K. I. Williams, *Gaussian Processes for Machine Learning*, MIT Press,
+    /// 2006. Regression, marginal likelihood and its gradient.
+    RasmussenWilliams2006;
     /// SAE J211-1:2014, *Instrumentation for Impact Test, Part 1: Electronic Instrumentation*,
     /// appendix C. Channel frequency classes and their digital filter.
     SaeJ211;

@@ -1,6 +1,7 @@
 //! Mathematics that knows no vehicle: the scalar, integration, statistics, angles.
 
 mod angle;
+mod gaussian_process;
 mod interpolation;
 mod normal;
 mod ode;
@@ -8,6 +9,9 @@ mod scalar;
 mod statistics;
 
 pub use angle::wrap_angle_rad;
+pub use gaussian_process::{
+    GaussianPrediction, GaussianProcess, GaussianProcessData, GaussianProcessError,
+};
 pub use interpolation::interpolate;
 pub use normal::{normal_cdf, normal_density, normal_quantile};
 pub use ode::{Stage, euler_step, rk4_step};
