@@ -5,11 +5,15 @@ mod scenario;
 mod case;
 mod split;
 
+mod momentum;
 mod prediction;
 
 pub mod metrics;
 
+pub mod baselines;
+
 pub use case::{ForceCase, ForceCaseError, curve_on_grid};
+pub use momentum::MomentumModel;
 pub use prediction::Prediction;
 pub use scenario::ForceScenario;
 pub use split::{Split, TEST_SHARE, folds, split};
