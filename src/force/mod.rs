@@ -8,11 +8,13 @@ mod split;
 mod momentum;
 mod prediction;
 
+mod clusters;
 pub mod metrics;
 
 pub mod baselines;
 
 pub use case::{ForceCase, ForceCaseError, curve_on_grid};
+pub use clusters::{ImpulseClusters, ImpulseFeatures};
 pub use momentum::MomentumModel;
 pub use prediction::Prediction;
 pub use scenario::ForceScenario;

@@ -1,6 +1,7 @@
 //! Mathematics that knows no vehicle: the scalar, integration, statistics, angles.
 
 mod angle;
+mod clustering;
 mod gaussian_process;
 mod interpolation;
 mod normal;
@@ -9,6 +10,7 @@ mod scalar;
 mod statistics;
 
 pub use angle::wrap_angle_rad;
+pub use clustering::{ClusterError, Clusters};
 pub use gaussian_process::{
     GaussianPrediction, GaussianProcess, GaussianProcessData, GaussianProcessError,
 };
