@@ -7,13 +7,14 @@
 //! 3. [`data`]: files become checked time series in SI units;
 //! 4. [`vehicle`]: the one place of the equations of motion;
 //! 5. [`collision`]: the impact itself: impulse, contact geometry, scenarios, pulses, filter;
-//! 6. [`uncertainty`]: distributions of whole force curves;
-//! 7. [`force`]: models of the contact force, and their evaluation;
-//! 8. [`compare`]: simulation against reference;
-//! 9. [`analysis`]: one case, from its file to a motion;
-//! 10. [`figure`]: what a plot shows, as plain data;
-//! 11. `render` (feature `gui`): one drawing function for the panel and the off-screen picture;
-//! 12. `cli` and `app` (feature `gui`): the command line and the window.
+//! 6. [`nn`]: layers, parameters, optimiser and files of the networks;
+//!    [`uncertainty`]: distributions of whole force curves;
+//! 7. [`compare`]: simulation against reference;
+//! 8. [`analysis`]: one case, from its file to a motion;
+//! 9. [`figure`]: what a plot shows, as plain data;
+//! 10. `render` (feature `gui`): one drawing function for the panel and the off-screen picture;
+//! 11. `cli` and `app` (feature `gui`): the command line and the window.
+//!    [`force`]: the force network, its baselines and how well they do;
 //!
 //! ```
 //! use impactlab::vehicle::{Integrator, Manoeuvre, Preset, VehicleState};
@@ -41,6 +42,7 @@ mod error_chain;
 pub mod figure;
 pub mod force;
 pub mod jobs;
+pub mod nn;
 pub mod numerics;
 #[cfg(feature = "gui")]
 pub mod render;

@@ -13,7 +13,7 @@ const LAYERS: &[&[&str]] = &[
     &["data"],
     &["vehicle"],
     &["collision"],
-    &["uncertainty"],
+    &["nn", "uncertainty"],
     &["force"],
     &["compare"],
     &["analysis"],

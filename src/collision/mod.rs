@@ -27,6 +27,8 @@ mod scenario_file;
 mod scenario_write;
 mod toml_section;
 
+pub mod crush;
+
 mod pulse;
 
 mod channel_filter;

@@ -4,6 +4,7 @@ mod angle;
 mod clustering;
 mod gaussian_process;
 mod interpolation;
+mod least_squares;
 mod normal;
 mod ode;
 mod scalar;
@@ -15,6 +16,7 @@ pub use gaussian_process::{
     GaussianPrediction, GaussianProcess, GaussianProcessData, GaussianProcessError,
 };
 pub use interpolation::interpolate;
+pub use least_squares::{LeastSquares, levenberg_marquardt};
 pub use normal::{normal_cdf, normal_density, normal_quantile};
 pub use ode::{Stage, euler_step, rk4_step};
 pub use scalar::Scalar;

@@ -1,0 +1,167 @@
+//! Learns the parameters of the crush model from known force histories.
+
+use std::ops::ControlFlow;
+
+use rayon::prelude::*;
+
+use super::law::CrushLaw;
+use super::simulate::CrushScenario;
+use crate::numerics::levenberg_marquardt;
+
+/// Neighbouring steps whose mean force is compared: what is faster is ringing of the structure.
+const STEPS_PER_RESIDUAL: usize = 2;
+
+/// A collision whose force history is known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CrushSample {
+    /// Before it.
+    pub scenario: CrushScenario,
+    /// Force along x, world axes, N, one mean per step.
+    pub fx_n: Vec<f64>,
+    /// Force along y, N.
+    pub fy_n: Vec<f64>,
+    /// How much it counts; 1 for a full case.
+    pub weight: f64,
+}
+
+/// How a law is fitted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CrushFit {
+    /// Width of a step of the histories and of the simulation, s.
+    pub dt_s: f64,
+    /// How strongly parameters are held at the prior: the residual of a parameter that is one
+    /// scale away from it.
+    pub prior_weight: f64,
+    /// Weight of the relative error of the impulse beside that of the history.
+    pub impulse_weight: f64,
+    /// Most steps of the search.
+    pub max_steps: usize,
+}
+
+impl CrushLaw {
+    /// The law, started at this prior, that minimises
+    ///
+    /// ```text
+    /// Σ_cases w² ( ‖F̂ − F‖² / ‖F‖²  +  w_P² |P̂ − P|² / |P|² )  +  w_prior² Σ (p − p_prior)² / scale²
+    /// ```
+    ///
+    /// with the histories as means over two steps. `None` if there is no sample with a force or the
+    /// prior itself cannot be simulated.
+    ///
+    /// - `report`: called with each accepted cost; breaking ends the search where it is.
+    pub fn fit(
+        &self,
+        samples: &[CrushSample],
+        settings: CrushFit,
+        report: &mut dyn FnMut(f64) -> ControlFlow<()>,
+    ) -> Option<Self> {
+        let references: Vec<Reference<'_>> =
+            samples.iter().filter_map(|sample| Reference::new(sample, settings)).collect();
+        if references.is_empty() {
+            return None;
+        }
+        let (prior, scales) = (self.to_vector(), self.scales());
+        let residuals = |row: &[f64]| {
+            let law = self.with_vector(row);
+            let cases: Vec<Option<Vec<f64>>> =
+                references.par_iter().map(|reference| reference.residuals(&law)).collect();
+            let mut all = Vec::new();
+            for case in cases {
+                all.extend(case?);
+            }
+            let held = row.iter().zip(&prior).zip(&scales);
+            all.extend(held.map(|((p, p0), scale)| settings.prior_weight * (p - p0) / scale));
+            Some(all)
+        };
+        let search = levenberg_marquardt(&residuals, [&prior, &scales], settings.max_steps, report);
+        Some(self.with_vector(&search?.parameters))
+    }
+}
+
+/// A sample as the residuals need it.
+struct Reference<'a> {
+    sample: &'a CrushSample,
+    settings: CrushFit,
+    /// Of the history `[x, y]`, per pair of steps.
+    means: [Vec<f64>; 2],
+    norm: f64,
+    impulse: [f64; 2],
+}
+
+impl<'a> Reference<'a> {
+    fn new(sample: &'a CrushSample, settings: CrushFit) -> Option<Self> {
+        let axes = [&sample.fx_n, &sample.fy_n];
+        let means = axes.map(|force| means(force));
+        let norm = means.iter().flatten().map(|f| f * f).sum::<f64>().sqrt();
+        let impulse = axes.map(|force| force.iter().sum());
+        (norm > 0.0 && norm.is_finite()).then_some(Self { sample, settings, means, norm, impulse })
+    }
+
+    fn residuals(&self, law: &CrushLaw) -> Option<Vec<f64>> {
+        let n_steps = self.sample.fx_n.len();
+        let history = law.simulate(&self.sample.scenario, n_steps, self.settings.dt_s)?;
+        let weight = self.sample.weight;
+        let size = self.impulse[0].hypot(self.impulse[1]);
+        let mut residuals = Vec::with_capacity(n_steps + 2);
+        for (axis, force) in [&history.fx_n, &history.fy_n].into_iter().enumerate() {
+            let errors = means(force).into_iter().zip(&self.means[axis]);
+            residuals.extend(errors.map(|(got, known)| weight * (got - known) / self.norm));
+            let error = (force.iter().sum::<f64>() - self.impulse[axis]) / size;
+            residuals.push(weight * self.settings.impulse_weight * error);
+        }
+        Some(residuals)
+    }
+}
+
+fn means(force: &[f64]) -> Vec<f64> {
+    let mean = |chunk: &[f64]| chunk.iter().sum::<f64>() / chunk.len() as f64;
+    force.chunks(STEPS_PER_RESIDUAL).map(mean).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::simulate::tests::{example, law};
+    use super::*;
+
+    fn sample(law: &CrushLaw, scenario: CrushScenario) -> CrushSample {
+        let history = law.simulate(&scenario, 150, 1e-3).unwrap();
+        CrushSample { scenario, fx_n: history.fx_n, fy_n: history.fy_n, weight: 1.0 }
+    }
+
+    #[test]
+    fn a_law_is_found_again_from_what_it_does() {
+        let prior = law();
+        let mut truth = law();
+        truth.friction = 0.3;
+        truth.depth_log_stiffness[1] += 0.4;
+        truth.bodies[0].recovery = 0.35;
+        let scenarios = (0..6).map(|i| CrushScenario {
+            relative_velocity_m_s: [f64::from(i) * 0.4, 1.0 + 0.7 * f64::from(i)],
+            theta_b_rad: 0.1 + 0.08 * f64::from(i),
+            ..example()
+        });
+        let samples: Vec<_> = scenarios.map(|scenario| sample(&truth, scenario)).collect();
+        let settings =
+            CrushFit { dt_s: 1e-3, prior_weight: 1e-3, impulse_weight: 1.0, max_steps: 15 };
+        let mut costs = Vec::new();
+        let fitted = prior.fit(&samples, settings, &mut |cost| {
+            costs.push(cost);
+            ControlFlow::Continue(())
+        });
+        let fitted = fitted.unwrap();
+        assert!(costs.last().unwrap() < &(costs[0] / 100.0), "{costs:?}");
+        // Parameters make up for each other; what counts is a collision that it has not seen.
+        let unseen =
+            CrushScenario { relative_velocity_m_s: [0.7, 2.6], theta_b_rad: 0.27, ..example() };
+        let impulse = |law: &CrushLaw| sample(law, unseen.clone()).fy_n.iter().sum::<f64>();
+        let (got, known) = (impulse(&fitted), impulse(&truth));
+        assert!((got / known - 1.0).abs() < 0.02, "{got} {known}, prior {}", impulse(&prior));
+    }
+
+    #[test]
+    fn nothing_to_fit_is_none() {
+        let settings =
+            CrushFit { dt_s: 1e-3, prior_weight: 1.0, impulse_weight: 1.0, max_steps: 1 };
+        assert!(law().fit(&[], settings, &mut |_| ControlFlow::Continue(())).is_none());
+    }
+}

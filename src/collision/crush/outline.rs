@@ -1,0 +1,173 @@
+//! The front of the bullet in plan view, as a row of springs.
+
+use serde::{Deserialize, Serialize};
+
+/// Slope dy/dx of the outline at which the curved corner ends and the straight front begins.
+const FRONT_SLOPE: f64 = 1.2;
+/// Length of an element of the straight parts, m.
+const STRAIGHT_ELEMENT_M: f64 = 0.1;
+const N_SIDE: usize = 8;
+const N_CORNER: usize = 12;
+const N_FRONT: usize = 6;
+
+/// Elements of the whole outline: side, corner, front.
+pub(super) const N_ELEMENTS: usize = N_SIDE + N_CORNER + N_FRONT;
+/// Stiffness factors along the outline: rear end of the side, start, middle and end of the corner,
+/// end of the front.
+pub(super) const N_OUTLINE_FACTORS: usize = 5;
+
+/// The left front corner of a car in plan view: straight side, parabolic corner, straight front.
+///
+/// ```text
+/// y(x) = y₀ − (x − x₀)² / 2R     for x ≥ x₀, until its slope reaches 1.2
+/// ```
+///
+/// Body axes from the CG, x forward, y left. The parabola describes the points of first contact of
+/// the shipped finite-element runs to 3 mm.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Nose {
+    /// x₀: where the side begins to curve inwards, m.
+    pub corner_x_m: f64,
+    /// y₀: half the width, m.
+    pub half_width_m: f64,
+    /// R: radius of curvature at x₀, m, positive.
+    pub radius_m: f64,
+}
+
+impl Default for Nose {
+    /// A mid-size car.
+    fn default() -> Self {
+        Self { corner_x_m: 1.7, half_width_m: 0.95, radius_m: 0.42 }
+    }
+}
+
+/// One spring of the outline.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Element {
+    /// Position in the bullet's body axes, m.
+    pub position_m: [f64; 2],
+    /// Outward normal.
+    pub normal: [f64; 2],
+    /// Length of outline that it stands for, m.
+    pub length_m: f64,
+    /// Stiffness factor.
+    pub factor: f64,
+}
+
+impl Nose {
+    /// Where a straight wall touches first that the bullet meets at `angle_rad` (0: parallel to its
+    /// side), body axes, m: the point with `dy/dx = −tan(angle)`.
+    pub fn touching_point_m(&self, angle_rad: f64) -> [f64; 2] {
+        let slope = angle_rad.tan().clamp(0.0, FRONT_SLOPE);
+        self.corner_point_m(slope)
+    }
+
+    /// The nose whose points of first contact lie closest to the given ones (least squares; the
+    /// model is linear in its parameters for x, and in y₀ and R for y). `None` below two points.
+    ///
+    /// - `contacts`: angle of the wall, rad, and the point, body axes, m.
+    pub fn fit(contacts: &[(f64, [f64; 2])]) -> Option<Self> {
+        if contacts.len() < 2 {
+            return None;
+        }
+        // Unknown x₀, y₀, R: rows x = x₀ + R t and y = y₀ − R t²/2 with t = tan(angle).
+        let rows = contacts.iter().flat_map(|(angle, [x, y])| {
+            let t = angle.tan();
+            [([1.0, 0.0, t], *x), ([0.0, 1.0, -t * t / 2.0], *y)]
+        });
+        let mut normal = nalgebra::Matrix3::<f64>::zeros();
+        let mut right = nalgebra::Vector3::<f64>::zeros();
+        for (row, value) in rows {
+            let row = nalgebra::Vector3::from(row);
+            normal += row * row.transpose();
+            right += row * value;
+        }
+        let solution = normal.cholesky()?.solve(&right);
+        let nose =
+            Self { corner_x_m: solution[0], half_width_m: solution[1], radius_m: solution[2] };
+        (nose.radius_m > 0.0 && nose.half_width_m > 0.0).then_some(nose)
+    }
+
+    fn corner_point_m(&self, slope: f64) -> [f64; 2] {
+        let along = self.radius_m * slope;
+        [self.corner_x_m + along, self.half_width_m - along * slope / 2.0]
+    }
+
+    /// The row of springs.
+    ///
+    /// - `log_factors`: logarithms of the stiffness factors at the five marks of
+    ///   [`N_OUTLINE_FACTORS`], linear in between.
+    pub(super) fn elements(&self, log_factors: &[f64; N_OUTLINE_FACTORS]) -> [Element; N_ELEMENTS] {
+        let between = |mark: usize, share: f64| {
+            (log_factors[mark] * (1.0 - share) + log_factors[mark + 1] * share).exp()
+        };
+        let middle = |i: usize| i as f64 + 0.5;
+        std::array::from_fn(|i| {
+            if i < N_SIDE {
+                let behind = N_SIDE as f64 - middle(i);
+                Element {
+                    position_m: [self.corner_x_m - STRAIGHT_ELEMENT_M * behind, self.half_width_m],
+                    normal: [0.0, 1.0],
+                    length_m: STRAIGHT_ELEMENT_M,
+                    factor: between(0, middle(i) / N_SIDE as f64),
+                }
+            } else if i < N_SIDE + N_CORNER {
+                let share = middle(i - N_SIDE) / N_CORNER as f64;
+                let slope = FRONT_SLOPE * share;
+                let length = slope.hypot(1.0);
+                Element {
+                    position_m: self.corner_point_m(slope),
+                    normal: [slope / length, 1.0 / length],
+                    length_m: self.radius_m * FRONT_SLOPE / N_CORNER as f64 * length,
+                    factor: if share < 0.5 {
+                        between(1, 2.0 * share)
+                    } else {
+                        between(2, 2.0 * share - 1.0)
+                    },
+                }
+            } else {
+                let inwards = middle(i - N_SIDE - N_CORNER);
+                let [x, y] = self.corner_point_m(FRONT_SLOPE);
+                Element {
+                    position_m: [x, y - STRAIGHT_ELEMENT_M * inwards],
+                    normal: [1.0, 0.0],
+                    length_m: STRAIGHT_ELEMENT_M,
+                    factor: between(3, inwards / N_FRONT as f64),
+                }
+            }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_nose_is_found_again_from_its_points_of_contact() {
+        let nose = Nose { corner_x_m: 1.63, half_width_m: 0.94, radius_m: 0.42 };
+        let contacts: Vec<_> = (1..8)
+            .map(|i| f64::from(i) * 0.08)
+            .map(|angle| (angle, nose.touching_point_m(angle)))
+            .collect();
+        let fitted = Nose::fit(&contacts).unwrap();
+        assert!((fitted.corner_x_m - 1.63).abs() < 1e-9, "{fitted:?}");
+        assert!((fitted.radius_m - 0.42).abs() < 1e-9, "{fitted:?}");
+        assert_eq!(Nose::fit(&contacts[..1]), None);
+    }
+
+    #[test]
+    fn elements_follow_the_outline_with_unit_normals() {
+        let nose = Nose::default();
+        let elements = nose.elements(&[0.0; N_OUTLINE_FACTORS]);
+        for pair in elements.windows(2) {
+            let [[x0, y0], [x1, y1]] = [pair[0].position_m, pair[1].position_m];
+            assert!(x1 >= x0 - 1e-12 && y1 <= y0 + 1e-12, "{pair:?}");
+        }
+        for element in elements {
+            assert!((element.normal[0].hypot(element.normal[1]) - 1.0).abs() < 1e-12);
+            assert_eq!(element.factor, 1.0);
+        }
+    }
+}

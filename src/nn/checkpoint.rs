@@ -1,0 +1,139 @@
+//! One file per model: its tensors, and beside them what is needed to use it, as JSON.
+//!
+//! The file is a safetensors file, which other tools open too. It says what kind of model it is
+//! and in which version, and carries a checksum: a single flipped bit is found. The same contents
+//! give the same bytes.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Value};
+
+use crate::data::{DataError, write_atomically};
+use crate::nn::checkpoint_bytes::{decode, encode};
+use crate::nn::{NamedTensors, NnError};
+
+/// The largest file that is read; the networks here have a few megabytes.
+pub const MAX_MODEL_BYTES: u64 = 256 << 20;
+
+/// What a model file is for, so that none is mistaken for another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ModelKind {
+    /// Such as `force network`.
+    pub name: &'static str,
+    /// Rises whenever the meaning of tensors or metadata changes.
+    pub version: u32,
+}
+
+/// The contents of a model file.
+#[derive(Debug, Clone)]
+pub struct Checkpoint {
+    pub(crate) kind: ModelKind,
+    pub(crate) metadata: Map<String, Value>,
+    pub(crate) tensors: NamedTensors,
+}
+
+impl Checkpoint {
+    /// Nothing yet.
+    pub fn new(kind: ModelKind) -> Self {
+        Self { kind, metadata: Map::new(), tensors: NamedTensors::new() }
+    }
+
+    /// What kind of model it is.
+    pub fn kind(&self) -> ModelKind {
+        self.kind
+    }
+
+    /// Puts a piece of metadata in, such as the config, seed or hash of the data; replaces an
+    /// earlier one of this key. Infinite numbers and NaN become `null`, as JSON has none.
+    ///
+    /// # Errors
+    /// [`NnError::Metadata`] if it cannot be written as JSON.
+    pub fn put<T: Serialize>(&mut self, key: &str, value: &T) -> Result<(), NnError> {
+        let to_error = |source| NnError::Metadata { key: key.to_owned(), source };
+        self.metadata.insert(key.to_owned(), serde_json::to_value(value).map_err(to_error)?);
+        Ok(())
+    }
+
+    /// The piece of metadata of this key.
+    ///
+    /// # Errors
+    /// [`NnError::MissingMetadata`], [`NnError::Metadata`] if it has another form.
+    pub fn get<T: DeserializeOwned>(&self, key: &str) -> Result<T, NnError> {
+        let missing = || NnError::MissingMetadata { key: key.to_owned() };
+        let value = self.metadata.get(key).ok_or_else(missing)?;
+        let to_error = |source| NnError::Metadata { key: key.to_owned(), source };
+        T::deserialize(value).map_err(to_error)
+    }
+
+    /// Puts tensors of 32 or 64 bits in, named `group.NAME`.
+    pub fn put_group(&mut self, group: &str, tensors: NamedTensors) {
+        let named = tensors.into_iter().map(|(name, tensor)| (format!("{group}.{name}"), tensor));
+        self.tensors.extend(named);
+    }
+
+    /// Takes the tensors named `group.NAME` out.
+    pub fn take_group(&mut self, group: &str) -> NamedTensors {
+        let prefix = format!("{group}.");
+        let all = std::mem::take(&mut self.tensors);
+        let (taken, left): (NamedTensors, _) =
+            all.into_iter().partition(|(name, _)| name.starts_with(&prefix));
+        self.tensors = left;
+        taken.into_iter().map(|(name, tensor)| (name[prefix.len()..].to_owned(), tensor)).collect()
+    }
+
+    /// To be called when all groups that the model knows are taken.
+    ///
+    /// # Errors
+    /// [`NnError::UnexpectedTensor`] with the first that was not.
+    pub fn check_all_taken(&self) -> Result<(), NnError> {
+        match self.tensors.keys().next() {
+            None => Ok(()),
+            Some(name) => Err(NnError::UnexpectedTensor { name: name.clone() }),
+        }
+    }
+
+    /// Writes the file whole or not at all.
+    ///
+    /// # Errors
+    /// [`NnError::File`] with the system's reason, [`NnError::NumberType`],
+    /// [`NnError::EmptyTensor`], [`NnError::NonFinite`] with the first tensor that is not to be
+    /// saved.
+    pub fn write(&self, path: &Path) -> Result<(), NnError> {
+        let bytes = encode(self)?;
+        Ok(write_atomically(path, |out| out.write_all(&bytes))?)
+    }
+
+    /// Reads a file that [`Checkpoint::write`] wrote.
+    ///
+    /// # Errors
+    /// [`NnError::File`] if it cannot be read, [`NnError::InFile`] with the reason if it is damaged
+    /// or holds something else.
+    pub fn read(path: &Path, kind: ModelKind) -> Result<Self, NnError> {
+        let bytes = read_limited(path)?;
+        let in_file = |source| NnError::InFile { path: path.to_owned(), source: Box::new(source) };
+        Self::from_bytes(&bytes, kind).map_err(in_file)
+    }
+
+    /// Takes the contents of such a file.
+    ///
+    /// # Errors
+    /// As within [`Checkpoint::read`], without the name of the file.
+    pub fn from_bytes(bytes: &[u8], kind: ModelKind) -> Result<Self, NnError> {
+        match bytes.len() as u64 {
+            n if n > MAX_MODEL_BYTES => Err(NnError::TooLarge { bytes: n, limit: MAX_MODEL_BYTES }),
+            _ => decode(bytes, kind),
+        }
+    }
+}
+
+/// At most one byte more than [`MAX_MODEL_BYTES`].
+fn read_limited(path: &Path) -> Result<Vec<u8>, DataError> {
+    let to_error = |source| DataError::io(path, source);
+    let (file, mut bytes) = (File::open(path).map_err(to_error)?, Vec::new());
+    file.take(MAX_MODEL_BYTES + 1).read_to_end(&mut bytes).map_err(to_error)?;
+    Ok(bytes)
+}

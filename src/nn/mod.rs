@@ -1,0 +1,64 @@
+//! What the networks share: layers with fused kernels and exact gradients, named parameters,
+//! the optimiser, seeds, and the file that holds a trained model.
+//!
+//! Everything runs on the CPU, in 32 or 64 bits, and gives the same bits for the same seed on the
+//! same machine, whatever the number of threads does: weights are drawn from a generator that the
+//! caller passes, in the order of the layers, and every sum is taken in a fixed order.
+//!
+//! ```
+//! use candle_core::{DType, Device, Tensor};
+//! use impactlab::nn::{Activation, AdamW, AdamWConfig, Mlp, Parameters, random_stream};
+//!
+//! let mut parameters = Parameters::new(DType::F32);
+//! let mut rng = random_stream(7, "weights", 0);
+//! let mut root = parameters.builder(&mut rng);
+//! let trunk = Mlp::new(&mut root.at("trunk"), &[3, 8, 1], Activation::None)?;
+//! let mut optimizer = AdamW::new(AdamWConfig::default(), &parameters)?;
+//!
+//! let x = Tensor::ones((4, 3), DType::F32, &Device::Cpu)?;
+//! let loss = trunk.forward(&x)?.sqr()?.mean_all()?;
+//! optimizer.step(&parameters, &loss.backward()?)?;
+//! assert_eq!(parameters.n_values(), 3 * 8 + 8 + 8 + 1);
+//! # Ok::<(), impactlab::nn::NnError>(())
+//! ```
+
+mod activation;
+mod adam_moments;
+mod attention;
+mod checkpoint;
+mod checkpoint_bytes;
+#[cfg(test)]
+mod checkpoint_tests;
+mod element;
+mod encoding;
+mod error;
+#[cfg(test)]
+mod gradient_check;
+mod init;
+mod layer_norm;
+mod linear;
+mod mlp;
+mod named_tensors;
+mod optimizer;
+#[cfg(test)]
+mod optimizer_tests;
+mod parameters;
+mod schedule;
+mod seed;
+mod softmax;
+
+pub use activation::Activation;
+pub use attention::{Attention, AttentionConfig};
+pub use checkpoint::{Checkpoint, MAX_MODEL_BYTES, ModelKind};
+pub use encoding::positional_encoding;
+pub use error::NnError;
+pub use init::Init;
+pub use layer_norm::LayerNorm;
+pub use linear::Linear;
+pub use mlp::{Mlp, MultiScaleEncoder};
+pub use named_tensors::NamedTensors;
+pub use optimizer::{AdamW, AdamWConfig, OptimizerState, StepReport};
+pub use parameters::{ParameterBuilder, Parameters};
+pub use schedule::Schedule;
+pub use seed::{random_stream, sha256_hex};
+pub use softmax::softmax;

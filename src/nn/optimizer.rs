@@ -1,0 +1,239 @@
+//! AdamW, one pass over each parameter per step, with clipping and a schedule; its state can be
+//! saved and taken up again to the bit.
+//!
+//! ```text
+//! η_t = η·share(t)      ĝ = g·min(1, c/‖g‖)      ‖g‖ over all parameters together
+//! m ← β₁ m + (1 − β₁) ĝ          v ← β₂ v + (1 − β₂) ĝ²
+//! θ ← θ·(1 − η_t λ) − η_t·(m/(1 − β₁ᵗ)) / (√(v/(1 − β₂ᵗ)) + ε)
+//! ```
+//!
+//! Source: I. Loshchilov, F. Hutter, Decoupled Weight Decay Regularization, ICLR 2019, algorithm 2.
+
+use candle_core::backprop::GradStore;
+use candle_core::{DType, Error, Storage, Tensor};
+use serde::{Deserialize, Serialize};
+
+use crate::nn::adam_moments::{Moments, Rates};
+use crate::nn::element::{Element, contiguous, sum_of, vectorized};
+use crate::nn::named_tensors::check_no_other;
+use crate::nn::parameters::Parameter;
+use crate::nn::{NamedTensors, NnError, Parameters, Schedule};
+
+/// Numbers of a gradient that are squared and added in its own type, before the sums are added in
+/// 64 bits.
+const NORM_BLOCK: usize = 4096;
+
+/// The settings of [`AdamW`].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct AdamWConfig {
+    /// η, above 0: how far a parameter moves in a step at most, about.
+    pub learning_rate: f64,
+    /// β₁, 0 to below 1: memory of the mean gradient.
+    pub beta_1: f64,
+    /// β₂, 0 to below 1: memory of the mean squared gradient.
+    pub beta_2: f64,
+    /// ε, above 0: keeps parameters with tiny gradients still.
+    pub epsilon: f64,
+    /// λ, at least 0: pull of weights to zero, apart from the gradient.
+    pub weight_decay: f64,
+    /// Whether biases, scales and shifts (parameters of one dimension) are pulled to zero too.
+    pub decay_biases: bool,
+    /// c, above 0: longest gradient of all parameters together; none for no limit.
+    pub max_gradient_norm: Option<f64>,
+    /// How η changes over the steps.
+    pub schedule: Schedule,
+}
+
+impl Default for AdamWConfig {
+    fn default() -> Self {
+        Self {
+            learning_rate: 1e-3,
+            beta_1: 0.9,
+            beta_2: 0.999,
+            epsilon: 1e-8,
+            weight_decay: 1e-2,
+            decay_biases: false,
+            max_gradient_norm: None,
+            schedule: Schedule::Constant,
+        }
+    }
+}
+
+impl AdamWConfig {
+    fn check(&self) -> Result<(), NnError> {
+        let below_one = |x: f64| (0.0..1.0).contains(&x);
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        let decay = self.weight_decay;
+        let norm = self.max_gradient_norm.unwrap_or(1.0);
+        let settings = [
+            ("learning_rate", self.learning_rate, positive(self.learning_rate), "above 0"),
+            ("beta_1", self.beta_1, below_one(self.beta_1), "at least 0 and below 1"),
+            ("beta_2", self.beta_2, below_one(self.beta_2), "at least 0 and below 1"),
+            ("epsilon", self.epsilon, positive(self.epsilon), "above 0"),
+            ("weight_decay", decay, decay == 0.0 || positive(decay), "at least 0"),
+            ("max_gradient_norm", norm, positive(norm), "above 0"),
+        ];
+        match settings.into_iter().find(|(_, _, is_good, _)| !is_good) {
+            None => Ok(()),
+            Some((name, value, _, expected)) => Err(NnError::Setting { name, value, expected }),
+        }
+    }
+}
+
+/// What a step did.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StepReport {
+    /// Steps taken, this one included.
+    pub step: u64,
+    /// ‖g‖ before clipping.
+    pub gradient_norm: f64,
+    /// η_t.
+    pub learning_rate: f64,
+    /// Trained parameters that the loss does not depend on; they stay as they are.
+    pub n_without_gradient: usize,
+}
+
+/// What must be saved to go on as if never stopped.
+#[derive(Debug, Clone)]
+pub struct OptimizerState {
+    /// Steps taken.
+    pub step: u64,
+    /// `first_moment.NAME` and `second_moment.NAME` of every parameter.
+    pub moments: NamedTensors,
+}
+
+/// The optimiser of a network's [`Parameters`].
+#[derive(Debug)]
+pub struct AdamW {
+    config: AdamWConfig,
+    step: u64,
+    /// In the order of the parameters.
+    moments: Vec<Moments>,
+}
+
+impl AdamW {
+    /// An optimiser that has taken no step.
+    ///
+    /// # Errors
+    /// [`NnError::Setting`] for a setting out of range, [`NnError::NumberType`].
+    pub fn new(config: AdamWConfig, parameters: &Parameters) -> Result<Self, NnError> {
+        config.check()?;
+        let moments = parameters.iter().map(|(name, variable)| Moments::zero(name, variable));
+        Ok(Self { config, step: 0, moments: moments.collect::<Result<_, _>>()? })
+    }
+
+    /// The settings.
+    pub fn config(&self) -> &AdamWConfig {
+        &self.config
+    }
+
+    /// Steps taken.
+    pub fn steps_taken(&self) -> u64 {
+        self.step
+    }
+
+    /// Moves the trained parameters by one step against the gradients.
+    ///
+    /// - `parameters`: those that the optimiser was made for.
+    /// - `gradients`: of the loss, from `loss.backward()`.
+    ///
+    /// # Errors
+    /// [`NnError::NonFiniteGradient`] with the first such parameter, before any is changed;
+    /// [`NnError::MissingTensor`] if the parameters are others.
+    pub fn step(
+        &mut self,
+        parameters: &Parameters,
+        gradients: &GradStore,
+    ) -> Result<StepReport, NnError> {
+        let entries = parameters.entries();
+        self.check_same(entries)?;
+        let (mut sum_of_squares, mut n_without_gradient) = (0.0, 0);
+        let mut found = Vec::with_capacity(entries.len());
+        for entry in entries {
+            let gradient = gradients.get(&entry.variable).filter(|_| entry.trained);
+            n_without_gradient += usize::from(entry.trained && gradient.is_none());
+            let gradient = gradient.map(|gradient| gradient.detach().contiguous()).transpose()?;
+            if let Some(gradient) = &gradient {
+                let squares = squared_norm(gradient)?;
+                if !squares.is_finite() {
+                    return Err(NnError::NonFiniteGradient { name: entry.name.clone() });
+                }
+                sum_of_squares += squares;
+            }
+            found.push(gradient);
+        }
+        let learning_rate = self.config.learning_rate * self.config.schedule.share(self.step);
+        let gradient_norm = sum_of_squares.sqrt();
+        self.step += 1;
+        for ((entry, moments), gradient) in entries.iter().zip(&mut self.moments).zip(&found) {
+            if let Some(gradient) = gradient {
+                let decays = self.config.decay_biases || entry.variable.rank() > 1;
+                let rates = Rates::new(&self.config, self.step, learning_rate, gradient_norm);
+                moments.update(&entry.variable, gradient, rates.with_decay(decays))?;
+            }
+        }
+        Ok(StepReport { step: self.step, gradient_norm, learning_rate, n_without_gradient })
+    }
+
+    /// Copies of the step and of all moments.
+    ///
+    /// # Errors
+    /// [`NnError::Tensor`].
+    pub fn export(&self) -> Result<OptimizerState, NnError> {
+        let mut all = NamedTensors::new();
+        for moments in &self.moments {
+            for (name, tensor) in moments.export()? {
+                all.insert(name, tensor);
+            }
+        }
+        Ok(OptimizerState { step: self.step, moments: all })
+    }
+
+    /// Goes on where the exported optimiser stopped. Nothing is changed unless everything fits.
+    ///
+    /// # Errors
+    /// [`NnError::MissingTensor`], [`NnError::UnexpectedTensor`], [`NnError::WrongShape`],
+    /// [`NnError::NonFinite`], [`NnError::NumberType`].
+    pub fn import(&mut self, state: &OptimizerState) -> Result<(), NnError> {
+        let imported = self.moments.iter().map(|moments| moments.imported(&state.moments));
+        let imported = imported.collect::<Result<Vec<_>, _>>()?;
+        let is_known = |name: &str| self.moments.iter().any(|moments| moments.has(name));
+        check_no_other(&state.moments, is_known)?;
+        (self.moments, self.step) = (imported, state.step);
+        Ok(())
+    }
+
+    /// The parameters must be those of the moments, in the same order.
+    fn check_same(&self, entries: &[Parameter]) -> Result<(), NnError> {
+        let names = entries.iter().map(|entry| entry.name.as_str());
+        let known = self.moments.iter().map(Moments::name);
+        if names.clone().eq(known.clone()) {
+            return Ok(());
+        }
+        let differing = known.zip(names.clone()).find(|(known, name)| known != name);
+        let missing = differing.map(|(known, _)| known).or(self.moments.last().map(Moments::name));
+        Err(NnError::MissingTensor { name: missing.unwrap_or_default().to_owned() })
+    }
+}
+
+/// Σ g², in 64 bits over blocks of fixed size.
+fn squared_norm(gradient: &Tensor) -> Result<f64, NnError> {
+    fn of<T: Element>(gradient: &Tensor) -> Result<f64, NnError> {
+        let (storage, layout) = gradient.storage_and_layout();
+        let Storage::Cpu(storage) = &*storage else {
+            return Err(Error::BackwardNotSupported { op: "gradient norm" }.into());
+        };
+        let blocks = contiguous::<T>(storage, layout, "gradient norm")?.chunks(NORM_BLOCK);
+        let sum = |block: &[T]| {
+            vectorized(
+                #[inline(always)]
+                || sum_of(block, block, |a, b| a * b),
+            )
+        };
+        Ok(blocks.map(|block| sum(block).to_f64()).sum())
+    }
+    match gradient.dtype() {
+        DType::F64 => of::<f64>(gradient),
+        _ => of::<f32>(gradient),
+    }
+}

@@ -1,0 +1,219 @@
+//! The parameters of a network: named, in the order of its layers, and all of them known.
+
+use std::fmt::Display;
+
+use candle_core::{DType, Device, Tensor, Var};
+use rand_chacha::ChaCha8Rng;
+
+use crate::nn::named_tensors::{check_finite, check_no_other, find};
+use crate::nn::{Init, NamedTensors, NnError};
+
+/// Every parameter of a network, in the order in which its layers were made.
+///
+/// The layers hold the same tensors: what the optimiser or [`Parameters::import`] writes here,
+/// they compute with.
+#[derive(Debug)]
+pub struct Parameters {
+    number_type: DType,
+    entries: Vec<Parameter>,
+}
+
+/// One of them.
+#[derive(Debug)]
+pub(crate) struct Parameter {
+    pub(crate) name: String,
+    pub(crate) variable: Var,
+    pub(crate) trained: bool,
+}
+
+impl Parameters {
+    /// None yet.
+    ///
+    /// - `number_type`: [`DType::F32`], or [`DType::F64`] for checks of gradients.
+    pub fn new(number_type: DType) -> Self {
+        Self { number_type, entries: Vec::new() }
+    }
+
+    /// What layers add their parameters through; all first values come from `rng`.
+    pub fn builder<'a>(&'a mut self, rng: &'a mut ChaCha8Rng) -> ParameterBuilder<'a> {
+        ParameterBuilder { parameters: self, rng, prefix: String::new() }
+    }
+
+    /// The type of all numbers.
+    pub fn number_type(&self) -> DType {
+        self.number_type
+    }
+
+    /// Names and values, in order.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = (&str, &Var)> {
+        self.entries.iter().map(|entry| (entry.name.as_str(), &entry.variable))
+    }
+
+    pub(crate) fn entries(&self) -> &[Parameter] {
+        &self.entries
+    }
+
+    /// The parameter of this name.
+    pub fn get(&self, name: &str) -> Option<&Var> {
+        self.entries.iter().find(|entry| entry.name == name).map(|entry| &entry.variable)
+    }
+
+    /// How many numbers the parameters hold together.
+    pub fn n_values(&self) -> usize {
+        self.entries.iter().map(|entry| entry.variable.elem_count()).sum()
+    }
+
+    /// Says by name which parameters the optimiser changes; at first it changes all.
+    ///
+    /// Returns how many it changes.
+    pub fn set_trained(&mut self, is_trained: impl Fn(&str) -> bool) -> usize {
+        self.entries.iter_mut().for_each(|entry| entry.trained = is_trained(&entry.name));
+        self.entries.iter().filter(|entry| entry.trained).count()
+    }
+
+    /// Copies of all parameters, in their number type.
+    ///
+    /// # Errors
+    /// [`NnError::NonFinite`] with the first number that is not finite.
+    pub fn export(&self) -> Result<NamedTensors, NnError> {
+        let mut tensors = NamedTensors::new();
+        for (name, variable) in self.iter() {
+            check_finite(name, variable)?;
+            tensors.insert(name.to_owned(), variable.as_detached_tensor().copy()?);
+        }
+        Ok(tensors)
+    }
+
+    /// Takes over the values of tensors with exactly the names and shapes of the parameters.
+    /// Nothing is changed unless all of them fit.
+    ///
+    /// # Errors
+    /// [`NnError::MissingTensor`], [`NnError::UnexpectedTensor`], [`NnError::WrongShape`],
+    /// [`NnError::NonFinite`], each with the first tensor it holds for.
+    pub fn import(&self, tensors: &NamedTensors) -> Result<(), NnError> {
+        let mut checked = Vec::with_capacity(self.entries.len());
+        for (name, variable) in self.iter() {
+            let tensor = find(tensors, name, variable.dims())?;
+            checked.push(tensor.to_dtype(self.number_type)?.contiguous()?);
+        }
+        check_no_other(tensors, |name| self.get(name).is_some())?;
+        for (entry, tensor) in self.entries.iter().zip(&checked) {
+            entry.variable.set(tensor)?;
+        }
+        Ok(())
+    }
+}
+
+/// A place in the tree of names, such as `trunk.0`, where a layer adds its parameters.
+#[derive(Debug)]
+pub struct ParameterBuilder<'a> {
+    parameters: &'a mut Parameters,
+    rng: &'a mut ChaCha8Rng,
+    prefix: String,
+}
+
+impl ParameterBuilder<'_> {
+    /// The place `name` below this one.
+    pub fn at(&mut self, name: impl Display) -> ParameterBuilder<'_> {
+        let prefix = self.name(name);
+        ParameterBuilder { parameters: self.parameters, rng: self.rng, prefix }
+    }
+
+    /// The name of this place, which a layer names itself by in errors.
+    pub fn prefix(&self) -> &str {
+        &self.prefix
+    }
+
+    /// Adds a parameter below this place and returns the tensor that follows its value.
+    ///
+    /// # Errors
+    /// [`NnError::DuplicateParameter`].
+    pub fn add(&mut self, name: &str, shape: &[usize], init: Init) -> Result<Tensor, NnError> {
+        let name = self.name(name);
+        if self.parameters.get(&name).is_some() {
+            return Err(NnError::DuplicateParameter { name });
+        }
+        let values = Tensor::from_vec(init.values(shape, self.rng), shape, &Device::Cpu)?;
+        let variable = Var::from_tensor(&values.to_dtype(self.parameters.number_type)?)?;
+        let tensor = variable.as_tensor().clone();
+        self.parameters.entries.push(Parameter { name, variable, trained: true });
+        Ok(tensor)
+    }
+
+    fn name(&self, name: impl Display) -> String {
+        if self.prefix.is_empty() { name.to_string() } else { format!("{}.{name}", self.prefix) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::nn::random_stream;
+
+    fn two(seed: u64) -> Parameters {
+        let mut parameters = Parameters::new(DType::F32);
+        let mut rng = random_stream(seed, "weights", 0);
+        let mut root = parameters.builder(&mut rng);
+        let mut trunk = root.at("trunk");
+        trunk.at(0).add("weight", &[2, 3], Init::KaimingNormal).unwrap();
+        trunk.at(0).add("bias", &[2], Init::Zero).unwrap();
+        parameters
+    }
+
+    fn bits(parameters: &Parameters) -> Vec<u32> {
+        let all = parameters.iter();
+        let values = all.flat_map(|(_, v)| v.flatten_all().unwrap().to_vec1::<f32>().unwrap());
+        values.map(f32::to_bits).collect()
+    }
+
+    #[test]
+    fn names_follow_the_layers_in_their_order() {
+        let parameters = two(1);
+        let names: Vec<_> = parameters.iter().map(|(name, _)| name).collect();
+        assert_eq!(names, ["trunk.0.weight", "trunk.0.bias"]);
+        assert_eq!(parameters.n_values(), 8);
+        assert_eq!(bits(&two(1)), bits(&two(1)));
+        assert_ne!(bits(&two(1)), bits(&two(2)));
+    }
+
+    #[test]
+    fn exported_and_imported_parameters_have_the_same_bits() {
+        let (from, to) = (two(1), two(2));
+        to.import(&from.export().unwrap()).unwrap();
+        assert_eq!(bits(&from), bits(&to));
+    }
+
+    #[test]
+    fn tensors_that_do_not_fit_change_nothing_and_are_named() {
+        let parameters = two(1);
+        let before = bits(&parameters);
+        let good = two(2).export().unwrap();
+        let device = Device::Cpu;
+        let import = |change: &dyn Fn(&mut NamedTensors)| {
+            let mut tensors = good.clone();
+            change(&mut tensors);
+            parameters.import(&tensors).unwrap_err().to_string()
+        };
+        let error = import(&|tensors| drop(tensors.remove("trunk.0.bias")));
+        assert_eq!(error, "the tensor \"trunk.0.bias\" is missing");
+        let zeros = Tensor::zeros(3, DType::F32, &device).unwrap();
+        let error = import(&|tensors| drop(tensors.insert("head".into(), zeros.clone())));
+        assert_eq!(error, "the tensor \"head\" is unexpected; the model has none of this name");
+        let error = import(&|tensors| drop(tensors.insert("trunk.0.bias".into(), zeros.clone())));
+        assert_eq!(error, "the tensor \"trunk.0.bias\" has the shape [3], expected [2]");
+        let nan = Tensor::new(&[0.0, f32::NAN], &device).unwrap();
+        let error = import(&|tensors| drop(tensors.insert("trunk.0.bias".into(), nan.clone())));
+        let expected = "holds NaN at index 1, expected finite numbers";
+        assert_eq!(error, format!("the tensor \"trunk.0.bias\" {expected}"));
+        assert_eq!(bits(&parameters), before);
+    }
+
+    #[test]
+    fn a_name_is_given_once() {
+        let (mut parameters, mut rng) = (two(1), random_stream(1, "weights", 1));
+        let error = parameters.builder(&mut rng).add("trunk.0.bias", &[1], Init::Zero);
+        assert!(
+            matches!(error, Err(NnError::DuplicateParameter { name }) if name == "trunk.0.bias")
+        );
+    }
+}

@@ -1,0 +1,150 @@
+//! Softmax of scaled scores over the last dimension as one operation.
+//!
+//! ```text
+//! yᵢ = e^(s·xᵢ) / Σⱼ e^(s·xⱼ)        dL/dxᵢ = s·yᵢ·(gᵢ − Σⱼ gⱼ yⱼ)
+//! ```
+
+use candle_core::{
+    CpuStorage, CustomOp1, CustomOp2, DType, Layout, Result as TensorResult, Shape, Tensor,
+};
+use rayon::prelude::*;
+
+use crate::nn::NnError;
+use crate::nn::element::{
+    Element, ROWS_PER_BLOCK, contiguous, min_blocks_per_task, sum_of, vectorized,
+};
+
+/// Softmax of `scale`·x over the last dimension, which must be finite for the result to be.
+///
+/// - `x`: `[…, n]`.
+/// - returns the same shape; each row adds up to 1.
+///
+/// # Errors
+/// [`NnError::NumberType`].
+pub fn softmax(x: &Tensor, scale: f64) -> Result<Tensor, NnError> {
+    let x = x.contiguous()?;
+    match x.dtype() {
+        DType::F32 => Ok(x.apply_op1(Softmax { scale: scale as f32 })?),
+        DType::F64 => Ok(x.apply_op1(Softmax { scale })?),
+        other => Err(NnError::NumberType {
+            name: "softmax".to_owned(),
+            expected: "f32 or f64",
+            got: format!("{other:?}"),
+        }),
+    }
+}
+
+struct Softmax<T> {
+    scale: T,
+}
+
+impl<T: Element> CustomOp1 for Softmax<T> {
+    fn name(&self) -> &'static str {
+        "scaled softmax"
+    }
+
+    fn cpu_fwd(&self, x: &CpuStorage, layout: &Layout) -> TensorResult<(CpuStorage, Shape)> {
+        let x = contiguous::<T>(x, layout, self.name())?;
+        let width = layout.dims().last().copied().unwrap_or(1).max(1);
+        let (size, mut y) = (ROWS_PER_BLOCK * width, vec![T::ZERO; x.len()]);
+        let blocks = y.par_chunks_mut(size).zip(x.par_chunks(size));
+        blocks.with_min_len(min_blocks_per_task(x.len())).for_each(|(y, x)| {
+            vectorized(
+                #[inline(always)]
+                || {
+                    for (y, x) in y.chunks_exact_mut(width).zip(x.chunks_exact(width)) {
+                        softmax_row(y, x, self.scale);
+                    }
+                },
+            );
+        });
+        Ok((T::to_cpu_storage_owned(y), layout.shape().clone()))
+    }
+
+    fn bwd(&self, _x: &Tensor, y: &Tensor, gradient: &Tensor) -> TensorResult<Option<Tensor>> {
+        let op = SoftmaxBackward { scale: self.scale };
+        let gradient = gradient.contiguous()?;
+        Ok(Some(y.detach().apply_op2_no_bwd(&gradient, &op)?))
+    }
+}
+
+#[inline(always)]
+fn softmax_row<T: Element>(y: &mut [T], x: &[T], scale: T) {
+    // The largest scaled score, taken off so that no exponential overflows.
+    let largest =
+        x.iter().fold(x[0] * scale, |max, &x| if x * scale > max { x * scale } else { max });
+    y.iter_mut().zip(x).for_each(|(y, &x)| *y = (x * scale - largest).exp());
+    let inverse = T::ONE / sum_of(y, y, |y, _| y);
+    y.iter_mut().for_each(|y| *y *= inverse);
+}
+
+/// The way back: of y and g.
+struct SoftmaxBackward<T> {
+    scale: T,
+}
+
+impl<T: Element> CustomOp2 for SoftmaxBackward<T> {
+    fn name(&self) -> &'static str {
+        "gradient of the scaled softmax"
+    }
+
+    fn cpu_fwd(
+        &self,
+        y: &CpuStorage,
+        y_layout: &Layout,
+        gradient: &CpuStorage,
+        gradient_layout: &Layout,
+    ) -> TensorResult<(CpuStorage, Shape)> {
+        let y = contiguous::<T>(y, y_layout, self.name())?;
+        let gradient = contiguous::<T>(gradient, gradient_layout, self.name())?;
+        let width = y_layout.dims().last().copied().unwrap_or(1).max(1);
+        let (size, mut dx) = (ROWS_PER_BLOCK * width, vec![T::ZERO; y.len()]);
+        let blocks = dx.par_chunks_mut(size).zip(y.par_chunks(size)).zip(gradient.par_chunks(size));
+        blocks.with_min_len(min_blocks_per_task(y.len())).for_each(|((dx, y), g)| {
+            vectorized(
+                #[inline(always)]
+                || {
+                    let rows = dx.chunks_exact_mut(width).zip(y.chunks_exact(width));
+                    for ((dx, y), g) in rows.zip(g.chunks_exact(width)) {
+                        let mean = sum_of(y, g, |y, g| y * g);
+                        for ((dx, &y), &g) in dx.iter_mut().zip(y).zip(g) {
+                            *dx = self.scale * y * (g - mean);
+                        }
+                    }
+                },
+            );
+        });
+        Ok((T::to_cpu_storage_owned(dx), y_layout.shape().clone()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::nn::gradient_check::{
+        assert_close, assert_gradients, random_tensor, random_variable,
+    };
+
+    #[test]
+    fn the_gradient_is_that_of_central_differences() {
+        let x = random_variable(&[2, 3, 5], 1);
+        assert_gradients(std::slice::from_ref(&x), || softmax(&x, 1.7).unwrap());
+    }
+
+    #[test]
+    fn it_equals_the_plain_one() {
+        for shape in [[1, 1], [70, 17], [5000, 33]] {
+            let x = random_tensor(&shape, DType::F32, 2);
+            let plain = candle_nn::ops::softmax(&(&x * 3.0).unwrap(), 1).unwrap();
+            assert_close(&softmax(&x, 3.0).unwrap(), &plain, 1e-6);
+        }
+    }
+
+    #[test]
+    fn large_scores_do_not_overflow() {
+        let x = Tensor::new(&[1e30_f32, 0.0, -1e30], &candle_core::Device::Cpu).unwrap();
+        let y = softmax(&x, 1.0).unwrap().to_vec1::<f32>().unwrap();
+        assert_eq!(y[0], 1.0);
+        assert!(y[1] < 1e-37 && y[2] < 1e-37);
+    }
+}

@@ -1,0 +1,119 @@
+//! Non-linear least squares.
+//!
+//! Our own forty lines: the kept crate for it is bound to another version of `nalgebra`.
+
+use std::ops::ControlFlow;
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+/// Step of the forward differences, in units of the scaled parameters.
+const DIFFERENCE: f64 = 1e-4;
+const FIRST_DAMPING: f64 = 1e-2;
+const MAX_DAMPING: f64 = 1e8;
+/// A step that lowers the cost by less than this share is the last.
+const MIN_GAIN: f64 = 1e-4;
+
+/// Where [`levenberg_marquardt`] stopped.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LeastSquares {
+    /// The parameters.
+    pub parameters: Vec<f64>,
+    /// ½ ‖residuals‖² there.
+    pub cost: f64,
+    /// Steps taken.
+    pub n_steps: usize,
+}
+
+/// Minimises ½ ‖r(x)‖² from a start: Levenberg–Marquardt with forward differences, spread over the
+/// cores, the same numbers on any number of them.
+///
+/// ```text
+/// (JᵀJ + λ 1) δ = −Jᵀ r      x ← x + scale ⊙ δ if the cost falls, else λ ← 4 λ
+/// ```
+///
+/// Source: D. Marquardt, SIAM J. Appl. Math. 11 (1963) 431–441.
+///
+/// - `residuals`: always as many for any x; an x without a value (`None`) is refused as a step.
+/// - `scale`: about how far each parameter goes.
+/// - `report`: called with each accepted cost; breaking ends the search where it is.
+/// - returns `None` if the start has no finite cost.
+pub fn levenberg_marquardt(
+    residuals: &(dyn Fn(&[f64]) -> Option<Vec<f64>> + Sync),
+    [start, scale]: [&[f64]; 2],
+    max_steps: usize,
+    report: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Option<LeastSquares> {
+    let at = |x: &[f64]| {
+        let r = DVector::from_vec(residuals(x)?);
+        let cost = 0.5 * r.norm_squared();
+        cost.is_finite().then_some((r, cost))
+    };
+    let mut x = start.to_vec();
+    let (mut r, mut cost) = at(&x)?;
+    let (mut damping, mut n_steps) = (FIRST_DAMPING, 0);
+    while n_steps < max_steps && report(cost).is_continue() {
+        let columns: Vec<DVector<f64>> = (0..x.len())
+            .into_par_iter()
+            .map(|j| {
+                let mut moved = x.clone();
+                moved[j] += DIFFERENCE * scale[j];
+                at(&moved).map_or_else(|| DVector::zeros(r.len()), |(s, _)| (s - &r) / DIFFERENCE)
+            })
+            .collect();
+        let jacobian = DMatrix::from_columns(&columns);
+        let (normal, gradient) = (jacobian.tr_mul(&jacobian), jacobian.tr_mul(&r));
+        let mut next = None;
+        while next.is_none() && damping < MAX_DAMPING {
+            let damped = &normal + DMatrix::identity(x.len(), x.len()) * damping;
+            next = damped.cholesky().and_then(|factor| {
+                let step = factor.solve(&gradient);
+                let moved: Vec<f64> =
+                    x.iter().zip(&step).zip(scale).map(|((x, d), s)| x - d * s).collect();
+                at(&moved).filter(|(_, new)| *new < cost).map(|(r, new)| (moved, r, new))
+            });
+            damping = if next.is_some() { damping / 3.0 } else { damping * 4.0 };
+        }
+        let Some((moved, new_r, new_cost)) = next else { break };
+        let gain = (cost - new_cost) / cost;
+        (x, r, cost) = (moved, new_r, new_cost);
+        n_steps += 1;
+        if gain < MIN_GAIN {
+            break;
+        }
+    }
+    Some(LeastSquares { parameters: x, cost, n_steps })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn search(
+        residuals: &(dyn Fn(&[f64]) -> Option<Vec<f64>> + Sync),
+        start: &[f64],
+    ) -> LeastSquares {
+        let scale = vec![1.0; start.len()];
+        let go_on = &mut |_: f64| ControlFlow::Continue(());
+        levenberg_marquardt(residuals, [start, &scale], 200, go_on).unwrap()
+    }
+
+    #[test]
+    fn rosenbrock_is_solved_to_its_minimum() {
+        let rosenbrock = |x: &[f64]| Some(vec![10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0]]);
+        let found = search(&rosenbrock, &[-1.2, 1.0]);
+        assert!(found.cost < 1e-8, "{found:?}");
+        assert!((found.parameters[0] - 1.0).abs() < 1e-3, "{found:?}");
+    }
+
+    #[test]
+    fn a_start_without_value_is_none_and_breaking_stops() {
+        let scale = [1.0];
+        let go_on = &mut |_: f64| ControlFlow::Continue(());
+        assert!(levenberg_marquardt(&|_| None, [&[0.0], &scale], 5, go_on).is_none());
+        let stop = &mut |_: f64| ControlFlow::Break(());
+        let residuals = |x: &[f64]| Some(vec![x[0] - 1.0]);
+        let found = levenberg_marquardt(&residuals, [&[0.0], &scale], 5, stop).unwrap();
+        assert_eq!((found.parameters, found.n_steps), (vec![0.0], 0));
+    }
+}
