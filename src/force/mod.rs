@@ -53,4 +53,6 @@ pub use prediction::Prediction;
 pub use record::{CaseId, EpochRecord, TrainingRecord, TrainingSet};
 pub use scenario::ForceScenario;
 pub use split::{Split, TEST_SHARE, folds, split};
-pub use train::{TrainSettings, TrainingProgress, TrainingReport, train};
+pub use train::{
+    TrainSettings, TrainingProgress, TrainingReport, fit_physics, train, train_around,
+};
