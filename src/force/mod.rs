@@ -9,6 +9,7 @@ mod error;
 mod scenario;
 
 mod case;
+mod load;
 mod split;
 
 mod momentum;
@@ -49,6 +50,7 @@ pub use evaluation::{
     FittedBaselines, ModelFigures, evaluate,
 };
 pub use features::{OpenFeatures, OutsideTraining, Standardisation};
+pub use load::LoadError;
 pub use loss::LossTerms;
 pub use model::ForceModel;
 pub use momentum::MomentumModel;
