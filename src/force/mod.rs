@@ -38,11 +38,17 @@ pub mod metrics;
 
 pub mod baselines;
 
+mod evaluation;
+
 pub use case::{ForceCase, ForceCaseError, curve_on_grid};
 pub use centre::{CentreCurve, CentreModel};
 pub use clusters::{ImpulseClusters, ImpulseFeatures};
 pub use config::{Centre, CrushConfig, ForceConfig, LossWeights, NetworkConfig, TrainingConfig};
 pub use error::ForceError;
+pub use evaluation::{
+    BaselineFigures, CaseErrors, ClusterFigures, Evaluation, EvaluationError, EvaluationSettings,
+    FittedBaselines, ModelFigures, evaluate,
+};
 pub use features::{OpenFeatures, OutsideTraining, Standardisation};
 pub use load::LoadError;
 pub use loss::LossTerms;
