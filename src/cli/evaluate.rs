@@ -1,7 +1,6 @@
 //! `impactlab evaluate force`: how well a force network does, beside its baselines.
 
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand, ValueEnum};
@@ -12,10 +11,11 @@ use crate::cli::output::{print_json, print_table};
 use crate::cli::progress::{complete, with_progress};
 use crate::cli::run::{Console, Verdict};
 use crate::data::write_atomically;
+use crate::force::baselines::ColumnSet;
 use crate::force::metrics::Figures;
 use crate::force::{
-    ColumnSet, CrossValidation, Evaluation, EvaluationSettings, ForceCase, ForceModel,
-    cross_validate, evaluate_model,
+    CrossValidation, Evaluation, EvaluationSettings, ForceCase, ForceModel, cross_validate,
+    evaluate_model,
 };
 
 /// Measure a trained network against data

@@ -3,12 +3,13 @@
 use serde::Serialize;
 
 use crate::data::Outcome;
+use crate::force::baselines::ColumnSet;
+use crate::force::metrics::{Figures, PointErrors};
 use crate::force::{
-    CaseErrors, ColumnSet, Evaluation, EvaluationError, EvaluationSettings, ForceCase, ForceConfig,
+    CaseErrors, Evaluation, EvaluationError, EvaluationSettings, ForceCase, ForceConfig,
     ForceError, ForceModel, ForceScenario, Prediction, TrainSettings, TrainingReport, TrainingSet,
     evaluate, folds, train,
 };
-use crate::force::metrics::{Figures, PointErrors};
 use crate::jobs::{Progress, Report};
 use crate::nn::random_stream;
 

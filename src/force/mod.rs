@@ -40,11 +40,16 @@ pub mod baselines;
 
 mod evaluation;
 
+mod evaluate_model;
+
 pub use case::{ForceCase, ForceCaseError, curve_on_grid};
 pub use centre::{CentreCurve, CentreModel};
 pub use clusters::{ImpulseClusters, ImpulseFeatures};
 pub use config::{Centre, CrushConfig, ForceConfig, LossWeights, NetworkConfig, TrainingConfig};
 pub use error::ForceError;
+pub use evaluate_model::{
+    Compared, CrossValidation, EvaluateError, cross_validate, evaluate_model,
+};
 pub use evaluation::{
     BaselineFigures, CaseErrors, ClusterFigures, Evaluation, EvaluationError, EvaluationSettings,
     FittedBaselines, ModelFigures, evaluate,

@@ -99,36 +99,39 @@ pub(super) struct NetworkOutput {
 }
 
 impl NetworkOutput {
-    /// `|y − mean| / σ` of the mixture: of every force during the contact of every case, and of
-    /// every duration.
+    /// What calibration needs: of every force during the contact of every case, and of every
+    /// duration, the observed value under each component.
     ///
     /// - `values`: the curves, `[cases, values]`.
-    pub(super) fn scores(&self, values: &Tensor) -> Result<[Vec<f64>; 2], ForceError> {
-        let weight = candle_nn::ops::softmax(&self.logits, D::Minus1)?.unsqueeze(2)?;
-        let mean = self.mean.broadcast_mul(&weight)?.sum(1)?;
+    pub(super) fn scores(&self, values: &Tensor) -> Result<[Vec<Score>; 2], ForceError> {
         let mut variance = self.variance.clone();
         if let Some(factors) = &self.factors {
             variance = (variance + factors.sqr()?.sum(3)?)?;
         }
-        let spread = self.mean.broadcast_sub(&mean.unsqueeze(1)?)?.sqr()?;
-        let variance = (variance + spread)?.broadcast_mul(&weight)?.sum(1)?;
-        let score = ((values - mean)?.abs()? / variance.sqrt()?)?;
-        let rows = score.to_dtype(DType::F64)?.to_vec2::<f64>()?;
+        let z = (values.unsqueeze(1)?.broadcast_sub(&self.mean)? / variance.sqrt()?)?;
+        let z = z.to_dtype(DType::F64)?.to_vec3::<f64>()?;
+        let weights = candle_nn::ops::softmax(&self.logits, D::Minus1)?;
+        let weights = weights.to_dtype(DType::F64)?.to_vec2::<f64>()?;
         let values = values.to_dtype(DType::F64)?.to_vec2::<f64>()?;
-        let (mut scores, mut durations) = (Vec::new(), Vec::new());
-        for (row, values) in rows.iter().zip(&values) {
-            let n_instants = row.len() / 2;
+        let (mut forces, mut durations) = (Vec::new(), Vec::new());
+        for ((z, weights), values) in z.iter().zip(&weights).zip(&values) {
+            let score = |value_idx: usize| -> Score {
+                weights.iter().zip(z).map(|(weight, z)| (*weight, z[value_idx])).collect()
+            };
+            let n_instants = values.len() / 2;
             let duration_s = values.last().copied().unwrap_or(0.0) * DURATION_UNIT_S;
             let n_contact = ((duration_s / CURVE_INTERVAL_S).ceil() as usize).min(n_instants);
-            for axis in 0..2 {
-                let first = axis * n_instants;
-                scores.extend_from_slice(&row[first..first + n_contact]);
+            for first in [0, n_instants] {
+                forces.extend((first..first + n_contact).map(score));
             }
-            durations.extend(row.last());
+            durations.push(score(2 * n_instants));
         }
-        Ok([scores, durations])
+        Ok([forces, durations])
     }
 }
+
+/// Weight and deviation in standard deviations of a value under each component.
+pub(super) type Score = Vec<(f64, f64)>;
 
 impl ForceNetwork {
     /// New layers with seeded parameters.
