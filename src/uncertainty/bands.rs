@@ -22,6 +22,10 @@ const N_CELLS: usize = 512;
 /// Newton steps for a quantile before it is taken as it is; bisection gains a bit in each.
 const MAX_STEPS: usize = 60;
 
+/// A step, in the smallest deviation of a component, after which none is needed: its cube is below
+/// [`TOLERANCE`].
+const SMALL_STEP: f64 = 4e-3;
+
 /// Error of the probability at which a quantile is good.
 const TOLERANCE: f64 = 1e-7;
 
@@ -64,9 +68,13 @@ impl CurveMixture {
         let table = NormalTable::new();
         let n = marginals.n_instants;
         let solver = QuantileSolver { table, probabilities: &probabilities };
-        let fx = solver.quantiles(&marginals, 0..n);
-        let fy = solver.quantiles(&marginals, n..2 * n);
-        let magnitude = magnitude_quantiles(&marginals, &probabilities);
+        let (magnitude, (fx, fy)) = rayon::join(
+            || magnitude_quantiles(&marginals, &probabilities),
+            || {
+                let along = |axis: usize| solver.quantiles(&marginals, axis * n..(axis + 1) * n);
+                rayon::join(|| along(0), || along(1))
+            },
+        );
         let bands = |rows: Vec<Vec<f64>>| {
             let mut rows = rows.into_iter();
             let band = |&level: &f64| {
@@ -127,28 +135,39 @@ struct QuantileSolver<'a> {
     probabilities: &'a [f64],
 }
 
-/// A component at one instant: weight, mean, 1/deviation.
-type Part = (f64, f64, f64);
+/// A component at one instant.
+#[derive(Clone, Copy)]
+struct Part {
+    weight: f64,
+    mean: f64,
+    std: f64,
+    inverse: f64,
+}
 
 impl QuantileSolver<'_> {
     /// `[probability][instant]`.
     fn quantiles(&self, marginals: &Marginals, values: std::ops::Range<usize>) -> Vec<Vec<f64>> {
         let z: Vec<f64> = self.probabilities.iter().map(|&p| normal_quantile(p)).collect();
         let mut rows = vec![Vec::with_capacity(values.len()); z.len()];
-        // Where the quantile lay an instant ago, in standard deviations: a good first guess.
-        let mut guesses = z.clone();
+        // Where each quantile lay one and two instants ago, in standard deviations: continued in a
+        // straight line they are a good first guess.
+        let mut past = z.iter().map(|&z| [z, z]).collect::<Vec<_>>();
         let mut parts: Vec<Part> = Vec::with_capacity(marginals.weights.len());
         for value_idx in values {
             parts.clear();
             let rows_of = marginals.weights.iter().zip(&marginals.means).zip(&marginals.stds);
-            parts.extend(rows_of.map(|((&w, m), s)| (w, m[value_idx], 1.0 / s[value_idx])));
-            let mean: f64 = parts.iter().map(|(w, m, _)| w * m).sum();
-            let spread = |&(w, m, inverse): &Part| w * (inverse.powi(-2) + (m - mean).powi(2));
+            parts.extend(rows_of.map(|((&weight, means), stds)| {
+                let (mean, std) = (means[value_idx], stds[value_idx]);
+                Part { weight, mean, std, inverse: 1.0 / std }
+            }));
+            let mean: f64 = parts.iter().map(|part| part.weight * part.mean).sum();
+            let spread = |p: &Part| p.weight * (p.std * p.std + (p.mean - mean).powi(2));
             let std = parts.iter().map(spread).sum::<f64>().sqrt();
             for (i, &z) in z.iter().enumerate() {
-                let probability = self.probabilities[i];
-                let value = self.quantile(&parts, (probability, z), mean + guesses[i] * std);
-                guesses[i] = (value - mean) / std;
+                let ([one, two], probability) = (past[i], self.probabilities[i]);
+                let guess = mean + (2.0 * one - two) * std;
+                let value = self.quantile(&parts, (probability, z), guess);
+                past[i] = [(value - mean) / std, one];
                 rows[i].push(value);
             }
         }
@@ -158,19 +177,24 @@ impl QuantileSolver<'_> {
     /// Newton's method kept between the smallest and the largest quantile of the parts.
     fn quantile(&self, parts: &[Part], (probability, z): (f64, f64), guess: f64) -> f64 {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for &(_, mean, inverse) in parts {
-            let end = mean + z / inverse;
-            (low, high) = (low.min(end), high.max(end));
+        let mut sharpest: f64 = 0.0;
+        for &Part { mean, std, inverse, .. } in parts {
+            let end = mean + z * std;
+            (low, high, sharpest) = (low.min(end), high.max(end), sharpest.max(inverse));
         }
         let mut value = guess.clamp(low, high);
+        if parts.len() == 1 {
+            return value;
+        }
         for _ in 0..MAX_STEPS {
             let (mut excess, mut density, mut slope) = (-probability, 0.0, 0.0);
-            for &(weight, mean, inverse) in parts {
+            for &Part { weight, mean, inverse, .. } in parts {
                 let z = (value - mean) * inverse;
                 let (cumulative, height) = self.table.at(z);
                 excess += weight * cumulative;
-                density += weight * height * inverse;
-                slope -= weight * height * z * inverse * inverse;
+                let part = weight * height * inverse;
+                density += part;
+                slope -= part * z * inverse;
             }
             if excess.abs() < TOLERANCE {
                 break;
@@ -183,7 +207,12 @@ impl QuantileSolver<'_> {
             // Halley's step, which uses the slope of the density.
             let step = excess * density / (density * density - excess * slope / 2.0);
             let next = value - step;
-            value = if next > low && next < high { next } else { (low + high) / 2.0 };
+            let is_inside = next > low && next < high;
+            value = if is_inside { next } else { (low + high) / 2.0 };
+            // What is left after a small step is of the third order in it.
+            if is_inside && step.abs() * sharpest < SMALL_STEP {
+                break;
+            }
             if high - low <= 1e-13 * (low.abs() + high.abs()) {
                 break;
             }
@@ -214,14 +243,14 @@ impl NormalTable {
     /// (Φ(z), φ(z)); the density is linear between knots, good enough for a slope.
     fn at(&self, z: f64) -> (f64, f64) {
         let position = (z + Self::END) * Self::PER_UNIT;
-        if position.is_nan() || position <= 0.0 {
-            return (0.0, 0.0);
+        if !(0.0..2.0 * Self::END * Self::PER_UNIT).contains(&position) {
+            return if z > 0.0 { (1.0, 0.0) } else { (0.0, 0.0) };
         }
-        let idx = position as usize;
-        let Some(&[[y0, d0], [y1, d1]]) = self.knots.get(idx..idx.saturating_add(2)) else {
+        let idx = position as u32;
+        let Some(&[[y0, d0], [y1, d1]]) = self.knots.get(idx as usize..idx as usize + 2) else {
             return (1.0, 0.0);
         };
-        let u = position - idx as f64;
+        let u = position - f64::from(idx);
         // y0 + d0 u + (3Δ − 2d0 − d1) u² + (d0 + d1 − 2Δ) u³
         let rise = y1 - y0;
         let cubic = d0 + d1 - 2.0 * rise;
