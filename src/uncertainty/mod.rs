@@ -18,18 +18,25 @@
 //! # Ok::<(), impactlab::uncertainty::MixtureError>(())
 //! ```
 
+mod error;
+
 mod curve;
 mod normal_mixture;
 
-mod bands;
-mod density;
 mod mixture;
+
+mod bands;
+mod magnitude;
+mod quantiles;
+
+mod density;
 mod sample;
 mod scores;
 
 pub use bands::{Band, CurveBands};
 pub use curve::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
-pub use mixture::{CurveComponent, CurveMixture, MixtureError};
+pub use error::MixtureError;
+pub use mixture::{CurveComponent, CurveMixture};
 pub use normal_mixture::{NormalMixture, NormalPart};
 pub use sample::CurveFigures;
 pub use scores::{distance_n, energy_score_n, sample_crps};

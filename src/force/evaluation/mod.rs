@@ -2,20 +2,24 @@
 //!
 //! Nothing is fitted to test cases or chosen by them: baselines and clusters see training cases only.
 
+mod report;
+mod scored;
 mod table;
 
 use rayon::prelude::*;
-use serde::Serialize;
 
 use crate::data::Outcome;
 use crate::force::baselines::{
     BaselineError, ColumnSet, NearestBaseline, PulseBaseline, StatisticalBaseline,
 };
-use crate::force::metrics::{Figures, PointErrors, ProbabilisticScores, ProbabilisticSettings};
+use crate::force::evaluation::scored::Scored;
+use crate::force::metrics::ProbabilisticSettings;
 use crate::force::{ForceCase, ForceScenario, ImpulseClusters, ImpulseFeatures, Prediction};
 use crate::jobs::{Progress, Report};
 use crate::numerics::ClusterError;
 use crate::uncertainty::{ForceCurve, MixtureError};
+
+pub use report::{BaselineFigures, CaseErrors, ClusterFigures, Evaluation, ModelFigures};
 
 /// What an evaluation needs to be told.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -26,80 +30,6 @@ pub struct EvaluationSettings {
     pub seed: u64,
     /// Draws for the scores of distributions.
     pub probabilistic: ProbabilisticSettings,
-}
-
-/// Figures of one model.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ModelFigures {
-    /// Over all cases.
-    pub overall: Figures,
-    /// Without cases that hook or have not separated; nothing if that leaves none.
-    pub separated: Option<Figures>,
-}
-
-/// Figures of the baselines.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct BaselineFigures {
-    /// Classic pulse with the momentum solution's impulse.
-    pub pulse: ModelFigures,
-    /// Nearest training case.
-    pub nearest: ModelFigures,
-    /// Gaussian processes on principal components.
-    pub statistical: ModelFigures,
-}
-
-/// Figures within one cluster.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ClusterFigures {
-    /// C0, C1, … by rising impulse.
-    pub name: String,
-    /// Impulse at its centre, N s.
-    pub impulse_n_s: f64,
-    /// The model.
-    pub model: Figures,
-    /// The strongest baseline.
-    pub statistical: Figures,
-}
-
-/// Errors of all models on one case.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct CaseErrors {
-    /// Name of the case.
-    pub name: String,
-    /// Whether the vehicles part for good.
-    pub clean: bool,
-    /// Its cluster.
-    pub cluster: String,
-    /// The model.
-    pub model: PointErrors,
-    /// Baselines.
-    pub pulse: PointErrors,
-    /// Baselines.
-    pub nearest: PointErrors,
-    /// Baselines.
-    pub statistical: PointErrors,
-}
-
-/// A model's figures beside those of the baselines.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Evaluation {
-    /// What a table calls the model.
-    pub model: String,
-    /// What the baselines knew of a scenario.
-    pub columns: ColumnSet,
-    /// Training cases.
-    pub n_train: usize,
-    /// The model.
-    #[serde(flatten)]
-    pub figures: ModelFigures,
-    /// The baselines.
-    pub baselines: BaselineFigures,
-    /// By cluster of the training cases; those without a test case are left out.
-    pub clusters: Vec<ClusterFigures>,
-    /// Each case.
-    pub cases: Vec<CaseErrors>,
-    /// Test cases that a baseline cannot predict, and why: there it predicts no force.
-    pub problems: Vec<String>,
 }
 
 /// An evaluation that cannot be made.
@@ -172,13 +102,6 @@ impl FittedBaselines {
                 .map_err(failed("statistical"))?,
         })
     }
-}
-
-/// Scores of one model on all test cases.
-struct Scored {
-    errors: Vec<PointErrors>,
-    /// Empty without distributions.
-    scores: Vec<ProbabilisticScores>,
 }
 
 /// Evaluates a model beside baselines that are fitted here to the training cases.
@@ -275,44 +198,6 @@ fn predict_all(
         })
     };
     test.iter().zip(predictions).map(&mut or_no_force).collect()
-}
-
-impl Scored {
-    fn of(
-        test: &[&ForceCase],
-        predictions: &[Prediction],
-        settings: ProbabilisticSettings,
-    ) -> Result<Self, EvaluationError> {
-        let pairs = || test.iter().zip(predictions);
-        let errors = pairs().map(|(case, prediction)| PointErrors::of(case, prediction)).collect();
-        if predictions.iter().any(|prediction| prediction.mixture.is_none()) {
-            return Ok(Self { errors, scores: Vec::new() });
-        }
-        let tasks: Vec<_> = pairs().enumerate().collect();
-        let scores = tasks.par_iter().filter_map(|(stream, (case, prediction))| {
-            let mixture = prediction.mixture.as_ref()?;
-            let scores = ProbabilisticScores::of(case, mixture, settings, *stream as u64);
-            let named = |source| EvaluationError::Mixture { case: case.name.clone(), source };
-            Some(scores.map_err(named))
-        });
-        Ok(Self { errors, scores: scores.collect::<Result<_, _>>()? })
-    }
-
-    fn figures(&self, test: &[&ForceCase]) -> Option<ModelFigures> {
-        Some(ModelFigures {
-            overall: self.chosen(test, |_| true)?,
-            separated: self.chosen(test, ForceCase::is_clean),
-        })
-    }
-
-    /// Figures over the cases that `choose` takes.
-    fn chosen(&self, test: &[&ForceCase], choose: impl Fn(&ForceCase) -> bool) -> Option<Figures> {
-        let taken: Vec<usize> =
-            test.iter().enumerate().filter(|(_, case)| choose(case)).map(|(idx, _)| idx).collect();
-        let errors: Vec<_> = taken.iter().filter_map(|idx| self.errors.get(*idx)).collect();
-        let scores: Vec<_> = taken.iter().filter_map(|idx| self.scores.get(*idx)).collect();
-        Figures::of(&errors, &scores)
-    }
 }
 
 fn features(case: &ForceCase) -> Option<ImpulseFeatures> {
