@@ -9,12 +9,12 @@
 //! 5. [`collision`]: the impact itself: impulse, contact geometry, scenarios, pulses, filter;
 //! 6. [`nn`]: layers, parameters, optimiser and files of the networks;
 //!    [`uncertainty`]: distributions of whole force curves;
-//! 7. [`compare`]: simulation against reference;
-//! 8. [`analysis`]: one case, from its file to a motion;
-//! 9. [`figure`]: what a plot shows, as plain data;
-//! 10. `render` (feature `gui`): one drawing function for the panel and the off-screen picture;
-//! 11. `cli` and `app` (feature `gui`): the command line and the window.
-//!    [`force`]: the force network, its baselines and how well they do;
+//! 7. [`force`]: the force network, its baselines and how well they do;
+//! 8. [`compare`]: simulation against reference;
+//! 9. [`analysis`]: one case, from its file to a motion;
+//! 10. [`figure`]: what a plot shows, as plain data;
+//! 11. `render` (feature `gui`): one drawing function for the panel and the off-screen picture;
+//! 12. `cli` and `app` (feature `gui`): the command line and the window.
 //!
 //! ```
 //! use impactlab::vehicle::{Integrator, Manoeuvre, Preset, VehicleState};
