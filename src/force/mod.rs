@@ -1,15 +1,47 @@
-//! The contact force before it happens: cases to learn from, models, and how well they do.
+//! The contact force before it happens: cases to learn from, the force network, its baselines, and
+//! how well they do.
+//!
+//! Cases: [`ForceCase`], [`split`]. Network: [`ForceConfig`], [`train`], [`ForceModel::predict`].
+//! Figures: [`metrics`].
+
+mod error;
 
 mod scenario;
 
 mod case;
 mod split;
 
+mod config;
+
+mod centre;
+mod features;
+
+mod batch;
+mod loss;
+mod network;
+
+mod record;
+
+mod train;
+mod training_file;
+
+mod model;
+mod predict;
+
 mod prediction;
 
 pub mod metrics;
 
 pub use case::{ForceCase, ForceCaseError, curve_on_grid};
+pub use centre::{CentreCurve, CentreModel};
+pub use config::{Centre, CrushConfig, ForceConfig, LossWeights, NetworkConfig, TrainingConfig};
+pub use error::ForceError;
+pub use features::{OpenFeatures, OutsideTraining, Standardisation};
+pub use loss::LossTerms;
+pub use model::ForceModel;
+pub use predict::ForcePrediction;
 pub use prediction::Prediction;
+pub use record::{CaseId, EpochRecord, TrainingRecord, TrainingSet};
 pub use scenario::ForceScenario;
 pub use split::{Split, TEST_SHARE, folds, split};
+pub use train::{TrainSettings, TrainingProgress, TrainingReport, train};

@@ -115,11 +115,18 @@ impl Checkpoint {
     pub fn read(path: &Path, kind: ModelKind) -> Result<Self, NnError> {
         let bytes = read_limited(path)?;
         let in_file = |source| NnError::InFile { path: path.to_owned(), source: Box::new(source) };
-        let checked = match bytes.len() as u64 {
+        Self::from_bytes(&bytes, kind).map_err(in_file)
+    }
+
+    /// Takes the contents of such a file.
+    ///
+    /// # Errors
+    /// As within [`Checkpoint::read`], without the name of the file.
+    pub fn from_bytes(bytes: &[u8], kind: ModelKind) -> Result<Self, NnError> {
+        match bytes.len() as u64 {
             n if n > MAX_MODEL_BYTES => Err(NnError::TooLarge { bytes: n, limit: MAX_MODEL_BYTES }),
-            _ => decode(&bytes, kind),
-        };
-        checked.map_err(in_file)
+            _ => decode(bytes, kind),
+        }
     }
 }
 

@@ -153,7 +153,8 @@ fn tensors_that_cannot_be_used_are_named() {
 
 #[test]
 fn a_header_that_promises_much_costs_nothing() {
-    let header = br#"{"w":{"dtype":"F32","shape":[1125899906842624],"data_offsets":[0,4503599627370496]}}"#;
+    let header =
+        br#"{"w":{"dtype":"F32","shape":[1125899906842624],"data_offsets":[0,4503599627370496]}}"#;
     let file = [&(header.len() as u64).to_le_bytes()[..], header].concat();
     let error = decode(&file, KIND).unwrap_err();
     assert!(matches!(error, NnError::Truncated { .. }), "{error}");

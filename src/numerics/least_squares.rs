@@ -12,7 +12,7 @@ const DIFFERENCE: f64 = 1e-4;
 const FIRST_DAMPING: f64 = 1e-2;
 const MAX_DAMPING: f64 = 1e8;
 /// A step that lowers the cost by less than this share is the last.
-const MIN_GAIN: f64 = 1e-5;
+const MIN_GAIN: f64 = 1e-4;
 
 /// Where [`levenberg_marquardt`] stopped.
 #[derive(Debug, Clone, PartialEq)]

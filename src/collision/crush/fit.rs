@@ -55,7 +55,7 @@ impl CrushLaw {
         settings: CrushFit,
         report: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Option<Self> {
-        let references: Vec<Reference> =
+        let references: Vec<Reference<'_>> =
             samples.iter().filter_map(|sample| Reference::new(sample, settings)).collect();
         if references.is_empty() {
             return None;

@@ -7,6 +7,8 @@ use super::outline::{Element, N_ELEMENTS};
 const MAX_DEPTH_M: f64 = 0.9;
 /// Behind this place, from the rear axle, the target has ended, m.
 const REAR_END_M: f64 = -0.96;
+/// Cars this far apart do not meet again within a quarter of a second, m.
+const PARTED_M: f64 = 0.1;
 /// Width over which the wheel comes into play, m.
 const WHEEL_SOFTNESS_M: f64 = 0.01;
 /// Depth, m, and angle, rad, about which friction and normal are given.
@@ -43,6 +45,13 @@ pub struct CrushHistory {
     pub slip_m_s: Vec<f64>,
 }
 
+impl CrushHistory {
+    fn zero(n_steps: usize) -> Self {
+        let zero = || vec![0.0; n_steps];
+        Self { fx_n: zero(), fy_n: zero(), depth_m: zero(), slip_m_s: zero() }
+    }
+}
+
 /// A rigid body in the plane.
 #[derive(Debug, Clone, Copy)]
 struct Body {
@@ -70,6 +79,7 @@ struct Contact {
     force_n: [f64; 2],
     target_moment_n_m: f64,
     bullet_moment_n_m: f64,
+    /// Greatest overlap, m; negative: the gap.
     depth_m: f64,
     slip_force_w: f64,
     force_sum_n: f64,
@@ -105,14 +115,17 @@ impl CrushLaw {
         let mut springs = Springs::new(self, scenario)?;
         let [mut target, mut bullet] = springs.at_first_contact();
         let inertial = [0, 1].map(|i| [scenario.mass_kg[i], scenario.yaw_inertia_kg_m2[i]]);
-        let mut history = CrushHistory::default();
-        for _ in 0..n_steps {
+        let mut history = CrushHistory::zero(n_steps);
+        for step in 0..n_steps {
             let contact = springs.contact(&target, &bullet);
+            if contact.depth_m < -PARTED_M {
+                break;
+            }
             let [fx, fy] = contact.force_n;
-            history.fx_n.push(fx);
-            history.fy_n.push(fy);
-            history.depth_m.push(contact.depth_m);
-            history.slip_m_s.push(contact.slip_force_w / (contact.force_sum_n + 1.0));
+            history.fx_n[step] = fx;
+            history.fy_n[step] = fy;
+            history.depth_m[step] = contact.depth_m.max(0.0);
+            history.slip_m_s[step] = contact.slip_force_w / (contact.force_sum_n + 1.0);
             target.step([fx, fy], contact.target_moment_n_m, inertial[0], dt_s);
             bullet.step([-fx, -fy], contact.bullet_moment_n_m, inertial[1], dt_s);
         }
@@ -177,7 +190,7 @@ impl<'a> Springs<'a> {
         let turn_target = target.yaw_rad.sin_cos();
         let turn_bullet = bullet.yaw_rad.sin_cos();
         let turn_between = (bullet.yaw_rad - target.yaw_rad).sin_cos();
-        let mut sum = Contact::default();
+        let mut sum = Contact { depth_m: f64::NEG_INFINITY, ..Contact::default() };
         for i in 0..N_ELEMENTS {
             let element = self.elements[i];
             let arm_bullet = turned(turn_bullet, element.position_m);
@@ -187,10 +200,13 @@ impl<'a> Springs<'a> {
             let [x, y] = turned_back(turn_target, arm_target);
             let depth = y - self.scenario.contact_m[1];
             let place = x - self.law.rear_axle_x_m;
-            if depth <= 0.0 || depth > MAX_DEPTH_M || place < REAR_END_M {
+            if depth > MAX_DEPTH_M || place < REAR_END_M {
                 continue;
             }
             sum.depth_m = sum.depth_m.max(depth);
+            if depth <= 0.0 {
+                continue;
+            }
             let load = self.load(i, depth, place);
             if load <= 0.0 {
                 continue;

@@ -1,0 +1,100 @@
+//! Cases as tensors.
+
+use candle_core::{DType, Device, Tensor};
+
+use crate::force::centre::CentreCurve;
+use crate::force::features::{N_INSTANT_FEATURES, instant_features};
+use crate::force::loss::Targets;
+use crate::force::network::{DURATION_UNIT_S, NetworkInput};
+use crate::force::{ForceCase, ForceError};
+use crate::uncertainty::CURVE_N_INSTANTS;
+
+/// All cases of a training, ready to be drawn from.
+#[derive(Debug, Clone)]
+pub(super) struct CaseTensors {
+    input: NetworkInput,
+    targets: Targets,
+}
+
+/// What the network sees of scenarios.
+///
+/// - `features`: standardised, one row per centre.
+pub(super) fn network_input(
+    centres: &[CentreCurve],
+    features: Vec<Vec<f32>>,
+    number_type: DType,
+) -> Result<NetworkInput, ForceError> {
+    let n = centres.len();
+    let width = features.first().map_or(0, Vec::len);
+    let tensor = |data: Vec<f32>, shape: &[usize]| -> Result<Tensor, ForceError> {
+        Ok(Tensor::from_vec(data, shape, &Device::Cpu)?.to_dtype(number_type)?)
+    };
+    let instants = centres.iter().flat_map(instant_features).collect();
+    let whole = centres.iter().flat_map(|centre| {
+        let [px, py] = centre.impulse_n_s.map(|p| (p / centre.scale_n) as f32);
+        [px, py, centre.curve.duration_s as f32]
+    });
+    Ok(NetworkInput {
+        features: tensor(features.concat(), &[n, width])?,
+        instants: tensor(instants, &[n, CURVE_N_INSTANTS, N_INSTANT_FEATURES])?,
+        whole: tensor(whole.collect(), &[n, 3])?,
+    })
+}
+
+impl CaseTensors {
+    pub(super) fn new(
+        cases: &[&ForceCase],
+        centres: &[CentreCurve],
+        features: Vec<Vec<f32>>,
+        number_type: DType,
+    ) -> Result<Self, ForceError> {
+        let n = cases.len();
+        let tensor = |data: Vec<f64>, shape: &[usize]| -> Result<Tensor, ForceError> {
+            Ok(Tensor::from_vec(data, shape, &Device::Cpu)?.to_dtype(number_type)?)
+        };
+        let pairs = || cases.iter().zip(centres);
+        let values: Vec<f64> = pairs()
+            .flat_map(|(case, centre)| {
+                let forces = case.curve.fx_n.iter().chain(&case.curve.fy_n);
+                let duration = case.curve.duration_s / DURATION_UNIT_S;
+                forces.map(|f| f / centre.scale_n).chain([duration]).collect::<Vec<f64>>()
+            })
+            .collect();
+        let impulse =
+            pairs().flat_map(|(case, centre)| case.impulse_n_s.map(|p| p / centre.scale_n));
+        let inverse_mass = centres.iter().flat_map(|centre| {
+            let [[a, b], [c, d]] = centre.inverse_mass_1_kg;
+            [a, b, c, d].map(|k| k * centre.scale_n)
+        });
+        let hooked = cases.iter().map(|case| f64::from(u8::from(case.hooked)));
+        let closing = centres.iter().flat_map(|centre| centre.closing_velocity_m_s);
+        let targets = Targets {
+            values: tensor(values, &[n, 2 * CURVE_N_INSTANTS + 1])?,
+            impulse: tensor(impulse.collect(), &[n, 2])?,
+            hooked: tensor(hooked.collect(), &[n])?,
+            closing: tensor(closing.collect(), &[n, 2])?,
+            inverse_mass: tensor(inverse_mass.collect(), &[n, 2, 2])?,
+        };
+        Ok(Self { input: network_input(centres, features, number_type)?, targets })
+    }
+
+    /// Some of the cases, in this order.
+    pub(super) fn select(&self, indices: &[usize]) -> Result<(NetworkInput, Targets), ForceError> {
+        let indices: Vec<u32> = indices.iter().map(|i| *i as u32).collect();
+        let indices = Tensor::new(indices, &Device::Cpu)?;
+        let pick = |tensor: &Tensor| tensor.index_select(&indices, 0);
+        let input = NetworkInput {
+            features: pick(&self.input.features)?,
+            instants: pick(&self.input.instants)?,
+            whole: pick(&self.input.whole)?,
+        };
+        let targets = Targets {
+            values: pick(&self.targets.values)?,
+            impulse: pick(&self.targets.impulse)?,
+            hooked: pick(&self.targets.hooked)?,
+            closing: pick(&self.targets.closing)?,
+            inverse_mass: pick(&self.targets.inverse_mass)?,
+        };
+        Ok((input, targets))
+    }
+}

@@ -1,0 +1,288 @@
+//! Every size, weight and rate of the force network, as plain data.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::force::ForceError;
+
+/// All settings. Read from TOML: what a file leaves out keeps its default.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ForceConfig {
+    /// The layers.
+    pub network: NetworkConfig,
+    /// The weights of the loss.
+    pub loss: LossWeights,
+    /// The search.
+    pub training: TrainingConfig,
+    /// The crush model in the centre.
+    pub crush: CrushConfig,
+}
+
+/// What the learned part of the curve is centred on.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Centre {
+    /// The crush model: its curve, and the impulse of section 3 with the restitution and impulse
+    /// ratio that it implies.
+    #[default]
+    Crush,
+    /// A haversine with the momentum solution's impulse (median restitution and friction).
+    Momentum,
+    /// Nothing: ablation without the physics layer; the impulse is not tied to anything.
+    None,
+}
+
+/// The layers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct NetworkConfig {
+    /// What the learned part is centred on.
+    pub centre: Centre,
+    /// Widths of the three Swish layers of each branch of the encoder.
+    pub encoder_branches: Vec<[usize; 3]>,
+    /// Channels d of the positional encoding, even.
+    pub position_channels: usize,
+    /// Whether instants look at each other.
+    pub attention: bool,
+    /// Channels of the attention over time.
+    pub attention_channels: usize,
+    /// Heads of the attention.
+    pub attention_heads: usize,
+    /// Every how many instants there is one to be looked at, 1 or more.
+    pub attention_stride: usize,
+    /// Widths of the trunk.
+    pub trunk: Vec<usize>,
+    /// Components K of the mixture, 1 or more; with two or more the last one is hooking.
+    pub components: usize,
+    /// Latent factors per component; 0 for independent instants (ablation).
+    pub factors: usize,
+    /// Largest share by which the learned shape scales the centre's force, 0 to below 1.
+    pub shape_correction: f64,
+    /// Largest force that the learned shape adds, in peaks of the centre.
+    pub force_correction: f64,
+    /// Largest correction of the impulse, as a share of the centre's.
+    pub impulse_correction: f64,
+    /// Δt_max, s.
+    pub duration_max_s: f64,
+    /// Smallest standard deviation σ_min of a force, in peaks of the centre.
+    pub min_std: f64,
+}
+
+/// The weights of the loss terms beside the likelihood.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct LossWeights {
+    /// Negative log-likelihood of whole curves, per value.
+    pub likelihood: f64,
+    /// Squared error of the mean curve, as a share of the curve's.
+    pub data: f64,
+    /// λ_imp: squared error of the impulse, as a share.
+    pub impulse: f64,
+    /// λ_eng: squared error of the energy, as a share, and energy out of nothing.
+    pub energy: f64,
+    /// Squared error of the duration in units of 0.1 s.
+    pub duration: f64,
+    /// Cross entropy of hooking, where the cases say whether they hook.
+    pub hooking: f64,
+}
+
+/// The search.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct TrainingConfig {
+    /// Epochs at most.
+    pub epochs: usize,
+    /// Cases per step.
+    pub batch_cases: usize,
+    /// AdamW's learning rate η.
+    pub learning_rate: f64,
+    /// AdamW's weight decay λ.
+    pub weight_decay: f64,
+    /// Longest gradient.
+    pub max_gradient_norm: f64,
+    /// Share of the training cases that decide when to stop, never trained on, 0 to 0.5.
+    pub validation_share: f64,
+    /// Epochs without a better validation loss after which training stops.
+    pub patience: usize,
+    /// Share of all cases kept for the test.
+    pub test_share: f64,
+    /// Epochs between checkpoints.
+    pub checkpoint_epochs: usize,
+}
+
+/// The crush model in the centre.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct CrushConfig {
+    /// Laws fitted, each without one fold of the cases: a case is seen through the law that has
+    /// not seen it, a new scenario through the mean of all. 2 or more.
+    pub folds: usize,
+    /// How strongly parameters are held at the prior.
+    pub prior_weight: f64,
+    /// Weight of the impulse beside the history.
+    pub impulse_weight: f64,
+    /// Weight of hooked and unseparated cases, 0 to 1.
+    pub hooked_weight: f64,
+    /// Most steps of each fit.
+    pub max_steps: usize,
+}
+
+impl Default for NetworkConfig {
+    fn default() -> Self {
+        Self {
+            centre: Centre::Crush,
+            encoder_branches: vec![[32, 32, 16], [64, 64, 32], [128, 128, 48]],
+            position_channels: 32,
+            attention: true,
+            attention_channels: 64,
+            attention_heads: 4,
+            attention_stride: 5,
+            trunk: vec![256, 512, 512, 256, 128, 64, 32, 16],
+            components: 2,
+            factors: 4,
+            shape_correction: 0.5,
+            force_correction: 0.3,
+            impulse_correction: 0.3,
+            duration_max_s: 0.35,
+            min_std: 0.01,
+        }
+    }
+}
+
+impl Default for LossWeights {
+    fn default() -> Self {
+        Self { likelihood: 1.0, data: 1.0, impulse: 1.0, energy: 0.1, duration: 0.1, hooking: 0.1 }
+    }
+}
+
+impl Default for TrainingConfig {
+    fn default() -> Self {
+        Self {
+            epochs: 500,
+            batch_cases: 32,
+            learning_rate: 1e-3,
+            weight_decay: 1e-2,
+            max_gradient_norm: 1.0,
+            validation_share: 0.2,
+            patience: 60,
+            test_share: crate::force::TEST_SHARE,
+            checkpoint_epochs: 10,
+        }
+    }
+}
+
+impl Default for CrushConfig {
+    fn default() -> Self {
+        Self {
+            folds: 5,
+            prior_weight: 0.05,
+            impulse_weight: 1.0,
+            hooked_weight: 0.3,
+            max_steps: 30,
+        }
+    }
+}
+
+impl ForceConfig {
+    /// Reads a TOML file.
+    ///
+    /// # Errors
+    /// [`ForceError::ConfigFile`] with line and column, [`ForceError::Setting`].
+    pub fn load(path: &Path) -> Result<Self, ForceError> {
+        let wrong = |reason| ForceError::ConfigFile { path: path.to_owned(), reason };
+        let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
+        let config: Self = toml::from_str(&text).map_err(|error| {
+            let line = error.span().map_or(1, |span| {
+                1 + text.get(..span.start).map_or(0, |before| before.matches('\n').count())
+            });
+            wrong(format!("line {line}: {}", error.message()))
+        })?;
+        config.check()?;
+        Ok(config)
+    }
+
+    /// Checks every range.
+    ///
+    /// # Errors
+    /// [`ForceError::Setting`] with the first setting out of range.
+    pub fn check(&self) -> Result<(), ForceError> {
+        let (network, training, crush) = (&self.network, &self.training, &self.crush);
+        let count = |name, value: usize, least: usize, expected| {
+            (name, value.to_string(), value >= least, expected)
+        };
+        let share = |name, value: f64, most: f64, expected| {
+            (name, value.to_string(), (0.0..=most).contains(&value), expected)
+        };
+        let positive = |name, value: f64| {
+            (name, value.to_string(), value > 0.0 && value.is_finite(), "a number above 0")
+        };
+        let even = network.position_channels.is_multiple_of(2) && network.position_channels > 0;
+        let loss = self.loss;
+        let settings = [
+            count("network.components", network.components, 1, "1 or more"),
+            count("network.attention_stride", network.attention_stride, 1, "1 or more"),
+            count("network.trunk (layers)", network.trunk.len(), 1, "1 or more"),
+            count("network.encoder_branches", network.encoder_branches.len(), 1, "1 or more"),
+            (
+                "network.position_channels",
+                network.position_channels.to_string(),
+                even,
+                "an even number above 0",
+            ),
+            share("network.shape_correction", network.shape_correction, 0.99, "0 to 0.99"),
+            share("network.impulse_correction", network.impulse_correction, 2.0, "0 to 2"),
+            share("network.force_correction", network.force_correction, 10.0, "0 to 10"),
+            positive("network.duration_max_s", network.duration_max_s),
+            positive("network.min_std", network.min_std),
+            share("loss.likelihood", loss.likelihood, 1e6, "0 to 1e6"),
+            share("loss.data", loss.data, 1e6, "0 to 1e6"),
+            share("loss.impulse", loss.impulse, 1e6, "0 to 1e6"),
+            share("loss.energy", loss.energy, 1e6, "0 to 1e6"),
+            share("loss.duration", loss.duration, 1e6, "0 to 1e6"),
+            share("loss.hooking", loss.hooking, 1e6, "0 to 1e6"),
+            count("training.epochs", training.epochs, 1, "1 or more"),
+            count("training.batch_cases", training.batch_cases, 1, "1 or more"),
+            positive("training.learning_rate", training.learning_rate),
+            positive("training.max_gradient_norm", training.max_gradient_norm),
+            share("training.validation_share", training.validation_share, 0.5, "0 to 0.5"),
+            share("training.test_share", training.test_share, 0.9, "0 to 0.9"),
+            count("training.checkpoint_epochs", training.checkpoint_epochs, 1, "1 or more"),
+            count("crush.folds", crush.folds, 2, "2 or more"),
+            positive("crush.prior_weight", crush.prior_weight),
+            share("crush.hooked_weight", crush.hooked_weight, 1.0, "0 to 1"),
+        ];
+        match settings.into_iter().find(|(_, _, is_good, _)| !is_good) {
+            None => Ok(()),
+            Some((name, value, _, expected)) => Err(ForceError::Setting { name, value, expected }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_changes_what_it_names_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("c.toml");
+        std::fs::write(&path, "[network]\ncomponents = 3\n[training]\nepochs = 7\n").unwrap();
+        let config = ForceConfig::load(&path).unwrap();
+        assert_eq!((config.network.components, config.training.epochs), (3, 7));
+        assert_eq!(config.loss, LossWeights::default());
+    }
+
+    #[test]
+    fn a_wrong_file_says_where() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("c.toml");
+        std::fs::write(&path, "[network]\ncomponents = 2\ncolour = 1\n").unwrap();
+        let error = ForceConfig::load(&path).unwrap_err().to_string();
+        assert!(error.contains("c.toml: line 3: unknown field `colour`"), "{error}");
+        std::fs::write(&path, "[training]\nbatch_cases = 0\n").unwrap();
+        let error = ForceConfig::load(&path).unwrap_err().to_string();
+        assert_eq!(error, "training.batch_cases is 0, expected 1 or more");
+    }
+}

@@ -1,0 +1,343 @@
+//! The force network: scenario and physics in, the distribution of the whole force history out.
+//!
+//! Source: METHOD of this project, section 4, after `eq:pinn-gmmframework` to `eq:gmmfunction` of
+//! [`PitPinnPaper`](crate::bibliography::PitPinnPaper).
+//!
+//! ```text
+//! e = encoder(θ)                          multi-scale, per case
+//! x(t) = W_i [c(t), PE(t)] + W_e e        instants, then attention over time
+//! h(t) = trunk([x(t), e])                 16 channels by default
+//! F_base = centre ⊙ (1 + β tanh g(t)) + γ tanh a(t), zero outside [0, Δt], impulse tied to P
+//! F | k ~ N(F_base + δ_k, U_k U_kᵀ + diag(σ_min² + exp s_k))      k ~ π(θ)
+//! ```
+//!
+//! Everything is in units of the centre's peak force; the duration, in units of 0.1 s, is one more
+//! value of the curve, so that it varies together with the force.
+//!
+//! Departures from the paper: the component is chosen once per curve (π does not depend on time)
+//! and its covariance has low rank besides the diagonal; the impulse of F_base holds by
+//! construction.
+
+use candle_core::{D, DType, Tensor};
+use rand_chacha::ChaCha8Rng;
+
+use crate::force::features::{N_FEATURES, N_INSTANT_FEATURES};
+use crate::force::{Centre, ForceError, NetworkConfig};
+use crate::nn::{
+    Activation, Attention, AttentionConfig, Init, Linear, Mlp, MultiScaleEncoder, Parameters,
+    positional_encoding,
+};
+use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS};
+
+/// Unit of the duration among the values of a curve, s.
+pub(super) const DURATION_UNIT_S: f64 = 0.1;
+/// Over which the curve fades out at the end of the contact, s.
+const FADE_S: f64 = 0.006;
+/// Standard deviation of a force before training: share of the centre's force, and floor, in peaks.
+const FIRST_STD: [f64; 2] = [0.12, 0.02];
+/// Standard deviation of the duration before training, units of 0.1 s.
+const FIRST_DURATION_STD: f64 = 0.3;
+/// Largest correction of the logit of the duration.
+const DURATION_CORRECTION: f64 = 2.0;
+
+/// The layers and their parameters.
+#[derive(Debug)]
+pub(super) struct ForceNetwork {
+    config: NetworkConfig,
+    parameters: Parameters,
+    layers: Layers,
+    position: Tensor,
+}
+
+#[derive(Debug, Clone)]
+struct Layers {
+    encoder: MultiScaleEncoder,
+    instant: Linear,
+    scenario: Linear,
+    attention: Option<Attention>,
+    trunk: Mlp,
+    shape: Linear,
+    mixture: Linear,
+    whole: Linear,
+}
+
+/// What the network sees of some cases.
+#[derive(Debug, Clone)]
+pub(super) struct NetworkInput {
+    /// Standardised features, `[cases, features]`.
+    pub features: Tensor,
+    /// Features of each instant, `[cases, instants, N_INSTANT_FEATURES]`; the first two are the
+    /// centre's force in peaks.
+    pub instants: Tensor,
+    /// Impulse of the centre in peaks × s, and its duration in s, `[cases, 3]`.
+    pub whole: Tensor,
+}
+
+/// A mixture over the values of a curve `[F_x…, F_y…, duration]`, in peaks and 0.1 s.
+#[derive(Debug, Clone)]
+pub(super) struct NetworkOutput {
+    /// Logits of π, `[cases, K]`.
+    pub logits: Tensor,
+    /// Means, `[cases, K, values]`.
+    pub mean: Tensor,
+    /// Diagonal of the covariance, `[cases, K, values]`.
+    pub variance: Tensor,
+    /// Latent factors U, `[cases, K, values, q]`; none if q = 0.
+    pub factors: Option<Tensor>,
+    /// Impulse of F_base, peaks × s, `[cases, 2]`.
+    pub impulse: Tensor,
+    /// Duration, s, `[cases]`.
+    pub duration_s: Tensor,
+}
+
+impl ForceNetwork {
+    /// New layers with seeded parameters.
+    ///
+    /// - `n_bodies`: kinds of bullet bodies.
+    pub(super) fn new(
+        config: &NetworkConfig,
+        n_bodies: usize,
+        rng: &mut ChaCha8Rng,
+        number_type: DType,
+    ) -> Result<Self, ForceError> {
+        let mut parameters = Parameters::new(number_type);
+        let layers = Layers::new(config, n_bodies, &mut parameters, rng)?;
+        let positions: Vec<f64> = (0..CURVE_N_INSTANTS).map(|t| t as f64).collect();
+        let position = positional_encoding(&positions, config.position_channels, number_type)?;
+        Ok(Self { config: config.clone(), parameters, layers, position })
+    }
+
+    pub(super) fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    /// The same network without gradients, for predictions.
+    pub(super) fn forward_frozen(&self, input: &NetworkInput) -> Result<NetworkOutput, ForceError> {
+        self.forward_with(&self.layers.frozen(), input)
+    }
+
+    /// The distribution of the curves of all cases.
+    pub(super) fn forward(&self, input: &NetworkInput) -> Result<NetworkOutput, ForceError> {
+        self.forward_with(&self.layers, input)
+    }
+
+    fn forward_with(
+        &self,
+        layers: &Layers,
+        input: &NetworkInput,
+    ) -> Result<NetworkOutput, ForceError> {
+        let (n_cases, n_instants, _) = input.instants.dims3()?;
+        let encoded = layers.encoder.forward(&input.features)?;
+        let hidden = self.hidden(layers, input, &encoded)?;
+        let pooled = Tensor::cat(&[&hidden.mean(1)?, &encoded], D::Minus1)?;
+        let whole = layers.whole.forward(&pooled)?;
+        let duration_s = self.duration_s(&whole, &input.whole)?;
+        let impulse = self.impulse(&whole, &input.whole)?;
+        let base = self.base(layers, input, (&hidden, &impulse, &duration_s))?;
+
+        let (k, q) = (self.config.components, self.config.factors);
+        let number_type = self.parameters.number_type();
+        let raw = layers.mixture.forward(&hidden)?.reshape((n_cases, n_instants, k, 2, 2 + q))?;
+        // [cases, instants, K, axis, …] to [cases, K, axis, instants, …]
+        let raw = raw.permute((0, 2, 3, 1, 4))?.contiguous()?;
+        let n_forces = 2 * n_instants;
+        let envelope = self.envelope(input)?;
+        let envelope = envelope.reshape((n_cases, 1, 1, n_instants))?;
+        let per_force =
+            |i: usize| -> Result<Tensor, ForceError> { Ok(raw.narrow(4, i, 1)?.squeeze(4)?) };
+        let shift = per_force(0)?.broadcast_mul(&envelope)?.reshape((n_cases, k, n_forces))?;
+        let deviation = per_force(1)?.exp()?.broadcast_mul(&(&envelope * FIRST_STD[0])?)?;
+        let min_variance = self.config.min_std.powi(2);
+        let variance = (deviation.sqr()? + min_variance)?.reshape((n_cases, k, n_forces))?;
+        let base = base.reshape((n_cases, 1, n_forces))?;
+        let mean = base.broadcast_add(&shift)?;
+
+        let per_component = whole.narrow(1, 3, k * (3 + q))?.reshape((n_cases, k, 3 + q))?;
+        let logits = per_component.narrow(2, 0, 1)?.squeeze(2)?;
+        let duration_shift = per_component.narrow(2, 1, 1)?;
+        let duration_deviation = (per_component.narrow(2, 2, 1)?.exp()? * FIRST_DURATION_STD)?;
+        let duration = (&duration_s / DURATION_UNIT_S)?.reshape((n_cases, 1, 1))?;
+        let mean = Tensor::cat(&[&mean, &duration.broadcast_add(&duration_shift)?], 2)?;
+        let variance = Tensor::cat(&[&variance, &(duration_deviation.sqr()? + 1e-4)?], 2)?;
+        let factors = if q == 0 {
+            None
+        } else {
+            let loadings = raw.narrow(4, 2, q)?.reshape((n_cases, k, n_forces, q))?;
+            let envelope = self.envelope(input)?;
+            let envelope = Tensor::cat(&[&envelope, &envelope], 1)?;
+            let loadings = loadings.broadcast_mul(&envelope.reshape((n_cases, 1, n_forces, 1))?)?;
+            let of_duration = per_component.narrow(2, 3, q)?.unsqueeze(2)?;
+            Some(Tensor::cat(&[&loadings, &of_duration], 2)?)
+        };
+        let logits = logits.to_dtype(number_type)?;
+        Ok(NetworkOutput { logits, mean, variance, factors, impulse, duration_s })
+    }
+
+    /// What the trunk says of each instant, `[cases, instants, width]`.
+    fn hidden(
+        &self,
+        layers: &Layers,
+        input: &NetworkInput,
+        encoded: &Tensor,
+    ) -> Result<Tensor, ForceError> {
+        let (n_cases, n_instants, _) = input.instants.dims3()?;
+        let position = self.position.narrow(0, 0, n_instants)?.unsqueeze(0)?;
+        let position =
+            position.broadcast_as((n_cases, n_instants, self.config.position_channels))?;
+        let instants = Tensor::cat(&[&input.instants, &position.contiguous()?], 2)?;
+        let scenario = layers.scenario.forward(encoded)?.unsqueeze(1)?;
+        let mut x = layers.instant.forward(&instants)?.broadcast_add(&scenario)?;
+        if let Some(attention) = &layers.attention {
+            x = if self.config.attention_stride == 1 {
+                attention.self_attention(&x)?
+            } else {
+                let seen: Vec<u32> =
+                    (0..n_instants as u32).step_by(self.config.attention_stride).collect();
+                let seen = Tensor::new(seen, x.device())?;
+                attention.cross_attention(&x, &x.index_select(&seen, 1)?)?
+            };
+        }
+        let width = encoded.dim(1)?;
+        let encoded = encoded.unsqueeze(1)?.broadcast_as((n_cases, n_instants, width))?;
+        let x = Tensor::cat(&[&x, &encoded.contiguous()?], 2)?;
+        Ok(layers.trunk.forward(&x)?)
+    }
+
+    /// Δt = σ(z) Δt_max, z around that of the centre's duration; `[cases]`.
+    fn duration_s(&self, whole: &Tensor, centre: &Tensor) -> Result<Tensor, ForceError> {
+        let longest = self.config.duration_max_s;
+        let share = (centre.narrow(1, 2, 1)? / longest)?.clamp(0.02, 0.98)?;
+        let logit = (share.log()? - (1.0 - &share)?.log()?)?;
+        let correction = (whole.narrow(1, 2, 1)?.tanh()? * DURATION_CORRECTION)?;
+        Ok((candle_nn::ops::sigmoid(&(logit + correction)?)? * longest)?.squeeze(1)?)
+    }
+
+    /// P = P_centre + κ |P_centre| tanh(z); `[cases, 2]`. Free without physics.
+    fn impulse(&self, whole: &Tensor, centre: &Tensor) -> Result<Tensor, ForceError> {
+        let impulse = centre.narrow(1, 0, 2)?;
+        let size = impulse.sqr()?.sum_keepdim(1)?.sqrt()?;
+        let correction = (whole.narrow(1, 0, 2)?.tanh()? * self.config.impulse_correction)?;
+        Ok((impulse + correction.broadcast_mul(&size)?)?)
+    }
+
+    /// F_base, `[cases, 2, instants]`.
+    fn base(
+        &self,
+        layers: &Layers,
+        input: &NetworkInput,
+        (hidden, impulse, duration_s): (&Tensor, &Tensor, &Tensor),
+    ) -> Result<Tensor, ForceError> {
+        let (n_cases, n_instants, _) = input.instants.dims3()?;
+        let shape = layers.shape.forward(hidden)?.transpose(1, 2)?.contiguous()?;
+        if self.config.centre == Centre::None {
+            return Ok(shape.narrow(1, 0, 2)?);
+        }
+        let centre = input.instants.narrow(2, 0, 2)?.transpose(1, 2)?.contiguous()?;
+        let scale = ((shape.narrow(1, 0, 2)?.tanh()? * self.config.shape_correction)? + 1.0)?;
+        let envelope = self.envelope(input)?.unsqueeze(1)?;
+        let added = (shape.narrow(1, 2, 2)?.tanh()? * self.config.force_correction)?;
+        let raw = ((centre * scale)? + added.broadcast_mul(&envelope)?)?;
+        let window = self.window(input, duration_s)?.unsqueeze(1)?;
+        let raw = raw.broadcast_mul(&window)?;
+        // What the impulse lacks goes where the centre's force is.
+        let carrier = self.magnitude(input)?.reshape((n_cases, 1, n_instants))?;
+        let carrier = carrier.broadcast_mul(&window)?;
+        let area = ((carrier.sum_keepdim(2)? * CURVE_INTERVAL_S)? + 1e-9)?;
+        let lacking = (impulse.unsqueeze(2)? - (raw.sum_keepdim(2)? * CURVE_INTERVAL_S)?)?;
+        let amount = lacking.broadcast_div(&area)?;
+        Ok((raw + amount.broadcast_mul(&carrier)?)?)
+    }
+
+    /// 1 until the end of the contact, then 0, `[cases, instants]`; over 6 ms before the end it
+    /// falls, so that the end can be learned.
+    fn window(&self, input: &NetworkInput, duration_s: &Tensor) -> Result<Tensor, ForceError> {
+        let (n_cases, n_instants, _) = input.instants.dims3()?;
+        let first: Vec<f64> = self.onset_s(input)?;
+        let number_type = self.parameters.number_type();
+        let device = input.instants.device();
+        let onset = Tensor::from_vec(first, (n_cases, 1), device)?.to_dtype(number_type)?;
+        let end = (duration_s.unsqueeze(1)? + onset)?;
+        let time: Vec<f64> = (0..n_instants).map(|t| (t as f64 + 0.5) * CURVE_INTERVAL_S).collect();
+        let time = Tensor::from_vec(time, (1, n_instants), device)?.to_dtype(number_type)?;
+        Ok((end.broadcast_sub(&time)? / FADE_S)?.clamp(0.0, 1.0)?)
+    }
+
+    /// First instant at which the centre has a force, s.
+    fn onset_s(&self, input: &NetworkInput) -> Result<Vec<f64>, ForceError> {
+        let magnitude = self.magnitude(input)?.to_dtype(DType::F64)?.to_vec2::<f64>()?;
+        let first = |row: &Vec<f64>| {
+            row.iter().position(|force| *force > 0.01).unwrap_or(0) as f64 * CURVE_INTERVAL_S
+        };
+        Ok(magnitude.iter().map(first).collect())
+    }
+
+    /// |centre|, peaks, `[cases, instants]`.
+    fn magnitude(&self, input: &NetworkInput) -> Result<Tensor, ForceError> {
+        Ok((input.instants.narrow(2, 0, 2)?.sqr()?.sum(2)? + 1e-12)?.sqrt()?)
+    }
+
+    /// Where forces are to be expected: |centre| and a floor that fades with time after it,
+    /// `[cases, instants]`. Without a centre: 1.
+    fn envelope(&self, input: &NetworkInput) -> Result<Tensor, ForceError> {
+        let magnitude = self.magnitude(input)?;
+        if self.config.centre == Centre::None {
+            return Ok(magnitude.ones_like()?);
+        }
+        Ok((magnitude + FIRST_STD[1] / FIRST_STD[0])?)
+    }
+}
+
+impl Layers {
+    fn new(
+        config: &NetworkConfig,
+        n_bodies: usize,
+        parameters: &mut Parameters,
+        rng: &mut ChaCha8Rng,
+    ) -> Result<Self, ForceError> {
+        let mut root = parameters.builder(rng);
+        let n_in = N_FEATURES + n_bodies;
+        let encoder =
+            MultiScaleEncoder::new(&mut root.at("encoder"), n_in, &config.encoder_branches)?;
+        let channels = config.attention_channels;
+        let (none, width) = (Activation::None, encoder.n_out());
+        let n_instant = N_INSTANT_FEATURES + config.position_channels;
+        let instant = Linear::new(&mut root.at("instant"), [n_instant, channels], none)?;
+        let scenario = Linear::new(&mut root.at("scenario"), [width, channels], none)?;
+        let sizes = AttentionConfig {
+            channels,
+            key_channels: channels,
+            heads: config.attention_heads,
+            layer_norm: config.attention_stride == 1,
+        };
+        let attention = match config.attention {
+            true => Some(Attention::new(&mut root.at("attention"), sizes)?),
+            false => None,
+        };
+        let widths: Vec<usize> =
+            std::iter::once(channels + width).chain(config.trunk.iter().copied()).collect();
+        let trunk = Mlp::new(&mut root.at("trunk"), &widths, Activation::Silu)?;
+        let hidden = trunk.n_out();
+        let (k, q) = (config.components, config.factors);
+        let zero = Init::Zero;
+        let shape = Linear::with_init(&mut root.at("shape"), [hidden, 4], none, zero)?;
+        let n_mixture = k * 2 * (2 + q);
+        let mixture = Linear::new(&mut root.at("mixture"), [hidden, n_mixture], none)?;
+        let n_whole = 3 + k * (3 + q);
+        let whole =
+            Linear::with_init(&mut root.at("whole"), [hidden + width, n_whole], none, zero)?;
+        Ok(Self { encoder, instant, scenario, attention, trunk, shape, mixture, whole })
+    }
+
+    fn frozen(&self) -> Self {
+        Self {
+            encoder: self.encoder.frozen(),
+            instant: self.instant.frozen(),
+            scenario: self.scenario.frozen(),
+            attention: self.attention.as_ref().map(Attention::frozen),
+            trunk: self.trunk.frozen(),
+            shape: self.shape.frozen(),
+            mixture: self.mixture.frozen(),
+            whole: self.whole.frozen(),
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! From a scenario to the distribution of its force history.
+
+use candle_core::{D, DType};
+use nalgebra::DMatrix;
+
+use crate::force::batch::network_input;
+use crate::force::centre::CentreCurve;
+use crate::force::features::{OutsideTraining, features};
+use crate::force::model::ForceModel;
+use crate::force::network::{DURATION_UNIT_S, NetworkOutput};
+use crate::force::{ForceError, ForceScenario};
+use crate::uncertainty::{CURVE_N_INSTANTS, CurveComponent, CurveMixture, ForceCurve};
+
+/// What the model says of a scenario, in the axes of the scenario that was asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForcePrediction {
+    /// Distribution of the force history and its duration.
+    pub mixture: CurveMixture,
+    /// What the physics alone says: the mean of the crush model over what the scenario leaves open.
+    pub centre: ForceCurve,
+    /// Impulse of the momentum solution, N s.
+    pub momentum_impulse_n_s: [f64; 2],
+    /// Probability that the bullet's corner stays caught; none for a single component.
+    pub hooking_probability: Option<f64>,
+    /// Where the scenario lies outside what was trained on.
+    pub outside: Vec<OutsideTraining>,
+    /// Whether the contact point was left open and drawn from its distribution.
+    pub is_contact_open: bool,
+    /// Whether the bullet's body was left open and drawn from its distribution.
+    pub is_body_open: bool,
+}
+
+/// A scenario with all that it may leave open filled in.
+struct Variant {
+    probability: f64,
+    contact_m: [f64; 2],
+    body_idx: usize,
+}
+
+impl ForceModel {
+    /// Predicts a scenario in any position: it is brought into canonical form and the answer back.
+    ///
+    /// What the scenario leaves open (contact point, body) is drawn from the distribution of the
+    /// training cases: the answer is the mixture over it.
+    ///
+    /// # Errors
+    /// [`ForceError::Scenario`] for a number that makes no sense, [`ForceError::UnknownBody`],
+    /// [`ForceError::Impact`].
+    pub fn predict(&self, scenario: &ForceScenario) -> Result<ForcePrediction, ForceError> {
+        check(scenario)?;
+        let (canonical, mirrored) = scenario.canonical();
+        let variants = self.variants(&canonical)?;
+        let n_bodies = self.bodies().len();
+        let (mut centres, mut rows) = (Vec::new(), Vec::new());
+        for variant in &variants {
+            let known = (variant.contact_m, variant.body_idx);
+            let centre = self.centre.curve(&canonical, known.0, known.1)?;
+            let row = features(&canonical, &centre, (known.0, known.1, n_bodies));
+            rows.push(self.standardisation.apply(&row));
+            centres.push(centre);
+        }
+        let input = network_input(&centres, rows, DType::F32)?;
+        let output = self.network.forward_frozen(&input)?;
+        let components = self.components(&output, &centres, &variants)?;
+        let k = self.config.network.components;
+        let hooking = components.iter().skip(k - 1).step_by(k).map(|c| c.weight).sum::<f64>();
+        let mean = mean_curve(&centres, &variants);
+        let momentum = [0, 1].map(|axis| {
+            let part =
+                |(c, v): (&CentreCurve, &Variant)| v.probability * c.momentum_impulse_n_s[axis];
+            centres.iter().zip(&variants).map(part).sum::<f64>()
+        });
+        let sign = if mirrored { -1.0 } else { 1.0 };
+        let mixture = CurveMixture::new(components)?;
+        Ok(ForcePrediction {
+            mixture: if mirrored { mixture.mirrored() } else { mixture },
+            centre: if mirrored { mean.mirrored() } else { mean },
+            momentum_impulse_n_s: [momentum[0], sign * momentum[1]],
+            hooking_probability: (k > 1).then_some(hooking),
+            outside: self.standardisation.outside(&canonical),
+            is_contact_open: canonical.contact_m.is_none(),
+            is_body_open: canonical.bullet_body.is_none() && n_bodies > 1,
+        })
+    }
+
+    fn variants(&self, scenario: &ForceScenario) -> Result<Vec<Variant>, ForceError> {
+        let names = self.bodies();
+        let bodies: Vec<(usize, f64)> = match (&scenario.bullet_body, names.len()) {
+            (_, 1) => vec![(0, 1.0)],
+            (None, _) => self.open.body.iter().copied().enumerate().collect(),
+            (Some(name), _) => match names.iter().position(|known| known == name) {
+                Some(idx) => vec![(idx, 1.0)],
+                None => {
+                    return Err(ForceError::UnknownBody { name: name.clone(), known: names });
+                }
+            },
+        };
+        let contacts = match scenario.contact_m {
+            Some(contact) => vec![contact],
+            None => self.open.contact_m.clone(),
+        };
+        let share = 1.0 / contacts.len().max(1) as f64;
+        let pairs = bodies.iter().flat_map(|&(body_idx, probability)| {
+            contacts.iter().map(move |&contact_m| Variant {
+                probability: probability * share,
+                contact_m,
+                body_idx,
+            })
+        });
+        Ok(pairs.filter(|variant| variant.probability > 0.0).collect())
+    }
+
+    /// All components of all variants, in N and s.
+    fn components(
+        &self,
+        output: &NetworkOutput,
+        centres: &[CentreCurve],
+        variants: &[Variant],
+    ) -> Result<Vec<CurveComponent>, ForceError> {
+        let weights = candle_nn::ops::softmax(&output.logits, D::Minus1)?;
+        let weights = weights.to_dtype(DType::F64)?.to_vec2::<f64>()?;
+        let mean = output.mean.to_dtype(DType::F64)?.to_vec3::<f64>()?;
+        let variance = output.variance.to_dtype(DType::F64)?.to_vec3::<f64>()?;
+        let n_values = 2 * CURVE_N_INSTANTS + 1;
+        let q = self.config.network.factors;
+        let factors = match &output.factors {
+            Some(factors) => factors.flatten_all()?.to_dtype(DType::F64)?.to_vec1::<f64>()?,
+            None => Vec::new(),
+        };
+        let widen = self.record.variance_factor;
+        let k = self.config.network.components;
+        let mut components = Vec::with_capacity(variants.len() * k);
+        for (i, (centre, variant)) in centres.iter().zip(variants).enumerate() {
+            let unit = |value_idx: usize| {
+                if value_idx + 1 == n_values { DURATION_UNIT_S } else { centre.scale_n }
+            };
+            for j in 0..k {
+                let scaled = |row: &[f64], power: i32, factor: f64| -> Vec<f64> {
+                    let values = row.iter().enumerate();
+                    values.map(|(v, x)| x * unit(v).powi(power) * factor).collect()
+                };
+                let first = (i * k + j) * n_values * q;
+                components.push(CurveComponent {
+                    weight: weights[i][j] * variant.probability,
+                    mean: scaled(&mean[i][j], 1, 1.0),
+                    variance: scaled(&variance[i][j], 2, widen),
+                    factors: DMatrix::from_fn(n_values, q, |v, f| {
+                        factors[first + v * q + f] * unit(v) * widen.sqrt()
+                    }),
+                });
+            }
+        }
+        Ok(components)
+    }
+}
+
+fn mean_curve(centres: &[CentreCurve], variants: &[Variant]) -> ForceCurve {
+    let mut sum = vec![0.0; 2 * CURVE_N_INSTANTS + 1];
+    for (centre, variant) in centres.iter().zip(variants) {
+        for (total, value) in sum.iter_mut().zip(centre.curve.to_values()) {
+            *total += variant.probability * value;
+        }
+    }
+    ForceCurve::from_values(&sum)
+}
+
+/// Ranges outside of which the physics has no answer.
+fn check(scenario: &ForceScenario) -> Result<(), ForceError> {
+    let [target, bullet] = scenario.mass_kg;
+    let [vx, vy] = scenario.relative_velocity_m_s();
+    let within = |value: f64, low: f64, high: f64| (low..=high).contains(&value);
+    let [x, y] = scenario.contact_m.unwrap_or_default();
+    let checks = [
+        ("target mass [kg]", target, within(target, 1.0, 1e8), "1 to 1e8"),
+        ("bullet mass [kg]", bullet, within(bullet, 1.0, 1e8), "1 to 1e8"),
+        ("v_bx − v_tx [m/s]", vx, within(vx, -150.0, 150.0), "-150 to 150"),
+        ("v_by − v_ty [m/s]", vy, within(vy, -150.0, 150.0), "-150 to 150"),
+        (
+            "θ_b [rad]",
+            scenario.theta_b_rad,
+            within(scenario.theta_b_rad, -std::f64::consts::PI, std::f64::consts::PI),
+            "-π to π",
+        ),
+        ("contact x [m]", x, within(x, -100.0, 100.0), "-100 to 100"),
+        ("contact y [m]", y, within(y, -100.0, 100.0), "-100 to 100"),
+    ];
+    match checks.into_iter().find(|(_, _, is_good, _)| !is_good) {
+        None => Ok(()),
+        Some((name, value, _, expected)) => Err(ForceError::Scenario { name, value, expected }),
+    }
+}
