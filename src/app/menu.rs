@@ -69,8 +69,15 @@ fn file_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     for (label, shortcut, purpose) in items {
         edit_item(ui, label, shortcut, (true, Command::Ask(purpose)), commands);
     }
-    if ui.button("Save scenario…").clicked() {
-        commands.push(Command::Ask(Purpose::Scenario));
+    let has_model = state.session.force.model.current.is_some();
+    for (label, enabled, purpose) in [
+        ("Save scenario…", true, Purpose::Scenario),
+        ("Open model…", true, Purpose::OpenModel),
+        ("Save model…", has_model, Purpose::SaveModel),
+    ] {
+        if ui.add_enabled(enabled, Button::new(label)).clicked() {
+            commands.push(Command::Ask(purpose));
+        }
     }
     ui.separator();
     ui.add_enabled_ui(!state.session.sources.is_empty(), |ui| {

@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 use crate::analysis::{Analysis, FileSetup, PulseSetup};
 use crate::app::case_table::{CaseList, FinishedReplay};
 use crate::app::dialogs::{FileDialog, MappingDialog};
-use crate::app::panes::{Layout, default_layout};
+use crate::app::force::{ForceProject, ForceSession, ForceView};
+use crate::app::panes::{Layout, default_layout, is_complete};
 use crate::app::source::Source;
 use crate::collision::{ChannelClass, Scenario};
 use crate::compare::DatasetReplay;
@@ -86,6 +87,8 @@ pub struct Project {
     pub pulse: PulseSetup,
     /// What single files do not say.
     pub file_setup: FileSetup,
+    /// The force network: what it is asked and how it is trained.
+    pub force: ForceProject,
 }
 
 impl Default for Project {
@@ -102,6 +105,7 @@ impl Default for Project {
             scenario: Scenario::example(),
             pulse: PulseSetup::default(),
             file_setup: FileSetup::default(),
+            force: ForceProject::default(),
         }
     }
 }
@@ -122,6 +126,8 @@ pub struct View {
     pub sort_descending: bool,
     /// The dataset whose cases are listed.
     pub listed: Option<PathBuf>,
+    /// How the force network is shown.
+    pub force: ForceView,
     /// Where the panes stand.
     pub layout: Layout,
 }
@@ -135,6 +141,7 @@ impl Default for View {
             sort_column: None,
             sort_descending: false,
             listed: None,
+            force: ForceView::default(),
             layout: default_layout(),
         }
     }
@@ -149,6 +156,8 @@ pub struct Session {
     pub analysis: AnalysisStatus,
     /// Whole datasets, simulated.
     pub replays: Replays,
+    /// The force network.
+    pub force: ForceSession,
     /// Which cases of the listed data set are shown, in which order.
     pub cases: CaseList,
     /// The moment shown in the scene, s.
@@ -228,7 +237,10 @@ impl State {
     /// The saved state and the paths that were open. `None` if the text is from another version or
     /// damaged: the app then starts afresh.
     pub fn restore(text: &str) -> Option<(Self, Vec<PathBuf>)> {
-        let saved: Saved = serde_json::from_str(text).ok()?;
+        let mut saved: Saved = serde_json::from_str(text).ok()?;
+        if !is_complete(&saved.view.layout) {
+            saved.view.layout = default_layout(); // panes have been added since
+        }
         let state = Self { project: saved.project, view: saved.view, session: Session::default() };
         let mut sources = saved.sources;
         sources.dedup();
