@@ -42,6 +42,12 @@ sources! {
     /// from impact forces, 4DOF vehicle model (`eq:4dof`), momentum-conservation collision
     /// (`eq:collision_model1`). Equation labels are those of its LaTeX source.
     PitPinnPaper;
+    /// C. E. Rasmussen, C. K. I. Williams, *Gaussian Processes for Machine Learning*, MIT Press,
+    /// 2006. Regression, marginal likelihood and its gradient.
+    RasmussenWilliams2006;
+    /// P. J. Rousseeuw, *Silhouettes: a graphical aid to the interpretation and validation of cluster
+    /// analysis*, Journal of Computational and Applied Mathematics 20, 1987.
+    Rousseeuw1987;
     /// SAE J211-1:2014, *Instrumentation for Impact Test, Part 1: Electronic Instrumentation*,
     /// appendix C. Channel frequency classes and their digital filter.
     SaeJ211;

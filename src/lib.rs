@@ -8,13 +8,13 @@
 //! 4. [`vehicle`]: the one place of the equations of motion;
 //! 5. [`collision`]: the impact itself: impulse, contact geometry, scenarios, pulses, filter;
 //! 6. [`nn`]: layers, parameters, optimiser and files of the networks;
-//!    [`uncertainty`]: distributions of whole force curves;
-//! 7. [`force`]: the force network, its baselines and how well they do;
-//! 8. [`compare`]: simulation against reference;
-//! 9. [`analysis`]: one case, from its file to a motion;
-//! 10. [`figure`]: what a plot shows, as plain data;
-//! 11. `render` (feature `gui`): one drawing function for the panel and the off-screen picture;
-//! 12. `cli` and `app` (feature `gui`): the command line and the window.
+//! 7. [`uncertainty`]: distributions of whole force curves;
+//! 8. [`force`]: the force network, its baselines and how well they do;
+//! 9. [`compare`]: simulation against reference;
+//! 10. [`analysis`]: one case, from its file to a motion;
+//! 11. [`figure`]: what a plot shows, as plain data;
+//! 12. `render` (feature `gui`): one drawing function for the panel and the off-screen picture;
+//! 13. `cli` and `app` (feature `gui`): the command line and the window.
 //!
 //! ```
 //! use impactlab::vehicle::{Integrator, Manoeuvre, Preset, VehicleState};

@@ -7,6 +7,7 @@ use crate::analysis::AnalysisError;
 use crate::collision::{FilterError, ScenarioError, ScenarioFileError};
 use crate::compare::ReplayError;
 use crate::data::{DataError, SeriesError};
+use crate::force::{ForceError, LoadError};
 use crate::vehicle::{SimulationError, VehicleError};
 
 /// A command that could not do its work.
@@ -18,6 +19,12 @@ pub enum CliError {
     /// A file of data.
     #[error(transparent)]
     Data(#[from] DataError),
+    /// A force data set.
+    #[error(transparent)]
+    ForceData(Box<LoadError>),
+    /// Training, opening or asking a force network.
+    #[error(transparent)]
+    Force(Box<ForceError>),
     /// A vehicle file.
     #[error(transparent)]
     Vehicle(#[from] VehicleError),
@@ -201,4 +208,16 @@ pub enum CliError {
     /// The work was cancelled.
     #[error("cancelled")]
     Cancelled,
+}
+
+impl From<LoadError> for CliError {
+    fn from(error: LoadError) -> Self {
+        Self::ForceData(Box::new(error))
+    }
+}
+
+impl From<ForceError> for CliError {
+    fn from(error: ForceError) -> Self {
+        Self::Force(Box::new(error))
+    }
 }

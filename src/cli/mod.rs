@@ -12,12 +12,14 @@ mod check;
 mod check_report;
 mod check_text;
 mod impact;
+mod predict;
 mod render;
 mod render_figure;
 mod simulate;
 mod simulate_answer;
 mod simulate_dataset;
 mod simulate_single;
+mod train;
 mod vehicles;
 
 mod case_choice;

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::cli::{CliError, app, check, impact, render, simulate, vehicles};
+use crate::cli::{CliError, app, check, impact, predict, render, simulate, train, vehicles};
 use crate::error_chain;
 
 /// What happens when one vehicle hits another, and in the second after
@@ -27,6 +27,8 @@ Examples:
   impactlab check datasets
   impactlab impact assets/scenarios/pit_right_rear.toml
   impactlab simulate --dataset datasets/trajectories-fea
+  impactlab predict force --model assets/models/force.safetensors \
+      --scenario assets/scenarios/pit_right_rear.toml
 
 Exit codes: 0 = ok, 1 = the work failed or found problems, 2 = wrong usage";
 
@@ -36,6 +38,8 @@ enum Command {
     Check(check::CheckArgs),
     Impact(impact::ImpactArgs),
     Simulate(Box<simulate::SimulateArgs>),
+    Train(train::TrainArgs),
+    Predict(predict::PredictArgs),
     Render(render::RenderArgs),
     Vehicles(vehicles::VehiclesArgs),
 }
@@ -101,6 +105,8 @@ fn dispatch(command: Option<Command>, console: &mut Console<'_>) -> Result<Verdi
         Some(Command::Check(args)) => check::run(&args, console),
         Some(Command::Impact(args)) => impact::run(&args, console),
         Some(Command::Simulate(args)) => simulate::run(&args, console),
+        Some(Command::Train(args)) => train::run(&args, console),
+        Some(Command::Predict(args)) => predict::run(&args, console),
         Some(Command::Render(args)) => render::run(&args, console),
         Some(Command::Vehicles(args)) => vehicles::run(&args, console),
     }

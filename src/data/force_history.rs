@@ -60,6 +60,24 @@ impl ForceHistory {
         })
     }
 
+    /// The history as a series that can be written to a file.
+    ///
+    /// # Errors
+    /// [`SeriesError`] if the columns do not fit together.
+    pub fn to_series(&self) -> Result<TimeSeries, SeriesError> {
+        let [x, y] = match self.axes {
+            ForceAxes::World => [Channel::Fx, Channel::Fy],
+            ForceAxes::Body => [Channel::FxBody, Channel::FyBody],
+        };
+        let mut series = TimeSeries::new(self.time_s.clone())?;
+        series.insert(x, self.fx_n.clone())?;
+        series.insert(y, self.fy_n.clone())?;
+        if let Some(mz) = &self.mz_n_m {
+            series.insert(Channel::Mz, mz.clone())?;
+        }
+        Ok(series)
+    }
+
     /// Largest `|F|`, N, and its time, s. `None` for an empty history.
     pub fn peak(&self) -> Option<(f64, f64)> {
         let magnitudes = self.fx_n.iter().zip(&self.fy_n).map(|(x, y)| x.hypot(*y));

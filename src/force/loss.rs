@@ -180,14 +180,18 @@ fn cholesky_forms(m: &Tensor, v: &Tensor) -> Result<(Tensor, Tensor), ForceError
     let mut square: Option<Tensor> = None;
     for i in 0..q {
         let mut row: Vec<Tensor> = Vec::with_capacity(i + 1);
-        for j in 0..=i {
+        for (j, above) in lower.iter().enumerate() {
             let mut sum = entry(i, j)?;
-            for k in 0..j {
-                let product = if i == j { row[k].sqr()? } else { (&row[k] * &lower[j][k])? };
-                sum = (sum - product)?;
+            for (left, right) in row.iter().zip(above) {
+                sum = (sum - (left * right)?)?;
             }
-            row.push(if i == j { sum.sqrt()? } else { (sum / &lower[j][j])? });
+            row.push((sum / &above[j])?);
         }
+        let mut diagonal = entry(i, i)?;
+        for left in &row {
+            diagonal = (diagonal - left.sqr()?)?;
+        }
+        row.push(diagonal.sqrt()?);
         let mut right = v.narrow(1, i, 1)?.flatten_all()?;
         for (factor, y) in row.iter().zip(&solved) {
             right = (right - (factor * y)?)?;

@@ -9,7 +9,10 @@ mod error;
 mod scenario;
 
 mod case;
+mod load;
 mod split;
+
+mod momentum;
 
 mod config;
 
@@ -30,15 +33,21 @@ mod predict;
 
 mod prediction;
 
+mod clusters;
 pub mod metrics;
+
+pub mod baselines;
 
 pub use case::{ForceCase, ForceCaseError, curve_on_grid};
 pub use centre::{CentreCurve, CentreModel};
+pub use clusters::{ImpulseClusters, ImpulseFeatures};
 pub use config::{Centre, CrushConfig, ForceConfig, LossWeights, NetworkConfig, TrainingConfig};
 pub use error::ForceError;
 pub use features::{OpenFeatures, OutsideTraining, Standardisation};
+pub use load::LoadError;
 pub use loss::LossTerms;
 pub use model::ForceModel;
+pub use momentum::MomentumModel;
 pub use predict::ForcePrediction;
 pub use prediction::Prediction;
 pub use record::{CaseId, EpochRecord, TrainingRecord, TrainingSet};

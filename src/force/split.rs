@@ -3,6 +3,8 @@
 //! Clean cases and those that hook or have not separated are split apart, so that each part has its
 //! share of both.
 
+use std::borrow::Borrow;
+
 use sha2::{Digest, Sha256};
 
 use crate::force::ForceCase;
@@ -25,7 +27,7 @@ pub struct Split {
 /// `round(n · test_share)` test (halves to even).
 ///
 /// - `test_share`: 0 to 1, see [`TEST_SHARE`].
-pub fn split(cases: &[ForceCase], seed: u64, test_share: f64) -> Split {
+pub fn split<C: Borrow<ForceCase>>(cases: &[C], seed: u64, test_share: f64) -> Split {
     let mut split = Split::default();
     for stratum in strata(cases, seed) {
         let n_test = (stratum.len() as f64 * test_share).round_ties_even() as usize;
@@ -42,7 +44,7 @@ pub fn split(cases: &[ForceCase], seed: u64, test_share: f64) -> Split {
 /// cases are dealt round. In fold `i` the test part is what was dealt to it.
 ///
 /// - `n_folds`: 2 or more; folds that get no case are left out.
-pub fn folds(cases: &[ForceCase], n_folds: usize, seed: u64) -> Vec<Split> {
+pub fn folds<C: Borrow<ForceCase>>(cases: &[C], n_folds: usize, seed: u64) -> Vec<Split> {
     let order: Vec<usize> = strata(cases, seed).concat();
     let fold = |of: usize| {
         let dealt = order.iter().enumerate().map(|(rank, &idx)| (rank % n_folds.max(1), idx));
@@ -58,15 +60,15 @@ pub fn folds(cases: &[ForceCase], n_folds: usize, seed: u64) -> Vec<Split> {
 }
 
 /// Clean cases, then the others, each ordered by hash.
-fn strata(cases: &[ForceCase], seed: u64) -> [Vec<usize>; 2] {
+fn strata<C: Borrow<ForceCase>>(cases: &[C], seed: u64) -> [Vec<usize>; 2] {
     let mut keyed: Vec<(String, usize)> = cases
         .iter()
         .enumerate()
-        .map(|(idx, case)| (hex(&Sha256::digest(format!("{seed}:{}", case.name))), idx))
+        .map(|(idx, case)| (hex(&Sha256::digest(format!("{seed}:{}", case.borrow().name))), idx))
         .collect();
     keyed.sort();
     let of = |clean: bool| {
-        let stratum = keyed.iter().filter(|(_, idx)| cases[*idx].is_clean() == clean);
+        let stratum = keyed.iter().filter(|(_, idx)| cases[*idx].borrow().is_clean() == clean);
         stratum.map(|(_, idx)| *idx).collect()
     };
     [of(true), of(false)]

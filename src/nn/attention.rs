@@ -11,7 +11,8 @@
 use candle_core::Tensor;
 use serde::{Deserialize, Serialize};
 
-use crate::nn::{Activation, LayerNorm, Linear, NnError, ParameterBuilder, softmax};
+use crate::nn::attention_core::AttentionCore;
+use crate::nn::{Activation, LayerNorm, Linear, NnError, ParameterBuilder};
 
 /// The sizes of an attention layer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -115,21 +116,10 @@ impl Attention {
     }
 
     fn attend(&self, queries: &Tensor, tokens: &Tensor) -> Result<Tensor, NnError> {
-        let (batch, n_queries, _) = queries.dims3()?;
-        let AttentionConfig { channels, heads, .. } = self.config;
-        let head_channels = channels / heads;
-        // [batch, n, channels] to [batch, heads, n, channels/heads]
-        let split = |x: Tensor| {
-            let n = x.dim(1)?;
-            x.reshape((batch, n, heads, head_channels))?.transpose(1, 2)?.contiguous()
-        };
-        let query = split(self.query.forward(queries)?)?;
-        let key = split(self.key.forward(tokens)?)?;
-        let value = split(self.value.forward(tokens)?)?;
-        let scores = query.matmul(&key.t()?)?;
-        let weights = softmax(&scores, 1.0 / (head_channels as f64).sqrt())?;
-        let seen = weights.matmul(&value)?.transpose(1, 2)?;
-        self.output.forward(&seen.reshape((batch, n_queries, channels))?)
+        let (query, key) = (self.query.forward(queries)?, self.key.forward(tokens)?);
+        let core = AttentionCore { heads: self.config.heads };
+        let seen = query.apply_op3(&key, &self.value.forward(tokens)?, core)?;
+        self.output.forward(&seen)
     }
 }
 
@@ -204,6 +194,16 @@ mod tests {
         let tokens = random_tensor(&[2, 5, 3], DType::F32, 2);
         let got = attention.cross_attention(&queries, &tokens).unwrap();
         assert_close(&got, &plain(&attention, &queries, &tokens), 1e-5);
+    }
+
+    #[test]
+    fn sequences_of_other_shapes_are_refused() {
+        let (_, attention) = layer(config(false), DType::F32);
+        let queries = random_tensor(&[2, 7, 4], DType::F32, 1);
+        for dims in [&[3, 5, 3][..], &[10, 3], &[2, 0, 3]] {
+            let tokens = random_tensor(dims, DType::F32, 2);
+            assert!(attention.cross_attention(&queries, &tokens).is_err(), "{dims:?}");
+        }
     }
 
     #[test]

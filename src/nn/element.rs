@@ -4,7 +4,7 @@
 use std::ops::AddAssign;
 
 use candle_core::backend::BackendStorage;
-use candle_core::{CpuStorage, DType, Error, FloatDType, Layout, Result};
+use candle_core::{CpuStorage, DType, Error, FloatDType, Layout, Result, Storage};
 /// Rows that one task works on, and over which a sum is taken before the partial sums are added.
 /// Fixed, so that results do not depend on the number of threads.
 pub(crate) const ROWS_PER_BLOCK: usize = 64;
@@ -99,6 +99,14 @@ impl Element for f64 {
     }
 }
 
+/// The numbers behind a tensor on the CPU.
+pub(crate) fn cpu_storage<'a>(storage: &'a Storage, op: &'static str) -> Result<&'a CpuStorage> {
+    match storage {
+        Storage::Cpu(storage) => Ok(storage),
+        _ => Err(Error::BackwardNotSupported { op }),
+    }
+}
+
 fn wrong_type(expected: DType, storage: &CpuStorage) -> Error {
     Error::UnexpectedDType { expected, got: storage.dtype(), msg: "kernel" }
 }
@@ -145,6 +153,21 @@ pub(crate) fn sum_of<T: Element>(a: &[T], b: &[T], f: impl Fn(T, T) -> T) -> T {
         *lane += f(a, b);
     }
     lanes.iter().fold(T::ZERO, |sum, &lane| sum + lane)
+}
+
+/// The largest of `scale`·x; of an empty slice 0.
+#[inline(always)]
+pub(crate) fn max_of<T: Element>(values: &[T], scale: T) -> T {
+    let first = values.first().map_or(T::ZERO, |&x| x * scale);
+    let mut lanes = [first; LANES];
+    let chunks = values.chunks_exact(LANES);
+    let rest = chunks.remainder();
+    let larger = |lane: T, x: T| if x > lane { x } else { lane };
+    for chunk in chunks {
+        lanes.iter_mut().zip(chunk).for_each(|(lane, &x)| *lane = larger(*lane, x * scale));
+    }
+    lanes.iter_mut().zip(rest).for_each(|(lane, &x)| *lane = larger(*lane, x * scale));
+    lanes.iter().fold(first, |max, &lane| larger(max, lane))
 }
 
 /// How many blocks one task takes at least: all of them where two threads would not pay.

@@ -9,12 +9,13 @@
 //! Source: J. L. Ba et al., Layer Normalization, arXiv:1607.06450.
 
 use candle_core::{
-    CpuStorage, CustomOp3, DType, Device, Layout, Result as TensorResult, Shape, Storage, Tensor,
+    CpuStorage, CustomOp3, DType, Device, Layout, Result as TensorResult, Shape, Tensor,
 };
 use rayon::prelude::*;
 
 use crate::nn::element::{
-    Element, ROWS_PER_BLOCK, contiguous, min_blocks_per_task, sum_of, sum_of_rows, vectorized,
+    Element, ROWS_PER_BLOCK, contiguous, cpu_storage, min_blocks_per_task, sum_of, sum_of_rows,
+    vectorized,
 };
 use crate::nn::{Init, NnError, ParameterBuilder};
 
@@ -188,9 +189,7 @@ impl<T: Element> CustomOp3 for Normalize<T> {
         let guards = [x, &gradient, gamma].map(Tensor::storage_and_layout);
         let mut slices = [&[] as &[T]; 3];
         for (slice, (storage, layout)) in slices.iter_mut().zip(&guards) {
-            let Storage::Cpu(storage) = &**storage else {
-                return Err(candle_core::Error::BackwardNotSupported { op: self.name() });
-            };
+            let storage = cpu_storage(storage, self.name())?;
             *slice = contiguous::<T>(storage, layout, self.name())?;
         }
         let (dx, sums) = self.backward(slices);

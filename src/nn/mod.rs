@@ -25,6 +25,7 @@
 mod activation;
 mod adam_moments;
 mod attention;
+mod attention_core;
 mod checkpoint;
 mod checkpoint_bytes;
 #[cfg(test)]

@@ -10,11 +10,11 @@
 //! Source: I. Loshchilov, F. Hutter, Decoupled Weight Decay Regularization, ICLR 2019, algorithm 2.
 
 use candle_core::backprop::GradStore;
-use candle_core::{DType, Error, Storage, Tensor};
+use candle_core::{DType, Tensor};
 use serde::{Deserialize, Serialize};
 
 use crate::nn::adam_moments::{Moments, Rates};
-use crate::nn::element::{Element, contiguous, sum_of, vectorized};
+use crate::nn::element::{Element, contiguous, cpu_storage, sum_of, vectorized};
 use crate::nn::named_tensors::check_no_other;
 use crate::nn::parameters::Parameter;
 use crate::nn::{NamedTensors, NnError, Parameters, Schedule};
@@ -220,9 +220,7 @@ impl AdamW {
 fn squared_norm(gradient: &Tensor) -> Result<f64, NnError> {
     fn of<T: Element>(gradient: &Tensor) -> Result<f64, NnError> {
         let (storage, layout) = gradient.storage_and_layout();
-        let Storage::Cpu(storage) = &*storage else {
-            return Err(Error::BackwardNotSupported { op: "gradient norm" }.into());
-        };
+        let storage = cpu_storage(&storage, "gradient norm")?;
         let blocks = contiguous::<T>(storage, layout, "gradient norm")?.chunks(NORM_BLOCK);
         let sum = |block: &[T]| {
             vectorized(

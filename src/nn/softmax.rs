@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::nn::NnError;
 use crate::nn::element::{
-    Element, ROWS_PER_BLOCK, contiguous, min_blocks_per_task, sum_of, vectorized,
+    Element, ROWS_PER_BLOCK, contiguous, max_of, min_blocks_per_task, sum_of, vectorized,
 };
 
 /// Softmax of `scale`·x over the last dimension, which must be finite for the result to be.
@@ -53,7 +53,8 @@ impl<T: Element> CustomOp1 for Softmax<T> {
                 #[inline(always)]
                 || {
                     for (y, x) in y.chunks_exact_mut(width).zip(x.chunks_exact(width)) {
-                        softmax_row(y, x, self.scale);
+                        y.copy_from_slice(x);
+                        softmax_row(y, self.scale);
                     }
                 },
             );
@@ -68,14 +69,21 @@ impl<T: Element> CustomOp1 for Softmax<T> {
     }
 }
 
+/// Softmax of `scale`·x in place.
 #[inline(always)]
-fn softmax_row<T: Element>(y: &mut [T], x: &[T], scale: T) {
+pub(crate) fn softmax_row<T: Element>(row: &mut [T], scale: T) {
     // The largest scaled score, taken off so that no exponential overflows.
-    let largest =
-        x.iter().fold(x[0] * scale, |max, &x| if x * scale > max { x * scale } else { max });
-    y.iter_mut().zip(x).for_each(|(y, &x)| *y = (x * scale - largest).exp());
-    let inverse = T::ONE / sum_of(y, y, |y, _| y);
-    y.iter_mut().for_each(|y| *y *= inverse);
+    let largest = max_of(row, scale);
+    row.iter_mut().for_each(|x| *x = (*x * scale - largest).exp());
+    let inverse = T::ONE / sum_of(row, row, |x, _| x);
+    row.iter_mut().for_each(|x| *x *= inverse);
+}
+
+/// The gradient of x in place of that of y.
+#[inline(always)]
+pub(crate) fn softmax_backward_row<T: Element>(gradient: &mut [T], y: &[T], scale: T) {
+    let mean = sum_of(y, gradient, |y, g| y * g);
+    gradient.iter_mut().zip(y).for_each(|(g, &y)| *g = scale * y * (*g - mean));
 }
 
 /// The way back: of y and g.
@@ -106,10 +114,8 @@ impl<T: Element> CustomOp2 for SoftmaxBackward<T> {
                 || {
                     let rows = dx.chunks_exact_mut(width).zip(y.chunks_exact(width));
                     for ((dx, y), g) in rows.zip(g.chunks_exact(width)) {
-                        let mean = sum_of(y, g, |y, g| y * g);
-                        for ((dx, &y), &g) in dx.iter_mut().zip(y).zip(g) {
-                            *dx = self.scale * y * (g - mean);
-                        }
+                        dx.copy_from_slice(g);
+                        softmax_backward_row(dx, y, self.scale);
                     }
                 },
             );

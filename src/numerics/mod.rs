@@ -1,6 +1,8 @@
 //! Mathematics that knows no vehicle: the scalar, integration, statistics, angles.
 
 mod angle;
+mod clustering;
+mod gaussian_process;
 mod interpolation;
 mod least_squares;
 mod normal;
@@ -9,6 +11,10 @@ mod scalar;
 mod statistics;
 
 pub use angle::wrap_angle_rad;
+pub use clustering::{ClusterError, Clusters};
+pub use gaussian_process::{
+    GaussianPrediction, GaussianProcess, GaussianProcessData, GaussianProcessError,
+};
 pub use interpolation::interpolate;
 pub use least_squares::{LeastSquares, levenberg_marquardt};
 pub use normal::{normal_cdf, normal_density, normal_quantile};
