@@ -7,7 +7,7 @@ use crate::analysis::AnalysisError;
 use crate::collision::{FilterError, ScenarioError, ScenarioFileError};
 use crate::compare::ReplayError;
 use crate::data::{DataError, SeriesError};
-use crate::force::{ForceError, LoadError};
+use crate::force::{EvaluateError, ForceError, LoadError};
 use crate::vehicle::{SimulationError, VehicleError};
 
 /// A command that could not do its work.
@@ -25,6 +25,15 @@ pub enum CliError {
     /// Training, opening or asking a force network.
     #[error(transparent)]
     Force(Box<ForceError>),
+    /// Nothing to test on.
+    #[error("{}: the model was trained on every case; --split all evaluates them all the same", path.display())]
+    NoTestCase {
+        /// The data set.
+        path: PathBuf,
+    },
+    /// An evaluation that cannot be made.
+    #[error("the evaluation failed")]
+    Evaluation(#[source] Box<EvaluateError>),
     /// A vehicle file.
     #[error(transparent)]
     Vehicle(#[from] VehicleError),
@@ -219,5 +228,11 @@ impl From<LoadError> for CliError {
 impl From<ForceError> for CliError {
     fn from(error: ForceError) -> Self {
         Self::Force(Box::new(error))
+    }
+}
+
+impl From<EvaluateError> for CliError {
+    fn from(error: EvaluateError) -> Self {
+        Self::Evaluation(Box::new(error))
     }
 }

@@ -11,6 +11,7 @@ mod app;
 mod check;
 mod check_report;
 mod check_text;
+mod evaluate;
 mod impact;
 mod predict;
 mod render;

@@ -5,7 +5,9 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::cli::{CliError, app, check, impact, predict, render, simulate, train, vehicles};
+use crate::cli::{
+    CliError, app, check, evaluate, impact, predict, render, simulate, train, vehicles,
+};
 use crate::error_chain;
 
 /// What happens when one vehicle hits another, and in the second after
@@ -40,6 +42,7 @@ enum Command {
     Simulate(Box<simulate::SimulateArgs>),
     Train(train::TrainArgs),
     Predict(predict::PredictArgs),
+    Evaluate(evaluate::EvaluateArgs),
     Render(render::RenderArgs),
     Vehicles(vehicles::VehiclesArgs),
 }
@@ -106,6 +109,7 @@ fn dispatch(command: Option<Command>, console: &mut Console<'_>) -> Result<Verdi
         Some(Command::Impact(args)) => impact::run(&args, console),
         Some(Command::Simulate(args)) => simulate::run(&args, console),
         Some(Command::Train(args)) => train::run(&args, console),
+        Some(Command::Evaluate(args)) => evaluate::run(&args, console),
         Some(Command::Predict(args)) => predict::run(&args, console),
         Some(Command::Render(args)) => render::run(&args, console),
         Some(Command::Vehicles(args)) => vehicles::run(&args, console),

@@ -84,7 +84,7 @@ struct Answer<'a> {
     seconds: f64,
     best_epoch: usize,
     epochs: usize,
-    variance_factor: f64,
+    variance_factor: [f64; 2],
     train: Option<crate::force::LossTerms>,
     validation: Option<crate::force::LossTerms>,
 }
@@ -218,7 +218,13 @@ fn print(
         ("weights", answer.n_parameters.to_string()),
         ("time", format!("{seconds:.0} s")),
         ("best epoch", format!("{} of {}", answer.best_epoch, answer.epochs)),
-        ("variance factor", format!("{:.2}", answer.variance_factor)),
+        (
+            "variance factors",
+            format!(
+                "{:.2} forces, {:.2} duration",
+                answer.variance_factor[0], answer.variance_factor[1]
+            ),
+        ),
         ("training", loss(answer.train)),
         ("validation", loss(answer.validation)),
     ];

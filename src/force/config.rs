@@ -64,6 +64,10 @@ pub struct NetworkConfig {
     pub force_correction: f64,
     /// Largest correction of the impulse, as a share of the centre's.
     pub impulse_correction: f64,
+    /// Largest shift δ of a component's mean, in peaks of the centre.
+    pub component_shift: f64,
+    /// The same for the component of hooking.
+    pub hooking_shift: f64,
     /// Δt_max, s.
     pub duration_max_s: f64,
     /// Smallest standard deviation σ_min of a force, in peaks of the centre.
@@ -142,9 +146,11 @@ impl Default for NetworkConfig {
             trunk: vec![256, 512, 512, 256, 128, 64, 32, 16],
             components: 2,
             factors: 4,
-            shape_correction: 0.5,
-            force_correction: 0.3,
-            impulse_correction: 0.3,
+            shape_correction: 0.15,
+            force_correction: 0.05,
+            impulse_correction: 0.1,
+            component_shift: 0.05,
+            hooking_shift: 1.0,
             duration_max_s: 0.35,
             min_std: 0.01,
         }
@@ -234,6 +240,8 @@ impl ForceConfig {
             share("network.shape_correction", network.shape_correction, 0.99, "0 to 0.99"),
             share("network.impulse_correction", network.impulse_correction, 2.0, "0 to 2"),
             share("network.force_correction", network.force_correction, 10.0, "0 to 10"),
+            share("network.component_shift", network.component_shift, 10.0, "0 to 10"),
+            share("network.hooking_shift", network.hooking_shift, 10.0, "0 to 10"),
             positive("network.duration_max_s", network.duration_max_s),
             positive("network.min_std", network.min_std),
             share("loss.likelihood", loss.likelihood, 1e6, "0 to 1e6"),

@@ -38,11 +38,22 @@ pub mod metrics;
 
 pub mod baselines;
 
+mod evaluation;
+
+mod evaluate_model;
+
 pub use case::{ForceCase, ForceCaseError, curve_on_grid};
 pub use centre::{CentreCurve, CentreModel};
 pub use clusters::{ImpulseClusters, ImpulseFeatures};
 pub use config::{Centre, CrushConfig, ForceConfig, LossWeights, NetworkConfig, TrainingConfig};
 pub use error::ForceError;
+pub use evaluate_model::{
+    Compared, CrossValidation, EvaluateError, cross_validate, evaluate_model,
+};
+pub use evaluation::{
+    BaselineFigures, CaseErrors, ClusterFigures, Evaluation, EvaluationError, EvaluationSettings,
+    FittedBaselines, ModelFigures, evaluate,
+};
 pub use features::{OpenFeatures, OutsideTraining, Standardisation};
 pub use load::LoadError;
 pub use loss::LossTerms;
@@ -53,4 +64,6 @@ pub use prediction::Prediction;
 pub use record::{CaseId, EpochRecord, TrainingRecord, TrainingSet};
 pub use scenario::ForceScenario;
 pub use split::{Split, TEST_SHARE, folds, split};
-pub use train::{TrainSettings, TrainingProgress, TrainingReport, train};
+pub use train::{
+    TrainSettings, TrainingProgress, TrainingReport, fit_physics, train, train_around,
+};

@@ -34,11 +34,18 @@ pub(super) const DURATION_UNIT_S: f64 = 0.1;
 /// Over which the curve fades out at the end of the contact, s.
 const FADE_S: f64 = 0.006;
 /// Standard deviation of a force before training: share of the centre's force, and floor, in peaks.
-const FIRST_STD: [f64; 2] = [0.12, 0.02];
+const FIRST_STD: [f64; 2] = [0.08, 0.015];
+/// Loading of a latent factor per unit of the network's output, share of the envelope.
+const FIRST_LOADING: f64 = 0.3;
 /// Standard deviation of the duration before training, units of 0.1 s.
 const FIRST_DURATION_STD: f64 = 0.3;
+/// Log odds of hooking before training.
+const FIRST_HOOKING_LOGIT: f64 = -2.0;
 /// Largest correction of the logit of the duration.
-const DURATION_CORRECTION: f64 = 2.0;
+const DURATION_CORRECTION: f64 = 0.7;
+/// Largest shift of a component's duration, units of 0.1 s: of hooking twenty times that.
+const DURATION_SHIFT: f64 = 0.1;
+const HOOKING_DURATION_SHIFT: f64 = 2.0;
 
 /// The layers and their parameters.
 #[derive(Debug)]
@@ -57,7 +64,8 @@ struct Layers {
     attention: Option<Attention>,
     trunk: Mlp,
     shape: Linear,
-    mixture: Linear,
+    component: Linear,
+    loading: Linear,
     whole: Linear,
 }
 
@@ -89,6 +97,41 @@ pub(super) struct NetworkOutput {
     /// Duration, s, `[cases]`.
     pub duration_s: Tensor,
 }
+
+impl NetworkOutput {
+    /// What calibration needs: of every force during the contact of every case, and of every
+    /// duration, the observed value under each component.
+    ///
+    /// - `values`: the curves, `[cases, values]`.
+    pub(super) fn scores(&self, values: &Tensor) -> Result<[Vec<Score>; 2], ForceError> {
+        let mut variance = self.variance.clone();
+        if let Some(factors) = &self.factors {
+            variance = (variance + factors.sqr()?.sum(3)?)?;
+        }
+        let z = (values.unsqueeze(1)?.broadcast_sub(&self.mean)? / variance.sqrt()?)?;
+        let z = z.to_dtype(DType::F64)?.to_vec3::<f64>()?;
+        let weights = candle_nn::ops::softmax(&self.logits, D::Minus1)?;
+        let weights = weights.to_dtype(DType::F64)?.to_vec2::<f64>()?;
+        let values = values.to_dtype(DType::F64)?.to_vec2::<f64>()?;
+        let (mut forces, mut durations) = (Vec::new(), Vec::new());
+        for ((z, weights), values) in z.iter().zip(&weights).zip(&values) {
+            let score = |value_idx: usize| -> Score {
+                weights.iter().zip(z).map(|(weight, z)| (*weight, z[value_idx])).collect()
+            };
+            let n_instants = values.len() / 2;
+            let duration_s = values.last().copied().unwrap_or(0.0) * DURATION_UNIT_S;
+            let n_contact = ((duration_s / CURVE_INTERVAL_S).ceil() as usize).min(n_instants);
+            for first in [0, n_instants] {
+                forces.extend((first..first + n_contact).map(score));
+            }
+            durations.push(score(2 * n_instants));
+        }
+        Ok([forces, durations])
+    }
+}
+
+/// Weight and deviation in standard deviations of a value under each component.
+pub(super) type Score = Vec<(f64, f64)>;
 
 impl ForceNetwork {
     /// New layers with seeded parameters.
@@ -137,15 +180,20 @@ impl ForceNetwork {
 
         let (k, q) = (self.config.components, self.config.factors);
         let number_type = self.parameters.number_type();
-        let raw = layers.mixture.forward(&hidden)?.reshape((n_cases, n_instants, k, 2, 2 + q))?;
         // [cases, instants, K, axis, …] to [cases, K, axis, instants, …]
-        let raw = raw.permute((0, 2, 3, 1, 4))?.contiguous()?;
+        let by_component = |raw: Tensor, n: usize| -> Result<Tensor, ForceError> {
+            let raw = raw.reshape((n_cases, n_instants, k, 2, n))?;
+            Ok(raw.permute((0, 2, 3, 1, 4))?.contiguous()?)
+        };
+        let raw = by_component(layers.component.forward(&hidden)?, 2)?;
         let n_forces = 2 * n_instants;
         let envelope = self.envelope(input)?;
         let envelope = envelope.reshape((n_cases, 1, 1, n_instants))?;
         let per_force =
             |i: usize| -> Result<Tensor, ForceError> { Ok(raw.narrow(4, i, 1)?.squeeze(4)?) };
-        let shift = per_force(0)?.broadcast_mul(&envelope)?.reshape((n_cases, k, n_forces))?;
+        let largest = self.per_component(self.config.component_shift, self.config.hooking_shift)?;
+        let shift = per_force(0)?.tanh()?.broadcast_mul(&envelope)?;
+        let shift = shift.reshape((n_cases, k, n_forces))?.broadcast_mul(&largest)?;
         let deviation = per_force(1)?.exp()?.broadcast_mul(&(&envelope * FIRST_STD[0])?)?;
         let min_variance = self.config.min_std.powi(2);
         let variance = (deviation.sqr()? + min_variance)?.reshape((n_cases, k, n_forces))?;
@@ -153,8 +201,10 @@ impl ForceNetwork {
         let mean = base.broadcast_add(&shift)?;
 
         let per_component = whole.narrow(1, 3, k * (3 + q))?.reshape((n_cases, k, 3 + q))?;
-        let logits = per_component.narrow(2, 0, 1)?.squeeze(2)?;
-        let duration_shift = per_component.narrow(2, 1, 1)?;
+        let rare = self.per_component(0.0, FIRST_HOOKING_LOGIT)?.squeeze(2)?;
+        let logits = per_component.narrow(2, 0, 1)?.squeeze(2)?.broadcast_add(&rare)?;
+        let largest = self.per_component(DURATION_SHIFT, HOOKING_DURATION_SHIFT)?;
+        let duration_shift = per_component.narrow(2, 1, 1)?.tanh()?.broadcast_mul(&largest)?;
         let duration_deviation = (per_component.narrow(2, 2, 1)?.exp()? * FIRST_DURATION_STD)?;
         let duration = (&duration_s / DURATION_UNIT_S)?.reshape((n_cases, 1, 1))?;
         let mean = Tensor::cat(&[&mean, &duration.broadcast_add(&duration_shift)?], 2)?;
@@ -162,7 +212,8 @@ impl ForceNetwork {
         let factors = if q == 0 {
             None
         } else {
-            let loadings = raw.narrow(4, 2, q)?.reshape((n_cases, k, n_forces, q))?;
+            let loadings = by_component(layers.loading.forward(&hidden)?, q)?;
+            let loadings = (loadings * FIRST_LOADING)?.reshape((n_cases, k, n_forces, q))?;
             let envelope = self.envelope(input)?;
             let envelope = Tensor::cat(&[&envelope, &envelope], 1)?;
             let loadings = loadings.broadcast_mul(&envelope.reshape((n_cases, 1, n_forces, 1))?)?;
@@ -171,6 +222,16 @@ impl ForceNetwork {
         };
         let logits = logits.to_dtype(number_type)?;
         Ok(NetworkOutput { logits, mean, variance, factors, impulse, duration_s })
+    }
+
+    /// One value for hooking (the last of two or more components), another for the others,
+    /// `[1, K, 1]`.
+    fn per_component(&self, usual: f64, hooking: f64) -> Result<Tensor, ForceError> {
+        let k = self.config.components;
+        let value = |i: usize| if k > 1 && i + 1 == k { hooking } else { usual };
+        let values: Vec<f64> = (0..k).map(value).collect();
+        let values = Tensor::from_vec(values, (1, k, 1), self.position.device())?;
+        Ok(values.to_dtype(self.parameters.number_type())?)
     }
 
     /// What the trunk says of each instant, `[cases, instants, width]`.
@@ -320,12 +381,12 @@ impl Layers {
         let (k, q) = (config.components, config.factors);
         let zero = Init::Zero;
         let shape = Linear::with_init(&mut root.at("shape"), [hidden, 4], none, zero)?;
-        let n_mixture = k * 2 * (2 + q);
-        let mixture = Linear::new(&mut root.at("mixture"), [hidden, n_mixture], none)?;
+        let component = Linear::with_init(&mut root.at("component"), [hidden, k * 4], none, zero)?;
+        let loading = Linear::new(&mut root.at("loading"), [hidden, k * 2 * q.max(1)], none)?;
         let n_whole = 3 + k * (3 + q);
         let whole =
             Linear::with_init(&mut root.at("whole"), [hidden + width, n_whole], none, zero)?;
-        Ok(Self { encoder, instant, scenario, attention, trunk, shape, mixture, whole })
+        Ok(Self { encoder, instant, scenario, attention, trunk, shape, component, loading, whole })
     }
 
     fn frozen(&self) -> Self {
@@ -336,7 +397,8 @@ impl Layers {
             attention: self.attention.as_ref().map(Attention::frozen),
             trunk: self.trunk.frozen(),
             shape: self.shape.frozen(),
-            mixture: self.mixture.frozen(),
+            component: self.component.frozen(),
+            loading: self.loading.frozen(),
             whole: self.whole.frozen(),
         }
     }

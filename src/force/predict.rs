@@ -127,7 +127,7 @@ impl ForceModel {
             Some(factors) => factors.flatten_all()?.to_dtype(DType::F64)?.to_vec1::<f64>()?,
             None => Vec::new(),
         };
-        let widen = self.record.variance_factor;
+        let [widen_forces, widen_duration] = self.record.variance_factor;
         let k = self.config.network.components;
         let mut components = Vec::with_capacity(variants.len() * k);
         for (i, (centre, variant)) in centres.iter().zip(variants).enumerate() {
@@ -135,17 +135,20 @@ impl ForceModel {
                 if value_idx + 1 == n_values { DURATION_UNIT_S } else { centre.scale_n }
             };
             for j in 0..k {
-                let scaled = |row: &[f64], power: i32, factor: f64| -> Vec<f64> {
-                    let values = row.iter().enumerate();
-                    values.map(|(v, x)| x * unit(v).powi(power) * factor).collect()
+                let widen = |value_idx: usize| {
+                    if value_idx + 1 == n_values { widen_duration } else { widen_forces }
                 };
                 let first = (i * k + j) * n_values * q;
                 components.push(CurveComponent {
                     weight: weights[i][j] * variant.probability,
-                    mean: scaled(&mean[i][j], 1, 1.0),
-                    variance: scaled(&variance[i][j], 2, widen),
+                    mean: mean[i][j].iter().enumerate().map(|(v, x)| x * unit(v)).collect(),
+                    variance: variance[i][j]
+                        .iter()
+                        .enumerate()
+                        .map(|(v, x)| x * unit(v).powi(2) * widen(v))
+                        .collect(),
                     factors: DMatrix::from_fn(n_values, q, |v, f| {
-                        factors[first + v * q + f] * unit(v) * widen.sqrt()
+                        factors[first + v * q + f] * unit(v) * widen(v).sqrt()
                     }),
                 });
             }

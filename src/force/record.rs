@@ -69,8 +69,8 @@ pub struct TrainingRecord {
     pub test: Vec<CaseId>,
     /// Epoch whose weights these are, from 1.
     pub best_epoch: usize,
-    /// Factor on all variances, chosen on the validation cases.
-    pub variance_factor: f64,
+    /// Factors on the variances of forces and duration, from calibration on the training cases.
+    pub variance_factor: [f64; 2],
     /// Every epoch.
     pub history: Vec<EpochRecord>,
 }

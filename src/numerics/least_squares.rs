@@ -14,6 +14,10 @@ const MAX_DAMPING: f64 = 1e8;
 /// A step that lowers the cost by less than this share is the last.
 const MIN_GAIN: f64 = 1e-4;
 
+/// Steps with one Jacobian, which costs as much as a step per parameter, while they pay.
+const STEPS_PER_JACOBIAN: usize = 3;
+const GOOD_GAIN: f64 = 0.02;
+
 /// Where [`levenberg_marquardt`] stopped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LeastSquares {
@@ -21,7 +25,7 @@ pub struct LeastSquares {
     pub parameters: Vec<f64>,
     /// ½ ‖residuals‖² there.
     pub cost: f64,
-    /// Steps taken.
+    /// Jacobians computed.
     pub n_steps: usize,
 }
 
@@ -36,7 +40,8 @@ pub struct LeastSquares {
 ///
 /// - `residuals`: always as many for any x; an x without a value (`None`) is refused as a step.
 /// - `scale`: about how far each parameter goes.
-/// - `report`: called with each accepted cost; breaking ends the search where it is.
+/// - `max_steps`: Jacobians at most, each followed by one step or a few.
+/// - `report`: called with the cost before each; breaking ends the search where it is.
 /// - returns `None` if the start has no finite cost.
 pub fn levenberg_marquardt(
     residuals: &(dyn Fn(&[f64]) -> Option<Vec<f64>> + Sync),
@@ -62,23 +67,31 @@ pub fn levenberg_marquardt(
             })
             .collect();
         let jacobian = DMatrix::from_columns(&columns);
-        let (normal, gradient) = (jacobian.tr_mul(&jacobian), jacobian.tr_mul(&r));
-        let mut next = None;
-        while next.is_none() && damping < MAX_DAMPING {
-            let damped = &normal + DMatrix::identity(x.len(), x.len()) * damping;
-            next = damped.cholesky().and_then(|factor| {
-                let step = factor.solve(&gradient);
-                let moved: Vec<f64> =
-                    x.iter().zip(&step).zip(scale).map(|((x, d), s)| x - d * s).collect();
-                at(&moved).filter(|(_, new)| *new < cost).map(|(r, new)| (moved, r, new))
-            });
-            damping = if next.is_some() { damping / 3.0 } else { damping * 4.0 };
+        let normal = jacobian.tr_mul(&jacobian);
+        let before = cost;
+        for _ in 0..STEPS_PER_JACOBIAN {
+            let gradient = jacobian.tr_mul(&r);
+            let mut next = None;
+            while next.is_none() && damping < MAX_DAMPING {
+                let damped = &normal + DMatrix::identity(x.len(), x.len()) * damping;
+                next = damped.cholesky().and_then(|factor| {
+                    let step = factor.solve(&gradient);
+                    let moved: Vec<f64> =
+                        x.iter().zip(&step).zip(scale).map(|((x, d), s)| x - d * s).collect();
+                    at(&moved).filter(|(_, new)| *new < cost).map(|(r, new)| (moved, r, new))
+                });
+                damping = if next.is_some() { damping / 3.0 } else { damping * 4.0 };
+            }
+            let Some((moved, new_r, new_cost)) = next else { break };
+            let gain = (cost - new_cost) / cost;
+            (x, r, cost) = (moved, new_r, new_cost);
+            if gain < GOOD_GAIN {
+                break;
+            }
         }
-        let Some((moved, new_r, new_cost)) = next else { break };
-        let gain = (cost - new_cost) / cost;
-        (x, r, cost) = (moved, new_r, new_cost);
         n_steps += 1;
-        if gain < MIN_GAIN {
+        damping = damping.min(MAX_DAMPING / 1e4);
+        if before - cost < MIN_GAIN * before {
             break;
         }
     }

@@ -28,7 +28,7 @@ use rand_distr::StandardNormal;
 use crate::force::baselines::alignment::{Alignment, Placement};
 use crate::force::baselines::{BaselineError, ColumnSet};
 use crate::force::{ForceCase, ForceScenario, Prediction};
-use crate::numerics::{GaussianPrediction, quantile_of_sorted};
+use crate::numerics::GaussianPrediction;
 use crate::uncertainty::{CurveMixture, ForceCurve};
 
 use scales::Scales;
@@ -36,6 +36,9 @@ use shapes::Shapes;
 
 /// Pairs of opposite draws behind a prediction.
 const N_PAIRS: usize = 64;
+
+/// Regressed numbers besides the coefficients: impulse, direction, duration, length, onset.
+const N_SCALARS: usize = 5;
 
 /// What is chosen by cross-validation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -156,21 +159,20 @@ impl StatisticalBaseline {
         })
     }
 
-    /// Mean of draws; the peak is the median of their peaks.
+    /// Mean of draws. The peak is that of the curve of the means: averaged curves are too flat, and
+    /// drawn ones too rough.
     fn point(&self, regressed: &Regressed, draws: &[ForceCurve]) -> Prediction {
-        let n = draws.len().max(1) as f64;
         let mut curve = ForceCurve::from_values(&spread::mean_values(draws));
         let [ln_ratio, turn, ln_duration] = &regressed.scales;
         curve.duration_s = ln_duration.mean[0].exp();
         let impulse = regressed.impulse_n_s * ln_ratio.mean[0].exp();
         let (sin, cos) = (regressed.direction_rad + turn.mean[0]).sin_cos();
-        let mut peaks: Vec<f64> = draws.iter().map(|draw| draw.peak().0).collect();
-        peaks.sort_by(f64::total_cmp);
-        let mean_peak = peaks.iter().sum::<f64>() / n;
+        let n_numbers = N_SCALARS + regressed.coefficients.mean.len();
+        let of_means = self.curve(regressed, false, &vec![0.0; n_numbers]);
         Prediction {
             curve,
             impulse_n_s: [impulse * sin, impulse * cos],
-            peak_n: quantile_of_sorted(&peaks, 0.5).unwrap_or(mean_peak),
+            peak_n: of_means.peak().0,
             mixture: None,
         }
     }
@@ -178,7 +180,7 @@ impl StatisticalBaseline {
     /// Curves with their durations, in pairs of opposite draws.
     fn draw(&self, regressed: &Regressed, unusual: bool, n_pairs: usize) -> Vec<ForceCurve> {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
-        let n_numbers = 5 + regressed.coefficients.mean.len();
+        let n_numbers = N_SCALARS + regressed.coefficients.mean.len();
         let mut draws = Vec::with_capacity(2 * n_pairs);
         for _ in 0..n_pairs {
             let z: Vec<f64> = (0..n_numbers).map(|_| rng.sample(StandardNormal)).collect();
@@ -198,7 +200,7 @@ impl StatisticalBaseline {
         let [ln_ratio, turn, ln_duration] = [0, 1, 2].map(|i| at(&regressed.scales[i], 0, z[i]));
         let [ln_length, ln_start] = [0, 1].map(|i| at(&regressed.times[i], 0, z[3 + i]));
         let coefficients: Vec<f64> = (0..regressed.coefficients.mean.len())
-            .map(|i| at(&regressed.coefficients, i, z[5 + i]))
+            .map(|i| at(&regressed.coefficients, i, z[N_SCALARS + i]))
             .collect();
         let placement = Placement {
             start_s: shapes::start_s(ln_start),

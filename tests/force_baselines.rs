@@ -1,0 +1,101 @@
+//! The baselines of the force network on the shipped finite-element runs, test part of seed 0.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use impactlab::data::{Dataset, Outcome};
+use impactlab::force::baselines::ColumnSet;
+use impactlab::force::{
+    Evaluation, EvaluationError, EvaluationSettings, ForceCase, Prediction, TEST_SHARE, evaluate,
+    split,
+};
+
+fn shipped_cases() -> Vec<ForceCase> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/fea");
+    let loaded = Dataset::load(&root, &mut |_| ControlFlow::Continue(())).unwrap();
+    let (cases, problems) = ForceCase::of_dataset(&loaded.complete().unwrap());
+    assert!(problems.is_empty(), "{problems:?}");
+    cases
+}
+
+/// The recorded curves stand in for a model: what is looked at here are the baselines.
+fn evaluation(columns: ColumnSet) -> Evaluation {
+    let cases = shipped_cases();
+    let split = split(&cases, 0, TEST_SHARE);
+    let pick = |part: &[usize]| part.iter().map(|idx| &cases[*idx]).collect::<Vec<_>>();
+    let (train, test) = (pick(&split.train), pick(&split.test));
+    let truth = test.iter().map(|case| Prediction::of_curve(case.curve.clone()));
+    let settings = EvaluationSettings { columns, ..EvaluationSettings::default() };
+    let mut report = |_| ControlFlow::Continue(());
+    let parts = (train.as_slice(), test.as_slice());
+    let outcome = evaluate("the truth", parts, &truth.collect::<Vec<_>>(), &settings, &mut report);
+    outcome.unwrap().complete().unwrap()
+}
+
+/// Median (mean) history error in %: 40.7 (37.9) for the pulse, 55.3 (51.5) for the nearest case,
+/// 28.3 (30.6) for the Gaussian processes; 28.2 (28.9) without hooked and unseparated cases. METHOD of
+/// this project has 42 for its Gaussian process on other cases. The bounds leave a tenth for other
+/// mathematical libraries.
+#[test]
+fn baselines_on_the_test_part_of_the_shipped_runs() {
+    let evaluation = evaluation(ColumnSet::Theta);
+    assert_eq!((evaluation.n_train, evaluation.cases.len()), (75, 25));
+    assert!(evaluation.problems.is_empty(), "{:?}", evaluation.problems);
+    let baselines = &evaluation.baselines;
+    for (name, of, [median, mean]) in [
+        ("pulse", &baselines.pulse, [0.45, 0.42]),
+        ("nearest", &baselines.nearest, [0.61, 0.57]),
+        ("statistical", &baselines.statistical, [0.31, 0.34]),
+    ] {
+        let error = of.overall.history_error;
+        assert!(error.median < median && error.mean < mean, "{name}: {error:?}");
+    }
+    let statistical = &baselines.statistical;
+    let clean = statistical.separated.as_ref().unwrap();
+    assert_eq!(clean.n_cases, 22);
+    assert!(clean.history_error.mean < 0.32, "{:?}", clean.history_error);
+    let spread = statistical.overall.probabilistic.as_ref().unwrap();
+    for band in spread.force_n {
+        let off = band.share - band.level;
+        assert!((-0.1..0.25).contains(&off), "{band:?}");
+    }
+    assert_eq!(evaluation.figures.overall.history_error.max, 0.0);
+    check_json(&serde_json::to_value(&evaluation).unwrap());
+    for table in [evaluation.to_text(), evaluation.to_markdown()] {
+        assert!(table.contains("the truth") && table.contains("classic pulse"), "{table}");
+    }
+}
+
+fn check_json(json: &serde_json::Value) {
+    for block in
+        ["/overall", "/separated", "/baselines/pulse/overall", "/baselines/nearest/separated"]
+    {
+        for figure in
+            ["rmse_over_peak", "history_error", "impulse_error", "peak_error", "duration_error"]
+        {
+            for of in ["mean", "median", "p90"] {
+                let path = format!("{block}/{figure}/{of}");
+                assert!(json.pointer(&path).is_some_and(|value| value.is_f64()), "{path}");
+            }
+        }
+    }
+    for level in ["50", "80", "90", "95"] {
+        let path = format!("/baselines/statistical/overall/coverage/{level}");
+        assert!(json.pointer(&path).is_some_and(|value| value.is_f64()), "{path}");
+    }
+    assert!(json.pointer("/clusters/0/model/history_error").is_some());
+}
+
+#[test]
+fn an_evaluation_can_be_cancelled_and_needs_a_prediction_a_case() {
+    let cases = shipped_cases();
+    let some: Vec<&ForceCase> = cases.iter().take(8).collect();
+    let truth: Vec<_> = some.iter().map(|case| Prediction::of_curve(case.curve.clone())).collect();
+    let settings = EvaluationSettings::default();
+    let mut stop = |_| ControlFlow::Break(());
+    let parts = (some.as_slice(), some.as_slice());
+    let cancelled = evaluate("model", parts, &truth, &settings, &mut stop).unwrap();
+    assert_eq!(cancelled, Outcome::Cancelled);
+    let short = evaluate("model", parts, &truth[1..], &settings, &mut stop).unwrap_err();
+    assert!(matches!(short, EvaluationError::Predictions { expected: 8, got: 7 }), "{short}");
+}

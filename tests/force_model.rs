@@ -1,0 +1,249 @@
+//! The force network end to end, tiny: training, resuming, files, symmetry, open features.
+
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use impactlab::error_chain;
+use impactlab::force::{
+    Centre, ForceCase, ForceConfig, ForceError, ForceModel, ForceScenario, TrainSettings,
+    TrainingReport, TrainingSet, train,
+};
+
+const N_CASES: usize = 16;
+const EPOCHS: usize = 6;
+
+fn set() -> &'static TrainingSet {
+    static SET: OnceLock<TrainingSet> = OnceLock::new();
+    SET.get_or_init(|| {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/fea");
+        let cases = ForceCase::load_quietly(&root).expect("the shipped data can be read");
+        TrainingSet::new("fea", &cases[..N_CASES], &[], (3, 0.25)).expect("enough cases")
+    })
+}
+
+fn config() -> ForceConfig {
+    let mut config = ForceConfig::default();
+    config.network.encoder_branches = vec![[8, 8, 4], [8, 8, 4]];
+    config.network.position_channels = 8;
+    config.network.attention_channels = 8;
+    config.network.attention_heads = 2;
+    config.network.attention_stride = 25;
+    config.network.trunk = vec![16, 8];
+    config.network.factors = 2;
+    config.training.epochs = EPOCHS;
+    config.training.batch_cases = 4;
+    config.training.checkpoint_epochs = 2;
+    config.crush.folds = 2;
+    config.crush.max_steps = 2;
+    config
+}
+
+fn settings(checkpoint: Option<PathBuf>) -> TrainSettings {
+    TrainSettings { config: config(), seed: 5, checkpoint, resume: true }
+}
+
+/// Trains until an epoch is over, as if killed then.
+fn train_until(epoch: usize, settings: &TrainSettings) -> ForceModel {
+    let model = train(set(), settings, &mut |told| match told {
+        TrainingReport::Epoch { record, .. } if record.epoch == epoch => ControlFlow::Break(()),
+        _ => ControlFlow::Continue(()),
+    });
+    model.expect("the training works")
+}
+
+fn saved(model: &ForceModel, path: &Path) -> Vec<u8> {
+    model.save(path).expect("the model can be written");
+    fs::read(path).expect("the model can be read")
+}
+
+fn model() -> &'static ForceModel {
+    static MODEL: OnceLock<ForceModel> = OnceLock::new();
+    MODEL.get_or_init(|| train_until(EPOCHS, &settings(None)))
+}
+
+/// Without the seconds that each epoch took.
+fn losses(model: &ForceModel) -> Vec<String> {
+    let history = model.record().history.iter();
+    history
+        .map(|record| format!("{} {:?} {:?}", record.epoch, record.train, record.validation))
+        .collect()
+}
+
+fn scenario() -> ForceScenario {
+    set().train[0].scenario.clone()
+}
+
+#[test]
+fn a_killed_training_goes_on_to_the_same_weights() {
+    let folder = tempfile::tempdir().unwrap();
+    let checkpoint = folder.path().join("model.training");
+    // Killed after epoch 3: the checkpoint is that of epoch 2, as breaking would save epoch 3.
+    train_until(2, &settings(Some(checkpoint.clone())));
+    let at_2 = fs::read(&checkpoint).unwrap();
+    train_until(3, &settings(Some(checkpoint.clone())));
+    fs::write(&checkpoint, at_2).unwrap();
+    let resumed = train_until(EPOCHS, &settings(Some(checkpoint)));
+    assert_eq!(losses(&resumed), losses(model()));
+    let prediction = |model: &ForceModel| model.predict(&scenario()).unwrap();
+    assert_eq!(prediction(&resumed), prediction(model()), "bit for bit");
+}
+
+#[test]
+fn the_same_seed_gives_the_same_weights_and_another_one_others() {
+    let again = train_until(EPOCHS, &settings(None));
+    assert_eq!(losses(&again), losses(model()));
+    let other = train_until(EPOCHS, &TrainSettings { seed: 6, ..settings(None) });
+    assert_ne!(losses(&other), losses(model()));
+}
+
+#[test]
+fn training_lowers_the_loss() {
+    let history = &model().record().history;
+    let [first, last] = [&history[0], &history[EPOCHS - 1]].map(|record| record.train.total);
+    assert!(last < first, "{first} {last}");
+}
+
+#[test]
+fn a_checkpoint_of_another_training_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let checkpoint = folder.path().join("model.training");
+    train_until(1, &settings(Some(checkpoint.clone())));
+    let other = TrainSettings { seed: 6, ..settings(Some(checkpoint.clone())) };
+    let error = train(set(), &other, &mut |_| ControlFlow::Continue(())).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        format!("{}: the training to resume had another seed", checkpoint.display())
+    );
+}
+
+#[test]
+fn test_cases_never_reach_the_model() {
+    let record = model().record();
+    assert_eq!(record.train.len() + record.validation.len() + record.test.len(), N_CASES);
+    let learned = model().training_cases();
+    assert!(record.test.iter().all(|id| learned.iter().all(|case| case.digest != id.digest)));
+}
+
+#[test]
+fn a_model_says_the_same_after_a_round_trip() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("model.safetensors");
+    let bytes = saved(model(), &path);
+    let read = ForceModel::load(&path).unwrap();
+    assert_eq!(read.predict(&scenario()).unwrap(), model().predict(&scenario()).unwrap());
+    assert_eq!(read.record(), model().record());
+    assert_eq!(saved(&ForceModel::from_bytes(&bytes).unwrap(), &path), bytes);
+    assert!(set().train.iter().all(|case| read.is_trained_on(case)));
+}
+
+#[test]
+fn damaged_models_say_what_is_wrong() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("model.safetensors");
+    let bytes = saved(model(), &path);
+    let error = |bytes: &[u8]| {
+        fs::write(&path, bytes).unwrap();
+        error_chain(&ForceModel::load(&path).unwrap_err())
+    };
+    let truncated = error(&bytes[..bytes.len() / 2]);
+    assert!(truncated.contains("truncated"), "{truncated}");
+    let mut flipped = bytes.clone();
+    let last = flipped.len() - 5;
+    flipped[last] ^= 0x10;
+    let flipped = error(&flipped);
+    assert!(flipped.contains("checksum"), "{flipped}");
+    let text = error(b"mass,velocity\n1,2\n");
+    assert!(text.contains("safetensors"), "{text}");
+    assert!(error(b"").contains("model.safetensors"));
+}
+
+#[test]
+fn a_training_is_no_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let checkpoint = folder.path().join("model.training");
+    train_until(1, &settings(Some(checkpoint.clone())));
+    let error = error_chain(&ForceModel::load(&checkpoint).unwrap_err());
+    assert!(error.contains("training of a force network"), "{error}");
+}
+
+#[test]
+fn a_mirrored_scenario_has_the_mirrored_force() {
+    let right = model().predict(&scenario()).unwrap();
+    let left = model().predict(&scenario().mirrored()).unwrap();
+    let (right, left) = (right.mixture.mean(), left.mixture.mean());
+    assert_eq!(right.fx_n, left.fx_n);
+    assert!(right.fy_n.iter().zip(&left.fy_n).all(|(r, l)| r == &-l));
+}
+
+#[test]
+fn a_common_speed_changes_nothing() {
+    let mut faster = scenario();
+    faster.target_velocity_m_s[0] += 8.0;
+    faster.bullet_velocity_m_s[0] += 8.0;
+    assert_eq!(model().predict(&faster).unwrap(), model().predict(&scenario()).unwrap());
+}
+
+#[test]
+fn what_is_left_open_widens_the_bands() {
+    // On average over the cases: a single known contact may be one of the uncertain ones.
+    let spread = |open: bool| -> f64 {
+        let ask = |case: &ForceCase| {
+            let known = case.scenario.clone();
+            let asked = ForceScenario { contact_m: None, bullet_body: None, ..known.clone() };
+            let prediction = model().predict(if open { &asked } else { &known }).unwrap();
+            assert_eq!([prediction.is_contact_open, prediction.is_body_open], [open, open]);
+            prediction.mixture.std().fy_n.iter().sum::<f64>()
+        };
+        set().train.iter().map(ask).sum()
+    };
+    let (open, known) = (spread(true), spread(false));
+    assert!(open > known, "{open} {known}");
+}
+
+#[test]
+fn the_force_vanishes_after_the_contact() {
+    let prediction = model().predict(&scenario()).unwrap();
+    let std = prediction.mixture.std();
+    let mean = prediction.mixture.mean();
+    let peak = mean.peak().0;
+    assert!(mean.fy_n[249].abs() < 0.05 * peak, "{} of {peak}", mean.fy_n[249]);
+    assert!(std.fy_n.iter().all(|std| *std > 0.0));
+}
+
+#[test]
+fn wrong_questions_are_answered_with_what_is_wrong() {
+    let unknown = ForceScenario { bullet_body: Some("tank".to_owned()), ..scenario() };
+    let error = model().predict(&unknown).unwrap_err();
+    assert!(matches!(error, ForceError::UnknownBody { .. }), "{error}");
+    assert!(error.to_string().contains("expected one of A, B"), "{error}");
+    let light = ForceScenario { mass_kg: [0.0, 1500.0], ..scenario() };
+    let error = model().predict(&light).unwrap_err().to_string();
+    assert_eq!(error, "target mass [kg] is 0, expected 1 to 1e8");
+    for nonsense in [f64::NAN, f64::INFINITY, 1e300] {
+        let mut broken = scenario();
+        broken.bullet_velocity_m_s[1] = nonsense;
+        assert!(model().predict(&broken).is_err(), "{nonsense}");
+    }
+}
+
+#[test]
+fn every_ablation_trains() {
+    let variants: [fn(&mut ForceConfig); 5] = [
+        |config| config.network.centre = Centre::None,
+        |config| config.network.centre = Centre::Momentum,
+        |config| config.network.attention = false,
+        |config| config.network.factors = 0,
+        |config| config.network.components = 1,
+    ];
+    for change in variants {
+        let mut settings = settings(None);
+        change(&mut settings.config);
+        settings.config.training.epochs = 1;
+        let model = train(set(), &settings, &mut |_| ControlFlow::Continue(()))
+            .unwrap_or_else(|error| panic!("{error} with {:?}", settings.config.network));
+        let impulse = model.predict(&scenario()).unwrap().mixture.impulse(1).mean();
+        assert!(impulse.is_finite(), "{:?}", settings.config.network);
+    }
+}
