@@ -74,6 +74,10 @@ pub enum Command {
     PauseTraining(bool),
     /// End the training with the best weights so far.
     CancelTraining,
+    /// Evaluate the force model on a data set.
+    Evaluate,
+    /// Stop evaluating.
+    CancelEvaluation,
     /// Bring a pane to the front.
     Show(Pane),
     /// Put all panes back.
@@ -149,6 +153,12 @@ impl State {
             Command::StartTraining => self.start_training(context),
             Command::PauseTraining(pause) => self.session.force.training.set_paused(pause),
             Command::CancelTraining => self.session.force.training.cancel(),
+            Command::Evaluate => self.evaluate(context),
+            Command::CancelEvaluation => {
+                if let Some(job) = &self.session.force.evaluation.job {
+                    job.cancel();
+                }
+            }
             Command::Show(pane) => show_pane(&mut self.view.layout, pane),
             Command::ResetLayout => self.view.layout = default_layout(),
             Command::Say(severity, text) => self.say(severity, text),

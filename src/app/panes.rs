@@ -39,11 +39,13 @@ pub enum Pane {
     ForcePrediction,
     /// How the force network learns.
     Training,
+    /// How well the force network does.
+    Evaluation,
 }
 
 impl Pane {
     /// Every pane.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Data,
         Self::Cases,
         Self::Vehicle,
@@ -54,6 +56,7 @@ impl Pane {
         Self::Comparison,
         Self::ForcePrediction,
         Self::Training,
+        Self::Evaluation,
     ];
 
     /// Its title.
@@ -69,6 +72,7 @@ impl Pane {
             Self::Comparison => "Comparison",
             Self::ForcePrediction => "Force prediction",
             Self::Training => "Training",
+            Self::Evaluation => "Evaluation",
         }
     }
 }
@@ -95,7 +99,8 @@ pub fn default_layout() -> Layout {
     let middle = linear(LinearDir::Vertical, [(scene, 0.45), (motion, 0.55)]);
     let right = linear(LinearDir::Vertical, [(force, 0.5), (comparison, 0.5)]);
     let case = linear(LinearDir::Horizontal, [(middle, 0.59), (right, 0.41)]);
-    let network = [Pane::ForcePrediction, Pane::Training].map(|pane| tiles.insert_pane(pane));
+    let network = [Pane::ForcePrediction, Pane::Training, Pane::Evaluation];
+    let network = network.map(|pane| tiles.insert_pane(pane));
     let work = tiles.insert_tab_tile(std::iter::once(case).chain(network).collect());
     let mut row = Linear::new(LinearDir::Horizontal, vec![left, work]);
     row.shares.set_share(left, 0.27);
@@ -144,6 +149,7 @@ impl Behavior<Pane> for PaneContext<'_> {
             Pane::Comparison => panels::comparison_ui(ui, self),
             Pane::ForcePrediction => panels::prediction_ui(ui, self),
             Pane::Training => panels::training_ui(ui, self),
+            Pane::Evaluation => panels::evaluation_ui(ui, self),
         });
         UiResponse::None
     }

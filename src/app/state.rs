@@ -261,6 +261,7 @@ impl State {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::Pane;
 
     #[test]
     fn project_and_view_survive_a_restart() {
@@ -271,11 +272,26 @@ mod tests {
         state.project.channel_class = Some(ChannelClass::Cfc60);
         state.view.units = UnitSystem::Us;
         state.view.filter = "spin=1".to_owned();
+        state.project.force.scenario.mass_kg[1] = 1234.0;
+        state.project.force.model = Some(PathBuf::from("mine.safetensors"));
+        state.view.force.bands[0] = false;
         state.session.sources.push(Source::failed(PathBuf::from("a.csv"), "gone".to_owned()));
         let (restored, sources) = State::restore(&state.save().unwrap()).unwrap();
         assert_eq!(restored.project, state.project);
         assert_eq!(restored.view, state.view);
         assert_eq!(sources, [PathBuf::from("a.csv")]);
+    }
+
+    #[test]
+    fn a_layout_without_the_newer_panes_is_put_back() {
+        let mut state = State::default();
+        let tiles = &mut state.view.layout.tiles;
+        let pane =
+            |tile: &egui_tiles::Tile<Pane>| matches!(tile, egui_tiles::Tile::Pane(Pane::Training));
+        let training = tiles.iter().find(|(_, tile)| pane(tile)).map(|(id, _)| *id).unwrap();
+        tiles.remove(training);
+        let (restored, _) = State::restore(&state.save().unwrap()).unwrap();
+        assert_eq!(restored.view.layout, default_layout());
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! A predicted force over time: bands, mean, drawn curves, and what was recorded over it.
 
+use serde::{Deserialize, Serialize};
+
 use crate::analysis::ForceForecast;
 use crate::collision::PulseShape;
 use crate::figure::{Axis, Band, Element, Figure, LineStyle, Role, Series, milliseconds};
@@ -14,7 +16,7 @@ const SHOWN_SHARE: f64 = 0.03;
 const END_STEP_S: f64 = 0.025;
 
 /// What of a force is shown.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ForceComponent {
     /// F_x.
     X,

@@ -1,5 +1,7 @@
 //! A figure in egui_plot.
 
+use std::collections::BTreeSet;
+
 use egui::{Id, Stroke, Ui, Vec2b};
 use egui_plot::{
     Arrows, FilledArea, Legend, Line, LineStyle as PlotLineStyle, Plot, PlotPoint, PlotPoints,
@@ -14,6 +16,9 @@ use crate::render::ticks::{
     X_TICK_CELLS, Y_TICK_CELLS, grid, log_grid, log_tick_label, tick_label,
 };
 use crate::units::significant;
+
+/// Names in a legend above which it is written small.
+const LONG_LEGEND: usize = 8;
 
 /// How a figure is placed among others.
 #[derive(Debug, Clone)]
@@ -85,6 +90,10 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         .allow_drag(Vec2b::new(figure.equal_aspect, figure.equal_aspect));
     if options.legend {
         let legend = Legend::default().position(emptiest_corner(figure));
+        let legend = match n_names(figure) {
+            ..=LONG_LEGEND => legend,
+            _ => legend.text_style(egui::TextStyle::Small),
+        };
         plot = plot.legend(legend.follow_insertion_order(true).background_alpha(0.6));
     }
     if figure.equal_aspect {
@@ -122,6 +131,10 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         plot_ui.pointer_coordinate().filter(|_| picking).map(|point| point.x)
     });
     FigureResponse { picked_x: response.inner }
+}
+
+fn n_names(figure: &Figure) -> usize {
+    figure.elements.iter().map(Element::name).collect::<BTreeSet<_>>().len()
 }
 
 fn draw_element<'a>(plot: &mut PlotUi<'a>, element: &'a Element, (dark, log_y): (bool, bool)) {

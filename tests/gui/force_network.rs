@@ -94,7 +94,8 @@ fn a_case_is_predicted_edited_and_left_open() {
     let recorded = state(&harness).session.force.recorded.as_ref().expect("a recorded force");
     assert_eq!(recorded.case, "c002");
     assert_eq!(state(&harness).project.force.scenario, recorded.scenario);
-    harness.get_by_label("c002, as recorded");
+    // The seed keeps it for the test.
+    harness.get_by_label("c002, as recorded; the model has not seen it");
     harness.get_by_label("Copy table").click();
     save(&mut harness, "prediction.png");
 
@@ -129,6 +130,29 @@ fn a_case_is_predicted_edited_and_left_open() {
     }
     harness.run_steps(2);
     save(&mut harness, "prediction-dark.png");
+}
+
+/// The window keeps its pace while a slider moves: 50 frames a second in a release build, which
+/// this is not.
+#[test]
+fn frames_stay_short_while_the_scenario_changes() {
+    let mut harness = open_on("c002");
+    harness.state_mut().state_mut().view.force.n_curves = 20;
+    step_until(&mut harness, "drawn curves", is_forecast_current);
+    let mut frames_s: Vec<f64> = (0..60)
+        .map(|i| {
+            let scenario = &mut harness.state_mut().state_mut().project.force.scenario;
+            scenario.bullet_velocity_m_s[1] = 3.0 + 0.02 * f64::from(i);
+            let start = std::time::Instant::now();
+            harness.step();
+            start.elapsed().as_secs_f64()
+        })
+        .collect();
+    frames_s.sort_by(f64::total_cmp);
+    let median_s = frames_s[frames_s.len() / 2];
+    println!("median frame {median_s:.4} s, longest {:.4} s", frames_s[59]);
+    assert!(median_s < 0.25, "{median_s} s");
+    step_until(&mut harness, "the last forecast", is_forecast_current);
 }
 
 #[test]
@@ -220,4 +244,31 @@ fn a_bad_model_and_bad_settings_say_what_is_wrong() {
     step_until(&mut harness, "the problem", |state| !state.session.force.training.is_running());
     let problem = state(&harness).session.force.training.problem.clone().expect("a problem");
     assert!(problem.contains("Cargo.toml: line "), "{problem}");
+}
+
+#[test]
+fn a_model_is_evaluated_beside_the_baselines() {
+    let mut harness = open_on("c001");
+    apply(&mut harness, Command::Show(Pane::Evaluation));
+    harness.run_steps(2);
+    harness.get_by_label("Evaluate").click();
+    harness.run_steps(2);
+    assert!(state(&harness).session.force.evaluation.job.is_some());
+    step_until(&mut harness, "the evaluation", |state| {
+        state.session.force.evaluation.job.is_none()
+    });
+    let result = state(&harness).session.force.evaluation.result.as_ref().expect("a result");
+    let finished = result.as_ref().expect("an evaluation");
+    assert_eq!((finished.cases.len(), finished.n_known, finished.samples.len()), (25, 0, 6));
+    harness.get_by_label_contains("on 25 cases of fea");
+    assert!(harness.query_all_by_label("Gaussian processes").count() >= 2);
+    harness.run_steps(4);
+    save(&mut harness, "evaluation.png");
+    harness.get_by_label("Copy as Markdown").click();
+    harness.run_steps(2);
+    harness.state_mut().state_mut().view.dark = true;
+    // What lies below is seen in a tall window.
+    harness.set_size(egui::vec2(1440.0, 1700.0));
+    harness.run_steps(6);
+    save(&mut harness, "evaluation-dark.png");
 }

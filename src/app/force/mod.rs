@@ -2,6 +2,7 @@
 //! well it does. The panels of the same names show it.
 
 mod edit;
+mod evaluation;
 mod model;
 mod predictor;
 mod settings;
@@ -11,9 +12,10 @@ mod update;
 pub use edit::{
     forget_contact, know_contact, set_bullet_heading, set_contact_x, set_mass, set_side,
 };
+pub use evaluation::{EvaluatedCase, EvaluationStatus, FinishedEvaluation};
 pub use model::ModelStatus;
 pub use predictor::{Forecast, Predictor, Question};
-pub use settings::{ForceProject, ForceView, TrainingForm};
+pub use settings::{ForceProject, ForceView, Statistic, TrainingForm};
 pub use training::{Phase, TrainingStatus};
 pub use update::{RecordedCase, force_datasets, source_name};
 
@@ -37,6 +39,8 @@ pub struct ForceSession {
     pub recorded: Option<RecordedCase>,
     /// A training, under way or over.
     pub training: TrainingStatus,
+    /// An evaluation, under way or over.
+    pub evaluation: EvaluationStatus,
     /// Where a training is kept while it runs, so that it can go on after a crash.
     pub checkpoint: Option<PathBuf>,
     /// The model being written.

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::collision::Scenario;
 use crate::data::Side;
+use crate::figure::ForceComponent;
 use crate::force::{ForceConfig, ForceScenario};
 
 /// What the user works on.
@@ -66,8 +67,40 @@ pub struct ForceView {
     pub loss_terms: Vec<String>,
     /// Whether the axis of the losses is logarithmic.
     pub log_losses: bool,
-    /// Whether the evaluation takes all cases, not only those kept for the test.
+    /// Folder of the data set on which the model is evaluated; the first that is open without.
+    pub evaluated: Option<PathBuf>,
+    /// Whether the evaluation takes all cases, not only those that the model has not seen.
     pub evaluate_all: bool,
+    /// Which figure of the errors the tables show.
+    pub statistic: Statistic,
+    /// What is drawn of the sample cases.
+    pub sample_component: ForceComponent,
+}
+
+/// What sums up the errors of many cases.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Statistic {
+    /// Half of the cases are better.
+    #[default]
+    Median,
+    /// Arithmetic mean.
+    Mean,
+    /// Nine tenths of the cases are better.
+    P90,
+}
+
+impl Statistic {
+    /// All three.
+    pub const ALL: [Self; 3] = [Self::Median, Self::Mean, Self::P90];
+
+    /// For a person.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Median => "median",
+            Self::Mean => "mean",
+            Self::P90 => "90th percentile",
+        }
+    }
 }
 
 impl Default for ForceProject {
@@ -110,7 +143,10 @@ impl Default for ForceView {
             seed: 1,
             loss_terms: vec!["total".to_owned()],
             log_losses: true,
+            evaluated: None,
             evaluate_all: false,
+            statistic: Statistic::default(),
+            sample_component: ForceComponent::Magnitude,
         }
     }
 }

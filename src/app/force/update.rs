@@ -7,6 +7,7 @@ use egui::Context;
 
 use crate::analysis::ForecastSettings;
 use crate::app::command::wake;
+use crate::app::force::evaluation::EvaluationRequest;
 use crate::app::force::training::TrainingData;
 use crate::app::force::{Forecast, Predictor, Question};
 use crate::app::source::{CheckedDataset, Source};
@@ -26,6 +27,8 @@ pub struct RecordedCase {
     pub scenario: ForceScenario,
     /// The force.
     pub curve: ForceCurve,
+    /// As models see it.
+    pub canonical: ForceCase,
 }
 
 impl State {
@@ -41,6 +44,7 @@ impl State {
         self.find_recorded_case();
         self.poll_saving();
         self.poll_training();
+        self.session.force.evaluation.poll();
         self.poll_predictor();
         self.ask_predictor(context);
     }
@@ -155,6 +159,31 @@ impl State {
         }
     }
 
+    /// Evaluates the current model on the chosen data.
+    pub(in crate::app) fn evaluate(&mut self, context: &Context) {
+        let datasets = force_datasets(&self.session.sources);
+        let wanted = self.view.force.evaluated.as_deref();
+        let chosen = datasets.iter().find(|(path, _)| Some(*path) == wanted);
+        let dataset = chosen
+            .or(datasets.first())
+            .map(|(path, checked)| (source_name(path), Arc::clone(checked)));
+        let (Some((data, dataset)), Some(current)) = (dataset, &self.session.force.model.current)
+        else {
+            self.say(Severity::Warning, "an evaluation needs a force model and a force data set");
+            return;
+        };
+        let request = EvaluationRequest {
+            model: Arc::clone(&current.model),
+            name: current.name.clone(),
+            data,
+            dataset,
+            all: self.view.force.evaluate_all,
+        };
+        if let Err(error) = self.session.force.evaluation.start(request, wake(context)) {
+            self.say(Severity::Error, error.to_string());
+        }
+    }
+
     /// Writes the current model to a file.
     pub(in crate::app) fn save_model(&mut self, path: PathBuf, context: &Context) {
         let Some(current) = &self.session.force.model.current else {
@@ -217,5 +246,6 @@ fn force_case(sources: &[Source], (path, name): (&Path, &str)) -> Option<Recorde
         case: name.to_owned(),
         scenario: ForceScenario::from_case(case).ok()?,
         curve: canonical.as_recorded(&canonical.curve),
+        canonical,
     })
 }

@@ -3,6 +3,9 @@
 mod cases;
 mod comparison;
 mod data;
+mod evaluation;
+mod evaluation_plots;
+mod evaluation_tables;
 mod force;
 mod motion;
 mod prediction;
@@ -16,6 +19,7 @@ mod vehicle;
 pub use cases::cases_ui;
 pub use comparison::comparison_ui;
 pub use data::data_ui;
+pub use evaluation::evaluation_ui;
 pub use force::force_ui;
 pub use motion::motion_ui;
 pub use prediction::prediction_ui;

@@ -77,13 +77,16 @@ fn start_ui(
         ui.checkbox(&mut view.force.follow_case, "Follow")
             .on_hover_text("Predict every case of a force data set that is selected");
     });
-    let same = force.recorded.as_ref().is_some_and(|r| r.scenario == project.force.scenario);
-    let text = if same {
-        format!("{}, as recorded", project.force.name)
-    } else {
-        format!("{}, edited or without a recording", project.force.name)
-    };
-    ui.weak(text);
+    let name = &project.force.name;
+    let recorded = force.recorded.as_ref().filter(|r| r.scenario == project.force.scenario);
+    let model = force.model.current.as_ref();
+    ui.weak(match recorded.zip(model) {
+        None => format!("{name}, edited or without a recording"),
+        Some((recorded, current)) if current.model.is_trained_on(&recorded.canonical) => {
+            format!("{name}, as recorded; the model has learned from it")
+        }
+        Some(_) => format!("{name}, as recorded; the model has not seen it"),
+    });
 }
 
 fn motion_ui(ui: &mut Ui, scenario: &mut ForceScenario, units: UnitSystem) {

@@ -10,7 +10,7 @@ use crate::app::force::{
 use crate::app::panes::PaneContext;
 use crate::app::source::Source;
 use crate::app::state::View;
-use crate::app::widgets::{figure_frame, value_row};
+use crate::app::widgets::{duration_text, figure_frame, value_row};
 use crate::data::Severity;
 use crate::figure::{LossCurve, loss_figure};
 use crate::force::{EpochRecord, LossTerms};
@@ -19,6 +19,8 @@ use crate::units::significant;
 
 /// Smallest height of the plot, points.
 const MIN_PLOT_HEIGHT: f32 = 220.0;
+/// Height of what stands below it and of its title, points.
+const BELOW_PLOT: f32 = 170.0;
 
 /// Draws the form, the progress and the losses.
 pub fn training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
@@ -141,8 +143,7 @@ fn progress_ui(ui: &mut Ui, status: &TrainingStatus) {
     };
     if status.is_running() {
         let what = if status.is_paused() { format!("paused: {what}") } else { what };
-        let left =
-            left.map_or(String::new(), |t| format!(", {:.0} s left", t.as_secs_f64().ceil()));
+        let left = left.map_or(String::new(), |left| format!(", {} left", duration_text(left)));
         match fraction {
             Some(fraction) => {
                 let bar = ProgressBar::new(fraction).desired_width(420.0);
@@ -228,7 +229,10 @@ fn losses_ui(
     let first_epoch = history.first().map_or(1, |record| record.epoch);
     let title = format!("Losses while training on {name}");
     let figure = loss_figure(&title, &curves, (first_epoch, best_epoch), view.force.log_losses);
-    let height = (ui.available_height() - 110.0).max(MIN_PLOT_HEIGHT);
+    let height = (ui.available_height() - BELOW_PLOT).max(MIN_PLOT_HEIGHT);
+    if view.force.log_losses && !figure.log_y {
+        ui.weak("A shown loss is zero or less, as a likelihood may be: the axis is linear.");
+    }
     let options = FigureOptions {
         id: "losses".to_owned(),
         height: Some(height),

@@ -1,6 +1,7 @@
 //! Numbers with units.
 
 use std::ops::RangeInclusive;
+use std::time::Duration;
 
 use egui::{DragValue, Slider, SliderClamping, Ui};
 
@@ -29,6 +30,16 @@ pub fn quantity_field(
     }
     ui.end_row();
     changed
+}
+
+/// A duration for a person: “42 s”, “3 min 20 s”, “2 h 5 min”.
+pub fn duration_text(duration: Duration) -> String {
+    let s = duration.as_secs_f64().ceil() as u64;
+    match (s / 3600, s / 60 % 60, s % 60) {
+        (0, 0, s) => format!("{s} s"),
+        (0, min, s) => format!("{min} min {s} s"),
+        (h, min, _) => format!("{h} h {min} min"),
+    }
 }
 
 /// What a slider edits and how.
