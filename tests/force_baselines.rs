@@ -12,8 +12,8 @@ use impactlab::force::{
 
 fn shipped_cases() -> Vec<ForceCase> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/fea");
-    let loaded = Dataset::load(&root, &mut |_| ControlFlow::Continue(())).unwrap();
-    let (cases, problems) = ForceCase::of_dataset(&loaded.complete().unwrap());
+    let loaded = Dataset::load(&root, &mut |_| ControlFlow::Continue(())).expect("a data set");
+    let (cases, problems) = ForceCase::of_dataset(&loaded.complete().expect("not cancelled"));
     assert!(problems.is_empty(), "{problems:?}");
     cases
 }
@@ -29,7 +29,7 @@ fn evaluation(columns: ColumnSet) -> Evaluation {
     let mut report = |_| ControlFlow::Continue(());
     let parts = (train.as_slice(), test.as_slice());
     let outcome = evaluate("the truth", parts, &truth.collect::<Vec<_>>(), &settings, &mut report);
-    outcome.unwrap().complete().unwrap()
+    outcome.expect("an evaluation").complete().expect("not cancelled")
 }
 
 /// Median (mean) history error in %: 40.7 (37.9) for the pulse, 55.3 (51.5) for the nearest case,

@@ -145,8 +145,8 @@ impl Default for NetworkConfig {
             attention_stride: 5,
             trunk: vec![256, 512, 512, 256, 128, 64, 32, 16],
             components: 2,
-            factors: 4,
-            shape_correction: 0.15,
+            factors: 8,
+            shape_correction: 0.1,
             force_correction: 0.05,
             impulse_correction: 0.1,
             component_shift: 0.05,
@@ -167,12 +167,12 @@ impl Default for TrainingConfig {
     fn default() -> Self {
         Self {
             epochs: 500,
-            batch_cases: 32,
+            batch_cases: 16,
             learning_rate: 1e-3,
-            weight_decay: 1e-2,
+            weight_decay: 0.1,
             max_gradient_norm: 1.0,
             validation_share: 0.2,
-            patience: 60,
+            patience: 40,
             test_share: crate::force::TEST_SHARE,
             checkpoint_epochs: 10,
         }

@@ -34,9 +34,12 @@ pub(super) const DURATION_UNIT_S: f64 = 0.1;
 /// Over which the curve fades out at the end of the contact, s.
 const FADE_S: f64 = 0.006;
 /// Standard deviation of a force before training: share of the centre's force, and floor, in peaks.
-const FIRST_STD: [f64; 2] = [0.08, 0.015];
+const FIRST_STD: [f64; 2] = [0.04, 0.0075];
+/// Largest change of its logarithm: what is left to single instants is ripple; all that lasts is
+/// for the latent factors, else drawn curves are jagged and their peaks too high.
+const STD_LOG_CHANGE: f64 = 0.7;
 /// Loading of a latent factor per unit of the network's output, share of the envelope.
-const FIRST_LOADING: f64 = 0.3;
+const FIRST_LOADING: f64 = 0.8;
 /// Standard deviation of the duration before training, units of 0.1 s.
 const FIRST_DURATION_STD: f64 = 0.3;
 /// Log odds of hooking before training.
@@ -194,7 +197,8 @@ impl ForceNetwork {
         let largest = self.per_component(self.config.component_shift, self.config.hooking_shift)?;
         let shift = per_force(0)?.tanh()?.broadcast_mul(&envelope)?;
         let shift = shift.reshape((n_cases, k, n_forces))?.broadcast_mul(&largest)?;
-        let deviation = per_force(1)?.exp()?.broadcast_mul(&(&envelope * FIRST_STD[0])?)?;
+        let deviation = (per_force(1)?.tanh()? * STD_LOG_CHANGE)?.exp()?;
+        let deviation = deviation.broadcast_mul(&(&envelope * FIRST_STD[0])?)?;
         let min_variance = self.config.min_std.powi(2);
         let variance = (deviation.sqr()? + min_variance)?.reshape((n_cases, k, n_forces))?;
         let base = base.reshape((n_cases, 1, n_forces))?;

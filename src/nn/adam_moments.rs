@@ -8,8 +8,9 @@ use candle_core::{
 };
 use rayon::prelude::*;
 
-use crate::nn::element::{Element, contiguous, contiguous_mut, min_blocks_per_task, vectorized};
+use crate::nn::element::{Element, min_blocks_per_task, vectorized};
 use crate::nn::named_tensors::find;
+use crate::nn::storage::{contiguous, contiguous_mut};
 use crate::nn::{AdamWConfig, NamedTensors, NnError};
 
 /// Numbers that one task updates.

@@ -2,21 +2,23 @@
 //!
 //! ```text
 //! A = softmax(s·Q Kᵀ)      O = A V                                  per sequence and head
-//! D = G Vᵀ      E = s·A∘(D − rowsum(A∘D))
-//! dL/dQ = E K      dL/dK = Eᵀ Q      dL/dV = Aᵀ G                   G = dL/dO
+//! D = G Vᵀ      E = s·A∘(D − rowsum(A∘D))                           G = dL/dO
+//! dL/dQ = E K      dL/dK = Eᵀ Q      dL/dV = Aᵀ G
 //! ```
 //!
 //! Weights are computed anew on the way back: keeping them costs more, since `[n, n]` numbers per
 //! head leave the caches. Heads are read in place; sequences are spread over the threads.
 
-use candle_core::backend::BackendStorage;
 use candle_core::{
-    CpuStorage, CustomOp3, Device, Error, Layout, Result as TensorResult, Shape, Tensor,
+    CpuStorage, CustomOp3, DType, Device, Error, Layout, Result as TensorResult, Shape, Tensor,
 };
+use faer::linalg::matmul::matmul;
+use faer::{Accum, MatMut, MatRef, Par};
 use rayon::prelude::*;
 
-use crate::nn::element::{Element, cpu_storage, min_blocks_per_task, vectorized};
+use crate::nn::element::{Element, min_blocks_per_task, vectorized};
 use crate::nn::softmax::{softmax_backward_row, softmax_row};
+use crate::nn::storage::{contiguous, slices};
 
 /// Attention of `heads` heads with scaled dot products.
 pub(crate) struct AttentionCore {
@@ -33,27 +35,13 @@ struct Sizes {
     heads: usize,
 }
 
-/// Queries, keys, values or a gradient, `[batch, n, channels]`, with the place of the first number.
-#[derive(Clone, Copy)]
-struct Sequences<'a> {
-    storage: &'a CpuStorage,
-    start: usize,
-    n: usize,
-}
-
 impl Sizes {
-    fn new(
-        heads: usize,
-        queries: &[usize],
-        keys: &[usize],
-        values: &[usize],
-    ) -> TensorResult<Self> {
+    /// - `queries`: `[batch, n_queries, channels]`.
+    /// - `keys`, `values`: `[batch, n_keys, channels]`.
+    fn new(heads: usize, [queries, keys, values]: [&[usize]; 3]) -> TensorResult<Self> {
         match (queries, keys) {
             (&[batch, n_queries, channels], &[key_batch, n_keys, key_channels])
-                if batch == key_batch
-                    && channels == key_channels
-                    && values == keys
-                    && n_keys > 0 =>
+                if batch == key_batch && channels == key_channels && values == keys =>
             {
                 Ok(Self { batch, n_queries, n_keys, channels, heads })
             }
@@ -65,6 +53,18 @@ impl Sizes {
         }
     }
 
+    fn is_empty(&self) -> bool {
+        self.batch * self.n_queries * self.n_keys * self.channels == 0
+    }
+
+    fn query_size(&self) -> usize {
+        self.n_queries * self.channels
+    }
+
+    fn key_size(&self) -> usize {
+        self.n_keys * self.channels
+    }
+
     fn head_channels(&self) -> usize {
         self.channels / self.heads
     }
@@ -73,74 +73,67 @@ impl Sizes {
         T::from_f64(1.0 / (self.head_channels() as f64).sqrt())
     }
 
-    /// Where the head of a sequence lies, `[n, head_channels]`.
-    fn head(&self, of: Sequences<'_>, sequence: usize, head: usize) -> Layout {
-        let shape = Shape::from((of.n, self.head_channels()));
-        let start = of.start + sequence * of.n * self.channels + head * self.head_channels();
-        Layout::new(shape, vec![self.channels, 1], start)
+    /// The columns of a head in one sequence: `[n, head_channels]` out of `[n, channels]`.
+    fn head<'a, T>(&self, sequence: &'a [T], head: usize) -> MatRef<'a, T> {
+        let rows = sequence.len() / self.channels;
+        let all = MatRef::from_row_major_slice(sequence, rows, self.channels);
+        all.subcols(head * self.head_channels(), self.head_channels())
     }
 
-    /// A Bᵀ of one head, `[a.n, b.n]`.
-    fn product_of_rows(
-        &self,
-        [a, b]: [Sequences<'_>; 2],
-        sequence: usize,
-        head: usize,
-    ) -> TensorResult<CpuStorage> {
-        let a_layout = self.head(a, sequence, head);
-        let b_layout = self.head(b, sequence, head).transpose(0, 1)?;
-        let sizes = (1, a.n, b.n, self.head_channels());
-        a.storage.matmul(b.storage, sizes, &a_layout, &b_layout)
+    /// The same, to be written to.
+    fn head_mut<'a, T>(&self, sequence: &'a mut [T], head: usize) -> MatMut<'a, T> {
+        let rows = sequence.len() / self.channels;
+        let all = MatMut::from_row_major_slice_mut(sequence, rows, self.channels);
+        all.subcols_mut(head * self.head_channels(), self.head_channels())
     }
 
-    /// M·B of one head, `[m_rows, head_channels]`, written into its columns of `target`.
-    fn product_into<T: Element>(
-        &self,
-        (matrix, layout): (&CpuStorage, &Layout),
-        (b, sequence, head): (Sequences<'_>, usize, usize),
-        target: &mut [T],
-    ) -> TensorResult<()> {
-        let (rows, inner) = layout.shape().dims2()?;
-        let width = self.head_channels();
-        let b_layout = self.head(b, sequence, head);
-        let product = matrix.matmul(b.storage, (1, rows, width, inner), layout, &b_layout)?;
-        let product = T::cpu_storage_data(product)?;
-        let columns = head * width..(head + 1) * width;
-        for (to, from) in target.chunks_exact_mut(self.channels).zip(product.chunks_exact(width)) {
-            to[columns.clone()].copy_from_slice(from);
-        }
-        Ok(())
+    fn by_queries_and_keys<'a, T>(&self, values: &'a [T]) -> MatRef<'a, T> {
+        MatRef::from_row_major_slice(values, self.n_queries, self.n_keys)
+    }
+
+    fn by_queries_and_keys_mut<'a, T>(&self, values: &'a mut [T]) -> MatMut<'a, T> {
+        MatMut::from_row_major_slice_mut(values, self.n_queries, self.n_keys)
     }
 
     /// A of one head, `[n_queries, n_keys]`.
-    fn weights<T: Element>(
-        &self,
-        [queries, keys]: [Sequences<'_>; 2],
-        sequence: usize,
-        head: usize,
-    ) -> TensorResult<Vec<T>> {
-        let scores = self.product_of_rows([queries, keys], sequence, head)?;
-        let (mut scores, scale) = (T::cpu_storage_data(scores)?, self.scale::<T>());
+    fn weights<T: Element>(&self, queries: MatRef<'_, T>, keys: MatRef<'_, T>, weights: &mut [T]) {
+        let scores = self.by_queries_and_keys_mut(weights);
+        matmul(scores, Accum::Replace, queries, keys.transpose(), T::ONE, Par::Seq);
         vectorized(
             #[inline(always)]
-            || scores.chunks_exact_mut(self.n_keys).for_each(|row| softmax_row(row, scale)),
+            || {
+                for row in weights.chunks_exact_mut(self.n_keys) {
+                    softmax_row(row, self.scale());
+                }
+            },
         );
-        Ok(scores)
     }
 
-    /// Gradients of queries, keys and values of one sequence, added up in the three slices.
+    /// O of one sequence.
+    fn forward<T: Element>(&self, [queries, keys, values]: [&[T]; 3], output: &mut [T]) {
+        let mut weights = vec![T::ZERO; self.n_queries * self.n_keys];
+        for head in 0..self.heads {
+            self.weights(self.head(queries, head), self.head(keys, head), &mut weights);
+            let (output, weights) =
+                (self.head_mut(output, head), self.by_queries_and_keys(&weights));
+            matmul(output, Accum::Replace, weights, self.head(values, head), T::ONE, Par::Seq);
+        }
+    }
+
+    /// The gradients of queries, keys and values of one sequence.
     fn backward<T: Element>(
         &self,
-        [queries, keys, values, gradient]: [Sequences<'_>; 4],
-        sequence: usize,
+        [queries, keys, values, gradient]: [&[T]; 4],
         [dq, dk, dv]: [&mut [T]; 3],
-    ) -> TensorResult<()> {
-        let by_rows = Layout::contiguous((self.n_queries, self.n_keys));
-        let by_columns = by_rows.transpose(0, 1)?;
+    ) {
+        let mut weights = vec![T::ZERO; self.n_queries * self.n_keys];
+        let mut slopes = vec![T::ZERO; self.n_queries * self.n_keys];
         for head in 0..self.heads {
-            let weights = self.weights::<T>([queries, keys], sequence, head)?;
-            let slopes = self.product_of_rows([gradient, values], sequence, head)?;
-            let mut slopes = T::cpu_storage_data(slopes)?;
+            let [q, k] = [queries, keys].map(|sequence| self.head(sequence, head));
+            let [v, g] = [values, gradient].map(|sequence| self.head(sequence, head));
+            self.weights(q, k, &mut weights);
+            let target = self.by_queries_and_keys_mut(&mut slopes);
+            matmul(target, Accum::Replace, g, v.transpose(), T::ONE, Par::Seq);
             vectorized(
                 #[inline(always)]
                 || {
@@ -150,13 +143,25 @@ impl Sizes {
                     }
                 },
             );
-            let (weights, slopes) =
-                (T::to_cpu_storage_owned(weights), T::to_cpu_storage_owned(slopes));
-            self.product_into((&slopes, &by_rows), (keys, sequence, head), dq)?;
-            self.product_into((&slopes, &by_columns), (queries, sequence, head), dk)?;
-            self.product_into((&weights, &by_columns), (gradient, sequence, head), dv)?;
+            let [weights, slopes] = [&weights, &slopes].map(|all| self.by_queries_and_keys(all));
+            matmul(self.head_mut(dq, head), Accum::Replace, slopes, k, T::ONE, Par::Seq);
+            matmul(
+                self.head_mut(dk, head),
+                Accum::Replace,
+                slopes.transpose(),
+                q,
+                T::ONE,
+                Par::Seq,
+            );
+            matmul(
+                self.head_mut(dv, head),
+                Accum::Replace,
+                weights.transpose(),
+                g,
+                T::ONE,
+                Par::Seq,
+            );
         }
-        Ok(())
     }
 
     /// How many sequences one task takes at least.
@@ -166,71 +171,54 @@ impl Sizes {
 }
 
 impl AttentionCore {
-    /// The sizes, and where queries, keys and values lie.
-    fn place<'a>(
-        &self,
-        arguments: [(&'a CpuStorage, &Layout); 3],
-    ) -> TensorResult<(Sizes, [Sequences<'a>; 3])> {
-        let [queries, keys, values] = arguments.map(|(_, layout)| layout.dims());
-        let sizes = Sizes::new(self.heads, queries, keys, values)?;
-        let of = |(storage, layout): (&'a CpuStorage, &Layout), n| {
-            let (start, _) =
-                layout.contiguous_offsets().ok_or(Error::RequiresContiguous { op: "attention" })?;
-            Ok::<_, Error>(Sequences { storage, start, n })
-        };
-        let [queries, keys, values] = arguments;
-        let queries = of(queries, sizes.n_queries)?;
-        Ok((sizes, [queries, of(keys, sizes.n_keys)?, of(values, sizes.n_keys)?]))
-    }
-
     fn forward<T: Element>(
         &self,
         arguments: [(&CpuStorage, &Layout); 3],
     ) -> TensorResult<(CpuStorage, Shape)> {
-        let (sizes, [queries, keys, values]) = self.place(arguments)?;
-        let shape = arguments[0].1.shape().clone();
-        let mut output = vec![T::ZERO; shape.elem_count()];
-        let by_rows = Layout::contiguous((sizes.n_queries, sizes.n_keys));
-        let sequences = output.par_chunks_mut((sizes.n_queries * sizes.channels).max(1));
-        let sequences = sequences.enumerate().with_min_len(sizes.min_sequences_per_task());
-        sequences.try_for_each(|(sequence, output)| {
-            for head in 0..self.heads {
-                let weights = sizes.weights::<T>([queries, keys], sequence, head)?;
-                let weights = T::to_cpu_storage_owned(weights);
-                sizes.product_into((&weights, &by_rows), (values, sequence, head), output)?;
-            }
-            Ok::<(), Error>(())
-        })?;
-        Ok((T::to_cpu_storage_owned(output), shape))
+        let sizes = Sizes::new(self.heads, arguments.map(|(_, layout)| layout.dims()))?;
+        let [(q, q_layout), (k, k_layout), (v, v_layout)] = arguments;
+        let q = contiguous::<T>(q, q_layout, self.name())?;
+        let k = contiguous::<T>(k, k_layout, self.name())?;
+        let v = contiguous::<T>(v, v_layout, self.name())?;
+        let mut output = vec![T::ZERO; q.len()];
+        if !sizes.is_empty() {
+            let sequences = output.par_chunks_mut(sizes.query_size());
+            let sequences = sequences.zip(q.par_chunks(sizes.query_size()));
+            let sequences = sequences.zip(k.par_chunks(sizes.key_size()));
+            let sequences = sequences.zip(v.par_chunks(sizes.key_size()));
+            let sequences = sequences.with_min_len(sizes.min_sequences_per_task());
+            sequences.for_each(|(((output, q), k), v)| sizes.forward([q, k, v], output));
+        }
+        Ok((T::to_cpu_storage_owned(output), q_layout.shape().clone()))
     }
 
     /// The gradients of queries, keys and values.
     fn backward<T: Element>(
         &self,
-        arguments: [(&CpuStorage, &Layout); 3],
-        (gradient, gradient_layout): (&CpuStorage, &Layout),
+        tensors: [&Tensor; 3],
+        gradient: &Tensor,
     ) -> TensorResult<[Tensor; 3]> {
-        let (sizes, [queries, keys, values]) = self.place(arguments)?;
-        let start = gradient_layout.start_offset();
-        let gradient = Sequences { storage: gradient, start, n: sizes.n_queries };
-        let mut gradients = arguments.map(|(_, layout)| vec![T::ZERO; layout.shape().elem_count()]);
-        let [dq, dk, dv] = &mut gradients;
-        let (query_size, key_size) =
-            (sizes.n_queries * sizes.channels, sizes.n_keys * sizes.channels);
-        let sequences = dq.par_chunks_mut(query_size.max(1));
-        let sequences = sequences.zip(dk.par_chunks_mut(key_size.max(1)));
-        let sequences = sequences.zip(dv.par_chunks_mut(key_size.max(1))).enumerate();
-        let sequences = sequences.with_min_len(sizes.min_sequences_per_task());
-        sequences.try_for_each(|(sequence, ((dq, dk), dv))| {
-            sizes.backward([queries, keys, values, gradient], sequence, [dq, dk, dv])
-        })?;
+        let sizes = Sizes::new(self.heads, tensors.map(Tensor::dims))?;
+        let [queries, keys, values] = tensors;
+        let guards = [queries, keys, values, gradient].map(Tensor::storage_and_layout);
+        let slices = slices::<T>(&guards, self.name())?;
+        let mut gradients = tensors.map(|tensor| vec![T::ZERO; tensor.elem_count()]);
+        if !sizes.is_empty() {
+            let [dq, dk, dv] = &mut gradients;
+            let dq = dq.par_chunks_mut(sizes.query_size());
+            let sequences = dq.zip(dk.par_chunks_mut(sizes.key_size()));
+            let sequences = sequences.zip(dv.par_chunks_mut(sizes.key_size())).enumerate();
+            let sequences = sequences.with_min_len(sizes.min_sequences_per_task());
+            sequences.for_each(|(i, ((dq, dk), dv))| {
+                let (query_size, key_size) = (sizes.query_size(), sizes.key_size());
+                let widths = [query_size, key_size, key_size, query_size];
+                let of = |which: usize| &slices[which][i * widths[which]..][..widths[which]];
+                sizes.backward([of(0), of(1), of(2), of(3)], [dq, dk, dv]);
+            });
+        }
         let [dq, dk, dv] = gradients;
-        let [q_shape, k_shape, v_shape] = arguments.map(|(_, layout)| layout.shape().clone());
-        Ok([
-            Tensor::from_vec(dq, q_shape, &Device::Cpu)?,
-            Tensor::from_vec(dk, k_shape, &Device::Cpu)?,
-            Tensor::from_vec(dv, v_shape, &Device::Cpu)?,
-        ])
+        let to_tensor = |values, of: &Tensor| Tensor::from_vec(values, of.shape(), &Device::Cpu);
+        Ok([to_tensor(dq, queries)?, to_tensor(dk, keys)?, to_tensor(dv, values)?])
     }
 }
 
@@ -263,18 +251,10 @@ impl CustomOp3 for AttentionCore {
         _output: &Tensor,
         gradient: &Tensor,
     ) -> TensorResult<(Option<Tensor>, Option<Tensor>, Option<Tensor>)> {
-        let gradient = gradient.contiguous()?;
-        let guards = [queries, keys, values, &gradient].map(Tensor::storage_and_layout);
-        let [queries, keys, values, gradient] = &guards;
-        let arguments = [
-            (cpu_storage(&queries.0, self.name())?, queries.1),
-            (cpu_storage(&keys.0, self.name())?, keys.1),
-            (cpu_storage(&values.0, self.name())?, values.1),
-        ];
-        let gradient = (cpu_storage(&gradient.0, self.name())?, gradient.1);
-        let [dq, dk, dv] = match gradient.0 {
-            CpuStorage::F64(_) => self.backward::<f64>(arguments, gradient)?,
-            _ => self.backward::<f32>(arguments, gradient)?,
+        let (tensors, gradient) = ([queries, keys, values], gradient.contiguous()?);
+        let [dq, dk, dv] = match gradient.dtype() {
+            DType::F64 => self.backward::<f64>(tensors, &gradient)?,
+            _ => self.backward::<f32>(tensors, &gradient)?,
         };
         Ok((Some(dq), Some(dk), Some(dv)))
     }

@@ -3,8 +3,11 @@
 
 use std::ops::AddAssign;
 
-use candle_core::backend::BackendStorage;
-use candle_core::{CpuStorage, DType, Error, FloatDType, Layout, Result, Storage};
+use candle_core::{CpuStorage, FloatDType};
+use faer::traits::ComplexField;
+
+use crate::nn::workspace::{Pool, Workspace};
+
 /// Rows that one task works on, and over which a sum is taken before the partial sums are added.
 /// Fixed, so that results do not depend on the number of threads.
 pub(crate) const ROWS_PER_BLOCK: usize = 64;
@@ -16,14 +19,17 @@ const MIN_PARALLEL: usize = 16_384;
 const LANES: usize = 16;
 
 /// `f32` or `f64`, with what the kernels need.
-pub(crate) trait Element: FloatDType + AddAssign {
+pub(crate) trait Element: FloatDType + ComplexField + AddAssign {
     const ZERO: Self;
     const ONE: Self;
 
     /// eˣ.
     fn exp(self) -> Self;
     fn sqrt(self) -> Self;
-    fn slice_mut(storage: &mut CpuStorage) -> Result<&mut [Self]>;
+    /// The numbers of a storage of this type.
+    fn slice_mut(storage: &mut CpuStorage) -> Option<&mut [Self]>;
+    /// The buffers of this type.
+    fn pool(workspace: &Workspace) -> &Pool<Self>;
 
     /// 1/(1 + e⁻ˣ).
     #[inline(always)]
@@ -69,11 +75,15 @@ impl Element for f32 {
         f32::sqrt(self)
     }
 
-    fn slice_mut(storage: &mut CpuStorage) -> Result<&mut [Self]> {
+    fn slice_mut(storage: &mut CpuStorage) -> Option<&mut [Self]> {
         match storage {
-            CpuStorage::F32(values) => Ok(values),
-            other => Err(wrong_type(DType::F32, other)),
+            CpuStorage::F32(values) => Some(values),
+            _ => None,
         }
+    }
+
+    fn pool(workspace: &Workspace) -> &Pool<Self> {
+        &workspace.f32
     }
 }
 
@@ -91,48 +101,20 @@ impl Element for f64 {
         f64::sqrt(self)
     }
 
-    fn slice_mut(storage: &mut CpuStorage) -> Result<&mut [Self]> {
+    fn slice_mut(storage: &mut CpuStorage) -> Option<&mut [Self]> {
         match storage {
-            CpuStorage::F64(values) => Ok(values),
-            other => Err(wrong_type(DType::F64, other)),
+            CpuStorage::F64(values) => Some(values),
+            _ => None,
         }
     }
-}
 
-/// The numbers behind a tensor on the CPU.
-pub(crate) fn cpu_storage<'a>(storage: &'a Storage, op: &'static str) -> Result<&'a CpuStorage> {
-    match storage {
-        Storage::Cpu(storage) => Ok(storage),
-        _ => Err(Error::BackwardNotSupported { op }),
+    fn pool(workspace: &Workspace) -> &Pool<Self> {
+        &workspace.f64
     }
 }
 
-fn wrong_type(expected: DType, storage: &CpuStorage) -> Error {
-    Error::UnexpectedDType { expected, got: storage.dtype(), msg: "kernel" }
-}
-
-/// The numbers of a tensor that lies in one piece.
-pub(crate) fn contiguous<'a, T: Element>(
-    storage: &'a CpuStorage,
-    layout: &Layout,
-    op: &'static str,
-) -> Result<&'a [T]> {
-    let (start, end) = layout.contiguous_offsets().ok_or(Error::RequiresContiguous { op })?;
-    let all = T::cpu_storage_as_slice(storage)?;
-    all.get(start..end).ok_or(Error::RequiresContiguous { op })
-}
-
-/// The numbers of a tensor that lies in one piece, to be changed.
-pub(crate) fn contiguous_mut<'a, T: Element>(
-    storage: &'a mut CpuStorage,
-    layout: &Layout,
-    op: &'static str,
-) -> Result<&'a mut [T]> {
-    let (start, end) = layout.contiguous_offsets().ok_or(Error::RequiresContiguous { op })?;
-    T::slice_mut(storage)?.get_mut(start..end).ok_or(Error::RequiresContiguous { op })
-}
-
-/// Runs `work` compiled for the widest vector instructions that this machine has.
+/// Runs `work` compiled for the widest vector instructions that this machine has. Loops in it are
+/// `for` loops: `for_each` and `fold` may stay functions of their own, which are compiled without.
 #[inline(always)]
 pub(crate) fn vectorized<R>(work: impl FnOnce() -> R) -> R {
     pulp::Arch::new().dispatch(work)
@@ -152,7 +134,11 @@ pub(crate) fn sum_of<T: Element>(a: &[T], b: &[T], f: impl Fn(T, T) -> T) -> T {
     for ((lane, &a), &b) in lanes.iter_mut().zip(a_rest).zip(b_rest) {
         *lane += f(a, b);
     }
-    lanes.iter().fold(T::ZERO, |sum, &lane| sum + lane)
+    let mut sum = T::ZERO;
+    for lane in lanes {
+        sum += lane;
+    }
+    sum
 }
 
 /// The largest of `scale`·x; of an empty slice 0.
@@ -164,10 +150,18 @@ pub(crate) fn max_of<T: Element>(values: &[T], scale: T) -> T {
     let rest = chunks.remainder();
     let larger = |lane: T, x: T| if x > lane { x } else { lane };
     for chunk in chunks {
-        lanes.iter_mut().zip(chunk).for_each(|(lane, &x)| *lane = larger(*lane, x * scale));
+        for (lane, &x) in lanes.iter_mut().zip(chunk) {
+            *lane = larger(*lane, x * scale);
+        }
     }
-    lanes.iter_mut().zip(rest).for_each(|(lane, &x)| *lane = larger(*lane, x * scale));
-    lanes.iter().fold(first, |max, &lane| larger(max, lane))
+    for (lane, &x) in lanes.iter_mut().zip(rest) {
+        *lane = larger(*lane, x * scale);
+    }
+    let mut largest = first;
+    for lane in lanes {
+        largest = larger(largest, lane);
+    }
+    largest
 }
 
 /// How many blocks one task takes at least: all of them where two threads would not pay.

@@ -8,15 +8,13 @@
 //!
 //! Source: J. L. Ba et al., Layer Normalization, arXiv:1607.06450.
 
-use candle_core::{
-    CpuStorage, CustomOp3, DType, Device, Layout, Result as TensorResult, Shape, Tensor,
-};
+use candle_core::{CpuStorage, CustomOp3, Device, Layout, Result as TensorResult, Shape, Tensor};
 use rayon::prelude::*;
 
 use crate::nn::element::{
-    Element, ROWS_PER_BLOCK, contiguous, cpu_storage, min_blocks_per_task, sum_of, sum_of_rows,
-    vectorized,
+    Element, ROWS_PER_BLOCK, min_blocks_per_task, sum_of, sum_of_rows, vectorized,
 };
+use crate::nn::storage::{NumberType, contiguous, number_type, slices};
 use crate::nn::{Init, NnError, ParameterBuilder};
 
 /// ε.
@@ -60,19 +58,15 @@ impl LayerNorm {
     /// [`NnError::InputWidth`], [`NnError::NumberType`].
     pub fn forward(&self, x: &Tensor) -> Result<Tensor, NnError> {
         let expected = self.weight.elem_count();
-        let name = self.name.clone();
         if x.dims().last() != Some(&expected) {
-            return Err(NnError::InputWidth { name, expected, got: x.dims().to_vec() });
+            let (name, got) = (self.name.clone(), x.dims().to_vec());
+            return Err(NnError::InputWidth { name, expected, got });
         }
         let x = x.contiguous()?;
-        match x.dtype() {
-            DType::F32 => Ok(x.apply_op3(&self.weight, &self.bias, Normalize::<f32>::new())?),
-            DType::F64 => Ok(x.apply_op3(&self.weight, &self.bias, Normalize::<f64>::new())?),
-            other => {
-                let got = format!("{other:?}");
-                Err(NnError::NumberType { name, expected: "f32 or f64", got })
-            }
-        }
+        Ok(match number_type(&x, &self.name)? {
+            NumberType::F32 => x.apply_op3(&self.weight, &self.bias, Normalize::<f32>::new())?,
+            NumberType::F64 => x.apply_op3(&self.weight, &self.bias, Normalize::<f64>::new())?,
+        })
     }
 }
 
@@ -104,7 +98,9 @@ impl<T: Element> Normalize<T> {
         for ((dx, x), g) in rows.zip(g.chunks_exact(width)) {
             let (mean, inverse) = self.statistics(x);
             // x̂ first, which becomes the gradient in place.
-            dx.iter_mut().zip(x).for_each(|(dx, &x)| *dx = (x - mean) * inverse);
+            for (dx, &x) in dx.iter_mut().zip(x) {
+                *dx = (x - mean) * inverse;
+            }
             let sums = gamma_sums.iter_mut().zip(beta_sums.iter_mut());
             for (((gamma_sum, beta_sum), &normal), &g) in sums.zip(&*dx).zip(g) {
                 *gamma_sum += g * normal;
@@ -187,12 +183,8 @@ impl<T: Element> CustomOp3 for Normalize<T> {
         let gradient = gradient.contiguous()?;
         let width = gamma.elem_count();
         let guards = [x, &gradient, gamma].map(Tensor::storage_and_layout);
-        let mut slices = [&[] as &[T]; 3];
-        for (slice, (storage, layout)) in slices.iter_mut().zip(&guards) {
-            let storage = cpu_storage(storage, self.name())?;
-            *slice = contiguous::<T>(storage, layout, self.name())?;
-        }
-        let (dx, sums) = self.backward(slices);
+        let slices = slices::<T>(&guards, self.name())?;
+        let (dx, sums) = self.backward([slices[0], slices[1], slices[2]]);
         let (gamma_gradient, beta_gradient) = sums.split_at(width);
         let to_tensor = |values: &[T]| Tensor::from_slice(values, width, &Device::Cpu);
         let dx = Tensor::from_vec(dx, x.shape(), &Device::Cpu)?;
@@ -211,7 +203,7 @@ mod tests {
         assert_close, assert_gradients, random_tensor, random_variable,
     };
     use crate::nn::{Parameters, random_stream};
-    use candle_core::Var;
+    use candle_core::{DType, Var};
 
     fn layer(number_type: DType, width: usize) -> (Parameters, LayerNorm) {
         let mut parameters = Parameters::new(number_type);

@@ -33,9 +33,11 @@ mod checkpoint_tests;
 mod element;
 mod encoding;
 mod error;
+mod fused;
 #[cfg(test)]
 mod gradient_check;
 mod init;
+mod kernel;
 mod layer_norm;
 mod linear;
 mod mlp;
@@ -47,6 +49,8 @@ mod parameters;
 mod schedule;
 mod seed;
 mod softmax;
+mod storage;
+mod workspace;
 
 pub use activation::Activation;
 pub use attention::{Attention, AttentionConfig};

@@ -14,9 +14,10 @@ use candle_core::{DType, Tensor};
 use serde::{Deserialize, Serialize};
 
 use crate::nn::adam_moments::{Moments, Rates};
-use crate::nn::element::{Element, contiguous, cpu_storage, sum_of, vectorized};
+use crate::nn::element::{Element, sum_of, vectorized};
 use crate::nn::named_tensors::check_no_other;
 use crate::nn::parameters::Parameter;
+use crate::nn::storage::{contiguous, cpu_storage};
 use crate::nn::{NamedTensors, NnError, Parameters, Schedule};
 
 /// Numbers of a gradient that are squared and added in its own type, before the sums are added in

@@ -5,14 +5,15 @@
 //! ```
 
 use candle_core::{
-    CpuStorage, CustomOp1, CustomOp2, DType, Layout, Result as TensorResult, Shape, Tensor,
+    CpuStorage, CustomOp1, CustomOp2, Layout, Result as TensorResult, Shape, Tensor,
 };
 use rayon::prelude::*;
 
 use crate::nn::NnError;
 use crate::nn::element::{
-    Element, ROWS_PER_BLOCK, contiguous, max_of, min_blocks_per_task, sum_of, vectorized,
+    Element, ROWS_PER_BLOCK, max_of, min_blocks_per_task, sum_of, vectorized,
 };
+use crate::nn::storage::{NumberType, contiguous, number_type};
 
 /// Softmax of `scale`·x over the last dimension, which must be finite for the result to be.
 ///
@@ -23,15 +24,10 @@ use crate::nn::element::{
 /// [`NnError::NumberType`].
 pub fn softmax(x: &Tensor, scale: f64) -> Result<Tensor, NnError> {
     let x = x.contiguous()?;
-    match x.dtype() {
-        DType::F32 => Ok(x.apply_op1(Softmax { scale: scale as f32 })?),
-        DType::F64 => Ok(x.apply_op1(Softmax { scale })?),
-        other => Err(NnError::NumberType {
-            name: "softmax".to_owned(),
-            expected: "f32 or f64",
-            got: format!("{other:?}"),
-        }),
-    }
+    Ok(match number_type(&x, "softmax")? {
+        NumberType::F32 => x.apply_op1(Softmax { scale: scale as f32 })?,
+        NumberType::F64 => x.apply_op1(Softmax { scale })?,
+    })
 }
 
 struct Softmax<T> {
@@ -74,16 +70,22 @@ impl<T: Element> CustomOp1 for Softmax<T> {
 pub(crate) fn softmax_row<T: Element>(row: &mut [T], scale: T) {
     // The largest scaled score, taken off so that no exponential overflows.
     let largest = max_of(row, scale);
-    row.iter_mut().for_each(|x| *x = (*x * scale - largest).exp());
+    for x in row.iter_mut() {
+        *x = (*x * scale - largest).exp();
+    }
     let inverse = T::ONE / sum_of(row, row, |x, _| x);
-    row.iter_mut().for_each(|x| *x *= inverse);
+    for x in row {
+        *x *= inverse;
+    }
 }
 
 /// The gradient of x in place of that of y.
 #[inline(always)]
 pub(crate) fn softmax_backward_row<T: Element>(gradient: &mut [T], y: &[T], scale: T) {
     let mean = sum_of(y, gradient, |y, g| y * g);
-    gradient.iter_mut().zip(y).for_each(|(g, &y)| *g = scale * y * (*g - mean));
+    for (g, &y) in gradient.iter_mut().zip(y) {
+        *g = scale * y * (*g - mean);
+    }
 }
 
 /// The way back: of y and g.
@@ -130,6 +132,7 @@ mod tests {
     use crate::nn::gradient_check::{
         assert_close, assert_gradients, random_tensor, random_variable,
     };
+    use candle_core::DType;
 
     #[test]
     fn the_gradient_is_that_of_central_differences() {

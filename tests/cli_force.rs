@@ -1,0 +1,134 @@
+//! The commands of the force network: train, kill, resume, predict, evaluate's errors.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+const SCENARIO: &str = "assets/scenarios/pit_right_rear.toml";
+const DATA: &str = "datasets/fea";
+const PATIENCE: Duration = Duration::from_secs(300);
+
+const TINY: &str = "\
+[network]
+encoder_branches = [[8, 8, 4]]
+position_channels = 8
+attention_channels = 8
+attention_heads = 2
+attention_stride = 25
+trunk = [16, 8]
+factors = 2
+
+[training]
+epochs = 6
+checkpoint_epochs = 1
+
+[crush]
+folds = 2
+max_steps = 1
+";
+
+fn program() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_impactlab"));
+    command.current_dir(env!("CARGO_MANIFEST_DIR"));
+    command
+}
+
+fn train(folder: &TempDir, model: &Path) -> Command {
+    let config = folder.path().join("tiny.toml");
+    fs::write(&config, TINY).unwrap();
+    let mut command = program();
+    command.args(["train", "force", "--data", DATA, "--seed", "4"]);
+    command.arg("--config").arg(config).arg("--out").arg(model);
+    command
+}
+
+fn ok(output: Output) -> String {
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    assert!(output.status.success(), "{}", text(output.stderr));
+    text(output.stdout)
+}
+
+fn predict(model: &Path, extra: &[&str]) -> Output {
+    let mut command = program();
+    command.args(["predict", "force", "--scenario", SCENARIO, "--json", "--model"]).arg(model);
+    command.args(extra).output().unwrap()
+}
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
+}
+
+/// What a prediction says, without the name of the model.
+fn answer(model: &Path) -> Value {
+    let mut answer = json(&ok(predict(model, &["--body", "A"])));
+    answer.as_object_mut().unwrap().remove("model");
+    answer
+}
+
+#[test]
+fn train_kill_resume_predict() {
+    let folder = tempfile::tempdir().unwrap();
+    let [whole, killed] = ["whole", "killed"].map(|name| folder.path().join(name));
+    let told = json(&ok(train(&folder, &whole).arg("--json").output().unwrap()));
+    assert_eq!((&told["n_test"], &told["epochs"]), (&Value::from(25), &Value::from(6)));
+    assert_eq!(told["n_train"].as_u64().unwrap() + told["n_validation"].as_u64().unwrap(), 75);
+
+    // Killed for good (no signal that could be caught) as soon as there is a checkpoint.
+    let mut child = train(&folder, &killed).stderr(Stdio::null()).spawn().unwrap();
+    let checkpoint = PathBuf::from(format!("{}.training", killed.display()));
+    let started = Instant::now();
+    while !checkpoint.exists() && started.elapsed() < PATIENCE {
+        thread::sleep(Duration::from_millis(5));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(checkpoint.exists(), "no checkpoint within {PATIENCE:?}");
+    ok(train(&folder, &killed).arg("--resume").output().unwrap());
+    assert_eq!(answer(&killed), answer(&whole), "bit for bit");
+
+    files_of_a_prediction(&whole, folder.path());
+    let unknown = predict(&whole, &["--body", "Z"]);
+    let error = String::from_utf8(unknown.stderr).unwrap();
+    assert_eq!(error, "error: bullet body \"Z\" is unknown to the model, expected one of A, B\n");
+}
+
+fn files_of_a_prediction(model: &Path, folder: &Path) {
+    let out = folder.join("prediction");
+    ok(predict(model, &["--open-contact", "--samples", "2", "--out", out.to_str().unwrap()]));
+    let bands = fs::read_to_string(out.join("bands.csv")).unwrap();
+    assert_eq!(bands.lines().count(), 251);
+    assert!(bands.starts_with("time_s,fx_mean_n,fx_low_50_n,fx_high_50_n,"), "{bands:.80}");
+    assert!(out.join("sample_002.csv").exists() && !out.join("sample_003.csv").exists());
+    let mean = out.join("mean.csv");
+    ok(program().args(["check", mean.to_str().unwrap()]).output().unwrap());
+    let answer = json(&fs::read_to_string(out.join("prediction.json")).unwrap());
+    assert_eq!((&answer["is_contact_open"], &answer["is_body_open"]), (&true.into(), &true.into()));
+}
+
+#[test]
+fn what_is_no_model_is_said_in_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.safetensors");
+    fs::write(&path, "case,m_t_kg\n").unwrap();
+    let output = predict(&path, &[]);
+    assert_eq!(output.status.code(), Some(1));
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(error.lines().count(), 1, "{error}");
+    assert!(error.contains("x.safetensors: cannot be used as a model"), "{error}");
+}
+
+#[test]
+fn the_settings_can_be_printed_and_read_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["train", "force", "--data", DATA, "--out", "x", "--print-config"];
+    let printed = ok(program().args(arguments).output().unwrap());
+    let path = folder.path().join("config.toml");
+    fs::write(&path, &printed).unwrap();
+    let again = ok(program().args(arguments).arg("--config").arg(path).output().unwrap());
+    assert_eq!(again, printed);
+}
