@@ -4,6 +4,7 @@
 mod bullet;
 mod case;
 mod file;
+mod forecast;
 mod scenario;
 
 use crate::collision::{Footprint, PulseError, ScenarioError};
@@ -13,6 +14,7 @@ use crate::vehicle::{ContactPoint, Integrator, Motion, SimulationError, VehicleP
 
 pub use case::analyse_case;
 pub use file::{FileSetup, analyse_file};
+pub use forecast::{ForceForecast, ForecastSettings, Mode, Spread, pulse_curves};
 pub use scenario::{PulseSetup, analyse_scenario};
 
 /// With what a case is simulated.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use egui::Context;
 
-use crate::app::dialogs::{FileDialog, MappingDialog, Purpose};
+use crate::app::dialogs::{FileDialog, MODEL_ENDING, MappingDialog, Purpose};
 use crate::app::export;
 use crate::app::panes::{Pane, default_layout, show_pane};
 use crate::app::source::{Content, Source};
@@ -60,6 +60,24 @@ pub enum Command {
     CopyNumbers(Box<Figure>),
     /// Write the scenario to a file.
     SaveScenario(PathBuf),
+    /// Predict the force of the selected case.
+    PredictCase,
+    /// Predict the force of the scenario panel's scenario.
+    PredictScenario,
+    /// Answer by the model of this file; by the shipped one without.
+    UseModel(Option<PathBuf>),
+    /// Write the force model to a file.
+    SaveModel(PathBuf),
+    /// Train a force model.
+    StartTraining,
+    /// Hold the training up, or let it go on.
+    PauseTraining(bool),
+    /// End the training with the best weights so far.
+    CancelTraining,
+    /// Evaluate the force model on a data set.
+    Evaluate,
+    /// Stop evaluating.
+    CancelEvaluation,
     /// Bring a pane to the front.
     Show(Pane),
     /// Put all panes back.
@@ -125,6 +143,22 @@ impl State {
                     Err(error) => self.say(Severity::Error, error_chain(&error)),
                 }
             }
+            Command::PredictCase => self.predict_case(),
+            Command::PredictScenario => self.predict_scenario(),
+            Command::UseModel(path) => {
+                self.project.force.model = path;
+                self.session.force.model.reload();
+            }
+            Command::SaveModel(path) => self.save_model(path, context),
+            Command::StartTraining => self.start_training(context),
+            Command::PauseTraining(pause) => self.session.force.training.set_paused(pause),
+            Command::CancelTraining => self.session.force.training.cancel(),
+            Command::Evaluate => self.evaluate(context),
+            Command::CancelEvaluation => {
+                if let Some(job) = &self.session.force.evaluation.job {
+                    job.cancel();
+                }
+            }
             Command::Show(pane) => show_pane(&mut self.view.layout, pane),
             Command::ResetLayout => self.view.layout = default_layout(),
             Command::Say(severity, text) => self.say(severity, text),
@@ -137,6 +171,10 @@ impl State {
         for path in paths {
             if path.extension().is_some_and(|ending| ending == "toml") {
                 self.open_model(path);
+                continue;
+            }
+            if path.extension().is_some_and(|ending| ending == MODEL_ENDING) {
+                self.apply(Command::UseModel(Some(path)), context);
                 continue;
             }
             self.session.sources.retain(|source| source.opened != path);
@@ -190,6 +228,9 @@ impl State {
             self.project.subject = Some(subject);
             self.session.time_s = 0.0;
             self.session.fit_plots = true;
+            if self.view.force.follow_case {
+                self.predict_case();
+            }
         }
     }
 

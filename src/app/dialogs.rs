@@ -17,6 +17,9 @@ use crate::jobs::{Job, Update};
 /// What to do where the system has no file dialog.
 const NO_DIALOG: &str = "this system showed no file dialog (xdg-desktop-portal brings one); type the path in the Data pane or drop files here; figures are written by `impactlab render` too";
 
+/// Ending of model files.
+pub const MODEL_ENDING: &str = "safetensors";
+
 /// What a path is asked for.
 #[derive(Debug, Clone)]
 pub enum Purpose {
@@ -30,6 +33,10 @@ pub enum Purpose {
     Numbers(Box<Figure>),
     /// Save the scenario.
     Scenario,
+    /// Open a force model.
+    OpenModel,
+    /// Save the force model.
+    SaveModel,
 }
 
 /// A dialog that is answered faster than this was never seen: there is no native dialog.
@@ -71,10 +78,11 @@ impl FileDialog {
             return Vec::new();
         };
         vec![match &self.purpose {
-            Purpose::Folder | Purpose::Files => Command::Open(paths),
+            Purpose::Folder | Purpose::Files | Purpose::OpenModel => Command::Open(paths),
             Purpose::Picture(figure) => Command::Export(figure.clone(), with_ending(first, "png")),
             Purpose::Numbers(figure) => Command::Export(figure.clone(), with_ending(first, "csv")),
             Purpose::Scenario => Command::SaveScenario(with_ending(first, "toml")),
+            Purpose::SaveModel => Command::SaveModel(with_ending(first, MODEL_ENDING)),
         }]
     }
 }
@@ -96,6 +104,14 @@ async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
                 .pick_files()
                 .await;
             return files.unwrap_or_default().iter().map(|file| file.path().to_owned()).collect();
+        }
+        Purpose::OpenModel => {
+            let dialog =
+                dialog.set_title("Open a force model").add_filter("model", &[MODEL_ENDING]);
+            dialog.pick_file().await
+        }
+        Purpose::SaveModel => {
+            save(dialog.add_filter("model", &[MODEL_ENDING]), "force.safetensors").await
         }
         Purpose::Picture(_) => save(dialog.add_filter("picture", &["png"]), "figure.png").await,
         Purpose::Numbers(_) => save(dialog.add_filter("table", &["csv"]), "figure.csv").await,

@@ -4,10 +4,12 @@ use egui::{Align, Button, Layout, MenuBar, Panel, ProgressBar, RichText, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
+use crate::app::force::TrainingStatus;
 use crate::app::keyboard;
 use crate::app::panes::Pane;
 use crate::app::source::{Content, Source};
 use crate::app::state::{ReplayStatus, State};
+use crate::app::widgets::duration_text;
 use crate::data::Severity;
 use crate::jobs::Job;
 use crate::render::theme;
@@ -69,8 +71,15 @@ fn file_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     for (label, shortcut, purpose) in items {
         edit_item(ui, label, shortcut, (true, Command::Ask(purpose)), commands);
     }
-    if ui.button("Save scenario…").clicked() {
-        commands.push(Command::Ask(Purpose::Scenario));
+    let has_model = state.session.force.model.current.is_some();
+    for (label, enabled, purpose) in [
+        ("Save scenario…", true, Purpose::Scenario),
+        ("Open model…", true, Purpose::OpenModel),
+        ("Save model…", has_model, Purpose::SaveModel),
+    ] {
+        if ui.add_enabled(enabled, Button::new(label)).clicked() {
+            commands.push(Command::Ask(purpose));
+        }
     }
     ui.separator();
     ui.add_enabled_ui(!state.session.sources.is_empty(), |ui| {
@@ -134,6 +143,7 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
                 job_ui(ui, &format!("Simulating {name}"), job, cancel, commands);
             }
         }
+        training_job_ui(ui, &state.session.force.training, commands);
         let Some(latest) = state.session.messages.last() else {
             ui.weak("Ready. Drop a folder or a file here to open it.");
             return;
@@ -159,6 +169,27 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     });
 }
 
+/// A training under way, which is seen from every pane.
+fn training_job_ui(ui: &mut Ui, training: &TrainingStatus, commands: &mut Vec<Command>) {
+    if !training.is_running() {
+        return;
+    }
+    ui.horizontal(|ui| {
+        if ui.small_button("Show").clicked() {
+            commands.push(Command::Show(Pane::Training));
+        }
+        let what = if training.is_paused() { "Training, paused" } else { "Training" };
+        match training.progress() {
+            (Some(fraction), left) => {
+                let left = left.map_or(String::new(), |t| format!(": {} left", duration_text(t)));
+                let bar = ProgressBar::new(fraction).desired_width(420.0);
+                ui.add(bar.text(format!("{what}{left}")));
+            }
+            (None, _) => drop((ui.spinner(), ui.label(what))),
+        }
+    });
+}
+
 /// A running job: progress, time left, cancel.
 fn job_ui<T>(ui: &mut Ui, what: &str, job: &Job<T>, cancel: Command, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
@@ -167,8 +198,7 @@ fn job_ui<T>(ui: &mut Ui, what: &str, job: &Job<T>, cancel: Command, commands: &
         }
         let progress = job.progress();
         let left = progress.time_left(job.elapsed());
-        let left =
-            left.map_or(String::new(), |t| format!(", {:.0} s left", t.as_secs_f64().ceil()));
+        let left = left.map_or(String::new(), |t| format!(", {} left", duration_text(t)));
         let text = format!("{what}: {} of {}{left}", progress.done, progress.total);
         match progress.fraction() {
             Some(fraction) => ui.add(ProgressBar::new(fraction).desired_width(420.0).text(text)),

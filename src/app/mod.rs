@@ -5,6 +5,7 @@ mod case_table;
 mod command;
 mod dialogs;
 mod export;
+mod force;
 mod keyboard;
 mod menu;
 mod panels;
@@ -27,6 +28,7 @@ use crate::data::Severity;
 use crate::render::theme;
 
 pub use command::Command;
+pub use force::{ForceSession, Forecast, Phase};
 pub use panes::Pane;
 pub use source::{Content, Source};
 pub use state::{Project, ReplayStatus, State, Subject, VehicleChoice, View};
@@ -35,6 +37,8 @@ pub use state::{Project, ReplayStatus, State, Subject, VehicleChoice, View};
 const APP_ID: &str = "impactlab";
 /// The file that keeps the state.
 const STATE_FILE: &str = "state.json";
+/// The file beside it that keeps a training while it runs.
+const TRAINING_FILE: &str = "force-training.safetensors";
 
 /// A window that could not be opened.
 #[derive(Debug, thiserror::Error)]
@@ -74,6 +78,7 @@ impl App {
     /// Starts from what the last run left in `state_file`, if there is one, and keeps the state
     /// there.
     pub fn new(cc: &CreationContext<'_>, paths: Vec<PathBuf>, state_file: Option<PathBuf>) -> Self {
+        let training_file = state_file.as_ref().map(|file| file.with_file_name(TRAINING_FILE));
         let mut store = state_file.map(Store::new);
         let saved = store.as_mut().and_then(Store::read);
         let restored = saved.and_then(|text| State::restore(&text));
@@ -83,6 +88,7 @@ impl App {
             (true, false) => last_open,
             (true, true) => shipped_datasets().into_iter().collect(),
         };
+        state.session.force.checkpoint = training_file;
         state.apply(Command::Open(to_open), &cc.egui_ctx);
         if state.project.subject.is_some() {
             state.session.look_at = None; // the last run's subject stays
@@ -189,12 +195,18 @@ impl App {
     }
 }
 
-/// The shipped data: beside the current folder, the program, or the sources it was built from.
+/// The shipped data.
 fn shipped_datasets() -> Option<PathBuf> {
+    shipped("datasets/fea")?.parent().map(PathBuf::from)
+}
+
+/// A shipped file or folder: below the current folder, beside the program, or in the sources it was
+/// built from.
+fn shipped(path: &str) -> Option<PathBuf> {
     let program = std::env::current_exe().unwrap_or_default();
     let roots = [PathBuf::from(".")]
         .into_iter()
         .chain(program.ancestors().skip(1).map(PathBuf::from))
         .chain([PathBuf::from(env!("CARGO_MANIFEST_DIR"))]);
-    roots.map(|root| root.join("datasets")).find(|path| path.join("fea").is_dir())
+    roots.map(|root| root.join(path)).find(|path| path.exists())
 }

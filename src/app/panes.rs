@@ -10,6 +10,9 @@ use crate::app::command::Command;
 use crate::app::panels;
 use crate::app::state::{Project, Session, View};
 
+/// Panes after which a tab with several is called.
+const MAX_TITLES: usize = 2;
+
 /// Where the panes stand.
 pub type Layout = Tree<Pane>;
 
@@ -32,11 +35,17 @@ pub enum Pane {
     Force,
     /// Simulation against reference.
     Comparison,
+    /// What the force network predicts.
+    ForcePrediction,
+    /// How the force network learns.
+    Training,
+    /// How well the force network does.
+    Evaluation,
 }
 
 impl Pane {
     /// Every pane.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 11] = [
         Self::Data,
         Self::Cases,
         Self::Vehicle,
@@ -45,6 +54,9 @@ impl Pane {
         Self::Motion,
         Self::Force,
         Self::Comparison,
+        Self::ForcePrediction,
+        Self::Training,
+        Self::Evaluation,
     ];
 
     /// Its title.
@@ -58,12 +70,15 @@ impl Pane {
             Self::Motion => "Motion",
             Self::Force => "Force",
             Self::Comparison => "Comparison",
+            Self::ForcePrediction => "Force prediction",
+            Self::Training => "Training",
+            Self::Evaluation => "Evaluation",
         }
     }
 }
 
-/// Three columns: data and cases, with scenario and vehicle behind; scene and motion; force and
-/// figures.
+/// On the left data and cases, with scenario and vehicle behind; the rest is one case (scene and
+/// motion, force and figures) or, behind it, the force network.
 pub fn default_layout() -> Layout {
     let mut tiles = Tiles::default();
     let mut tabs = |panes: &[Pane]| {
@@ -73,23 +88,34 @@ pub fn default_layout() -> Layout {
     let (data, cases) = (tabs(&[Pane::Data]), tabs(&[Pane::Cases, Pane::Scenario, Pane::Vehicle]));
     let (scene, motion) = (tabs(&[Pane::Scene]), tabs(&[Pane::Motion]));
     let (force, comparison) = (tabs(&[Pane::Force]), tabs(&[Pane::Comparison]));
-    let mut column = |top, bottom, share: f32| {
-        let mut linear = Linear::new(LinearDir::Vertical, vec![top, bottom]);
-        linear.shares.set_share(top, share);
-        linear.shares.set_share(bottom, 1.0 - share);
+    let mut linear = |direction, parts: [(TileId, f32); 2]| {
+        let mut linear = Linear::new(direction, parts.map(|(tile, _)| tile).to_vec());
+        for (tile, share) in parts {
+            linear.shares.set_share(tile, share);
+        }
         tiles.insert_new(egui_tiles::Tile::Container(Container::Linear(linear)))
     };
-    let columns = [
-        (column(data, cases, 0.28), 0.27),
-        (column(scene, motion, 0.45), 0.43),
-        (column(force, comparison, 0.5), 0.30),
-    ];
-    let mut row = Linear::new(LinearDir::Horizontal, columns.map(|(tile, _)| tile).to_vec());
-    for (tile, share) in columns {
-        row.shares.set_share(tile, share);
-    }
+    let left = linear(LinearDir::Vertical, [(data, 0.28), (cases, 0.72)]);
+    let middle = linear(LinearDir::Vertical, [(scene, 0.45), (motion, 0.55)]);
+    let right = linear(LinearDir::Vertical, [(force, 0.5), (comparison, 0.5)]);
+    let case = linear(LinearDir::Horizontal, [(middle, 0.59), (right, 0.41)]);
+    let network = [Pane::ForcePrediction, Pane::Training, Pane::Evaluation];
+    let network = network.map(|pane| tiles.insert_pane(pane));
+    let work = tiles.insert_tab_tile(std::iter::once(case).chain(network).collect());
+    let mut row = Linear::new(LinearDir::Horizontal, vec![left, work]);
+    row.shares.set_share(left, 0.27);
+    row.shares.set_share(work, 0.73);
     let root = tiles.insert_new(egui_tiles::Tile::Container(Container::Linear(row)));
     Tree::new(Id::unique("panes"), root, tiles)
+}
+
+/// Whether a layout has every pane.
+pub fn is_complete(layout: &Layout) -> bool {
+    let has = |pane: &Pane| {
+        let mut tiles = layout.tiles.tiles();
+        tiles.any(|tile| matches!(tile, egui_tiles::Tile::Pane(other) if other == pane))
+    };
+    Pane::ALL.iter().all(has)
 }
 
 /// Brings a pane to the front.
@@ -121,6 +147,9 @@ impl Behavior<Pane> for PaneContext<'_> {
             Pane::Motion => panels::motion_ui(ui, self),
             Pane::Force => panels::force_ui(ui, self),
             Pane::Comparison => panels::comparison_ui(ui, self),
+            Pane::ForcePrediction => panels::prediction_ui(ui, self),
+            Pane::Training => panels::training_ui(ui, self),
+            Pane::Evaluation => panels::evaluation_ui(ui, self),
         });
         UiResponse::None
     }
@@ -129,7 +158,29 @@ impl Behavior<Pane> for PaneContext<'_> {
         pane.title().into()
     }
 
+    /// A tab with several panes is called after them.
+    fn tab_title_for_tile(&mut self, tiles: &Tiles<Pane>, tile_id: TileId) -> WidgetText {
+        let mut names = Vec::new();
+        collect_titles(tiles, tile_id, &mut names);
+        let more = if names.len() > MAX_TITLES { ", …" } else { "" };
+        names.truncate(MAX_TITLES);
+        format!("{}{more}", names.join(", ")).into()
+    }
+
     fn simplification_options(&self) -> SimplificationOptions {
         SimplificationOptions { all_panes_must_have_tabs: true, ..SimplificationOptions::default() }
+    }
+}
+
+/// The titles of the panes in a tile, in their order.
+fn collect_titles(tiles: &Tiles<Pane>, tile_id: TileId, titles: &mut Vec<&'static str>) {
+    match tiles.get(tile_id) {
+        Some(egui_tiles::Tile::Pane(pane)) => titles.push(pane.title()),
+        Some(egui_tiles::Tile::Container(container)) => {
+            for child in container.children() {
+                collect_titles(tiles, *child, titles);
+            }
+        }
+        None => {}
     }
 }

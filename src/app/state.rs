@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 use crate::analysis::{Analysis, FileSetup, PulseSetup};
 use crate::app::case_table::{CaseList, FinishedReplay};
 use crate::app::dialogs::{FileDialog, MappingDialog};
-use crate::app::panes::{Layout, default_layout};
+use crate::app::force::{ForceProject, ForceSession, ForceView};
+use crate::app::panes::{Layout, default_layout, is_complete};
 use crate::app::source::Source;
 use crate::collision::{ChannelClass, Scenario};
 use crate::compare::DatasetReplay;
@@ -86,6 +87,8 @@ pub struct Project {
     pub pulse: PulseSetup,
     /// What single files do not say.
     pub file_setup: FileSetup,
+    /// The force network: what it is asked and how it is trained.
+    pub force: ForceProject,
 }
 
 impl Default for Project {
@@ -102,6 +105,7 @@ impl Default for Project {
             scenario: Scenario::example(),
             pulse: PulseSetup::default(),
             file_setup: FileSetup::default(),
+            force: ForceProject::default(),
         }
     }
 }
@@ -122,6 +126,8 @@ pub struct View {
     pub sort_descending: bool,
     /// The dataset whose cases are listed.
     pub listed: Option<PathBuf>,
+    /// How the force network is shown.
+    pub force: ForceView,
     /// Where the panes stand.
     pub layout: Layout,
 }
@@ -135,6 +141,7 @@ impl Default for View {
             sort_column: None,
             sort_descending: false,
             listed: None,
+            force: ForceView::default(),
             layout: default_layout(),
         }
     }
@@ -149,6 +156,8 @@ pub struct Session {
     pub analysis: AnalysisStatus,
     /// Whole datasets, simulated.
     pub replays: Replays,
+    /// The force network.
+    pub force: ForceSession,
     /// Which cases of the listed data set are shown, in which order.
     pub cases: CaseList,
     /// The moment shown in the scene, s.
@@ -228,7 +237,10 @@ impl State {
     /// The saved state and the paths that were open. `None` if the text is from another version or
     /// damaged: the app then starts afresh.
     pub fn restore(text: &str) -> Option<(Self, Vec<PathBuf>)> {
-        let saved: Saved = serde_json::from_str(text).ok()?;
+        let mut saved: Saved = serde_json::from_str(text).ok()?;
+        if !is_complete(&saved.view.layout) {
+            saved.view.layout = default_layout(); // panes have been added since
+        }
         let state = Self { project: saved.project, view: saved.view, session: Session::default() };
         let mut sources = saved.sources;
         sources.dedup();
@@ -249,6 +261,7 @@ impl State {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::Pane;
 
     #[test]
     fn project_and_view_survive_a_restart() {
@@ -259,11 +272,26 @@ mod tests {
         state.project.channel_class = Some(ChannelClass::Cfc60);
         state.view.units = UnitSystem::Us;
         state.view.filter = "spin=1".to_owned();
+        state.project.force.scenario.mass_kg[1] = 1234.0;
+        state.project.force.model = Some(PathBuf::from("mine.safetensors"));
+        state.view.force.bands[0] = false;
         state.session.sources.push(Source::failed(PathBuf::from("a.csv"), "gone".to_owned()));
         let (restored, sources) = State::restore(&state.save().unwrap()).unwrap();
         assert_eq!(restored.project, state.project);
         assert_eq!(restored.view, state.view);
         assert_eq!(sources, [PathBuf::from("a.csv")]);
+    }
+
+    #[test]
+    fn a_layout_without_the_newer_panes_is_put_back() {
+        let mut state = State::default();
+        let tiles = &mut state.view.layout.tiles;
+        let pane =
+            |tile: &egui_tiles::Tile<Pane>| matches!(tile, egui_tiles::Tile::Pane(Pane::Training));
+        let training = tiles.iter().find(|(_, tile)| pane(tile)).map(|(id, _)| *id).unwrap();
+        tiles.remove(training);
+        let (restored, _) = State::restore(&state.save().unwrap()).unwrap();
+        assert_eq!(restored.view.layout, default_layout());
     }
 
     #[test]

@@ -37,6 +37,7 @@ impl State {
         let Session { cases, sources, replays, .. } = &mut self.session;
         cases.update(sources, replays, &self.view);
         self.request_analysis(context);
+        self.update_force(context);
         self.advance_time(context);
     }
 
@@ -162,7 +163,10 @@ impl State {
     /// Starts an analysis if the project has changed since the last one, and the data are there.
     fn request_analysis(&mut self, context: &Context) {
         let settled = self.session.sources.iter().filter(|source| source.is_settled()).count();
-        let status = &self.session.analysis;
+        let status = &mut self.session.analysis;
+        if let Some(requested) = &mut status.requested {
+            requested.force.clone_from(&self.project.force); // no part of an analysis
+        }
         let is_current =
             status.requested.as_deref() == Some(&self.project) && status.sources_seen == settled;
         if is_current {

@@ -53,6 +53,7 @@ mod tests {
             x: Axis::shown("Time", Quantity::Time, UnitSystem::Si),
             y: Axis::shown("Force", Quantity::Force, UnitSystem::Si),
             equal_aspect: false,
+            log_y: false,
             elements: vec![
                 Element::line("F_x, raw", Role::ComponentX, vec![[0.0, 1.5], [0.1, -2.0]]),
                 Element::VerticalLine { name: "start".to_owned(), role: Role::Muted, x: 0.05 },

@@ -69,11 +69,12 @@ pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
         x,
         y,
         equal_aspect: false,
+        log_y: false,
         elements,
     }
 }
 
-fn milliseconds() -> crate::units::Unit {
+pub(super) fn milliseconds() -> crate::units::Unit {
     let units = Quantity::Time.units();
     *units.iter().find(|unit| unit.symbol == "ms").unwrap_or(&units[0])
 }

@@ -49,5 +49,5 @@ pub fn impact_figure(
     let impulse = scaled([px, py], px.hypot(py));
     elements.push(arrow("impulse on the target", Role::Resultant, contact, impulse));
     let title = format!("{}: impulse and Δv at first contact", scenario.name);
-    Ok(Figure { title, x, y, equal_aspect: true, elements })
+    Ok(Figure { title, x, y, equal_aspect: true, log_y: false, elements })
 }

@@ -2,19 +2,26 @@
 //! panel on screen, the PNG and the CSV of a figure all come from the same [`Figure`].
 
 mod analysis;
+mod calibration;
 mod export;
 mod force;
+mod forecast;
 mod impact;
 mod model;
 mod motion;
 mod scene;
+mod training;
 
 pub use analysis::{
     analysis_force_figure, analysis_motion_figure, analysis_readout, analysis_scene_figure,
 };
+pub use calibration::{CoveragePoint, ParityPoint, coverage_figure, parity_figure, pit_figure};
 pub use export::write_figure_csv;
+use force::milliseconds;
 pub use force::{ForceFigure, force_figure};
+pub use forecast::{ForceComponent, ForecastFigure, forecast_figure};
 pub use impact::impact_figure;
 pub use model::{Axis, Band, Element, Figure, LineStyle, Role, Series};
 pub use motion::{MOTION_CHANNELS, motion_figure, motion_readout};
 pub use scene::{SceneFigure, SceneVehicle, pose_at, scene_figure, vehicle_outline};
+pub use training::{LossCurve, loss_figure};

@@ -13,6 +13,8 @@ pub struct Figure {
     pub y: Axis,
     /// Whether a metre is as long upwards as sideways: plans, not time histories.
     pub equal_aspect: bool,
+    /// Whether the vertical axis is logarithmic: every y is positive then.
+    pub log_y: bool,
     /// From back to front.
     pub elements: Vec<Element>,
 }
@@ -60,6 +62,10 @@ pub enum Role {
     Resultant,
     /// A classic pulse.
     Pulse,
+    /// What a network says, or does while it learns.
+    Model,
+    /// The same on what it has not learned from.
+    Validation,
     /// What stands back: raw data behind filtered, the road.
     Muted,
 }
@@ -96,6 +102,8 @@ pub struct Band {
     pub name: String,
     /// Meaning of the colour.
     pub role: Role,
+    /// How much of the ground it hides, 0 to 1: nested bands add up.
+    pub opacity: f32,
     /// Abscissae.
     pub x: Vec<f64>,
     /// Lower edge.
@@ -137,6 +145,11 @@ impl Element {
     /// A dashed line.
     pub fn dashed(name: impl Into<String>, role: Role, points: Vec<[f64; 2]>) -> Self {
         Self::Line(Series { name: name.into(), role, style: LineStyle::Dashed, points })
+    }
+
+    /// Points without a line.
+    pub fn points(name: impl Into<String>, role: Role, points: Vec<[f64; 2]>) -> Self {
+        Self::Points(Series { name: name.into(), role, style: LineStyle::Solid, points })
     }
 
     /// A closed outline.

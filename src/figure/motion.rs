@@ -33,6 +33,7 @@ pub fn motion_figure(
         x: x.clone(),
         y: y.clone(),
         equal_aspect: false,
+        log_y: false,
         elements: elements.into_iter().flatten().collect(),
     }
 }

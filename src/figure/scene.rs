@@ -69,7 +69,7 @@ pub fn scene_figure(input: &SceneFigure<'_>) -> Figure {
     for vehicle in input.vehicles {
         elements.extend(vehicle_elements(vehicle, input.time_s, x.unit));
     }
-    Figure { title: input.title.to_owned(), x, y, equal_aspect: true, elements }
+    Figure { title: input.title.to_owned(), x, y, equal_aspect: true, log_y: false, elements }
 }
 
 fn vehicle_elements(vehicle: &SceneVehicle<'_>, time_s: f64, unit: Unit) -> Vec<Element> {

@@ -79,6 +79,7 @@ mod tests {
             x: axis.clone(),
             y: axis,
             equal_aspect: false,
+            log_y: false,
             elements: vec![Element::line("line", Role::Simulation, points)],
         }
     }

@@ -6,6 +6,7 @@ mod plot;
 mod software;
 pub mod theme;
 mod thin;
+mod ticks;
 
 pub use offscreen::{Canvas, RenderError, draw_offscreen, figure_image, save_png};
 pub use plot::{FigureOptions, FigureResponse, figure_ui};

@@ -1,23 +1,24 @@
 //! A figure in egui_plot.
 
+use std::collections::BTreeSet;
+
 use egui::{Id, Stroke, Ui, Vec2b};
 use egui_plot::{
-    Arrows, FilledArea, GridInput, GridMark, Legend, Line, LineStyle as PlotLineStyle, Plot,
-    PlotPoint, PlotPoints, PlotUi, Points, Polygon, VLine,
+    Arrows, FilledArea, Legend, Line, LineStyle as PlotLineStyle, Plot, PlotPoint, PlotPoints,
+    PlotUi, Points, Polygon, VLine,
 };
 
 use crate::figure::{Element, Figure, LineStyle, Series};
 use crate::render::legend::emptiest_corner;
 use crate::render::theme;
 use crate::render::thin::thinned;
+use crate::render::ticks::{
+    X_TICK_CELLS, Y_TICK_CELLS, grid, log_grid, log_tick_label, tick_label,
+};
 use crate::units::significant;
 
-/// Smallest distance of labelled ticks, in multiples of egui_plot's smallest grid spacing (8 points).
-const X_TICK_CELLS: f64 = 8.0;
-/// As [`X_TICK_CELLS`], for the vertical axis.
-const Y_TICK_CELLS: f64 = 4.0;
-/// Unlabelled grid lines between two ticks.
-const MINOR_DIVISIONS: i64 = 5;
+/// Names in a legend above which it is written small.
+const LONG_LEGEND: usize = 8;
 
 /// How a figure is placed among others.
 #[derive(Debug, Clone)]
@@ -53,14 +54,15 @@ pub struct FigureResponse {
 /// Draws a figure into the space that is left; a hover reads values in the axes' units.
 pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> FigureResponse {
     let id = if options.id.is_empty() { &figure.title } else { &options.id };
-    let (x, y) = (figure.x.clone(), figure.y.clone());
+    let (x, y, log_y) = (figure.x.clone(), figure.y.clone(), figure.log_y);
     let readout = move |name: &str, at: PlotPoint| {
         let head = if name.is_empty() { String::new() } else { format!("{name}\n") };
+        let value = if log_y { 10.0_f64.powf(at.y) } else { at.y };
         format!(
             "{head}{} {}\n{} {}",
             significant(at.x),
             x.unit.symbol,
-            significant(at.y),
+            significant(value),
             y.unit.symbol
         )
     };
@@ -78,14 +80,20 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
             Some(readout(name, at))
         })
         .x_grid_spacer(|input| grid(input, X_TICK_CELLS))
-        .y_grid_spacer(|input| grid(input, Y_TICK_CELLS))
+        .y_grid_spacer(move |input| if log_y { log_grid(input) } else { grid(input, Y_TICK_CELLS) })
         .grid_fade(0.9)
         .x_axis_formatter(|mark, _| tick_label(mark))
-        .y_axis_formatter(|mark, _| tick_label(mark))
+        .y_axis_formatter(
+            move |mark, _| if log_y { log_tick_label(mark) } else { tick_label(mark) },
+        )
         .allow_scroll(false)
         .allow_drag(Vec2b::new(figure.equal_aspect, figure.equal_aspect));
     if options.legend {
         let legend = Legend::default().position(emptiest_corner(figure));
+        let legend = match n_names(figure) {
+            ..=LONG_LEGEND => legend,
+            _ => legend.text_style(egui::TextStyle::Small),
+        };
         plot = plot.legend(legend.follow_insertion_order(true).background_alpha(0.6));
     }
     if figure.equal_aspect {
@@ -113,7 +121,7 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
     let dark = ui.visuals().dark_mode;
     let response = plot.show(ui, |plot_ui| {
         for element in &figure.elements {
-            draw_element(plot_ui, element, dark);
+            draw_element(plot_ui, element, (dark, figure.log_y));
         }
         if let Some(x) = options.cursor_x {
             let stroke = Stroke::new(theme::LINE_WIDTH, theme::cursor_color(dark));
@@ -125,35 +133,11 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
     FigureResponse { picked_x: response.inner }
 }
 
-/// Ticks at 1, 2 or 5 times a power of ten, with fainter lines between.
-fn grid(input: GridInput, tick_cells: f64) -> Vec<GridMark> {
-    let wanted = input.base_step_size * tick_cells;
-    let magnitude = 10.0_f64.powf(wanted.log10().floor());
-    let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * magnitude);
-    let tick = steps.into_iter().find(|step| *step >= wanted).unwrap_or(wanted);
-    let minor = tick / MINOR_DIVISIONS as f64;
-    let (low, high) = input.bounds;
-    if !(minor > 0.0 && (high - low) / minor < 1e4) {
-        return Vec::new();
-    }
-    let indices = (low / minor).ceil() as i64..=(high / minor).floor() as i64;
-    indices
-        .map(|index| GridMark {
-            value: index as f64 * minor,
-            step_size: if index % MINOR_DIVISIONS == 0 { tick } else { minor },
-        })
-        .collect()
+fn n_names(figure: &Figure) -> usize {
+    figure.elements.iter().map(Element::name).collect::<BTreeSet<_>>().len()
 }
 
-/// As many decimals as the distance of the ticks needs.
-fn tick_label(mark: GridMark) -> String {
-    let decimals = (-mark.step_size.log10().floor()).clamp(0.0, 9.0) as usize;
-    let label = format!("{:.decimals$}", mark.value);
-    let is_negative_zero = label.starts_with('-') && label.bytes().all(|b| b"-0.".contains(&b));
-    if is_negative_zero { label.replace('-', "") } else { label }
-}
-
-fn draw_element<'a>(plot: &mut PlotUi<'a>, element: &'a Element, dark: bool) {
+fn draw_element<'a>(plot: &mut PlotUi<'a>, element: &'a Element, (dark, log_y): (bool, bool)) {
     let color = theme::color(element.role(), dark);
     let stroke = Stroke::new(theme::line_width(element.role()), color);
     let style = |series: &Series| match series.style {
@@ -161,7 +145,12 @@ fn draw_element<'a>(plot: &mut PlotUi<'a>, element: &'a Element, dark: bool) {
         LineStyle::Dashed => PlotLineStyle::dashed_loose(),
         LineStyle::Dotted => PlotLineStyle::dotted_loose(),
     };
-    let points = |series: &Series| PlotPoints::from(thinned(&series.points).into_owned());
+    let height = |y: f64| if log_y { y.log10() } else { y };
+    let points = |series: &Series| {
+        let mut points = thinned(&series.points).into_owned();
+        points.iter_mut().for_each(|[_, y]| *y = height(*y));
+        PlotPoints::from(points)
+    };
     match element {
         Element::Line(series) => {
             plot.line(Line::new(&series.name, points(series)).stroke(stroke).style(style(series)));
@@ -181,8 +170,10 @@ fn draw_element<'a>(plot: &mut PlotUi<'a>, element: &'a Element, dark: bool) {
             }
         }
         Element::Band(band) => {
-            let fill = color.gamma_multiply(theme::FILL_OPACITY);
-            plot.add(FilledArea::new(&band.name, &band.x, &band.low, &band.high).fill_color(fill));
+            let edge = |edge: &[f64]| edge.iter().map(|y| height(*y)).collect::<Vec<_>>();
+            let (low, high) = (edge(&band.low), edge(&band.high));
+            let area = FilledArea::new(&band.name, &band.x, &low, &high);
+            plot.add(area.fill_color(color.gamma_multiply(band.opacity)));
         }
         Element::VerticalLine { name, x, .. } => {
             plot.vline(VLine::new(name, *x).stroke(stroke).style(PlotLineStyle::dashed_dense()));

@@ -19,10 +19,10 @@ pub const FILL_OPACITY: f32 = 0.18;
 /// The colour of a role.
 pub fn color(role: Role, dark: bool) -> Color32 {
     let (light_ground, dark_ground) = match role {
-        Role::Simulation | Role::ComponentX => ([0, 114, 178], [86, 180, 233]),
+        Role::Simulation | Role::ComponentX | Role::Model => ([0, 114, 178], [86, 180, 233]),
         Role::Reference => ([60, 60, 60], [215, 215, 215]),
         Role::Target => ([0, 128, 96], [0, 190, 140]),
-        Role::Bullet | Role::ComponentY => ([213, 94, 0], [240, 130, 50]),
+        Role::Bullet | Role::ComponentY | Role::Validation => ([213, 94, 0], [240, 130, 50]),
         Role::Resultant => ([60, 60, 60], [225, 225, 225]),
         Role::Pulse => ([170, 80, 140], [220, 145, 190]),
         Role::Muted => ([150, 150, 150], [120, 120, 120]),

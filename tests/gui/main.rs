@@ -1,6 +1,8 @@
 //! The app, driven without a display and drawn on the CPU.
 
+mod force_network;
 mod harness;
+mod network_figures;
 mod pictures;
 mod snapshots;
 mod workflow;

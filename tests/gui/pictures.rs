@@ -7,7 +7,8 @@ use impactlab::app::{App, Command, Pane, Subject};
 
 use crate::harness::{apply, is_idle, open, step_until};
 
-fn save(harness: &mut Harness<'_, App>, name: &str) {
+/// Draws the window into a file.
+pub fn save(harness: &mut Harness<'_, App>, name: &str) {
     let image = harness.render().expect("the software renderer always draws");
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("pictures");
     std::fs::create_dir_all(&folder).expect("a folder for pictures");

@@ -3,19 +3,29 @@
 mod cases;
 mod comparison;
 mod data;
+mod evaluation;
+mod evaluation_plots;
+mod evaluation_tables;
 mod force;
 mod motion;
+mod prediction;
+mod prediction_form;
+mod prediction_numbers;
 mod scenario;
 mod scene;
+mod training;
 mod vehicle;
 
 pub use cases::cases_ui;
 pub use comparison::comparison_ui;
 pub use data::data_ui;
+pub use evaluation::evaluation_ui;
 pub use force::force_ui;
 pub use motion::motion_ui;
+pub use prediction::prediction_ui;
 pub use scenario::scenario_ui;
 pub use scene::scene_ui;
+pub use training::training_ui;
 pub use vehicle::vehicle_ui;
 
 use egui::{RichText, Ui};

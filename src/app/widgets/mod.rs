@@ -4,4 +4,4 @@ mod figure_frame;
 mod quantity;
 
 pub use figure_frame::figure_frame;
-pub use quantity::{quantity_field, value_row};
+pub use quantity::{SliderRange, duration_text, quantity_field, quantity_slider, value_row};

@@ -1,0 +1,239 @@
+//! A predicted force made ready to be shown: bands, mean, whole curves, and numbers with intervals.
+
+use std::f64::consts::TAU;
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use crate::collision::{PrincipalDirectionOfForce, Pulse, PulseError, PulseShape};
+use crate::force::metrics::BAND_LEVELS;
+use crate::numerics::{quantile_of_sorted, wrap_angle_rad};
+use crate::uncertainty::{
+    CURVE_INTERVAL_S, CurveBands, CurveFigures, CurveMixture, ForceCurve, MixtureError,
+    NormalMixture,
+};
+
+/// Curves drawn for the intervals that no formula gives: a 5 % tail then has 50 of them.
+const N_DRAWS: usize = 1000;
+
+/// How many whole curves to show, and from which seed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ForecastSettings {
+    /// Curves to show.
+    pub n_curves: usize,
+    /// Seed of all draws.
+    pub seed: u64,
+}
+
+/// A number with the central intervals that hold 50 % and 90 %, SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spread {
+    /// As likely exceeded as not.
+    pub median: f64,
+    /// Ends of the interval that holds 50 %.
+    pub half: [f64; 2],
+    /// Ends of the interval that holds 90 %.
+    pub ninety: [f64; 2],
+}
+
+/// One way in which a collision may go.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mode {
+    /// Its probability, 0 to 1.
+    pub weight: f64,
+    /// Impulse of its mean curve, N s.
+    pub impulse_n_s: [f64; 2],
+    /// Largest `|F|` of its mean curve, N.
+    pub peak_n: f64,
+    /// Mean duration, s.
+    pub duration_s: f64,
+}
+
+/// A predicted force.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForceForecast {
+    /// Bands at [`BAND_LEVELS`], in that order.
+    pub bands: CurveBands,
+    /// Mean curve; its duration is the median.
+    pub mean: ForceCurve,
+    /// Whole curves, drawn.
+    pub curves: Vec<ForceCurve>,
+    /// Impulse along x and y, N s, exact.
+    pub impulse_n_s: [Spread; 2],
+    /// Size of the impulse, N s, by draws.
+    pub impulse_magnitude_n_s: Spread,
+    /// Largest `|F|`, N, by draws.
+    pub peak_n: Spread,
+    /// When it is reached, s, by draws.
+    pub peak_time_s: Spread,
+    /// Duration, s, exact.
+    pub duration_s: Spread,
+    /// Principal direction of force of the target, rad clockwise from straight ahead, by draws: the
+    /// median in `[0, 2π)`, the ends around it without a jump.
+    pub pdof_rad: Spread,
+    /// The components of the mixture, the likeliest first.
+    pub modes: Vec<Mode>,
+}
+
+impl Spread {
+    /// Of a distribution that is known.
+    pub fn of(distribution: &NormalMixture) -> Self {
+        Self {
+            median: distribution.quantile(0.5),
+            half: distribution.interval(0.5),
+            ninety: distribution.interval(0.9),
+        }
+    }
+
+    /// Of draws, one or more; zeros without any.
+    pub fn of_draws(mut draws: Vec<f64>) -> Self {
+        draws.sort_by(f64::total_cmp);
+        let at = |probability| quantile_of_sorted(&draws, probability).unwrap_or(0.0);
+        Self { median: at(0.5), half: [at(0.25), at(0.75)], ninety: [at(0.05), at(0.95)] }
+    }
+
+    /// All three moved by the same amount.
+    fn moved(self, by: f64) -> Self {
+        let move_ends = |[low, high]: [f64; 2]| [low + by, high + by];
+        Self {
+            median: self.median + by,
+            half: move_ends(self.half),
+            ninety: move_ends(self.ninety),
+        }
+    }
+}
+
+impl ForceForecast {
+    /// Of a predicted distribution of curves. The shown curves are the first of those that make the
+    /// intervals.
+    ///
+    /// # Errors
+    /// [`MixtureError`], which a checked mixture does not give.
+    pub fn of(mixture: &CurveMixture, settings: ForecastSettings) -> Result<Self, MixtureError> {
+        let mut rng = ChaCha8Rng::seed_from_u64(settings.seed);
+        let mut curves = mixture.sample(N_DRAWS.max(settings.n_curves), &mut rng);
+        let draws = CurveFigures::of(&curves);
+        curves.truncate(settings.n_curves);
+        let duration_s = Spread::of(&mixture.duration_s());
+        let mean = ForceCurve { duration_s: duration_s.median, ..mixture.mean() };
+        Ok(Self {
+            bands: mixture.bands(&BAND_LEVELS)?,
+            impulse_n_s: [0, 1].map(|axis| Spread::of(&mixture.impulse(axis))),
+            impulse_magnitude_n_s: Spread::of_draws(draws.impulse_magnitude_n_s()),
+            peak_n: Spread::of_draws(draws.peak_n),
+            peak_time_s: Spread::of_draws(draws.peak_time_s),
+            pdof_rad: pdof_rad(mean.impulse_n_s(), &draws.impulse_n_s),
+            duration_s,
+            mean,
+            curves,
+            modes: modes(mixture),
+        })
+    }
+}
+
+/// Of impulses, around that of `mean`.
+fn pdof_rad(mean: [f64; 2], impulses: &[[f64; 2]]) -> Spread {
+    let angle = |impulse| PrincipalDirectionOfForce::from_impulse(impulse, 0.0);
+    let centre_rad = angle(mean).map_or(0.0, |pdof| pdof.angle_rad);
+    let off = |impulse: &[f64; 2]| Some(wrap_angle_rad(angle(*impulse)?.angle_rad - centre_rad));
+    let spread = Spread::of_draws(impulses.iter().filter_map(off).collect());
+    let median = spread.median + centre_rad;
+    spread.moved(centre_rad + median.rem_euclid(TAU) - median)
+}
+
+fn modes(mixture: &CurveMixture) -> Vec<Mode> {
+    let mode = |component: &crate::uncertainty::CurveComponent| {
+        let mean = ForceCurve::from_values(&component.mean);
+        Mode {
+            weight: component.weight,
+            impulse_n_s: mean.impulse_n_s(),
+            peak_n: mean.peak().0,
+            duration_s: mean.duration_s,
+        }
+    };
+    let mut modes: Vec<Mode> = mixture.components().iter().map(mode).collect();
+    modes.sort_by(|a, b| b.weight.total_cmp(&a.weight));
+    modes
+}
+
+/// The classic pulses with this impulse over this time, from the start of the time grid.
+///
+/// # Errors
+/// [`PulseError`] for a duration that is not positive.
+pub fn pulse_curves(
+    impulse_n_s: [f64; 2],
+    duration_s: f64,
+) -> Result<Vec<(PulseShape, ForceCurve)>, PulseError> {
+    let curve = |shape: PulseShape| {
+        let history =
+            Pulse::new(shape, impulse_n_s, 0.0, duration_s)?.to_history(CURVE_INTERVAL_S)?;
+        Ok((shape, ForceCurve { fx_n: history.fx_n, fy_n: history.fy_n, duration_s }))
+    };
+    PulseShape::ALL.into_iter().map(curve).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+    use crate::uncertainty::CurveComponent;
+
+    /// Half-sines along y with a share along x, of which one factor changes the height.
+    fn example() -> CurveMixture {
+        let component = |(weight, height_n): (f64, f64)| {
+            let sine = |i: usize| (std::f64::consts::PI * (i as f64 + 0.5) / 60.0).sin();
+            let force: Vec<f64> = (0..60).map(|i| height_n * sine(i)).collect();
+            let mean = [force.iter().map(|f| 0.2 * f).collect(), force, vec![0.06]].concat();
+            let factor: Vec<f64> = mean.iter().map(|value| 0.1 * value).collect();
+            let mut variance = vec![1e4; 121];
+            variance[120] = 1e-6;
+            let factors = DMatrix::from_column_slice(121, 1, &factor);
+            CurveComponent { weight, mean, factors, variance }
+        };
+        CurveMixture::new([(0.3, 50e3), (0.7, 80e3)].map(component).to_vec()).unwrap()
+    }
+
+    #[test]
+    fn numbers_lie_inside_their_intervals_and_the_intervals_in_each_other() {
+        let settings = ForecastSettings { n_curves: 5, seed: 3 };
+        let forecast = ForceForecast::of(&example(), settings).unwrap();
+        let [px, py] = forecast.impulse_n_s;
+        for (name, spread) in [
+            ("P_x", px),
+            ("P_y", py),
+            ("|P|", forecast.impulse_magnitude_n_s),
+            ("peak", forecast.peak_n),
+            ("its time", forecast.peak_time_s),
+            ("duration", forecast.duration_s),
+            ("PDOF", forecast.pdof_rad),
+        ] {
+            let [low, high] = spread.half;
+            assert!(low <= spread.median && spread.median <= high, "{name}: {spread:?}");
+            assert!(spread.ninety[0] <= low && high <= spread.ninety[1], "{name}: {spread:?}");
+        }
+        assert_eq!((forecast.curves.len(), forecast.bands.fx.len()), (5, 4));
+        assert!(forecast.modes.windows(2).all(|pair| pair[0].weight >= pair[1].weight));
+        assert_eq!(forecast, ForceForecast::of(&example(), settings).unwrap());
+    }
+
+    #[test]
+    fn a_direction_from_straight_ahead_does_not_jump() {
+        let impulses: Vec<[f64; 2]> = (-10..=10).map(|i| [-1000.0, 20.0 * f64::from(i)]).collect();
+        for mean in [[-1000.0, 100.0], [-1000.0, -100.0]] {
+            let spread = pdof_rad(mean, &impulses);
+            let [low, high] = spread.ninety;
+            assert!((0.0..TAU).contains(&spread.median), "{spread:?}");
+            assert!((high - low - 0.358).abs() < 0.01, "{spread:?}");
+        }
+    }
+
+    #[test]
+    fn pulses_carry_the_impulse() {
+        for (shape, curve) in pulse_curves([500.0, -3000.0], 0.0834).unwrap() {
+            let [px, py] = curve.impulse_n_s();
+            assert!((px - 500.0).abs() < 1e-9 && (py + 3000.0).abs() < 1e-9, "{shape:?}");
+        }
+        assert!(pulse_curves([1.0, 1.0], 0.0).is_err());
+    }
+}

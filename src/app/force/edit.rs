@@ -1,0 +1,97 @@
+//! What else changes in a scenario when a user changes one number of it.
+
+use crate::collision::Scenario;
+use crate::data::Side;
+use crate::force::ForceScenario;
+
+/// Where the first contact is taken to be along the target once it is no longer unknown, m from the
+/// CG: about the rear axle, where a PIT begins.
+const USUAL_CONTACT_X_M: f64 = -1.5;
+
+/// Changes the mass of the target (0) or the bullet (1). A yaw inertia that was known belonged to
+/// the old mass; the model then takes the usual one.
+pub fn set_mass(scenario: &mut ForceScenario, vehicle: usize, mass_kg: f64) {
+    scenario.mass_kg[vehicle] = mass_kg;
+    scenario.yaw_inertia_kg_m2[vehicle] = None;
+}
+
+/// Changes the bullet's heading; where its CG then stands is no longer known.
+pub fn set_bullet_heading(scenario: &mut ForceScenario, theta_b_rad: f64) {
+    scenario.theta_b_rad = theta_b_rad;
+    scenario.bullet_position_m = None;
+}
+
+/// Moves the first contact along the target's side, and the bullet with it.
+pub fn set_contact_x(scenario: &mut ForceScenario, x_m: f64) {
+    if let Some([old_m, _]) = scenario.contact_m
+        && let Some([bullet_m, _]) = &mut scenario.bullet_position_m
+    {
+        *bullet_m += x_m - old_m;
+    }
+    if let Some([contact_m, _]) = &mut scenario.contact_m {
+        *contact_m = x_m;
+    }
+}
+
+/// Leaves the first contact open.
+pub fn forget_contact(scenario: &mut ForceScenario) {
+    (scenario.contact_m, scenario.bullet_position_m) = (None, None);
+}
+
+/// Takes the first contact to be at a usual place of the struck side.
+pub fn know_contact(scenario: &mut ForceScenario) {
+    let half_width_m = Scenario::example().target.width_m / 2.0;
+    let y_m = if scenario.side == Side::Left { half_width_m } else { -half_width_m };
+    scenario.contact_m = Some([USUAL_CONTACT_X_M, y_m]);
+}
+
+/// Strikes the other side: the mirror image of the whole scenario.
+pub fn set_side(scenario: &mut ForceScenario, side: Side) {
+    if scenario.side != side {
+        *scenario = scenario.mirrored();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scenario() -> ForceScenario {
+        ForceScenario::from_scenario(&Scenario::example()).unwrap()
+    }
+
+    #[test]
+    fn the_bullet_moves_with_the_contact() {
+        let (before, mut after) = (scenario(), scenario());
+        let [x, y] = before.contact_m.unwrap();
+        set_contact_x(&mut after, x + 0.3);
+        assert_eq!(after.contact_m, Some([x + 0.3, y]));
+        let [before_x, _] = before.bullet_position_m.unwrap();
+        assert!((after.bullet_position_m.unwrap()[0] - before_x - 0.3).abs() < 1e-12);
+        forget_contact(&mut after);
+        set_contact_x(&mut after, 1.0);
+        assert_eq!((after.contact_m, after.bullet_position_m), (None, None));
+    }
+
+    #[test]
+    fn the_other_side_is_the_mirror_image() {
+        let (before, mut after) = (scenario(), scenario());
+        set_side(&mut after, before.side);
+        assert_eq!(after, before);
+        set_side(&mut after, Side::Left);
+        assert_eq!(after, before.mirrored());
+        forget_contact(&mut after);
+        know_contact(&mut after);
+        assert!(after.contact_m.unwrap()[1] > 0.5, "{after:?}");
+    }
+
+    #[test]
+    fn what_belonged_to_the_old_numbers_is_forgotten() {
+        let mut scenario = scenario();
+        set_mass(&mut scenario, 1, 3000.0);
+        assert!(scenario.yaw_inertia_kg_m2[0].is_some());
+        assert_eq!((scenario.mass_kg[1], scenario.yaw_inertia_kg_m2[1]), (3000.0, None));
+        set_bullet_heading(&mut scenario, 0.5);
+        assert_eq!((scenario.theta_b_rad, scenario.bullet_position_m), (0.5, None));
+    }
+}

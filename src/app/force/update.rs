@@ -1,0 +1,251 @@
+//! What happens between frames, and what the user asks for, about the force network.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use egui::Context;
+
+use crate::analysis::ForecastSettings;
+use crate::app::command::wake;
+use crate::app::force::evaluation::EvaluationRequest;
+use crate::app::force::training::TrainingData;
+use crate::app::force::{Forecast, Predictor, Question};
+use crate::app::source::{CheckedDataset, Source};
+use crate::app::state::{State, Subject};
+use crate::data::{DatasetKind, Severity};
+use crate::error_chain;
+use crate::force::{ForceCase, ForceScenario};
+use crate::jobs::{Job, Update};
+use crate::uncertainty::ForceCurve;
+
+/// The force that was recorded in the selected case, in the case's own axes.
+pub struct RecordedCase {
+    dataset: PathBuf,
+    /// Name of the case.
+    pub case: String,
+    /// What was known before it.
+    pub scenario: ForceScenario,
+    /// The force.
+    pub curve: ForceCurve,
+    /// As models see it.
+    pub canonical: ForceCase,
+}
+
+impl State {
+    /// Takes in what loader, predictor and training report, and asks for what is due.
+    pub(in crate::app) fn update_force(&mut self, context: &Context) {
+        let news = self.session.force.model.update(&self.project.force.model, wake(context));
+        if let Some(Err(problem)) = news {
+            // Without a shipped model the panel says what to do.
+            if self.project.force.model.is_some() {
+                self.say(Severity::Error, problem);
+            }
+        }
+        self.find_recorded_case();
+        self.poll_saving();
+        self.poll_training();
+        self.session.force.evaluation.poll();
+        self.poll_predictor();
+        self.ask_predictor(context);
+    }
+
+    fn poll_training(&mut self) {
+        let force = &mut self.session.force;
+        match force.training.poll() {
+            None => {}
+            Some(Ok(model)) => {
+                let record = model.record();
+                let name = format!("trained on {}, epoch {}", record.data, record.best_epoch);
+                let text = format!("training over: {name} of {}", record.history.len());
+                force.model.take_trained(model, name);
+                self.say(Severity::Info, text);
+            }
+            Some(Err(problem)) => self.say(Severity::Error, format!("training: {problem}")),
+        }
+    }
+
+    fn poll_predictor(&mut self) {
+        let force = &mut self.session.force;
+        let Some(predictor) = &mut force.predictor else { return };
+        if let Some(answer) = predictor.answer() {
+            force.forecast = Some(answer.map(Arc::new));
+        }
+    }
+
+    /// Asks if anything has changed since the last question.
+    fn ask_predictor(&mut self, context: &Context) {
+        let force = &mut self.session.force;
+        let Some(current) = &force.model.current else { return };
+        let question = Question {
+            model: Arc::clone(&current.model),
+            scenario: self.project.force.scenario.clone(),
+            settings: ForecastSettings {
+                n_curves: self.view.force.n_curves,
+                seed: self.view.force.seed,
+            },
+        };
+        if force.asked.as_ref().is_some_and(|asked| asked.is_same(&question)) {
+            return;
+        }
+        let is_asked =
+            force.predictor.as_ref().is_some_and(|predictor| predictor.ask(question.clone()));
+        if !is_asked {
+            match Predictor::spawn(wake(context)) {
+                Ok(predictor) => {
+                    predictor.ask(question.clone());
+                    force.predictor = Some(predictor);
+                }
+                Err(error) => force.forecast = Some(Err(error.to_string())),
+            }
+        }
+        force.asked = Some(question);
+    }
+
+    /// Looks up the force of the selected case once it is selected.
+    fn find_recorded_case(&mut self) {
+        let Some(Subject::Case { dataset, case }) = &self.project.subject else {
+            self.session.force.recorded = None;
+            return;
+        };
+        let recorded = &self.session.force.recorded;
+        if recorded.as_ref().is_some_and(|r| r.dataset == *dataset && r.case == *case) {
+            return;
+        }
+        self.session.force.recorded = force_case(&self.session.sources, (dataset, case));
+    }
+
+    /// Predicts the selected case.
+    pub(in crate::app) fn predict_case(&mut self) {
+        self.find_recorded_case();
+        if let Some(recorded) = &self.session.force.recorded {
+            self.project.force.scenario = recorded.scenario.clone();
+            self.project.force.name = recorded.case.clone();
+            self.session.fit_plots = true;
+        }
+    }
+
+    /// Predicts the scenario of the scenario panel.
+    pub(in crate::app) fn predict_scenario(&mut self) {
+        match ForceScenario::from_scenario(&self.project.scenario) {
+            Ok(scenario) => {
+                self.project.force.scenario = scenario;
+                self.project.force.name = self.project.scenario.name.clone();
+                self.session.fit_plots = true;
+            }
+            Err(error) => self.say(Severity::Error, error_chain(&error)),
+        }
+    }
+
+    /// Starts a training on the chosen data.
+    pub(in crate::app) fn start_training(&mut self, context: &Context) {
+        let form = &self.project.force.training;
+        let datasets = force_datasets(&self.session.sources);
+        let chosen = datasets.iter().find(|(path, _)| Some(*path) == form.dataset.as_deref());
+        let Some(&(path, checked)) = chosen.or(datasets.first()) else {
+            self.say(Severity::Warning, "open a force data set to train on first");
+            return;
+        };
+        let others: Vec<_> =
+            datasets.iter().filter(|(other, _)| form.use_others && *other != path).collect();
+        let names = std::iter::once(path).chain(others.iter().map(|(path, _)| *path));
+        let data = TrainingData {
+            name: names.map(source_name).collect::<Vec<_>>().join(" and "),
+            dataset: Arc::clone(checked),
+            extra: others.into_iter().map(|(_, checked)| Arc::clone(checked)).collect(),
+        };
+        let settings = (form, self.session.force.checkpoint.clone());
+        if let Err(error) = self.session.force.training.start(data, settings, wake(context)) {
+            self.say(Severity::Error, error.to_string());
+        }
+    }
+
+    /// Evaluates the current model on the chosen data.
+    pub(in crate::app) fn evaluate(&mut self, context: &Context) {
+        let datasets = force_datasets(&self.session.sources);
+        let wanted = self.view.force.evaluated.as_deref();
+        let chosen = datasets.iter().find(|(path, _)| Some(*path) == wanted);
+        let dataset = chosen
+            .or(datasets.first())
+            .map(|(path, checked)| (source_name(path), Arc::clone(checked)));
+        let (Some((data, dataset)), Some(current)) = (dataset, &self.session.force.model.current)
+        else {
+            self.say(Severity::Warning, "an evaluation needs a force model and a force data set");
+            return;
+        };
+        let request = EvaluationRequest {
+            model: Arc::clone(&current.model),
+            name: current.name.clone(),
+            data,
+            dataset,
+            all: self.view.force.evaluate_all,
+        };
+        if let Err(error) = self.session.force.evaluation.start(request, wake(context)) {
+            self.say(Severity::Error, error.to_string());
+        }
+    }
+
+    /// Writes the current model to a file.
+    pub(in crate::app) fn save_model(&mut self, path: PathBuf, context: &Context) {
+        let Some(current) = &self.session.force.model.current else {
+            self.say(Severity::Warning, "there is no model to save");
+            return;
+        };
+        let model = Arc::clone(&current.model);
+        let job = Job::spawn("save model", wake(context), move |_| {
+            model.save(&path).map(|()| path).map_err(|error| error_chain(&error))
+        });
+        match job {
+            Ok(job) => self.session.force.saving = Some(job),
+            Err(error) => self.say(Severity::Error, error.to_string()),
+        }
+    }
+
+    fn poll_saving(&mut self) {
+        let Some(job) = &mut self.session.force.saving else { return };
+        let result = match job.poll() {
+            Update::Running => return,
+            Update::Finished(result) => result,
+            Update::Panicked(text) => Err(format!("internal error: {text}")),
+            Update::Gone => Err("the model was not saved".to_owned()),
+        };
+        self.session.force.saving = None;
+        match result {
+            Ok(path) => {
+                self.say(Severity::Info, format!("{} written", path.display()));
+                self.session.force.model.saved_as(&path);
+                self.project.force.model = Some(path);
+            }
+            Err(problem) => self.say(Severity::Error, problem),
+        }
+    }
+
+    /// What the network says of the collision, as far as it has answered.
+    pub fn forecast(&self) -> Option<&Forecast> {
+        self.session.force.forecast.as_ref()?.as_ref().ok().map(Arc::as_ref)
+    }
+}
+
+/// The force data sets that are open, by path.
+pub fn force_datasets(sources: &[Source]) -> Vec<(&Path, &Arc<CheckedDataset>)> {
+    let datasets = sources.iter().filter_map(|s| Some((s.path.as_path(), s.dataset()?)));
+    datasets.filter(|(_, checked)| checked.dataset.kind == DatasetKind::Force).collect()
+}
+
+/// The last part of a data set's path.
+pub fn source_name(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+fn force_case(sources: &[Source], (path, name): (&Path, &str)) -> Option<RecordedCase> {
+    let source = sources.iter().find(|source| source.path == path)?;
+    let checked = source.dataset().filter(|c| c.dataset.kind == DatasetKind::Force)?;
+    let case = checked.dataset.case(name)?;
+    let canonical = ForceCase::from_case(case).ok()?;
+    Some(RecordedCase {
+        dataset: path.to_owned(),
+        case: name.to_owned(),
+        scenario: ForceScenario::from_case(case).ok()?,
+        curve: canonical.as_recorded(&canonical.curve),
+        canonical,
+    })
+}

@@ -1,0 +1,136 @@
+//! Plots of an evaluation: predicted against observed, honesty of the spread, sample cases.
+
+use egui::{Id, Ui};
+
+use crate::analysis::Spread;
+use crate::app::command::Command;
+use crate::app::force::{EvaluatedCase, FinishedEvaluation};
+use crate::app::state::View;
+use crate::app::widgets::figure_frame;
+use crate::figure::{
+    CoveragePoint, Figure, ForceComponent, ForecastFigure, ParityPoint, Role, coverage_figure,
+    forecast_figure, parity_figure, pit_figure,
+};
+use crate::force::metrics::{BAND_LEVELS, Coverage};
+use crate::render::FigureOptions;
+use crate::units::Quantity;
+
+/// Height of a plot, points.
+const PLOT_HEIGHT: f32 = 240.0;
+/// Plots side by side.
+const N_COLUMNS: usize = 3;
+
+/// Draws all plots.
+pub fn plots_ui(
+    ui: &mut Ui,
+    finished: &FinishedEvaluation,
+    (view, reset): (&mut View, bool),
+    commands: &mut Vec<Command>,
+) {
+    let mut figures = vec![
+        parity(finished, ("Impulse", "|P|", Quantity::Impulse), view),
+        parity(finished, ("Peak force", "Peak |F|", Quantity::Force), view),
+    ];
+    figures.extend(calibration(finished));
+    rows_ui(ui, &figures, (None, reset), commands);
+    ui.horizontal(|ui| {
+        ui.strong("Sample cases, from the smallest to the largest impulse");
+        for component in ForceComponent::ALL {
+            ui.radio_value(&mut view.force.sample_component, component, component.label());
+        }
+    });
+    let samples: Vec<Figure> = finished
+        .samples
+        .iter()
+        .map(|(case, forecast)| {
+            let input = ForecastFigure {
+                name: &case.name,
+                forecast,
+                levels: &BAND_LEVELS,
+                recorded: Some(("recorded", &case.curve)),
+                physics: None,
+                pulses: &[],
+                units: view.units,
+            };
+            let figure = forecast_figure(view.force.sample_component, &input);
+            let kind = if case.is_clean() { "" } else { ", hooked or cut" };
+            Figure { title: format!("{}{kind}", case.name), ..figure }
+        })
+        .collect();
+    rows_ui(ui, &samples, (Some(Id::unique("samples")), reset), commands);
+}
+
+/// Figures side by side; those of a group share the time axis and the legend of the first.
+fn rows_ui(
+    ui: &mut Ui,
+    figures: &[Figure],
+    (group, reset): (Option<Id>, bool),
+    commands: &mut Vec<Command>,
+) {
+    for (row, figures) in figures.chunks(N_COLUMNS).enumerate() {
+        ui.columns(N_COLUMNS, |columns| {
+            for (place, (ui, figure)) in columns.iter_mut().zip(figures).enumerate() {
+                let options = FigureOptions {
+                    id: format!("evaluation {} {}", group.is_some(), row * N_COLUMNS + place),
+                    link: group,
+                    height: Some(PLOT_HEIGHT),
+                    reset,
+                    legend: group.is_none() || row + place == 0,
+                    ..FigureOptions::default()
+                };
+                figure_frame(ui, (&figure.title, figure), &options, commands);
+            }
+        });
+    }
+}
+
+fn parity(
+    finished: &FinishedEvaluation,
+    (title, label, quantity): (&str, &str, Quantity),
+    view: &View,
+) -> Figure {
+    let of = |evaluated: &EvaluatedCase| -> (f64, Spread) {
+        let [px, py] = evaluated.case.impulse_n_s;
+        if quantity == Quantity::Impulse {
+            (px.hypot(py), evaluated.impulse_n_s)
+        } else {
+            (evaluated.case.peak_n, evaluated.peak_n)
+        }
+    };
+    let point = |evaluated: &EvaluatedCase| {
+        let (observed, spread) = of(evaluated);
+        ParityPoint {
+            observed,
+            predicted: spread.median,
+            interval: Some(spread.ninety),
+            is_clean: evaluated.case.is_clean(),
+        }
+    };
+    let points: Vec<ParityPoint> = finished.cases.iter().map(point).collect();
+    parity_figure((title, label, "90 % interval"), &points, (quantity, view.units))
+}
+
+fn calibration(finished: &FinishedEvaluation) -> Vec<Figure> {
+    let Some(spread) = &finished.evaluation.figures.overall.probabilistic else {
+        return Vec::new();
+    };
+    let points = |coverage: &[Coverage]| -> Vec<CoveragePoint> {
+        let point = |of: &Coverage| CoveragePoint {
+            level: of.level,
+            share: of.share,
+            standard_error: of.standard_error,
+        };
+        coverage.iter().map(point).collect()
+    };
+    let rows = [
+        ("F(t)", Role::Model, points(&spread.force_n)),
+        ("|P|", Role::Validation, points(&spread.impulse_n_s)),
+        ("peak", Role::Pulse, points(&spread.peak_n)),
+        ("duration", Role::Target, points(&spread.duration_s)),
+    ];
+    vec![
+        coverage_figure("Coverage", &rows),
+        pit_figure("PIT of F_x(t) and F_y(t)", &spread.pit_force),
+        pit_figure("PIT of P_x and P_y", &spread.pit_impulse),
+    ]
+}

@@ -1,0 +1,177 @@
+//! The tables of an evaluation.
+
+use egui::{Grid, Ui};
+
+use crate::app::force::{FinishedEvaluation, ForceView, Statistic};
+use crate::force::metrics::{BAND_LEVELS, Coverage, Figures, ProbabilisticFigures};
+use crate::force::{Evaluation, ModelFigures};
+use crate::numerics::Summary;
+use crate::units::{Quantity, UnitSystem};
+
+/// Draws errors, coverage and errors by cluster.
+pub fn tables_ui(
+    ui: &mut Ui,
+    finished: &FinishedEvaluation,
+    (view, units): (&mut ForceView, UnitSystem),
+) {
+    let evaluation = &finished.evaluation;
+    ui.horizontal(|ui| {
+        ui.label("Errors, over cases");
+        for statistic in Statistic::ALL {
+            ui.radio_value(&mut view.statistic, statistic, statistic.label());
+        }
+    });
+    let models = [
+        (evaluation.model.as_str(), &evaluation.figures),
+        ("classic pulse", &evaluation.baselines.pulse),
+        ("nearest case", &evaluation.baselines.nearest),
+        ("Gaussian processes", &evaluation.baselines.statistical),
+    ];
+    errors_ui(ui, models, view.statistic);
+    coverage_ui(ui, models);
+    clusters_ui(ui, evaluation, (view.statistic, units));
+}
+
+fn errors_ui(ui: &mut Ui, models: [(&str, &ModelFigures); 4], statistic: Statistic) {
+    type Choose = fn(&ModelFigures) -> Option<&Figures>;
+    let groups: [(&str, Choose); 2] =
+        [("all cases", |of| Some(&of.overall)), ("separated", |of| of.separated.as_ref())];
+    Grid::new("force errors").striped(true).show(ui, |ui| {
+        titles_ui(
+            ui,
+            &[
+                ("", ""),
+                (
+                    "RMSE/peak",
+                    "Root mean square error over the 250 ms, both axes, over the peak of |F|",
+                ),
+                ("history", "‖F̂ − F‖ / ‖F‖, both axes"),
+                ("impulse", "|P̂ − P| / |P| of the impulse vector"),
+                ("peak", "Error of the largest |F| over the largest |F|"),
+                ("duration", "Error of the duration over the duration"),
+            ],
+        );
+        for (group, choose) in groups {
+            let Some(first) = choose(models[0].1) else { continue };
+            ui.strong(format!("{group}, {}", first.n_cases))
+                .on_hover_text("Separated: without cases that hook or are still in contact");
+            ui.end_row();
+            for (name, of) in models {
+                if let Some(figures) = choose(of) {
+                    error_row_ui(ui, name, (figures, statistic));
+                }
+            }
+        }
+    });
+}
+
+fn coverage_ui(ui: &mut Ui, models: [(&str, &ModelFigures); 4]) {
+    ui.add_space(6.0);
+    ui.strong("Share of observed values inside the intervals, ± its standard error");
+    Grid::new("force coverage").striped(true).show(ui, |ui| {
+        let levels = BAND_LEVELS.map(|level| format!("{:.0} %", level * 100.0));
+        let titles: Vec<(&str, &str)> = ["", "of"]
+            .into_iter()
+            .chain(levels.iter().map(String::as_str))
+            .map(|t| (t, ""))
+            .collect();
+        titles_ui(ui, &titles);
+        for (name, of) in models {
+            if let Some(spread) = &of.overall.probabilistic {
+                coverage_rows_ui(ui, name, spread);
+            }
+        }
+    });
+}
+
+fn clusters_ui(ui: &mut Ui, evaluation: &Evaluation, (statistic, units): (Statistic, UnitSystem)) {
+    ui.add_space(6.0);
+    ui.strong("By cluster of impulse")
+        .on_hover_text("k-means of the training cases by impulse and force, ordered by impulse");
+    Grid::new("force clusters").striped(true).show(ui, |ui| {
+        titles_ui(
+            ui,
+            &[
+                ("", ""),
+                ("cases", ""),
+                ("centre", "Impulse at the cluster's centre"),
+                ("history", "Error of the model"),
+                ("impulse", "Error of the model"),
+                ("peak", "Error of the model"),
+                ("history, Gaussian processes", "Error of the strongest baseline"),
+            ],
+        );
+        for cluster in &evaluation.clusters {
+            ui.label(&cluster.name);
+            ui.monospace(cluster.model.n_cases.to_string());
+            ui.monospace(Quantity::Impulse.shown(cluster.impulse_n_s, units));
+            for error in [
+                &cluster.model.history_error,
+                &cluster.model.impulse_error,
+                &cluster.model.peak_error,
+                &cluster.statistical.history_error,
+            ] {
+                ui.monospace(percent(statistic.of(error)));
+            }
+            ui.end_row();
+        }
+    });
+}
+
+/// A row of titles with hints.
+fn titles_ui(ui: &mut Ui, titles: &[(&str, &str)]) {
+    for (title, hint) in titles {
+        let label = ui.strong(*title);
+        if !hint.is_empty() {
+            label.on_hover_text(*hint);
+        }
+    }
+    ui.end_row();
+}
+
+fn error_row_ui(ui: &mut Ui, name: &str, (figures, statistic): (&Figures, Statistic)) {
+    ui.label(name);
+    for error in [
+        &figures.rmse_over_peak,
+        &figures.history_error,
+        &figures.impulse_error,
+        &figures.peak_error,
+        &figures.duration_error,
+    ] {
+        let all = Statistic::ALL.map(|s| format!("{} {}", s.label(), percent(s.of(error))));
+        ui.monospace(percent(statistic.of(error))).on_hover_text(all.join("\n"));
+    }
+    ui.end_row();
+}
+
+fn coverage_rows_ui(ui: &mut Ui, name: &str, spread: &ProbabilisticFigures) {
+    let quantities = [
+        ("F(t)", &spread.force_n),
+        ("|P|", &spread.impulse_n_s),
+        ("peak", &spread.peak_n),
+        ("duration", &spread.duration_s),
+    ];
+    for (quantity, coverage) in quantities {
+        ui.label(name);
+        ui.label(quantity);
+        for Coverage { share, standard_error, .. } in coverage {
+            ui.monospace(format!("{:.0} ± {:.0} %", share * 100.0, standard_error * 100.0));
+        }
+        ui.end_row();
+    }
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.1} %", share * 100.0)
+}
+
+impl Statistic {
+    /// Of a summary.
+    fn of(self, summary: &Summary) -> f64 {
+        match self {
+            Self::Median => summary.median,
+            Self::Mean => summary.mean,
+            Self::P90 => summary.p90,
+        }
+    }
+}

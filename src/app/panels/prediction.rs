@@ -1,0 +1,212 @@
+//! What the force network says of a collision: bands of the force over time, and numbers.
+
+use egui::{Id, Panel, RichText, ScrollArea, Ui};
+
+use crate::app::command::Command;
+use crate::app::dialogs::Purpose;
+use crate::app::force::{ForceSession, Forecast};
+use crate::app::panels::prediction_form::form_ui;
+use crate::app::panels::prediction_numbers::numbers_ui;
+use crate::app::panes::{Pane, PaneContext};
+use crate::app::state::{Project, View};
+use crate::app::widgets::figure_frame;
+use crate::data::Severity;
+use crate::figure::{ForceComponent, ForecastFigure, forecast_figure};
+use crate::force::metrics::BAND_LEVELS;
+use crate::render::{FigureOptions, theme};
+
+/// Width of the form at first, points.
+const FORM_WIDTH: f32 = 340.0;
+/// Smallest height of one plot, points.
+const MIN_PLOT_HEIGHT: f32 = 120.0;
+/// Height of a title row, points.
+const TITLE_HEIGHT: f32 = 30.0;
+
+/// Draws the form, the numbers and the plots.
+pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
+    let PaneContext { project, view, session, commands } = pane;
+    if session.force.model.current.is_none() {
+        no_model_ui(ui, &session.force, commands);
+        return;
+    }
+    let left = Panel::left("prediction form").default_size(FORM_WIDTH).size_range(260.0..=520.0);
+    left.show(ui, |ui| {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            model_ui(ui, &session.force, commands);
+            form_ui(ui, (project, view), &session.force, commands);
+            if let Some(Ok(forecast)) = &session.force.forecast {
+                ui.separator();
+                numbers_ui(ui, forecast, (&project.force.name, view.units));
+            }
+        });
+    });
+    egui::CentralPanel::default_margins().frame(egui::Frame::new().inner_margin(4.0)).show(
+        ui,
+        |ui| match &session.force.forecast {
+            None => drop(ui.horizontal(|ui| (ui.spinner(), ui.label("Predicting…")))),
+            Some(Err(problem)) => {
+                let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
+                ui.colored_label(color, format!("Not predicted: {problem}"));
+            }
+            Some(Ok(forecast)) => {
+                choices_ui(ui, view);
+                let shown = Shown { forecast, session: &session.force, reset: session.fit_plots };
+                plots_ui(ui, shown, (project, view), commands);
+            }
+        },
+    );
+}
+
+fn no_model_ui(ui: &mut Ui, force: &ForceSession, commands: &mut Vec<Command>) {
+    if force.model.is_loading() {
+        ui.horizontal(|ui| (ui.spinner(), ui.label("Loading the force model…")));
+        return;
+    }
+    ui.label(RichText::new("No force model").strong());
+    ui.label("A force model predicts the contact force of a collision, and how sure that is. Open one (a file ending in .safetensors), or train one on a force data set.");
+    if let Some(problem) = &force.model.problem {
+        let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+        ui.colored_label(color, problem);
+    }
+    ui.horizontal_wrapped(|ui| {
+        if ui.button("Open model…").clicked() {
+            commands.push(Command::Ask(Purpose::OpenModel));
+        }
+        if ui.button("Use the shipped model").clicked() {
+            commands.push(Command::UseModel(None));
+        }
+        if ui.button("Train a model").clicked() {
+            commands.push(Command::Show(Pane::Training));
+        }
+    });
+}
+
+fn model_ui(ui: &mut Ui, force: &ForceSession, commands: &mut Vec<Command>) {
+    let Some(current) = &force.model.current else { return };
+    ui.horizontal_wrapped(|ui| {
+        let record = current.model.record();
+        let hint = format!(
+            "Trained on {}: {} cases, {} for validation; {} kept for the test. Epoch {} of {}, seed {}, {} weights, impactlab {}",
+            record.data,
+            record.train.len(),
+            record.validation.len(),
+            record.test.len(),
+            record.best_epoch,
+            record.history.len(),
+            record.seed,
+            current.model.n_parameters(),
+            record.version,
+        );
+        ui.strong("Model").on_hover_text(&hint);
+        ui.label(&current.name).on_hover_text(&hint);
+        if !current.is_saved {
+            ui.weak("(not saved)");
+        }
+        if ui.small_button("Open…").on_hover_text("Another model").clicked() {
+            commands.push(Command::Ask(Purpose::OpenModel));
+        }
+        if ui.small_button("Save…").clicked() {
+            commands.push(Command::Ask(Purpose::SaveModel));
+        }
+        if current.name != "shipped" && ui.small_button("Shipped").clicked() {
+            commands.push(Command::UseModel(None));
+        }
+    });
+    if let Some(problem) = &force.model.problem {
+        let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
+        ui.colored_label(color, format!("Not opened: {problem}"));
+    }
+}
+
+fn choices_ui(ui: &mut Ui, view: &mut View) {
+    let view = &mut view.force;
+    ui.horizontal_wrapped(|ui| {
+        for (component, shown) in ForceComponent::ALL.iter().zip(&mut view.components) {
+            ui.checkbox(shown, component.label());
+        }
+        ui.separator();
+        for (level, shown) in BAND_LEVELS.iter().zip(&mut view.bands) {
+            let hint = "Band that holds this share of the forces at each instant";
+            ui.checkbox(shown, format!("{:.0} %", level * 100.0)).on_hover_text(hint);
+        }
+        ui.separator();
+        ui.checkbox(&mut view.recorded, "Recorded")
+            .on_hover_text("The force that was recorded in the selected case");
+        ui.checkbox(&mut view.pulses, "Classic pulses").on_hover_text(
+            "Half-sine, haversine, triangle and square with the impulse of the momentum solution over the predicted duration",
+        );
+        ui.checkbox(&mut view.physics, "Physics alone")
+            .on_hover_text("The centre of the network: what its physics says before it learns");
+    });
+    ui.horizontal_wrapped(|ui| {
+        let name = ui.label("Drawn curves");
+        let n_curves = egui::DragValue::new(&mut view.n_curves).range(0..=200).speed(0.2);
+        ui.add(n_curves)
+            .labelled_by(name.id)
+            .on_hover_text("Whole curves drawn from the prediction, as coherent as real ones");
+        let name = ui.label("Seed");
+        ui.add(egui::DragValue::new(&mut view.seed).speed(0.2))
+            .labelled_by(name.id)
+            .on_hover_text("Same seed, same curves; intervals of |P|, peak and PDOF are drawn too");
+        if ui.button("Draw").on_hover_text("Draw other curves: the next seed").clicked() {
+            if view.n_curves == 0 {
+                view.n_curves = 10;
+            } else {
+                view.seed = view.seed.wrapping_add(1);
+            }
+        }
+    });
+}
+
+#[derive(Clone, Copy)]
+struct Shown<'a> {
+    forecast: &'a Forecast,
+    session: &'a ForceSession,
+    reset: bool,
+}
+
+fn plots_ui(
+    ui: &mut Ui,
+    shown: Shown<'_>,
+    (project, view): (&Project, &View),
+    commands: &mut Vec<Command>,
+) {
+    let levels: Vec<f64> = BAND_LEVELS
+        .iter()
+        .zip(view.force.bands)
+        .filter_map(|(level, shown)| shown.then_some(*level))
+        .collect();
+    let recorded = shown.session.recorded.as_ref().filter(|_| view.force.recorded);
+    let recorded_name = recorded.map(|recorded| format!("{}, recorded", recorded.case));
+    let forecast = shown.forecast;
+    let input = ForecastFigure {
+        name: &project.force.name,
+        forecast: &forecast.force,
+        levels: &levels,
+        recorded: recorded_name.as_deref().zip(recorded.map(|recorded| &recorded.curve)),
+        pulses: if view.force.pulses { &forecast.pulses } else { &[] },
+        physics: view.force.physics.then_some(&forecast.physics),
+        units: view.units,
+    };
+    let components: Vec<ForceComponent> = ForceComponent::ALL
+        .into_iter()
+        .zip(view.force.components)
+        .filter_map(|(component, shown)| shown.then_some(component))
+        .collect();
+    let n_plots = components.len().max(1) as f32;
+    let height = (ui.available_height() / n_plots - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT);
+    ScrollArea::vertical().show(ui, |ui| {
+        for (rank, component) in components.into_iter().enumerate() {
+            let figure = forecast_figure(component, &input);
+            let options = FigureOptions {
+                id: format!("forecast {}", component.label()),
+                link: Some(Id::unique("forecast")),
+                height: Some(height),
+                reset: shown.reset,
+                legend: rank == 0,
+                ..FigureOptions::default()
+            };
+            figure_frame(ui, (&figure.title, &figure), &options, commands);
+        }
+    });
+}

@@ -1,0 +1,187 @@
+//! The collision whose force is predicted.
+
+use std::f64::consts::FRAC_PI_2;
+
+use egui::{ComboBox, Grid, Ui};
+
+use crate::app::command::Command;
+use crate::app::force::{
+    ForceSession, forget_contact, know_contact, set_bullet_heading, set_contact_x, set_mass,
+    set_side,
+};
+use crate::app::state::{Project, View};
+use crate::app::widgets::{SliderRange, quantity_slider};
+use crate::data::{Severity, Side};
+use crate::force::ForceScenario;
+use crate::render::theme;
+use crate::units::{Quantity, UnitSystem, significant};
+
+/// Width of a slider without its number, points.
+const SLIDER_WIDTH: f32 = 110.0;
+
+/// Draws where the collision comes from, its numbers, and where they are unlike the training's.
+pub fn form_ui(
+    ui: &mut Ui,
+    (project, view): (&mut Project, &mut View),
+    force: &ForceSession,
+    commands: &mut Vec<Command>,
+) {
+    start_ui(ui, (project, view), force, commands);
+    ui.spacing_mut().slider_width = SLIDER_WIDTH;
+    let bodies = force.model.current.as_ref().map(|current| current.model.bodies());
+    Grid::new("force scenario").num_columns(2).show(ui, |ui| {
+        let scenario = &mut project.force.scenario;
+        motion_ui(ui, scenario, view.units);
+        side_ui(ui, scenario);
+        contact_ui(ui, scenario, view.units);
+        body_ui(ui, scenario, &bodies.unwrap_or_default());
+    });
+    if let Some(Ok(forecast)) = &force.forecast {
+        let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+        for outside in &forecast.outside {
+            let [low, high] = outside.range.map(significant);
+            let text = format!(
+                "Outside the training: {} is {}, trained on {low} to {high} ({} standard deviations off)",
+                outside.feature,
+                significant(outside.value),
+                significant(outside.deviations),
+            );
+            ui.colored_label(color, text).on_hover_text(
+                "The model has never seen such a collision: its bands do not hold there. Seen with the bullet on the right and the target at rest",
+            );
+        }
+        if !forecast.open.is_empty() {
+            ui.weak(format!("Averaged over {}, which is unknown.", forecast.open.join(" and ")));
+        }
+    }
+}
+
+fn start_ui(
+    ui: &mut Ui,
+    (project, view): (&mut Project, &mut View),
+    force: &ForceSession,
+    commands: &mut Vec<Command>,
+) {
+    ui.horizontal_wrapped(|ui| {
+        let case = force.recorded.as_ref();
+        let label = case.map_or("From the case".to_owned(), |case| format!("From {}", case.case));
+        let button = ui.add_enabled(case.is_some(), egui::Button::new(label));
+        let hint = "Take the selected case of a force data set";
+        if button.on_hover_text(hint).on_disabled_hover_text(hint).clicked() {
+            commands.push(Command::PredictCase);
+        }
+        let hint = "Take the two vehicles of the Scenario pane";
+        if ui.button("From the scenario").on_hover_text(hint).clicked() {
+            commands.push(Command::PredictScenario);
+        }
+        ui.checkbox(&mut view.force.follow_case, "Follow")
+            .on_hover_text("Predict every case of a force data set that is selected");
+    });
+    let name = &project.force.name;
+    let recorded = force.recorded.as_ref().filter(|r| r.scenario == project.force.scenario);
+    let model = force.model.current.as_ref();
+    ui.weak(match recorded.zip(model) {
+        None => format!("{name}, edited or without a recording"),
+        Some((recorded, current)) if current.model.is_trained_on(&recorded.canonical) => {
+            format!("{name}, as recorded; the model has learned from it")
+        }
+        Some(_) => format!("{name}, as recorded; the model has not seen it"),
+    });
+}
+
+fn motion_ui(ui: &mut Ui, scenario: &mut ForceScenario, units: UnitSystem) {
+    for (vehicle, label, hint) in [
+        (0, "Target mass m_t", "Mass of the struck vehicle"),
+        (1, "Bullet mass m_b", "Mass of the striking vehicle"),
+    ] {
+        let (usual, possible) = (500.0..=5000.0, 50.0..=1e6);
+        let range = SliderRange { label, hint, quantity: Quantity::Mass, usual, possible };
+        if let Some(mass_kg) = quantity_slider(ui, &range, scenario.mass_kg[vehicle], units) {
+            set_mass(scenario, vehicle, mass_kg);
+        }
+    }
+    let [v_tx, v_ty] = &mut scenario.target_velocity_m_s;
+    let [v_bx, v_by] = &mut scenario.bullet_velocity_m_s;
+    for (value, label, hint, most) in [
+        (v_tx, "Target v_tx", "Speed of the target along its heading", 50.0),
+        (v_ty, "Target v_ty", "Speed of the target to its left", 10.0),
+        (v_bx, "Bullet v_bx", "Speed of the bullet along the target's heading", 50.0),
+        (v_by, "Bullet v_by", "Speed of the bullet to the target's left", 10.0),
+    ] {
+        let usual = if most > 20.0 { 0.0..=most } else { -most..=most };
+        let possible = -70.0..=70.0;
+        let range = SliderRange { label, hint, quantity: Quantity::Speed, usual, possible };
+        if let Some(speed_m_s) = quantity_slider(ui, &range, *value, units) {
+            *value = speed_m_s;
+        }
+    }
+    let range = SliderRange {
+        label: "Bullet heading θ_b",
+        hint: "Heading of the bullet against the target's, to the left positive",
+        quantity: Quantity::Angle,
+        usual: -FRAC_PI_2..=FRAC_PI_2,
+        possible: -2.0 * FRAC_PI_2..=2.0 * FRAC_PI_2,
+    };
+    if let Some(theta_b_rad) = quantity_slider(ui, &range, scenario.theta_b_rad, units) {
+        set_bullet_heading(scenario, theta_b_rad);
+    }
+}
+
+fn side_ui(ui: &mut Ui, scenario: &mut ForceScenario) {
+    let hint = "The side on which the target is struck; the other side is the mirror image";
+    let name = ui.label("Struck side").on_hover_text(hint);
+    ui.horizontal(|ui| {
+        let mut side = scenario.side;
+        for (value, label) in [(Side::Left, "left"), (Side::Right, "right")] {
+            let radio = ui.radio_value(&mut side, value, label).labelled_by(name.id);
+            radio.on_hover_text(hint);
+        }
+        set_side(scenario, side);
+    });
+    ui.end_row();
+}
+
+fn contact_ui(ui: &mut Ui, scenario: &mut ForceScenario, units: UnitSystem) {
+    if let Some([x_m, _]) = scenario.contact_m {
+        let range = SliderRange {
+            label: "First contact x",
+            hint: "Where they first touch, along the target from its CG; the rear is negative",
+            quantity: Quantity::Length,
+            usual: -3.0..=1.0,
+            possible: -20.0..=20.0,
+        };
+        if let Some(x_m) = quantity_slider(ui, &range, x_m, units) {
+            set_contact_x(scenario, x_m);
+        }
+    }
+    ui.label(if scenario.contact_m.is_some() { "" } else { "First contact x" });
+    let mut is_unknown = scenario.contact_m.is_none();
+    let hint = "Average over the contact points of the cases that the model was trained on";
+    if ui.checkbox(&mut is_unknown, "contact unknown").on_hover_text(hint).changed() {
+        if is_unknown {
+            forget_contact(scenario);
+        } else {
+            know_contact(scenario);
+        }
+    }
+    ui.end_row();
+}
+
+fn body_ui(ui: &mut Ui, scenario: &mut ForceScenario, bodies: &[String]) {
+    let hint = "Shape of the bullet's front, as the data set calls it";
+    let name = ui.label("Bullet body").on_hover_text(hint);
+    let label = |body: &Option<String>| body.clone().unwrap_or_else(|| "unknown".to_owned());
+    let known = bodies.iter().filter(|body| !body.is_empty());
+    ComboBox::from_id_salt("bullet body")
+        .selected_text(label(&scenario.bullet_body))
+        .show_ui(ui, |ui| {
+            for option in std::iter::once(None).chain(known.map(|body| Some(body.clone()))) {
+                let text = label(&option);
+                ui.selectable_value(&mut scenario.bullet_body, option, text);
+            }
+        })
+        .response
+        .labelled_by(name.id)
+        .on_hover_text(hint);
+    ui.end_row();
+}

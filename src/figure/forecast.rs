@@ -1,0 +1,165 @@
+//! A predicted force over time: bands, mean, drawn curves, and what was recorded over it.
+
+use serde::{Deserialize, Serialize};
+
+use crate::analysis::ForceForecast;
+use crate::collision::PulseShape;
+use crate::figure::{Axis, Band, Element, Figure, LineStyle, Role, Series, milliseconds};
+use crate::uncertainty::{Band as CurveBand, ForceCurve};
+use crate::units::{Quantity, UnitSystem};
+
+/// Opacity of the widest band and of the narrowest; those between in even steps.
+const OPACITY: [f32; 2] = [0.13, 0.28];
+/// Share of the largest value above which a force counts as shown.
+const SHOWN_SHARE: f64 = 0.03;
+/// The time axis ends at a multiple of this, s, so that it does not creep while a scenario changes.
+const END_STEP_S: f64 = 0.025;
+
+/// What of a force is shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum ForceComponent {
+    /// F_x.
+    X,
+    /// F_y.
+    Y,
+    /// `|F|`.
+    Magnitude,
+}
+
+/// What the figure of a predicted force shows.
+#[derive(Debug, Clone, Copy)]
+pub struct ForecastFigure<'a> {
+    /// Name of the scenario.
+    pub name: &'a str,
+    /// Bands, mean and drawn curves.
+    pub forecast: &'a ForceForecast,
+    /// Levels whose bands are shown, each 0 to 1.
+    pub levels: &'a [f64],
+    /// The recorded curve, by its name.
+    pub recorded: Option<(&'a str, &'a ForceCurve)>,
+    /// What the physics says without the network.
+    pub physics: Option<&'a ForceCurve>,
+    /// Classic pulses.
+    pub pulses: &'a [(PulseShape, ForceCurve)],
+    /// Units of the axes.
+    pub units: UnitSystem,
+}
+
+impl ForceComponent {
+    /// All three.
+    pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Magnitude];
+
+    /// As in a legend.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::X => "F_x",
+            Self::Y => "F_y",
+            Self::Magnitude => "|F|",
+        }
+    }
+
+    /// Its values in a curve, N.
+    pub fn of(self, curve: &ForceCurve) -> Vec<f64> {
+        match self {
+            Self::X => curve.fx_n.clone(),
+            Self::Y => curve.fy_n.clone(),
+            Self::Magnitude => curve.magnitude_n(),
+        }
+    }
+
+    fn bands(self, forecast: &ForceForecast) -> &[CurveBand] {
+        match self {
+            Self::X => &forecast.bands.fx,
+            Self::Y => &forecast.bands.fy,
+            Self::Magnitude => &forecast.bands.magnitude,
+        }
+    }
+
+    fn role(self) -> Role {
+        match self {
+            Self::X => Role::ComponentX,
+            Self::Y => Role::ComponentY,
+            // The resultant's own colour is that of the recorded curve over it.
+            Self::Magnitude => Role::Target,
+        }
+    }
+}
+
+/// One component of a predicted force over time in ms.
+pub fn forecast_figure(component: ForceComponent, input: &ForecastFigure<'_>) -> Figure {
+    let x = Axis { label: "Time".to_owned(), unit: milliseconds() };
+    let label = format!("{} on the target", component.label());
+    let y = Axis::shown(label, Quantity::Force, input.units);
+    let n_shown = (shown_until_s(input) / crate::uncertainty::CURVE_INTERVAL_S).round() as usize;
+    let time: Vec<f64> =
+        input.forecast.mean.time_s().iter().take(n_shown).map(|t| x.unit.from_si(*t)).collect();
+    let shown = |values: &[f64]| -> Vec<f64> {
+        values.iter().take(n_shown).map(|value| y.unit.from_si(*value)).collect()
+    };
+    let points = |curve: &ForceCurve| -> Vec<[f64; 2]> {
+        let values = shown(&component.of(curve));
+        let times = curve.time_s().into_iter().map(|t| x.unit.from_si(t));
+        times.zip(values).map(|(t, value)| [t, value]).collect()
+    };
+    let mut bands: Vec<&CurveBand> = component
+        .bands(input.forecast)
+        .iter()
+        .filter(|b| input.levels.contains(&b.level))
+        .collect();
+    bands.sort_by(|a, b| b.level.total_cmp(&a.level));
+    let steps = bands.len().saturating_sub(1).max(1) as f32;
+    let mut elements: Vec<Element> = Vec::new();
+    for (rank, band) in bands.into_iter().enumerate() {
+        let [widest, narrowest] = OPACITY;
+        elements.push(Element::Band(Band {
+            name: format!("{:.0} %", band.level * 100.0),
+            role: component.role(),
+            opacity: widest + (narrowest - widest) * rank as f32 / steps,
+            x: time.clone(),
+            low: shown(&band.lower_n),
+            high: shown(&band.upper_n),
+        }));
+    }
+    for curve in &input.forecast.curves {
+        elements.push(Element::line("drawn curves", Role::Muted, points(curve)));
+    }
+    for (shape, curve) in input.pulses {
+        let (name, role, points) = (shape.label().to_owned(), Role::Pulse, points(curve));
+        elements.push(Element::Line(Series { name, role, style: pulse_style(*shape), points }));
+    }
+    if let Some(physics) = input.physics {
+        elements.push(Element::dashed("physics alone", Role::Reference, points(physics)));
+    }
+    let mean = points(&input.forecast.mean);
+    elements.push(Element::line("mean", component.role(), mean));
+    if let Some((name, curve)) = input.recorded {
+        elements.push(Element::line(name, Role::Reference, points(curve)));
+    }
+    let title = format!("{}: predicted {} on the target", input.name, component.label());
+    Figure { title, x, y, equal_aspect: false, log_y: false, elements }
+}
+
+fn pulse_style(shape: PulseShape) -> LineStyle {
+    match shape {
+        PulseShape::HalfSine => LineStyle::Solid,
+        PulseShape::Haversine => LineStyle::Dashed,
+        PulseShape::Triangle | PulseShape::Square => LineStyle::Dotted,
+    }
+}
+
+/// Where the time axis ends: a little after the last force of all that is shown, the same for all
+/// components.
+fn shown_until_s(input: &ForecastFigure<'_>) -> f64 {
+    let widest = input.forecast.bands.magnitude.iter().max_by(|a, b| a.level.total_cmp(&b.level));
+    let pulses = input.pulses.iter().map(|(_, curve)| curve);
+    let curves = input.recorded.iter().map(|(_, curve)| *curve).chain(pulses);
+    let magnitudes = curves.map(ForceCurve::magnitude_n);
+    let rows = magnitudes.chain(widest.map(|band| band.upper_n.clone()));
+    let last = rows.map(|row| {
+        let largest = row.iter().copied().fold(0.0, f64::max);
+        row.iter().rposition(|value| *value > SHOWN_SHARE * largest).unwrap_or(0)
+    });
+    let end_s = last.max().unwrap_or(0) as f64 * crate::uncertainty::CURVE_INTERVAL_S;
+    let grid_s = input.forecast.mean.n_instants() as f64 * crate::uncertainty::CURVE_INTERVAL_S;
+    (((end_s / END_STEP_S).floor() + 1.0) * END_STEP_S).min(grid_s)
+}

@@ -1,0 +1,274 @@
+//! The force network in the window, with a small model that is trained in a moment.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+use std::time::Duration;
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use impactlab::app::{App, Command, Forecast, Pane, Phase, State, Subject};
+use impactlab::data::{Dataset, Severity};
+use impactlab::force::{ForceCase, ForceConfig, TrainSettings, TrainingSet, train};
+
+use crate::harness::{apply, is_idle, open, open_with, step_until};
+use crate::pictures::save;
+
+/// Small enough for a second of training, good enough to draw.
+const SMALL: &str = "\
+[network]
+encoder_branches = [[8, 8, 8]]
+position_channels = 8
+attention = false
+trunk = [16, 16]
+factors = 2
+[training]
+epochs = 8
+learning_rate = 3e-3
+checkpoint_epochs = 1
+[crush]
+folds = 2
+max_steps = 2
+";
+
+struct Small {
+    folder: tempfile::TempDir,
+}
+
+impl Small {
+    fn config(&self) -> PathBuf {
+        self.folder.path().join("small.toml")
+    }
+
+    fn model(&self) -> PathBuf {
+        self.folder.path().join("small.safetensors")
+    }
+}
+
+/// A model trained on the shipped cases, once for all tests.
+fn small() -> &'static Small {
+    static SMALL_MODEL: OnceLock<Small> = OnceLock::new();
+    SMALL_MODEL.get_or_init(|| {
+        let small = Small { folder: tempfile::tempdir().expect("a folder") };
+        std::fs::write(small.config(), SMALL).expect("a file");
+        let mut go_on = |_| ControlFlow::Continue(());
+        let dataset = Dataset::load(Path::new("datasets/fea"), &mut go_on).expect("shipped data");
+        let (cases, _) = ForceCase::of_dataset(&dataset.complete().expect("nothing cancels"));
+        let set = TrainingSet::new("fea", &cases, &[], (0, 0.25)).expect("enough cases");
+        let config = ForceConfig::load(&small.config()).expect("a good file");
+        let settings = TrainSettings { config, seed: 0, checkpoint: None, resume: false };
+        let model = train(&set, &settings, &mut |_| ControlFlow::Continue(())).expect("a model");
+        model.save(&small.model()).expect("it is written");
+        small
+    })
+}
+
+fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
+    harness.state().state()
+}
+
+/// The window on the shipped force data with the small model, looking at a case.
+fn open_on(case: &str) -> Harness<'static, App> {
+    let mut harness = open(&["datasets/fea"]);
+    step_until(&mut harness, "the data", is_idle);
+    apply(&mut harness, Command::Open(vec![small().model()]));
+    let subject = Subject::Case { dataset: "datasets/fea".into(), case: case.to_owned() };
+    apply(&mut harness, Command::Select(subject));
+    apply(&mut harness, Command::Show(Pane::ForcePrediction));
+    step_until(&mut harness, "a forecast", is_forecast_current);
+    harness
+}
+
+/// Whether what is shown answers what is asked.
+fn is_forecast_current(state: &State) -> bool {
+    let is_answer = |forecast: &Forecast| {
+        forecast.scenario == state.project.force.scenario
+            && forecast.settings.n_curves == state.view.force.n_curves
+    };
+    state.forecast().is_some_and(is_answer) && is_idle(state)
+}
+
+#[test]
+fn a_case_is_predicted_edited_and_left_open() {
+    let mut harness = open_on("c002");
+    let recorded = state(&harness).session.force.recorded.as_ref().expect("a recorded force");
+    assert_eq!(recorded.case, "c002");
+    assert_eq!(state(&harness).project.force.scenario, recorded.scenario);
+    // The seed keeps it for the test.
+    harness.get_by_label("c002, as recorded; the model has not seen it");
+    harness.get_by_label("Copy table").click();
+    save(&mut harness, "prediction.png");
+
+    // The next case of the table is followed.
+    harness.key_press(egui::Key::ArrowDown);
+    step_until(&mut harness, "the next case", |state| {
+        state.project.force.name == "c003" && is_forecast_current(state)
+    });
+    // A heavier bullet gives a larger impulse; far heavier than any of the training is said.
+    let sizes = [1600.0, 2400.0].map(|mass_kg| {
+        harness.state_mut().state_mut().project.force.scenario.mass_kg[1] = mass_kg;
+        step_until(&mut harness, "another forecast", is_forecast_current);
+        state(&harness).forecast().expect("a forecast").force.impulse_magnitude_n_s.median
+    });
+    assert!(sizes[1] > sizes[0], "{sizes:?}");
+    assert!(harness.query_by_label_contains("Outside the training: bullet mass").is_none());
+    harness.state_mut().state_mut().project.force.scenario.mass_kg[1] = 9000.0;
+    step_until(&mut harness, "a forecast far off", is_forecast_current);
+    harness.get_by_label_contains("Outside the training: bullet mass [kg] is 9000");
+
+    // What is unknown is averaged over, and whole curves are drawn.
+    apply(&mut harness, Command::PredictCase);
+    harness.get_by_label("contact unknown").click();
+    harness.get_by_label("Draw").click();
+    harness.run_steps(2);
+    step_until(&mut harness, "an open contact", is_forecast_current);
+    let forecast = state(&harness).forecast().expect("a forecast");
+    assert_eq!((forecast.open.len(), forecast.force.curves.len()), (1, 10));
+    {
+        let state = harness.state_mut().state_mut();
+        (state.view.dark, state.view.force.pulses, state.view.force.physics) = (true, true, true);
+    }
+    harness.run_steps(2);
+    save(&mut harness, "prediction-dark.png");
+}
+
+/// The window keeps its pace while a slider moves: 50 frames a second in a release build, which
+/// this is not.
+#[test]
+fn frames_stay_short_while_the_scenario_changes() {
+    let mut harness = open_on("c002");
+    harness.state_mut().state_mut().view.force.n_curves = 20;
+    step_until(&mut harness, "drawn curves", is_forecast_current);
+    let mut frames_s: Vec<f64> = (0..60)
+        .map(|i| {
+            let scenario = &mut harness.state_mut().state_mut().project.force.scenario;
+            scenario.bullet_velocity_m_s[1] = 3.0 + 0.02 * f64::from(i);
+            let start = std::time::Instant::now();
+            harness.step();
+            start.elapsed().as_secs_f64()
+        })
+        .collect();
+    frames_s.sort_by(f64::total_cmp);
+    let median_s = frames_s[frames_s.len() / 2];
+    println!("median frame {median_s:.4} s, longest {:.4} s", frames_s[59]);
+    assert!(median_s < 0.25, "{median_s} s");
+    step_until(&mut harness, "the last forecast", is_forecast_current);
+}
+
+#[test]
+fn the_scenario_is_predicted_and_undone() {
+    let mut harness = open_on("c001");
+    harness.run_steps(90); // the past takes a second to settle
+    let before = state(&harness).project.force.scenario.clone();
+    harness.get_by_label("From the scenario").click();
+    harness.run_steps(2);
+    step_until(&mut harness, "the scenario", is_forecast_current);
+    assert_ne!(state(&harness).project.force.scenario, before);
+    harness.get_by_label_contains("edited or without a recording");
+    harness.run_steps(90);
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(2);
+    assert_eq!(state(&harness).project.force.scenario, before);
+}
+
+#[test]
+fn a_model_is_trained_paused_cancelled_saved_and_there_after_a_restart() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let state_file = folder.path().join("state.json");
+    let mut harness = open_with(&["datasets/fea"], Some(state_file.clone()));
+    step_until(&mut harness, "the data", is_idle);
+    apply(&mut harness, Command::Show(Pane::Training));
+    {
+        let form = &mut harness.state_mut().state_mut().project.force.training;
+        (form.epochs, form.config) = (100_000, small().config().display().to_string());
+    }
+    harness.run_steps(2);
+    harness.get_by_label("Train").click();
+    step_until(&mut harness, "an epoch", |state| state.session.force.training.history.len() > 2);
+    harness.get_by_label("Pause").click();
+    harness.run_steps(2);
+    assert!(state(&harness).session.force.training.is_paused());
+    let epoch_s = |harness: &Harness<'_, App>| {
+        let history = &state(harness).session.force.training.history;
+        history.iter().map(|record| record.seconds).fold(0.2, f64::max)
+    };
+    // The epoch under way comes to its end.
+    std::thread::sleep(Duration::from_secs_f64(4.0 * epoch_s(&harness)));
+    harness.run_steps(2);
+    let n_epochs = state(&harness).session.force.training.history.len();
+    std::thread::sleep(Duration::from_secs_f64(4.0 * epoch_s(&harness)));
+    harness.run_steps(2);
+    assert_eq!(state(&harness).session.force.training.history.len(), n_epochs, "it went on");
+    harness.get_by_label_contains("paused: epoch");
+    harness.get_by_label("Resume").click();
+    step_until(&mut harness, "more epochs", |state| {
+        state.session.force.training.history.len() > n_epochs + 2
+    });
+    save(&mut harness, "training.png");
+    harness.get_by_label("Cancel").click();
+    step_until(&mut harness, "the end", |state| !state.session.force.training.is_running());
+    assert_eq!(state(&harness).session.force.training.phase, Phase::Ended);
+    let current = state(&harness).session.force.model.current.as_ref().expect("the best so far");
+    assert!(!current.is_saved && current.name.starts_with("trained on fea"), "{}", current.name);
+
+    let path = folder.path().join("mine.safetensors");
+    apply(&mut harness, Command::SaveModel(path.clone()));
+    step_until(&mut harness, "the file", |state| state.session.force.saving.is_none());
+    assert_eq!(state(&harness).project.force.model.as_ref(), Some(&path));
+    harness.run_steps(90);
+    let deadline = std::time::Instant::now() + Duration::from_secs(30);
+    while !state_file.exists() && std::time::Instant::now() < deadline {
+        harness.step();
+    }
+    drop(harness);
+    let mut harness = open_with(&[], Some(state_file));
+    step_until(&mut harness, "the model again", |state| {
+        state.session.force.model.current.as_ref().is_some_and(|m| m.name == "mine.safetensors")
+    });
+}
+
+#[test]
+fn a_bad_model_and_bad_settings_say_what_is_wrong() {
+    let mut harness = open(&["datasets/fea"]);
+    step_until(&mut harness, "the data", is_idle);
+    apply(&mut harness, Command::Open(vec!["no/such.safetensors".into()]));
+    step_until(&mut harness, "the error", |state| {
+        state
+            .session
+            .messages
+            .iter()
+            .any(|m| m.severity == Severity::Error && m.text.contains("no/such.safetensors"))
+    });
+    harness.state_mut().state_mut().project.force.training.config = "Cargo.toml".to_owned();
+    apply(&mut harness, Command::StartTraining);
+    step_until(&mut harness, "the problem", |state| !state.session.force.training.is_running());
+    let problem = state(&harness).session.force.training.problem.clone().expect("a problem");
+    assert!(problem.contains("Cargo.toml: line "), "{problem}");
+}
+
+#[test]
+fn a_model_is_evaluated_beside_the_baselines() {
+    let mut harness = open_on("c001");
+    apply(&mut harness, Command::Show(Pane::Evaluation));
+    harness.run_steps(2);
+    harness.get_by_label("Evaluate").click();
+    harness.run_steps(2);
+    assert!(state(&harness).session.force.evaluation.job.is_some());
+    step_until(&mut harness, "the evaluation", |state| {
+        state.session.force.evaluation.job.is_none()
+    });
+    let result = state(&harness).session.force.evaluation.result.as_ref().expect("a result");
+    let finished = result.as_ref().expect("an evaluation");
+    assert_eq!((finished.cases.len(), finished.n_known, finished.samples.len()), (25, 0, 6));
+    harness.get_by_label_contains("on 25 cases of fea");
+    assert!(harness.query_all_by_label("Gaussian processes").count() >= 2);
+    harness.run_steps(4);
+    save(&mut harness, "evaluation.png");
+    harness.get_by_label("Copy as Markdown").click();
+    harness.run_steps(2);
+    harness.state_mut().state_mut().view.dark = true;
+    // What lies below is seen in a tall window.
+    harness.set_size(egui::vec2(1440.0, 1700.0));
+    harness.run_steps(6);
+    save(&mut harness, "evaluation-dark.png");
+}
