@@ -1,8 +1,7 @@
 //! Baseline (b): the curve of the nearest training case.
 
-use crate::force::baselines::{
-    BaselineError, ColumnSet, FeatureMap, best_of, case_folds, history_error, mean,
-};
+use crate::force::baselines::choice::{best_of, case_folds, history_error, mean};
+use crate::force::baselines::{BaselineError, ColumnSet, FeatureMap};
 use crate::force::{ForceCase, ForceScenario, MomentumModel, Prediction};
 use crate::numerics::Summary;
 use crate::uncertainty::ForceCurve;

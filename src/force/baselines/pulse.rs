@@ -6,9 +6,8 @@
 
 use crate::collision::{Pulse, PulseShape};
 use crate::force::baselines::alignment::impulse_share_times_s;
-use crate::force::baselines::{
-    BaselineError, ColumnSet, FeatureMap, best_of, case_folds, history_error, mean,
-};
+use crate::force::baselines::choice::{best_of, case_folds, history_error, mean};
+use crate::force::baselines::{BaselineError, ColumnSet, FeatureMap};
 use crate::force::{ForceCase, ForceScenario, MomentumModel, Prediction};
 use crate::numerics::{GaussianProcess, GaussianProcessData};
 use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};

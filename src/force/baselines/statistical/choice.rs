@@ -3,10 +3,11 @@
 use rayon::prelude::*;
 
 use crate::force::ForceCase;
-use crate::force::baselines::statistical::{Scales, Shapes};
+use crate::force::baselines::choice::{best_of, case_folds, history_error, mean};
+use crate::force::baselines::statistical::scales::Scales;
+use crate::force::baselines::statistical::shapes::Shapes;
 use crate::force::baselines::{
-    Alignment, BaselineError, ColumnSet, StatisticalBaseline, StatisticalOptions, best_of,
-    case_folds, history_error, mean,
+    Alignment, BaselineError, ColumnSet, StatisticalBaseline, StatisticalOptions,
 };
 
 /// Numbers of components that are tried, rising.

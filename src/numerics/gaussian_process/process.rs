@@ -1,0 +1,280 @@
+//! Gaussian process regression for some hundred samples and a few outputs.
+//!
+//! ```text
+//! y = f(x) + ε     f ~ GP(0, k)     k(x, x') = s_f² exp(−½ Σ_j (x_j − x'_j)²/l_j²) + s_l² (x·x' + 1)
+//! ε ~ N(0, s_n² + s_u² [sample is unusual])
+//! ```
+//!
+//! on standardised inputs and outputs; all outputs share the hyperparameters, which maximise the
+//! marginal likelihood times a broad prior that keeps few samples from being fitted too closely.
+//! Unusual samples, those of another mode, have a noise of their own: they neither bend the function
+//! nor are dropped.
+//!
+//! Source: [`RasmussenWilliams2006`](crate::bibliography::RasmussenWilliams2006), sections 2.2 and
+//! 5.4. The crates for this either fit one output at a time, or know no noise, or hold one length for
+//! all inputs; the optimiser is that of `argmin`.
+
+use nalgebra::linalg::Cholesky;
+use nalgebra::{DMatrix, DVector, Dyn};
+
+use crate::numerics::gaussian_process::likelihood::{Hyperparameters, Likelihood};
+
+/// What a Gaussian process learns from.
+#[derive(Debug, Clone, Copy)]
+pub struct GaussianProcessData<'a> {
+    /// Inputs, a row a sample, all of one length.
+    pub inputs: &'a [Vec<f64>],
+    /// Outputs, a row a sample, all of one length.
+    pub outputs: &'a [Vec<f64>],
+    /// Which samples are unusual; empty for none.
+    pub unusual: &'a [bool],
+    /// How much each output counts for the hyperparameters; empty for one each.
+    pub weights: &'a [f64],
+}
+
+/// A fitted regression.
+#[derive(Debug, Clone)]
+pub struct GaussianProcess {
+    input_scaling: Scaling,
+    output_scaling: Scaling,
+    inputs: DMatrix<f64>,
+    hyperparameters: Hyperparameters,
+    cholesky: Cholesky<f64, Dyn>,
+    /// `K⁻¹ y`, a column an output.
+    coefficients: DMatrix<f64>,
+}
+
+/// What a regression says at one input.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GaussianPrediction {
+    /// Mean of each output.
+    pub mean: Vec<f64>,
+    /// Standard deviation of a usual sample, noise included.
+    pub std: Vec<f64>,
+    /// Standard deviation of an unusual sample, noise included.
+    pub std_unusual: Vec<f64>,
+}
+
+/// Samples that no regression fits.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum GaussianProcessError {
+    /// Too few samples.
+    #[error("a regression on {got} samples, expected {expected} or more")]
+    TooFew {
+        /// Samples needed.
+        expected: usize,
+        /// Samples there.
+        got: usize,
+    },
+    /// Rows that do not fit together.
+    #[error("{what} has {got} entries, expected {expected}")]
+    Shape {
+        /// Which rows.
+        what: &'static str,
+        /// Entries needed.
+        expected: usize,
+        /// Entries there.
+        got: usize,
+    },
+    /// A number that is not finite.
+    #[error("sample {sample_idx} holds a number that is not finite")]
+    NotFinite {
+        /// Index of the sample.
+        sample_idx: usize,
+    },
+    /// A covariance that is not positive definite: never for finite data.
+    #[error("the covariance of the samples is not positive definite")]
+    Covariance,
+}
+
+/// Fewest samples for a regression.
+const MIN_SAMPLES: usize = 4;
+
+impl GaussianProcess {
+    /// Fits hyperparameters and coefficients.
+    ///
+    /// # Errors
+    /// [`GaussianProcessError`].
+    pub fn fit(data: &GaussianProcessData<'_>) -> Result<Self, GaussianProcessError> {
+        let n_outputs = check(data)?;
+        let usual = |sample_idx: usize| !data.unusual.get(sample_idx).copied().unwrap_or(false);
+        let input_scaling = Scaling::of(data.inputs, |_| true);
+        let output_scaling = Scaling::of(data.outputs, usual);
+        let inputs = input_scaling.standardise(data.inputs);
+        let outputs = output_scaling.standardise(data.outputs);
+        let weights = match data.weights {
+            [] => vec![1.0; n_outputs],
+            weights => weights.to_vec(),
+        };
+        let unusual = (0..inputs.nrows()).map(|idx| !usual(idx)).collect();
+        let likelihood = Likelihood::new(inputs.clone(), outputs.clone(), unusual, weights);
+        let hyperparameters = likelihood.maximise();
+        let cholesky =
+            likelihood.cholesky(&hyperparameters).ok_or(GaussianProcessError::Covariance)?;
+        let coefficients = cholesky.solve(&outputs);
+        Ok(Self { input_scaling, output_scaling, inputs, hyperparameters, cholesky, coefficients })
+    }
+
+    /// Mean and spread at an input.
+    ///
+    /// ```text
+    /// mean = kᵀ K⁻¹ y        variance = k(x, x) − kᵀ K⁻¹ k + noise
+    /// ```
+    ///
+    /// # Errors
+    /// [`GaussianProcessError::Shape`] for an input of another length.
+    pub fn predict(&self, input: &[f64]) -> Result<GaussianPrediction, GaussianProcessError> {
+        let (expected, got) = (self.input_scaling.mean.len(), input.len());
+        if got != expected {
+            return Err(GaussianProcessError::Shape { what: "an input", expected, got });
+        }
+        let x = self.input_scaling.standardise(std::slice::from_ref(&input.to_vec()));
+        let h = &self.hyperparameters;
+        let kernel = |i: usize| h.kernel(&x.row(0), &self.inputs.row(i));
+        let k = DVector::from_iterator(self.inputs.nrows(), (0..self.inputs.nrows()).map(kernel));
+        let known = self.cholesky.solve(&k).dot(&k);
+        let own = (h.kernel(&x.row(0), &x.row(0)) - known).max(0.0);
+        let [usual, unusual] = [false, true].map(|unusual| (own + h.noise(unusual)).sqrt());
+        let mean = self.coefficients.tr_mul(&k);
+        let scaling = &self.output_scaling;
+        let outputs = mean.iter().zip(scaling.mean.iter().zip(&scaling.std));
+        let spread = |of: f64| scaling.std.iter().map(|std| of * std).collect();
+        Ok(GaussianPrediction {
+            mean: outputs.map(|(value, (mean, std))| mean + std * value).collect(),
+            std: spread(usual),
+            std_unusual: spread(unusual),
+        })
+    }
+}
+
+/// Mean and standard deviation of each column; what does not vary is left at zero.
+#[derive(Debug, Clone)]
+struct Scaling {
+    mean: Vec<f64>,
+    std: Vec<f64>,
+}
+
+impl Scaling {
+    /// Of the rows that `choose` takes, or of all if it takes fewer than two.
+    fn of(rows: &[Vec<f64>], choose: impl Fn(usize) -> bool) -> Self {
+        let chosen: Vec<&Vec<f64>> =
+            rows.iter().enumerate().filter(|(idx, _)| choose(*idx)).map(|(_, row)| row).collect();
+        let chosen = if chosen.len() < 2 { rows.iter().collect() } else { chosen };
+        let n = chosen.len() as f64;
+        let n_columns = chosen.first().map_or(0, |row| row.len());
+        let column = |j: usize| chosen.iter().filter_map(move |row| row.get(j));
+        let mean: Vec<f64> = (0..n_columns).map(|j| column(j).sum::<f64>() / n).collect();
+        let square = |j: usize, mean: f64| column(j).map(|v| (v - mean).powi(2)).sum::<f64>() / n;
+        let std = mean.iter().enumerate().map(|(j, mean)| square(j, *mean).sqrt()).collect();
+        Self { mean, std }
+    }
+
+    /// `[sample, column]`.
+    fn standardise(&self, rows: &[Vec<f64>]) -> DMatrix<f64> {
+        DMatrix::from_fn(rows.len(), self.mean.len(), |i, j| {
+            let (value, std) = (rows[i][j] - self.mean[j], self.std[j]);
+            if std > 1e-12 * self.mean[j].abs() && std > 0.0 { value / std } else { 0.0 }
+        })
+    }
+}
+
+/// The number of outputs of good data.
+fn check(data: &GaussianProcessData<'_>) -> Result<usize, GaussianProcessError> {
+    let n = data.inputs.len();
+    if n < MIN_SAMPLES {
+        return Err(GaussianProcessError::TooFew { expected: MIN_SAMPLES, got: n });
+    }
+    let width = |rows: &[Vec<f64>]| rows.first().map_or(0, Vec::len);
+    let (n_inputs, n_outputs) = (width(data.inputs), width(data.outputs));
+    let optional = |got: usize, expected| if got == 0 { expected } else { got };
+    let lengths = [("outputs", n, data.outputs.len())].into_iter();
+    let lengths = lengths
+        .chain([("unusual", n, optional(data.unusual.len(), n))])
+        .chain([("weights", n_outputs, optional(data.weights.len(), n_outputs))])
+        .chain(data.inputs.iter().map(|row| ("an input", n_inputs, row.len())))
+        .chain(data.outputs.iter().map(|row| ("an output", n_outputs, row.len())));
+    for (what, expected, got) in lengths {
+        if got != expected {
+            return Err(GaussianProcessError::Shape { what, expected, got });
+        }
+    }
+    let mut rows = data.inputs.iter().zip(data.outputs);
+    match rows.position(|(x, y)| x.iter().chain(y).any(|value| !value.is_finite())) {
+        Some(sample_idx) => Err(GaussianProcessError::NotFinite { sample_idx }),
+        None => Ok(n_outputs),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid(n: usize) -> Vec<Vec<f64>> {
+        (0..n).map(|i| vec![i as f64 / n as f64 * 6.0, (i * 7 % n) as f64, 5.0]).collect()
+    }
+
+    fn data<'a>(inputs: &'a [Vec<f64>], outputs: &'a [Vec<f64>]) -> GaussianProcessData<'a> {
+        GaussianProcessData { inputs, outputs, unusual: &[], weights: &[] }
+    }
+
+    #[test]
+    fn a_smooth_function_is_learned_and_an_idle_input_ignored() {
+        let inputs = grid(40);
+        let truth = |x: &[f64]| 100.0 + 20.0 * x[0].sin() + 3.0 * x[0];
+        let outputs: Vec<Vec<f64>> = inputs.iter().map(|x| vec![truth(x), -truth(x)]).collect();
+        let process = GaussianProcess::fit(&data(&inputs, &outputs)).unwrap();
+        for x0 in [0.4, 2.2, 4.9] {
+            let at = process.predict(&[x0, 11.3, 7.0]).unwrap();
+            let expected = truth(&[x0]);
+            assert!((at.mean[0] - expected).abs() < 0.5, "{x0}: {at:?}, expected {expected}");
+            assert!((at.mean[0] + at.mean[1]).abs() < 1e-6, "{x0}: {at:?}");
+        }
+    }
+
+    #[test]
+    fn far_from_the_samples_it_is_less_sure() {
+        let inputs: Vec<Vec<f64>> = (0..20).map(|i| vec![f64::from(i) / 10.0]).collect();
+        let outputs: Vec<Vec<f64>> = inputs.iter().map(|x| vec![(3.0 * x[0]).sin()]).collect();
+        let process = GaussianProcess::fit(&data(&inputs, &outputs)).unwrap();
+        let [near, far] = [1.0, 6.0].map(|x| process.predict(&[x]).unwrap().std[0]);
+        assert!(far > 3.0 * near, "{near} {far}");
+    }
+
+    #[test]
+    fn unusual_samples_do_not_bend_the_function() {
+        let inputs: Vec<Vec<f64>> = (0..40).map(|i| vec![f64::from(i) / 8.0]).collect();
+        let unusual: Vec<bool> = (0..40).map(|i| i % 6 == 3).collect();
+        let outputs: Vec<Vec<f64>> = inputs
+            .iter()
+            .zip(&unusual)
+            .map(|(x, unusual)| vec![x[0].cos() + if *unusual { 8.0 } else { 0.0 }])
+            .collect();
+        let known = GaussianProcessData { unusual: &unusual, ..data(&inputs, &outputs) };
+        let worst = |data: &GaussianProcessData<'_>| {
+            let process = GaussianProcess::fit(data).unwrap();
+            let off = |x: &Vec<f64>| (process.predict(x).unwrap().mean[0] - x[0].cos()).abs();
+            inputs.iter().map(off).fold(0.0, f64::max)
+        };
+        let (with, without) = (worst(&known), worst(&data(&inputs, &outputs)));
+        assert!(with < 0.3 && with < 0.5 * without, "{with} with, {without} without");
+        let at = GaussianProcess::fit(&known).unwrap().predict(&[2.0]).unwrap();
+        assert!(at.std_unusual[0] > 3.0 * at.std[0], "{at:?}");
+    }
+
+    #[test]
+    fn samples_that_do_not_fit_together_are_refused() {
+        let (inputs, outputs) = (grid(6), vec![vec![1.0]; 6]);
+        let refused = |data| GaussianProcess::fit(&data).unwrap_err();
+        let few = refused(data(&inputs[..2], &outputs[..2]));
+        assert_eq!(few, GaussianProcessError::TooFew { expected: 4, got: 2 });
+        let short = refused(data(&inputs, &outputs[..5]));
+        assert!(matches!(short, GaussianProcessError::Shape { what: "outputs", .. }));
+        let mut bad = inputs.clone();
+        bad[3][0] = f64::NAN;
+        let bad = refused(data(&bad, &outputs));
+        assert_eq!(bad, GaussianProcessError::NotFinite { sample_idx: 3 });
+        let constant = GaussianProcess::fit(&data(&inputs, &outputs)).unwrap();
+        assert!((constant.predict(&inputs[0]).unwrap().mean[0] - 1.0).abs() < 1e-9);
+        assert!(constant.predict(&[1.0]).is_err());
+    }
+}
