@@ -89,7 +89,7 @@ fn a_forecast_with_everything_over_it() {
             units: UnitSystem::Si,
         },
     );
-    let canvas = Canvas { size_px: [240, 150], scale: 1.0, dark: false };
+    let canvas = Canvas { size_px: [360, 220], scale: 1.0, dark: false };
     image_snapshot(&figure_image(&figure, canvas).expect("a picture"), "forecast");
 }
 
