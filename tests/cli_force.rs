@@ -1,5 +1,7 @@
 //! The commands of the force network: train, kill, resume, predict, evaluate's errors.
 
+#![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};

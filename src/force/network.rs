@@ -39,7 +39,7 @@ const FIRST_STD: [f64; 2] = [0.04, 0.0075];
 /// for the latent factors, else drawn curves are jagged and their peaks too high.
 const STD_LOG_CHANGE: f64 = 0.7;
 /// Loading of a latent factor per unit of the network's output, share of the envelope.
-const FIRST_LOADING: f64 = 0.8;
+const FIRST_LOADING: f64 = 0.08;
 /// Standard deviation of the duration before training, units of 0.1 s.
 const FIRST_DURATION_STD: f64 = 0.3;
 /// Log odds of hooking before training.

@@ -26,7 +26,7 @@ const N_OPEN_CONTACTS: usize = 8;
 /// Share of the forces of the training cases that the 90 % bands hold after calibration.
 const CALIBRATED_SHARE: f64 = 0.9;
 /// Logarithms of the smallest and largest factor on the variances.
-const MOST_EXTREME_LOG_FACTORS: (f64, f64) = (-4.0, 4.0);
+const MOST_EXTREME_LOG_FACTORS: (f64, f64) = (-8.0, 8.0);
 const CALIBRATION_STEPS: usize = 30;
 
 /// What to train and how.
