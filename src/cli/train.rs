@@ -84,7 +84,7 @@ struct Answer<'a> {
     seconds: f64,
     best_epoch: usize,
     epochs: usize,
-    variance_factor: [f64; 2],
+    variance_factor: [f64; 3],
     train: Option<crate::force::LossTerms>,
     validation: Option<crate::force::LossTerms>,
 }
@@ -220,10 +220,8 @@ fn print(
         ("best epoch", format!("{} of {}", answer.best_epoch, answer.epochs)),
         (
             "variance factors",
-            format!(
-                "{:.2} forces, {:.2} duration",
-                answer.variance_factor[0], answer.variance_factor[1]
-            ),
+            answer.variance_factor.map(|factor| format!("{factor:.2}")).join(", ")
+                + " (latent factors, single instants, duration)",
         ),
         ("training", loss(answer.train)),
         ("validation", loss(answer.validation)),

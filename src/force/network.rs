@@ -102,39 +102,69 @@ pub(super) struct NetworkOutput {
 }
 
 impl NetworkOutput {
-    /// What calibration needs: of every force during the contact of every case, and of every
-    /// duration, the observed value under each component.
+    /// What calibration needs: of both impulses of every case, every force during the contact, and
+    /// every duration, the observed value under each component.
     ///
     /// - `values`: the curves, `[cases, values]`.
-    pub(super) fn scores(&self, values: &Tensor) -> Result<[Vec<Score>; 2], ForceError> {
-        let mut variance = self.variance.clone();
-        if let Some(factors) = &self.factors {
-            variance = (variance + factors.sqr()?.sum(3)?)?;
-        }
-        let z = (values.unsqueeze(1)?.broadcast_sub(&self.mean)? / variance.sqrt()?)?;
-        let z = z.to_dtype(DType::F64)?.to_vec3::<f64>()?;
+    pub(super) fn scores(&self, values: &Tensor) -> Result<[Vec<Score>; 3], ForceError> {
+        let residual = values.unsqueeze(1)?.broadcast_sub(&self.mean)?;
+        let rows = |tensor: &Tensor| -> Result<Vec<Vec<Vec<f64>>>, ForceError> {
+            Ok(tensor.to_dtype(DType::F64)?.to_vec3::<f64>()?)
+        };
+        let (n_instants, zero) = (values.dim(1)? / 2, self.variance.zeros_like()?);
+        let shared = self.factors.as_ref().map(|u| u.sqr()?.sum(3)).transpose()?.unwrap_or(zero);
+        let of_impulse = |axis: usize| -> Result<[Vec<Vec<Vec<f64>>>; 3], ForceError> {
+            let sum =
+                |tensor: &Tensor| tensor.narrow(2, axis * n_instants, n_instants)?.sum_keepdim(2);
+            let zero = sum(&self.variance)?.zeros_like()?;
+            let shared = self.factors.as_ref().map(|u| sum(u)?.squeeze(2)?.sqr()?.sum_keepdim(2));
+            let shared = shared.transpose()?.unwrap_or(zero);
+            Ok([rows(&sum(&residual)?)?, rows(&sum(&self.variance)?)?, rows(&shared)?])
+        };
+        let impulse = [of_impulse(0)?, of_impulse(1)?];
+        let force = [rows(&residual)?, rows(&self.variance)?, rows(&shared)?];
         let weights = candle_nn::ops::softmax(&self.logits, D::Minus1)?;
         let weights = weights.to_dtype(DType::F64)?.to_vec2::<f64>()?;
-        let values = values.to_dtype(DType::F64)?.to_vec2::<f64>()?;
-        let (mut forces, mut durations) = (Vec::new(), Vec::new());
-        for ((z, weights), values) in z.iter().zip(&weights).zip(&values) {
-            let score = |value_idx: usize| -> Score {
-                weights.iter().zip(z).map(|(weight, z)| (*weight, z[value_idx])).collect()
+        let durations_s = values.narrow(1, 2 * n_instants, 1)?.squeeze(1)?;
+        let durations_s =
+            (durations_s * DURATION_UNIT_S)?.to_dtype(DType::F64)?.to_vec1::<f64>()?;
+        let mut scores = [Vec::new(), Vec::new(), Vec::new()];
+        for (case, (weights, duration_s)) in weights.iter().zip(&durations_s).enumerate() {
+            let score = |[residual, single, shared]: &[Vec<Vec<Vec<f64>>>; 3], value: usize| {
+                let part = |(k, weight): (usize, &f64)| ScorePart {
+                    weight: *weight,
+                    residual: residual[case][k][value],
+                    single: single[case][k][value],
+                    shared: shared[case][k][value],
+                };
+                weights.iter().enumerate().map(part).collect::<Score>()
             };
-            let n_instants = values.len() / 2;
-            let duration_s = values.last().copied().unwrap_or(0.0) * DURATION_UNIT_S;
             let n_contact = ((duration_s / CURVE_INTERVAL_S).ceil() as usize).min(n_instants);
+            scores[0].extend(impulse.iter().map(|impulse| score(impulse, 0)));
             for first in [0, n_instants] {
-                forces.extend((first..first + n_contact).map(score));
+                scores[1].extend((first..first + n_contact).map(|value| score(&force, value)));
             }
-            durations.push(score(2 * n_instants));
+            scores[2].push(score(&force, 2 * n_instants));
         }
-        Ok([forces, durations])
+        Ok(scores)
     }
 }
 
-/// Weight and deviation in standard deviations of a value under each component.
-pub(super) type Score = Vec<(f64, f64)>;
+/// An observed value under one component.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ScorePart {
+    /// π.
+    pub weight: f64,
+    /// Value less mean.
+    pub residual: f64,
+    /// Variance of single instants.
+    pub single: f64,
+    /// Variance through the latent factors.
+    pub shared: f64,
+}
+
+/// An observed value under each component.
+pub(super) type Score = Vec<ScorePart>;
 
 impl ForceNetwork {
     /// New layers with seeded parameters.

@@ -127,7 +127,7 @@ impl ForceModel {
             Some(factors) => factors.flatten_all()?.to_dtype(DType::F64)?.to_vec1::<f64>()?,
             None => Vec::new(),
         };
-        let [widen_forces, widen_duration] = self.record.variance_factor;
+        let [widen_shared, widen_single, widen_duration] = self.record.variance_factor;
         let k = self.config.network.components;
         let mut components = Vec::with_capacity(variants.len() * k);
         for (i, (centre, variant)) in centres.iter().zip(variants).enumerate() {
@@ -135,8 +135,8 @@ impl ForceModel {
                 if value_idx + 1 == n_values { DURATION_UNIT_S } else { centre.scale_n }
             };
             for j in 0..k {
-                let widen = |value_idx: usize| {
-                    if value_idx + 1 == n_values { widen_duration } else { widen_forces }
+                let widen = |value_idx: usize, forces: f64| {
+                    if value_idx + 1 == n_values { widen_duration } else { forces }
                 };
                 let first = (i * k + j) * n_values * q;
                 components.push(CurveComponent {
@@ -145,10 +145,10 @@ impl ForceModel {
                     variance: variance[i][j]
                         .iter()
                         .enumerate()
-                        .map(|(v, x)| x * unit(v).powi(2) * widen(v))
+                        .map(|(v, x)| x * unit(v).powi(2) * widen(v, widen_single))
                         .collect(),
                     factors: DMatrix::from_fn(n_values, q, |v, f| {
-                        factors[first + v * q + f] * unit(v) * widen(v).sqrt()
+                        factors[first + v * q + f] * unit(v) * widen(v, widen_shared).sqrt()
                     }),
                 });
             }

@@ -69,8 +69,9 @@ pub struct TrainingRecord {
     pub test: Vec<CaseId>,
     /// Epoch whose weights these are, from 1.
     pub best_epoch: usize,
-    /// Factors on the variances of forces and duration, from calibration on the training cases.
-    pub variance_factor: [f64; 2],
+    /// Factors on the variances through latent factors, of single instants and of the duration, from
+    /// calibration on the training cases.
+    pub variance_factor: [f64; 3],
     /// Every epoch.
     pub history: Vec<EpochRecord>,
 }

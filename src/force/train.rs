@@ -12,7 +12,7 @@ use crate::force::centre::{CentreCurve, CentreModel};
 use crate::force::features::{OpenFeatures, Standardisation, features};
 use crate::force::loss::{Loss, LossTerms};
 use crate::force::model::ForceModel;
-use crate::force::network::{ForceNetwork, Score};
+use crate::force::network::{ForceNetwork, Score, ScorePart};
 use crate::force::training_file::TrainingFile;
 use crate::force::{
     CaseId, Centre, EpochRecord, ForceCase, ForceConfig, ForceError, TrainingRecord, TrainingSet,
@@ -325,29 +325,41 @@ impl<'a> Training<'a> {
         })
     }
 
-    /// The factors on the variances of forces and duration with which the central 90 % intervals
-    /// hold 90 % of the values of the training cases, forces during contact.
+    /// The factors on the variances with which the central 90 % intervals hold 90 % of the values
+    /// of the training cases: those of the latent factors by the impulses, to which single instants
+    /// add next to nothing; then those of single instants by the forces during contact; then the
+    /// durations'.
     ///
     /// The physics has not seen the case through whose curve it is judged, and the network's
     /// corrections of the mean are bounded, so this is nearly out of sample; test cases are not
     /// touched.
-    fn variance_factor(&self) -> Result<[f64; 2], ForceError> {
+    fn variance_factor(&self) -> Result<[f64; 3], ForceError> {
         let all: Vec<usize> = (0..self.centres.len()).collect();
         let (input, targets) = self.tensors.select(&all)?;
         let output = self.network.forward_frozen(&input)?;
-        Ok(output.scores(&targets.values)?.map(|scores| calibrated_factor(&scores)))
+        let [impulses, forces, durations] = output.scores(&targets.values)?;
+        let shared =
+            calibrated_factor(&impulses, |factor, part| factor * (part.shared + part.single));
+        let single =
+            calibrated_factor(&forces, |factor, part| shared * part.shared + factor * part.single);
+        let duration =
+            calibrated_factor(&durations, |factor, part| factor * (part.shared + part.single));
+        Ok([shared, single, duration])
     }
 }
 
-/// The factor κ on all variances with which central intervals hold their share of the values, by
-/// bisection: the share held never falls with κ.
-fn calibrated_factor(scores: &[Score]) -> f64 {
+/// The factor with which central intervals hold their share of the values, by bisection: the share
+/// held never falls with it.
+///
+/// - `variance`: of a value under a component, by the factor.
+fn calibrated_factor(scores: &[Score], variance: impl Fn(f64, &ScorePart) -> f64) -> f64 {
     let tail = (1.0 - CALIBRATED_SHARE) / 2.0;
     let held = |factor: f64| {
         let is_held = |score: &&Score| {
-            let probability: f64 =
-                score.iter().map(|(weight, z)| weight * normal_cdf(z / factor.sqrt())).sum();
-            (tail..=1.0 - tail).contains(&probability)
+            let below = |part: &ScorePart| {
+                part.weight * normal_cdf(part.residual / variance(factor, part).sqrt())
+            };
+            (tail..=1.0 - tail).contains(&score.iter().map(below).sum::<f64>())
         };
         scores.iter().filter(is_held).count() as f64 / scores.len().max(1) as f64
     };
@@ -392,8 +404,11 @@ mod tests {
         let n = 2000;
         let quantiles = (0..n).map(|i| normal_quantile((f64::from(i) + 0.5) / f64::from(n)));
         // Values twice as far out as the model thinks need four times its variance.
-        let scores: Vec<Score> = quantiles.map(|z| vec![(0.7, 2.0 * z), (0.3, 2.0 * z)]).collect();
-        let factor = calibrated_factor(&scores);
+        let part =
+            |weight, z: f64| ScorePart { weight, residual: 2.0 * z, single: 0.3, shared: 0.7 };
+        let scores: Vec<Score> = quantiles.map(|z| vec![part(0.7, z), part(0.3, z)]).collect();
+        let factor =
+            calibrated_factor(&scores, |factor, part| factor * (part.single + part.shared));
         assert!((factor - 4.0).abs() < 0.05, "{factor}");
     }
 }
