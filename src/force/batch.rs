@@ -6,7 +6,8 @@ use crate::force::centre::CentreCurve;
 use crate::force::features::{N_INSTANT_FEATURES, instant_features};
 use crate::force::loss::Targets;
 use crate::force::network::{DURATION_UNIT_S, NetworkInput};
-use crate::force::{ForceCase, ForceError};
+use crate::force::residuals::ResidualModel;
+use crate::force::{ForceCase, ForceError, NetworkConfig};
 use crate::uncertainty::CURVE_N_INSTANTS;
 
 /// All cases of a training, ready to be drawn from.
@@ -20,11 +21,12 @@ pub(super) struct CaseTensors {
 ///
 /// - `features`: standardised, one row per centre.
 pub(super) fn network_input(
-    centres: &[CentreCurve],
+    (centres, residuals): (&[CentreCurve], &ResidualModel),
     features: Vec<Vec<f32>>,
-    number_type: DType,
+    (config, number_type): (&NetworkConfig, DType),
 ) -> Result<NetworkInput, ForceError> {
     let n = centres.len();
+    let (k, q, n_values) = (config.components, config.factors, 2 * CURVE_N_INSTANTS + 1);
     let width = features.first().map_or(0, Vec::len);
     let tensor = |data: Vec<f32>, shape: &[usize]| -> Result<Tensor, ForceError> {
         Ok(Tensor::from_vec(data, shape, &Device::Cpu)?.to_dtype(number_type)?)
@@ -32,21 +34,35 @@ pub(super) fn network_input(
     let instants = centres.iter().flat_map(instant_features).collect();
     let whole = centres.iter().flat_map(|centre| {
         let [px, py] = centre.impulse_n_s.map(|p| (p / centre.scale_n) as f32);
-        [px, py, centre.curve.duration_s as f32]
+        [px, py, centre.curve.duration_s as f32, centre.onset_s() as f32]
     });
+    let mut start = [const { Vec::<f32>::new() }; 3];
+    for centre in centres {
+        let curves = [false, true].map(|hooks| residuals.curve(centre, hooks));
+        for component in 0..k {
+            let curve = &curves[usize::from(k > 1 && component + 1 == k)];
+            for (all, of) in start.iter_mut().zip([&curve.mean, &curve.variance, &curve.factors]) {
+                all.extend(of.iter().map(|value| *value as f32));
+            }
+        }
+    }
+    let [shift, variance, factors] = start;
     Ok(NetworkInput {
         features: tensor(features.concat(), &[n, width])?,
         instants: tensor(instants, &[n, CURVE_N_INSTANTS, N_INSTANT_FEATURES])?,
-        whole: tensor(whole.collect(), &[n, 3])?,
+        whole: tensor(whole.collect(), &[n, 4])?,
+        shift: tensor(shift, &[n, k, n_values])?,
+        variance: tensor(variance, &[n, k, n_values])?,
+        factors: (q > 0).then(|| tensor(factors, &[n, k, n_values, q])).transpose()?,
     })
 }
 
 impl CaseTensors {
     pub(super) fn new(
         cases: &[&ForceCase],
-        centres: &[CentreCurve],
+        (centres, residuals): (&[CentreCurve], &ResidualModel),
         features: Vec<Vec<f32>>,
-        number_type: DType,
+        (config, number_type): (&NetworkConfig, DType),
     ) -> Result<Self, ForceError> {
         let n = cases.len();
         let tensor = |data: Vec<f64>, shape: &[usize]| -> Result<Tensor, ForceError> {
@@ -75,7 +91,8 @@ impl CaseTensors {
             closing: tensor(closing.collect(), &[n, 2])?,
             inverse_mass: tensor(inverse_mass.collect(), &[n, 2, 2])?,
         };
-        Ok(Self { input: network_input(centres, features, number_type)?, targets })
+        let input = network_input((centres, residuals), features, (config, number_type))?;
+        Ok(Self { input, targets })
     }
 
     /// Some of the cases, in this order.
@@ -87,6 +104,9 @@ impl CaseTensors {
             features: pick(&self.input.features)?,
             instants: pick(&self.input.instants)?,
             whole: pick(&self.input.whole)?,
+            shift: pick(&self.input.shift)?,
+            variance: pick(&self.input.variance)?,
+            factors: self.input.factors.as_ref().map(pick).transpose()?,
         };
         let targets = Targets {
             values: pick(&self.targets.values)?,

@@ -41,6 +41,15 @@ pub struct CentreCurve {
     pub closing_velocity_m_s: [f64; 2],
 }
 
+impl CentreCurve {
+    /// The first force above 1 % of the peak, s.
+    pub fn onset_s(&self) -> f64 {
+        let magnitude = self.curve.magnitude_n();
+        let is_contact = |force: &f64| *force > CONTACT_SHARE * self.scale_n;
+        magnitude.iter().position(is_contact).unwrap_or(0) as f64 * CURVE_INTERVAL_S
+    }
+}
+
 /// The fitted physics.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -360,4 +369,30 @@ fn mean_history(laws: &[&CrushLaw], scenario: &CrushScenario) -> (ForceCurve, Ve
     };
     let curve = ForceCurve { fx_n: series(0), fy_n: series(1), duration_s: 0.0 };
     (curve, series(2), series(3))
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// A haversine along y from the first instant on.
+    pub(crate) fn haversine_centre(duration_s: f64, peak_n: f64) -> CentreCurve {
+        let n = CURVE_N_INSTANTS;
+        let force = |i: usize| {
+            let share = (i as f64 + 0.5) * CURVE_INTERVAL_S / duration_s;
+            peak_n * PulseShape::Haversine.density(share) / PulseShape::Haversine.density(0.5)
+        };
+        let fy_n: Vec<f64> = (0..n).map(force).collect();
+        let curve = ForceCurve { fx_n: vec![0.0; n], fy_n, duration_s };
+        CentreCurve {
+            impulse_n_s: curve.impulse_n_s(),
+            momentum_impulse_n_s: curve.impulse_n_s(),
+            scale_n: peak_n,
+            depth_m: vec![0.0; n],
+            slip_m_s: vec![0.0; n],
+            inverse_mass_1_kg: [[1e-3, 0.0], [0.0, 1e-3]],
+            closing_velocity_m_s: [0.0, 3.0],
+            curve,
+        }
+    }
 }

@@ -183,8 +183,8 @@ impl Default for CrushConfig {
     fn default() -> Self {
         Self {
             folds: 5,
-            prior_weight: 0.05,
-            impulse_weight: 1.0,
+            prior_weight: 0.07,
+            impulse_weight: 0.5,
             hooked_weight: 0.3,
             max_steps: 30,
         }

@@ -24,6 +24,7 @@ mod loss;
 mod network;
 
 mod record;
+mod residuals;
 
 mod train;
 mod training_file;

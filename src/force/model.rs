@@ -9,11 +9,12 @@ use serde::{Deserialize, Serialize};
 use crate::force::centre::CentreModel;
 use crate::force::features::{OpenFeatures, Standardisation};
 use crate::force::network::ForceNetwork;
+use crate::force::residuals::ResidualModel;
 use crate::force::{ForceCase, ForceConfig, ForceError, ForceScenario, TrainingRecord};
 use crate::nn::{Checkpoint, ModelKind, NnError, random_stream};
 use crate::uncertainty::{CURVE_N_INSTANTS, ForceCurve};
 
-const KIND: ModelKind = ModelKind { name: "force network", version: 1 };
+const KIND: ModelKind = ModelKind { name: "force network", version: 2 };
 const CURVES: &str = "curves";
 
 /// A trained force network with all it takes to predict, and the cases it was trained on, with
@@ -22,6 +23,7 @@ const CURVES: &str = "curves";
 pub struct ForceModel {
     pub(super) config: ForceConfig,
     pub(super) centre: CentreModel,
+    pub(super) residuals: ResidualModel,
     pub(super) standardisation: Standardisation,
     pub(super) open: OpenFeatures,
     pub(super) network: ForceNetwork,
@@ -86,6 +88,7 @@ impl ForceModel {
         let mut file = Checkpoint::new(KIND);
         file.put("config", &self.config)?;
         file.put("centre", &self.centre)?;
+        file.put("residuals", &self.residuals)?;
         file.put("standardisation", &self.standardisation)?;
         file.put("open", &self.open)?;
         file.put("record", &self.record)?;
@@ -124,6 +127,8 @@ impl ForceModel {
         let config: ForceConfig = file.get("config")?;
         config.check()?;
         let centre: CentreModel = file.get("centre")?;
+        let residuals: ResidualModel = file.get("residuals")?;
+        residuals.check(config.network.factors)?;
         let stored: Vec<StoredCase> = file.get("cases")?;
         let n_bodies = centre.bodies().len();
         let mut rng = random_stream(0, "force network", 0);
@@ -149,6 +154,7 @@ impl ForceModel {
             cases: cases.collect(),
             config,
             centre,
+            residuals,
             network,
         })
     }

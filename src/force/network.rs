@@ -11,6 +11,10 @@
 //! F | k ~ N(F_base + δ_k, U_k U_kᵀ + diag(σ_min² + exp s_k))      k ~ π(θ)
 //! ```
 //!
+//! δ_k, U_k and s_k start from what the physics leaves over
+//! ([`ResidualModel`](crate::force::residuals::ResidualModel)); the network learns by how much the
+//! case at hand departs from it.
+//!
 //! Everything is in units of the centre's peak force; the duration, in units of 0.1 s, is one more
 //! value of the curve, so that it varies together with the force.
 //!
@@ -33,22 +37,22 @@ use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS};
 pub(super) const DURATION_UNIT_S: f64 = 0.1;
 /// Over which the curve fades out at the end of the contact, s.
 const FADE_S: f64 = 0.006;
-/// Standard deviation of a force before training: share of the centre's force, and floor, in peaks.
-const FIRST_STD: [f64; 2] = [0.04, 0.0075];
-/// Largest change of its logarithm: what is left to single instants is ripple; all that lasts is
-/// for the latent factors, else drawn curves are jagged and their peaks too high.
+/// Largest change of the logarithm of the deviation of single instants: what is left to them is
+/// ripple; all that lasts is for the latent factors, else drawn curves are jagged and their peaks
+/// too high.
 const STD_LOG_CHANGE: f64 = 0.7;
-/// Loading of a latent factor per unit of the network's output, share of the envelope.
-const FIRST_LOADING: f64 = 0.08;
-/// Standard deviation of the duration before training, units of 0.1 s.
-const FIRST_DURATION_STD: f64 = 0.3;
+/// Largest change of the logarithm of the size of a latent factor, for all instants and for one.
+const FACTOR_LOG_CHANGE: f64 = 1.0;
+const FACTOR_INSTANT_CHANGE: f64 = 0.3;
+/// Floor of the force that may be expected at any time, peaks of the centre.
+const ENVELOPE_FLOOR: f64 = 0.2;
 /// Log odds of hooking before training.
 const FIRST_HOOKING_LOGIT: f64 = -2.0;
 /// Largest correction of the logit of the duration.
-const DURATION_CORRECTION: f64 = 0.7;
-/// Largest shift of a component's duration, units of 0.1 s: of hooking twenty times that.
+const DURATION_CORRECTION: f64 = 0.2;
+/// Largest shift of a component's duration, units of 0.1 s: of hooking ten times that.
 const DURATION_SHIFT: f64 = 0.1;
-const HOOKING_DURATION_SHIFT: f64 = 2.0;
+const HOOKING_DURATION_SHIFT: f64 = 1.0;
 
 /// The layers and their parameters.
 #[derive(Debug)]
@@ -80,8 +84,13 @@ pub(super) struct NetworkInput {
     /// Features of each instant, `[cases, instants, N_INSTANT_FEATURES]`; the first two are the
     /// centre's force in peaks.
     pub instants: Tensor,
-    /// Impulse of the centre in peaks × s, and its duration in s, `[cases, 3]`.
+    /// Impulse of the centre in peaks × s, its duration in s and its onset in s, `[cases, 4]`.
     pub whole: Tensor,
+    /// Where the components start from: shift and variance, `[cases, K, values]`.
+    pub shift: Tensor,
+    pub variance: Tensor,
+    /// Latent factors, `[cases, K, values, q]`; none if q = 0.
+    pub factors: Option<Tensor>,
 }
 
 /// A mixture over the values of a curve `[F_x…, F_y…, duration]`, in peaks and 0.1 s.
@@ -220,39 +229,43 @@ impl ForceNetwork {
         };
         let raw = by_component(layers.component.forward(&hidden)?, 2)?;
         let n_forces = 2 * n_instants;
-        let envelope = self.envelope(input)?;
-        let envelope = envelope.reshape((n_cases, 1, 1, n_instants))?;
+        let envelope = self.envelope(input)?.reshape((n_cases, 1, 1, n_instants))?;
         let per_force =
-            |i: usize| -> Result<Tensor, ForceError> { Ok(raw.narrow(4, i, 1)?.squeeze(4)?) };
+            |i: usize| -> Result<Tensor, ForceError> { Ok(raw.narrow(4, i, 1)?.squeeze(4)?.tanh()?) };
         let largest = self.per_component(self.config.component_shift, self.config.hooking_shift)?;
-        let shift = per_force(0)?.tanh()?.broadcast_mul(&envelope)?;
+        let shift = per_force(0)?.broadcast_mul(&envelope)?;
         let shift = shift.reshape((n_cases, k, n_forces))?.broadcast_mul(&largest)?;
-        let deviation = (per_force(1)?.tanh()? * STD_LOG_CHANGE)?.exp()?;
-        let deviation = deviation.broadcast_mul(&(&envelope * FIRST_STD[0])?)?;
-        let min_variance = self.config.min_std.powi(2);
-        let variance = (deviation.sqr()? + min_variance)?.reshape((n_cases, k, n_forces))?;
-        let base = base.reshape((n_cases, 1, n_forces))?;
-        let mean = base.broadcast_add(&shift)?;
+        let change = per_force(1)?.reshape((n_cases, k, n_forces))?;
 
         let per_component = whole.narrow(1, 3, k * (3 + q))?.reshape((n_cases, k, 3 + q))?;
+        let of_component = |i: usize| per_component.narrow(2, i, 1);
         let rare = self.per_component(0.0, FIRST_HOOKING_LOGIT)?.squeeze(2)?;
-        let logits = per_component.narrow(2, 0, 1)?.squeeze(2)?.broadcast_add(&rare)?;
+        let logits = of_component(0)?.squeeze(2)?.broadcast_add(&rare)?;
         let largest = self.per_component(DURATION_SHIFT, HOOKING_DURATION_SHIFT)?;
-        let duration_shift = per_component.narrow(2, 1, 1)?.tanh()?.broadcast_mul(&largest)?;
-        let duration_deviation = (per_component.narrow(2, 2, 1)?.exp()? * FIRST_DURATION_STD)?;
+        let duration_shift = of_component(1)?.tanh()?.broadcast_mul(&largest)?;
         let duration = (&duration_s / DURATION_UNIT_S)?.reshape((n_cases, 1, 1))?;
-        let mean = Tensor::cat(&[&mean, &duration.broadcast_add(&duration_shift)?], 2)?;
-        let variance = Tensor::cat(&[&variance, &(duration_deviation.sqr()? + 1e-4)?], 2)?;
-        let factors = if q == 0 {
-            None
-        } else {
-            let loadings = by_component(layers.loading.forward(&hidden)?, q)?;
-            let loadings = (loadings * FIRST_LOADING)?.reshape((n_cases, k, n_forces, q))?;
-            let envelope = self.envelope(input)?;
-            let envelope = Tensor::cat(&[&envelope, &envelope], 1)?;
-            let loadings = loadings.broadcast_mul(&envelope.reshape((n_cases, 1, n_forces, 1))?)?;
-            let of_duration = per_component.narrow(2, 3, q)?.unsqueeze(2)?;
-            Some(Tensor::cat(&[&loadings, &of_duration], 2)?)
+        let mean = Tensor::cat(
+            &[
+                &base.reshape((n_cases, 1, n_forces))?.broadcast_add(&shift)?,
+                &duration.broadcast_add(&duration_shift)?,
+            ],
+            2,
+        )?;
+        let mean = (mean + &input.shift)?;
+        let change = Tensor::cat(&[&change, &of_component(2)?.tanh()?], 2)?;
+        let variance = (&input.variance * (change * (2.0 * STD_LOG_CHANGE))?.exp()?)?;
+        let variance = (variance + self.config.min_std.powi(2))?;
+        let factors = match &input.factors {
+            None => None,
+            Some(start) => {
+                let size = (per_component.narrow(2, 3, q)?.tanh()? * FACTOR_LOG_CHANGE)?.exp()?;
+                let instants = by_component(layers.loading.forward(&hidden)?, q)?;
+                let instants = ((instants.tanh()? * FACTOR_INSTANT_CHANGE)? + 1.0)?;
+                let instants = instants.reshape((n_cases, k, n_forces, q))?;
+                let of_duration = Tensor::ones((n_cases, k, 1, q), number_type, start.device())?;
+                let change = Tensor::cat(&[&instants, &of_duration], 2)?;
+                Some((start * change)?.broadcast_mul(&size.unsqueeze(2)?)?)
+            }
         };
         let logits = logits.to_dtype(number_type)?;
         Ok(NetworkOutput { logits, mean, variance, factors, impulse, duration_s })
@@ -346,24 +359,13 @@ impl ForceNetwork {
     /// 1 until the end of the contact, then 0, `[cases, instants]`; over 6 ms before the end it
     /// falls, so that the end can be learned.
     fn window(&self, input: &NetworkInput, duration_s: &Tensor) -> Result<Tensor, ForceError> {
-        let (n_cases, n_instants, _) = input.instants.dims3()?;
-        let first: Vec<f64> = self.onset_s(input)?;
+        let n_instants = input.instants.dim(1)?;
         let number_type = self.parameters.number_type();
         let device = input.instants.device();
-        let onset = Tensor::from_vec(first, (n_cases, 1), device)?.to_dtype(number_type)?;
-        let end = (duration_s.unsqueeze(1)? + onset)?;
+        let end = (duration_s.unsqueeze(1)? + input.whole.narrow(1, 3, 1)?)?;
         let time: Vec<f64> = (0..n_instants).map(|t| (t as f64 + 0.5) * CURVE_INTERVAL_S).collect();
         let time = Tensor::from_vec(time, (1, n_instants), device)?.to_dtype(number_type)?;
         Ok((end.broadcast_sub(&time)? / FADE_S)?.clamp(0.0, 1.0)?)
-    }
-
-    /// First instant at which the centre has a force, s.
-    fn onset_s(&self, input: &NetworkInput) -> Result<Vec<f64>, ForceError> {
-        let magnitude = self.magnitude(input)?.to_dtype(DType::F64)?.to_vec2::<f64>()?;
-        let first = |row: &Vec<f64>| {
-            row.iter().position(|force| *force > 0.01).unwrap_or(0) as f64 * CURVE_INTERVAL_S
-        };
-        Ok(magnitude.iter().map(first).collect())
     }
 
     /// |centre|, peaks, `[cases, instants]`.
@@ -378,7 +380,7 @@ impl ForceNetwork {
         if self.config.centre == Centre::None {
             return Ok(magnitude.ones_like()?);
         }
-        Ok((magnitude + FIRST_STD[1] / FIRST_STD[0])?)
+        Ok((magnitude + ENVELOPE_FLOOR)?)
     }
 }
 
@@ -416,7 +418,8 @@ impl Layers {
         let zero = Init::Zero;
         let shape = Linear::with_init(&mut root.at("shape"), [hidden, 4], none, zero)?;
         let component = Linear::with_init(&mut root.at("component"), [hidden, k * 4], none, zero)?;
-        let loading = Linear::new(&mut root.at("loading"), [hidden, k * 2 * q.max(1)], none)?;
+        let n_loading = k * 2 * q.max(1);
+        let loading = Linear::with_init(&mut root.at("loading"), [hidden, n_loading], none, zero)?;
         let n_whole = 3 + k * (3 + q);
         let whole =
             Linear::with_init(&mut root.at("whole"), [hidden + width, n_whole], none, zero)?;

@@ -59,7 +59,8 @@ impl ForceModel {
             rows.push(self.standardisation.apply(&row));
             centres.push(centre);
         }
-        let input = network_input(&centres, rows, DType::F32)?;
+        let number_type = (&self.config.network, DType::F32);
+        let input = network_input((&centres, &self.residuals), rows, number_type)?;
         let output = self.network.forward_frozen(&input)?;
         let components = self.components(&output, &centres, &variants)?;
         let k = self.config.network.components;

@@ -13,6 +13,7 @@ use crate::force::features::{OpenFeatures, Standardisation, features};
 use crate::force::loss::{Loss, LossTerms};
 use crate::force::model::ForceModel;
 use crate::force::network::{ForceNetwork, Score, ScorePart};
+use crate::force::residuals::ResidualModel;
 use crate::force::training_file::TrainingFile;
 use crate::force::{
     CaseId, Centre, EpochRecord, ForceCase, ForceConfig, ForceError, TrainingRecord, TrainingSet,
@@ -157,6 +158,7 @@ struct Training<'a> {
     settings: &'a TrainSettings,
     centre: CentreModel,
     centres: Vec<CentreCurve>,
+    residuals: ResidualModel,
     standardisation: Standardisation,
     tensors: CaseTensors,
     network: ForceNetwork,
@@ -188,7 +190,9 @@ impl<'a> Training<'a> {
         let standardisation = Standardisation::of(&seen);
         let rows = rows.iter().map(|row| standardisation.apply(row)).collect();
         let cases: Vec<&ForceCase> = set.train.iter().collect();
-        let tensors = CaseTensors::new(&cases, &centres, rows, DType::F32)?;
+        let residuals = ResidualModel::fit(&set.train, &centres, config.network.factors);
+        let number_type = (&config.network, DType::F32);
+        let tensors = CaseTensors::new(&cases, (&centres, &residuals), rows, number_type)?;
         let mut rng = random_stream(settings.seed, "force network", 0);
         let network = ForceNetwork::new(&config.network, bodies.len(), &mut rng, DType::F32)?;
         let optimizer = AdamW::new(optimizer_config(config), network.parameters())?;
@@ -197,6 +201,7 @@ impl<'a> Training<'a> {
             settings,
             centre,
             centres,
+            residuals,
             standardisation,
             tensors,
             network,
@@ -317,6 +322,7 @@ impl<'a> Training<'a> {
         Ok(ForceModel {
             config: self.settings.config.clone(),
             centre: self.centre,
+            residuals: self.residuals,
             standardisation: self.standardisation,
             open,
             network: self.network,

@@ -4,17 +4,19 @@ use serde::{Deserialize, Serialize};
 
 use super::outline::{N_OUTLINE_FACTORS, Nose};
 
-/// Crush depths between which the stiffness of the skin is constant, m; beyond the last it stays.
-pub(super) const DEPTH_KNOTS_M: [f64; 7] = [0.0, 0.04, 0.08, 0.12, 0.17, 0.24, 0.34];
+/// Crush depths between which the stiffness of the skins is constant, m; beyond the last it stays.
+pub(super) const DEPTH_KNOTS_M: [f64; 8] = [0.0, 0.03, 0.06, 0.09, 0.105, 0.13, 0.17, 0.24];
 /// Places along the target's side, from its rear axle forwards, m, at which the skin's stiffness
 /// and bulge are given; linear in between.
 pub(super) const SKIN_KNOTS_M: [f64; 8] = [-0.66, -0.36, -0.16, 0.0, 0.16, 0.34, 0.64, 1.04];
-/// Places along the target's side, from its rear axle forwards, m, at which the depth of the wheel
-/// behind the skin is given; linear in between.
-pub(super) const WHEEL_KNOTS_M: [f64; 7] = [-0.46, -0.32, -0.16, 0.0, 0.16, 0.32, 0.48];
+/// Places along the target's side, from its rear axle forwards, m, at which the depth of its hard
+/// structure is given (wheel, edges of the wheel arch); linear in between.
+pub(super) const TARGET_STRUCTURE_KNOTS_M: [f64; 12] =
+    [-0.8, -0.6, -0.45, -0.32, -0.2, -0.1, 0.0, 0.1, 0.2, 0.32, 0.45, 0.6];
 /// Places along the bullet's outline, from the start of its corner forwards, m, at which the depth
-/// of its stiff structure behind the skin is given; linear in between.
-pub(super) const STRUCTURE_KNOTS_M: [f64; 4] = [-0.4, 0.0, 0.25, 0.55];
+/// of its hard structure is given (wheel behind the corner, beam before it); linear in between.
+pub(super) const BULLET_STRUCTURE_KNOTS_M: [f64; 10] =
+    [-0.7, -0.45, -0.25, -0.1, 0.05, 0.2, 0.3, 0.38, 0.46, 0.54];
 
 /// What one kind of bullet body is like.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -28,11 +30,11 @@ pub struct BodyCrush {
     pub depth_log_factor: [f64; DEPTH_KNOTS_M.len()],
     /// Logarithm of the factor on the skin's stiffness along the outline.
     pub outline_log_factor: [f64; N_OUTLINE_FACTORS],
-    /// Logarithm of the factor on the stiffness against the wheel.
-    pub wheel_log_factor: f64,
-    /// How much deeper it gets before it meets the wheel, m.
-    pub wheel_depth_m: f64,
-    /// Share of the greatest crush that comes back.
+    /// Logarithm of the factor on the stiffness of structure against structure.
+    pub structure_log_factor: f64,
+    /// How much deeper than other bodies' its structure lies along its outline, m.
+    pub structure_depth_m: [f64; BULLET_STRUCTURE_KNOTS_M.len()],
+    /// q: share of a crush of 0.1 m that comes back.
     pub recovery: f64,
     /// What it adds to the friction coefficient.
     pub friction: f64,
@@ -40,21 +42,27 @@ pub struct BodyCrush {
 
 /// The parameters of the crush model, shared by all bodies and for each body.
 ///
-/// Force per metre of outline at a depth d that grows, at a place s along the target's side:
+/// Force per metre of outline at a depth d that grows, at a place s along the target's side and σ
+/// along the bullet's outline:
 ///
 /// ```text
-/// p = f₁ · ∫₀^(d + b(s)) k(z) dz  +  k_w · softplus(d − d_w(s) − d_b − d_θ (θ_b − 0.35))
+/// p = p₁ + p₂
+/// p₁ = f(s, σ) · ∫₀^(d + b(s)) k(z) dz
+/// p₂ = k₂ · softplus(d − d_t(s) − d_b(σ) − d_θ (θ_b − 0.35))
 /// ```
 ///
-/// the skin (k by ranges of depth, factor f₁ of place and body, bulge b) and behind it the wheel.
-/// Below the greatest depth d_max so far, with recovery q and exponent ν:
+/// the skins (k by ranges of depth, factor f of place and body, bulge b), and the hard structures
+/// behind them: the target's wheel and the edges of its wheel arch, the bullet's wheel and beam.
+/// Below the greatest depth d_max so far each part comes back over a length of its own:
 ///
 /// ```text
-/// p = p_max · max(0, 1 − (d_max − d) / (q d_max))^ν · (1 + c v_n)
+/// p₁ = p₁,max · max(0, 1 − (d_max − d) / ℓ₁)^ν₁     ℓ₁ = 0.1 m · q (d_max / 0.1 m)^a
+/// p₂ = p₂,max · max(0, 1 − (d_max − d) / ℓ₂)^ν₂
 /// ```
 ///
-/// It acts along a normal between the target's and the bullet's, with friction μ tanh(v_t / v₀)
-/// across it.
+/// both times 1 + c v_n. The push acts along a normal between the target's and the bullet's, which
+/// the structure's share of it tilts by −τ ∂d_t/∂s (what runs up an edge is held by it), with
+/// friction μ tanh(v_t / v₀) across it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CrushLaw {
@@ -64,15 +72,27 @@ pub struct CrushLaw {
     pub skin_log_factor: [f64; SKIN_KNOTS_M.len()],
     /// Bulge b of the target's side, m.
     pub skin_bulge_m: [f64; SKIN_KNOTS_M.len()],
-    /// ln k_w, as ln k.
-    pub wheel_log_stiffness: f64,
-    /// Depth d_w of the wheel behind the skin, m.
-    pub wheel_depth_m: [f64; WHEEL_KNOTS_M.len()],
-    /// d_θ: how much deeper the wheel lies per radian of bullet angle, m/rad.
-    pub wheel_depth_angle_m_rad: f64,
-    /// d_b: depth of the bullet's structure along its outline, m.
-    pub structure_depth_m: [f64; STRUCTURE_KNOTS_M.len()],
-    /// ν, exponent of unloading.
+    /// ln k₂, as ln k.
+    pub structure_log_stiffness: f64,
+    /// Depth d_t of the target's structure, m.
+    pub target_structure_depth_m: [f64; TARGET_STRUCTURE_KNOTS_M.len()],
+    /// Depth d_b of the bullet's structure, m.
+    pub bullet_structure_depth_m: [f64; BULLET_STRUCTURE_KNOTS_M.len()],
+    /// d_θ: how much deeper the structures lie per radian of bullet angle, m/rad.
+    pub structure_depth_angle_m_rad: f64,
+    /// τ: how far the slope of the target's structure tilts the push.
+    pub structure_tilt: f64,
+    /// What the structures add to the friction coefficient.
+    pub structure_friction: f64,
+    /// ln ℓ₂, ℓ₂ in m.
+    pub structure_log_recovery: f64,
+    /// ν₂.
+    pub structure_unloading_exponent: f64,
+    /// Logarithm of the depth over which the structures come into play, in m.
+    pub structure_log_softness: f64,
+    /// a: how the recovered length grows with the crush.
+    pub recovery_exponent: f64,
+    /// ν₁.
     pub unloading_exponent: f64,
     /// μ at 0.1 m depth and θ_b = 0.35 rad.
     pub friction: f64,
@@ -104,8 +124,8 @@ impl BodyCrush {
             nose,
             depth_log_factor: [0.0; DEPTH_KNOTS_M.len()],
             outline_log_factor: [0.0; N_OUTLINE_FACTORS],
-            wheel_log_factor: 0.0,
-            wheel_depth_m: 0.0,
+            structure_log_factor: 0.0,
+            structure_depth_m: [0.0; BULLET_STRUCTURE_KNOTS_M.len()],
             recovery: 0.5,
             friction: 0.0,
         }
@@ -121,10 +141,16 @@ macro_rules! for_each_parameter {
         for value in $($reference)+ law.depth_log_stiffness { visit(value, 0.5); }
         for value in $($reference)+ law.skin_log_factor { visit(value, 0.4); }
         for value in $($reference)+ law.skin_bulge_m { visit(value, 0.03); }
-        visit($($reference)+ law.wheel_log_stiffness, 0.7);
-        for value in $($reference)+ law.wheel_depth_m { visit(value, 0.05); }
-        visit($($reference)+ law.wheel_depth_angle_m_rad, 0.1);
-        for value in $($reference)+ law.structure_depth_m { visit(value, 0.05); }
+        visit($($reference)+ law.structure_log_stiffness, 0.7);
+        for value in $($reference)+ law.target_structure_depth_m { visit(value, 0.04); }
+        for value in $($reference)+ law.bullet_structure_depth_m { visit(value, 0.04); }
+        visit($($reference)+ law.structure_depth_angle_m_rad, 0.1);
+        visit($($reference)+ law.structure_tilt, 0.3);
+        visit($($reference)+ law.structure_friction, 0.1);
+        visit($($reference)+ law.structure_log_recovery, 0.5);
+        visit($($reference)+ law.structure_unloading_exponent, 0.5);
+        visit($($reference)+ law.structure_log_softness, 0.4);
+        visit($($reference)+ law.recovery_exponent, 0.3);
         visit($($reference)+ law.unloading_exponent, 0.7);
         visit($($reference)+ law.friction, 0.1);
         visit($($reference)+ law.friction_depth_1_m, 1.0);
@@ -137,8 +163,8 @@ macro_rules! for_each_parameter {
         for body in $($reference)+ law.bodies {
             for value in $($reference)+ body.depth_log_factor { visit(value, 0.4); }
             for value in $($reference)+ body.outline_log_factor { visit(value, 0.5); }
-            visit($($reference)+ body.wheel_log_factor, 0.3);
-            visit($($reference)+ body.wheel_depth_m, 0.03);
+            visit($($reference)+ body.structure_log_factor, 0.3);
+            for value in $($reference)+ body.structure_depth_m { visit(value, 0.03); }
             visit($($reference)+ body.recovery, 0.15);
             visit($($reference)+ body.friction, 0.1);
         }
@@ -146,20 +172,31 @@ macro_rules! for_each_parameter {
 }
 
 impl CrushLaw {
-    /// What is believed before any data are seen: a skin of some 0.1 to 1 MN/m per m of outline
-    /// that stiffens with depth, a rim 0.12 m behind it, half the crush recovered, friction 0.4.
+    /// What is believed before any data are seen: skins of some 0.1 to 1 MN/m per m of outline
+    /// that stiffen with depth, structures some 0.13 m behind them together (less where the
+    /// bullet's wheel is), half the crush recovered, friction 0.4.
     ///
     /// - `bodies`: at least one.
     /// - `rear_axle_x_m`: the target's rear axle in its body axes.
     pub fn prior(bodies: Vec<BodyCrush>, rear_axle_x_m: f64) -> Self {
         Self {
-            depth_log_stiffness: [11.5, 12.5, 13.3, 13.8, 14.0, 14.0, 14.0],
+            depth_log_stiffness: [11.5, 11.8, 12.3, 13.0, 13.5, 13.5, 13.8, 14.0],
             skin_log_factor: [0.0; SKIN_KNOTS_M.len()],
             skin_bulge_m: [0.0; SKIN_KNOTS_M.len()],
-            wheel_log_stiffness: 14.5,
-            wheel_depth_m: [0.3, 0.18, 0.13, 0.12, 0.13, 0.18, 0.3],
-            wheel_depth_angle_m_rad: 0.0,
-            structure_depth_m: [0.05, 0.0, 0.0, 0.05],
+            structure_log_stiffness: 15.5,
+            target_structure_depth_m: [
+                0.2, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.15, 0.2,
+            ],
+            bullet_structure_depth_m: [
+                -0.06, -0.06, -0.05, -0.02, 0.0, 0.0, 0.0, -0.03, -0.03, -0.03,
+            ],
+            structure_depth_angle_m_rad: 0.0,
+            structure_tilt: 0.5,
+            structure_friction: 0.0,
+            structure_log_recovery: -3.2,
+            structure_unloading_exponent: 1.5,
+            structure_log_softness: -4.6,
+            recovery_exponent: 0.8,
             unloading_exponent: 2.0,
             friction: 0.4,
             friction_depth_1_m: 0.0,

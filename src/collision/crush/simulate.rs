@@ -1,6 +1,8 @@
 //! Force over time of two cars that crush each other.
 
-use super::law::{CrushLaw, DEPTH_KNOTS_M, SKIN_KNOTS_M, STRUCTURE_KNOTS_M, WHEEL_KNOTS_M};
+use super::law::{
+    BULLET_STRUCTURE_KNOTS_M, CrushLaw, DEPTH_KNOTS_M, SKIN_KNOTS_M, TARGET_STRUCTURE_KNOTS_M,
+};
 use super::outline::{Element, N_ELEMENTS};
 
 /// Deeper overlap than this is no crush, m: the outline has come through to the other side.
@@ -9,8 +11,8 @@ const MAX_DEPTH_M: f64 = 0.9;
 const REAR_END_M: f64 = -0.96;
 /// Cars this far apart do not meet again within a quarter of a second, m.
 const PARTED_M: f64 = 0.1;
-/// Width over which the wheel comes into play, m.
-const WHEEL_SOFTNESS_M: f64 = 0.01;
+/// Shorter way back over which a load is gone, m, would be a blow in one step.
+const MIN_RECOVERY_M: f64 = 1e-4;
 /// Depth, m, and angle, rad, about which friction and normal are given.
 const REFERENCE_DEPTH_M: f64 = 0.1;
 const REFERENCE_ANGLE_RAD: f64 = 0.35;
@@ -90,15 +92,23 @@ struct Springs<'a> {
     law: &'a CrushLaw,
     scenario: &'a CrushScenario,
     elements: [Element; N_ELEMENTS],
-    /// Depth of the bullet's structure at each element, m.
+    /// Depth of the bullet's structure at each element and with the angle, m.
     structure_m: [f64; N_ELEMENTS],
     slope: [f64; DEPTH_KNOTS_M.len()],
     load_at_knot: [f64; DEPTH_KNOTS_M.len()],
-    wheel_stiffness: f64,
-    wheel_depth_m: f64,
+    structure_stiffness: f64,
+    structure_softness_m: f64,
+    structure_recovery_m: f64,
     friction_speed_m_s: f64,
     greatest_depth_m: [f64; N_ELEMENTS],
-    load_there: [f64; N_ELEMENTS],
+    load_there: [Load; N_ELEMENTS],
+}
+
+/// Force per metre of outline, N/m.
+#[derive(Debug, Clone, Copy, Default)]
+struct Load {
+    skin: f64,
+    structure: f64,
 }
 
 impl CrushLaw {
@@ -137,9 +147,15 @@ impl<'a> Springs<'a> {
     fn new(law: &'a CrushLaw, scenario: &'a CrushScenario) -> Option<Self> {
         let body = law.bodies.get(scenario.body_idx)?;
         let elements = body.nose.elements(&body.outline_log_factor);
+        let angle = scenario.theta_b_rad - REFERENCE_ANGLE_RAD;
+        let depth: [f64; BULLET_STRUCTURE_KNOTS_M.len()] = std::array::from_fn(|i| {
+            law.bullet_structure_depth_m[i]
+                + body.structure_depth_m[i]
+                + law.structure_depth_angle_m_rad * angle
+        });
         let structure_m = elements.map(|element| {
             let along = element.position_m[0] - body.nose.corner_x_m;
-            linear(&STRUCTURE_KNOTS_M, &law.structure_depth_m, along)
+            linear(&BULLET_STRUCTURE_KNOTS_M, &depth, along)
         });
         let slope: [f64; DEPTH_KNOTS_M.len()] =
             std::array::from_fn(|i| (law.depth_log_stiffness[i] + body.depth_log_factor[i]).exp());
@@ -148,7 +164,6 @@ impl<'a> Springs<'a> {
             let width = DEPTH_KNOTS_M[i] - DEPTH_KNOTS_M[i - 1];
             load_at_knot[i] = load_at_knot[i - 1] + slope[i - 1] * width;
         }
-        let angle = scenario.theta_b_rad - REFERENCE_ANGLE_RAD;
         Some(Self {
             law,
             scenario,
@@ -156,11 +171,12 @@ impl<'a> Springs<'a> {
             structure_m,
             slope,
             load_at_knot,
-            wheel_stiffness: (law.wheel_log_stiffness + body.wheel_log_factor).exp(),
-            wheel_depth_m: body.wheel_depth_m + law.wheel_depth_angle_m_rad * angle,
+            structure_stiffness: (law.structure_log_stiffness + body.structure_log_factor).exp(),
+            structure_softness_m: law.structure_log_softness.exp(),
+            structure_recovery_m: law.structure_log_recovery.exp(),
             friction_speed_m_s: law.friction_log_speed.exp(),
             greatest_depth_m: [0.0; N_ELEMENTS],
-            load_there: [0.0; N_ELEMENTS],
+            load_there: [Load::default(); N_ELEMENTS],
         })
     }
 
@@ -208,9 +224,11 @@ impl<'a> Springs<'a> {
                 continue;
             }
             let load = self.load(i, depth, place);
-            if load <= 0.0 {
+            let total = load.skin + load.structure;
+            if total <= 0.0 {
                 continue;
             }
+            let share = load.structure / total;
             let velocity = turned_back(
                 turn_target,
                 [
@@ -222,11 +240,11 @@ impl<'a> Springs<'a> {
                 ],
             );
             let damping = (1.0 + self.law.damping_s_m * velocity[1]).max(0.0);
-            let normal_force = load * element.length_m * damping;
+            let normal_force = total * element.length_m * damping;
             let deepest = self.greatest_depth_m[i] - REFERENCE_DEPTH_M;
-            let normal = self.normal(turned(turn_between, element.normal), deepest, place);
+            let normal = self.normal(turned(turn_between, element.normal), [deepest, place, share]);
             let slip = velocity[0] * normal[1] - velocity[1] * normal[0];
-            let friction = self.friction(deepest, slip);
+            let friction = self.friction([deepest, share], slip);
             let local = [
                 normal_force * (normal[0] + friction * normal[1]),
                 normal_force * (normal[1] - friction * normal[0]),
@@ -242,50 +260,75 @@ impl<'a> Springs<'a> {
         sum
     }
 
-    /// Force per metre of outline of an element, N/m, from the law and what it has been through.
-    fn load(&mut self, i: usize, depth_m: f64, place_m: f64) -> f64 {
+    /// Load of an element, from the law and what it has been through.
+    fn load(&mut self, i: usize, depth_m: f64, place_m: f64) -> Load {
         let greatest = self.greatest_depth_m[i];
         if depth_m < greatest {
-            let body = &self.law.bodies[self.scenario.body_idx];
-            let left = 1.0 - (greatest - depth_m) / (greatest * body.recovery);
-            let share = if left > 0.0 { left.powf(self.law.unloading_exponent) } else { 0.0 };
-            return self.load_there[i] * share;
+            return self.unloaded(self.load_there[i], greatest, greatest - depth_m);
         }
         let crush = depth_m + linear(&SKIN_KNOTS_M, &self.law.skin_bulge_m, place_m);
-        if crush <= 0.0 {
-            return 0.0;
-        }
-        let above = DEPTH_KNOTS_M.iter().rposition(|knot| *knot <= crush).unwrap_or(0);
-        let skin = self.load_at_knot[above] + self.slope[above] * (crush - DEPTH_KNOTS_M[above]);
-        let place_factor = linear(&SKIN_KNOTS_M, &self.law.skin_log_factor, place_m).exp();
-        let wheel = depth_m
-            - linear(&WHEEL_KNOTS_M, &self.law.wheel_depth_m, place_m)
-            - self.wheel_depth_m
-            - self.structure_m[i];
-        let load = skin * self.elements[i].factor * place_factor
-            + self.wheel_stiffness * softplus(wheel, WHEEL_SOFTNESS_M);
+        let skin = if crush > 0.0 {
+            let above = DEPTH_KNOTS_M.iter().rposition(|knot| *knot <= crush).unwrap_or(0);
+            let within = crush - DEPTH_KNOTS_M[above];
+            let place_factor = linear(&SKIN_KNOTS_M, &self.law.skin_log_factor, place_m).exp();
+            (self.load_at_knot[above] + self.slope[above] * within)
+                * self.elements[i].factor
+                * place_factor
+        } else {
+            0.0
+        };
+        let target_structure =
+            linear(&TARGET_STRUCTURE_KNOTS_M, &self.law.target_structure_depth_m, place_m);
+        let overlap = depth_m - target_structure - self.structure_m[i];
+        let structure = self.structure_stiffness * softplus(overlap, self.structure_softness_m);
         self.greatest_depth_m[i] = depth_m;
-        self.load_there[i] = load;
-        load
+        self.load_there[i] = Load { skin, structure };
+        self.load_there[i]
     }
 
-    /// Direction of the push, target's axes: between the target's normal +y and the bullet's.
-    fn normal(&self, bullet_normal: [f64; 2], deepest_m: f64, place_m: f64) -> [f64; 2] {
-        let share = self.law.normal_share
-            + self.law.normal_share_depth_1_m * deepest_m
-            + self.law.normal_share_place_1_m * place_m;
-        let [x, y] = [share * bullet_normal[0], 1.0 - share + share * bullet_normal[1]];
+    /// What is left of the greatest load after some way back.
+    fn unloaded(&self, load: Load, greatest_m: f64, back_m: f64) -> Load {
+        let law = self.law;
+        let recovery = law.bodies[self.scenario.body_idx].recovery;
+        let relative = greatest_m / REFERENCE_DEPTH_M;
+        let length = REFERENCE_DEPTH_M * recovery * relative.powf(law.recovery_exponent);
+        let share = |length: f64, exponent: f64| {
+            let left = 1.0 - back_m / length.max(MIN_RECOVERY_M);
+            if left > 0.0 { left.powf(exponent) } else { 0.0 }
+        };
+        Load {
+            skin: load.skin * share(length, law.unloading_exponent),
+            structure: load.structure
+                * share(self.structure_recovery_m, law.structure_unloading_exponent),
+        }
+    }
+
+    /// Direction of the push, target's axes: between the target's normal +y and the bullet's,
+    /// tilted where the structure has a slope.
+    fn normal(
+        &self,
+        bullet_normal: [f64; 2],
+        [deepest_m, place_m, structure_share]: [f64; 3],
+    ) -> [f64; 2] {
+        let law = self.law;
+        let share = law.normal_share
+            + law.normal_share_depth_1_m * deepest_m
+            + law.normal_share_place_1_m * place_m;
+        let rise = slope(&TARGET_STRUCTURE_KNOTS_M, &law.target_structure_depth_m, place_m);
+        let tilt = law.structure_tilt * structure_share * rise;
+        let [x, y] = [share * bullet_normal[0] - tilt, 1.0 - share + share * bullet_normal[1]];
         let length = x.hypot(y) + 1e-9;
         [x / length, y / length]
     }
 
-    fn friction(&self, deepest_m: f64, slip_m_s: f64) -> f64 {
+    fn friction(&self, [deepest_m, structure_share]: [f64; 2], slip_m_s: f64) -> f64 {
         let law = self.law;
         let angle = self.scenario.theta_b_rad - REFERENCE_ANGLE_RAD;
         let limit = law.friction
             + law.bodies[self.scenario.body_idx].friction
             + law.friction_depth_1_m * deepest_m
-            + law.friction_angle_1_rad * angle;
+            + law.friction_angle_1_rad * angle
+            + law.structure_friction * structure_share;
         limit * (slip_m_s / self.friction_speed_m_s).tanh()
     }
 }
@@ -313,6 +356,14 @@ fn linear<const N: usize>(knots: &[f64; N], values: &[f64; N], x: f64) -> f64 {
             let share = (x - knots[i - 1]) / (knots[i] - knots[i - 1]);
             values[i - 1] * (1.0 - share) + values[i] * share
         }
+    }
+}
+
+/// Slope of [`linear`].
+fn slope<const N: usize>(knots: &[f64; N], values: &[f64; N], x: f64) -> f64 {
+    match knots.iter().position(|knot| x < *knot) {
+        None | Some(0) => 0.0,
+        Some(i) => (values[i] - values[i - 1]) / (knots[i] - knots[i - 1]),
     }
 }
 
