@@ -189,7 +189,7 @@ mod tests {
             let mut variance = vec![1e4; 121];
             variance[120] = 1e-6;
             let factors = DMatrix::from_column_slice(121, 1, &factor);
-            CurveComponent { weight, mean, factors, variance }
+            CurveComponent { weight, mean, factors, variance, lag_correlation: 0.0 }
         };
         CurveMixture::new([(0.3, 50e3), (0.7, 80e3)].map(component).to_vec()).unwrap()
     }

@@ -36,7 +36,7 @@ pub(super) fn network_input(
         let [px, py] = centre.impulse_n_s.map(|p| (p / centre.scale_n) as f32);
         [px, py, centre.curve.duration_s as f32, centre.onset_s() as f32]
     });
-    let mut start = [const { Vec::<f32>::new() }; 3];
+    let (mut start, mut lag) = ([const { Vec::<f32>::new() }; 3], Vec::new());
     for centre in centres {
         let curves = [false, true].map(|hooks| residuals.curve(centre, hooks));
         for component in 0..k {
@@ -44,6 +44,7 @@ pub(super) fn network_input(
             for (all, of) in start.iter_mut().zip([&curve.mean, &curve.variance, &curve.factors]) {
                 all.extend(of.iter().map(|value| *value as f32));
             }
+            lag.push(curve.lag_correlation as f32);
         }
     }
     let [shift, variance, factors] = start;
@@ -53,6 +54,7 @@ pub(super) fn network_input(
         whole: tensor(whole.collect(), &[n, 4])?,
         shift: tensor(shift, &[n, k, n_values])?,
         variance: tensor(variance, &[n, k, n_values])?,
+        lag_correlation: tensor(lag, &[n, k])?,
         factors: (q > 0).then(|| tensor(factors, &[n, k, n_values, q])).transpose()?,
     })
 }
@@ -106,6 +108,7 @@ impl CaseTensors {
             whole: pick(&self.input.whole)?,
             shift: pick(&self.input.shift)?,
             variance: pick(&self.input.variance)?,
+            lag_correlation: pick(&self.input.lag_correlation)?,
             factors: self.input.factors.as_ref().map(pick).transpose()?,
         };
         let targets = Targets {

@@ -5,11 +5,11 @@ use std::ops::ControlFlow;
 
 use serde::{Deserialize, Serialize};
 
+use crate::collision::PulseShape;
 use crate::collision::crush::{BodyCrush, CrushFit, CrushLaw, CrushSample, CrushScenario, Nose};
-use crate::collision::{
-    ContactDistribution, ContactSurface, FrictionModel, Impact, ImpactBody, PulseShape,
+use crate::force::{
+    Centre, CrushConfig, ForceCase, ForceError, ForceScenario, MomentumModel, Split, folds,
 };
-use crate::force::{Centre, CrushConfig, ForceCase, ForceError, ForceScenario, Split, folds};
 use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
 
 /// Yaw inertia over mass where none is known, m²: a uniform body of 4.5 m × 1.8 m has 1.96, cars
@@ -31,7 +31,7 @@ pub struct CentreCurve {
     pub slip_m_s: Vec<f64>,
     /// Impulse to which the network's is tied, N s.
     pub impulse_n_s: [f64; 2],
-    /// Impulse of the momentum solution with median restitution and friction, N s.
+    /// Impulse of the momentum solution, N s.
     pub momentum_impulse_n_s: [f64; 2],
     /// Largest `|F|`, N: the unit of force of the network.
     pub scale_n: f64,
@@ -61,8 +61,8 @@ pub struct CentreModel {
     duration_s: f64,
     /// Mean peak of the training cases, N.
     peak_n: f64,
-    /// Restitution and friction of the momentum solution, fitted on the training cases.
-    contact: ContactDistribution,
+    /// The momentum solution, fitted on the training cases.
+    momentum: MomentumModel,
 }
 
 impl CentreModel {
@@ -83,16 +83,17 @@ impl CentreModel {
         if n < config.folds {
             return Err(ForceError::TooFewCases { n_cases: n, least: config.folds });
         }
+        let plain: Vec<&ForceCase> = cases.iter().filter(|case| case.is_clean()).collect();
+        let plain = if plain.is_empty() { cases.iter().collect() } else { plain };
         let mean = |of: &dyn Fn(&ForceCase) -> f64| cases.iter().map(of).sum::<f64>() / n as f64;
         let mut model = Self {
             kind,
             laws: Vec::new(),
             duration_s: mean(&|case| case.curve.duration_s),
             peak_n: mean(&|case| case.peak_n),
-            contact: ContactDistribution::default(),
+            momentum: MomentumModel::fit(&plain, true),
         };
         let prior = prior_law(cases);
-        model.contact = model.fitted_contact(cases, &prior);
         let folds = folds(cases, config.folds, seed);
         for (i, fold) in folds.iter().enumerate().filter(|_| kind == Centre::Crush) {
             let samples: Vec<CrushSample> = fold
@@ -126,11 +127,6 @@ impl CentreModel {
     /// The rear axle of the target, body axes, m: contact offsets count from it.
     pub fn rear_axle_x_m(&self) -> f64 {
         self.laws.first().map_or(0.0, |law| law.rear_axle_x_m)
-    }
-
-    /// Restitution and friction that the training cases imply.
-    pub fn contact(&self) -> ContactDistribution {
-        self.contact
     }
 
     /// The physics of a scenario: the mean over all laws.
@@ -180,13 +176,9 @@ impl CentreModel {
         scenario: &ForceScenario,
         (contact_m, body_idx): ([f64; 2], usize),
     ) -> Result<CentreCurve, ForceError> {
-        let nose = laws
-            .first()
-            .and_then(|law| law.bodies.get(body_idx))
-            .map_or_else(Nose::default, |body| body.nose);
-        let impact = impact(scenario, (contact_m, nose), self.contact.quantile([0.5, 0.5]));
-        let solution = impact.solve()?;
-        let momentum = solution.impulse_n_s;
+        let known = ForceScenario { contact_m: Some(contact_m), ..scenario.clone() };
+        let impact = self.momentum.impact(&known);
+        let momentum = impact.solve()?.impulse_n_s;
         let n = CURVE_N_INSTANTS;
         let (mut curve, mut depth_m, mut slip_m_s) = match self.kind {
             Centre::Crush => mean_history(laws, &crush_scenario(scenario, contact_m, body_idx)),
@@ -235,51 +227,6 @@ impl CentreModel {
     fn nothing(&self) -> ForceCurve {
         let none = vec![0.0; CURVE_N_INSTANTS];
         ForceCurve { fx_n: none.clone(), fy_n: none, duration_s: self.duration_s }
-    }
-
-    fn fitted_contact(&self, cases: &[ForceCase], prior: &CrushLaw) -> ContactDistribution {
-        let implied: Vec<_> = cases
-            .iter()
-            .filter(|case| !case.hooked && case.separated)
-            .filter_map(|case| {
-                let contact = case.scenario.contact_m?;
-                let body = prior.bodies.get(prior.body_idx(body_name(&case.scenario))?)?;
-                let impact = impact(&case.scenario, (contact, body.nose), (0.3, 0.4));
-                impact.implied_contact(case.impulse_n_s)
-            })
-            .collect();
-        ContactDistribution::fit(&implied).unwrap_or_default()
-    }
-}
-
-/// The two vehicles as the momentum solution sees them; canonical, so that the target's side looks
-/// along −y and is pushed along +y.
-fn impact(
-    scenario: &ForceScenario,
-    (contact_m, nose): ([f64; 2], Nose),
-    (restitution, friction_limit): (f64, f64),
-) -> Impact {
-    let [nose_x, nose_y] = nose.touching_point_m(scenario.theta_b_rad);
-    let (sin, cos) = scenario.theta_b_rad.sin_cos();
-    let inertia = yaw_inertia(scenario);
-    let body = |i: usize, heading_rad, velocity_m_s, contact_arm_m| ImpactBody {
-        mass_kg: scenario.mass_kg[i],
-        yaw_inertia_kg_m2: inertia[i],
-        heading_rad,
-        velocity_m_s,
-        yaw_rate_rad_s: 0.0,
-        contact_arm_m,
-    };
-    let arm = [cos * nose_x - sin * nose_y, sin * nose_x + cos * nose_y];
-    Impact {
-        target: body(0, 0.0, [0.0; 2], contact_m),
-        bullet: body(1, scenario.theta_b_rad, scenario.relative_velocity_m_s(), arm),
-        surface: ContactSurface {
-            normal_angle_rad: std::f64::consts::FRAC_PI_2,
-            restitution,
-            friction_limit,
-            friction_model: FrictionModel::Limit,
-        },
     }
 }
 

@@ -24,11 +24,10 @@ pub struct ForceConfig {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Centre {
-    /// The crush model: its curve, and the impulse of section 3 with the restitution and impulse
-    /// ratio that it implies.
+    /// The crush model: its curve and impulse.
     #[default]
     Crush,
-    /// A haversine with the momentum solution's impulse (median restitution and friction).
+    /// A haversine with the impulse of the momentum solution, restitution and friction fitted.
     Momentum,
     /// Nothing: ablation without the physics layer; the impulse is not tied to anything.
     None,
@@ -145,10 +144,10 @@ impl Default for NetworkConfig {
             attention_stride: 5,
             trunk: vec![256, 512, 512, 256, 128, 64, 32, 16],
             components: 2,
-            factors: 8,
-            shape_correction: 0.1,
-            force_correction: 0.05,
-            impulse_correction: 0.1,
+            factors: 12,
+            shape_correction: 0.3,
+            force_correction: 0.15,
+            impulse_correction: 0.2,
             component_shift: 0.05,
             hooking_shift: 1.0,
             duration_max_s: 0.35,
@@ -159,7 +158,7 @@ impl Default for NetworkConfig {
 
 impl Default for LossWeights {
     fn default() -> Self {
-        Self { likelihood: 1.0, data: 1.0, impulse: 1.0, energy: 0.1, duration: 0.1, hooking: 0.1 }
+        Self { likelihood: 1.0, data: 3.0, impulse: 3.0, energy: 0.1, duration: 0.1, hooking: 0.1 }
     }
 }
 

@@ -106,9 +106,9 @@ fn predictions(
     settings: &EvaluationSettings,
 ) -> Result<Vec<Prediction>, ForceError> {
     let predict = |(i, case): (usize, &ForceCase)| {
-        let mixture = model.predict(&known(&case.scenario, settings.columns))?.mixture;
+        let said = model.predict(&known(&case.scenario, settings.columns))?;
         let mut rng = random_stream(settings.seed, "point estimates", i as u64);
-        Ok(Prediction::of_mixture(mixture, N_DRAWS, &mut rng))
+        Ok(Prediction::of_mixture(said.mixture, &said.likely, N_DRAWS, &mut rng))
     };
     test.iter().enumerate().map(predict).collect()
 }

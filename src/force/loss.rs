@@ -141,29 +141,55 @@ fn likelihood(output: &NetworkOutput, targets: &Targets) -> Result<Tensor, Force
     Ok((joint.log_sum_exp(D::Minus1)?.mean_all()? / -n_values)?)
 }
 
-/// ln N of the values under each component, `[cases, K]`, by Woodbury's identity:
+/// ln N of the values under each component, `[cases, K]`, by Woodbury's identity, with z and W the
+/// whitened residual and factors:
 ///
 /// ```text
-/// rᵀ Σ⁻¹ r = rᵀ D⁻¹ r − vᵀ M⁻¹ v     ln |Σ| = ln |D| + ln |M|     M = 1 + Uᵀ D⁻¹ U,  v = Uᵀ D⁻¹ r
+/// rᵀ Σ⁻¹ r = |z|² − vᵀ M⁻¹ v     ln |Σ| = ln |D R| + ln |M|     M = 1 + Wᵀ W,  v = Wᵀ z
 /// ```
 pub(super) fn log_normal(output: &NetworkOutput, values: &Tensor) -> Result<Tensor, ForceError> {
     let residual = values.unsqueeze(1)?.broadcast_sub(&output.mean)?;
-    let scaled = (&residual / &output.variance)?;
-    let mut square = (&residual * &scaled)?.sum(2)?;
-    let mut log_det = output.variance.log()?.sum(2)?;
+    let deviation = output.variance.sqrt()?;
+    let residual = whitened(&(residual / &deviation)?.unsqueeze(3)?, &output.lag_correlation)?;
+    let mut square = residual.sqr()?.sum(3)?.sum(2)?;
+    let n_steps = 2.0 * ((values.dim(1)? - 1) / 2 - 1) as f64;
+    let log_fresh = ((1.0 - output.lag_correlation.sqr()?)?.log()? * n_steps)?;
+    let mut log_det = (output.variance.log()?.sum(2)? + log_fresh)?;
     if let Some(factors) = &output.factors {
         let (n_cases, k, n_values, q) = factors.dims4()?;
         let flat = (n_cases * k, n_values, q);
-        let factors_t = factors.reshape(flat)?.transpose(1, 2)?.contiguous()?;
-        let weighted = factors.broadcast_div(&output.variance.unsqueeze(3)?)?.reshape(flat)?;
-        let m = factors_t.matmul(&weighted)?;
-        let v = factors_t.matmul(&scaled.reshape((n_cases * k, n_values, 1))?)?;
+        let scaled = factors.broadcast_div(&deviation.unsqueeze(3)?)?;
+        let factors = whitened(&scaled, &output.lag_correlation)?.reshape(flat)?;
+        let factors_t = factors.transpose(1, 2)?.contiguous()?;
+        let m = factors_t.matmul(&factors)?;
+        let v = factors_t.matmul(&residual.reshape((n_cases * k, n_values, 1))?)?;
         let (m_square, m_log_det) = cholesky_forms(&m, &v)?;
         square = (square - m_square.reshape((n_cases, k))?)?;
         log_det = (log_det + m_log_det.reshape((n_cases, k))?)?;
     }
     let constant = values.dim(1)? as f64 * TAU.ln();
     Ok((((square + log_det)? + constant)? * -0.5)?)
+}
+
+/// Rows over their deviations to rows without correlation between neighbouring instants,
+/// `[cases, K, values, n]`; φ: `[cases, K]`.
+///
+/// ```text
+/// z_i = (x_i − φ x_(i−1)) / √(1 − φ²)      z = x at the first of an axis and for the duration
+/// ```
+fn whitened(rows: &Tensor, lag_correlation: &Tensor) -> Result<Tensor, ForceError> {
+    let n_instants = (rows.dim(2)? - 1) / 2;
+    let phi = lag_correlation.unsqueeze(2)?.unsqueeze(3)?;
+    let fresh = (1.0 - phi.sqr()?)?.sqrt()?;
+    let mut parts = Vec::with_capacity(5);
+    for first in [0, n_instants] {
+        let before = rows.narrow(2, first, n_instants - 1)?;
+        let after = rows.narrow(2, first + 1, n_instants - 1)?;
+        parts.push(rows.narrow(2, first, 1)?);
+        parts.push((after - before.broadcast_mul(&phi)?)?.broadcast_div(&fresh)?);
+    }
+    parts.push(rows.narrow(2, 2 * n_instants, 1)?);
+    Ok(Tensor::cat(&parts, 2)?)
 }
 
 /// `vᵀ (1 + m)⁻¹ v` and `ln |1 + m|` of small matrices by Cholesky's method, written out so that
@@ -298,6 +324,7 @@ mod tests {
             logits: tensor(vec![0.3, -0.4], &[1, k]),
             mean: tensor(wave(k * values, 1.3), &[1, k, values]),
             variance: tensor(variance, &[1, k, values]),
+            lag_correlation: tensor(vec![0.0, 0.6], &[1, k]),
             factors: Some(tensor(wave(k * values * q, 0.9), &[1, k, values, q])),
             impulse: tensor(vec![0.1, 0.2], &[1, 2]),
             duration_s: tensor(vec![0.1], &[1]),
@@ -317,6 +344,7 @@ mod tests {
             weight: weights[0][k],
             mean: rows(&output.mean)[k].clone(),
             variance: rows(&output.variance)[k].clone(),
+            lag_correlation: output.lag_correlation.to_vec2::<f64>().unwrap()[0][k],
             factors: nalgebra::DMatrix::from_fn(7, 2, |i, j| factors[k][i][j]),
         });
         let mixture = CurveMixture::new(components.collect()).unwrap();

@@ -49,9 +49,9 @@ const ENVELOPE_FLOOR: f64 = 0.2;
 /// Log odds of hooking before training.
 const FIRST_HOOKING_LOGIT: f64 = -2.0;
 /// Largest correction of the logit of the duration.
-const DURATION_CORRECTION: f64 = 0.2;
+const DURATION_CORRECTION: f64 = 0.1;
 /// Largest shift of a component's duration, units of 0.1 s: of hooking ten times that.
-const DURATION_SHIFT: f64 = 0.1;
+const DURATION_SHIFT: f64 = 0.02;
 const HOOKING_DURATION_SHIFT: f64 = 1.0;
 
 /// The layers and their parameters.
@@ -89,6 +89,8 @@ pub(super) struct NetworkInput {
     /// Where the components start from: shift and variance, `[cases, K, values]`.
     pub shift: Tensor,
     pub variance: Tensor,
+    /// φ, `[cases, K]`.
+    pub lag_correlation: Tensor,
     /// Latent factors, `[cases, K, values, q]`; none if q = 0.
     pub factors: Option<Tensor>,
 }
@@ -100,8 +102,10 @@ pub(super) struct NetworkOutput {
     pub logits: Tensor,
     /// Means, `[cases, K, values]`.
     pub mean: Tensor,
-    /// Diagonal of the covariance, `[cases, K, values]`.
+    /// Variance of what the factors leave, `[cases, K, values]`.
     pub variance: Tensor,
+    /// Correlation φ of what they leave in neighbouring instants, `[cases, K]`.
+    pub lag_correlation: Tensor,
     /// Latent factors U, `[cases, K, values, q]`; none if q = 0.
     pub factors: Option<Tensor>,
     /// Impulse of F_base, peaks × s, `[cases, 2]`.
@@ -125,10 +129,10 @@ impl NetworkOutput {
         let of_impulse = |axis: usize| -> Result<[Vec<Vec<Vec<f64>>>; 3], ForceError> {
             let sum =
                 |tensor: &Tensor| tensor.narrow(2, axis * n_instants, n_instants)?.sum_keepdim(2);
-            let zero = sum(&self.variance)?.zeros_like()?;
+            let own = self.own_impulse_variance(axis)?;
             let shared = self.factors.as_ref().map(|u| sum(u)?.squeeze(2)?.sqr()?.sum_keepdim(2));
-            let shared = shared.transpose()?.unwrap_or(zero);
-            Ok([rows(&sum(&residual)?)?, rows(&sum(&self.variance)?)?, rows(&shared)?])
+            let shared = shared.transpose()?.unwrap_or(own.zeros_like()?);
+            Ok([rows(&sum(&residual)?)?, rows(&own)?, rows(&shared)?])
         };
         let impulse = [of_impulse(0)?, of_impulse(1)?];
         let force = [rows(&residual)?, rows(&self.variance)?, rows(&shared)?];
@@ -156,6 +160,22 @@ impl NetworkOutput {
             scores[2].push(score(&force, 2 * n_instants));
         }
         Ok(scores)
+    }
+}
+
+impl NetworkOutput {
+    /// Variance of the sum over the instants of what the factors leave, `[cases, K, 1]`.
+    fn own_impulse_variance(&self, axis: usize) -> Result<Tensor, ForceError> {
+        let n_instants = (self.variance.dim(2)? - 1) / 2;
+        let deviation = self.variance.narrow(2, axis * n_instants, n_instants)?.sqrt()?;
+        let phi = self.lag_correlation.unsqueeze(2)?;
+        let (mut sum, mut carried) = (phi.zeros_like()?, phi.zeros_like()?);
+        for t in 0..n_instants {
+            let value = deviation.narrow(2, t, 1)?;
+            carried = (&value + (&phi * carried)?)?;
+            sum = (sum + (&value * ((&carried * 2.0)? - &value)?)?)?;
+        }
+        Ok(sum)
     }
 }
 
@@ -230,8 +250,9 @@ impl ForceNetwork {
         let raw = by_component(layers.component.forward(&hidden)?, 2)?;
         let n_forces = 2 * n_instants;
         let envelope = self.envelope(input)?.reshape((n_cases, 1, 1, n_instants))?;
-        let per_force =
-            |i: usize| -> Result<Tensor, ForceError> { Ok(raw.narrow(4, i, 1)?.squeeze(4)?.tanh()?) };
+        let per_force = |i: usize| -> Result<Tensor, ForceError> {
+            Ok(raw.narrow(4, i, 1)?.squeeze(4)?.tanh()?)
+        };
         let largest = self.per_component(self.config.component_shift, self.config.hooking_shift)?;
         let shift = per_force(0)?.broadcast_mul(&envelope)?;
         let shift = shift.reshape((n_cases, k, n_forces))?.broadcast_mul(&largest)?;
@@ -268,7 +289,8 @@ impl ForceNetwork {
             }
         };
         let logits = logits.to_dtype(number_type)?;
-        Ok(NetworkOutput { logits, mean, variance, factors, impulse, duration_s })
+        let lag_correlation = input.lag_correlation.clone();
+        Ok(NetworkOutput { logits, mean, variance, lag_correlation, factors, impulse, duration_s })
     }
 
     /// One value for hooking (the last of two or more components), another for the others,

@@ -16,6 +16,9 @@ use crate::uncertainty::{CURVE_N_INSTANTS, CurveComponent, CurveMixture, ForceCu
 pub struct ForcePrediction {
     /// Distribution of the force history and its duration.
     pub mixture: CurveMixture,
+    /// The same under the condition of what is likelier, hooking or not: point estimates are taken
+    /// from it, as a mean between two kinds of collision is neither.
+    pub likely: CurveMixture,
     /// What the physics alone says: the mean of the crush model over what the scenario leaves open.
     pub centre: ForceCurve,
     /// Impulse of the momentum solution, N s.
@@ -72,9 +75,14 @@ impl ForceModel {
             centres.iter().zip(&variants).map(part).sum::<f64>()
         });
         let sign = if mirrored { -1.0 } else { 1.0 };
+        let is_hooking = |idx: usize| k > 1 && idx % k + 1 == k;
+        let likely = components.iter().enumerate();
+        let likely = likely.filter(|(idx, _)| is_hooking(*idx) == (k > 1 && hooking > 0.5));
+        let likely = CurveMixture::new(likely.map(|(_, component)| component.clone()).collect())?;
         let mixture = CurveMixture::new(components)?;
         Ok(ForcePrediction {
             mixture: if mirrored { mixture.mirrored() } else { mixture },
+            likely: if mirrored { likely.mirrored() } else { likely },
             centre: if mirrored { mean.mirrored() } else { mean },
             momentum_impulse_n_s: [momentum[0], sign * momentum[1]],
             hooking_probability: (k > 1).then_some(hooking),
@@ -124,6 +132,7 @@ impl ForceModel {
         let variance = output.variance.to_dtype(DType::F64)?.to_vec3::<f64>()?;
         let n_values = 2 * CURVE_N_INSTANTS + 1;
         let q = self.config.network.factors;
+        let lag = output.lag_correlation.to_dtype(DType::F64)?.to_vec2::<f64>()?;
         let factors = match &output.factors {
             Some(factors) => factors.flatten_all()?.to_dtype(DType::F64)?.to_vec1::<f64>()?,
             None => Vec::new(),
@@ -148,6 +157,7 @@ impl ForceModel {
                         .enumerate()
                         .map(|(v, x)| x * unit(v).powi(2) * widen(v, widen_single))
                         .collect(),
+                    lag_correlation: lag[i][j],
                     factors: DMatrix::from_fn(n_values, q, |v, f| {
                         factors[first + v * q + f] * unit(v) * widen(v, widen_shared).sqrt()
                     }),

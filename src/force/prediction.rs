@@ -24,17 +24,23 @@ impl Prediction {
         Self { curve, impulse_n_s, peak_n, mixture: None }
     }
 
-    /// A distribution: the curve is its mean; peak and duration are the medians of draws, as the
-    /// mean of curves that peak at different times is too flat; the impulse is that of the mean.
+    /// A distribution, and the part of it from which the point estimates come: the curve is the
+    /// mean of that; peak and duration are the medians of draws, as the mean of curves that peak at
+    /// different times is too flat; the impulse is that of the mean.
     ///
     /// - `n_samples`: draws for the medians, 1 or more.
-    pub fn of_mixture(mixture: CurveMixture, n_samples: usize, rng: &mut impl Rng) -> Self {
-        let figures = mixture.sample_figures(n_samples, rng);
-        let mut prediction = Self::of_curve(mixture.mean());
+    pub fn of_mixture(
+        mixture: CurveMixture,
+        likely: &CurveMixture,
+        n_samples: usize,
+        rng: &mut impl Rng,
+    ) -> Self {
+        let figures = likely.sample_figures(n_samples, rng);
+        let mut prediction = Self::of_curve(likely.mean());
         if let Some(peak_n) = CurveFigures::median(&figures.peak_n) {
             prediction.peak_n = peak_n;
         }
-        prediction.curve.duration_s = mixture.duration_s().quantile(0.5);
+        prediction.curve.duration_s = likely.duration_s().quantile(0.5);
         prediction.mixture = Some(mixture);
         prediction
     }

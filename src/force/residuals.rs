@@ -6,7 +6,7 @@
 //! ```text
 //! r(u) = (F(t₀ + u T) − F_c(t₀ + u T)) / max |F_c|      r_Δ = (Δ − Δ_c) / T
 //! T = 2 ∫ |F_c| dt / max |F_c|                          t₀: its first contact
-//! r ≈ m + Σ_f b_f ξ_f + ε      ξ_f ~ N(0, 1), ε independent
+//! r ≈ m + Σ_f b_f ξ_f + ε      ξ_f ~ N(0, 1), ε a first-order autoregressive process
 //! ```
 //!
 //! m and b_f by principal components; they are what the network's mixture starts from.
@@ -32,6 +32,9 @@ const DURATION_WEIGHT: f64 = 4.0;
 const CASES_PER_FACTOR: usize = 3;
 /// Variance of a force and of a duration that no residual may go below, squares of peaks and T.
 const LEAST_VARIANCE: [f64; 2] = [1e-6, 1e-4];
+/// Correlation of neighbouring nodes is held below this, and an instant is at most so many nodes.
+const MOST_CORRELATED: f64 = 0.98;
+const LONGEST_STEP: f64 = 32.0;
 /// Residuals beyond this, in peaks or durations, are cut: one odd case must not be a factor.
 const LARGEST_RESIDUAL: f64 = 2.0;
 
@@ -42,6 +45,8 @@ pub(super) struct ResidualProfiles {
     mean: Vec<f64>,
     factors: Vec<Vec<f64>>,
     variance: Vec<f64>,
+    /// Correlation of ε at neighbouring nodes.
+    lag_correlation: f64,
 }
 
 /// Profiles of plain cases and of those that hook.
@@ -60,6 +65,8 @@ pub(super) struct ResidualCurve {
     pub factors: Vec<f64>,
     /// Variance of ε.
     pub variance: Vec<f64>,
+    /// Correlation φ of ε at neighbouring instants.
+    pub lag_correlation: f64,
 }
 
 impl ResidualModel {
@@ -131,7 +138,7 @@ impl ResidualProfiles {
         let n_backed = n_factors.min(n / CASES_PER_FACTOR);
         // Freedom that mean and factors have taken from the residuals.
         let freedom = (n.saturating_sub(1 + n_backed)).max(1) as f64;
-        let svd = centred.svd(false, true);
+        let svd = centred.clone().svd(false, true);
         let mut factors = vec![vec![0.0; N_VALUES]; n_factors];
         let mut left = total;
         if let Some(directions) = &svd.v_t {
@@ -144,6 +151,7 @@ impl ResidualProfiles {
                 }
             }
         }
+        let lag_correlation = lag_correlation(&left_over(&centred, &svd, n_backed));
         let last = N_VALUES - 1;
         for factor in &mut factors {
             factor[last] /= DURATION_WEIGHT;
@@ -153,7 +161,7 @@ impl ResidualProfiles {
             let least = LEAST_VARIANCE[usize::from(j == last)];
             (left / freedom / (weight * weight)).max(least)
         });
-        Self { variance: variance.collect(), mean, factors }
+        Self { variance: variance.collect(), mean, factors, lag_correlation }
     }
 
     fn on_grid(&self, centre: &CentreCurve) -> ResidualCurve {
@@ -178,8 +186,41 @@ impl ResidualProfiles {
             mean: curve(&self.mean, last),
             factors: (0..n_values).flat_map(|v| factors.iter().map(move |row| row[v])).collect(),
             variance: curve(&self.variance, last * last),
+            // Neighbouring instants are that share of a node apart.
+            lag_correlation: self
+                .lag_correlation
+                .clamp(0.0, MOST_CORRELATED)
+                .powf((CURVE_INTERVAL_S / scale_s * NODES_PER_DURATION as f64).min(LONGEST_STEP)),
         }
     }
+}
+
+/// What the first factors leave of the rows.
+fn left_over(
+    rows: &DMatrix<f64>,
+    svd: &nalgebra::SVD<f64, nalgebra::Dyn, nalgebra::Dyn>,
+    n_factors: usize,
+) -> DMatrix<f64> {
+    let mut left = rows.clone();
+    for direction in svd.v_t.iter().flat_map(|v_t| v_t.row_iter()).take(n_factors) {
+        let along = &left * direction.transpose();
+        left -= along * direction;
+    }
+    left
+}
+
+/// Correlation of neighbouring nodes over all rows and both axes.
+fn lag_correlation(left: &DMatrix<f64>) -> f64 {
+    let (mut product, mut square) = (0.0, 0.0);
+    for row in left.row_iter() {
+        for first in [0, N_NODES] {
+            for node in first..first + N_NODES - 1 {
+                product += row[node] * row[node + 1];
+                square += 0.5 * (row[node].powi(2) + row[node + 1].powi(2));
+            }
+        }
+    }
+    if square > 0.0 { (product / square).clamp(0.0, MOST_CORRELATED) } else { 0.0 }
 }
 
 /// Force and duration of a case less those of its centre.
@@ -223,8 +264,8 @@ fn value_at(values: &[f64], at: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::force::centre::tests::haversine_centre;
     use crate::force::case::tests::shipped;
+    use crate::force::centre::tests::haversine_centre;
 
     /// Cases whose residual is a bump along y of random height, and a duration that follows it.
     fn cases_of(heights: &[f64], centre: &CentreCurve) -> Vec<ForceCase> {

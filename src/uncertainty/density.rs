@@ -13,7 +13,7 @@ impl CurveMixture {
     /// Natural logarithm of the density of a curve and its duration, forces in N, duration in s.
     ///
     /// ```text
-    /// ln p(y) = ln Σ_k π_k N(y; m_k, U_k U_kᵀ + D_k)
+    /// ln p(y) = ln Σ_k π_k N(y; m_k, U_k U_kᵀ + √D_k R_k √D_k)
     /// ```
     ///
     /// # Errors
@@ -37,46 +37,43 @@ impl CurveComponent {
     /// Log density of a row of values, without the component's weight.
     ///
     /// ```text
-    /// r = y − m     A = I + Uᵀ D⁻¹ U = L Lᵀ     b = Uᵀ D⁻¹ r
-    /// −2 ln N = n ln 2π + Σ ln d_i + 2 Σ ln L_jj + rᵀ D⁻¹ r − |L⁻¹ b|²
+    /// z, W: y − m and U, whitened     A = I + Wᵀ W = L Lᵀ     b = Wᵀ z
+    /// −2 ln N = n ln 2π + Σ ln d_i + 2 (T − 1) ln(1 − φ²) + 2 Σ ln L_jj + |z|² − |L⁻¹ b|²
     /// ```
     fn log_density(&self, values: &[f64]) -> f64 {
         let n_factors = self.factors.ncols();
         let residual: Vec<f64> = values.iter().zip(&self.mean).map(|(y, m)| y - m).collect();
-        let mut inner = DMatrix::identity(n_factors, n_factors);
-        let mut projected = DVector::zeros(n_factors);
-        for (a, column) in self.factors.column_iter().enumerate() {
-            let weighted: Vec<f64> =
-                column.iter().zip(&self.variance).map(|(u, d)| u / d).collect();
-            projected[a] = weighted.iter().zip(&residual).map(|(w, r)| w * r).sum();
-            for (b, other) in self.factors.column_iter().enumerate().take(a + 1) {
-                let sum: f64 = weighted.iter().zip(other.iter()).map(|(w, u)| w * u).sum();
-                inner[(a, b)] += sum;
-                if a != b {
-                    inner[(b, a)] += sum;
-                }
-            }
-        }
-        let own: f64 = residual.iter().zip(&self.variance).map(|(r, d)| r * r / d).sum();
-        let log_own: f64 = self.variance.iter().map(|d| d.ln()).sum();
+        let residual = DVector::from_vec(self.whitened(residual.iter()));
+        let columns: Vec<DVector<f64>> = self
+            .factors
+            .column_iter()
+            .map(|column| DVector::from_vec(self.whitened(column.iter())))
+            .collect();
+        let inner = DMatrix::from_fn(n_factors, n_factors, |a, b| {
+            columns[a].dot(&columns[b]) + f64::from(u8::from(a == b))
+        });
+        let projected = DVector::from_iterator(n_factors, columns.iter().map(|w| w.dot(&residual)));
+        let n_steps = 2 * (values.len() / 2).saturating_sub(1);
+        let log_own: f64 = self.variance.iter().map(|d| d.ln()).sum::<f64>()
+            + n_steps as f64 * (1.0 - self.lag_correlation.powi(2)).ln();
         // `inner` is the identity plus a Gram matrix, so positive definite for finite factors.
         let Some(cholesky) = inner.cholesky() else { return f64::NAN };
         let explained = cholesky.solve(&projected).dot(&projected);
         let log_determinant = log_own + 2.0 * cholesky.l_dirty().diagonal().map(f64::ln).sum();
-        -(values.len() as f64 * TAU.ln() + log_determinant + own - explained) / 2.0
+        let square = residual.norm_squared() - explained;
+        -(values.len() as f64 * TAU.ln() + log_determinant + square) / 2.0
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::uncertainty::mixture::tests::example;
+    use crate::uncertainty::mixture::tests::{covariance, example};
 
     /// The density by the covariance in full.
     fn dense_log_density(mixture: &CurveMixture, values: &[f64]) -> f64 {
         let density = |component: &CurveComponent| {
-            let covariance = &component.factors * component.factors.transpose()
-                + DMatrix::from_diagonal(&component.variance.clone().into());
+            let covariance = covariance(component);
             let residual =
                 DVector::from_row_slice(values) - DVector::from_row_slice(&component.mean);
             let quadratic = residual.dot(&(covariance.clone().try_inverse().unwrap() * &residual));

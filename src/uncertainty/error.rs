@@ -41,6 +41,14 @@ pub enum MixtureError {
         /// Its variance.
         variance: f64,
     },
+    /// A correlation of neighbouring instants that is none.
+    #[error("component {component}: correlation of neighbours is {value}, expected 0 to below 1")]
+    LagCorrelation {
+        /// Index of the component.
+        component: usize,
+        /// Its correlation.
+        value: f64,
+    },
     /// A mean or a factor that is not finite.
     #[error("component {component}: {what} holds a number that is not finite")]
     NotFinite {

@@ -2,12 +2,15 @@
 //!
 //! ```text
 //! y = [F_x(t₁) … F_x(t_T), F_y(t₁) … F_y(t_T), duration]
-//! p(y) = Σ_k π_k N(y; m_k, U_k U_kᵀ + diag d_k)
+//! p(y) = Σ_k π_k N(y; m_k, U_k U_kᵀ + √D_k R_k √D_k)      D_k = diag d_k
+//! R_k[i, j] = φ_k^|i − j| within F_x and within F_y, else δ_ij
 //! ```
 //!
 //! The component is chosen once per curve and its few latent factors `U_k` act on all instants, so
 //! the spread of a curve does not average out in its impulse as independent draws at each instant
-//! would. METHOD of this project, section 4; the paper's mixture
+//! would. What is left to single instants has a memory of a few of them (φ, a first-order autoregressive
+//! process: φ = 0 is a diagonal): ripple of a structure is no white noise, and white noise of the
+//! same size makes drawn peaks too high. METHOD of this project, section 4; the paper's mixture
 //! ([`PitPinnPaper`](crate::bibliography::PitPinnPaper), `eq:gmmfunction`) has its deviations on
 //! the diagonal of each covariance.
 //!
@@ -27,8 +30,10 @@ pub struct CurveComponent {
     pub mean: Vec<f64>,
     /// Latent factors U, `[2T + 1, q]`, a column each: what one standard deviation of a factor adds.
     pub factors: DMatrix<f64>,
-    /// Variance d of what is independent in each value, `[2T + 1]`, positive.
+    /// Variance d of what the factors leave in each value, `[2T + 1]`, positive.
     pub variance: Vec<f64>,
+    /// φ: correlation of what they leave in neighbouring instants, 0 to below 1.
+    pub lag_correlation: f64,
 }
 
 /// A mixture of [`CurveComponent`]s: weights that sum to one, equal shapes, positive variances.
@@ -152,7 +157,7 @@ impl CurveMixture {
     /// Distribution of `Σ_i c_i y_i`, exact.
     ///
     /// ```text
-    /// Σ_k π_k N(cᵀ m_k, |U_kᵀ c|² + Σ_i c_i² d_ki)
+    /// Σ_k π_k N(cᵀ m_k, |U_kᵀ c|² + cᵀ √D_k R_k √D_k c)
     /// ```
     pub fn linear(&self, coefficient: &dyn Fn(usize) -> f64) -> NormalMixture {
         let part = |component: &CurveComponent| {
@@ -162,7 +167,7 @@ impl CurveMixture {
             };
             let factors = component.factors.column_iter();
             let shared: f64 = factors.map(|column| dot(&mut column.iter()).powi(2)).sum();
-            let own: f64 = component.variance.iter().zip(&c).map(|(d, c)| c * c * d).sum();
+            let own = component.own_variance_of(&c);
             NormalPart {
                 weight: component.weight,
                 mean: dot(&mut component.mean.iter()),
@@ -185,6 +190,38 @@ impl CurveComponent {
         variance
     }
 
+    /// cᵀ √D R √D c, in one pass per axis.
+    fn own_variance_of(&self, c: &[f64]) -> f64 {
+        let scaled: Vec<f64> = self.variance.iter().zip(c).map(|(d, c)| c * d.sqrt()).collect();
+        let n_instants = scaled.len() / 2;
+        let of_axis = |axis: &[f64]| {
+            let (mut sum, mut carried) = (0.0, 0.0);
+            for value in axis {
+                carried = value + self.lag_correlation * carried;
+                sum += value * (2.0 * carried - value);
+            }
+            sum
+        };
+        scaled.chunks(n_instants.max(1)).map(of_axis).sum()
+    }
+
+    /// What has the identity for covariance where a row has √D R √D.
+    ///
+    /// ```text
+    /// z_i = (x_i/√d_i − φ x_(i−1)/√d_(i−1)) / √(1 − φ²)      z = x/√d at the first of an axis
+    /// ```
+    pub(super) fn whitened<'a>(&self, row: impl Iterator<Item = &'a f64>) -> Vec<f64> {
+        let mut z: Vec<f64> = row.zip(&self.variance).map(|(x, d)| x / d.sqrt()).collect();
+        let (n_instants, phi) = (z.len() / 2, self.lag_correlation);
+        let scale = (1.0 - phi * phi).sqrt();
+        for axis in z.chunks_mut(n_instants.max(1)) {
+            for i in (1..axis.len()).rev() {
+                axis[i] = (axis[i] - phi * axis[i - 1]) / scale;
+            }
+        }
+        z
+    }
+
     fn check(&self, component: usize, expected: usize) -> Result<(), MixtureError> {
         for (what, got) in [
             ("mean", self.mean.len()),
@@ -201,6 +238,9 @@ impl CurveComponent {
         ];
         if let Some((what, _)) = finite.into_iter().find(|(_, finite)| !finite) {
             return Err(MixtureError::NotFinite { component, what });
+        }
+        if !(0.0..1.0).contains(&self.lag_correlation) {
+            return Err(MixtureError::LagCorrelation { component, value: self.lag_correlation });
         }
         let is_bad = |variance: &f64| !(*variance > 0.0 && variance.is_finite());
         match self.variance.iter().copied().enumerate().find(|(_, variance)| is_bad(variance)) {
@@ -231,9 +271,25 @@ pub(crate) mod tests {
             let second = row(&|u| [800.0 * bump(2.0 * u), 1e3 * bump(2.0 * u), -0.02]);
             let variance = row(&|u| [1e4 + 2e4 * u, 4e4 + k, 1e-4]);
             let factors = DMatrix::from_iterator(mean.len(), 2, first.into_iter().chain(second));
-            CurveComponent { weight: 1.0 + k, mean, factors, variance }
+            let lag_correlation = 0.9 * k / (1.0 + k);
+            CurveComponent { weight: 1.0 + k, mean, factors, variance, lag_correlation }
         };
         CurveMixture::new((0..n_components).map(component).collect()).unwrap()
+    }
+
+    /// The covariance in full.
+    pub(crate) fn covariance(component: &CurveComponent) -> DMatrix<f64> {
+        let (n, d) = (component.mean.len(), &component.variance);
+        let own = DMatrix::from_fn(n, n, |i, j| {
+            let axis = |idx: usize| idx / (n / 2);
+            let lag = if i == j { 0 } else { i.abs_diff(j) };
+            let correlation = match axis(i) == axis(j) {
+                true => component.lag_correlation.powi(lag as i32),
+                false => 0.0,
+            };
+            correlation * (d[i] * d[j]).sqrt()
+        });
+        &component.factors * component.factors.transpose() + own
     }
 
     #[test]
@@ -255,8 +311,7 @@ pub(crate) mod tests {
         for axis in [0, 1] {
             for (k, part) in mixture.impulse(axis).parts().iter().enumerate() {
                 let component = &mixture.components()[k];
-                let dense = &component.factors * component.factors.transpose()
-                    + DMatrix::from_diagonal(&component.variance.clone().into());
+                let dense = covariance(component);
                 let block = dense.view((axis * 40, axis * 40), (40, 40));
                 let expected = block.sum().sqrt() * CURVE_INTERVAL_S;
                 assert!((part.std - expected).abs() < 1e-9 * expected, "axis {axis}, {k}");
@@ -296,6 +351,8 @@ pub(crate) mod tests {
         let mut bad = good();
         bad.variance.pop();
         assert!(matches!(refused(bad), MixtureError::Shape { expected: 5, got: 4, .. }));
+        let bad = CurveComponent { lag_correlation: 1.0, ..good() };
+        assert!(matches!(refused(bad), MixtureError::LagCorrelation { .. }));
         let mut bad = good();
         bad.mean[0] = f64::NAN;
         assert!(matches!(refused(bad), MixtureError::NotFinite { what: "mean", .. }));

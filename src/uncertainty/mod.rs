@@ -8,7 +8,9 @@
 //! // Two instants: [F_x(t₁), F_x(t₂), F_y(t₁), F_y(t₂), duration]; one factor scales the curve.
 //! let mean = vec![0.0, 0.0, 10e3, 20e3, 0.1];
 //! let factors = DMatrix::from_column_slice(5, 1, &[0.0, 0.0, 1e3, 2e3, 0.0]);
-//! let component = CurveComponent { weight: 1.0, mean, factors, variance: vec![1.0, 1.0, 1.0, 1.0, 1e-4] };
+//! let variance = vec![1.0, 1.0, 1.0, 1.0, 1e-4];
+//! let lag_correlation = 0.0;
+//! let component = CurveComponent { weight: 1.0, mean, factors, variance, lag_correlation };
 //! let mixture = CurveMixture::new(vec![component])?;
 //! assert_eq!(mixture.mean().fy_n, [10e3, 20e3]);
 //! let [low, high] = mixture.impulse(1).interval(0.9);

@@ -23,7 +23,7 @@ impl CurveMixture {
     /// Draws whole curves: a component each, then its factors and what is independent.
     ///
     /// ```text
-    /// k ~ π     y = m_k + U_k z + √d_k ⊙ ε     z, ε ~ N(0, 1)
+    /// k ~ π     y = m_k + U_k z + √d_k ⊙ ε     z ~ N(0, 1)     ε_i = φ ε_(i−1) + √(1 − φ²) N(0, 1)
     /// ```
     ///
     /// A duration that comes out negative is drawn as zero.
@@ -44,8 +44,12 @@ impl CurveMixture {
                     *value += z * factor;
                 }
             }
-            for (value, deviation) in values.iter_mut().zip(own) {
-                let noise: f64 = rng.sample(StandardNormal);
+            let (n_instants, phi) = (own.len() / 2, component.lag_correlation);
+            let (mut noise, fresh) = (0.0, (1.0 - phi * phi).sqrt());
+            for (i, (value, deviation)) in values.iter_mut().zip(own).enumerate() {
+                let new: f64 = rng.sample(StandardNormal);
+                let is_first = i.is_multiple_of(n_instants.max(1));
+                noise = if is_first { new } else { phi * noise + fresh * new };
                 *value += deviation * noise;
             }
             let mut curve = ForceCurve::from_values(&values);
@@ -109,11 +113,35 @@ impl CurveFigures {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::DMatrix;
     use rand::SeedableRng;
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
+    use crate::uncertainty::CurveComponent;
     use crate::uncertainty::mixture::tests::example;
+
+    #[test]
+    fn what_the_factors_leave_has_its_memory() {
+        let n = 200;
+        let component = CurveComponent {
+            weight: 1.0,
+            mean: vec![0.0; 2 * n + 1],
+            factors: DMatrix::zeros(2 * n + 1, 0),
+            variance: vec![4.0; 2 * n + 1],
+            lag_correlation: 0.7,
+        };
+        let mixture = CurveMixture::new(vec![component]).unwrap();
+        let drawn = mixture.sample(500, &mut ChaCha8Rng::seed_from_u64(1));
+        let mean = |of: &dyn Fn(&ForceCurve, usize) -> f64| {
+            let pairs = drawn.iter().flat_map(|curve| (1..n).map(move |i| of(curve, i)));
+            pairs.sum::<f64>() / (500 * (n - 1)) as f64
+        };
+        let variance = mean(&|curve, i| curve.fy_n[i].powi(2));
+        let lagged = mean(&|curve, i| curve.fy_n[i] * curve.fy_n[i - 1]);
+        assert!((variance - 4.0).abs() < 0.1, "{variance}");
+        assert!((lagged / variance - 0.7).abs() < 0.01, "{lagged}");
+    }
 
     #[test]
     fn draws_have_the_moments_of_the_mixture() {

@@ -41,8 +41,14 @@ fn about(curve: &ForceCurve) -> CurveMixture {
         }
     }
     variance[n - 1] = 1e-4;
-    CurveMixture::new(vec![CurveComponent { weight: 1.0, mean, factors, variance }])
-        .expect("a mixture")
+    CurveMixture::new(vec![CurveComponent {
+        weight: 1.0,
+        mean,
+        factors,
+        variance,
+        lag_correlation: 0.0,
+    }])
+    .expect("a mixture")
 }
 
 fn save(figure: &Figure, name: &str) {

@@ -189,7 +189,9 @@ mod tests {
         let factors = DMatrix::from_iterator(n, 1, factor);
         let mut variance = vec![4e4; n];
         variance[n - 1] = 1e-4;
-        CurveMixture::new(vec![CurveComponent { weight: 1.0, mean, factors, variance }]).unwrap()
+        let lag_correlation = 0.0;
+        let component = CurveComponent { weight: 1.0, mean, factors, variance, lag_correlation };
+        CurveMixture::new(vec![component]).unwrap()
     }
 
     /// Curves drawn from the predicted distribution itself are covered as often as the levels say.

@@ -53,7 +53,7 @@ pub(super) fn component(draws: &[ForceCurve], own_std_n: Vec<f64>) -> CurveCompo
         .zip(own)
         .map(|((all, known), own)| (all.norm_squared() - known.norm_squared()).max(0.0) + own * own)
         .collect();
-    CurveComponent { weight: 1.0, mean, factors, variance }
+    CurveComponent { weight: 1.0, mean, factors, variance, lag_correlation: 0.0 }
 }
 
 #[cfg(test)]
