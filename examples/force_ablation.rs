@@ -1,0 +1,228 @@
+//! What each part of the force network is worth, and what more cases would bring: tables in
+//! Markdown, from cross-validation over the training cases of a data set. No test case is looked at.
+//!
+//! `cargo run --release --no-default-features --example force_ablation -- \
+//! datasets/fea assets/models/force.toml datasets/fea-wide`
+
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+
+use std::error::Error;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use impactlab::data::{Dataset, Outcome};
+use impactlab::force::metrics::{
+    BAND_LEVELS, Figures, PointErrors, ProbabilisticScores, ProbabilisticSettings,
+};
+use impactlab::force::{
+    Centre, CrushConfig, ForceCase, ForceConfig, ForceModel, ForceScenario, NetworkConfig,
+    Prediction, TrainSettings, TrainingConfig, TrainingSet, fit_physics, folds, split,
+    train_around,
+};
+use impactlab::nn::random_stream;
+
+type Answer<T> = Result<T, Box<dyn Error>>;
+
+const SEED: u64 = 0;
+const N_FOLDS: usize = 5;
+const N_DRAWS: usize = 500;
+
+/// A way to train, and the sums over the cases that it has not seen.
+struct Variant {
+    name: &'static str,
+    config: ForceConfig,
+    is_theta_alone: bool,
+    errors: Vec<(bool, PointErrors)>,
+    scores: Vec<ProbabilisticScores>,
+}
+
+impl Variant {
+    fn new(name: &'static str, config: ForceConfig) -> Self {
+        Self { name, config, is_theta_alone: false, errors: Vec::new(), scores: Vec::new() }
+    }
+
+    fn add(&mut self, model: &ForceModel, cases: &[&ForceCase]) -> Answer<()> {
+        for (i, case) in cases.iter().enumerate() {
+            let scenario = match self.is_theta_alone {
+                false => case.scenario.clone(),
+                true => ForceScenario {
+                    contact_m: None,
+                    bullet_position_m: None,
+                    bullet_body: None,
+                    ..case.scenario.clone()
+                },
+            };
+            let said = model.predict(&scenario)?;
+            let settings = ProbabilisticSettings { n_samples: N_DRAWS, seed: SEED };
+            self.scores.push(ProbabilisticScores::of(case, &said.mixture, settings, i as u64)?);
+            let mut rng = random_stream(SEED, "point estimates", i as u64);
+            let prediction = Prediction::of_mixture(said.mixture, &said.likely, N_DRAWS, &mut rng);
+            self.errors.push((case.is_clean(), PointErrors::of(case, &prediction)));
+        }
+        Ok(())
+    }
+
+    fn print(&self) {
+        let of = |is_all: bool, scores: &[&ProbabilisticScores]| {
+            let chosen: Vec<&PointErrors> =
+                self.errors.iter().filter(|(clean, _)| is_all || *clean).map(|(_, e)| e).collect();
+            Figures::of(&chosen, scores)
+        };
+        let scores: Vec<&ProbabilisticScores> = self.scores.iter().collect();
+        let (Some(all), Some(clean)) = (of(true, &scores), of(false, &[])) else { return };
+        let Some(spread) = all.probabilistic else { return };
+        let percent = |share: f64| format!("{:.1}", 100.0 * share);
+        let cells = [
+            percent(clean.history_error.mean),
+            percent(all.history_error.mean),
+            percent(clean.rmse_over_peak.mean),
+            percent(clean.impulse_error.median),
+            percent(clean.peak_error.median),
+            percent(clean.duration_error.median),
+            percent(spread.force_n[2].share),
+            percent(spread.impulse_n_s[2].share),
+            percent(spread.peak_n[2].share),
+            format!("{:.2}", spread.crps_force_n.mean / 1e3),
+            format!("{:.0}", spread.nll_nats.median),
+        ];
+        println!("| {} | {} |", self.name, cells.join(" | "));
+    }
+}
+
+fn header() {
+    println!(
+        "\n| | history | all cases | RMSE | impulse | peak | duration | F(t) in {0:.0} % | |P| | \
+         peak | CRPS kN | NLL |",
+        100.0 * BAND_LEVELS[2]
+    );
+    println!("|{}", " --- |".repeat(12));
+}
+
+/// Trains every variant on the cases; those with the same physics share its fit.
+fn add_fold(
+    variants: &mut [Variant],
+    (train, test): (Vec<ForceCase>, &[&ForceCase]),
+) -> Answer<()> {
+    let set = TrainingSet { name: "fold".to_owned(), train, test: Vec::new() };
+    let settings = |config: &ForceConfig| TrainSettings {
+        config: config.clone(),
+        seed: SEED,
+        checkpoint: None,
+        resume: false,
+    };
+    let mut fitted: Vec<((Centre, CrushConfig), _)> = Vec::new();
+    for variant in variants {
+        let key = (variant.config.network.centre, variant.config.crush);
+        let settings = settings(&variant.config);
+        let known = fitted.iter().find(|(of, _)| *of == key).map(|(_, physics)| physics);
+        let physics = match known {
+            Some(physics) => Clone::clone(physics),
+            None => {
+                let physics = fit_physics(&set, &settings, &mut |_| ControlFlow::Continue(()))?;
+                fitted.push((key, physics.clone()));
+                physics
+            }
+        };
+        let model = train_around(physics, &set, &settings, &mut |_| ControlFlow::Continue(()))?;
+        variant.add(&model, test)?;
+        eprintln!("{}: {} cases", variant.name, variant.errors.len());
+    }
+    Ok(())
+}
+
+fn load(path: &str) -> Answer<Vec<ForceCase>> {
+    let go_on = &mut |_: impactlab::jobs::Progress| ControlFlow::Continue(());
+    match Dataset::load(Path::new(path), go_on)? {
+        Outcome::Complete(data) => {
+            Ok(data.cases.iter().filter_map(|case| ForceCase::from_case(case).ok()).collect())
+        }
+        Outcome::Cancelled => Ok(Vec::new()),
+    }
+}
+
+fn training_cases(path: &str, config: &ForceConfig) -> Answer<Vec<ForceCase>> {
+    let cases = load(path)?;
+    let parts = split(&cases, SEED, config.training.test_share);
+    Ok(parts.train.iter().filter_map(|&idx| cases.get(idx).cloned()).collect())
+}
+
+/// - `n_most`: how many cases of each fold to train on.
+fn cross_validate(variants: &mut [Variant], cases: &[ForceCase], n_most: usize) -> Answer<()> {
+    for fold in folds(cases, N_FOLDS, SEED) {
+        let of = |indices: &[usize]| -> Vec<&ForceCase> {
+            indices.iter().filter_map(|&idx| cases.get(idx)).collect()
+        };
+        // The order of `split` is by hash, that of the files is not always random.
+        let order = split(&of(&fold.train), SEED, 0.5);
+        let order = order.test.into_iter().chain(order.train);
+        let train = of(&fold.train);
+        let seen = order.take(n_most).map(|idx| train[idx].clone()).collect();
+        add_fold(variants, (seen, &of(&fold.test)))?;
+    }
+    Ok(())
+}
+
+fn ablations(config: &ForceConfig) -> Vec<Variant> {
+    let with = |change: fn(&mut NetworkConfig)| {
+        let mut config = config.clone();
+        change(&mut config.network);
+        config
+    };
+    let untrained = ForceConfig {
+        training: TrainingConfig { epochs: 1, learning_rate: 1e-12, ..config.training },
+        ..config.clone()
+    };
+    let free = |network: &mut NetworkConfig| {
+        network.centre = Centre::None;
+        network.component_shift = 1.0;
+    };
+    let mut theta = Variant::new("the same, θ alone", config.clone());
+    theta.is_theta_alone = true;
+    vec![
+        Variant::new("as shipped, all columns", config.clone()),
+        theta,
+        Variant::new("physics and its residuals alone, network untrained", untrained),
+        Variant::new("without attention", with(|network| network.attention = false)),
+        Variant::new("independent instants (no latent factors)", with(|n| n.factors = 0)),
+        Variant::new("half the factors", with(|network| network.factors = 6)),
+        Variant::new("trunk of one layer of 16", with(|network| network.trunk = vec![16])),
+        Variant::new(
+            "the paper's trunk of 8 layers",
+            with(|network| network.trunk = NetworkConfig::default().trunk),
+        ),
+        Variant::new("one component", with(|network| network.components = 1)),
+        Variant::new(
+            "momentum solution instead of crush model",
+            with(|network| network.centre = Centre::Momentum),
+        ),
+        Variant::new("without physics layer", with(free)),
+    ]
+}
+
+fn main() -> Answer<()> {
+    let mut arguments = std::env::args().skip(1);
+    let data = arguments.next().unwrap_or_else(|| "datasets/fea".to_owned());
+    let config = match arguments.next() {
+        Some(path) => ForceConfig::load(Path::new(&path))?,
+        None => ForceConfig::default(),
+    };
+    let mut train = training_cases(&data, &config)?;
+    let mut variants = ablations(&config);
+    cross_validate(&mut variants, &train, usize::MAX)?;
+    header();
+    variants.iter().for_each(Variant::print);
+
+    // With another data set there are enough for four parts of five to be 75 and more.
+    if let Some(extra) = arguments.next() {
+        train.extend(load(&extra)?);
+    }
+    header();
+    for (name, n_cases) in
+        [("20 cases", 20), ("40 cases", 40), ("75 cases", 75), ("all of four folds", usize::MAX)]
+    {
+        let mut variants = [Variant::new(name, config.clone())];
+        cross_validate(&mut variants, &train, n_cases)?;
+        variants[0].print();
+    }
+    Ok(())
+}
