@@ -1,9 +1,13 @@
-//! How fast the networks' shared layers run and train: the trunk and temporal attention.
+//! How fast the networks' shared layers run and train, the trunk and temporal attention; and how
+//! fast the shipped force network predicts.
 //!
 //! `cargo bench --no-default-features --bench networks`
 
+use std::path::Path;
+
 use candle_core::{DType, Device, Tensor};
 use divan::Bencher;
+use impactlab::force::{ForceModel, ForceScenario};
 use impactlab::nn::{
     Activation, AdamW, AdamWConfig, Attention, AttentionConfig, Mlp, Parameters, random_stream,
 };
@@ -109,5 +113,22 @@ fn attention_and_trunk_step_32_curves(bencher: Bencher<'_, '_>, n_threads: usize
     step(bencher, n_threads, |network| {
         let seen = network.attention.self_attention(&x).expect("curves that fit");
         network.trunk.forward(&seen).expect("rows that fit")
+    });
+}
+
+/// The distribution of the force history with its bands at 1 ms over 250 ms.
+///
+/// - `is_open`: contact point and body are drawn from their distribution.
+#[divan::bench(args = [false, true], sample_count = 50, sample_size = 1)]
+fn force_prediction(bencher: Bencher<'_, '_>, is_open: bool) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/models/force.safetensors");
+    let model = ForceModel::load(&path).expect("the shipped model");
+    let mut scenario = model.training_cases().first().expect("a case").scenario.clone();
+    if is_open {
+        scenario = ForceScenario { contact_m: None, bullet_body: None, ..scenario };
+    }
+    bencher.bench(|| {
+        let prediction = model.predict(&scenario).expect("a scenario in range");
+        prediction.mixture.bands(&[0.5, 0.8, 0.9, 0.95]).expect("levels of bands")
     });
 }

@@ -2,6 +2,7 @@
 
 use candle_core::{D, DType};
 use nalgebra::DMatrix;
+use rayon::prelude::*;
 
 use crate::force::batch::network_input;
 use crate::force::centre::CentreCurve;
@@ -54,14 +55,15 @@ impl ForceModel {
         let (canonical, mirrored) = scenario.canonical();
         let variants = self.variants(&canonical)?;
         let n_bodies = self.bodies().len();
-        let (mut centres, mut rows) = (Vec::new(), Vec::new());
-        for variant in &variants {
-            let known = (variant.contact_m, variant.body_idx);
-            let centre = self.centre.curve(&canonical, known.0, known.1)?;
-            let row = features(&canonical, &centre, (known.0, known.1, n_bodies));
-            rows.push(self.standardisation.apply(&row));
-            centres.push(centre);
-        }
+        let centre =
+            |variant: &Variant| self.centre.curve(&canonical, variant.contact_m, variant.body_idx);
+        let centres: Vec<CentreCurve> =
+            variants.par_iter().map(centre).collect::<Result<_, _>>()?;
+        let row = |(centre, variant): (&CentreCurve, &Variant)| {
+            let known = (variant.contact_m, variant.body_idx, n_bodies);
+            self.standardisation.apply(&features(&canonical, centre, known))
+        };
+        let rows = centres.iter().zip(&variants).map(row).collect();
         let number_type = (&self.config.network, DType::F32);
         let input = network_input((&centres, &self.residuals), rows, number_type)?;
         let output = self.network.forward_frozen(&input)?;
