@@ -24,7 +24,7 @@ use impactlab::nn::random_stream;
 type Answer<T> = Result<T, Box<dyn Error>>;
 
 const SEED: u64 = 0;
-const N_FOLDS: usize = 5;
+const N_FOLDS: usize = 3;
 const N_DRAWS: usize = 500;
 
 /// A way to train, and the sums over the cases that it has not seen.
@@ -184,7 +184,6 @@ fn ablations(config: &ForceConfig) -> Vec<Variant> {
         Variant::new("physics and its residuals alone, network untrained", untrained),
         Variant::new("without attention", with(|network| network.attention = false)),
         Variant::new("independent instants (no latent factors)", with(|n| n.factors = 0)),
-        Variant::new("half the factors", with(|network| network.factors = 6)),
         Variant::new("trunk of one layer of 16", with(|network| network.trunk = vec![16])),
         Variant::new(
             "the paper's trunk of 8 layers",

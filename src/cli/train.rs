@@ -15,7 +15,7 @@ use crate::cli::progress::{complete, with_progress};
 use crate::cli::run::{Console, Verdict};
 use crate::force::{
     ForceCase, ForceConfig, ForceModel, TrainSettings, TrainingRecord, TrainingReport, TrainingSet,
-    train,
+    VarianceFactors, train,
 };
 
 /// Train a network
@@ -70,7 +70,7 @@ A training that was killed goes on with --resume to the same weights as if it ha
 seed gives the same weights on the same machine.
 
 JSON: model, data, n_train, n_validation, n_test, n_parameters, seconds, best_epoch, epochs,
-  variance_factor, train and validation (losses of the best epoch)";
+  variance_factors, train and validation (losses of the best epoch)";
 
 #[derive(Debug, Serialize)]
 struct Answer<'a> {
@@ -84,7 +84,7 @@ struct Answer<'a> {
     seconds: f64,
     best_epoch: usize,
     epochs: usize,
-    variance_factor: [f64; 3],
+    variance_factors: VarianceFactors,
     train: Option<crate::force::LossTerms>,
     validation: Option<crate::force::LossTerms>,
 }
@@ -193,7 +193,7 @@ fn print(
         seconds,
         best_epoch: record.best_epoch,
         epochs: record.history.len(),
-        variance_factor: record.variance_factor,
+        variance_factors: record.variance_factors,
         train: best.map(|record| record.train),
         validation: best.map(|record| record.validation),
     };
@@ -220,8 +220,12 @@ fn print(
         ("best epoch", format!("{} of {}", answer.best_epoch, answer.epochs)),
         (
             "variance factors",
-            answer.variance_factor.map(|factor| format!("{factor:.2}")).join(", ")
-                + " (latent factors, single instants, duration)",
+            format!(
+                "{:.2}, {:.2}, {:.2} (latent factors, single instants, duration)",
+                answer.variance_factors.shared,
+                answer.variance_factors.single,
+                answer.variance_factors.duration
+            ),
         ),
         ("training", loss(answer.train)),
         ("validation", loss(answer.validation)),

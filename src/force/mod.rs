@@ -20,6 +20,7 @@ mod centre;
 mod features;
 
 mod batch;
+mod calibration;
 mod loss;
 mod network;
 
@@ -43,6 +44,7 @@ mod evaluation;
 
 mod evaluate_model;
 
+pub use calibration::VarianceFactors;
 pub use case::{ForceCase, ForceCaseError, curve_on_grid};
 pub use centre::{CentreCurve, CentreModel};
 pub use clusters::{ImpulseClusters, ImpulseFeatures};

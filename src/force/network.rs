@@ -23,15 +23,17 @@
 //! construction.
 
 use candle_core::{D, DType, Tensor};
+use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
 
+use crate::force::centre::CentreCurve;
 use crate::force::features::{N_FEATURES, N_INSTANT_FEATURES};
 use crate::force::{Centre, ForceError, NetworkConfig};
 use crate::nn::{
     Activation, Attention, AttentionConfig, Init, Linear, Mlp, MultiScaleEncoder, Parameters,
     positional_encoding,
 };
-use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS};
+use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, CurveComponent};
 
 /// Unit of the duration among the values of a curve, s.
 pub(super) const DURATION_UNIT_S: f64 = 0.1;
@@ -115,85 +117,45 @@ pub(super) struct NetworkOutput {
 }
 
 impl NetworkOutput {
-    /// What calibration needs: of both impulses of every case, every force during the contact, and
-    /// every duration, the observed value under each component.
+    /// The components of each case, in N and s.
     ///
-    /// - `values`: the curves, `[cases, values]`.
-    pub(super) fn scores(&self, values: &Tensor) -> Result<[Vec<Score>; 3], ForceError> {
-        let residual = values.unsqueeze(1)?.broadcast_sub(&self.mean)?;
-        let rows = |tensor: &Tensor| -> Result<Vec<Vec<Vec<f64>>>, ForceError> {
-            Ok(tensor.to_dtype(DType::F64)?.to_vec3::<f64>()?)
-        };
-        let (n_instants, zero) = (values.dim(1)? / 2, self.variance.zeros_like()?);
-        let shared = self.factors.as_ref().map(|u| u.sqr()?.sum(3)).transpose()?.unwrap_or(zero);
-        let of_impulse = |axis: usize| -> Result<[Vec<Vec<Vec<f64>>>; 3], ForceError> {
-            let sum =
-                |tensor: &Tensor| tensor.narrow(2, axis * n_instants, n_instants)?.sum_keepdim(2);
-            let own = self.own_impulse_variance(axis)?;
-            let shared = self.factors.as_ref().map(|u| sum(u)?.squeeze(2)?.sqr()?.sum_keepdim(2));
-            let shared = shared.transpose()?.unwrap_or(own.zeros_like()?);
-            Ok([rows(&sum(&residual)?)?, rows(&own)?, rows(&shared)?])
-        };
-        let impulse = [of_impulse(0)?, of_impulse(1)?];
-        let force = [rows(&residual)?, rows(&self.variance)?, rows(&shared)?];
+    /// - `centres`: of the same cases.
+    pub(super) fn components(
+        &self,
+        centres: &[CentreCurve],
+    ) -> Result<Vec<Vec<CurveComponent>>, ForceError> {
+        let to_f64 = |tensor: &Tensor| tensor.to_dtype(DType::F64);
         let weights = candle_nn::ops::softmax(&self.logits, D::Minus1)?;
-        let weights = weights.to_dtype(DType::F64)?.to_vec2::<f64>()?;
-        let durations_s = values.narrow(1, 2 * n_instants, 1)?.squeeze(1)?;
-        let durations_s =
-            (durations_s * DURATION_UNIT_S)?.to_dtype(DType::F64)?.to_vec1::<f64>()?;
-        let mut scores = [Vec::new(), Vec::new(), Vec::new()];
-        for (case, (weights, duration_s)) in weights.iter().zip(&durations_s).enumerate() {
-            let score = |[residual, single, shared]: &[Vec<Vec<Vec<f64>>>; 3], value: usize| {
-                let part = |(k, weight): (usize, &f64)| ScorePart {
-                    weight: *weight,
-                    residual: residual[case][k][value],
-                    single: single[case][k][value],
-                    shared: shared[case][k][value],
-                };
-                weights.iter().enumerate().map(part).collect::<Score>()
+        let weights = to_f64(&weights)?.to_vec2::<f64>()?;
+        let lag_correlation = to_f64(&self.lag_correlation)?.to_vec2::<f64>()?;
+        let mean = to_f64(&self.mean)?.to_vec3::<f64>()?;
+        let variance = to_f64(&self.variance)?.to_vec3::<f64>()?;
+        let factors = match &self.factors {
+            Some(factors) => to_f64(&factors.flatten_all()?)?.to_vec1::<f64>()?,
+            None => Vec::new(),
+        };
+        let (_, k, n_values) = self.mean.dims3()?;
+        let q = self.factors.as_ref().map_or(0, |factors| factors.dims()[3]);
+        let component = |i: usize, j: usize, scale_n: f64| {
+            let unit = |v: usize| if v + 1 == n_values { DURATION_UNIT_S } else { scale_n };
+            let scaled = |row: &[f64], power: i32| -> Vec<f64> {
+                row.iter().enumerate().map(|(v, x)| x * unit(v).powi(power)).collect()
             };
-            let n_contact = ((duration_s / CURVE_INTERVAL_S).ceil() as usize).min(n_instants);
-            scores[0].extend(impulse.iter().map(|impulse| score(impulse, 0)));
-            for first in [0, n_instants] {
-                scores[1].extend((first..first + n_contact).map(|value| score(&force, value)));
+            let first = (i * k + j) * n_values * q;
+            CurveComponent {
+                weight: weights[i][j],
+                mean: scaled(&mean[i][j], 1),
+                variance: scaled(&variance[i][j], 2),
+                factors: DMatrix::from_fn(n_values, q, |v, f| factors[first + v * q + f] * unit(v)),
+                lag_correlation: lag_correlation[i][j],
             }
-            scores[2].push(score(&force, 2 * n_instants));
-        }
-        Ok(scores)
+        };
+        let of_case = |(i, centre): (usize, &CentreCurve)| {
+            (0..k).map(|j| component(i, j, centre.scale_n)).collect()
+        };
+        Ok(centres.iter().enumerate().map(of_case).collect())
     }
 }
-
-impl NetworkOutput {
-    /// Variance of the sum over the instants of what the factors leave, `[cases, K, 1]`.
-    fn own_impulse_variance(&self, axis: usize) -> Result<Tensor, ForceError> {
-        let n_instants = (self.variance.dim(2)? - 1) / 2;
-        let deviation = self.variance.narrow(2, axis * n_instants, n_instants)?.sqrt()?;
-        let phi = self.lag_correlation.unsqueeze(2)?;
-        let (mut sum, mut carried) = (phi.zeros_like()?, phi.zeros_like()?);
-        for t in 0..n_instants {
-            let value = deviation.narrow(2, t, 1)?;
-            carried = (&value + (&phi * carried)?)?;
-            sum = (sum + (&value * ((&carried * 2.0)? - &value)?)?)?;
-        }
-        Ok(sum)
-    }
-}
-
-/// An observed value under one component.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct ScorePart {
-    /// π.
-    pub weight: f64,
-    /// Value less mean.
-    pub residual: f64,
-    /// Variance of single instants.
-    pub single: f64,
-    /// Variance through the latent factors.
-    pub shared: f64,
-}
-
-/// An observed value under each component.
-pub(super) type Score = Vec<ScorePart>;
 
 impl ForceNetwork {
     /// New layers with seeded parameters.

@@ -1,14 +1,12 @@
 //! From a scenario to the distribution of its force history.
 
-use candle_core::{D, DType};
-use nalgebra::DMatrix;
+use candle_core::DType;
 use rayon::prelude::*;
 
 use crate::force::batch::network_input;
 use crate::force::centre::CentreCurve;
 use crate::force::features::{OutsideTraining, features};
 use crate::force::model::ForceModel;
-use crate::force::network::{DURATION_UNIT_S, NetworkOutput};
 use crate::force::{ForceError, ForceScenario};
 use crate::uncertainty::{CURVE_N_INSTANTS, CurveComponent, CurveMixture, ForceCurve};
 
@@ -67,7 +65,15 @@ impl ForceModel {
         let number_type = (&self.config.network, DType::F32);
         let input = network_input((&centres, &self.residuals), rows, number_type)?;
         let output = self.network.forward_frozen(&input)?;
-        let components = self.components(&output, &centres, &variants)?;
+        let components = output.components(&centres)?.into_iter().zip(&variants);
+        let components: Vec<CurveComponent> = components
+            .flat_map(|(components, variant)| {
+                components.into_iter().map(|component| CurveComponent {
+                    weight: component.weight * variant.probability,
+                    ..component
+                })
+            })
+            .collect();
         let k = self.config.network.components;
         let hooking = components.iter().skip(k - 1).step_by(k).map(|c| c.weight).sum::<f64>();
         let mean = mean_curve(&centres, &variants);
@@ -81,7 +87,8 @@ impl ForceModel {
         let likely = components.iter().enumerate();
         let likely = likely.filter(|(idx, _)| is_hooking(*idx) == (k > 1 && hooking > 0.5));
         let likely = CurveMixture::new(likely.map(|(_, component)| component.clone()).collect())?;
-        let mixture = CurveMixture::new(components)?;
+        let [likely, mixture] = [likely, CurveMixture::new(components)?]
+            .map(|mixture| self.record.variance_factors.apply(mixture));
         Ok(ForcePrediction {
             mixture: if mirrored { mixture.mirrored() } else { mixture },
             likely: if mirrored { likely.mirrored() } else { likely },
@@ -119,54 +126,6 @@ impl ForceModel {
             })
         });
         Ok(pairs.filter(|variant| variant.probability > 0.0).collect())
-    }
-
-    /// All components of all variants, in N and s.
-    fn components(
-        &self,
-        output: &NetworkOutput,
-        centres: &[CentreCurve],
-        variants: &[Variant],
-    ) -> Result<Vec<CurveComponent>, ForceError> {
-        let weights = candle_nn::ops::softmax(&output.logits, D::Minus1)?;
-        let weights = weights.to_dtype(DType::F64)?.to_vec2::<f64>()?;
-        let mean = output.mean.to_dtype(DType::F64)?.to_vec3::<f64>()?;
-        let variance = output.variance.to_dtype(DType::F64)?.to_vec3::<f64>()?;
-        let n_values = 2 * CURVE_N_INSTANTS + 1;
-        let q = self.config.network.factors;
-        let lag = output.lag_correlation.to_dtype(DType::F64)?.to_vec2::<f64>()?;
-        let factors = match &output.factors {
-            Some(factors) => factors.flatten_all()?.to_dtype(DType::F64)?.to_vec1::<f64>()?,
-            None => Vec::new(),
-        };
-        let [widen_shared, widen_single, widen_duration] = self.record.variance_factor;
-        let k = self.config.network.components;
-        let mut components = Vec::with_capacity(variants.len() * k);
-        for (i, (centre, variant)) in centres.iter().zip(variants).enumerate() {
-            let unit = |value_idx: usize| {
-                if value_idx + 1 == n_values { DURATION_UNIT_S } else { centre.scale_n }
-            };
-            for j in 0..k {
-                let widen = |value_idx: usize, forces: f64| {
-                    if value_idx + 1 == n_values { widen_duration } else { forces }
-                };
-                let first = (i * k + j) * n_values * q;
-                components.push(CurveComponent {
-                    weight: weights[i][j] * variant.probability,
-                    mean: mean[i][j].iter().enumerate().map(|(v, x)| x * unit(v)).collect(),
-                    variance: variance[i][j]
-                        .iter()
-                        .enumerate()
-                        .map(|(v, x)| x * unit(v).powi(2) * widen(v, widen_single))
-                        .collect(),
-                    lag_correlation: lag[i][j],
-                    factors: DMatrix::from_fn(n_values, q, |v, f| {
-                        factors[first + v * q + f] * unit(v) * widen(v, widen_shared).sqrt()
-                    }),
-                });
-            }
-        }
-        Ok(components)
     }
 }
 

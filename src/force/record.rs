@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::force::calibration::VarianceFactors;
 use crate::force::case::hex;
 use crate::force::loss::LossTerms;
 use crate::force::{ForceCase, ForceError, Split, split};
@@ -69,9 +70,8 @@ pub struct TrainingRecord {
     pub test: Vec<CaseId>,
     /// Epoch whose weights these are, from 1.
     pub best_epoch: usize,
-    /// Factors on the variances through latent factors, of single instants and of the duration, from
-    /// calibration on the training cases.
-    pub variance_factor: [f64; 3],
+    /// Factors on the variances, from calibration on training cases.
+    pub variance_factors: VarianceFactors,
     /// Every epoch.
     pub history: Vec<EpochRecord>,
 }

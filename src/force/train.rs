@@ -8,11 +8,12 @@ use candle_core::DType;
 use rand::seq::SliceRandom;
 
 use crate::force::batch::CaseTensors;
+use crate::force::calibration::VarianceFactors;
 use crate::force::centre::{CentreCurve, CentreModel};
 use crate::force::features::{OpenFeatures, Standardisation, features};
 use crate::force::loss::{Loss, LossTerms};
 use crate::force::model::ForceModel;
-use crate::force::network::{ForceNetwork, Score, ScorePart};
+use crate::force::network::ForceNetwork;
 use crate::force::residuals::ResidualModel;
 use crate::force::training_file::TrainingFile;
 use crate::force::{
@@ -20,15 +21,12 @@ use crate::force::{
     split,
 };
 use crate::nn::{AdamW, AdamWConfig, NamedTensors, Schedule, random_stream};
-use crate::numerics::normal_cdf;
+use crate::uncertainty::{CurveComponent, CurveMixture};
 
 /// Contact points that stand for their distribution where a scenario leaves it open.
 const N_OPEN_CONTACTS: usize = 8;
-/// Share of the forces of the training cases that the 90 % bands hold after calibration.
-const CALIBRATED_SHARE: f64 = 0.9;
-/// Logarithms of the smallest and largest factor on the variances.
-const MOST_EXTREME_LOG_FACTORS: (f64, f64) = (-8.0, 8.0);
-const CALIBRATION_STEPS: usize = 30;
+/// Fewest validation cases on which the spread is calibrated.
+const LEAST_CALIBRATION_CASES: usize = 30;
 
 /// What to train and how.
 #[derive(Debug, Clone, PartialEq)]
@@ -302,7 +300,7 @@ impl<'a> Training<'a> {
 
     fn finish(self, set: &TrainingSet) -> Result<ForceModel, ForceError> {
         self.network.parameters().import(&self.best_parameters)?;
-        let variance_factor = self.variance_factor()?;
+        let variance_factors = self.variance_factors(set)?;
         let ids = |indices: &[usize]| {
             indices.iter().filter_map(|&idx| set.train.get(idx)).map(CaseId::of).collect()
         };
@@ -315,7 +313,7 @@ impl<'a> Training<'a> {
             validation: ids(&self.validation),
             test: set.test.clone(),
             best_epoch: self.best_epoch,
-            variance_factor,
+            variance_factors,
             history: self.history,
         };
         let open = OpenFeatures::of(&set.train, &self.centre.bodies(), N_OPEN_CONTACTS);
@@ -331,54 +329,24 @@ impl<'a> Training<'a> {
         })
     }
 
-    /// The factors on the variances with which the central 90 % intervals hold 90 % of the values
-    /// of the training cases: those of the latent factors by the impulses, to which single instants
-    /// add next to nothing; then those of single instants by the forces during contact; then the
-    /// durations'.
-    ///
-    /// The physics has not seen the case through whose curve it is judged, and the network's
-    /// corrections of the mean are bounded, so this is nearly out of sample; test cases are not
-    /// touched.
-    fn variance_factor(&self) -> Result<[f64; 3], ForceError> {
+    /// Calibrated on the validation cases, which the network has not been fitted to, if there are
+    /// enough of them, else on all: of the training cases the physics at least has not seen the one
+    /// through whose curve it is judged. Test cases are not touched.
+    fn variance_factors(&self, set: &TrainingSet) -> Result<VarianceFactors, ForceError> {
         let all: Vec<usize> = (0..self.centres.len()).collect();
-        let (input, targets) = self.tensors.select(&all)?;
-        let output = self.network.forward_frozen(&input)?;
-        let [impulses, forces, durations] = output.scores(&targets.values)?;
-        let shared =
-            calibrated_factor(&impulses, |factor, part| factor * (part.shared + part.single));
-        let single =
-            calibrated_factor(&forces, |factor, part| shared * part.shared + factor * part.single);
-        let duration =
-            calibrated_factor(&durations, |factor, part| factor * (part.shared + part.single));
-        Ok([shared, single, duration])
-    }
-}
-
-/// The factor with which central intervals hold their share of the values, by bisection: the share
-/// held never falls with it.
-///
-/// - `variance`: of a value under a component, by the factor.
-fn calibrated_factor(scores: &[Score], variance: impl Fn(f64, &ScorePart) -> f64) -> f64 {
-    let tail = (1.0 - CALIBRATED_SHARE) / 2.0;
-    let held = |factor: f64| {
-        let is_held = |score: &&Score| {
-            let below = |part: &ScorePart| {
-                part.weight * normal_cdf(part.residual / variance(factor, part).sqrt())
-            };
-            (tail..=1.0 - tail).contains(&score.iter().map(below).sum::<f64>())
+        let is_enough = self.validation.len() >= LEAST_CALIBRATION_CASES;
+        let chosen = if is_enough { &self.validation } else { &all };
+        let (input, _) = self.tensors.select(chosen)?;
+        let centres: Vec<CentreCurve> =
+            chosen.iter().filter_map(|&idx| self.centres.get(idx).cloned()).collect();
+        let components = self.network.forward_frozen(&input)?.components(&centres)?;
+        let pair = |(idx, components): (&usize, Vec<CurveComponent>)| {
+            Ok((&set.train[*idx], CurveMixture::new(components)?))
         };
-        scores.iter().filter(is_held).count() as f64 / scores.len().max(1) as f64
-    };
-    let (mut low, mut high) = MOST_EXTREME_LOG_FACTORS;
-    for _ in 0..CALIBRATION_STEPS {
-        let middle = 0.5 * (low + high);
-        if held(f64::exp(middle)) < CALIBRATED_SHARE {
-            low = middle;
-        } else {
-            high = middle;
-        }
+        let cases: Vec<(&ForceCase, CurveMixture)> =
+            chosen.iter().zip(components).map(pair).collect::<Result<_, ForceError>>()?;
+        Ok(VarianceFactors::calibrated(&cases, self.settings.seed))
     }
-    (0.5 * (low + high)).exp()
 }
 
 /// Features of a training case, whose contact and body are known.
@@ -397,24 +365,5 @@ fn optimizer_config(config: &ForceConfig) -> AdamWConfig {
         max_gradient_norm: Some(training.max_gradient_norm),
         schedule: Schedule::Constant,
         ..AdamWConfig::default()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::numerics::normal_quantile;
-
-    #[test]
-    fn calibration_finds_the_factor_that_was_left_out() {
-        let n = 2000;
-        let quantiles = (0..n).map(|i| normal_quantile((f64::from(i) + 0.5) / f64::from(n)));
-        // Values twice as far out as the model thinks need four times its variance.
-        let part =
-            |weight, z: f64| ScorePart { weight, residual: 2.0 * z, single: 0.3, shared: 0.7 };
-        let scores: Vec<Score> = quantiles.map(|z| vec![part(0.7, z), part(0.3, z)]).collect();
-        let factor =
-            calibrated_factor(&scores, |factor, part| factor * (part.single + part.shared));
-        assert!((factor - 4.0).abs() < 0.05, "{factor}");
     }
 }

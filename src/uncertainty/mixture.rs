@@ -77,6 +77,12 @@ impl CurveMixture {
         Self::new(components.collect())
     }
 
+    /// The mixture with each component changed in place; shapes and weights must stay.
+    pub(crate) fn map_components(mut self, change: impl Fn(&mut CurveComponent)) -> Self {
+        self.components.iter_mut().for_each(change);
+        self
+    }
+
     /// Its components.
     pub fn components(&self) -> &[CurveComponent] {
         &self.components
