@@ -19,7 +19,6 @@ use impactlab::force::{
     Prediction, TrainSettings, TrainingConfig, TrainingSet, fit_physics, folds, split,
     train_around,
 };
-use impactlab::nn::random_stream;
 
 type Answer<T> = Result<T, Box<dyn Error>>;
 
@@ -55,8 +54,7 @@ impl Variant {
             let said = model.predict(&scenario)?;
             let settings = ProbabilisticSettings { n_samples: N_DRAWS, seed: SEED };
             self.scores.push(ProbabilisticScores::of(case, &said.mixture, settings, i as u64)?);
-            let mut rng = random_stream(SEED, "point estimates", i as u64);
-            let prediction = Prediction::of_mixture(said.mixture, &said.likely, N_DRAWS, &mut rng);
+            let prediction = Prediction::of_mixture(said.mixture, &said.likely);
             self.errors.push((case.is_clean(), PointErrors::of(case, &prediction)));
         }
         Ok(())

@@ -13,9 +13,11 @@ const CALIBRATED_SHARE: f64 = 0.9;
 /// Logarithms of the smallest and largest factor.
 const MOST_EXTREME_LOG_FACTORS: [f64; 2] = [-6.0, 4.0];
 const N_STEPS: usize = 20;
-/// Steps of the search by drawn peaks, and draws a case.
-const N_PEAK_STEPS: usize = 8;
-const N_PEAK_DRAWS: usize = 100;
+/// Steps of the search by impulses and peaks, up to this many times what impulses alone take.
+const N_SHARED_STEPS: usize = 8;
+const LARGEST_SHARED: f64 = 4.0;
+/// Draws of a case for its peak.
+const N_PEAK_DRAWS: usize = 200;
 /// Fewest cases that decide.
 const LEAST_CASES: usize = 8;
 
@@ -42,8 +44,7 @@ impl VarianceFactors {
     /// The factors with which the central 90 % intervals hold 90 % of
     ///
     /// - the forces during contact, F_x and F_y (`single`),
-    /// - the impulses and the peaks, whichever takes more (`shared`): with less their intervals
-    ///   would hold less than they say,
+    /// - the impulses and, as nearly as both allow, the peaks (`shared`),
     /// - the durations (`duration`).
     ///
     /// As predicted with fewer than eight cases.
@@ -57,10 +58,18 @@ impl VarianceFactors {
         let of_impulse = smallest(N_STEPS, |factor| {
             held_impulses(cases, Self { shared: factor, single: factor, duration: 1.0 })
         });
-        let of_peak = smallest(N_PEAK_STEPS, |shared| {
-            held_peaks(cases, Self { shared, single: single(shared), duration: 1.0 }, seed)
-        });
-        let shared = of_impulse.max(of_peak);
+        // Of larger factors the one with which impulses and peaks together hold what they should.
+        // More is not always better for peaks: drawn too rough they are all too high.
+        let shared = (0..=N_SHARED_STEPS)
+            .map(|step| of_impulse * LARGEST_SHARED.powf(step as f64 / N_SHARED_STEPS as f64))
+            .map(|shared| {
+                let factors = Self { shared, single: single(shared), duration: 1.0 };
+                let held = [held_impulses(cases, factors), held_peaks(cases, factors, seed)];
+                let off = held.map(|held| (held - CALIBRATED_SHARE).powi(2));
+                (off[0] + off[1], shared)
+            })
+            .min_by(|(a, _), (b, _)| a.total_cmp(b))
+            .map_or(of_impulse, |(_, shared)| shared);
         let duration = smallest(N_STEPS, |duration| {
             held_durations(cases, Self { duration, ..Self::default() })
         });

@@ -11,10 +11,6 @@ use crate::force::{
     evaluate, folds, train,
 };
 use crate::jobs::{Progress, Report};
-use crate::nn::random_stream;
-
-/// Draws behind the medians of peak and duration.
-const N_DRAWS: usize = 500;
 
 /// A model that cannot be evaluated.
 #[derive(Debug, thiserror::Error)]
@@ -105,12 +101,11 @@ fn predictions(
     test: &[ForceCase],
     settings: &EvaluationSettings,
 ) -> Result<Vec<Prediction>, ForceError> {
-    let predict = |(i, case): (usize, &ForceCase)| {
+    let predict = |case: &ForceCase| {
         let said = model.predict(&known(&case.scenario, settings.columns))?;
-        let mut rng = random_stream(settings.seed, "point estimates", i as u64);
-        Ok(Prediction::of_mixture(said.mixture, &said.likely, N_DRAWS, &mut rng))
+        Ok(Prediction::of_mixture(said.mixture, &said.likely))
     };
-    test.iter().enumerate().map(predict).collect()
+    test.iter().map(predict).collect()
 }
 
 /// What the model may know of a scenario.

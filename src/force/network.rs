@@ -112,7 +112,7 @@ pub(super) struct NetworkOutput {
     pub factors: Option<Tensor>,
     /// Impulse of F_base, peaks × s, `[cases, 2]`.
     pub impulse: Tensor,
-    /// Duration, s, `[cases]`.
+    /// Mean duration of the first component, s, `[cases]`.
     pub duration_s: Tensor,
 }
 
@@ -235,6 +235,9 @@ impl ForceNetwork {
             2,
         )?;
         let mean = (mean + &input.shift)?;
+        // That of the first component, shifts included: what the loss compares.
+        let duration_s = (mean.narrow(1, 0, 1)?.narrow(2, n_forces, 1)? * DURATION_UNIT_S)?;
+        let duration_s = duration_s.flatten_all()?;
         let change = Tensor::cat(&[&change, &of_component(2)?.tanh()?], 2)?;
         let variance = (&input.variance * (change * (2.0 * STD_LOG_CHANGE))?.exp()?)?;
         let variance = (variance + self.config.min_std.powi(2))?;

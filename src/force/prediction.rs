@@ -1,8 +1,6 @@
 //! What a force model says of a case.
 
-use rand::Rng;
-
-use crate::uncertainty::{CurveFigures, CurveMixture, ForceCurve};
+use crate::uncertainty::{CurveMixture, ForceCurve};
 
 /// Point estimates and, if the model has one, a distribution; in canonical axes.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,22 +22,11 @@ impl Prediction {
         Self { curve, impulse_n_s, peak_n, mixture: None }
     }
 
-    /// A distribution, and the part of it from which the point estimates come: the curve is the
-    /// mean of that; peak and duration are the medians of draws, as the mean of curves that peak at
-    /// different times is too flat; the impulse is that of the mean.
-    ///
-    /// - `n_samples`: draws for the medians, 1 or more.
-    pub fn of_mixture(
-        mixture: CurveMixture,
-        likely: &CurveMixture,
-        n_samples: usize,
-        rng: &mut impl Rng,
-    ) -> Self {
-        let figures = likely.sample_figures(n_samples, rng);
+    /// A distribution, and the part of it from which the point estimates come: curve, impulse and
+    /// peak are those of its mean, the duration is its median. Drawn curves are rougher than the
+    /// recorded ones, so that the median of their peaks lies too high; it gives the intervals.
+    pub fn of_mixture(mixture: CurveMixture, likely: &CurveMixture) -> Self {
         let mut prediction = Self::of_curve(likely.mean());
-        if let Some(peak_n) = CurveFigures::median(&figures.peak_n) {
-            prediction.peak_n = peak_n;
-        }
         prediction.curve.duration_s = likely.duration_s().quantile(0.5);
         prediction.mixture = Some(mixture);
         prediction
