@@ -89,8 +89,8 @@ impl Variant {
 
 fn header() {
     println!(
-        "\n| | history | all cases | RMSE | impulse | peak | duration | F(t) in {0:.0} % | |P| | \
-         peak | CRPS kN | NLL |",
+        "\n| | history | all cases | RMSE | impulse | peak | duration | F(t) in {0:.0} % | impulse \
+         in | peak in | CRPS [kN] | NLL |",
         100.0 * BAND_LEVELS[2]
     );
     println!("|{}", " --- |".repeat(12));
