@@ -51,9 +51,9 @@ const ENVELOPE_FLOOR: f64 = 0.2;
 /// Log odds of hooking before training.
 const FIRST_HOOKING_LOGIT: f64 = -2.0;
 /// Largest correction of the logit of the duration.
-const DURATION_CORRECTION: f64 = 0.1;
+const DURATION_CORRECTION: f64 = 0.02;
 /// Largest shift of a component's duration, units of 0.1 s: of hooking ten times that.
-const DURATION_SHIFT: f64 = 0.02;
+const DURATION_SHIFT: f64 = 0.005;
 const HOOKING_DURATION_SHIFT: f64 = 1.0;
 
 /// The layers and their parameters.

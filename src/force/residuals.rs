@@ -80,12 +80,13 @@ impl ResidualModel {
         };
         let plain = rows(&|case| !case.hooked && case.separated);
         let plain = if plain.len() < CASES_PER_FACTOR { rows(&|_| true) } else { plain };
-        let usual = ResidualProfiles::of(&plain, n_factors);
+        // The physics' own duration is nearer than one with the median residual added.
+        let usual = ResidualProfiles::of(&plain, n_factors, false);
         let hooked = rows(&|case| case.hooked);
         let mut hooking = if hooked.len() < CASES_PER_FACTOR {
             usual.clone()
         } else {
-            ResidualProfiles::of(&hooked, n_factors)
+            ResidualProfiles::of(&hooked, n_factors, true)
         };
         // A handful of cases leaves little over, but what plain cases leave is there as well.
         for (variance, of_usual) in hooking.variance.iter_mut().zip(&usual.variance) {
@@ -125,11 +126,14 @@ impl ResidualModel {
 }
 
 impl ResidualProfiles {
-    fn of(rows: &[Vec<f64>], n_factors: usize) -> Self {
+    fn of(rows: &[Vec<f64>], n_factors: usize, shifts_duration: bool) -> Self {
         let n = rows.len();
         let data = DMatrix::from_fn(n, N_VALUES, |i, j| rows[i][j]);
         // The median: one odd case in ten must not move the other nine.
-        let mean: Vec<f64> = data.column_iter().map(|column| median(column.iter())).collect();
+        let mut mean: Vec<f64> = data.column_iter().map(|column| median(column.iter())).collect();
+        if !shifts_duration {
+            mean[N_VALUES - 1] = 0.0;
+        }
         let centred = DMatrix::from_fn(n, N_VALUES, |i, j| {
             let weight = if j + 1 == N_VALUES { DURATION_WEIGHT } else { 1.0 };
             weight * (data[(i, j)] - mean[j])
