@@ -289,7 +289,7 @@ mod tests {
     #[test]
     fn one_cause_is_one_factor_that_moves_force_and_duration() {
         let centre = haversine_centre(0.1, 40e3);
-        let heights: Vec<f64> = (0..21).map(|i| (f64::from(i) - 8.0) / 50.0).collect();
+        let heights: Vec<f64> = (0..21).map(|i| (f64::from(i) - 10.0) / 50.0).collect();
         let cases = cases_of(&heights, &centre);
         let centres = vec![centre.clone(); cases.len()];
         let n = heights.len() as f64;
@@ -304,6 +304,12 @@ mod tests {
         let duration = residuals.factors[4 * CURVE_N_INSTANTS].abs() * DURATION_UNIT_S;
         assert!((duration - 0.5 * std * 0.1).abs() < 0.05 * std * 0.1, "{duration}");
         assert!(residuals.variance[peak_idx] < 1e-3 * std * std);
+        // What all cases have in common is the mean; the duration stays that of the physics.
+        let higher: Vec<f64> = heights.iter().map(|height| height + 0.1).collect();
+        let higher = ResidualModel::fit(&cases_of(&higher, &centre), &centres, 2);
+        let higher = higher.curve(&centre, false);
+        assert!((higher.mean[peak_idx] - 0.1).abs() < 0.01, "{}", higher.mean[peak_idx]);
+        assert_eq!(higher.mean[2 * CURVE_N_INSTANTS], 0.0);
         // Without factors all of it is independent.
         let alone = ResidualModel::fit(&cases, &centres, 0).curve(&centre, false);
         assert!((alone.variance[peak_idx].sqrt() - std).abs() < 0.05 * std);
