@@ -52,7 +52,8 @@ const ENVELOPE_FLOOR: f64 = 0.2;
 const FIRST_HOOKING_LOGIT: f64 = -2.0;
 /// Largest correction of the logit of the duration.
 const DURATION_CORRECTION: f64 = 0.02;
-/// Largest shift of a component's duration, units of 0.1 s: of hooking ten times that.
+/// Largest shift of a component's duration, units of 0.1 s: next to nothing, for the physics'
+/// duration is nearer; and of hooking.
 const DURATION_SHIFT: f64 = 0.005;
 const HOOKING_DURATION_SHIFT: f64 = 1.0;
 
