@@ -254,8 +254,7 @@ fn crush_scenario(scenario: &ForceScenario, contact_m: [f64; 2], body_idx: usize
 fn sample(case: &ForceCase, law: &CrushLaw, hooked_weight: f64) -> Option<CrushSample> {
     let contact_m = case.scenario.contact_m?;
     let body_idx = law.body_idx(body_name(&case.scenario))?;
-    let is_plain = !case.hooked && case.separated;
-    let weight = if is_plain { 1.0 } else { hooked_weight };
+    let weight = if case.is_clean() { 1.0 } else { hooked_weight };
     (weight > 0.0).then(|| CrushSample {
         scenario: crush_scenario(&case.scenario, contact_m, body_idx),
         fx_n: case.curve.fx_n.clone(),

@@ -205,12 +205,7 @@ impl ForceNetwork {
 
         let (k, q) = (self.config.components, self.config.factors);
         let number_type = self.parameters.number_type();
-        // [cases, instants, K, axis, …] to [cases, K, axis, instants, …]
-        let by_component = |raw: Tensor, n: usize| -> Result<Tensor, ForceError> {
-            let raw = raw.reshape((n_cases, n_instants, k, 2, n))?;
-            Ok(raw.permute((0, 2, 3, 1, 4))?.contiguous()?)
-        };
-        let raw = by_component(layers.component.forward(&hidden)?, 2)?;
+        let raw = self.by_component(&layers.component.forward(&hidden)?, 2)?;
         let n_forces = 2 * n_instants;
         let envelope = self.envelope(input)?.reshape((n_cases, 1, 1, n_instants))?;
         let per_force = |i: usize| -> Result<Tensor, ForceError> {
@@ -242,21 +237,37 @@ impl ForceNetwork {
         let change = Tensor::cat(&[&change, &of_component(2)?.tanh()?], 2)?;
         let variance = (&input.variance * (change * (2.0 * STD_LOG_CHANGE))?.exp()?)?;
         let variance = (variance + self.config.min_std.powi(2))?;
-        let factors = match &input.factors {
-            None => None,
-            Some(start) => {
-                let size = (per_component.narrow(2, 3, q)?.tanh()? * FACTOR_LOG_CHANGE)?.exp()?;
-                let instants = by_component(layers.loading.forward(&hidden)?, q)?;
-                let instants = ((instants.tanh()? * FACTOR_INSTANT_CHANGE)? + 1.0)?;
-                let instants = instants.reshape((n_cases, k, n_forces, q))?;
-                let of_duration = Tensor::ones((n_cases, k, 1, q), number_type, start.device())?;
-                let change = Tensor::cat(&[&instants, &of_duration], 2)?;
-                Some((start * change)?.broadcast_mul(&size.unsqueeze(2)?)?)
-            }
-        };
+        let sizes = per_component.narrow(2, 3, q)?;
+        let factors = self.factors(layers, input, (&hidden, &sizes))?;
         let logits = logits.to_dtype(number_type)?;
         let lag_correlation = input.lag_correlation.clone();
         Ok(NetworkOutput { logits, mean, variance, lag_correlation, factors, impulse, duration_s })
+    }
+
+    /// `[cases, instants, K · 2 · n]` to `[cases, K, axis, instants, n]`.
+    fn by_component(&self, raw: &Tensor, n: usize) -> Result<Tensor, ForceError> {
+        let (n_cases, n_instants, _) = raw.dims3()?;
+        let raw = raw.reshape((n_cases, n_instants, self.config.components, 2, n))?;
+        Ok(raw.permute((0, 2, 3, 1, 4))?.contiguous()?)
+    }
+
+    /// The latent factors of the residuals, scaled as wholes by `sizes`, `[cases, K, q]`, and
+    /// instant by instant; `[cases, K, values, q]`.
+    fn factors(
+        &self,
+        layers: &Layers,
+        input: &NetworkInput,
+        (hidden, sizes): (&Tensor, &Tensor),
+    ) -> Result<Option<Tensor>, ForceError> {
+        let Some(start) = &input.factors else { return Ok(None) };
+        let (n_cases, k, n_values, q) = start.dims4()?;
+        let size = (sizes.tanh()? * FACTOR_LOG_CHANGE)?.exp()?;
+        let instants = self.by_component(&layers.loading.forward(hidden)?, q)?;
+        let instants = ((instants.tanh()? * FACTOR_INSTANT_CHANGE)? + 1.0)?;
+        let instants = instants.reshape((n_cases, k, n_values - 1, q))?;
+        let of_duration = Tensor::ones((n_cases, k, 1, q), start.dtype(), start.device())?;
+        let change = Tensor::cat(&[&instants, &of_duration], 2)?;
+        Ok(Some((start * change)?.broadcast_mul(&size.unsqueeze(2)?)?))
     }
 
     /// One value for hooking (the last of two or more components), another for the others,

@@ -78,7 +78,7 @@ impl ResidualModel {
             let pairs = cases.iter().zip(centres).filter(|(case, _)| choose(case));
             pairs.map(|(case, centre)| residual(case, centre)).collect()
         };
-        let plain = rows(&|case| !case.hooked && case.separated);
+        let plain = rows(&ForceCase::is_clean);
         let plain = if plain.len() < CASES_PER_FACTOR { rows(&|_| true) } else { plain };
         // The physics' own duration is nearer than one with the median residual added.
         let usual = ResidualProfiles::of(&plain, n_factors, false);
