@@ -189,6 +189,10 @@ fn ablations(config: &ForceConfig) -> Vec<Variant> {
         ),
         Variant::new("one component", with(|network| network.components = 1)),
         Variant::new(
+            "crush model without regressions",
+            with(|network| network.centre = Centre::Crush),
+        ),
+        Variant::new(
             "momentum solution instead of crush model",
             with(|network| network.centre = Centre::Momentum),
         ),

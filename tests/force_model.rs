@@ -230,8 +230,9 @@ fn wrong_questions_are_answered_with_what_is_wrong() {
 
 #[test]
 fn every_ablation_trains() {
-    let variants: [fn(&mut ForceConfig); 5] = [
+    let variants: [fn(&mut ForceConfig); 6] = [
         |config| config.network.centre = Centre::None,
+        |config| config.network.centre = Centre::Crush,
         |config| config.network.centre = Centre::Momentum,
         |config| config.network.attention = false,
         |config| config.network.factors = 0,

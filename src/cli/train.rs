@@ -144,10 +144,11 @@ fn train_under_bar(set: &TrainingSet, settings: &TrainSettings) -> Result<ForceM
     }
     let model = train(set, settings, &mut |told| {
         match told {
-            TrainingReport::Crush { fit, n_fits, cost } => {
+            TrainingReport::Centre(fit) => {
+                let (done, n_fits) = fit.progress();
                 bar.set_length(n_fits as u64);
-                bar.set_position(fit as u64);
-                bar.set_message(format!("crush model, cost {cost:.3}"));
+                bar.set_position(done as u64);
+                bar.set_message(fit.to_string());
             }
             TrainingReport::Epoch { record, n_epochs, is_best } => {
                 bar.set_length(n_epochs as u64);

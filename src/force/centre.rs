@@ -1,12 +1,16 @@
 //! What physics says of a collision before any network does: the curve on which the network is
 //! centred, and its impulse.
 
+use std::fmt;
 use std::ops::ControlFlow;
 
 use serde::{Deserialize, Serialize};
 
-use crate::collision::PulseShape;
-use crate::collision::crush::{BodyCrush, CrushFit, CrushLaw, CrushSample, CrushScenario, Nose};
+use crate::collision::crush::{
+    BodyCrush, CrushFit, CrushHistory, CrushLaw, CrushSample, CrushScenario, Nose,
+};
+use crate::collision::{Impact, PulseShape};
+use crate::force::committee::Committee;
 use crate::force::{
     Centre, CrushConfig, ForceCase, ForceError, ForceScenario, MomentumModel, Split, folds,
 };
@@ -23,7 +27,7 @@ const CONTACT_SHARE: f64 = 0.01;
 /// The physics of one scenario, on the time grid. Canonical axes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CentreCurve {
-    /// Force; its duration from the first to the last force above 1 % of the peak.
+    /// Force and its duration.
     pub curve: ForceCurve,
     /// Greatest overlap of the outlines, m; zero where the centre knows none.
     pub depth_m: Vec<f64>,
@@ -50,13 +54,73 @@ impl CentreCurve {
     }
 }
 
+/// How far the fits of a centre have come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CentreFit {
+    /// A law of the crush model is being fitted.
+    Crush {
+        /// Which fold, from 0.
+        fit: usize,
+        /// How many.
+        n_fits: usize,
+        /// Its cost so far.
+        cost: f64,
+    },
+    /// A regression is being fitted.
+    Regression {
+        /// Which, from 0.
+        fit: usize,
+        /// How many.
+        n_fits: usize,
+    },
+}
+
+impl fmt::Display for CentreFit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Crush { fit, n_fits, cost } => {
+                write!(f, "fitting crush law {} of {n_fits}, cost {cost:.3}", fit + 1)
+            }
+            Self::Regression { fit, n_fits } => {
+                write!(f, "fitting regression {} of {n_fits}", fit + 1)
+            }
+        }
+    }
+}
+
+impl CentreFit {
+    /// Fits of this kind done, and how many there are.
+    pub fn progress(self) -> (usize, usize) {
+        match self {
+            Self::Crush { fit, n_fits, .. } | Self::Regression { fit, n_fits } => (fit, n_fits),
+        }
+    }
+}
+
+/// Force and contact on the time grid.
+struct History {
+    curve: ForceCurve,
+    /// Zero where the centre knows none.
+    depth_m: Vec<f64>,
+    slip_m_s: Vec<f64>,
+}
+
+impl History {
+    fn without_contact(curve: ForceCurve) -> Self {
+        let none = vec![0.0; CURVE_N_INSTANTS];
+        Self { curve, depth_m: none.clone(), slip_m_s: none }
+    }
+}
+
 /// The fitted physics.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CentreModel {
     kind: Centre,
     /// One per fold, each fitted without it.
     laws: Vec<CrushLaw>,
+    /// What is averaged with the crush model.
+    committee: Option<Committee>,
     /// Mean contact duration of the training cases, s.
     duration_s: f64,
     /// Mean peak of the training cases, N.
@@ -68,16 +132,18 @@ pub struct CentreModel {
 impl CentreModel {
     /// Fits the physics on training cases.
     ///
-    /// - `report`: fold and cost of each accepted step; breaking ends the fits where they are.
-    /// - returns the model and, for each training case, the curve of a law that has not seen it.
+    /// - `report`: is told of each accepted step; breaking ends the fits where they are.
+    /// - returns the model and, for each training case, the curve of a part of it that has not seen
+    ///   the case.
     ///
     /// # Errors
-    /// [`ForceError::TooFewCases`], [`ForceError::NoCrushFit`], [`ForceError::Impact`].
+    /// [`ForceError::TooFewCases`], [`ForceError::NoCrushFit`], [`ForceError::Regression`],
+    /// [`ForceError::Impact`].
     pub fn fit(
         cases: &[ForceCase],
         (kind, config): (Centre, CrushConfig),
         seed: u64,
-        report: &mut dyn FnMut(usize, f64) -> ControlFlow<()>,
+        report: &mut dyn FnMut(CentreFit) -> ControlFlow<()>,
     ) -> Result<(Self, Vec<CentreCurve>), ForceError> {
         let n = cases.len();
         if n < config.folds {
@@ -89,32 +155,30 @@ impl CentreModel {
         let mut model = Self {
             kind,
             laws: Vec::new(),
+            committee: None,
             duration_s: mean(&|case| case.curve.duration_s),
             peak_n: mean(&|case| case.peak_n),
             momentum: MomentumModel::fit(&plain, true),
         };
-        let prior = prior_law(cases);
         let folds = folds(cases, config.folds, seed);
-        for (i, fold) in folds.iter().enumerate().filter(|_| kind == Centre::Crush) {
-            let samples: Vec<CrushSample> = fold
-                .train
-                .iter()
-                .filter_map(|&idx| cases.get(idx))
-                .filter_map(|case| sample(case, &prior, config.hooked_weight))
-                .collect();
-            let settings = CrushFit {
-                dt_s: CURVE_INTERVAL_S,
-                prior_weight: config.prior_weight,
-                impulse_weight: config.impulse_weight,
-                max_steps: config.max_steps,
-            };
-            let law = prior.fit(&samples, settings, &mut |cost| report(i, cost));
-            model.laws.push(law.ok_or(ForceError::NoCrushFit { n_cases: samples.len() })?);
+        model.laws = fit_laws((cases, &folds), (kind, config), report)?;
+        let mut histories = model.unseen_histories(cases, &folds)?;
+        if kind == Centre::Committee {
+            let crush: Vec<ForceCurve> = histories.iter().map(|of| of.curve.clone()).collect();
+            let mut told = |fit, n_fits| report(CentreFit::Regression { fit, n_fits });
+            let fitted = Committee::fit((cases, &folds), &crush, seed, &mut told)?;
+            if let Some((committee, curves)) = fitted {
+                model.committee = Some(committee);
+                for (history, curve) in histories.iter_mut().zip(curves) {
+                    history.curve = curve;
+                }
+            }
         }
-        if model.laws.is_empty() {
-            model.laws.push(prior);
-        }
-        let unseen = model.unseen_curves(cases, &folds)?;
+        let curve = |(case, history): (&ForceCase, History)| {
+            let (contact_m, _) = model.known(&case.scenario);
+            model.centre_curve(history, &case.scenario, contact_m)
+        };
+        let unseen = cases.iter().zip(histories).map(curve).collect::<Result<_, _>>()?;
         Ok((model, unseen))
     }
 
@@ -129,13 +193,13 @@ impl CentreModel {
         self.laws.first().map_or(0.0, |law| law.rear_axle_x_m)
     }
 
-    /// The physics of a scenario: the mean over all laws.
+    /// The physics of a scenario: the mean over all laws, and over the committee.
     ///
     /// - `scenario`: canonical.
     /// - `contact_m`, `body_idx`: what the scenario may leave open.
     ///
     /// # Errors
-    /// [`ForceError::Impact`].
+    /// [`ForceError::Impact`], [`ForceError::Regression`].
     pub fn curve(
         &self,
         scenario: &ForceScenario,
@@ -143,24 +207,31 @@ impl CentreModel {
         body_idx: usize,
     ) -> Result<CentreCurve, ForceError> {
         let laws: Vec<&CrushLaw> = self.laws.iter().collect();
-        self.curve_of(&laws, scenario, (contact_m, body_idx))
+        let mut history = self.history(&laws, scenario, (contact_m, body_idx))?;
+        if let Some(committee) = &self.committee {
+            let body = self.laws.first().and_then(|law| law.bodies.get(body_idx));
+            let name = body.map(|body| body.name.clone()).filter(|name| name != NO_NAME);
+            let known =
+                ForceScenario { contact_m: Some(contact_m), bullet_body: name, ..scenario.clone() };
+            history.curve = committee.curve(&history.curve, &known)?;
+        }
+        self.centre_curve(history, scenario, contact_m)
     }
 
-    fn unseen_curves(
+    fn unseen_histories(
         &self,
         cases: &[ForceCase],
         folds: &[Split],
-    ) -> Result<Vec<CentreCurve>, ForceError> {
+    ) -> Result<Vec<History>, ForceError> {
         let law_of = |idx: usize| {
             let fold = folds.iter().position(|fold| fold.test.contains(&idx));
             fold.and_then(|fold| self.laws.get(fold)).or(self.laws.first())
         };
-        let curve = |(idx, case): (usize, &ForceCase)| {
+        let history = |(idx, case): (usize, &ForceCase)| {
             let laws: Vec<&CrushLaw> = law_of(idx).into_iter().collect();
-            let known = self.known(&case.scenario);
-            self.curve_of(&laws, &case.scenario, known)
+            self.history(&laws, &case.scenario, self.known(&case.scenario))
         };
-        cases.iter().enumerate().map(curve).collect()
+        cases.iter().enumerate().map(history).collect()
     }
 
     /// Contact and body of a training case.
@@ -170,44 +241,47 @@ impl CentreModel {
         (contact, body.unwrap_or(0))
     }
 
-    fn curve_of(
+    fn history(
         &self,
         laws: &[&CrushLaw],
         scenario: &ForceScenario,
         (contact_m, body_idx): ([f64; 2], usize),
-    ) -> Result<CentreCurve, ForceError> {
+    ) -> Result<History, ForceError> {
+        Ok(match self.kind {
+            Centre::Committee | Centre::Crush => {
+                mean_history(laws, &crush_scenario(scenario, contact_m, body_idx))
+            }
+            Centre::Momentum => {
+                let momentum = self.impact(scenario, contact_m).solve()?.impulse_n_s;
+                History::without_contact(self.pulse(momentum))
+            }
+            Centre::None => History::without_contact(self.nothing()),
+        })
+    }
+
+    fn impact(&self, scenario: &ForceScenario, contact_m: [f64; 2]) -> Impact {
         let known = ForceScenario { contact_m: Some(contact_m), ..scenario.clone() };
-        let impact = self.momentum.impact(&known);
-        let momentum = impact.solve()?.impulse_n_s;
-        let n = CURVE_N_INSTANTS;
-        let (mut curve, mut depth_m, mut slip_m_s) = match self.kind {
-            Centre::Crush => mean_history(laws, &crush_scenario(scenario, contact_m, body_idx)),
-            Centre::Momentum => (self.pulse(momentum), vec![0.0; n], vec![0.0; n]),
-            Centre::None => (self.nothing(), vec![0.0; n], vec![0.0; n]),
-        };
-        depth_m.resize(n, 0.0);
-        slip_m_s.resize(n, 0.0);
-        let peak = curve.peak().0;
-        let magnitude = curve.magnitude_n();
-        let in_contact = |force: &f64| *force > CONTACT_SHARE * peak && peak > 0.0;
-        let first = magnitude.iter().position(in_contact).unwrap_or(0);
-        let last = magnitude.iter().rposition(in_contact).unwrap_or(0);
-        curve.duration_s = match self.kind {
-            Centre::None => self.duration_s,
-            _ => (last + 1 - first) as f64 * CURVE_INTERVAL_S,
-        };
-        let impulse_n_s = match self.kind {
-            Centre::Crush => curve.impulse_n_s(),
-            Centre::Momentum => momentum,
-            Centre::None => [0.0, self.peak_n * self.duration_s / 2.0],
-        };
-        let scale_n = if self.kind == Centre::None { self.peak_n } else { peak.max(1.0) };
+        self.momentum.impact(&known)
+    }
+
+    /// A history with what follows from it and from the momentum solution.
+    fn centre_curve(
+        &self,
+        History { curve, depth_m, slip_m_s }: History,
+        scenario: &ForceScenario,
+        contact_m: [f64; 2],
+    ) -> Result<CentreCurve, ForceError> {
+        let impact = self.impact(scenario, contact_m);
+        let has_force = self.kind != Centre::None;
         Ok(CentreCurve {
             depth_m,
             slip_m_s,
-            impulse_n_s,
-            momentum_impulse_n_s: momentum,
-            scale_n,
+            impulse_n_s: match has_force {
+                true => curve.impulse_n_s(),
+                false => [0.0, self.peak_n * self.duration_s / 2.0],
+            },
+            momentum_impulse_n_s: impact.solve()?.impulse_n_s,
+            scale_n: if has_force { curve.peak().0.max(1.0) } else { self.peak_n },
             inverse_mass_1_kg: impact.inverse_mass_1_kg(),
             closing_velocity_m_s: impact.relative_velocity_m_s(),
             curve,
@@ -294,27 +368,51 @@ fn nose_contact(scenario: &ForceScenario) -> Option<(f64, [f64; 2])> {
     Some((scenario.theta_b_rad, [cos * dx + sin * dy, cos * dy - sin * dx]))
 }
 
-/// The mean over the laws of force, depth and slip.
-fn mean_history(laws: &[&CrushLaw], scenario: &CrushScenario) -> (ForceCurve, Vec<f64>, Vec<f64>) {
+/// One law per fold, fitted without it; the prior alone if the centre knows no crush.
+fn fit_laws(
+    (cases, folds): (&[ForceCase], &[Split]),
+    (kind, config): (Centre, CrushConfig),
+    report: &mut dyn FnMut(CentreFit) -> ControlFlow<()>,
+) -> Result<Vec<CrushLaw>, ForceError> {
+    let prior = prior_law(cases);
+    if !kind.has_crush() {
+        return Ok(vec![prior]);
+    }
+    let n_fits = folds.len();
+    let settings = CrushFit {
+        dt_s: CURVE_INTERVAL_S,
+        prior_weight: config.prior_weight,
+        impulse_weight: config.impulse_weight,
+        max_steps: config.max_steps,
+    };
+    let law = |(fit, fold): (usize, &Split)| {
+        let train = fold.train.iter().filter_map(|&idx| cases.get(idx));
+        let samples: Vec<CrushSample> =
+            train.filter_map(|case| sample(case, &prior, config.hooked_weight)).collect();
+        let mut told = |cost| report(CentreFit::Crush { fit, n_fits, cost });
+        let law = prior.fit(&samples, settings, &mut told);
+        law.ok_or(ForceError::NoCrushFit { n_cases: samples.len() })
+    };
+    folds.iter().enumerate().map(law).collect()
+}
+
+/// The mean over the laws; its duration from the first to the last force above 1 % of the peak.
+fn mean_history(laws: &[&CrushLaw], scenario: &CrushScenario) -> History {
     let n = CURVE_N_INSTANTS;
     let histories: Vec<_> =
         laws.iter().filter_map(|law| law.simulate(scenario, n, CURVE_INTERVAL_S)).collect();
-    let mean = |of: &dyn Fn(usize) -> Option<f64>| -> f64 {
-        (0..histories.len()).filter_map(of).sum::<f64>() / histories.len().max(1) as f64
+    let series = |of: fn(&CrushHistory) -> &[f64]| -> Vec<f64> {
+        let at = |t: usize| histories.iter().filter_map(move |history| of(history).get(t));
+        (0..n).map(|t| at(t).sum::<f64>() / histories.len().max(1) as f64).collect()
     };
-    let series = |which: usize| -> Vec<f64> {
-        (0..n)
-            .map(|t| {
-                mean(&|i| {
-                    let history = histories.get(i)?;
-                    let row = [&history.fx_n, &history.fy_n, &history.depth_m, &history.slip_m_s];
-                    row[which].get(t).copied()
-                })
-            })
-            .collect()
-    };
-    let curve = ForceCurve { fx_n: series(0), fy_n: series(1), duration_s: 0.0 };
-    (curve, series(2), series(3))
+    let mut curve =
+        ForceCurve { fx_n: series(|of| &of.fx_n), fy_n: series(|of| &of.fy_n), duration_s: 0.0 };
+    let (magnitude, peak_n) = (curve.magnitude_n(), curve.peak().0);
+    let in_contact = |force: &f64| *force > CONTACT_SHARE * peak_n && peak_n > 0.0;
+    let first = magnitude.iter().position(in_contact).unwrap_or(0);
+    let last = magnitude.iter().rposition(in_contact).unwrap_or(0);
+    curve.duration_s = (last + 1 - first) as f64 * CURVE_INTERVAL_S;
+    History { curve, depth_m: series(|of| &of.depth_m), slip_m_s: series(|of| &of.slip_m_s) }
 }
 
 #[cfg(test)]

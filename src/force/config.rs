@@ -24,13 +24,22 @@ pub struct ForceConfig {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Centre {
-    /// The crush model: its curve and impulse.
+    /// The mean of crush model and regressions, with the share that does best on cases left out.
     #[default]
+    Committee,
+    /// The crush model: its curve and impulse.
     Crush,
     /// A haversine with the impulse of the momentum solution, restitution and friction fitted.
     Momentum,
     /// Nothing: ablation without the physics layer; the impulse is not tied to anything.
     None,
+}
+
+impl Centre {
+    /// Whether the crush model is in it.
+    pub fn has_crush(self) -> bool {
+        matches!(self, Self::Committee | Self::Crush)
+    }
 }
 
 /// The layers.
@@ -135,7 +144,7 @@ pub struct CrushConfig {
 impl Default for NetworkConfig {
     fn default() -> Self {
         Self {
-            centre: Centre::Crush,
+            centre: Centre::Committee,
             encoder_branches: vec![[32, 32, 16], [64, 64, 32], [128, 128, 48]],
             position_channels: 32,
             attention: true,

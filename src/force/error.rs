@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use crate::collision::ImpactError;
+use crate::force::baselines::BaselineError;
 use crate::nn::NnError;
 use crate::uncertainty::MixtureError;
 
@@ -75,6 +76,9 @@ pub enum ForceError {
         /// In which epoch, from 1.
         epoch: usize,
     },
+    /// The regressions beside the crush model cannot be fitted or asked.
+    #[error("the regressions beside the crush model fail")]
+    Regression(#[from] BaselineError),
     /// The momentum solution has no answer.
     #[error(transparent)]
     Impact(#[from] ImpactError),

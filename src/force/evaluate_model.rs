@@ -150,9 +150,7 @@ pub fn cross_validate(
         let (mut is_cancelled, first) = (false, (i * config.training.epochs) as u64);
         let model = train(&set, &train_settings, &mut |told| {
             let (done, what) = match told {
-                TrainingReport::Crush { fit, n_fits, .. } => {
-                    (0, format!("{}: crush model {} of {n_fits}", set.name, fit + 1))
-                }
+                TrainingReport::Centre(fit) => (0, format!("{}: {fit}", set.name)),
                 TrainingReport::Epoch { record, .. } => {
                     (record.epoch as u64, format!("{}: epoch {}", set.name, record.epoch))
                 }

@@ -17,6 +17,7 @@ mod momentum;
 mod config;
 
 mod centre;
+mod committee;
 mod features;
 
 mod batch;
@@ -46,7 +47,7 @@ mod evaluate_model;
 
 pub use calibration::VarianceFactors;
 pub use case::{ForceCase, ForceCaseError, curve_on_grid};
-pub use centre::{CentreCurve, CentreModel};
+pub use centre::{CentreCurve, CentreFit, CentreModel};
 pub use clusters::{ImpulseClusters, ImpulseFeatures};
 pub use config::{Centre, CrushConfig, ForceConfig, LossWeights, NetworkConfig, TrainingConfig};
 pub use error::ForceError;

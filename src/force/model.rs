@@ -14,7 +14,7 @@ use crate::force::{ForceCase, ForceConfig, ForceError, ForceScenario, TrainingRe
 use crate::nn::{Checkpoint, ModelKind, NnError, random_stream};
 use crate::uncertainty::{CURVE_N_INSTANTS, ForceCurve};
 
-const KIND: ModelKind = ModelKind { name: "force network", version: 3 };
+const KIND: ModelKind = ModelKind { name: "force network", version: 4 };
 const CURVES: &str = "curves";
 
 /// A trained force network with all it takes to predict, and the cases it was trained on, with

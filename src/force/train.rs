@@ -17,8 +17,8 @@ use crate::force::network::ForceNetwork;
 use crate::force::residuals::ResidualModel;
 use crate::force::training_file::TrainingFile;
 use crate::force::{
-    CaseId, Centre, EpochRecord, ForceCase, ForceConfig, ForceError, TrainingRecord, TrainingSet,
-    split,
+    CaseId, CentreFit, EpochRecord, ForceCase, ForceConfig, ForceError, TrainingRecord,
+    TrainingSet, split,
 };
 use crate::nn::{AdamW, AdamWConfig, NamedTensors, Schedule, random_stream};
 use crate::uncertainty::{CurveComponent, CurveMixture};
@@ -45,14 +45,7 @@ pub struct TrainSettings {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TrainingReport<'a> {
     /// The physics in the centre is being fitted.
-    Crush {
-        /// Which fold, from 0.
-        fit: usize,
-        /// How many.
-        n_fits: usize,
-        /// Its cost so far.
-        cost: f64,
-    },
+    Centre(CentreFit),
     /// An epoch is over.
     Epoch {
         /// Its losses.
@@ -113,9 +106,8 @@ pub fn fit_physics(
     report: &mut TrainingProgress<'_>,
 ) -> Result<(CentreModel, Vec<CentreCurve>), ForceError> {
     let (kind, crush) = (settings.config.network.centre, settings.config.crush);
-    let n_fits = if kind == Centre::Crush { crush.folds } else { 0 };
-    let mut crush_report = |fit, cost| report(TrainingReport::Crush { fit, n_fits, cost });
-    CentreModel::fit(&set.train, (kind, crush), settings.seed, &mut crush_report)
+    let mut told = |fit| report(TrainingReport::Centre(fit));
+    CentreModel::fit(&set.train, (kind, crush), settings.seed, &mut told)
 }
 
 fn search(

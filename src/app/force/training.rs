@@ -13,8 +13,8 @@ use crate::app::force::TrainingForm;
 use crate::app::source::CheckedDataset;
 use crate::error_chain;
 use crate::force::{
-    EpochRecord, ForceCase, ForceConfig, ForceModel, TrainSettings, TrainingReport, TrainingSet,
-    train,
+    CentreFit, EpochRecord, ForceCase, ForceConfig, ForceModel, TrainSettings, TrainingReport,
+    TrainingSet, train,
 };
 use crate::jobs::{Job, Progress, Report, Update};
 
@@ -27,8 +27,8 @@ pub enum Phase {
     /// Reads settings and saved state, splits the cases.
     #[default]
     Preparing,
-    /// Fits the law of the crush model: fit from 0, fits in all, cost.
-    Crush(usize, usize, f64),
+    /// Fits the physics in the centre.
+    Centre(CentreFit),
     /// Epochs: the last one that is over, and how many at most.
     Epochs(usize, usize),
     /// It is over.
@@ -256,9 +256,7 @@ fn run(
         TrainingSet::new(data.name, &cases, &extra, split).map_err(|error| error_chain(&error))?;
     let settings = TrainSettings { config, seed: form.seed, checkpoint, resume: form.resume };
     let mut report = |report: TrainingReport<'_>| match report {
-        TrainingReport::Crush { fit, n_fits, cost } => {
-            tell(News::Phase(Phase::Crush(fit, n_fits, cost)))
-        }
+        TrainingReport::Centre(fit) => tell(News::Phase(Phase::Centre(fit))),
         TrainingReport::Epoch { record, n_epochs, is_best } => {
             tell(News::Epoch { record: *record, n_epochs, is_best })
         }

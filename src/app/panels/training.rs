@@ -135,9 +135,7 @@ fn progress_ui(ui: &mut Ui, status: &TrainingStatus) {
     let what = match status.phase {
         _ if status.is_cancelled() => "ending".to_owned(),
         Phase::Preparing => "preparing".to_owned(),
-        Phase::Crush(fit, n_fits, cost) => {
-            format!("fitting the crush law {} of {n_fits}, cost {}", fit + 1, significant(cost))
-        }
+        Phase::Centre(fit) => fit.to_string(),
         Phase::Epochs(done, n_epochs) => format!("epoch {done} of {n_epochs}"),
         Phase::Ended => "over".to_owned(),
     };

@@ -1,6 +1,8 @@
 //! Force curves over a time of their own, in axes of their own impulse: what is left of them when
 //! impulse, onset and length are taken out.
 
+use serde::{Deserialize, Serialize};
+
 use crate::force::ForceCase;
 use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
 
@@ -10,7 +12,8 @@ const SHAPE_START: f64 = -1.0;
 const SHAPE_CELL: f64 = 0.0125;
 
 /// Which stretch of a curve is its unit of time.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Alignment {
     /// From first touch to last separation.
     Contact,

@@ -21,7 +21,8 @@ pub enum ColumnSet {
 }
 
 /// Turns scenarios into rows of numbers, all alike.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct FeatureMap {
     columns: ColumnSet,
     /// Mean contact along the target, m: stands for one that is not known.

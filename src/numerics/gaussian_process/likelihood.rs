@@ -8,8 +8,7 @@ use std::rc::Rc;
 use argmin::core::{CostFunction, Error, Executor, Gradient};
 use argmin::solver::linesearch::MoreThuenteLineSearch;
 use argmin::solver::quasinewton::LBFGS;
-use nalgebra::linalg::Cholesky;
-use nalgebra::{DMatrix, Dim, Dyn, Matrix, RawStorage, U1};
+use nalgebra::{DMatrix, Dim, Matrix, RawStorage, U1};
 
 /// Noise that is always there, a share of an output's variance: keeps the covariance regular.
 const MIN_NOISE: f64 = 1e-6;
@@ -31,6 +30,9 @@ const PRIOR_LINEAR: (f64, f64) = (-0.5, 1.5);
 const PRIOR_NOISE: (f64, f64) = (-1.0, 1.0);
 const PRIOR_UNUSUAL: (f64, f64) = (0.0, 1.0);
 
+/// Hyperparameters besides the lengths.
+pub(super) const N_VARIANCES: usize = 4;
+
 /// `l_j`, `s_f`, `s_l`, `s_n`, `s_u` of the covariance, as natural logarithms.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Hyperparameters {
@@ -45,8 +47,8 @@ pub(super) struct Hyperparameters {
 }
 
 impl Hyperparameters {
-    fn new(log: Vec<f64>) -> Self {
-        let n_lengths = log.len().saturating_sub(4);
+    pub(super) fn new(log: Vec<f64>) -> Self {
+        let n_lengths = log.len().saturating_sub(N_VARIANCES);
         let variance = |idx: usize| log.get(n_lengths + idx).map_or(0.0, |log| (2.0 * log).exp());
         let inverse_square = log.iter().take(n_lengths).map(|log| (-2.0 * log).exp()).collect();
         let [signal, linear, noise, unusual] = [0, 1, 2, 3].map(variance);
@@ -69,6 +71,27 @@ impl Hyperparameters {
             dot += a * b;
         }
         self.signal * (-square / 2.0).exp() + self.linear * (dot + 1.0)
+    }
+
+    /// Covariance of samples, noise included.
+    pub(super) fn covariance(&self, inputs: &DMatrix<f64>, unusual: &[bool]) -> DMatrix<f64> {
+        let rows: Vec<_> = inputs.row_iter().collect();
+        let mut covariance = DMatrix::zeros(rows.len(), rows.len());
+        for (i, row) in rows.iter().enumerate() {
+            let is_unusual = unusual.get(i).copied().unwrap_or(false);
+            for (j, other) in rows.iter().enumerate().take(i + 1) {
+                let noise = if i == j { self.noise(is_unusual) } else { 0.0 };
+                let value = self.kernel(row, other) + noise;
+                covariance[(i, j)] = value;
+                covariance[(j, i)] = value;
+            }
+        }
+        covariance
+    }
+
+    /// The logarithms they were made of.
+    pub(super) fn into_log(self) -> Vec<f64> {
+        self.log
     }
 
     /// Variance of the noise of a sample.
@@ -103,22 +126,6 @@ impl Likelihood {
         Self { inputs, outputs, unusual, weights }
     }
 
-    /// Of the covariance of the samples, noise included.
-    pub(super) fn cholesky(&self, h: &Hyperparameters) -> Option<Cholesky<f64, Dyn>> {
-        let n = self.inputs.nrows();
-        let rows: Vec<_> = self.inputs.row_iter().collect();
-        let mut covariance = DMatrix::zeros(n, n);
-        for i in 0..n {
-            for j in 0..=i {
-                let noise = if i == j { h.noise(self.unusual[i]) } else { 0.0 };
-                let value = h.kernel(&rows[i], &rows[j]) + noise;
-                covariance[(i, j)] = value;
-                covariance[(j, i)] = value;
-            }
-        }
-        covariance.cholesky()
-    }
-
     /// The hyperparameters of largest likelihood times prior, by L-BFGS from the prior's middle. A
     /// line search that gets no further ends it: the best point so far is taken.
     pub(super) fn maximise(self: &Likelihood) -> Hyperparameters {
@@ -151,7 +158,7 @@ impl Likelihood {
     fn evaluate(&self, at: &[f64]) -> Evaluation {
         let h = Hyperparameters::new(at.to_vec());
         let n_parameters = at.len();
-        let Some(cholesky) = self.cholesky(&h) else {
+        let Some(cholesky) = h.covariance(&self.inputs, &self.unusual).cholesky() else {
             let gradient = vec![0.0; n_parameters];
             return Evaluation { at: at.to_vec(), cost: f64::INFINITY, gradient };
         };
@@ -176,7 +183,7 @@ impl Likelihood {
     /// `½ tr(G ∂K/∂h)` for each logarithm h.
     fn trace_products(&self, outer: &DMatrix<f64>, h: &Hyperparameters) -> Vec<f64> {
         let (n, d) = self.inputs.shape();
-        let mut gradient = vec![0.0; d + 4];
+        let mut gradient = vec![0.0; d + N_VARIANCES];
         let rows: Vec<Vec<f64>> =
             self.inputs.row_iter().map(|row| row.iter().copied().collect()).collect();
         let mut squares = vec![0.0; d];

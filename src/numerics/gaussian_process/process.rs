@@ -16,8 +16,9 @@
 
 use nalgebra::linalg::Cholesky;
 use nalgebra::{DMatrix, DVector, Dyn};
+use serde::{Deserialize, Serialize};
 
-use crate::numerics::gaussian_process::likelihood::{Hyperparameters, Likelihood};
+use crate::numerics::gaussian_process::likelihood::{Hyperparameters, Likelihood, N_VARIANCES};
 
 /// What a Gaussian process learns from.
 #[derive(Debug, Clone, Copy)]
@@ -32,16 +33,34 @@ pub struct GaussianProcessData<'a> {
     pub weights: &'a [f64],
 }
 
-/// A fitted regression.
-#[derive(Debug, Clone)]
+/// A fitted regression. Stored without the factor of its covariance, which follows from the rest.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(into = "StoredProcess", try_from = "StoredProcess")]
 pub struct GaussianProcess {
     input_scaling: Scaling,
     output_scaling: Scaling,
+    /// Standardised, a row a sample.
     inputs: DMatrix<f64>,
+    unusual: Vec<bool>,
     hyperparameters: Hyperparameters,
     cholesky: Cholesky<f64, Dyn>,
     /// `K⁻¹ y`, a column an output.
     coefficients: DMatrix<f64>,
+}
+
+/// A regression in a file.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StoredProcess {
+    input_scaling: Scaling,
+    output_scaling: Scaling,
+    /// Standardised, a row a sample.
+    inputs: Vec<Vec<f64>>,
+    unusual: Vec<bool>,
+    /// Logarithms.
+    hyperparameters: Vec<f64>,
+    /// A row a sample.
+    coefficients: Vec<Vec<f64>>,
 }
 
 /// What a regression says at one input.
@@ -106,13 +125,23 @@ impl GaussianProcess {
             [] => vec![1.0; n_outputs],
             weights => weights.to_vec(),
         };
-        let unusual = (0..inputs.nrows()).map(|idx| !usual(idx)).collect();
-        let likelihood = Likelihood::new(inputs.clone(), outputs.clone(), unusual, weights);
+        let unusual: Vec<bool> = (0..inputs.nrows()).map(|idx| !usual(idx)).collect();
+        let likelihood = Likelihood::new(inputs.clone(), outputs.clone(), unusual.clone(), weights);
         let hyperparameters = likelihood.maximise();
-        let cholesky =
-            likelihood.cholesky(&hyperparameters).ok_or(GaussianProcessError::Covariance)?;
+        let cholesky = hyperparameters
+            .covariance(&inputs, &unusual)
+            .cholesky()
+            .ok_or(GaussianProcessError::Covariance)?;
         let coefficients = cholesky.solve(&outputs);
-        Ok(Self { input_scaling, output_scaling, inputs, hyperparameters, cholesky, coefficients })
+        Ok(Self {
+            input_scaling,
+            output_scaling,
+            inputs,
+            unusual,
+            hyperparameters,
+            cholesky,
+            coefficients,
+        })
     }
 
     /// Mean and spread at an input.
@@ -147,8 +176,66 @@ impl GaussianProcess {
     }
 }
 
+impl From<GaussianProcess> for StoredProcess {
+    fn from(process: GaussianProcess) -> Self {
+        let rows = |matrix: &DMatrix<f64>| {
+            matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
+        };
+        Self {
+            inputs: rows(&process.inputs),
+            coefficients: rows(&process.coefficients),
+            hyperparameters: process.hyperparameters.into_log(),
+            input_scaling: process.input_scaling,
+            output_scaling: process.output_scaling,
+            unusual: process.unusual,
+        }
+    }
+}
+
+impl TryFrom<StoredProcess> for GaussianProcess {
+    type Error = GaussianProcessError;
+
+    fn try_from(stored: StoredProcess) -> Result<Self, GaussianProcessError> {
+        let data = GaussianProcessData {
+            inputs: &stored.inputs,
+            outputs: &stored.coefficients,
+            unusual: &stored.unusual,
+            weights: &[],
+        };
+        let n_outputs = check(&data)?;
+        let n_inputs = stored.inputs.first().map_or(0, Vec::len);
+        let lengths = [
+            ("the means of the inputs", n_inputs, stored.input_scaling.mean.len()),
+            ("the deviations of the inputs", n_inputs, stored.input_scaling.std.len()),
+            ("the means of the outputs", n_outputs, stored.output_scaling.mean.len()),
+            ("the deviations of the outputs", n_outputs, stored.output_scaling.std.len()),
+            ("the hyperparameters", n_inputs + N_VARIANCES, stored.hyperparameters.len()),
+            ("unusual", stored.inputs.len(), stored.unusual.len()),
+        ];
+        if let Some((what, expected, got)) = lengths.into_iter().find(|(_, a, b)| a != b) {
+            return Err(GaussianProcessError::Shape { what, expected, got });
+        }
+        let matrix = |rows: &[Vec<f64>], n_columns| {
+            DMatrix::from_row_iterator(rows.len(), n_columns, rows.iter().flatten().copied())
+        };
+        let inputs = matrix(&stored.inputs, n_inputs);
+        let hyperparameters = Hyperparameters::new(stored.hyperparameters);
+        let covariance = hyperparameters.covariance(&inputs, &stored.unusual);
+        Ok(Self {
+            cholesky: covariance.cholesky().ok_or(GaussianProcessError::Covariance)?,
+            coefficients: matrix(&stored.coefficients, n_outputs),
+            inputs,
+            hyperparameters,
+            input_scaling: stored.input_scaling,
+            output_scaling: stored.output_scaling,
+            unusual: stored.unusual,
+        })
+    }
+}
+
 /// Mean and standard deviation of each column; what does not vary is left at zero.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Scaling {
     mean: Vec<f64>,
     std: Vec<f64>,
@@ -186,6 +273,9 @@ fn check(data: &GaussianProcessData<'_>) -> Result<usize, GaussianProcessError> 
     }
     let width = |rows: &[Vec<f64>]| rows.first().map_or(0, Vec::len);
     let (n_inputs, n_outputs) = (width(data.inputs), width(data.outputs));
+    if n_outputs == 0 {
+        return Err(GaussianProcessError::Shape { what: "an output", expected: 1, got: 0 });
+    }
     let optional = |got: usize, expected| if got == 0 { expected } else { got };
     let lengths = [("outputs", n, data.outputs.len())].into_iter();
     let lengths = lengths
@@ -259,6 +349,23 @@ mod tests {
         assert!(with < 0.3 && with < 0.5 * without, "{with} with, {without} without");
         let at = GaussianProcess::fit(&known).unwrap().predict(&[2.0]).unwrap();
         assert!(at.std_unusual[0] > 3.0 * at.std[0], "{at:?}");
+    }
+
+    #[test]
+    fn a_stored_process_predicts_the_same_and_a_broken_one_is_refused() {
+        let inputs = grid(12);
+        let outputs: Vec<Vec<f64>> = inputs.iter().map(|x| vec![x[0].sin(), x[1]]).collect();
+        let unusual: Vec<bool> = (0..12).map(|i| i == 5).collect();
+        let of = GaussianProcessData { unusual: &unusual, ..data(&inputs, &outputs) };
+        let process = GaussianProcess::fit(&of).unwrap();
+        let text = serde_json::to_string(&process).unwrap();
+        let back: GaussianProcess = serde_json::from_str(&text).unwrap();
+        let at = [1.1, 4.0, 5.0];
+        assert_eq!(back.predict(&at).unwrap(), process.predict(&at).unwrap());
+        let broken = text.replacen("\"unusual\":[false,", "\"unusual\":[", 1);
+        assert_ne!(broken, text);
+        let error = serde_json::from_str::<GaussianProcess>(&broken).unwrap_err().to_string();
+        assert!(error.contains("unusual has 11 entries, expected 12"), "{error}");
     }
 
     #[test]

@@ -19,6 +19,7 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
+use serde::{Deserialize, Serialize};
 
 use crate::force::baselines::alignment::{Alignment, Placement};
 use crate::force::baselines::statistical::choice::choose;
@@ -30,14 +31,17 @@ use crate::force::{ForceCase, ForceScenario, Prediction};
 use crate::numerics::GaussianPrediction;
 use crate::uncertainty::{CurveMixture, ForceCurve};
 
-/// Pairs of opposite draws behind a prediction.
+/// Pairs of opposite draws behind a distribution.
 const N_PAIRS: usize = 64;
+
+/// Pairs of draws behind a point estimate, where their noise hardly counts.
+const N_POINT_PAIRS: usize = 16;
 
 /// Regressed numbers besides the coefficients: impulse, direction, duration, length, onset.
 const N_SCALARS: usize = 5;
 
 /// What is chosen by cross-validation.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct StatisticalOptions {
     /// The stretch of a curve that is its unit of time.
     pub alignment: Alignment,
@@ -48,7 +52,8 @@ pub struct StatisticalOptions {
 }
 
 /// Regressions fitted to training cases.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct StatisticalBaseline {
     /// What was chosen.
     pub options: StatisticalOptions,
@@ -118,7 +123,7 @@ impl StatisticalBaseline {
     pub fn predict(&self, scenario: &ForceScenario) -> Result<Prediction, BaselineError> {
         let regressed = self.regress(scenario)?;
         let draws = self.draw(&regressed, false, N_PAIRS);
-        let mut prediction = self.point(&regressed, &draws);
+        let mut prediction = self.mean_of(&regressed, &draws);
         let residual = |draws: &[ForceCurve]| self.residual_std_n(&regressed, draws);
         let mut parts =
             vec![(1.0 - self.unusual_share, spread::component(&draws, residual(&draws)))];
@@ -134,14 +139,13 @@ impl StatisticalBaseline {
         Ok(prediction)
     }
 
-    /// The point estimate alone.
-    pub(super) fn predict_point(
-        &self,
-        scenario: &ForceScenario,
-        n_pairs: usize,
-    ) -> Result<Prediction, BaselineError> {
+    /// The point estimate alone, from fewer draws.
+    ///
+    /// # Errors
+    /// [`BaselineError`].
+    pub fn point(&self, scenario: &ForceScenario) -> Result<Prediction, BaselineError> {
         let regressed = self.regress(scenario)?;
-        Ok(self.point(&regressed, &self.draw(&regressed, false, n_pairs)))
+        Ok(self.mean_of(&regressed, &self.draw(&regressed, false, N_POINT_PAIRS)))
     }
 
     fn regress(&self, scenario: &ForceScenario) -> Result<Regressed, BaselineError> {
@@ -157,7 +161,7 @@ impl StatisticalBaseline {
 
     /// Mean of draws. The peak is that of the curve of the means: averaged curves are too flat, and
     /// drawn ones too rough.
-    fn point(&self, regressed: &Regressed, draws: &[ForceCurve]) -> Prediction {
+    fn mean_of(&self, regressed: &Regressed, draws: &[ForceCurve]) -> Prediction {
         let mut curve = ForceCurve::from_values(&spread::mean_values(draws));
         let [ln_ratio, turn, ln_duration] = &regressed.scales;
         curve.duration_s = ln_duration.mean[0].exp();

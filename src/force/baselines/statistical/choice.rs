@@ -13,9 +13,6 @@ use crate::force::baselines::{
 /// Numbers of components that are tried, rising.
 const N_COMPONENTS: [usize; 2] = [4, 8];
 
-/// Pairs of draws behind a prediction here, where the noise of drawing averages over the cases.
-const N_PAIRS: usize = 16;
-
 /// The options with the smallest mean history error in cross-validation.
 pub(super) fn choose(
     cases: &[&ForceCase],
@@ -66,9 +63,7 @@ fn fold_losses(
             let options = StatisticalOptions { n_components, ..options };
             let parts = (scales.clone(), shapes.clone().truncated(n_components));
             let model = StatisticalBaseline::of_parts(train, parts, options, seed);
-            let error = |case: &&ForceCase| {
-                history_error(case, model.predict_point(&case.scenario, N_PAIRS))
-            };
+            let error = |case: &&ForceCase| history_error(case, model.point(&case.scenario));
             losses.push((mean(test.iter().map(error)) * test.len() as f64, options));
         }
     }

@@ -1,12 +1,14 @@
 //! Regressions that know no shape: impulse relative to the momentum solution, and duration.
 
+use serde::{Deserialize, Serialize};
+
 use crate::force::baselines::{BaselineError, ColumnSet, FeatureMap};
 use crate::force::{ForceCase, ForceScenario, MomentumModel};
 use crate::numerics::{GaussianPrediction, GaussianProcess, GaussianProcessData};
 use crate::uncertainty::CURVE_INTERVAL_S;
 
 /// Momentum solution, inputs and the regressions on them.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Scales {
     momentum: MomentumModel,
     features: FeatureMap,

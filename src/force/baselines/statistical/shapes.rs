@@ -2,6 +2,8 @@
 
 use nalgebra::DMatrix;
 
+use serde::{Deserialize, Serialize};
+
 use crate::force::ForceCase;
 use crate::force::baselines::alignment::Alignment;
 use crate::force::baselines::statistical::scales::{Scales, unusual};
@@ -16,7 +18,7 @@ const ONSET_FLOOR_S: f64 = 2e-3;
 const COEFFICIENTS_WEIGHT: f64 = 3.0;
 
 /// Shapes as mean and components, and what predicts them.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Shapes {
     mean: Vec<f64>,
     /// Unit vectors, by falling share of the variance.
