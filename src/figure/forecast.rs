@@ -37,7 +37,7 @@ pub struct ForecastFigure<'a> {
     pub levels: &'a [f64],
     /// The recorded curve, by its name.
     pub recorded: Option<(&'a str, &'a ForceCurve)>,
-    /// What the physics says without the network.
+    /// What the network starts from: its centre.
     pub physics: Option<&'a ForceCurve>,
     /// Classic pulses.
     pub pulses: &'a [(PulseShape, ForceCurve)],
@@ -128,7 +128,7 @@ pub fn forecast_figure(component: ForceComponent, input: &ForecastFigure<'_>) ->
         elements.push(Element::Line(Series { name, role, style: pulse_style(*shape), points }));
     }
     if let Some(physics) = input.physics {
-        elements.push(Element::dashed("physics alone", Role::Reference, points(physics)));
+        elements.push(Element::dashed("centre alone", Role::Reference, points(physics)));
     }
     let mean = points(&input.forecast.mean);
     elements.push(Element::line("mean", component.role(), mean));

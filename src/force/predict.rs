@@ -18,7 +18,7 @@ pub struct ForcePrediction {
     /// The same under the condition of what is likelier, hooking or not: point estimates are taken
     /// from it, as a mean between two kinds of collision is neither.
     pub likely: CurveMixture,
-    /// What the physics alone says: the mean of the crush model over what the scenario leaves open.
+    /// What the centre alone says, before the network: its mean over what the scenario leaves open.
     pub centre: ForceCurve,
     /// Impulse of the momentum solution, N s.
     pub momentum_impulse_n_s: [f64; 2],

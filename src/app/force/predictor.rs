@@ -31,7 +31,7 @@ pub struct Forecast {
     pub settings: ForecastSettings,
     /// Bands, curves and numbers.
     pub force: ForceForecast,
-    /// What the physics says without the network.
+    /// What the network starts from: its centre.
     pub physics: ForceCurve,
     /// Classic pulses with the momentum solution's impulse over the predicted duration.
     pub pulses: Vec<(PulseShape, ForceCurve)>,

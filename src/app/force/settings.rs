@@ -52,7 +52,7 @@ pub struct ForceView {
     pub components: [bool; 3],
     /// Whether the recorded force of the selected case is drawn.
     pub recorded: bool,
-    /// Whether what the physics says without the network is drawn.
+    /// Whether what the network starts from is drawn.
     pub physics: bool,
     /// Whether classic pulses of the momentum solution are drawn.
     pub pulses: bool,

@@ -135,8 +135,8 @@ fn choices_ui(ui: &mut Ui, view: &mut View) {
         ui.checkbox(&mut view.pulses, "Classic pulses").on_hover_text(
             "Half-sine, haversine, triangle and square with the impulse of the momentum solution over the predicted duration",
         );
-        ui.checkbox(&mut view.physics, "Physics alone")
-            .on_hover_text("The centre of the network: what its physics says before it learns");
+        ui.checkbox(&mut view.physics, "Centre alone")
+            .on_hover_text("Where the network starts: the mean of crush model and regressions");
     });
     ui.horizontal_wrapped(|ui| {
         let name = ui.label("Drawn curves");
