@@ -30,6 +30,9 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use thread_priority::{ThreadPriority, set_current_thread_priority};
+
 /// How far a computation has come.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Progress {
@@ -91,9 +94,22 @@ pub struct Job<T> {
     ended: bool,
 }
 
+/// As many threads as there are cores, of the lowest priority. Where the system knows no priorities
+/// they are threads like others.
+fn background_threads(name: &str) -> std::io::Result<ThreadPool> {
+    let name = name.to_owned();
+    ThreadPoolBuilder::new()
+        .thread_name(move |idx| format!("{name} {idx}"))
+        .start_handler(|_| {
+            let _ = set_current_thread_priority(ThreadPriority::Min);
+        })
+        .build()
+        .map_err(std::io::Error::other)
+}
+
 impl<T: Send + 'static> Job<T> {
     /// Starts `work` on a thread called `name`. `wake` is called after every report and at the
-    /// end, so that a sleeping window looks again.
+    /// end, so that a sleeping window looks again. For what the user waits for.
     ///
     /// # Errors
     /// The operating system's, if it cannot start a thread.
@@ -102,10 +118,34 @@ impl<T: Send + 'static> Job<T> {
         wake: impl Fn() + Send + 'static,
         work: impl FnOnce(&mut Report<'_>) -> T + Send + 'static,
     ) -> std::io::Result<Self> {
+        Self::start(name, wake, work, |run| run())
+    }
+
+    /// The same for what takes minutes: on threads of its own that come after all others where
+    /// cores are short, so that the window stays fluid. What `work` does in parallel by `rayon`
+    /// stays on them.
+    ///
+    /// # Errors
+    /// As for [`Job::spawn`].
+    pub fn spawn_in_background(
+        name: &str,
+        wake: impl Fn() + Send + 'static,
+        work: impl FnOnce(&mut Report<'_>) -> T + Send + 'static,
+    ) -> std::io::Result<Self> {
+        let threads = background_threads(name)?;
+        Self::start(name, wake, work, move |run| threads.install(run))
+    }
+
+    fn start(
+        name: &str,
+        wake: impl Fn() + Send + 'static,
+        work: impl FnOnce(&mut Report<'_>) -> T + Send + 'static,
+        on_threads: impl FnOnce(Box<dyn FnOnce() + Send>) + Send + 'static,
+    ) -> std::io::Result<Self> {
         let cancel = Arc::new(AtomicBool::new(false));
         let (sender, receiver) = channel();
         let cancelled = Arc::clone(&cancel);
-        thread::Builder::new().name(name.to_owned()).spawn(move || {
+        let run = move || {
             let mut report = |progress: Progress| {
                 // A dropped receiver means a dropped job, which has set the flag.
                 let _ = sender.send(Message::Progress(progress));
@@ -122,7 +162,8 @@ impl<T: Send + 'static> Job<T> {
             };
             let _ = sender.send(Message::End(end));
             wake();
-        })?;
+        };
+        thread::Builder::new().name(name.to_owned()).spawn(move || on_threads(Box::new(run)))?;
         Ok(Self {
             name: name.to_owned(),
             started: Instant::now(),
@@ -263,8 +304,25 @@ mod tests {
 
     #[test]
     fn a_panic_becomes_a_message() {
-        let mut job: Job<()> = Job::spawn("bad", || {}, |_| panic!("row {}", 7)).unwrap();
-        assert!(matches!(job.wait(), Update::Panicked(text) if text == "row 7"));
+        let jobs: [Job<()>; 2] = [
+            Job::spawn("bad", || {}, |_| panic!("row {}", 7)).unwrap(),
+            Job::spawn_in_background("bad", || {}, |_| panic!("row {}", 7)).unwrap(),
+        ];
+        for mut job in jobs {
+            assert!(matches!(job.wait(), Update::Panicked(text) if text == "row 7"));
+        }
+    }
+
+    #[test]
+    fn work_in_the_background_stays_on_threads_of_its_own() {
+        use rayon::prelude::*;
+        let names = |_: &mut Report<'_>| -> Vec<String> {
+            let name = |_| thread::current().name().unwrap_or_default().to_owned();
+            (0..64).into_par_iter().map(name).collect()
+        };
+        let mut job = Job::spawn_in_background("train", || {}, names).unwrap();
+        let Update::Finished(names) = job.wait() else { panic!("no names") };
+        assert!(names.iter().all(|name| name.starts_with("train ")), "{names:?}");
     }
 
     #[test]

@@ -258,7 +258,7 @@ impl State {
             return;
         };
         let project = self.project.clone();
-        let job = Job::spawn("simulate", wake(context), move |report| {
+        let job = Job::spawn_in_background("simulate", wake(context), move |report| {
             let vehicle = target_vehicle(&project, Some(&checked))?;
             Ok(replay_dataset(&checked.dataset, &vehicle, project.integrator, report))
         });

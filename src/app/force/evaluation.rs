@@ -81,7 +81,8 @@ impl EvaluationStatus {
         request: EvaluationRequest,
         wake: impl Fn() + Send + 'static,
     ) -> std::io::Result<()> {
-        self.job = Some(Job::spawn("evaluate", wake, move |report| run(&request, report))?);
+        self.job =
+            Some(Job::spawn_in_background("evaluate", wake, move |report| run(&request, report))?);
         Ok(())
     }
 

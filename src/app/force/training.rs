@@ -126,7 +126,7 @@ impl TrainingStatus {
         let (sender, news) = channel();
         let gate = Arc::new(Gate::default());
         let (form, own_gate, name) = (form.clone(), Arc::clone(&gate), data.name.clone());
-        let job = Job::spawn("train", wake, move |report| {
+        let job = Job::spawn_in_background("train", wake, move |report| {
             run(data, (&form, checkpoint), &mut |news| tell(news, (&sender, &own_gate), report))
         })?;
         *self = Self { run: Some(Run { job, news, gate }), data: name, ..Self::default() };

@@ -1,0 +1,131 @@
+//! How long the window takes to draw a frame on its own cores, at rest and while a network is
+//! trained behind it: logic, layout, prediction and tessellation, without the GPU's part.
+//!
+//! `cargo bench --features test-gui --bench window`
+
+#![allow(clippy::print_stdout)]
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use egui_kittest::Harness;
+use impactlab::app::{App, Command, Pane, Phase, Source, State};
+
+type Answer<T> = Result<T, Box<dyn std::error::Error>>;
+
+/// The display's pace.
+const FRAME: Duration = Duration::from_micros(16_667);
+/// A frame that takes longer makes fewer than 50 a second.
+const LATE: Duration = Duration::from_millis(20);
+const N_FRAMES: u32 = 600;
+const N_ANSWERS: u32 = 100;
+
+struct Window(Harness<'static, App>);
+
+impl Window {
+    fn open() -> Self {
+        let builder = Harness::builder().with_size([1440.0, 900.0]).with_step_dt(1.0 / 60.0);
+        let paths: Vec<PathBuf> = vec!["datasets/fea".into()];
+        Self(builder.build_eframe(move |cc| App::new(cc, paths, None)))
+    }
+
+    fn state(&self) -> &State {
+        self.0.state().state()
+    }
+
+    fn apply(&mut self, command: Command) {
+        let context = self.0.ctx.clone();
+        self.0.state_mut().apply(command, &context);
+        self.frame();
+    }
+
+    fn step_until(&mut self, is_so: impl Fn(&State) -> bool) {
+        while !is_so(self.state()) {
+            self.frame();
+            std::thread::sleep(FRAME);
+        }
+    }
+
+    /// Draws a frame; the time it takes.
+    fn frame(&mut self) -> Duration {
+        let started = Instant::now();
+        self.0.step();
+        let output = self.0.output();
+        let primitives = self.0.ctx.tessellate(output.shapes.clone(), output.pixels_per_point);
+        std::hint::black_box(primitives);
+        started.elapsed()
+    }
+
+    /// Frames at the display's pace, with a change before each.
+    fn measure(&mut self, what: &str, mut change: impl FnMut(&mut State, f64)) {
+        let taken: Vec<Duration> = (0..N_FRAMES)
+            .map(|i| {
+                let started = Instant::now();
+                change(self.0.state_mut().state_mut(), f64::from(i) / f64::from(N_FRAMES));
+                self.frame();
+                let taken = started.elapsed();
+                std::thread::sleep(FRAME.saturating_sub(taken));
+                taken
+            })
+            .collect();
+        row(what, taken);
+    }
+
+    /// From a change of the scenario to the first frame that shows its answer.
+    fn measure_answers(&mut self, when: &str) {
+        let answers: Vec<Duration> = (0..N_ANSWERS)
+            .map(|i| {
+                let started = Instant::now();
+                move_slider(self.0.state_mut().state_mut(), f64::from(i) / f64::from(N_ANSWERS));
+                while !self.state().forecast().is_some_and(|forecast| {
+                    forecast.scenario == self.state().project.force.scenario
+                }) {
+                    self.frame();
+                }
+                started.elapsed()
+            })
+            .collect();
+        row(&format!("{when}, until the answer is drawn"), answers);
+    }
+
+    fn measure_all(&mut self, when: &str) {
+        self.measure(&format!("{when}, nothing changes"), |_, _| {});
+        self.measure(&format!("{when}, a slider of the scenario moves"), move_slider);
+        self.measure_answers(when);
+    }
+}
+
+fn move_slider(state: &mut State, share: f64) {
+    state.project.force.scenario.bullet_velocity_m_s[1] = 3.0 + share;
+}
+
+fn row(what: &str, mut taken: Vec<Duration>) {
+    taken.sort_unstable();
+    let at = |share: usize| taken[(taken.len() - 1) * share / 100].as_secs_f64() * 1e3;
+    let n_late = taken.iter().filter(|taken| **taken > LATE).count();
+    let (median, most, nearly_all) = (at(50), at(90), at(99));
+    let n = taken.len();
+    println!("| {what} | {median:.1} | {most:.1} | {nearly_all:.1} | {n_late} of {n} |");
+}
+
+fn main() -> Answer<()> {
+    let mut window = Window::open();
+    window.step_until(|state| state.session.sources.iter().all(Source::is_settled));
+    window.apply(Command::Show(Pane::ForcePrediction));
+    window.apply(Command::PredictCase);
+    window.step_until(|state| state.forecast().is_some());
+    println!("| frame | median, ms | 90 % | 99 % | over 20 ms |\n| --- | --- | --- | --- | --- |");
+    window.measure_all("at rest");
+
+    let form = &mut window.0.state_mut().state_mut().project.force.training;
+    form.epochs = 100_000;
+    form.config = Path::new("assets/models/force.toml").display().to_string();
+    window.apply(Command::StartTraining);
+    let is_fitting = |state: &State| matches!(state.session.force.training.phase, Phase::Centre(_));
+    window.step_until(is_fitting);
+    window.measure_all("while the crush model is fitted");
+    window.step_until(|state| !state.session.force.training.history.is_empty());
+    window.measure_all("while epochs run");
+    window.apply(Command::CancelTraining);
+    Ok(())
+}
