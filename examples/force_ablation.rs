@@ -213,13 +213,13 @@ fn main() -> Answer<()> {
     header();
     variants.iter().for_each(Variant::print);
 
-    // With another data set there are enough for four parts of five to be 75 and more.
+    // With another data set there are enough for two folds of three to be more than 75.
     if let Some(extra) = arguments.next() {
         train.extend(load(&extra)?);
     }
     header();
     for (name, n_cases) in
-        [("20 cases", 20), ("40 cases", 40), ("75 cases", 75), ("all of four folds", usize::MAX)]
+        [("20 cases", 20), ("40 cases", 40), ("75 cases", 75), ("two folds of three", usize::MAX)]
     {
         let mut variants = [Variant::new(name, config.clone())];
         cross_validate(&mut variants, &train, n_cases)?;
