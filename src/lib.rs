@@ -46,6 +46,7 @@ pub mod nn;
 pub mod numerics;
 #[cfg(feature = "gui")]
 pub mod render;
+pub mod response;
 pub mod uncertainty;
 pub mod units;
 pub mod vehicle;

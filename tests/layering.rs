@@ -16,6 +16,7 @@ const LAYERS: &[&[&str]] = &[
     &["nn", "uncertainty"],
     &["force"],
     &["compare"],
+    &["response"],
     &["analysis"],
     &["figure"],
     &["render"],

@@ -35,7 +35,7 @@ mod encoding;
 mod error;
 mod fused;
 #[cfg(test)]
-mod gradient_check;
+pub(crate) mod gradient_check;
 mod init;
 mod kernel;
 mod layer_norm;
@@ -49,7 +49,7 @@ mod parameters;
 mod schedule;
 mod seed;
 mod softmax;
-mod storage;
+pub(crate) mod storage;
 mod workspace;
 
 pub use activation::Activation;

@@ -75,6 +75,16 @@ pub struct Manoeuvre {
     pub duration_s: f64,
 }
 
+impl Manoeuvre {
+    /// The input over each of `n_steps` steps from t = 0: the force as its mean over the step, steer
+    /// at its beginning.
+    pub fn inputs(&self, step_s: f64, n_steps: usize) -> Vec<VehicleInput<f64>> {
+        let inputs = Inputs::new(self);
+        let over = |i: usize| inputs.over(i as f64 * step_s, step_s).at(Stage::Start);
+        (0..n_steps).map(over).collect()
+    }
+}
+
 /// What happened that the model does not cover, or that the user should know.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MotionFlag {

@@ -1,0 +1,169 @@
+//! Trajectories as the response models learn from them: states and inputs at 100 Hz.
+
+use crate::compare::{
+    ReplayError, SPIN_YAW_CHANGE_RAD, largest_yaw_change_rad, recorded_manoeuvre,
+};
+use crate::data::{Case, Channel, Dataset, SeriesError, TimeSeries, TrajectoryAttributes};
+use crate::nn::sha256_hex;
+use crate::numerics::interpolate;
+use crate::response::STEP_S;
+use crate::vehicle::{VehicleInput, VehicleParameters, VehicleState};
+
+/// Steps to which numbers are rounded before they are hashed.
+const DIGEST_STEP: f64 = 1e-3;
+
+/// A recorded motion after an impact.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResponseCase {
+    /// Its name in the data set.
+    pub name: String,
+    /// The struck vehicle, on the case's friction.
+    pub vehicle: VehicleParameters,
+    /// State every [`STEP_S`] from the start of the impact.
+    pub states: Vec<VehicleState<f64>>,
+    /// Input over each step: one fewer than states.
+    pub inputs: Vec<VehicleInput<f64>>,
+    /// Whether it turns by more than 90°.
+    pub spins: bool,
+    /// SHA-256 in hex of states and forces: the same for the same content under another name.
+    pub digest: String,
+}
+
+/// A case from which nothing can be learned.
+#[derive(Debug, thiserror::Error)]
+pub enum ResponseCaseError {
+    /// Its row or its file lacks something.
+    #[error(transparent)]
+    Replay(#[from] ReplayError),
+    /// It ends at once.
+    #[error("case {case}: {n_samples} samples, expected {least} or more")]
+    TooShort {
+        /// Name of the case.
+        case: String,
+        /// How many there are on the grid of 10 ms.
+        n_samples: usize,
+        /// How many it takes.
+        least: usize,
+    },
+}
+
+/// Fewest samples of a case.
+const MIN_SAMPLES: usize = 10;
+
+impl ResponseCase {
+    /// Of a case of a trajectory data set.
+    ///
+    /// - `vehicle`: the struck vehicle; its friction is replaced by the case's.
+    ///
+    /// # Errors
+    /// [`ResponseCaseError`].
+    pub fn from_case(case: &Case, vehicle: &VehicleParameters) -> Result<Self, ResponseCaseError> {
+        let manoeuvre = recorded_manoeuvre(case)?;
+        let attributes = TrajectoryAttributes::read(&case.attributes).map_err(ReplayError::from)?;
+        let friction = attributes.mu;
+        let in_case = |source| ReplayError::Series { case: case.name.clone(), source };
+        let states = states(&case.series).map_err(in_case)?;
+        if states.len() < MIN_SAMPLES {
+            let (n_samples, least) = (states.len(), MIN_SAMPLES);
+            return Err(ResponseCaseError::TooShort { case: case.name.clone(), n_samples, least });
+        }
+        let inputs = manoeuvre.inputs(STEP_S, states.len() - 1);
+        let spins = largest_yaw_change_rad(&case.series).map_err(in_case)? > SPIN_YAW_CHANGE_RAD;
+        Ok(Self {
+            name: case.name.clone(),
+            vehicle: vehicle.clone().with_friction(friction),
+            digest: digest(&states, &inputs),
+            states,
+            inputs,
+            spins,
+        })
+    }
+
+    /// All cases of a trajectory data set, and what is wrong with the rest.
+    pub fn of_dataset(
+        dataset: &Dataset,
+        vehicle: &VehicleParameters,
+    ) -> (Vec<Self>, Vec<ResponseCaseError>) {
+        let (mut cases, mut problems) = (Vec::new(), Vec::new());
+        for case in &dataset.cases {
+            match Self::from_case(case, vehicle) {
+                Ok(case) => cases.push(case),
+                Err(problem) => problems.push(problem),
+            }
+        }
+        (cases, problems)
+    }
+}
+
+/// The states on the grid; a rate or a roll angle that the file lacks is zero.
+fn states(series: &TimeSeries) -> Result<Vec<VehicleState<f64>>, SeriesError> {
+    let time_s = series.time_s();
+    let (start_s, end_s) = (time_s.first().copied(), time_s.last().copied());
+    let (start_s, end_s) = (start_s.unwrap_or(0.0), end_s.unwrap_or(0.0));
+    let n = ((end_s - start_s) / STEP_S + 1e-6).floor() as usize + 1;
+    let on_grid = |values: &[f64]| -> Vec<f64> {
+        let at = |i: usize| interpolate(time_s, values, (start_s + i as f64 * STEP_S).min(end_s));
+        (0..n).map(|i| at(i).unwrap_or(0.0)).collect()
+    };
+    let needed = |channel| series.require(channel).map(on_grid);
+    let known = |channel| series.get(channel).map_or_else(|| vec![0.0; n], on_grid);
+    let (vx, vy, yaw) = (needed(Channel::Vx)?, needed(Channel::Vy)?, needed(Channel::Yaw)?);
+    let (x, y) = (needed(Channel::X)?, needed(Channel::Y)?);
+    let (yaw_rate, roll) = (known(Channel::YawRate), known(Channel::Roll));
+    let roll_rate = known(Channel::RollRate);
+    Ok((0..n)
+        .map(|i| VehicleState {
+            vx_m_s: vx[i],
+            vy_m_s: vy[i],
+            yaw_rad: yaw[i],
+            yaw_rate_rad_s: yaw_rate[i],
+            roll_rad: roll[i],
+            roll_rate_rad_s: roll_rate[i],
+            x_m: x[i],
+            y_m: y[i],
+        })
+        .collect())
+}
+
+fn digest(states: &[VehicleState<f64>], inputs: &[VehicleInput<f64>]) -> String {
+    let states = states.iter().flat_map(|state| state.to_array());
+    let forces = inputs.iter().filter_map(|input| input.collision);
+    let forces = forces.flat_map(|collision| collision.force_n).map(|force| force * DIGEST_STEP);
+    let bytes = |value: f64| ((value / DIGEST_STEP).round() as i64).to_le_bytes();
+    let bytes: Vec<u8> = states.chain(forces).flat_map(bytes).collect();
+    sha256_hex([bytes.as_slice()])
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::data::Outcome;
+    use crate::vehicle::Preset;
+
+    #[test]
+    fn the_shipped_trajectories_are_read_with_their_forces_and_frictions() {
+        let go_on = &mut |_| std::ops::ControlFlow::Continue(());
+        let path = Path::new("datasets/trajectories-pulse");
+        let Outcome::Complete(dataset) = Dataset::load(path, go_on).unwrap() else {
+            panic!("nothing cancels");
+        };
+        let (cases, problems) = ResponseCase::of_dataset(&dataset, &Preset::Reference.parameters());
+        assert_eq!((cases.len(), problems.len()), (100, 0));
+        assert_eq!(cases.iter().filter(|case| case.spins).count(), 52);
+        let first = &cases[0];
+        assert_eq!((first.name.as_str(), first.vehicle.tires.friction), ("P000", 0.71));
+        assert_eq!((first.states.len(), first.inputs.len()), (400, 399));
+        let impulse: f64 = first
+            .inputs
+            .iter()
+            .filter_map(|input| input.collision)
+            .map(|collision| collision.force_n[1] * STEP_S)
+            .sum();
+        assert!((impulse / 811.5 - 1.0).abs() < 1e-3, "{impulse} N s");
+        let again = ResponseCase::from_case(&dataset.cases[0], &first.vehicle).unwrap();
+        assert_eq!(again.digest, first.digest);
+        assert_ne!(cases[1].digest, first.digest);
+    }
+}
