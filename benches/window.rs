@@ -5,13 +5,11 @@
 
 #![allow(clippy::print_stdout)]
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use egui_kittest::Harness;
 use impactlab::app::{App, Command, Pane, Phase, Source, State};
-
-type Answer<T> = Result<T, Box<dyn std::error::Error>>;
 
 /// The display's pace.
 const FRAME: Duration = Duration::from_micros(16_667);
@@ -108,7 +106,7 @@ fn row(what: &str, mut taken: Vec<Duration>) {
     println!("| {what} | {median:.1} | {most:.1} | {nearly_all:.1} | {n_late} of {n} |");
 }
 
-fn main() -> Answer<()> {
+fn main() {
     let mut window = Window::open();
     window.step_until(|state| state.session.sources.iter().all(Source::is_settled));
     window.apply(Command::Show(Pane::ForcePrediction));
@@ -119,7 +117,7 @@ fn main() -> Answer<()> {
 
     let form = &mut window.0.state_mut().state_mut().project.force.training;
     form.epochs = 100_000;
-    form.config = Path::new("assets/models/force.toml").display().to_string();
+    form.config = "assets/models/force.toml".to_owned();
     window.apply(Command::StartTraining);
     let is_fitting = |state: &State| matches!(state.session.force.training.phase, Phase::Centre(_));
     window.step_until(is_fitting);
@@ -127,5 +125,4 @@ fn main() -> Answer<()> {
     window.step_until(|state| !state.session.force.training.history.is_empty());
     window.measure_all("while epochs run");
     window.apply(Command::CancelTraining);
-    Ok(())
 }

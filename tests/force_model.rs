@@ -91,6 +91,18 @@ fn a_killed_training_goes_on_to_the_same_weights() {
 }
 
 #[test]
+fn a_training_cut_short_in_its_physics_leaves_nothing_to_go_on_from() {
+    let folder = tempfile::tempdir().unwrap();
+    let checkpoint = folder.path().join("model.training");
+    let settings = settings(Some(checkpoint.clone()));
+    let model = train(set(), &settings, &mut |_| ControlFlow::Break(())).unwrap();
+    assert_eq!(model.record().history.len(), 1, "what there is can be used");
+    assert!(!checkpoint.exists());
+    train_until(1, &settings);
+    assert!(checkpoint.exists());
+}
+
+#[test]
 fn the_same_seed_gives_the_same_weights_and_another_one_others() {
     let again = train_until(EPOCHS, &settings(None));
     assert_eq!(losses(&again), losses(model()));

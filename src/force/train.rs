@@ -72,10 +72,23 @@ pub fn train(
     report: &mut TrainingProgress<'_>,
 ) -> Result<ForceModel, ForceError> {
     settings.config.check()?;
-    let file = TrainingFile::new(set, settings);
+    let mut file = TrainingFile::new(set, settings);
     let training = match file.read()? {
         Some(saved) => Training::resumed(set, settings, saved)?,
-        None => Training::around(set, settings, fit_physics(set, settings, report)?)?,
+        None => {
+            let mut is_cut = false;
+            let mut told = |fit: TrainingReport<'_>| {
+                let flow = report(fit);
+                is_cut |= flow.is_break();
+                flow
+            };
+            let physics = fit_physics(set, settings, &mut told)?;
+            if is_cut {
+                // Nothing that a later training should go on from.
+                file.forget();
+            }
+            Training::around(set, settings, physics)?
+        }
     };
     search(training, set, (settings, &file), report)
 }

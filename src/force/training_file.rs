@@ -40,6 +40,11 @@ impl TrainingFile {
         }
     }
 
+    /// Saves nothing from now on.
+    pub(super) fn forget(&mut self) {
+        self.path = None;
+    }
+
     /// The saved training, if it is wanted and there.
     ///
     /// # Errors

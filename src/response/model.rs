@@ -47,7 +47,7 @@ impl ResponseModel {
         seed: u64,
         report: &mut dyn FnMut(ResponseProgress) -> ControlFlow<()>,
     ) -> Result<Self, ResponseError> {
-        if cases.is_empty() {
+        if !cases.iter().any(|case| case.states.len() > 1 && !case.inputs.is_empty()) {
             return Err(ResponseError::NoCases);
         }
         let tuning = Tuning::fit(cases, config.tuning, seed, &mut |done, cost| {

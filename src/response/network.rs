@@ -36,6 +36,8 @@ pub(crate) struct ResponseNetwork {
     config: ResponseNetworkConfig,
     parameters: Parameters,
     layers: Layers,
+    /// The same, for predictions.
+    frozen: Layers,
     feature_mirror: Tensor,
     output_mirror: Tensor,
 }
@@ -120,8 +122,10 @@ impl ResponseNetwork {
         )?;
         let component: Vec<f64> =
             RESIDUAL_MIRROR.into_iter().chain([1.0; N_RESIDUAL + 1]).collect();
+        let layers = Layers { encoder, token_encoders, attention, trunk, head };
         Ok(Self {
-            layers: Layers { encoder, token_encoders, attention, trunk, head },
+            frozen: layers.frozen(),
+            layers,
             feature_mirror: Tensor::new(&FEATURE_MIRROR, &Device::Cpu)?,
             output_mirror: Tensor::from_vec(component, N_COMPONENT_NUMBERS, &Device::Cpu)?,
             config: config.clone(),
@@ -162,7 +166,7 @@ impl ResponseNetwork {
         features: &Tensor,
         tokens: &Tensor,
     ) -> Result<ResponseOutput, NnError> {
-        self.forward_by(&self.layers.frozen(), features, tokens)
+        self.forward_by(&self.frozen, features, tokens)
     }
 
     fn forward_by(
