@@ -10,14 +10,13 @@ use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use impactlab::data::{Dataset, Outcome};
+use impactlab::data::{Dataset, Outcome, folds, split};
 use impactlab::force::metrics::{
     BAND_LEVELS, Figures, PointErrors, ProbabilisticScores, ProbabilisticSettings,
 };
 use impactlab::force::{
     Centre, CrushConfig, ForceCase, ForceConfig, ForceModel, ForceScenario, NetworkConfig,
-    Prediction, TrainSettings, TrainingConfig, TrainingSet, fit_physics, folds, split,
-    train_around,
+    Prediction, TrainSettings, TrainingConfig, TrainingSet, fit_physics, train_around,
 };
 
 type Answer<T> = Result<T, Box<dyn Error>>;

@@ -15,6 +15,7 @@ mod open;
 mod quality;
 mod series;
 mod spelling;
+mod split;
 mod table;
 mod text;
 mod write;
@@ -37,6 +38,7 @@ pub use loose::{
 pub use open::{Opened, open};
 pub use quality::{Flag, FlagKind, Severity, check_case, check_series};
 pub use series::{SeriesError, TimeSeries};
+pub use split::{Split, Stratified, TEST_SHARE, folds, split};
 pub use table::Table;
 pub use text::MAX_FILE_BYTES;
 pub use write::{write_atomically, write_series_csv};

@@ -3,7 +3,7 @@
 use sha2::{Digest, Sha256};
 
 use crate::data::{
-    Case, DataError, Dataset, ForceAxes, ForceHistory, SeriesError, contact_interval,
+    Case, DataError, Dataset, ForceAxes, ForceHistory, SeriesError, Stratified, contact_interval,
 };
 use crate::force::ForceScenario;
 use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
@@ -185,6 +185,16 @@ pub(super) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
+impl Stratified for ForceCase {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn is_ordinary(&self) -> bool {
+        self.is_clean()
+    }
+}
+
 #[cfg(test)]
 pub(crate) mod tests {
     use std::ops::ControlFlow;
@@ -230,6 +240,22 @@ pub(crate) mod tests {
         // Where the table gave no times: weak contact at the end is cut.
         let off_s = crate::numerics::Summary::of(off_s).unwrap();
         assert!(off_s.median < 5e-3 && off_s.p90 < 0.025, "{off_s:?}");
+    }
+
+    #[test]
+    fn the_shipped_cases_split_as_in_the_first_trials() {
+        let cases = shipped("fea");
+        let split = crate::data::split(&cases, 0, crate::data::TEST_SHARE);
+        let count = |of: &dyn Fn(&ForceCase) -> bool| {
+            split.test.iter().filter(|idx| of(&cases[**idx])).count()
+        };
+        assert_eq!((split.train.len(), split.test.len()), (75, 25));
+        assert_eq!(count(&ForceCase::is_clean), 22);
+        assert_eq!((count(&|case| case.hooked), count(&|case| !case.separated)), (3, 3));
+        // By an independent script that hashes "0:c001" and so on.
+        let first: Vec<&str> =
+            split.test.iter().take(3).map(|idx| cases[*idx].name.as_str()).collect();
+        assert_eq!(first, ["c002", "c006", "c008"]);
     }
 
     #[test]

@@ -10,10 +10,9 @@ use crate::collision::crush::{
     BodyCrush, CrushFit, CrushHistory, CrushLaw, CrushSample, CrushScenario, Nose,
 };
 use crate::collision::{Impact, PulseShape};
+use crate::data::{Split, folds};
 use crate::force::committee::Committee;
-use crate::force::{
-    Centre, CrushConfig, ForceCase, ForceError, ForceScenario, MomentumModel, Split, folds,
-};
+use crate::force::{Centre, CrushConfig, ForceCase, ForceError, ForceScenario, MomentumModel};
 use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
 
 /// Yaw inertia over mass where none is known, m²: a uniform body of 4.5 m × 1.8 m has 1.96, cars

@@ -181,7 +181,7 @@ impl Default for TrainingConfig {
             max_gradient_norm: 1.0,
             validation_share: 0.2,
             patience: 40,
-            test_share: crate::force::TEST_SHARE,
+            test_share: crate::data::TEST_SHARE,
             checkpoint_epochs: 10,
         }
     }

@@ -3,12 +3,13 @@
 use serde::Serialize;
 
 use crate::data::Outcome;
+use crate::data::folds;
 use crate::force::baselines::ColumnSet;
 use crate::force::metrics::{Figures, PointErrors};
 use crate::force::{
     CaseErrors, Evaluation, EvaluationError, EvaluationSettings, ForceCase, ForceConfig,
     ForceError, ForceModel, ForceScenario, Prediction, TrainSettings, TrainingReport, TrainingSet,
-    evaluate, folds, train,
+    evaluate, train,
 };
 use crate::jobs::{Progress, Report};
 

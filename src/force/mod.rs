@@ -10,7 +10,6 @@ mod scenario;
 
 mod case;
 mod load;
-mod split;
 
 mod momentum;
 
@@ -67,7 +66,6 @@ pub use predict::ForcePrediction;
 pub use prediction::Prediction;
 pub use record::{CaseId, EpochRecord, TrainingRecord, TrainingSet};
 pub use scenario::ForceScenario;
-pub use split::{Split, TEST_SHARE, folds, split};
 pub use train::{
     TrainSettings, TrainingProgress, TrainingReport, fit_physics, train, train_around,
 };

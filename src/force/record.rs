@@ -3,10 +3,11 @@
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::data::{Split, split};
 use crate::force::calibration::VarianceFactors;
 use crate::force::case::hex;
 use crate::force::loss::LossTerms;
-use crate::force::{ForceCase, ForceError, Split, split};
+use crate::force::{ForceCase, ForceError};
 
 /// Fewest cases to train on: below, a fold of the crush model has no case of each kind.
 const LEAST_CASES: usize = 8;

@@ -7,6 +7,7 @@ use std::time::Instant;
 use candle_core::DType;
 use rand::seq::SliceRandom;
 
+use crate::data::split;
 use crate::force::batch::CaseTensors;
 use crate::force::calibration::VarianceFactors;
 use crate::force::centre::{CentreCurve, CentreModel};
@@ -17,8 +18,7 @@ use crate::force::network::ForceNetwork;
 use crate::force::residuals::ResidualModel;
 use crate::force::training_file::TrainingFile;
 use crate::force::{
-    CaseId, CentreFit, EpochRecord, ForceCase, ForceConfig, ForceError, TrainingRecord,
-    TrainingSet, split,
+    CaseId, CentreFit, EpochRecord, ForceCase, ForceConfig, ForceError, TrainingRecord, TrainingSet,
 };
 use crate::nn::{AdamW, AdamWConfig, NamedTensors, Schedule, random_stream};
 use crate::uncertainty::{CurveComponent, CurveMixture};

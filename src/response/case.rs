@@ -3,7 +3,9 @@
 use crate::compare::{
     ReplayError, SPIN_YAW_CHANGE_RAD, largest_yaw_change_rad, recorded_manoeuvre,
 };
-use crate::data::{Case, Channel, Dataset, SeriesError, TimeSeries, TrajectoryAttributes};
+use crate::data::{
+    Case, Channel, Dataset, SeriesError, Stratified, TimeSeries, TrajectoryAttributes,
+};
 use crate::nn::sha256_hex;
 use crate::numerics::interpolate;
 use crate::response::STEP_S;
@@ -92,6 +94,16 @@ impl ResponseCase {
             }
         }
         (cases, problems)
+    }
+}
+
+impl Stratified for ResponseCase {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn is_ordinary(&self) -> bool {
+        !self.spins
     }
 }
 

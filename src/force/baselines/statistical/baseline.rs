@@ -231,9 +231,9 @@ impl StatisticalBaseline {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::{TEST_SHARE, split};
     use crate::force::case::tests::shipped;
     use crate::force::metrics::PointErrors;
-    use crate::force::{TEST_SHARE, split};
     use crate::numerics::Summary;
 
     const OPTIONS: StatisticalOptions = StatisticalOptions {

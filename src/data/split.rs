@@ -1,14 +1,28 @@
 //! Which cases train and which test: by name and seed, alike on every machine.
 //!
-//! Clean cases and those that hook or have not separated are split apart, so that each part has its
-//! share of both.
-
-use std::borrow::Borrow;
+//! Ordinary cases and the others (impacts that hook, motions that spin) are split apart, so that each
+//! part has its share of both.
 
 use sha2::{Digest, Sha256};
 
-use crate::force::ForceCase;
-use crate::force::case::hex;
+/// What a split asks of a case.
+pub trait Stratified {
+    /// Its name in its data set.
+    fn name(&self) -> &str;
+
+    /// Whether it belongs to the ordinary cases; the others are split by themselves.
+    fn is_ordinary(&self) -> bool;
+}
+
+impl<T: Stratified> Stratified for &T {
+    fn name(&self) -> &str {
+        T::name(self)
+    }
+
+    fn is_ordinary(&self) -> bool {
+        T::is_ordinary(self)
+    }
+}
 
 /// Share of the cases that test: train to test 3 : 1, as in the paper
 /// ([`PitPinnPaper`](crate::bibliography::PitPinnPaper)).
@@ -27,7 +41,7 @@ pub struct Split {
 /// `round(n · test_share)` test (halves to even).
 ///
 /// - `test_share`: 0 to 1, see [`TEST_SHARE`].
-pub fn split<C: Borrow<ForceCase>>(cases: &[C], seed: u64, test_share: f64) -> Split {
+pub fn split<C: Stratified>(cases: &[C], seed: u64, test_share: f64) -> Split {
     let mut split = Split::default();
     for stratum in strata(cases, seed) {
         let n_test = (stratum.len() as f64 * test_share).round_ties_even() as usize;
@@ -44,7 +58,7 @@ pub fn split<C: Borrow<ForceCase>>(cases: &[C], seed: u64, test_share: f64) -> S
 /// cases are dealt round. In fold `i` the test part is what was dealt to it.
 ///
 /// - `n_folds`: 2 or more; folds that get no case are left out.
-pub fn folds<C: Borrow<ForceCase>>(cases: &[C], n_folds: usize, seed: u64) -> Vec<Split> {
+pub fn folds<C: Stratified>(cases: &[C], n_folds: usize, seed: u64) -> Vec<Split> {
     let order: Vec<usize> = strata(cases, seed).concat();
     let fold = |of: usize| {
         let dealt = order.iter().enumerate().map(|(rank, &idx)| (rank % n_folds.max(1), idx));
@@ -59,53 +73,64 @@ pub fn folds<C: Borrow<ForceCase>>(cases: &[C], n_folds: usize, seed: u64) -> Ve
     (0..n_folds).map(fold).filter(|split| !split.test.is_empty()).collect()
 }
 
-/// Clean cases, then the others, each ordered by hash.
-fn strata<C: Borrow<ForceCase>>(cases: &[C], seed: u64) -> [Vec<usize>; 2] {
-    let mut keyed: Vec<(String, usize)> = cases
-        .iter()
-        .enumerate()
-        .map(|(idx, case)| (hex(&Sha256::digest(format!("{seed}:{}", case.borrow().name))), idx))
-        .collect();
+/// Ordinary cases, then the others, each ordered by hash.
+fn strata<C: Stratified>(cases: &[C], seed: u64) -> [Vec<usize>; 2] {
+    let mut keyed: Vec<(String, usize)> =
+        cases.iter().enumerate().map(|(idx, case)| (hash(seed, case.name()), idx)).collect();
     keyed.sort();
-    let of = |clean: bool| {
-        let stratum = keyed.iter().filter(|(_, idx)| cases[*idx].borrow().is_clean() == clean);
+    let of = |ordinary: bool| {
+        let stratum = keyed.iter().filter(|(_, idx)| cases[*idx].is_ordinary() == ordinary);
         stratum.map(|(_, idx)| *idx).collect()
     };
     [of(true), of(false)]
 }
 
+fn hash(seed: u64, name: &str) -> String {
+    let bytes = Sha256::digest(format!("{seed}:{name}"));
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::force::case::tests::shipped;
+
+    struct Labelled(String, bool);
+
+    impl Stratified for Labelled {
+        fn name(&self) -> &str {
+            &self.0
+        }
+
+        fn is_ordinary(&self) -> bool {
+            self.1
+        }
+    }
+
+    /// c001 to c100, every tenth of which is not ordinary.
+    fn cases() -> Vec<Labelled> {
+        (1..=100).map(|i| Labelled(format!("c{i:03}"), i % 10 != 0)).collect()
+    }
 
     #[test]
-    fn the_shipped_cases_split_as_in_the_first_trials() {
-        let cases = shipped("fea");
+    fn each_stratum_gives_its_share_to_the_test() {
+        let cases = cases();
         let split = split(&cases, 0, TEST_SHARE);
-        let count = |of: &dyn Fn(&ForceCase) -> bool| {
-            split.test.iter().filter(|idx| of(&cases[**idx])).count()
-        };
-        assert_eq!((split.train.len(), split.test.len()), (75, 25));
-        assert_eq!(count(&ForceCase::is_clean), 22);
-        assert_eq!((count(&|case| case.hooked), count(&|case| !case.separated)), (3, 3));
-        // By an independent script that hashes "0:c001" and so on.
-        let first: Vec<&str> =
-            split.test.iter().take(3).map(|idx| cases[*idx].name.as_str()).collect();
-        assert_eq!(first, ["c002", "c006", "c008"]);
+        assert_eq!((split.train.len(), split.test.len()), (76, 24));
+        assert_eq!(split.test.iter().filter(|idx| !cases[**idx].1).count(), 2);
+        // "0:c002" has a low hash, by an independent script.
+        assert_eq!(split.test.first(), Some(&1));
     }
 
     #[test]
     fn every_case_tests_once_in_the_folds() {
-        let cases = shipped("fea");
+        let cases = cases();
         let folds = folds(&cases, 5, 3);
         let mut tested: Vec<usize> = folds.iter().flat_map(|fold| fold.test.clone()).collect();
         tested.sort_unstable();
         assert_eq!(tested, (0..cases.len()).collect::<Vec<_>>());
         for fold in &folds {
-            assert_eq!(fold.train.len() + fold.test.len(), cases.len());
-            let n_clean = fold.test.iter().filter(|idx| cases[**idx].is_clean()).count();
-            assert!((16..=18).contains(&n_clean), "{n_clean} clean of {}", fold.test.len());
+            assert_eq!((fold.train.len(), fold.test.len()), (80, 20));
+            assert_eq!(fold.test.iter().filter(|idx| !cases[**idx].1).count(), 2);
         }
         assert!(folds.len() == 5 && super::folds(&cases[..3], 5, 0).len() == 3);
     }
