@@ -14,6 +14,7 @@ mod loose;
 mod open;
 mod quality;
 mod series;
+mod settings;
 mod spelling;
 mod split;
 mod table;
@@ -38,6 +39,7 @@ pub use loose::{
 pub use open::{Opened, open};
 pub use quality::{Flag, FlagKind, Severity, check_case, check_series};
 pub use series::{SeriesError, TimeSeries};
+pub use settings::read_settings;
 pub use split::{Split, Stratified, TEST_SHARE, folds, split};
 pub use table::Table;
 pub use text::MAX_FILE_BYTES;

@@ -206,13 +206,7 @@ impl ForceConfig {
     /// [`ForceError::ConfigFile`] with line and column, [`ForceError::Setting`].
     pub fn load(path: &Path) -> Result<Self, ForceError> {
         let wrong = |reason| ForceError::ConfigFile { path: path.to_owned(), reason };
-        let text = std::fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
-        let config: Self = toml::from_str(&text).map_err(|error| {
-            let line = error.span().map_or(1, |span| {
-                1 + text.get(..span.start).map_or(0, |before| before.matches('\n').count())
-            });
-            wrong(format!("line {line}: {}", error.message()))
-        })?;
+        let config: Self = crate::data::read_settings(path).map_err(wrong)?;
         config.check()?;
         Ok(config)
     }

@@ -1,8 +1,32 @@
 //! Every size, weight and rate of the response network, as plain data.
 
+use std::path::Path;
+
 use serde::{Deserialize, Serialize};
 
-use crate::response::TuningConfig;
+use crate::response::{Correction, EffectsConfig, ResponseError, TuningConfig};
+
+/// All settings. Read from TOML: what a file leaves out keeps its default.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ResponseConfig {
+    /// The layers.
+    pub network: ResponseNetworkConfig,
+    /// Training on simulations, before any trajectory is seen.
+    pub pretraining: PretrainingConfig,
+    /// Fine-tuning on single steps.
+    pub single_steps: SingleStepConfig,
+    /// Fine-tuning on rollouts.
+    pub rollouts: RolloutConfig,
+    /// Weights of the loss terms.
+    pub loss: ResponseLossWeights,
+    /// How strongly physics holds the network, epoch by epoch.
+    pub physics: PhysicsSchedule,
+    /// The fit of the effects' strengths.
+    pub effects: EffectsConfig,
+    /// The search for the parameters of the tuned 4DOF model, the baseline.
+    pub tuning: TuningConfig,
+}
 
 /// The layers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -18,10 +42,119 @@ pub struct ResponseNetworkConfig {
     pub trunk: Vec<usize>,
     /// Components J of the mixture, 1 or more.
     pub components: usize,
-    /// a_bound: v̇_x, v̇_y, m/s², ṙ, φ̈, rad/s².
-    pub bound: [f64; 4],
+    /// What is corrected.
+    pub correction: Correction,
+    /// Whether what the 4DOF model is known to leave out is part of the network.
+    pub effects: bool,
+    /// a_bound: v̇_x, v̇_y, m/s², ṙ, φ̈, rad/s²; none, no bound. For offsets of the state their
+    /// bounds, m/s and rad/s.
+    pub bound: Option<[f64; 4]>,
+    /// What an output of one means, in the units of the bound.
+    pub unit: [f64; 4],
     /// σ_min of a step's velocities and rates, m/s and rad/s.
     pub min_std: f64,
+}
+
+/// Training on simulations of the 4DOF model under recorded forces, with vehicles, frictions and
+/// speeds drawn at random: the network learns what another vehicle does differently.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PretrainingConfig {
+    /// Simulated motions.
+    pub motions: usize,
+    /// Passes over them; 0 for none.
+    pub epochs: usize,
+    /// AdamW's learning rate η at its highest.
+    pub learning_rate: f64,
+}
+
+/// Fine-tuning on single steps.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct SingleStepConfig {
+    /// Passes over the instants.
+    pub epochs: usize,
+    /// Instants per step of the optimiser.
+    pub batch_instants: usize,
+    /// AdamW's learning rate η at its highest.
+    pub learning_rate: f64,
+    /// AdamW's weight decay λ.
+    pub weight_decay: f64,
+    /// Longest gradient.
+    pub max_gradient_norm: f64,
+    /// Standard deviation of the noise on features, whose unit is of the order of one.
+    pub feature_noise: f64,
+    /// Share of the layers, from the input on, that fine-tuning leaves as pre-training made them.
+    pub frozen_share: f64,
+}
+
+/// Fine-tuning on rollouts of growing length.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct RolloutConfig {
+    /// Steps of each rollout, one stage after the other; none for single steps alone.
+    pub lengths: Vec<usize>,
+    /// Passes over the trajectories in each stage, a window of each in a pass.
+    pub epochs: usize,
+    /// Rollouts per step of the optimiser.
+    pub batch_windows: usize,
+    /// AdamW's learning rate η at the beginning.
+    pub learning_rate: f64,
+    /// Steps after which the gradient is cut.
+    pub truncation: usize,
+}
+
+/// Weights of the loss terms.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct ResponseLossWeights {
+    /// Of the negative log-likelihood.
+    pub likelihood: f64,
+    /// Of the physics, times the scheduled λ.
+    pub physics: f64,
+    /// λ_cons: of components that coincide.
+    pub diversity: f64,
+    /// λ_traj: of the position error of rollouts.
+    pub trajectory: f64,
+    /// λ_smooth: of the second derivative of rollouts.
+    pub smoothness: f64,
+    /// λ_bound: of states near or beyond what is physical.
+    pub boundary: f64,
+}
+
+/// How λ_physics changes with the epochs.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PhysicsTrend {
+    /// Grows with the epochs, and is least where data are far: the formula as printed.
+    Paper,
+    /// Falls with the epochs, as the paper's words say.
+    Decay,
+    /// Falls with the epochs, and is largest where data are far.
+    #[default]
+    InverseQuality,
+}
+
+/// λ_physics over the epochs of fine-tuning.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct PhysicsSchedule {
+    /// How it changes.
+    pub trend: PhysicsTrend,
+    /// λ_min.
+    pub min: f64,
+    /// λ_max.
+    pub max: f64,
+    /// t₀, epochs.
+    pub midpoint_epoch: f64,
+    /// τ, epochs.
+    pub epoch_scale: f64,
+    /// h of DataQuality = exp(−d/h), d the distance to the nearest instant of the data: root of the
+    /// mean square over the standardised features.
+    pub quality_distance: f64,
+    /// Instants of simulated motions, away from the data, on which physics is asked for at each step
+    /// of the optimiser.
+    pub batch_instants: usize,
 }
 
 impl Default for ResponseNetworkConfig {
@@ -32,73 +165,158 @@ impl Default for ResponseNetworkConfig {
             attention_heads: 2,
             trunk: vec![32],
             components: 3,
-            bound: [5.0, 5.0, 5.0, 10.0],
+            correction: Correction::Acceleration,
+            effects: true,
+            bound: Some([5.0, 5.0, 5.0, 10.0]),
+            unit: [0.3, 0.3, 0.3, 1.0],
             min_std: 0.01,
         }
     }
 }
 
-/// All settings. Read from TOML: what a file leaves out keeps its default.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct ResponseConfig {
-    /// The layers.
-    pub network: ResponseNetworkConfig,
-    /// The search on single steps.
-    pub training: ResponseTrainingConfig,
-    /// The search on rollouts.
-    pub rollouts: RolloutTrainingConfig,
-    /// The search for the parameters of the 4DOF model.
-    pub tuning: TuningConfig,
-}
-
-/// The search on rollouts of growing length.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct RolloutTrainingConfig {
-    /// Steps of each rollout, one stage after the other; none for single steps alone.
-    pub lengths: Vec<usize>,
-    /// Steps of the optimiser in each stage.
-    pub steps: u64,
-    /// Rollouts per step.
-    pub batch_windows: usize,
-    /// AdamW's learning rate η at the beginning.
-    pub learning_rate: f64,
-}
-
-impl Default for RolloutTrainingConfig {
-    fn default() -> Self {
-        Self { lengths: vec![20, 50, 100], steps: 60, batch_windows: 16, learning_rate: 3e-4 }
+impl ResponseNetworkConfig {
+    /// The plain network of the comparison: the same layers without guard, without the 4DOF centre.
+    #[must_use]
+    pub fn plain(&self) -> Self {
+        Self {
+            correction: Correction::Whole,
+            effects: false,
+            bound: None,
+            unit: [5.0, 5.0, 2.0, 5.0],
+            ..self.clone()
+        }
     }
 }
 
-/// The search on single steps.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct ResponseTrainingConfig {
-    /// Steps of the optimiser.
-    pub steps: u64,
-    /// Instants per step.
-    pub batch_instants: usize,
-    /// AdamW's learning rate η at its highest.
-    pub learning_rate: f64,
-    /// AdamW's weight decay λ.
-    pub weight_decay: f64,
-    /// Longest gradient.
-    pub max_gradient_norm: f64,
-    /// Standard deviation of the noise on features, whose unit is of the order of one.
-    pub feature_noise: f64,
+impl Default for PretrainingConfig {
+    fn default() -> Self {
+        Self { motions: 200, epochs: 30, learning_rate: 3e-3 }
+    }
 }
 
-impl Default for ResponseTrainingConfig {
+impl Default for SingleStepConfig {
     fn default() -> Self {
         Self {
-            steps: 4000,
+            epochs: 100,
             batch_instants: 256,
             learning_rate: 3e-3,
             weight_decay: 1e-2,
             max_gradient_norm: 1.0,
             feature_noise: 0.02,
+            frozen_share: 0.6,
+        }
+    }
+}
+
+impl Default for RolloutConfig {
+    fn default() -> Self {
+        Self {
+            lengths: vec![20, 50, 100],
+            epochs: 40,
+            batch_windows: 10,
+            learning_rate: 3e-4,
+            truncation: 100,
+        }
+    }
+}
+
+impl Default for ResponseLossWeights {
+    fn default() -> Self {
+        Self {
+            likelihood: 0.05,
+            physics: 0.01,
+            diversity: 0.01,
+            trajectory: 1.0,
+            smoothness: 1e-3,
+            boundary: 0.1,
+        }
+    }
+}
+
+impl Default for PhysicsSchedule {
+    fn default() -> Self {
+        Self {
+            trend: PhysicsTrend::default(),
+            min: 0.1,
+            max: 10.0,
+            midpoint_epoch: 50.0,
+            epoch_scale: 15.0,
+            quality_distance: 0.1,
+            batch_instants: 64,
+        }
+    }
+}
+
+impl ResponseConfig {
+    /// The settings of the plain network of the comparison: the same layers, data and effort,
+    /// without guard, 4DOF centre and losses of physics.
+    #[must_use]
+    pub fn plain(&self) -> Self {
+        let loss = ResponseLossWeights { physics: 0.0, boundary: 0.0, ..self.loss };
+        Self { network: self.network.plain(), loss, ..self.clone() }
+    }
+
+    /// Reads settings.
+    ///
+    /// # Errors
+    /// [`ResponseError::ConfigFile`] with the line, [`ResponseError::Setting`].
+    pub fn load(path: &Path) -> Result<Self, ResponseError> {
+        let wrong = |reason| ResponseError::ConfigFile { path: path.to_owned(), reason };
+        let config: Self = crate::data::read_settings(path).map_err(wrong)?;
+        config.check()?;
+        Ok(config)
+    }
+
+    /// Checks every range.
+    ///
+    /// # Errors
+    /// [`ResponseError::Setting`] with the first setting out of range.
+    pub fn check(&self) -> Result<(), ResponseError> {
+        let Self { network, single_steps, rollouts, physics, effects, .. } = self;
+        let count = |name, value: usize| (name, value.to_string(), value > 0, "1 or more");
+        let positive = |name, value: f64| {
+            let is_right = value > 0.0 && value.is_finite();
+            (name, value.to_string(), is_right, "a number above 0")
+        };
+        let all_positive = |name, values: &[f64]| {
+            let is_right = values.iter().all(|value| *value > 0.0 && value.is_finite());
+            (name, format!("{values:?}"), is_right, "numbers above 0")
+        };
+        let share =
+            |name, value: f64| (name, value.to_string(), (0.0..=1.0).contains(&value), "0 to 1");
+        let shortest = rollouts.lengths.iter().copied().min().unwrap_or(1);
+        let heads = network.attention_heads;
+        let hidden = network.encoder.last().copied().unwrap_or(0);
+        let settings = [
+            count("network.components", network.components),
+            count("network.encoder (layers)", network.encoder.len()),
+            count("network.trunk (layers)", network.trunk.len()),
+            (
+                "network.attention_heads",
+                heads.to_string(),
+                heads > 0 && hidden.is_multiple_of(heads),
+                "a divisor of the encoder's last width",
+            ),
+            positive("network.min_std", network.min_std),
+            all_positive("network.bound", network.bound.as_ref().map_or(&[], |bound| bound)),
+            all_positive("network.unit", &network.unit),
+            count("single_steps.batch_instants", single_steps.batch_instants),
+            positive("single_steps.learning_rate", single_steps.learning_rate),
+            share("single_steps.frozen_share", single_steps.frozen_share),
+            count("rollouts.lengths", shortest),
+            count("rollouts.batch_windows", rollouts.batch_windows),
+            count("rollouts.truncation", rollouts.truncation),
+            positive("rollouts.learning_rate", rollouts.learning_rate),
+            positive("physics.epoch_scale", physics.epoch_scale),
+            positive("physics.quality_distance", physics.quality_distance),
+            positive("effects.ridge", effects.ridge),
+            positive("effects.huber", effects.huber),
+        ];
+        match settings.into_iter().find(|(_, _, is_right, _)| !is_right) {
+            None => Ok(()),
+            Some((name, value, _, expected)) => {
+                Err(ResponseError::Setting { name, value, expected })
+            }
         }
     }
 }

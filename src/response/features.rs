@@ -13,6 +13,12 @@ pub const FEATURE_MIRROR: [f64; N_FEATURES] = [
     1.0, -1.0, 1.0, 1.0,
 ];
 
+/// 1 for the features that the 4DOF model gives, which a network without it does not see.
+pub const IS_OF_MODEL: [f64; N_FEATURES] = [
+    0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0,
+    0.0,
+];
+
 const VX_UNIT_M_S: f64 = 20.0;
 const VY_UNIT_M_S: f64 = 10.0;
 const YAW_RATE_UNIT_RAD_S: f64 = 1.5;

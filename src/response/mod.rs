@@ -4,25 +4,44 @@
 mod case;
 mod config;
 mod error;
+
+mod effects;
 mod features;
-mod model;
-mod network;
-mod one_step;
-mod rollout;
-mod rollout_training;
 mod step;
-mod step_operations;
-mod train;
-mod tuned;
 mod vehicle_tokens;
 
+mod effects_fit;
+mod network;
+mod one_step;
+mod physics_points;
+mod physics_weight;
+mod simulated;
+mod step_operations;
+
+mod loss;
+mod model;
+mod record;
+mod rollout;
+mod rollout_loss;
+mod train;
+mod training_file;
+mod tuned;
+
 pub use case::{ResponseCase, ResponseCaseError};
-pub use config::{ResponseConfig, ResponseNetworkConfig, ResponseTrainingConfig};
+pub use config::{
+    PhysicsSchedule, PhysicsTrend, PretrainingConfig, ResponseConfig, ResponseLossWeights,
+    ResponseNetworkConfig, RolloutConfig, SingleStepConfig,
+};
+pub use effects::{Effects, N_EFFECTS, combined, effects};
+pub use effects_fit::EffectsConfig;
 pub use error::ResponseError;
-pub use features::{FEATURE_MIRROR, N_FEATURES, features};
+pub use features::{FEATURE_MIRROR, IS_OF_MODEL, N_FEATURES, features};
+pub use loss::ResponseLossTerms;
 pub use model::{ComponentPath, ResponseModel};
+pub use record::{ResponseEpoch, ResponseRecord, ResponseStage, ResponseTrainingSet};
 pub use rollout::{average_error_m, rollout};
-pub use step::{N_RESIDUAL, RESIDUAL_MIRROR, STEP_S, step};
-pub use train::ResponseProgress;
+pub use simulated::ImpactRecord;
+pub use step::{Correction, N_RESIDUAL, RESIDUAL_MIRROR, STEP_S, step};
+pub use train::{ResponseProgress, ResponseReport, ResponseTrainSettings, fine_tune, pretrain};
 pub use tuned::{Tuning, TuningConfig};
 pub use vehicle_tokens::{N_TOKEN_NUMBERS, N_TOKENS, vehicle_tokens};

@@ -1,28 +1,27 @@
-//! The response model: the tuned 4DOF vehicle and the network around it.
+//! A trained response network and its file.
 
-use std::ops::ControlFlow;
+use std::path::Path;
 use std::sync::Arc;
 
-use candle_core::{Device, Tensor};
+use candle_core::{DType, Device, Tensor};
 
-use crate::nn::random_stream;
-use crate::response::network::ResponseNetwork;
-use crate::response::one_step::OneStepData;
-use crate::response::rollout_training::train_rollouts;
-use crate::response::step_operations::{Row, feature_rows, step_rows};
-use crate::response::train::train_single_steps;
+use crate::nn::{Checkpoint, ModelKind, random_stream, softmax};
+use crate::response::network::{Gradients, ResponseNetwork};
+use crate::response::one_step::token_tensor;
+use crate::response::step_operations::{Row, effect_rows, feature_rows, step_rows};
 use crate::response::{
-    N_TOKEN_NUMBERS, N_TOKENS, ResponseCase, ResponseConfig, ResponseError, ResponseProgress,
-    STEP_S, Tuning, vehicle_tokens,
+    N_RESIDUAL, ResponseCase, ResponseConfig, ResponseError, ResponseRecord, STEP_S,
 };
 use crate::vehicle::{N_STATE, VehicleInput, VehicleParameters, VehicleState};
 
-/// A fitted response model.
+const KIND: ModelKind = ModelKind { name: "response network", version: 1 };
+
+/// A trained response network with all it takes to predict.
 #[derive(Debug)]
 pub struct ResponseModel {
     config: ResponseConfig,
-    tuning: Tuning,
     network: ResponseNetwork,
+    record: ResponseRecord,
 }
 
 /// Where the vehicle goes by one component of the mixture.
@@ -35,35 +34,75 @@ pub struct ComponentPath {
 }
 
 impl ResponseModel {
-    /// Tunes the 4DOF model, then trains the network on the same trajectories: on single steps, then on rollouts.
-    ///
-    /// - `report`: is told of both; breaking ends what is under way where it is.
-    ///
-    /// # Errors
-    /// [`ResponseError::NoCases`], [`ResponseError::Network`].
-    pub fn fit(
-        cases: &[&ResponseCase],
-        config: &ResponseConfig,
-        seed: u64,
-        report: &mut dyn FnMut(ResponseProgress) -> ControlFlow<()>,
-    ) -> Result<Self, ResponseError> {
-        if !cases.iter().any(|case| case.states.len() > 1 && !case.inputs.is_empty()) {
-            return Err(ResponseError::NoCases);
-        }
-        let tuning = Tuning::fit(cases, config.tuning, seed, &mut |done, cost| {
-            report(ResponseProgress::Tuning { done, of: config.tuning.iterations, cost })
-        });
-        let mut rng = random_stream(seed, "response network", 0);
-        let network = ResponseNetwork::new(&config.network, &mut rng)?;
-        let data = OneStepData::of(cases, &tuning);
-        train_single_steps(&network, &data, (config, seed), report)?;
-        train_rollouts(&network, (cases, &tuning), (config, seed), report)?;
-        Ok(Self { config: config.clone(), tuning, network })
+    pub(crate) fn new(
+        config: ResponseConfig,
+        network: ResponseNetwork,
+        record: ResponseRecord,
+    ) -> Self {
+        Self { config, network, record }
     }
 
-    /// The parameters of the 4DOF model inside.
-    pub fn tuning(&self) -> &Tuning {
-        &self.tuning
+    /// The configuration it was trained with.
+    pub fn config(&self) -> &ResponseConfig {
+        &self.config
+    }
+
+    /// How it came to be.
+    pub fn record(&self) -> &ResponseRecord {
+        &self.record
+    }
+
+    /// How many weights it has.
+    pub fn n_parameters(&self) -> usize {
+        self.network.parameters().n_values()
+    }
+
+    /// Whether a trajectory was seen in training, whatever it is called now.
+    pub fn is_trained_on(&self, case: &ResponseCase) -> bool {
+        self.record.train.iter().any(|known| known.digest == case.digest)
+    }
+
+    pub(crate) fn network(&self) -> &ResponseNetwork {
+        &self.network
+    }
+
+    /// Writes the model, whole or not at all.
+    ///
+    /// # Errors
+    /// [`ResponseError::Network`].
+    pub fn save(&self, path: &Path) -> Result<(), ResponseError> {
+        let mut file = Checkpoint::new(KIND);
+        file.put("config", &self.config)?;
+        file.put("record", &self.record)?;
+        file.put_group("network", self.network.parameters().export()?);
+        Ok(file.write(path)?)
+    }
+
+    /// Reads a model.
+    ///
+    /// # Errors
+    /// [`ResponseError::Network`] that says what is wrong with the file.
+    pub fn load(path: &Path) -> Result<Self, ResponseError> {
+        Self::from_checkpoint(Checkpoint::read(path, KIND)?)
+    }
+
+    /// Takes a model that is part of the program.
+    ///
+    /// # Errors
+    /// As for [`ResponseModel::load`].
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, ResponseError> {
+        Self::from_checkpoint(Checkpoint::from_bytes(bytes, KIND)?)
+    }
+
+    fn from_checkpoint(mut file: Checkpoint) -> Result<Self, ResponseError> {
+        let config: ResponseConfig = file.get("config")?;
+        config.check()?;
+        let record = file.get("record")?;
+        let mut rng = random_stream(0, "response network", 0);
+        let network = ResponseNetwork::new(&config.network, &mut rng)?;
+        network.parameters().import(&file.take_group("network"))?;
+        file.check_all_taken()?;
+        Ok(Self { config, network, record })
     }
 
     /// The paths of all components from one state.
@@ -78,10 +117,10 @@ impl ResponseModel {
         initial: VehicleState<f64>,
         inputs: &[VehicleInput<f64>],
     ) -> Result<Vec<ComponentPath>, ResponseError> {
-        let n = self.config.network.components;
-        let vehicle = Arc::new(self.tuning.apply(vehicle));
-        let tokens: Vec<f64> = vehicle_tokens(&vehicle).as_flattened().to_vec();
-        let tokens = Tensor::from_vec(tokens, (1, N_TOKENS, N_TOKEN_NUMBERS), &Device::Cpu)?;
+        let network = &self.network;
+        let n = network.n_components();
+        let tokens = token_tensor(vehicle)?;
+        let vehicle = Arc::new(vehicle.clone());
         let mut paths = vec![ComponentPath { weight: 0.0, states: vec![initial] }; n];
         for (i, input) in inputs.iter().enumerate() {
             let row = Row { vehicle: vehicle.clone(), input: *input, time_s: i as f64 * STEP_S };
@@ -90,12 +129,20 @@ impl ResponseModel {
             let x: Vec<f64> = latest.flat_map(|state| state.to_array()).collect();
             let x = Tensor::from_vec(x, (n, N_STATE), &Device::Cpu)?;
             let seen = feature_rows(&x, &rows)?.unsqueeze(0)?;
-            let output = self.network.forward_frozen(&seen, &tokens)?;
+            let effects = if self.config.network.effects {
+                effect_rows(&x, &network.strengths().detach(), &rows)?
+            } else {
+                Tensor::zeros((n, N_RESIDUAL), DType::F64, &Device::Cpu)?
+            };
+            let effects = effects.reshape((1, n, 1, N_RESIDUAL))?;
+            let output = network.forward(Gradients::None, [&seen, &tokens, &effects])?;
             // Of each path its own component.
             let own = |j: usize| output.residual.get(0)?.get(j)?.get(j);
-            let residual: Vec<Tensor> = (0..n).map(own).collect::<Result<_, _>>()?;
-            let next = step_rows(&x, &Tensor::stack(&residual, 0)?, &rows)?.to_vec2::<f64>()?;
-            let weights = crate::nn::softmax(&output.logits, 1.0)?.mean(1)?.to_vec2::<f64>()?;
+            let value: Vec<Tensor> = (0..n).map(own).collect::<Result<_, candle_core::Error>>()?;
+            let value = Tensor::stack(&value, 0)?;
+            let correction = self.config.network.correction;
+            let next = step_rows(correction, [&x, &value], &rows)?.to_vec2::<f64>()?;
+            let weights = softmax(&output.logits, 1.0)?.mean(1)?.to_vec2::<f64>()?;
             let weights = weights.into_iter().flatten();
             for ((path, next), weight) in paths.iter_mut().zip(next).zip(weights) {
                 let state = std::array::from_fn(|i| next.get(i).copied().unwrap_or(f64::NAN));
@@ -127,57 +174,5 @@ impl ResponseModel {
         };
         let later = (1..=inputs.len()).map(mean);
         Ok(std::iter::once(initial).chain(later).collect())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::response::{TuningConfig, average_error_m, rollout};
-    use crate::vehicle::Preset;
-
-    /// A car that was set turning, and whose tyres roll less freely than its data sheet says.
-    fn case(yaw_rate_rad_s: f64) -> ResponseCase {
-        let vehicle = Preset::Reference.parameters();
-        let mut truth = vehicle.clone();
-        truth.tires.rolling_resistance *= 4.0;
-        let initial = VehicleState { yaw_rate_rad_s, ..VehicleState::driving_straight(20.0) };
-        let inputs = vec![VehicleInput::released(); 200];
-        let states = rollout(&truth, initial, &inputs, |_, _| [0.0; 4]);
-        let name = format!("{yaw_rate_rad_s}");
-        ResponseCase { name, vehicle, states, inputs, spins: false, digest: String::new() }
-    }
-
-    fn small() -> ResponseConfig {
-        let mut config = ResponseConfig::default();
-        config.network.components = 2;
-        config.training.steps = 500;
-        config.training.batch_instants = 64;
-        config.rollouts.lengths = vec![5];
-        config.rollouts.steps = 3;
-        config.tuning = TuningConfig { particles: 2, iterations: 1, ..TuningConfig::default() };
-        config
-    }
-
-    #[test]
-    fn what_the_data_sheet_lacks_is_learned() {
-        let cases = [case(0.2), case(-0.5), case(0.8)];
-        let go_on = &mut |_| ControlFlow::Continue(());
-        let model = ResponseModel::fit(&cases.each_ref(), &small(), 3, go_on).unwrap();
-        let unseen = case(0.5);
-        let (start, inputs) = (unseen.states[0], &unseen.inputs);
-        let plain = rollout(&unseen.vehicle, start, inputs, |_, _| [0.0; 4]);
-        let path = model.mean_path(&unseen.vehicle, start, inputs).unwrap();
-        let [before, after] = [plain, path].map(|path| average_error_m(&path, &unseen.states));
-        assert!(after < 0.3 * before, "{before} m before, {after} m after");
-        let paths = model.paths(&unseen.vehicle, start, inputs).unwrap();
-        let weights: f64 = paths.iter().map(|path| path.weight).sum();
-        assert!((weights - 1.0).abs() < 1e-9, "{weights}");
-    }
-
-    #[test]
-    fn nothing_is_learned_from_nothing() {
-        let fitted = ResponseModel::fit(&[], &small(), 0, &mut |_| ControlFlow::Continue(()));
-        assert!(matches!(fitted, Err(ResponseError::NoCases)));
     }
 }

@@ -5,8 +5,12 @@
 //! h = encoder(features)                              token_k = encoder_k(Θ_k)
 //! h ← h + attention(h, tokens)
 //! [z_μ, z_σ, z_ω]_j = head(trunk(h))                 j = 1 … J
-//! a_j = a_bound ⊙ tanh(z_μ,j)     σ_j² = σ_min² + exp z_σ,j     ω = softmax z_ω
+//! δ_j = Σ_k c_jk e_k(x, u)
+//! a_j = a_bound ⊙ tanh((δ_j + u ⊙ z_μ,j)/a_bound)     σ_j² = σ_min² + exp z_σ,j     ω = softmax z_ω
 //! ```
+//!
+//! δ_j is the learned correction of the physics, of known form and with strengths c_j of its own in
+//! each component: what makes a component a way to drive off, and not a noise of single steps.
 //!
 //! Mirror symmetry by construction: z is the mean of the answers to the motion and, mirrored back,
 //! to the mirrored motion.
@@ -21,11 +25,20 @@ use rand_chacha::ChaCha8Rng;
 use crate::nn::{Activation, Attention, AttentionConfig, Init, Linear, Mlp, NnError, Parameters};
 use crate::response::vehicle_tokens::{N_TOKEN_NUMBERS, N_TOKENS};
 use crate::response::{
-    FEATURE_MIRROR, N_FEATURES, N_RESIDUAL, RESIDUAL_MIRROR, ResponseNetworkConfig,
+    Correction, FEATURE_MIRROR, IS_OF_MODEL, N_EFFECTS, N_FEATURES, N_RESIDUAL, RESIDUAL_MIRROR,
+    ResponseNetworkConfig,
 };
 
 /// Numbers of a component: z_μ, z_σ and z_ω.
 const N_COMPONENT_NUMBERS: usize = 2 * N_RESIDUAL + 1;
+
+/// States with soft boundaries, and these: v_x, v_y, m/s, r, φ̇, rad/s, φ, rad. A struck car that
+/// moves faster than these, or leans further, is none that is modelled here.
+pub(crate) const BOUNDED_STATES: [(usize, f64); 5] =
+    [(0, 60.0), (1, 60.0), (3, 8.0), (5, 4.0), (4, 0.5)];
+
+/// s at first, in units of the bound.
+const FIRST_BOUNDARY_SCALE: f64 = 0.05;
 
 /// The names of the tokens' encoders.
 const TOKEN_NAMES: [&str; N_TOKENS] = ["mass", "geometry", "tires", "suspension"];
@@ -36,13 +49,20 @@ pub(crate) struct ResponseNetwork {
     config: ResponseNetworkConfig,
     parameters: Parameters,
     layers: Layers,
-    /// The same, for predictions.
+    /// The same, without gradients of the first ones or of all.
+    fine_tuned: Layers,
     frozen: Layers,
+    /// c, `[J, N_EFFECTS]`.
+    strengths: Tensor,
+    /// ln s of the soft boundaries, `[5]`.
+    boundary_log_scale: Tensor,
     feature_mirror: Tensor,
+    /// 0 for what is not to be seen.
+    feature_mask: Tensor,
     output_mirror: Tensor,
 }
 
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Layers {
     encoder: Mlp,
     token_encoders: Vec<Mlp>,
@@ -52,16 +72,63 @@ struct Layers {
 }
 
 impl Layers {
-    /// The same layers, which ask for no gradients.
-    fn frozen(&self) -> Self {
+    /// N: those of the encoder, the levels of the token encoders, the attention, those of the trunk
+    /// and the head.
+    fn count(&self) -> usize {
+        let tokens = self.token_encoders.first().map_or(0, |encoder| encoder.layers().len());
+        self.encoder.layers().len() + tokens + 1 + self.trunk.layers().len() + 1
+    }
+
+    /// The same layers, of which the first `n_layers` ask for no gradients.
+    fn frozen_up_to(&self, n_layers: usize) -> Self {
+        let mut left = n_layers;
+        let mut take = |count: usize| {
+            let taken = left.min(count);
+            left -= taken;
+            taken
+        };
+        let n_encoder = take(self.encoder.layers().len());
+        let n_tokens = take(self.token_encoders.first().map_or(0, |mlp| mlp.layers().len()));
+        let (n_attention, n_trunk) = (take(1), take(self.trunk.layers().len()));
+        let n_head = take(1);
+        let attention = &self.attention;
         Self {
-            encoder: self.encoder.frozen(),
-            token_encoders: self.token_encoders.iter().map(Mlp::frozen).collect(),
-            attention: self.attention.frozen(),
-            trunk: self.trunk.frozen(),
-            head: self.head.frozen(),
+            encoder: self.encoder.frozen_up_to(n_encoder),
+            token_encoders: self
+                .token_encoders
+                .iter()
+                .map(|encoder| encoder.frozen_up_to(n_tokens))
+                .collect(),
+            attention: if n_attention > 0 { attention.frozen() } else { attention.clone() },
+            trunk: self.trunk.frozen_up_to(n_trunk),
+            head: if n_head > 0 { self.head.frozen() } else { self.head.clone() },
         }
     }
+
+    /// Names of the parameters of the first `n_layers`, as prefixes.
+    fn frozen_names(&self, n_layers: usize) -> Vec<String> {
+        let n_encoder = self.encoder.layers().len();
+        let n_tokens = self.token_encoders.first().map_or(0, |mlp| mlp.layers().len());
+        let encoder = (0..n_encoder).map(|i| vec![format!("encoder.{i}.")]);
+        let tokens = (0..n_tokens)
+            .map(|i| TOKEN_NAMES.iter().map(|name| format!("token.{name}.{i}.")).collect());
+        let trunk = (0..self.trunk.layers().len()).map(|i| vec![format!("trunk.{i}.")]);
+        let attention = std::iter::once(vec!["attention.".to_owned()]);
+        let head = std::iter::once(vec!["head.".to_owned()]);
+        let all = encoder.chain(tokens).chain(attention).chain(trunk).chain(head);
+        all.take(n_layers).flatten().collect()
+    }
+}
+
+/// Which layers give gradients.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Gradients {
+    /// All: pre-training.
+    All,
+    /// Those that fine-tuning changes.
+    FineTuned,
+    /// None: predictions.
+    None,
 }
 
 /// What the network says of instants.
@@ -69,6 +136,8 @@ impl Layers {
 pub(crate) struct ResponseOutput {
     /// a_j, m/s² and rad/s², `[sequences, instants, J, 4]`.
     pub residual: Tensor,
+    /// z_μ,j: what the network adds to the effects, in its units, same shape.
+    pub remainder: Tensor,
     /// z_σ,j, `[sequences, instants, J, 4]`.
     pub log_variance: Tensor,
     /// z_ω,j, `[sequences, instants, J]`.
@@ -120,13 +189,21 @@ impl ResponseNetwork {
             Activation::None,
             Init::Zero,
         )?;
+        let effects = [config.components, N_EFFECTS];
+        let strengths = root.at("effects").add("strengths", &effects, Init::Zero)?;
+        let boundary_log_scale =
+            root.at("boundary").add("log_scale", &[BOUNDED_STATES.len()], Init::Zero)?;
         let component: Vec<f64> =
             RESIDUAL_MIRROR.into_iter().chain([1.0; N_RESIDUAL + 1]).collect();
         let layers = Layers { encoder, token_encoders, attention, trunk, head };
         Ok(Self {
-            frozen: layers.frozen(),
+            fine_tuned: layers.clone(),
+            frozen: layers.frozen_up_to(layers.count()),
             layers,
+            strengths,
+            boundary_log_scale,
             feature_mirror: Tensor::new(&FEATURE_MIRROR, &Device::Cpu)?,
+            feature_mask: Tensor::new(&feature_mask(config.correction), &Device::Cpu)?,
             output_mirror: Tensor::from_vec(component, N_COMPONENT_NUMBERS, &Device::Cpu)?,
             config: config.clone(),
             parameters,
@@ -137,6 +214,54 @@ impl ResponseNetwork {
         &self.parameters
     }
 
+    /// The settings.
+    pub(crate) fn config(&self) -> &ResponseNetworkConfig {
+        &self.config
+    }
+
+    /// From now on fine-tuning leaves the first `⌊share · N⌋` of the N layers as they are, and, where
+    /// they are not wanted, the strengths of the effects.
+    pub(crate) fn freeze(&mut self, share: f64) {
+        let n_frozen = (share * self.layers.count() as f64).floor() as usize;
+        self.fine_tuned = self.layers.frozen_up_to(n_frozen);
+        let frozen = self.layers.frozen_names(n_frozen);
+        let has_effects = self.config.effects;
+        self.parameters.set_trained(|name| {
+            let is_frozen = frozen.iter().any(|prefix| name.starts_with(prefix.as_str()));
+            !is_frozen && (has_effects || !name.starts_with("effects."))
+        });
+    }
+
+    /// From now on the network adds nothing to the effects until it is trained again.
+    pub(crate) fn silence(&self) -> Result<(), NnError> {
+        for (name, variable) in self.parameters.iter() {
+            if name.starts_with("head.") {
+                variable.set(&variable.zeros_like()?)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives all components these strengths of the effects.
+    pub(crate) fn set_strengths(&self, strengths: &[f64]) -> Result<(), NnError> {
+        let row = Tensor::new(strengths, &Device::Cpu)?.unsqueeze(0)?;
+        let all = row.broadcast_as((self.config.components, N_EFFECTS))?.contiguous()?;
+        match self.parameters.get("effects.strengths") {
+            Some(variable) => Ok(variable.set(&all)?),
+            None => Ok(()),
+        }
+    }
+
+    /// Strengths of the effects in each component, `[J, N_EFFECTS]`.
+    pub(crate) fn strengths(&self) -> &Tensor {
+        &self.strengths
+    }
+
+    /// s of the soft boundaries, positive, `[5]`, in units of the bounds of [`BOUNDED_STATES`].
+    pub(crate) fn boundary_scale(&self) -> Result<Tensor, NnError> {
+        Ok((self.boundary_log_scale.exp()? * FIRST_BOUNDARY_SCALE)?)
+    }
+
     /// J.
     pub(crate) fn n_components(&self) -> usize {
         self.config.components
@@ -145,39 +270,25 @@ impl ResponseNetwork {
     /// The distribution of the residual acceleration.
     ///
     /// - `features`: `[sequences, instants, N_FEATURES]`, f64;
-    /// - `tokens`: of each sequence's vehicle, `[sequences, N_TOKENS, N_TOKEN_NUMBERS]`, f64.
+    /// - `tokens`: of each sequence's vehicle, `[sequences, N_TOKENS, N_TOKEN_NUMBERS]`, f64;
+    /// - `effects`: δ_j, `[sequences, instants, J or 1, 4]`, f64.
     ///
     /// # Errors
     /// [`NnError`] for other shapes.
     pub(crate) fn forward(
         &self,
-        features: &Tensor,
-        tokens: &Tensor,
+        gradients: Gradients,
+        [features, tokens, effects]: [&Tensor; 3],
     ) -> Result<ResponseOutput, NnError> {
-        self.forward_by(&self.layers, features, tokens)
-    }
-
-    /// [`ResponseNetwork::forward`] without a graph for gradients.
-    ///
-    /// # Errors
-    /// As for [`ResponseNetwork::forward`].
-    pub(crate) fn forward_frozen(
-        &self,
-        features: &Tensor,
-        tokens: &Tensor,
-    ) -> Result<ResponseOutput, NnError> {
-        self.forward_by(&self.frozen, features, tokens)
-    }
-
-    fn forward_by(
-        &self,
-        layers: &Layers,
-        features: &Tensor,
-        tokens: &Tensor,
-    ) -> Result<ResponseOutput, NnError> {
+        let layers = match gradients {
+            Gradients::All => &self.layers,
+            Gradients::FineTuned => &self.fine_tuned,
+            Gradients::None => &self.frozen,
+        };
         let (n_sequences, n_instants, _) = features.dims3()?;
+        let features = features.broadcast_mul(&self.feature_mask)?;
         let mirrored = features.broadcast_mul(&self.feature_mirror)?;
-        let hidden = layers.encoder.forward(&Tensor::cat(&[features, &mirrored], 1)?)?;
+        let hidden = layers.encoder.forward(&Tensor::cat(&[features, mirrored], 1)?)?;
         let token = |(i, encoder): (usize, &Mlp)| -> Result<Tensor, NnError> {
             encoder.forward(&tokens.narrow(1, i, 1)?.contiguous()?)
         };
@@ -190,12 +301,29 @@ impl ResponseNetwork {
         let other = raw.narrow(1, n_instants, n_instants)?.broadcast_mul(&self.output_mirror)?;
         let raw = ((raw.narrow(1, 0, n_instants)? + other)? * 0.5)?;
         let mean = raw.narrow(D::Minus1, 0, N_RESIDUAL)?;
-        let bound = Tensor::new(&self.config.bound, &Device::Cpu)?;
+        let remainder = mean.broadcast_mul(&Tensor::new(&self.config.unit, &Device::Cpu)?)?;
+        let free = remainder.broadcast_add(effects)?;
+        let residual = match self.config.bound {
+            Some(bound) => {
+                let bound = Tensor::new(&bound, &Device::Cpu)?;
+                free.broadcast_div(&bound)?.tanh()?.broadcast_mul(&bound)?
+            }
+            None => free,
+        };
         Ok(ResponseOutput {
-            residual: mean.tanh()?.broadcast_mul(&bound)?,
+            residual,
+            remainder: mean,
             log_variance: raw.narrow(D::Minus1, N_RESIDUAL, N_RESIDUAL)?,
             logits: raw.narrow(D::Minus1, 2 * N_RESIDUAL, 1)?.squeeze(D::Minus1)?,
         })
+    }
+}
+
+/// A network without the 4DOF model sees nothing of it.
+fn feature_mask(correction: Correction) -> [f64; N_FEATURES] {
+    match correction {
+        Correction::Whole => IS_OF_MODEL.map(|is_of_model| 1.0 - is_of_model),
+        Correction::Acceleration | Correction::StateOffset => [1.0; N_FEATURES],
     }
 }
 
@@ -221,27 +349,55 @@ mod tests {
         let network = network();
         let features = random_tensor(&[2, 3, N_FEATURES], DType::F64, 100);
         let tokens = random_tensor(&[2, N_TOKENS, N_TOKEN_NUMBERS], DType::F64, 101);
-        let plain = network.forward(&features, &tokens).unwrap();
-        let mirrored = features.broadcast_mul(&network.feature_mirror).unwrap();
-        let other = network.forward(&mirrored, &tokens).unwrap();
+        let effects = random_tensor(&[2, 3, 1, N_RESIDUAL], DType::F64, 102);
         let signs = Tensor::new(&RESIDUAL_MIRROR, &Device::Cpu).unwrap();
+        let plain = network.forward(Gradients::None, [&features, &tokens, &effects]).unwrap();
+        let mirrored = features.broadcast_mul(&network.feature_mirror).unwrap();
+        let effects = effects.broadcast_mul(&signs).unwrap();
+        let other = network.forward(Gradients::None, [&mirrored, &tokens, &effects]).unwrap();
         assert_close(&other.residual.broadcast_mul(&signs).unwrap(), &plain.residual, 1e-12);
         assert_close(&other.log_variance, &plain.log_variance, 1e-12);
         assert_close(&other.logits, &plain.logits, 1e-12);
     }
 
     #[test]
-    fn the_residual_starts_at_zero_and_stays_within_its_bound() {
+    fn the_residual_starts_at_the_effects_and_stays_within_its_bound() {
         let config = ResponseNetworkConfig::default();
         let fresh = ResponseNetwork::new(&config, &mut random_stream(3, "test", 0)).unwrap();
         let features = (random_tensor(&[1, 4, N_FEATURES], DType::F64, 1) * 1e3).unwrap();
         let tokens = random_tensor(&[1, N_TOKENS, N_TOKEN_NUMBERS], DType::F64, 2);
-        let values = |network: &ResponseNetwork| -> Vec<f64> {
-            let output = network.forward(&features, &tokens).unwrap();
+        let none = Tensor::zeros((1, 4, 1, N_RESIDUAL), DType::F64, &Device::Cpu).unwrap();
+        let values = |network: &ResponseNetwork, effects: &Tensor| -> Vec<f64> {
+            let output = network.forward(Gradients::None, [&features, &tokens, effects]).unwrap();
             output.residual.flatten_all().unwrap().to_vec1().unwrap()
         };
-        assert!(values(&fresh).iter().all(|value| *value == 0.0));
-        let bounded = |(i, value): (usize, &f64)| value.abs() <= config.bound[i % N_RESIDUAL];
-        assert!(values(&network()).iter().enumerate().all(bounded));
+        assert!(values(&fresh, &none).iter().all(|value| *value == 0.0));
+        let some = (&none + 0.01).unwrap();
+        assert!(values(&fresh, &some).iter().all(|value| (value - 0.01).abs() < 1e-6));
+        let bound = config.bound.unwrap();
+        let far = (&none + 1e3).unwrap();
+        let bounded = |(i, value): (usize, &f64)| value.abs() <= bound[i % N_RESIDUAL];
+        assert!(values(&network(), &far).iter().enumerate().all(bounded));
+    }
+
+    #[test]
+    fn sixty_percent_of_the_layers_are_left_alone_by_fine_tuning() {
+        let mut network = network();
+        assert_eq!(network.layers.count(), 7);
+        network.freeze(0.6);
+        let features = random_tensor(&[1, 2, N_FEATURES], DType::F64, 1);
+        let tokens = random_tensor(&[1, N_TOKENS, N_TOKEN_NUMBERS], DType::F64, 2);
+        let effects = Tensor::zeros((1, 2, 1, N_RESIDUAL), DType::F64, &Device::Cpu).unwrap();
+        let input = [&features, &tokens, &effects];
+        let loss = network.forward(Gradients::FineTuned, input).unwrap();
+        let gradients = loss.residual.sqr().unwrap().sum_all().unwrap().backward().unwrap();
+        for (name, variable) in network.parameters.iter() {
+            let is_frozen = ["encoder.", "token."].iter().any(|of| name.starts_with(of));
+            let is_of_layers = !name.starts_with("effects") && !name.starts_with("boundary");
+            assert_eq!(gradients.get(variable).is_some(), is_of_layers && !is_frozen, "{name}");
+        }
+        let trained: Vec<_> = network.parameters.entries().iter().filter(|e| e.trained).collect();
+        assert!(trained.iter().all(|entry| !entry.name.starts_with("token.")));
+        assert!(trained.iter().any(|entry| entry.name == "effects.strengths"));
     }
 }

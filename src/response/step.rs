@@ -8,8 +8,10 @@
 //! 0.1 mm. Without a contact force and with the throttle released the planar kinetic energy does not
 //! grow: a step that would make it grow is scaled back to the energy before it.
 
+use serde::{Deserialize, Serialize};
+
 use crate::numerics::{Scalar, rk4_step};
-use crate::vehicle::{VehicleInput, VehicleParameters, VehicleState};
+use crate::vehicle::{N_STATE, VehicleInput, VehicleParameters, VehicleState};
 
 /// Length of a step, s: that of the trajectory data sets.
 pub const STEP_S: f64 = 0.01;
@@ -20,7 +22,65 @@ pub const N_RESIDUAL: usize = 4;
 /// Signs of a residual acceleration mirrored at the vehicle's longitudinal plane.
 pub const RESIDUAL_MIRROR: [f64; N_RESIDUAL] = [1.0, -1.0, -1.0, -1.0];
 
-/// The state after a step.
+/// What a network corrects, and how.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Correction {
+    /// A residual acceleration inside the Runge–Kutta step of the 4DOF model.
+    #[default]
+    Acceleration,
+    /// An offset of v_x, v_y, r, φ̇ after the step of the 4DOF model, as the paper has it: with its
+    /// bounds some 50 g per step.
+    StateOffset,
+    /// The whole acceleration of the CG along the body's axes, ṙ and φ̈, without the 4DOF model:
+    /// only rates are integrated. The plain network of the comparison.
+    Whole,
+}
+
+impl Correction {
+    /// The state after a step.
+    ///
+    /// - `value`: v̇_x, v̇_y, ṙ, φ̈ in m/s² and rad/s², or for [`Correction::StateOffset`] v_x, v_y,
+    ///   r, φ̇ in m/s and rad/s.
+    pub fn step<T: Scalar>(
+        self,
+        vehicle: &VehicleParameters,
+        x: &VehicleState<T>,
+        u: &VehicleInput<T>,
+        value: [T; N_RESIDUAL],
+    ) -> VehicleState<T> {
+        match self {
+            Self::Acceleration => step(vehicle, x, u, value),
+            Self::StateOffset => {
+                let mut next = step(vehicle, x, u, [T::from(0.0); N_RESIDUAL]);
+                let [vx, vy, yaw, roll] = value;
+                next.vx_m_s += vx;
+                next.vy_m_s += vy;
+                next.yaw_rate_rad_s += yaw;
+                next.roll_rate_rad_s += roll;
+                next
+            }
+            Self::Whole => {
+                let [ax, ay, yaw, roll] = value;
+                let f = |_, x: &[T; N_STATE]| {
+                    let x = VehicleState::from_array(*x);
+                    x.derivative([ax, ay], [yaw, roll]).to_array()
+                };
+                VehicleState::from_array(rk4_step(f, &x.to_array(), STEP_S))
+            }
+        }
+    }
+
+    /// What a unit of [`Correction::step`]'s value changes the velocities by over a step.
+    pub fn change_per_unit(self) -> f64 {
+        match self {
+            Self::Acceleration | Self::Whole => STEP_S,
+            Self::StateOffset => 1.0,
+        }
+    }
+}
+
+/// The state after a step of the 4DOF model.
 ///
 /// - `u`: the input, its force the mean over the step.
 /// - `residual`: v̇_x, v̇_y, m/s², ṙ, φ̈, rad/s², constant over the step.

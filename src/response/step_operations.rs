@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use crate::nn::NnError;
 use crate::nn::storage::{contiguous, cpu_storage};
-use crate::response::{N_FEATURES, N_RESIDUAL, features, step};
+use crate::response::{Correction, N_EFFECTS, N_FEATURES, N_RESIDUAL, combined, effects, features};
 use crate::vehicle::{N_STATE, VehicleInput, VehicleParameters, VehicleState};
 
 /// Rows that are worth a task of their own.
@@ -43,22 +43,40 @@ pub(crate) fn feature_rows(x: &Tensor, rows: &Arc<Vec<Row>>) -> Result<Tensor, N
     Ok(x.contiguous()?.apply_op1(FeatureOperation(rows.clone()))?)
 }
 
+/// The residual acceleration by the effects.
+///
+/// - `x`: `[rows, 8]`, `strengths`: of each row, `[rows, N_EFFECTS]`, f64;
+/// - returns `[rows, 4]`.
+///
+/// # Errors
+/// [`NnError::Tensor`] for another shape or type.
+pub(crate) fn effect_rows(
+    x: &Tensor,
+    strengths: &Tensor,
+    rows: &Arc<Vec<Row>>,
+) -> Result<Tensor, NnError> {
+    check(x, N_STATE, rows)?;
+    check(strengths, N_EFFECTS, rows)?;
+    let strengths = strengths.contiguous()?;
+    Ok(x.contiguous()?.apply_op2(&strengths, EffectOperation(rows.clone()))?)
+}
+
 /// The states after a step.
 ///
-/// - `x`: `[rows, 8]`, `residual`: `[rows, 4]`, f64;
+/// - `x`: `[rows, 8]`, `value`: what the correction takes, `[rows, 4]`, f64;
 /// - returns `[rows, 8]`.
 ///
 /// # Errors
 /// [`NnError::Tensor`] for another shape or type.
 pub(crate) fn step_rows(
-    x: &Tensor,
-    residual: &Tensor,
+    correction: Correction,
+    [x, value]: [&Tensor; 2],
     rows: &Arc<Vec<Row>>,
 ) -> Result<Tensor, NnError> {
     check(x, N_STATE, rows)?;
-    check(residual, N_RESIDUAL, rows)?;
-    let residual = residual.contiguous()?;
-    Ok(x.contiguous()?.apply_op2(&residual, StepOperation(rows.clone()))?)
+    check(value, N_RESIDUAL, rows)?;
+    let value = value.contiguous()?;
+    Ok(x.contiguous()?.apply_op2(&value, StepOperation { correction, rows: rows.clone() })?)
 }
 
 fn check(tensor: &Tensor, width: usize, rows: &[Row]) -> Result<(), NnError> {
@@ -76,7 +94,12 @@ fn check(tensor: &Tensor, width: usize, rows: &[Row]) -> Result<(), NnError> {
 
 struct FeatureOperation(Arc<Vec<Row>>);
 
-struct StepOperation(Arc<Vec<Row>>);
+struct EffectOperation(Arc<Vec<Row>>);
+
+struct StepOperation {
+    correction: Correction,
+    rows: Arc<Vec<Row>>,
+}
 
 impl FeatureOperation {
     fn jacobian(
@@ -92,8 +115,31 @@ impl FeatureOperation {
     }
 }
 
+impl EffectOperation {
+    fn jacobian(
+        row: &Row,
+        x: SVector<f64, N_STATE>,
+        strengths: &[f64],
+    ) -> SMatrix<f64, N_RESIDUAL, N_STATE> {
+        let input = row.input.map(DualSVec64::<N_STATE>::from);
+        let f = |x: SVector<DualSVec64<N_STATE>, N_STATE>| {
+            let state = VehicleState::from_array(x.into());
+            let now = row.vehicle.evaluate(&state, &input);
+            let effects = effects(&row.vehicle, &state, &input, &now);
+            SVector::from(combined(&effects, strengths))
+        };
+        num_dual::jacobian(f, &x).1
+    }
+
+    fn at(row: &Row, x: [f64; N_STATE]) -> crate::response::Effects<f64> {
+        let state = VehicleState::from_array(x);
+        effects(&row.vehicle, &state, &row.input, &row.vehicle.evaluate(&state, &row.input))
+    }
+}
+
 impl StepOperation {
     fn jacobian(
+        correction: Correction,
         row: &Row,
         both: SVector<f64, N_BOTH>,
     ) -> (SVector<f64, N_STATE>, SMatrix<f64, N_STATE, N_BOTH>) {
@@ -101,7 +147,8 @@ impl StepOperation {
         let f = |both: SVector<DualSVec64<N_BOTH>, N_BOTH>| {
             let state = VehicleState::from_array(std::array::from_fn(|i| both[i]));
             let residual = std::array::from_fn(|i| both[N_STATE + i]);
-            SVector::from(step(&row.vehicle, &state, &input, residual).to_array())
+            let next = correction.step(&row.vehicle, &state, &input, residual);
+            SVector::from(next.to_array())
         };
         num_dual::jacobian(f, &both)
     }
@@ -154,6 +201,59 @@ impl CustomOp1 for FeatureOperation {
     }
 }
 
+impl CustomOp2 for EffectOperation {
+    fn name(&self) -> &'static str {
+        "effects beside the 4DOF model"
+    }
+
+    fn cpu_fwd(
+        &self,
+        x: &CpuStorage,
+        x_layout: &Layout,
+        strengths: &CpuStorage,
+        strengths_layout: &Layout,
+    ) -> TensorResult<(CpuStorage, Shape)> {
+        let x = contiguous::<f64>(x, x_layout, self.name())?;
+        let strengths = contiguous::<f64>(strengths, strengths_layout, self.name())?;
+        let values = map_rows(&self.0, |idx, row| {
+            let strengths: [f64; N_EFFECTS] = array(strengths, idx);
+            combined(&Self::at(row, array(x, idx)), &strengths)
+        });
+        Ok((CpuStorage::F64(values), (self.0.len(), N_RESIDUAL).into()))
+    }
+
+    fn bwd(
+        &self,
+        x: &Tensor,
+        strengths: &Tensor,
+        _y: &Tensor,
+        gradient: &Tensor,
+    ) -> TensorResult<(Option<Tensor>, Option<Tensor>)> {
+        let gradient = gradient.contiguous()?;
+        let guards = [x, strengths, &gradient].map(Tensor::storage_and_layout);
+        let [states, of_rows, given] = guards.each_ref().map(|(storage, layout)| {
+            contiguous::<f64>(cpu_storage(storage, self.name())?, layout, self.name())
+        });
+        let (states, of_rows, given) = (states?, of_rows?, given?);
+        let to_states = map_rows::<N_STATE>(&self.0, |idx, row| {
+            let strengths: [f64; N_EFFECTS] = array(of_rows, idx);
+            let jacobian = Self::jacobian(row, SVector::from(array(states, idx)), &strengths);
+            jacobian.tr_mul(&SVector::from(array::<N_RESIDUAL>(given, idx))).into()
+        });
+        let to_strengths = map_rows::<N_EFFECTS>(&self.0, |idx, row| {
+            let given: [f64; N_RESIDUAL] = array(given, idx);
+            let share = |effect: [f64; N_RESIDUAL]| {
+                effect.into_iter().zip(given).map(|(effect, given)| effect * given).sum()
+            };
+            Self::at(row, array(states, idx)).map(share)
+        });
+        Ok((
+            Some(Tensor::from_vec(to_states, x.shape(), &Device::Cpu)?),
+            Some(Tensor::from_vec(to_strengths, strengths.shape(), &Device::Cpu)?),
+        ))
+    }
+}
+
 impl CustomOp2 for StepOperation {
     fn name(&self) -> &'static str {
         "step of the vehicle"
@@ -168,11 +268,12 @@ impl CustomOp2 for StepOperation {
     ) -> TensorResult<(CpuStorage, Shape)> {
         let x = contiguous::<f64>(x, x_layout, self.name())?;
         let residual = contiguous::<f64>(residual, residual_layout, self.name())?;
-        let values = map_rows(&self.0, |idx, row| {
+        let values = map_rows(&self.rows, |idx, row| {
             let state = VehicleState::from_array(array(x, idx));
-            step(&row.vehicle, &state, &row.input, array(residual, idx)).to_array()
+            let value = array(residual, idx);
+            self.correction.step(&row.vehicle, &state, &row.input, value).to_array()
         });
-        Ok((CpuStorage::F64(values), (self.0.len(), N_STATE).into()))
+        Ok((CpuStorage::F64(values), (self.rows.len(), N_STATE).into()))
     }
 
     fn bwd(
@@ -188,13 +289,13 @@ impl CustomOp2 for StepOperation {
             contiguous::<f64>(cpu_storage(storage, "step of the vehicle")?, layout, "step")
         });
         let (states, residuals, given) = (states?, residuals?, given?);
-        let back = map_rows::<N_BOTH>(&self.0, |idx, row| {
+        let back = map_rows::<N_BOTH>(&self.rows, |idx, row| {
             let (x, a) = (array::<N_STATE>(states, idx), array::<N_RESIDUAL>(residuals, idx));
             let both = SVector::from_fn(|i, _| if i < N_STATE { x[i] } else { a[i - N_STATE] });
-            let (_, jacobian) = Self::jacobian(row, both);
+            let (_, jacobian) = Self::jacobian(self.correction, row, both);
             jacobian.tr_mul(&SVector::from(array::<N_STATE>(given, idx))).into()
         });
-        let back = Tensor::from_vec(back, (self.0.len(), N_BOTH), &Device::Cpu)?;
+        let back = Tensor::from_vec(back, (self.rows.len(), N_BOTH), &Device::Cpu)?;
         Ok((Some(back.narrow(1, 0, N_STATE)?), Some(back.narrow(1, N_STATE, N_RESIDUAL)?)))
     }
 }
@@ -237,9 +338,19 @@ mod tests {
 
     #[test]
     fn gradients_of_the_step_are_exact() {
-        let (x, residual, rows) = (states(), random_variable(&[2, N_RESIDUAL], 1), rows());
-        assert_gradients(&[x.clone(), residual.clone()], || {
-            step_rows(&x, &residual, &rows).unwrap()
+        let (x, value, rows) = (states(), random_variable(&[2, N_RESIDUAL], 1), rows());
+        for correction in [Correction::Acceleration, Correction::StateOffset, Correction::Whole] {
+            assert_gradients(&[x.clone(), value.clone()], || {
+                step_rows(correction, [&x, &value], &rows).unwrap()
+            });
+        }
+    }
+
+    #[test]
+    fn gradients_of_the_effects_are_exact() {
+        let (x, strengths, rows) = (states(), random_variable(&[2, N_EFFECTS], 1), rows());
+        assert_gradients(&[x.clone(), strengths.clone()], || {
+            effect_rows(&x, &strengths, &rows).unwrap()
         });
     }
 

@@ -158,6 +158,16 @@ impl VehicleParameters {
         num_dual::jacobian(f, &SVector::from(x.to_array()))
     }
 
+    /// Acceleration that a further force at the ground would give: v̇_x, v̇_y, m/s², ṙ, φ̈, rad/s².
+    ///
+    /// - `force_n`: body axes; `yaw_moment_n_m`: about the CG.
+    pub fn acceleration_of<T: Scalar>(&self, force_n: [T; 2], yaw_moment_n_m: T) -> [T; 4] {
+        let [ax, ay] = force_n.map(|force| force / self.mass.mass_kg);
+        let roll_moment = ay * (self.mass.sprung_mass_kg * self.suspension.roll_arm_m);
+        let [yaw, roll] = self.solve_yaw_roll(yaw_moment_n_m, roll_moment);
+        [ax, ay, yaw, roll]
+    }
+
     /// Sum of the tyre forces, and the vertical loads under which they arise.
     fn tire_wrench<T: Scalar>(
         &self,

@@ -49,7 +49,7 @@ impl<T: Scalar> VehicleState<T> {
     /// v̇_x = a_x + v_y r      v̇_y = a_y − v_x r
     /// Ẋ = v_x cos ψ − v_y sin ψ      Ẏ = v_x sin ψ + v_y cos ψ
     /// ```
-    pub(super) fn derivative(
+    pub(crate) fn derivative(
         &self,
         [ax, ay]: [T; 2],
         [yaw_acceleration, roll_acceleration]: [T; 2],

@@ -1,0 +1,162 @@
+//! Training, saving and asking the response network, on small made motions.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use impactlab::response::{
+    Correction, ImpactRecord, ResponseCase, ResponseConfig, ResponseError, ResponseModel,
+    ResponseReport, ResponseStage, ResponseTrainSettings, ResponseTrainingSet, average_error_m,
+    fine_tune, pretrain, rollout,
+};
+use impactlab::vehicle::{Preset, VehicleInput, VehicleState};
+
+/// A car that was set turning, and whose tyres differ from its data sheet.
+fn case(yaw_rate_rad_s: f64) -> ResponseCase {
+    let vehicle = Preset::Reference.parameters();
+    let mut truth = vehicle.clone();
+    truth.tires.rolling_resistance *= 4.0;
+    truth.tires.cornering_coefficient_front_per_rad *= 0.8;
+    let initial = VehicleState { yaw_rate_rad_s, ..VehicleState::driving_straight(20.0) };
+    let inputs = vec![VehicleInput::released(); 200];
+    let states = rollout(&truth, initial, &inputs, |_, _| [0.0; 4]);
+    let name = format!("{yaw_rate_rad_s}");
+    ResponseCase { digest: name.clone(), name, vehicle, states, inputs, spins: false }
+}
+
+fn set() -> ResponseTrainingSet {
+    let train = [0.2, -0.5, 0.8, -1.1].map(case).to_vec();
+    ResponseTrainingSet { name: "made".to_owned(), train, test: Vec::new() }
+}
+
+fn small() -> ResponseConfig {
+    let mut config = ResponseConfig::default();
+    config.network.components = 2;
+    config.pretraining.motions = 6;
+    config.pretraining.epochs = 2;
+    config.single_steps.epochs = 12;
+    config.single_steps.batch_instants = 64;
+    config.rollouts.lengths = vec![5, 8];
+    config.rollouts.epochs = 3;
+    config
+}
+
+fn settings(config: ResponseConfig) -> ResponseTrainSettings {
+    ResponseTrainSettings { config, seed: 3, checkpoint: None, resume: false }
+}
+
+fn go_on(_: ResponseReport<'_>) -> ControlFlow<()> {
+    ControlFlow::Continue(())
+}
+
+/// Average errors on a motion that is not learned from: data sheet and model, m.
+fn errors_m(model: &ResponseModel) -> [f64; 2] {
+    let unseen = case(0.6);
+    let (start, inputs) = (unseen.states[0], &unseen.inputs);
+    let plain = rollout(&unseen.vehicle, start, inputs, |_, _| [0.0; 4]);
+    let path = model.mean_path(&unseen.vehicle, start, inputs).expect("a path");
+    [plain, path].map(|path| average_error_m(&path, &unseen.states))
+}
+
+fn scratch(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("response_model");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let path = folder.join(name);
+    let _ = std::fs::remove_file(&path);
+    path
+}
+
+#[test]
+fn what_the_data_sheet_lacks_is_learned() {
+    let model = fine_tune(None, &set(), &settings(small()), &mut go_on).expect("a model");
+    let [before, after] = errors_m(&model);
+    assert!(after < 0.2 * before, "{before} m before, {after} m after");
+    let stages: Vec<ResponseStage> =
+        model.record().history.iter().map(|epoch| epoch.stage).collect();
+    assert_eq!(stages.len(), 12 + 2 * 3);
+    assert_eq!(stages[11], ResponseStage::SingleSteps);
+    assert_eq!(stages[17], ResponseStage::Rollouts { length: 8 });
+    assert!(model.is_trained_on(&case(0.2)) && !model.is_trained_on(&case(0.6)));
+    let unseen = case(0.6);
+    let paths = model.paths(&unseen.vehicle, unseen.states[0], &unseen.inputs).expect("paths");
+    let weights: f64 = paths.iter().map(|path| path.weight).sum();
+    assert!((weights - 1.0).abs() < 1e-9, "{weights}");
+}
+
+#[test]
+fn a_saved_model_predicts_the_same_bits() {
+    let model = fine_tune(None, &set(), &settings(small()), &mut go_on).expect("a model");
+    let path = scratch("saved.safetensors");
+    model.save(&path).expect("saved");
+    let again = ResponseModel::load(&path).expect("loaded");
+    assert_eq!(errors_m(&model), errors_m(&again));
+    assert_eq!(model.record(), again.record());
+    let mut bytes = std::fs::read(&path).expect("read");
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    assert!(matches!(ResponseModel::from_bytes(&bytes), Err(ResponseError::Network(_))));
+    assert!(ResponseModel::from_bytes(&bytes[..100]).is_err());
+}
+
+#[test]
+fn a_training_that_was_cut_goes_on_to_the_same_weights() {
+    let whole = fine_tune(None, &set(), &settings(small()), &mut go_on).expect("a model");
+    // Cut in the first stage, between two stages, and in the last.
+    for cut_at in [7, 12, 16] {
+        let checkpoint = scratch(&format!("cut_{cut_at}.training"));
+        let mut settings = settings(small());
+        settings.checkpoint = Some(checkpoint);
+        let mut cut = |told: ResponseReport<'_>| match told.record.epoch {
+            epoch if epoch == cut_at => ControlFlow::Break(()),
+            _ => ControlFlow::Continue(()),
+        };
+        let part = fine_tune(None, &set(), &settings, &mut cut).expect("a model");
+        assert_eq!(part.record().history.len(), cut_at);
+        settings.resume = true;
+        let resumed = fine_tune(None, &set(), &settings, &mut go_on).expect("a model");
+        assert_eq!(errors_m(&resumed), errors_m(&whole), "cut after epoch {cut_at}");
+        let losses = |model: &ResponseModel| -> Vec<_> {
+            model.record().history.iter().map(|epoch| (epoch.loss, epoch.physics_weight)).collect()
+        };
+        assert_eq!(losses(&resumed), losses(&whole));
+        settings.seed = 4;
+        let other = fine_tune(None, &set(), &settings, &mut go_on).unwrap_err();
+        assert!(other.to_string().ends_with("had another seed"), "{other}");
+    }
+}
+
+#[test]
+fn pre_training_comes_before_and_the_plain_network_learns_without_the_4dof_model() {
+    let train = set();
+    let records: Vec<ImpactRecord<'_>> = train
+        .train
+        .iter()
+        .map(|case| ImpactRecord {
+            vehicle: &case.vehicle,
+            initial: &case.states[0],
+            inputs: &case.inputs,
+        })
+        .collect();
+    for config in [small(), small().plain()] {
+        let settings = settings(config);
+        let pretrained = pretrain(("made", &records), &settings, &mut go_on).expect("a model");
+        assert_eq!(pretrained.record().n_simulated, 6);
+        assert!(pretrained.record().train.is_empty());
+        let model = fine_tune(Some(&pretrained), &train, &settings, &mut go_on).expect("a model");
+        assert_eq!(model.record().n_simulated, 6);
+        assert_eq!(model.record().history.len(), 2 + 12 + 2 * 3);
+        let [before, after] = errors_m(&model);
+        match settings.config.network.correction {
+            Correction::Whole => assert!(after.is_finite()),
+            _ => assert!(after < 0.2 * before, "{before} m before, {after} m after"),
+        }
+    }
+}
+
+#[test]
+fn nothing_is_learned_from_nothing() {
+    let nothing = ResponseTrainingSet::default();
+    let fitted = fine_tune(None, &nothing, &settings(small()), &mut go_on);
+    assert!(matches!(fitted, Err(ResponseError::NoCases)));
+    let fitted = pretrain(("none", &[]), &settings(small()), &mut go_on);
+    assert!(matches!(fitted, Err(ResponseError::NoCases)));
+}
