@@ -49,6 +49,11 @@ pub(crate) fn bias_silu<T: Element>(z: &mut [T], bias: &[T]) {
     );
 }
 
+/// y = silu(z + b), or z + b, in place. `z`: `[rows, width]`.
+pub(crate) fn bias_silu_rows(z: &mut [f32], bias: &[f32], swish: bool) {
+    if swish { bias_silu(z, bias) } else { add_bias(z, bias) }
+}
+
 /// y = silu(z + b) in place, and the slopes dy/dz. `z`, `slope`: `[rows, width]`.
 pub(crate) fn bias_silu_with_slope<T: Element>(z: &mut [T], slope: &mut [T], bias: &[T]) {
     let width = bias.len();

@@ -53,6 +53,7 @@ pub(crate) mod storage;
 mod workspace;
 
 pub use activation::Activation;
+pub(crate) use activation::bias_silu_rows;
 pub use attention::{Attention, AttentionConfig};
 pub use checkpoint::{Checkpoint, MAX_MODEL_BYTES, ModelKind};
 pub use encoding::positional_encoding;

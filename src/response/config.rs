@@ -24,6 +24,8 @@ pub struct ResponseConfig {
     pub physics: PhysicsSchedule,
     /// The fit of the effects' strengths.
     pub effects: EffectsConfig,
+    /// How the uncertainty is calibrated.
+    pub calibration: CalibrationConfig,
     /// The search for the parameters of the tuned 4DOF model, the baseline.
     pub tuning: TuningConfig,
 }
@@ -102,6 +104,16 @@ pub struct RolloutConfig {
     pub learning_rate: f64,
     /// Steps after which the gradient is cut.
     pub truncation: usize,
+}
+
+/// Calibration of what is uncertain along a motion, on trajectories that a training has not seen.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct CalibrationConfig {
+    /// Trainings that each leave out a part of the trajectories; below 2 the usual scales are taken.
+    pub folds: usize,
+    /// Expected deviation of a scale from the usual one, as a logarithm.
+    pub prior_std: f64,
 }
 
 /// Weights of the loss terms.
@@ -217,6 +229,12 @@ impl Default for RolloutConfig {
             learning_rate: 3e-4,
             truncation: 100,
         }
+    }
+}
+
+impl Default for CalibrationConfig {
+    fn default() -> Self {
+        Self { folds: 5, prior_std: 1.0 }
     }
 }
 

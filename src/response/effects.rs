@@ -232,6 +232,42 @@ fn sign<T: Scalar>(x: T) -> f64 {
     if x.re() == 0.0 { 0.0 } else { x.re().signum() }
 }
 
+/// A change of several strengths together that has a name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Direction {
+    /// Side force of both axles, as a share of the friction.
+    Grip,
+    /// The same, more in front and less behind.
+    Balance,
+    /// Yaw moment of the collision, as a share.
+    YawImpulse,
+    /// Lateral force of the collision, as a share.
+    LateralImpulse,
+}
+
+/// Strengths at which the change is a whole: side force of all the friction, the whole collision force.
+pub(crate) fn direction(direction: Direction) -> [f64; N_EFFECTS] {
+    let mut strengths = [0.0; N_EFFECTS];
+    let n_knots = SLIP_KNOTS_RAD.len();
+    let (front, rear) = (0, N_PER_AXLE);
+    let mut side_force = |axle: usize, sign: f64| {
+        strengths.iter_mut().skip(axle).take(n_knots).for_each(|value| *value = sign / 0.125);
+    };
+    match direction {
+        Direction::Grip => {
+            side_force(front, 1.0);
+            side_force(rear, 1.0);
+        }
+        Direction::Balance => {
+            side_force(front, 1.0);
+            side_force(rear, -1.0);
+        }
+        Direction::YawImpulse => strengths[2 * N_PER_AXLE + 7] = 10.0,
+        Direction::LateralImpulse => strengths[2 * N_PER_AXLE + 6] = 10.0,
+    }
+    strengths
+}
+
 /// `Σ_k c_k e_k`, m/s² and rad/s².
 ///
 /// - `strengths`: c_k, as many as effects.

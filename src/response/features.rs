@@ -2,7 +2,7 @@
 //! of the order of one.
 
 use crate::numerics::Scalar;
-use crate::vehicle::{VehicleInput, VehicleParameters, VehicleState};
+use crate::vehicle::{Evaluation, VehicleInput, VehicleParameters, VehicleState};
 
 /// Numbers of an instant.
 pub const N_FEATURES: usize = 20;
@@ -54,7 +54,16 @@ pub fn features<T: Scalar>(
     u: &VehicleInput<T>,
     time_s: f64,
 ) -> [T; N_FEATURES] {
-    let now = vehicle.evaluate(x, u);
+    features_of(vehicle, x, &vehicle.evaluate(x, u), time_s)
+}
+
+/// [`features`] where the 4DOF model was evaluated already.
+pub(crate) fn features_of<T: Scalar>(
+    vehicle: &VehicleParameters,
+    x: &VehicleState<T>,
+    now: &Evaluation<T>,
+    time_s: f64,
+) -> [T; N_FEATURES] {
     let (rate, [ax, ay]) = (&now.derivative, now.acceleration_m_s2);
     let [fx, fy] = now.collision_force_n;
     let (mass, geometry) = (&vehicle.mass, &vehicle.geometry);

@@ -18,26 +18,36 @@ mod physics_weight;
 mod simulated;
 mod step_operations;
 
+mod calibration;
+mod latents;
 mod loss;
 mod model;
+mod predictor;
+mod propagate;
+#[cfg(test)]
+mod propagate_tests;
 mod record;
 mod rollout;
 mod rollout_loss;
 mod train;
 mod training_file;
 mod tuned;
+mod vehicle_network;
 
 pub use case::{ResponseCase, ResponseCaseError};
 pub use config::{
-    PhysicsSchedule, PhysicsTrend, PretrainingConfig, ResponseConfig, ResponseLossWeights,
-    ResponseNetworkConfig, RolloutConfig, SingleStepConfig,
+    CalibrationConfig, PhysicsSchedule, PhysicsTrend, PretrainingConfig, ResponseConfig,
+    ResponseLossWeights, ResponseNetworkConfig, RolloutConfig, SingleStepConfig,
 };
 pub use effects::{Effects, N_EFFECTS, combined, effects};
 pub use effects_fit::EffectsConfig;
 pub use error::ResponseError;
 pub use features::{FEATURE_MIRROR, IS_OF_MODEL, N_FEATURES, features};
+pub use latents::{LATENT_NAMES, LatentScales, N_LATENTS};
 pub use loss::ResponseLossTerms;
-pub use model::{ComponentPath, ResponseModel};
+pub use model::ResponseModel;
+pub use predictor::{ComponentPath, MotionDistribution, Predictor};
+pub use propagate::{ComponentMotion, StateDistribution};
 pub use record::{ResponseEpoch, ResponseRecord, ResponseStage, ResponseTrainingSet};
 pub use rollout::{average_error_m, rollout};
 pub use simulated::ImpactRecord;

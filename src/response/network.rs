@@ -23,11 +23,13 @@ use candle_core::{D, DType, Device, Tensor};
 use rand_chacha::ChaCha8Rng;
 
 use crate::nn::{Activation, Attention, AttentionConfig, Init, Linear, Mlp, NnError, Parameters};
+use crate::response::one_step::token_tensor;
 use crate::response::vehicle_tokens::{N_TOKEN_NUMBERS, N_TOKENS};
 use crate::response::{
     Correction, FEATURE_MIRROR, IS_OF_MODEL, N_EFFECTS, N_FEATURES, N_RESIDUAL, RESIDUAL_MIRROR,
     ResponseNetworkConfig,
 };
+use crate::vehicle::VehicleParameters;
 
 /// Numbers of a component: z_μ, z_σ and z_ω.
 const N_COMPONENT_NUMBERS: usize = 2 * N_RESIDUAL + 1;
@@ -262,6 +264,65 @@ impl ResponseNetwork {
         Ok((self.boundary_log_scale.exp()? * FIRST_BOUNDARY_SCALE)?)
     }
 
+    /// The attention to a vehicle.
+    ///
+    /// # Errors
+    /// [`NnError`] if a tensor cannot be read.
+    pub(crate) fn folded_attention(
+        &self,
+        vehicle: &VehicleParameters,
+    ) -> Result<FoldedAttention, NnError> {
+        let tokens = self.encoded_tokens(&self.frozen, &token_tensor(vehicle)?)?.squeeze(0)?;
+        let get = |name: &str| {
+            let name = format!("attention.{name}");
+            let found = self.parameters.get(&name).map(|variable| variable.as_detached_tensor());
+            found.ok_or(NnError::MissingTensor { name })
+        };
+        let project = |name: &str| -> Result<Tensor, NnError> {
+            let weight = get(&format!("{name}.weight"))?;
+            Ok(tokens.matmul(&weight.t()?)?.broadcast_add(&get(&format!("{name}.bias"))?)?)
+        };
+        let (keys, values) = (project("key")?, project("value")?);
+        let (query, query_bias) = (get("query.weight")?, get("query.bias")?);
+        let (output, output_bias) = (get("output.weight")?, get("output.bias")?);
+        let heads = self.config.attention_heads;
+        let (n_tokens, hidden) = keys.dims2()?;
+        let width = hidden / heads.max(1);
+        let scale = 1.0 / (width as f64).sqrt();
+        let (mut scores, mut biases, mut seen) = (Vec::new(), Vec::new(), Vec::new());
+        for head in 0..heads {
+            let of_head =
+                |tensor: &Tensor, dim: usize| tensor.narrow(dim, head * width, width)?.contiguous();
+            let keys = (of_head(&keys, 1)? * scale)?;
+            // [tokens, width] · [width, hidden]
+            scores.push(keys.matmul(&of_head(&query, 0)?)?);
+            biases.push(keys.matmul(&of_head(&query_bias, 0)?.unsqueeze(1)?)?.squeeze(1)?);
+            // [tokens, width] · [width, hidden]
+            seen.push(of_head(&values, 1)?.matmul(&of_head(&output, 1)?.t()?.contiguous()?)?);
+        }
+        Ok(FoldedAttention {
+            scores: Tensor::cat(&scores, 0)?.t()?.contiguous()?.detach(),
+            scores_bias: Tensor::cat(&biases, 0)?.detach(),
+            seen: Tensor::cat(&seen, 0)?.detach(),
+            seen_bias: output_bias,
+            n_tokens,
+        })
+    }
+
+    fn encoded_tokens(&self, layers: &Layers, tokens: &Tensor) -> Result<Tensor, NnError> {
+        let token = |(i, encoder): (usize, &Mlp)| -> Result<Tensor, NnError> {
+            encoder.forward(&tokens.narrow(1, i, 1)?.contiguous()?)
+        };
+        let tokens: Vec<Tensor> =
+            layers.token_encoders.iter().enumerate().map(token).collect::<Result<_, _>>()?;
+        Ok(Tensor::cat(&tokens, 1)?)
+    }
+
+    /// 1 for the features that the network sees, 0 for others.
+    pub(crate) fn feature_mask_values(&self) -> [f64; N_FEATURES] {
+        feature_mask(self.config.correction)
+    }
+
     /// J.
     pub(crate) fn n_components(&self) -> usize {
         self.config.components
@@ -289,12 +350,8 @@ impl ResponseNetwork {
         let features = features.broadcast_mul(&self.feature_mask)?;
         let mirrored = features.broadcast_mul(&self.feature_mirror)?;
         let hidden = layers.encoder.forward(&Tensor::cat(&[features, mirrored], 1)?)?;
-        let token = |(i, encoder): (usize, &Mlp)| -> Result<Tensor, NnError> {
-            encoder.forward(&tokens.narrow(1, i, 1)?.contiguous()?)
-        };
-        let tokens: Vec<Tensor> =
-            layers.token_encoders.iter().enumerate().map(token).collect::<Result<_, _>>()?;
-        let hidden = layers.attention.cross_attention(&hidden, &Tensor::cat(&tokens, 1)?)?;
+        let tokens = self.encoded_tokens(layers, tokens)?;
+        let hidden = layers.attention.cross_attention(&hidden, &tokens)?;
         let raw = layers.head.forward(&layers.trunk.forward(&hidden)?)?;
         let shape = (n_sequences, 2 * n_instants, self.config.components, N_COMPONENT_NUMBERS);
         let raw = raw.reshape(shape)?;
@@ -317,6 +374,20 @@ impl ResponseNetwork {
             logits: raw.narrow(D::Minus1, 2 * N_RESIDUAL, 1)?.squeeze(D::Minus1)?,
         })
     }
+}
+
+/// Cross-attention to the tokens of one vehicle, folded: `h ← h + softmax_per_head(h S + s₀) U + u₀`.
+pub(crate) struct FoldedAttention {
+    /// S: `[hidden, heads · tokens]`, tokens of a head together.
+    pub scores: Tensor,
+    /// s₀.
+    pub scores_bias: Tensor,
+    /// U: `[heads · tokens, hidden]`.
+    pub seen: Tensor,
+    /// u₀.
+    pub seen_bias: Tensor,
+    /// Tokens.
+    pub n_tokens: usize,
 }
 
 /// A network without the 4DOF model sees nothing of it.

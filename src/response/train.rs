@@ -1,6 +1,7 @@
 //! Trains the response network: on simulations, then on trajectories, on single steps and on
 //! rollouts of growing length.
 
+use std::cell::Cell;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -10,10 +11,12 @@ use rand::RngExt;
 use rand::seq::SliceRandom;
 use rand_distr::StandardNormal;
 
+use crate::data::{Split, folds};
 use crate::force::CaseId;
 use crate::nn::{
     AdamW, AdamWConfig, NamedTensors, OptimizerState, Schedule, StepReport, random_stream,
 };
+use crate::response::calibration::{Unseen, calibrate};
 use crate::response::effects_fit::fit_strengths;
 use crate::response::loss::{Loss, boundary, diversity, single_step_terms};
 use crate::response::model::ResponseModel;
@@ -56,6 +59,10 @@ pub struct ResponseReport<'a> {
     pub record: &'a ResponseEpoch,
     /// Epochs in all.
     pub n_epochs: usize,
+    /// Which training of several it is: 0 for the model itself, then those for the calibration.
+    pub training_idx: usize,
+    /// How many trainings there are.
+    pub n_trainings: usize,
 }
 
 /// The callback of a training: breaking ends it with the weights as they are.
@@ -93,7 +100,7 @@ pub fn pretrain(
     Ok(ResponseModel::new(config.clone(), network, record))
 }
 
-/// Fine-tunes a network on trajectories.
+/// Fine-tunes a network on trajectories, and calibrates how uncertain it is.
 ///
 /// - `start`: a pre-trained model, whose first layers stay as they are; `None` for a fresh network,
 ///   all of whose layers are trained.
@@ -109,6 +116,54 @@ pub fn fine_tune(
     report: &mut ResponseProgress<'_>,
 ) -> Result<ResponseModel, ResponseError> {
     settings.config.check()?;
+    let folds = calibration_folds(set, settings);
+    let n_trainings = folds.len() + 1;
+    let (training_idx, is_cut) = (Cell::new(0), Cell::new(false));
+    let mut told = |told: ResponseReport<'_>| {
+        let flow = report(ResponseReport { training_idx: training_idx.get(), n_trainings, ..told });
+        is_cut.set(is_cut.get() || flow.is_break());
+        flow
+    };
+    let mut model = fine_tune_once(start, set, settings, &mut told)?;
+    let mut unseen = Vec::new();
+    for fold in &folds {
+        if is_cut.get() {
+            return Ok(model);
+        }
+        training_idx.set(training_idx.get() + 1);
+        let part = part_of(set, &fold.train);
+        let quiet = ResponseTrainSettings { checkpoint: None, ..settings.clone() };
+        let member = fine_tune_once(start, &part, &quiet, &mut told)?;
+        for case in fold.test.iter().filter_map(|&idx| set.train.get(idx)) {
+            unseen.push(Unseen { case, predictor: member.predictor(&case.vehicle)? });
+        }
+    }
+    if !is_cut.get() && !unseen.is_empty() {
+        model.set_latents(calibrate(&unseen, settings.config.calibration.prior_std));
+    }
+    Ok(model)
+}
+
+/// The trajectories that each of the trainings for the calibration leaves out.
+fn calibration_folds(set: &ResponseTrainingSet, settings: &ResponseTrainSettings) -> Vec<Split> {
+    let n_folds = settings.config.calibration.folds.min(set.train.len());
+    match n_folds {
+        0 | 1 => Vec::new(),
+        n_folds => folds(&set.train, n_folds, settings.seed),
+    }
+}
+
+fn part_of(set: &ResponseTrainingSet, indices: &[usize]) -> ResponseTrainingSet {
+    let train = indices.iter().filter_map(|&idx| set.train.get(idx).cloned()).collect();
+    ResponseTrainingSet { train, ..set.clone() }
+}
+
+fn fine_tune_once(
+    start: Option<&ResponseModel>,
+    set: &ResponseTrainingSet,
+    settings: &ResponseTrainSettings,
+    report: &mut ResponseProgress<'_>,
+) -> Result<ResponseModel, ResponseError> {
     let config = &settings.config;
     if !set.train.iter().any(|case| case.states.len() > 1 && !case.inputs.is_empty()) {
         return Err(ResponseError::NoCases);
@@ -281,9 +336,13 @@ impl<'a> Training<'a> {
             for in_stage in std::mem::take(&mut skip)..planned.n_epochs {
                 self.epoch(planned.stage)?;
                 let Some(record) = self.history.last() else { continue };
-                let is_broken =
-                    report(ResponseReport { record, n_epochs: self.n_before + n_epochs })
-                        .is_break();
+                let is_broken = report(ResponseReport {
+                    record,
+                    n_epochs: self.n_before + n_epochs,
+                    training_idx: 0,
+                    n_trainings: 1,
+                })
+                .is_break();
                 let is_last = in_stage + 1 == planned.n_epochs;
                 if is_broken || is_last || (in_stage + 1).is_multiple_of(CHECKPOINT_EPOCHS) {
                     file.write(&self.saved()?)?;

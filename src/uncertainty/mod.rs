@@ -35,10 +35,15 @@ mod density;
 mod sample;
 mod scores;
 
+mod planar;
+mod unscented;
+
 pub use bands::{Band, CurveBands};
 pub use curve::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
 pub use error::MixtureError;
 pub use mixture::{CurveComponent, CurveMixture};
 pub use normal_mixture::{NormalMixture, NormalPart};
+pub use planar::{PlanarGrid, PlanarKernel, PlanarMixture, PlanarPart};
 pub use sample::CurveFigures;
 pub use scores::{distance_n, energy_score_n, sample_crps};
+pub use unscented::{Unscented, UnscentedWeights};

@@ -1,0 +1,280 @@
+//! The response network for one vehicle, without tensors: what a prediction runs through thousands of
+//! times.
+//!
+//! The vehicle's tokens do not change along a motion, so that their encoders and the projections of
+//! the attention fold into two small tables: `scores = S h + s₀` and `h ← h + Σ_hk a_hk U_hk`. Motion
+//! and mirrored motion go through side by side. In single precision: the network corrects
+//! accelerations of metres per second squared, by which 1e-6 of them is nothing; all mechanics is in
+//! double precision.
+
+use candle_core::Tensor;
+
+use crate::nn::NnError;
+use crate::nn::bias_silu_rows;
+use crate::response::network::ResponseNetwork;
+use crate::response::{
+    Correction, FEATURE_MIRROR, N_EFFECTS, N_FEATURES, N_RESIDUAL, RESIDUAL_MIRROR,
+};
+use crate::vehicle::VehicleParameters;
+
+/// Motion and mirrored motion.
+const N_SIDES: usize = 2;
+
+/// A fully connected layer, `[n_in, n_out]`.
+#[derive(Debug, Clone)]
+struct Dense {
+    weight: Vec<f32>,
+    bias: Vec<f32>,
+}
+
+/// The network for one vehicle.
+#[derive(Debug, Clone)]
+pub(crate) struct VehicleNetwork {
+    correction: Correction,
+    n_components: usize,
+    feature_mask: [f64; N_FEATURES],
+    encoder: Vec<Dense>,
+    /// S: `[hidden, heads · tokens]`.
+    scores: Dense,
+    /// Tokens that share a softmax.
+    n_tokens: usize,
+    /// U: `[heads · tokens, hidden]`, and the bias of the attention's output.
+    seen: Dense,
+    trunk: Vec<Dense>,
+    head: Dense,
+    /// `[J, N_EFFECTS]`; none where effects are no part of the network.
+    strengths: Option<Vec<[f64; N_EFFECTS]>>,
+    bound: Option<[f64; N_RESIDUAL]>,
+    unit: [f64; N_RESIDUAL],
+    min_std: f64,
+}
+
+/// What the network says of an instant, of one component.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ComponentOutput {
+    /// z_μ in units of the correction: what is added to the effects before the bound.
+    pub remainder: [f64; N_RESIDUAL],
+    /// σ² of the velocities after a step, (m/s)², (rad/s)².
+    pub variance: [f64; N_RESIDUAL],
+    /// z_ω.
+    pub logit: f64,
+}
+
+/// Buffers of a forward pass.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Workspace {
+    hidden: Vec<f32>,
+    next: Vec<f32>,
+    scores: Vec<f32>,
+}
+
+impl VehicleNetwork {
+    /// # Errors
+    /// [`NnError`] if a tensor cannot be read.
+    pub(crate) fn new(
+        network: &ResponseNetwork,
+        vehicle: &VehicleParameters,
+    ) -> Result<Self, NnError> {
+        let config = network.config();
+        let folded = network.folded_attention(vehicle)?;
+        let dense = |name: String| Dense::of(network, &name);
+        let layers = |name: &str, n: usize| -> Result<Vec<Dense>, NnError> {
+            (0..n).map(|i| dense(format!("{name}.{i}"))).collect()
+        };
+        let strengths = match config.effects {
+            true => Some(rows_of(network.strengths())?),
+            false => None,
+        };
+        Ok(Self {
+            correction: config.correction,
+            n_components: config.components,
+            feature_mask: network.feature_mask_values(),
+            encoder: layers("encoder", config.encoder.len())?,
+            scores: Dense::from_tensors(&folded.scores, &folded.scores_bias)?,
+            n_tokens: folded.n_tokens,
+            seen: Dense::from_tensors(&folded.seen, &folded.seen_bias)?,
+            trunk: layers("trunk", config.trunk.len())?,
+            head: dense("head".to_owned())?,
+            strengths,
+            bound: config.bound,
+            unit: config.unit,
+            min_std: config.min_std,
+        })
+    }
+
+    pub(crate) fn n_components(&self) -> usize {
+        self.n_components
+    }
+
+    pub(crate) fn correction(&self) -> Correction {
+        self.correction
+    }
+
+    /// Strengths of the effects in a component.
+    pub(crate) fn strengths(&self, component: usize) -> Option<&[f64; N_EFFECTS]> {
+        self.strengths.as_ref()?.get(component)
+    }
+
+    /// `a_bound ⊙ tanh(a/a_bound)`.
+    pub(crate) fn bounded(&self, free: [f64; N_RESIDUAL]) -> [f64; N_RESIDUAL] {
+        match self.bound {
+            Some(bound) => std::array::from_fn(|i| bound[i] * (free[i] / bound[i]).tanh()),
+            None => free,
+        }
+    }
+
+    /// What the network says of an instant: of all components into `out`.
+    pub(crate) fn forward(
+        &self,
+        features: &[f64; N_FEATURES],
+        work: &mut Workspace,
+        out: &mut Vec<ComponentOutput>,
+    ) {
+        let seen: [f64; N_FEATURES] = std::array::from_fn(|i| features[i] * self.feature_mask[i]);
+        work.hidden.clear();
+        work.hidden.extend(seen.iter().map(|value| *value as f32));
+        work.hidden
+            .extend(seen.iter().zip(FEATURE_MIRROR).map(|(value, sign)| (value * sign) as f32));
+        for layer in &self.encoder {
+            layer.forward(&work.hidden, &mut work.next, true);
+            std::mem::swap(&mut work.hidden, &mut work.next);
+        }
+        self.scores.forward(&work.hidden, &mut work.scores, false);
+        for of_head in work.scores.chunks_exact_mut(self.n_tokens.max(1)) {
+            softmax_in_place(of_head);
+        }
+        self.seen.forward(&work.scores, &mut work.next, false);
+        for (hidden, seen) in work.hidden.iter_mut().zip(&work.next) {
+            *hidden += seen;
+        }
+        for layer in &self.trunk {
+            layer.forward(&work.hidden, &mut work.next, true);
+            std::mem::swap(&mut work.hidden, &mut work.next);
+        }
+        self.head.forward(&work.hidden, &mut work.next, false);
+        let (plain, mirrored) = work.next.split_at(work.next.len() / N_SIDES);
+        out.clear();
+        let width = 2 * N_RESIDUAL + 1;
+        for (a, b) in plain.chunks_exact(width).zip(mirrored.chunks_exact(width)) {
+            let mean = |i: usize, sign: f64| 0.5 * (f64::from(a[i]) + sign * f64::from(b[i]));
+            out.push(ComponentOutput {
+                remainder: std::array::from_fn(|i| self.unit[i] * mean(i, RESIDUAL_MIRROR[i])),
+                variance: std::array::from_fn(|i| {
+                    self.min_std * self.min_std + mean(N_RESIDUAL + i, 1.0).exp()
+                }),
+                logit: mean(2 * N_RESIDUAL, 1.0),
+            });
+        }
+    }
+}
+
+impl Dense {
+    fn of(network: &ResponseNetwork, name: &str) -> Result<Self, NnError> {
+        let find = |part: &str| {
+            let name = format!("{name}.{part}");
+            let found = network.parameters().get(&name).cloned();
+            found.ok_or(NnError::MissingTensor { name })
+        };
+        let (weight, bias) = (find("weight")?, find("bias")?);
+        Self::from_tensors(&weight.t()?, bias.as_tensor())
+    }
+
+    /// - `weight`: `[n_in, n_out]`.
+    fn from_tensors(weight: &Tensor, bias: &Tensor) -> Result<Self, NnError> {
+        let values = |tensor: &Tensor| -> Result<Vec<f32>, NnError> {
+            Ok(tensor.to_dtype(candle_core::DType::F32)?.contiguous()?.flatten_all()?.to_vec1()?)
+        };
+        Ok(Self { weight: values(weight)?, bias: values(bias)? })
+    }
+
+    /// `x W + b` of both sides, then Swish where wanted.
+    fn forward(&self, x: &[f32], out: &mut Vec<f32>, swish: bool) {
+        let (n_in, n_out) = (x.len() / N_SIDES, self.bias.len());
+        out.clear();
+        out.resize(N_SIDES * n_out, 0.0);
+        let (plain, mirrored) = out.split_at_mut(n_out);
+        let (x_plain, x_mirrored) = x.split_at(n_in);
+        multiply([x_plain, x_mirrored], &self.weight, [plain, mirrored]);
+        bias_silu_rows(out, &self.bias, swish);
+    }
+}
+
+/// `out += x W` of both sides, one pass over the weights.
+fn multiply(x: [&[f32]; N_SIDES], weight: &[f32], out: [&mut [f32]; N_SIDES]) {
+    let [plain, mirrored] = out;
+    let n_out = plain.len().max(1);
+    pulp::Arch::new().dispatch(
+        #[inline(always)]
+        || {
+            for ((&a, &b), row) in x[0].iter().zip(x[1]).zip(weight.chunks_exact(n_out)) {
+                for ((p, m), &w) in plain.iter_mut().zip(mirrored.iter_mut()).zip(row) {
+                    *p += a * w;
+                    *m += b * w;
+                }
+            }
+        },
+    );
+}
+
+fn softmax_in_place(values: &mut [f32]) {
+    let largest = values.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    let mut sum = 0.0;
+    for value in values.iter_mut() {
+        *value = (*value - largest).exp();
+        sum += *value;
+    }
+    values.iter_mut().for_each(|value| *value /= sum);
+}
+
+fn rows_of(tensor: &Tensor) -> Result<Vec<[f64; N_EFFECTS]>, NnError> {
+    let rows = tensor.detach().to_vec2::<f64>()?;
+    Ok(rows.into_iter().map(|row| std::array::from_fn(|i| row[i])).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use candle_core::{DType, Device};
+
+    use super::*;
+    use crate::nn::gradient_check::random_tensor;
+    use crate::nn::random_stream;
+    use crate::response::ResponseNetworkConfig;
+    use crate::response::network::Gradients;
+    use crate::response::one_step::token_tensor;
+    use crate::vehicle::Preset;
+
+    #[test]
+    fn it_says_what_the_network_says() {
+        for config in [ResponseNetworkConfig::default(), ResponseNetworkConfig::default().plain()] {
+            let network = ResponseNetwork::new(&config, &mut random_stream(3, "test", 0)).unwrap();
+            for (i, (_, variable)) in network.parameters().iter().enumerate() {
+                let values = random_tensor(variable.dims(), DType::F64, i as u64);
+                variable.set(&(values * 0.5).unwrap()).unwrap();
+            }
+            let vehicle = Preset::ALL[1].parameters();
+            let quick = VehicleNetwork::new(&network, &vehicle).unwrap();
+            let features = random_tensor(&[1, 1, N_FEATURES], DType::F64, 100);
+            let effects = Tensor::zeros((1, 1, 1, N_RESIDUAL), DType::F64, &Device::Cpu).unwrap();
+            let tokens = token_tensor(&vehicle).unwrap();
+            let slow = network.forward(Gradients::None, [&features, &tokens, &effects]).unwrap();
+            let of =
+                |tensor: &Tensor| -> Vec<f64> { tensor.flatten_all().unwrap().to_vec1().unwrap() };
+            let features = of(&features);
+            let (mut work, mut outputs) = (Workspace::default(), Vec::new());
+            quick.forward(&std::array::from_fn(|i| features[i]), &mut work, &mut outputs);
+            assert_eq!(outputs.len(), config.components);
+            let (residual, logits) = (of(&slow.residual), of(&slow.logits));
+            let variance = of(&slow.log_variance);
+            for (j, output) in outputs.iter().enumerate() {
+                let value = quick.bounded(output.remainder);
+                for i in 0..N_RESIDUAL {
+                    let off = value[i] - residual[j * N_RESIDUAL + i];
+                    assert!(off.abs() < 1e-4, "{j} {i}: {off}");
+                    let expected = variance[j * N_RESIDUAL + i].exp() + 1e-4;
+                    assert!((output.variance[i] / expected - 1.0).abs() < 1e-4);
+                }
+                assert!((output.logit - logits[j]).abs() < 1e-4);
+            }
+        }
+    }
+}

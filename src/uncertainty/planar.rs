@@ -1,0 +1,287 @@
+//! Mixture of normal distributions of a position in the plane: density on a grid, and the regions in
+//! which the position lies with a given probability.
+//!
+//! ```text
+//! p(x) = Σ_k w_k N(x; m_k, P_k)
+//! region of level q: {x : p(x) ≥ c_q}   with   P(p(X) ≥ c_q) = q
+//! ```
+//!
+//! Regions of highest density are the smallest of their probability, and fall apart where the
+//! distribution has several modes.
+//!
+//! Source: R. J. Hyndman, Computing and Graphing Highest Density Regions, The American Statistician 50
+//! (1996) 120–126.
+
+use std::f64::consts::TAU;
+
+use rand::RngExt;
+use rand_distr::StandardNormal;
+use rayon::prelude::*;
+
+use crate::nn::random_stream;
+
+/// Draws behind a level of density: its probability is known to 1 %.
+const N_DRAWS: usize = 2000;
+/// Beyond this many standard deviations a part adds nothing: e^(−8²/2) = 1e-14.
+const REACH: f64 = 8.0;
+/// Least variance relative to the larger one, and least of all, m².
+const LEAST_RATIO: f64 = 1e-9;
+const LEAST_VARIANCE_M2: f64 = 1e-8;
+
+/// One normal distribution.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanarPart {
+    /// Share, 0 to 1.
+    pub weight: f64,
+    /// Mean [x, y], m.
+    pub mean: [f64; 2],
+    /// Covariance [P_xx, P_xy, P_yy], m².
+    pub covariance: [f64; 3],
+}
+
+/// `Σ_k w_k N(m_k, P_k)`.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PlanarMixture {
+    parts: Vec<PlanarPart>,
+}
+
+/// Points of a rectangle, row by row from the lowest y on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanarGrid {
+    /// Lowest x and y of the points, m.
+    pub low_m: [f64; 2],
+    /// Between neighbouring points, m.
+    pub step_m: [f64; 2],
+    /// Points along x and y.
+    pub size: [usize; 2],
+}
+
+/// A part as its density is computed: `c exp(−(a dx² + 2 b dx dy + d dy²)/2)`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanarKernel {
+    /// Mean [x, y], m.
+    pub mean: [f64; 2],
+    /// Inverse covariance [a, b, d], 1/m².
+    pub precision: [f64; 3],
+    /// c: weight over 2π √det P, 1/m².
+    pub peak: f64,
+    /// Half width and half height of the rectangle outside of which it adds nothing, m.
+    pub reach_m: [f64; 2],
+}
+
+impl PlanarMixture {
+    /// Of parts; the weights are scaled to sum to one. A covariance that is not positive definite is
+    /// lifted to the nearest that is.
+    pub fn new(mut parts: Vec<PlanarPart>) -> Self {
+        let sum: f64 = parts.iter().map(|part| part.weight).sum();
+        for part in &mut parts {
+            part.weight /= sum;
+            let [xx, xy, yy] = &mut part.covariance;
+            let least = (LEAST_RATIO * xx.max(*yy)).max(LEAST_VARIANCE_M2);
+            *xx = xx.max(least);
+            *yy = yy.max(least);
+            let limit = ((*xx - 0.5 * least) * (*yy - 0.5 * least)).max(0.0).sqrt();
+            *xy = xy.clamp(-limit, limit);
+        }
+        Self { parts }
+    }
+
+    /// Several mixtures that are equally likely.
+    pub fn mixed<'a>(mixtures: impl IntoIterator<Item = &'a Self>) -> Self {
+        Self::new(mixtures.into_iter().flat_map(|mixture| mixture.parts.clone()).collect())
+    }
+
+    /// Its normal distributions.
+    pub fn parts(&self) -> &[PlanarPart] {
+        &self.parts
+    }
+
+    /// The parts as their density is computed.
+    pub fn kernels(&self) -> Vec<PlanarKernel> {
+        self.parts.iter().map(PlanarKernel::of).collect()
+    }
+
+    /// Density at a point, 1/m².
+    pub fn density(&self, point: [f64; 2]) -> f64 {
+        self.parts.iter().map(|part| PlanarKernel::of(part).density(point)).sum()
+    }
+
+    /// Density at the points of a grid, 1/m², row by row.
+    pub fn density_on(&self, grid: &PlanarGrid) -> Vec<f64> {
+        let kernels = self.kernels();
+        let [n_columns, n_rows] = grid.size;
+        let row = |row_idx: usize| {
+            let mut row = vec![0.0; n_columns];
+            for kernel in &kernels {
+                kernel.add_to_row(grid, row_idx, &mut row);
+            }
+            row
+        };
+        let rows: Vec<Vec<f64>> = (0..n_rows).into_par_iter().map(row).collect();
+        rows.concat()
+    }
+
+    /// Draws of a position.
+    ///
+    /// - `seed`: of the draws.
+    pub fn sample(&self, n: usize, seed: u64) -> Vec<[f64; 2]> {
+        let mut rng = random_stream(seed, "positions", 0);
+        let draw = |_| {
+            let share: f64 = rng.random();
+            let mut sum = 0.0;
+            let found = self.parts.iter().find(|part| {
+                sum += part.weight;
+                share < sum
+            });
+            let [a, b] = [(); 2].map(|()| rng.sample::<f64, _>(StandardNormal));
+            found.or(self.parts.last()).map_or([f64::NAN; 2], |part| {
+                let [xx, xy, yy] = part.covariance;
+                let first = xx.sqrt();
+                let across = xy / first;
+                let rest = (yy - across * across).max(0.0).sqrt();
+                [part.mean[0] + first * a, part.mean[1] + across * a + rest * b]
+            })
+        };
+        (0..n).map(draw).collect()
+    }
+
+    /// Densities c_q above which the position lies with the probabilities q, 1/m².
+    ///
+    /// - `levels`: q, 0 to 1.
+    pub fn thresholds(&self, levels: &[f64]) -> Vec<f64> {
+        let densities = self.densities_of_draws();
+        let at = |level: &f64| {
+            let rank = ((1.0 - level) * densities.len() as f64).floor() as usize;
+            densities.get(rank.min(densities.len().saturating_sub(1))).copied().unwrap_or(0.0)
+        };
+        levels.iter().map(at).collect()
+    }
+
+    /// Level of the smallest region that holds a point: 0 at the highest density, 1 far away. A point
+    /// drawn from the mixture has a level that is evenly distributed.
+    pub fn level_of(&self, point: [f64; 2]) -> f64 {
+        let (densities, at) = (self.densities_of_draws(), self.density(point));
+        let n_below = densities.partition_point(|density| *density < at);
+        1.0 - n_below as f64 / densities.len().max(1) as f64
+    }
+
+    /// Rising.
+    fn densities_of_draws(&self) -> Vec<f64> {
+        let kernels = self.kernels();
+        let density = |point: &[f64; 2]| kernels.iter().map(|kernel| kernel.density(*point)).sum();
+        let mut densities: Vec<f64> = self.sample(N_DRAWS, 0).iter().map(density).collect();
+        densities.sort_by(f64::total_cmp);
+        densities
+    }
+
+    /// A rectangle that holds all parts out to `reach` standard deviations, `[low, high]`, m.
+    pub fn bounds(&self, reach: f64) -> Option<[[f64; 2]; 2]> {
+        let of = |part: &PlanarPart| {
+            let [xx, _, yy] = part.covariance;
+            let half = [reach * xx.sqrt(), reach * yy.sqrt()];
+            [
+                [part.mean[0] - half[0], part.mean[1] - half[1]],
+                [part.mean[0] + half[0], part.mean[1] + half[1]],
+            ]
+        };
+        self.parts.iter().map(of).reduce(|[low, high], [l, h]| {
+            [[low[0].min(l[0]), low[1].min(l[1])], [high[0].max(h[0]), high[1].max(h[1])]]
+        })
+    }
+}
+
+impl PlanarKernel {
+    fn of(part: &PlanarPart) -> Self {
+        let [xx, xy, yy] = part.covariance;
+        let determinant = xx * yy - xy * xy;
+        Self {
+            mean: part.mean,
+            precision: [yy / determinant, -xy / determinant, xx / determinant],
+            peak: part.weight / (TAU * determinant.sqrt()),
+            reach_m: [REACH * xx.sqrt(), REACH * yy.sqrt()],
+        }
+    }
+
+    fn density(&self, [x, y]: [f64; 2]) -> f64 {
+        let (dx, dy) = (x - self.mean[0], y - self.mean[1]);
+        let [a, b, d] = self.precision;
+        self.peak * (-0.5 * (a * dx * dx + 2.0 * b * dx * dy + d * dy * dy)).exp()
+    }
+
+    fn add_to_row(&self, grid: &PlanarGrid, row_idx: usize, row: &mut [f64]) {
+        let y = grid.low_m[1] + row_idx as f64 * grid.step_m[1];
+        if (y - self.mean[1]).abs() > self.reach_m[1] {
+            return;
+        }
+        let column = |x: f64| ((x - grid.low_m[0]) / grid.step_m[0]).clamp(0.0, row.len() as f64);
+        let first = column(self.mean[0] - self.reach_m[0]).ceil() as usize;
+        let last = column(self.mean[0] + self.reach_m[0]).ceil() as usize;
+        for (i, value) in row.iter_mut().enumerate().take(last).skip(first) {
+            *value += self.density([grid.low_m[0] + i as f64 * grid.step_m[0], y]);
+        }
+    }
+}
+
+impl PlanarGrid {
+    /// About a rectangle, with points on its edges.
+    pub fn over([low_m, high_m]: [[f64; 2]; 2], size: [usize; 2]) -> Self {
+        let step = |axis: usize| {
+            (high_m[axis] - low_m[axis]) / (size[axis].saturating_sub(1)).max(1) as f64
+        };
+        Self { low_m, step_m: [step(0), step(1)], size }
+    }
+
+    /// Area of a cell, m².
+    pub fn cell_m2(&self) -> f64 {
+        self.step_m[0] * self.step_m[1]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mixture() -> PlanarMixture {
+        let part = |weight, mean, covariance| PlanarPart { weight, mean, covariance };
+        PlanarMixture::new(vec![
+            part(1.0, [10.0, 0.0], [4.0, 1.0, 1.0]),
+            part(3.0, [-5.0, 3.0], [0.5, -0.3, 2.0]),
+        ])
+    }
+
+    #[test]
+    fn the_density_sums_to_one_on_a_grid() {
+        let mixture = mixture();
+        let bounds = mixture.bounds(6.0).unwrap();
+        let grid = PlanarGrid::over(bounds, [400, 300]);
+        let density = mixture.density_on(&grid);
+        let sum: f64 = density.iter().sum::<f64>() * grid.cell_m2();
+        assert!((sum - 1.0).abs() < 1e-3, "{sum}");
+        let (i, j) = (123, 77);
+        let x = grid.low_m[0] + i as f64 * grid.step_m[0];
+        let y = grid.low_m[1] + j as f64 * grid.step_m[1];
+        assert!((density[j * 400 + i] - mixture.density([x, y])).abs() < 1e-12);
+    }
+
+    #[test]
+    fn draws_lie_in_their_regions_as_often_as_said() {
+        let mixture = mixture();
+        let thresholds = mixture.thresholds(&[0.5, 0.9]);
+        let draws = mixture.sample(4000, 9);
+        for (threshold, level) in thresholds.into_iter().zip([0.5, 0.9]) {
+            let inside = draws.iter().filter(|point| mixture.density(**point) >= threshold).count();
+            let share = inside as f64 / draws.len() as f64;
+            assert!((share - level).abs() < 0.03, "{share} of {level}");
+        }
+        assert!(mixture.level_of([-5.0, 3.0]) < 0.05 && mixture.level_of([40.0, 0.0]) > 0.999);
+    }
+
+    #[test]
+    fn a_covariance_that_is_none_is_lifted() {
+        let part = PlanarPart { weight: 1.0, mean: [0.0; 2], covariance: [1.0, 1.0, 1.0] };
+        let mixture = PlanarMixture::new(vec![part]);
+        assert!(mixture.density([0.0, 0.0]).is_finite());
+        let part = PlanarPart { covariance: [0.0, 0.0, 0.0], ..part };
+        assert!(PlanarMixture::new(vec![part]).density([0.0, 0.0]).is_finite());
+    }
+}
