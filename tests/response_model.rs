@@ -129,15 +129,7 @@ fn a_training_that_was_cut_goes_on_to_the_same_weights() {
 #[test]
 fn pre_training_comes_before_and_the_plain_network_learns_without_the_4dof_model() {
     let train = set();
-    let records: Vec<ImpactRecord<'_>> = train
-        .train
-        .iter()
-        .map(|case| ImpactRecord {
-            vehicle: &case.vehicle,
-            initial: &case.states[0],
-            inputs: &case.inputs,
-        })
-        .collect();
+    let records: Vec<ImpactRecord> = train.train.iter().filter_map(ResponseCase::impact).collect();
     for config in [small(), small().plain()] {
         let settings = settings(config);
         let pretrained = pretrain(("made", &records), &settings, &mut go_on).expect("a model");

@@ -8,6 +8,7 @@ use crate::collision::{FilterError, ScenarioError, ScenarioFileError};
 use crate::compare::ReplayError;
 use crate::data::{DataError, SeriesError};
 use crate::force::{EvaluateError, ForceError, LoadError};
+use crate::response::{ResponseError, ResponseLoadError};
 use crate::vehicle::{SimulationError, VehicleError};
 
 /// A command that could not do its work.
@@ -25,6 +26,12 @@ pub enum CliError {
     /// Training, opening or asking a force network.
     #[error(transparent)]
     Force(Box<ForceError>),
+    /// A trajectory data set.
+    #[error(transparent)]
+    ResponseData(Box<ResponseLoadError>),
+    /// Training, opening or asking a response network.
+    #[error(transparent)]
+    Response(Box<ResponseError>),
     /// Nothing to test on.
     #[error("{}: the model was trained on every case; --split all evaluates them all the same", path.display())]
     NoTestCase {
@@ -222,6 +229,18 @@ pub enum CliError {
 impl From<LoadError> for CliError {
     fn from(error: LoadError) -> Self {
         Self::ForceData(Box::new(error))
+    }
+}
+
+impl From<ResponseLoadError> for CliError {
+    fn from(error: ResponseLoadError) -> Self {
+        Self::ResponseData(Box::new(error))
+    }
+}
+
+impl From<ResponseError> for CliError {
+    fn from(error: ResponseError) -> Self {
+        Self::Response(Box::new(error))
     }
 }
 

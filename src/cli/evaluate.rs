@@ -7,6 +7,7 @@ use clap::{Args, Subcommand, ValueEnum};
 use serde::Serialize;
 
 use crate::cli::CliError;
+use crate::cli::evaluate_response::{self, EvaluateResponseArgs};
 use crate::cli::output::{print_json, print_table};
 use crate::cli::progress::{complete, with_progress};
 use crate::cli::run::{Console, Verdict};
@@ -29,12 +30,14 @@ pub(super) struct EvaluateArgs {
 enum What {
     /// The force network beside classic pulse, nearest case and Gaussian processes
     Force(EvaluateForceArgs),
+    /// A response network on trajectories
+    Response(EvaluateResponseArgs),
 }
 
 /// Which cases of the data set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
 #[serde(rename_all = "snake_case")]
-enum SplitArg {
+pub(super) enum SplitArg {
     /// Those that the model was not trained on, recognised by their content
     Test,
     /// All, also those that it was trained on
@@ -105,6 +108,7 @@ struct Answer<'a> {
 pub(super) fn run(args: &EvaluateArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
     match &args.what {
         What::Force(args) => evaluate_force(args, console),
+        What::Response(args) => evaluate_response::run(args, console),
     }
 }
 

@@ -11,7 +11,10 @@ mod app;
 mod check;
 mod check_report;
 mod check_text;
+mod compare;
 mod evaluate;
+mod evaluate_response;
+mod fine_tune;
 mod impact;
 mod predict;
 mod render;
@@ -21,6 +24,7 @@ mod simulate_answer;
 mod simulate_dataset;
 mod simulate_single;
 mod train;
+mod train_response;
 mod vehicles;
 
 mod case_choice;
@@ -28,6 +32,7 @@ mod error;
 mod output;
 mod progress;
 mod quantity;
+mod response_training;
 mod vehicle_choice;
 
 pub use error::CliError;

@@ -6,7 +6,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 
 use crate::cli::{
-    CliError, app, check, evaluate, impact, predict, render, simulate, train, vehicles,
+    CliError, app, check, compare, evaluate, fine_tune, impact, predict, render, simulate, train,
+    vehicles,
 };
 use crate::error_chain;
 
@@ -41,8 +42,10 @@ enum Command {
     Impact(impact::ImpactArgs),
     Simulate(Box<simulate::SimulateArgs>),
     Train(train::TrainArgs),
+    FineTune(fine_tune::FineTuneArgs),
     Predict(predict::PredictArgs),
     Evaluate(evaluate::EvaluateArgs),
+    Compare(compare::CompareArgs),
     Render(render::RenderArgs),
     Vehicles(vehicles::VehiclesArgs),
 }
@@ -109,6 +112,8 @@ fn dispatch(command: Option<Command>, console: &mut Console<'_>) -> Result<Verdi
         Some(Command::Impact(args)) => impact::run(&args, console),
         Some(Command::Simulate(args)) => simulate::run(&args, console),
         Some(Command::Train(args)) => train::run(&args, console),
+        Some(Command::FineTune(args)) => fine_tune::run(&args, console),
+        Some(Command::Compare(args)) => compare::run(&args, console),
         Some(Command::Evaluate(args)) => evaluate::run(&args, console),
         Some(Command::Predict(args)) => predict::run(&args, console),
         Some(Command::Render(args)) => render::run(&args, console),

@@ -13,6 +13,7 @@ use crate::cli::CliError;
 use crate::cli::output::{print_facts, print_json};
 use crate::cli::progress::{complete, with_progress};
 use crate::cli::run::{Console, Verdict};
+use crate::cli::train_response::{self, TrainResponseArgs};
 use crate::force::{
     ForceCase, ForceConfig, ForceModel, TrainSettings, TrainingRecord, TrainingReport, TrainingSet,
     VarianceFactors, train,
@@ -29,6 +30,8 @@ pub(super) struct TrainArgs {
 enum What {
     /// The force network: scenario to impact force history
     Force(TrainForceArgs),
+    /// The response network, on simulations: force history and vehicle to motion after the impact
+    Response(TrainResponseArgs),
 }
 
 #[derive(Debug, Args)]
@@ -93,6 +96,7 @@ struct Answer<'a> {
 pub(super) fn run(args: &TrainArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
     match &args.what {
         What::Force(args) => train_force(args, console),
+        What::Response(args) => train_response::run(args, console),
     }
 }
 

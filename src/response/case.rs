@@ -4,11 +4,12 @@ use crate::compare::{
     ReplayError, SPIN_YAW_CHANGE_RAD, largest_yaw_change_rad, recorded_manoeuvre,
 };
 use crate::data::{
-    Case, Channel, Dataset, SeriesError, Stratified, TimeSeries, TrajectoryAttributes,
+    Case, Channel, Dataset, ForceAxes, ForceHistory, Sampling, SeriesError, Stratified, TimeSeries,
+    TrajectoryAttributes,
 };
 use crate::nn::sha256_hex;
 use crate::numerics::interpolate;
-use crate::response::STEP_S;
+use crate::response::{ImpactRecord, STEP_S};
 use crate::vehicle::{VehicleInput, VehicleParameters, VehicleState};
 
 /// Steps to which numbers are rounded before they are hashed.
@@ -79,6 +80,38 @@ impl ResponseCase {
             inputs,
             spins,
         })
+    }
+
+    /// Vehicle, driving state and forces, without what followed; `None` for a case without states.
+    pub fn impact(&self) -> Option<ImpactRecord> {
+        let initial = *self.states.first()?;
+        let (vehicle, inputs) = (self.vehicle.clone(), self.inputs.clone());
+        Some(ImpactRecord { vehicle, initial, inputs })
+    }
+
+    /// The force on the struck vehicle, means over steps of 10 ms, as it was recorded.
+    pub fn force_history(&self) -> ForceHistory {
+        let force = |axis: usize| -> Vec<f64> {
+            self.inputs
+                .iter()
+                .map(|input| input.collision.map_or(0.0, |collision| collision.force_n[axis]))
+                .collect()
+        };
+        let is_in_world = |input: &VehicleInput<f64>| {
+            input.collision.is_some_and(|collision| collision.in_world_axes)
+        };
+        ForceHistory {
+            axes: if self.inputs.iter().any(is_in_world) {
+                ForceAxes::World
+            } else {
+                ForceAxes::Body
+            },
+            sampling: Sampling::ComingMean,
+            time_s: (0..self.inputs.len()).map(|i| i as f64 * STEP_S).collect(),
+            fx_n: force(0),
+            fy_n: force(1),
+            mz_n_m: None,
+        }
     }
 
     /// All cases of a trajectory data set, and what is wrong with the rest.

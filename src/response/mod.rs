@@ -2,6 +2,7 @@
 //! vehicle.
 
 mod case;
+pub mod comparison;
 mod config;
 mod error;
 
@@ -20,8 +21,10 @@ mod step_operations;
 
 mod calibration;
 mod latents;
+mod load;
 mod loss;
 mod model;
+mod motion_series;
 mod predictor;
 mod propagate;
 #[cfg(test)]
@@ -44,8 +47,10 @@ pub use effects_fit::EffectsConfig;
 pub use error::ResponseError;
 pub use features::{FEATURE_MIRROR, IS_OF_MODEL, N_FEATURES, features};
 pub use latents::{LATENT_NAMES, LatentScales, N_LATENTS};
+pub use load::ResponseLoadError;
 pub use loss::ResponseLossTerms;
 pub use model::ResponseModel;
+pub use motion_series::motion_series;
 pub use predictor::{ComponentPath, MotionDistribution, Predictor};
 pub use propagate::{ComponentMotion, StateDistribution};
 pub use record::{ResponseEpoch, ResponseRecord, ResponseStage, ResponseTrainingSet};

@@ -50,6 +50,18 @@ impl ResponseModel {
         self.record.train.iter().any(|known| known.digest == case.digest)
     }
 
+    /// The same model once more.
+    ///
+    /// # Errors
+    /// [`ResponseError::Network`].
+    pub fn copied(&self) -> Result<Self, ResponseError> {
+        let mut rng = random_stream(0, "response network", 0);
+        let network = ResponseNetwork::new(&self.config.network, &mut rng)?;
+        network.parameters().import(&self.network.parameters().export()?)?;
+        let (config, record) = (self.config.clone(), self.record.clone());
+        Ok(Self { config, network, latents: self.latents, record })
+    }
+
     pub(crate) fn network(&self) -> &ResponseNetwork {
         &self.network
     }

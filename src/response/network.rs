@@ -51,9 +51,8 @@ pub(crate) struct ResponseNetwork {
     config: ResponseNetworkConfig,
     parameters: Parameters,
     layers: Layers,
-    /// The same, without gradients of the first ones or of all.
+    /// The same, without gradients of the first ones.
     fine_tuned: Layers,
-    frozen: Layers,
     /// c, `[J, N_EFFECTS]`.
     strengths: Tensor,
     /// ln s of the soft boundaries, `[5]`.
@@ -129,8 +128,6 @@ pub(crate) enum Gradients {
     All,
     /// Those that fine-tuning changes.
     FineTuned,
-    /// None: predictions.
-    None,
 }
 
 /// What the network says of instants.
@@ -200,7 +197,6 @@ impl ResponseNetwork {
         let layers = Layers { encoder, token_encoders, attention, trunk, head };
         Ok(Self {
             fine_tuned: layers.clone(),
-            frozen: layers.frozen_up_to(layers.count()),
             layers,
             strengths,
             boundary_log_scale,
@@ -272,7 +268,7 @@ impl ResponseNetwork {
         &self,
         vehicle: &VehicleParameters,
     ) -> Result<FoldedAttention, NnError> {
-        let tokens = self.encoded_tokens(&self.frozen, &token_tensor(vehicle)?)?.squeeze(0)?;
+        let tokens = self.encoded_tokens(&self.layers, &token_tensor(vehicle)?)?.squeeze(0)?;
         let get = |name: &str| {
             let name = format!("attention.{name}");
             let found = self.parameters.get(&name).map(|variable| variable.as_detached_tensor());
@@ -344,7 +340,6 @@ impl ResponseNetwork {
         let layers = match gradients {
             Gradients::All => &self.layers,
             Gradients::FineTuned => &self.fine_tuned,
-            Gradients::None => &self.frozen,
         };
         let (n_sequences, n_instants, _) = features.dims3()?;
         let features = features.broadcast_mul(&self.feature_mask)?;
@@ -422,10 +417,10 @@ mod tests {
         let tokens = random_tensor(&[2, N_TOKENS, N_TOKEN_NUMBERS], DType::F64, 101);
         let effects = random_tensor(&[2, 3, 1, N_RESIDUAL], DType::F64, 102);
         let signs = Tensor::new(&RESIDUAL_MIRROR, &Device::Cpu).unwrap();
-        let plain = network.forward(Gradients::None, [&features, &tokens, &effects]).unwrap();
+        let plain = network.forward(Gradients::All, [&features, &tokens, &effects]).unwrap();
         let mirrored = features.broadcast_mul(&network.feature_mirror).unwrap();
         let effects = effects.broadcast_mul(&signs).unwrap();
-        let other = network.forward(Gradients::None, [&mirrored, &tokens, &effects]).unwrap();
+        let other = network.forward(Gradients::All, [&mirrored, &tokens, &effects]).unwrap();
         assert_close(&other.residual.broadcast_mul(&signs).unwrap(), &plain.residual, 1e-12);
         assert_close(&other.log_variance, &plain.log_variance, 1e-12);
         assert_close(&other.logits, &plain.logits, 1e-12);
@@ -439,7 +434,7 @@ mod tests {
         let tokens = random_tensor(&[1, N_TOKENS, N_TOKEN_NUMBERS], DType::F64, 2);
         let none = Tensor::zeros((1, 4, 1, N_RESIDUAL), DType::F64, &Device::Cpu).unwrap();
         let values = |network: &ResponseNetwork, effects: &Tensor| -> Vec<f64> {
-            let output = network.forward(Gradients::None, [&features, &tokens, effects]).unwrap();
+            let output = network.forward(Gradients::All, [&features, &tokens, effects]).unwrap();
             output.residual.flatten_all().unwrap().to_vec1().unwrap()
         };
         assert!(values(&fresh, &none).iter().all(|value| *value == 0.0));

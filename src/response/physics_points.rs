@@ -40,7 +40,7 @@ pub(crate) struct PhysicsBatch {
 impl PhysicsPoints {
     pub(crate) fn about(
         data: &OneStepData,
-        records: &[ImpactRecord<'_>],
+        records: &[ImpactRecord],
         (config, seed): (&ResponseConfig, u64),
     ) -> Self {
         let motions = simulate(records, N_MOTIONS, (false, seed));

@@ -7,21 +7,47 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 use rayon::prelude::*;
 
+use crate::force::ForceCase;
 use crate::nn::random_stream;
 use crate::response::one_step::MotionView;
-use crate::response::{N_RESIDUAL, rollout};
-use crate::vehicle::{VehicleInput, VehicleParameters, VehicleState};
+use crate::response::{N_RESIDUAL, STEP_S, rollout};
+use crate::vehicle::{
+    ContactLoad, ContactPoint, Manoeuvre, VehicleInput, VehicleParameters, VehicleState,
+};
 
 /// A driving state and the forces that follow.
-#[derive(Debug, Clone, Copy)]
-pub struct ImpactRecord<'a> {
+#[derive(Debug, Clone, PartialEq)]
+pub struct ImpactRecord {
     /// The struck vehicle by its data sheet.
-    pub vehicle: &'a VehicleParameters,
+    pub vehicle: VehicleParameters,
     /// State at the start of the impact.
-    pub initial: &'a VehicleState<f64>,
+    pub initial: VehicleState<f64>,
     /// Input over each step.
-    pub inputs: &'a [VehicleInput<f64>],
+    pub inputs: Vec<VehicleInput<f64>>,
 }
+
+impl ImpactRecord {
+    /// Of a case of a force data set, 4 s from the start of the impact.
+    ///
+    /// - `vehicle`: the kind of the struck vehicle, whose mass is replaced by the case's.
+    ///
+    /// `None` where the case does not say where the contact was.
+    pub fn of_force_case(case: &ForceCase, vehicle: &VehicleParameters) -> Option<Self> {
+        let scenario = &case.scenario;
+        let [x_m, y_m] = scenario.contact_m?;
+        let vehicle = vehicle.clone().with_mass(scenario.mass_kg[0], scenario.yaw_inertia_kg_m2[0]);
+        let [vx_m_s, vy_m_s] = scenario.target_velocity_m_s;
+        let initial = VehicleState { vx_m_s, vy_m_s, ..VehicleState::default() };
+        let contact = ContactPoint { x_m, y_m, height_m: vehicle.geometry.cg_height_m };
+        let load = ContactLoad { force: case.curve.to_history(), contact, recorded_moment: false };
+        let duration_s = N_STEPS as f64 * STEP_S;
+        let manoeuvre = Manoeuvre { initial, contact_load: Some(load), steer: None, duration_s };
+        Some(Self { vehicle, initial, inputs: manoeuvre.inputs(STEP_S, N_STEPS) })
+    }
+}
+
+/// Steps of a motion that is simulated from a force alone: 4 s.
+const N_STEPS: usize = 400;
 
 /// A simulated motion.
 #[derive(Debug, Clone)]
@@ -57,7 +83,7 @@ impl SimulatedMotion {
 ///
 /// - `varies`: whether the vehicle is another than the record's.
 pub(crate) fn simulate(
-    records: &[ImpactRecord<'_>],
+    records: &[ImpactRecord],
     n: usize,
     (varies, seed): (bool, u64),
 ) -> Vec<SimulatedMotion> {
@@ -67,8 +93,8 @@ pub(crate) fn simulate(
         let speed = rng.random_range(SPEED_FACTOR[0]..SPEED_FACTOR[1]);
         let force = rng.random_range(FORCE_FACTOR[0]..FORCE_FACTOR[1]);
         let vehicle =
-            if varies { varied(record.vehicle, &mut rng) } else { record.vehicle.clone() };
-        let initial = VehicleState { vx_m_s: record.initial.vx_m_s * speed, ..*record.initial };
+            if varies { varied(&record.vehicle, &mut rng) } else { record.vehicle.clone() };
+        let initial = VehicleState { vx_m_s: record.initial.vx_m_s * speed, ..record.initial };
         let inputs: Vec<VehicleInput<f64>> =
             record.inputs.iter().map(|input| scaled(input, force)).collect();
         let states = rollout(&vehicle, initial, &inputs, |_, _| [0.0; N_RESIDUAL]);
@@ -113,9 +139,9 @@ mod tests {
         let vehicle = Preset::Reference.parameters();
         let initial = VehicleState { yaw_rate_rad_s: 0.5, ..VehicleState::driving_straight(20.0) };
         let inputs = vec![VehicleInput::released(); 100];
-        let record = ImpactRecord { vehicle: &vehicle, initial: &initial, inputs: &inputs };
-        let motions = simulate(&[record], 20, (true, 3));
-        let again = simulate(&[record], 20, (true, 3));
+        let record = ImpactRecord { vehicle: vehicle.clone(), initial, inputs };
+        let motions = simulate(std::slice::from_ref(&record), 20, (true, 3));
+        let again = simulate(std::slice::from_ref(&record), 20, (true, 3));
         assert_eq!(motions.len(), 20);
         for (a, b) in motions.iter().zip(&again) {
             assert_eq!((a.states.last(), &a.vehicle), (b.states.last(), &b.vehicle));

@@ -75,7 +75,7 @@ pub type ResponseProgress<'a> = dyn FnMut(ResponseReport<'_>) -> ControlFlow<()>
 /// # Errors
 /// [`ResponseError`].
 pub fn pretrain(
-    (name, records): (&str, &[ImpactRecord<'_>]),
+    (name, records): (&str, &[ImpactRecord]),
     settings: &ResponseTrainSettings,
     report: &mut ResponseProgress<'_>,
 ) -> Result<ResponseModel, ResponseError> {
@@ -261,11 +261,7 @@ impl<'a> Data<'a> {
         };
         let views: Vec<MotionView<'_>> = cases.iter().map(view).collect();
         let instants = OneStepData::of(&views, &config.network);
-        let record = |case: &'a ResponseCase| {
-            let initial = case.states.first()?;
-            Some(ImpactRecord { vehicle: &case.vehicle, initial, inputs: &case.inputs })
-        };
-        let records: Vec<ImpactRecord<'_>> = cases.iter().filter_map(record).collect();
+        let records: Vec<ImpactRecord> = cases.iter().filter_map(ResponseCase::impact).collect();
         let physics_points = (config.loss.physics > 0.0 && config.physics.batch_instants > 0)
             .then(|| PhysicsPoints::about(&instants, &records, (config, seed)));
         let rollouts = cases

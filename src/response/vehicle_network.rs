@@ -256,7 +256,7 @@ mod tests {
             let features = random_tensor(&[1, 1, N_FEATURES], DType::F64, 100);
             let effects = Tensor::zeros((1, 1, 1, N_RESIDUAL), DType::F64, &Device::Cpu).unwrap();
             let tokens = token_tensor(&vehicle).unwrap();
-            let slow = network.forward(Gradients::None, [&features, &tokens, &effects]).unwrap();
+            let slow = network.forward(Gradients::All, [&features, &tokens, &effects]).unwrap();
             let of =
                 |tensor: &Tensor| -> Vec<f64> { tensor.flatten_all().unwrap().to_vec1().unwrap() };
             let features = of(&features);

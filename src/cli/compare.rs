@@ -1,0 +1,144 @@
+//! `impactlab compare`: the response network beside tuned and untuned 4DOF model and a plain network.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use crate::cli::CliError;
+use crate::cli::output::{print_json, print_table};
+use crate::cli::progress::with_progress;
+use crate::cli::response_training::{config, data_name, load_cases};
+use crate::cli::run::{Console, Verdict};
+use crate::data::write_atomically;
+use crate::response::ResponseModel;
+use crate::response::comparison::{
+    Comparison, ComparisonSettings, Table, cluster_table, compare_models, horizon_table,
+    model_table, uncertainty_table,
+};
+
+/// Compare response models on trajectories that none has seen
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(super) struct CompareArgs {
+    /// A trajectory data set; a quarter of its cases is kept apart for the test
+    #[arg(long, value_name = "DIR")]
+    data: PathBuf,
+    /// Numbers of trajectories to fine-tune on
+    #[arg(long, value_delimiter = ',', default_value = "5,20", value_name = "N,N")]
+    trajectories: Vec<usize>,
+    /// Choices of the trajectories for each number
+    #[arg(long, default_value_t = 3, value_name = "K")]
+    choices: u64,
+    /// Seed of the split and of the first choice
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// A pre-trained response network; pre-trained here if not given
+    #[arg(long, value_name = "MODEL")]
+    model: Option<PathBuf>,
+    /// The struck vehicle: a preset or a file, instead of the data set's own
+    #[arg(long, value_name = "NAME|FILE")]
+    vehicle: Option<String>,
+    /// Settings of the networks (TOML)
+    #[arg(long, value_name = "CONFIG.toml")]
+    config: Option<PathBuf>,
+    /// Folder for comparison.json, comparison.md and the tables as CSV
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  impactlab compare --data datasets/trajectories-fea --out comparison
+  impactlab compare --data datasets/trajectories-pulse --trajectories 20 --choices 1 --json
+
+Every model is fitted to the same trajectories and asked about the same others. The column of the
+paper holds what it printed, measured on other data.
+
+JSON: data, seed, n_choices, test, models [name, trajectories, average_error_m {mean, std, median},
+  rmse {x_m, y_m, vx_km_h, vy_km_h, yaw_rate_deg_s}, horizon_error_m, time_per_step_us, violations,
+  coverage {50, 90, end_50, end_90, …}], clusters [name, n, impulse_n_s, models], cases";
+
+/// Compares.
+pub(super) fn run(args: &CompareArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
+    let start = args.model.as_deref().map(ResponseModel::load).transpose()?;
+    let config = match (&args.config, &start) {
+        (None, Some(start)) => start.config().clone(),
+        (path, _) => config(path.as_deref())?,
+    };
+    let cases = load_cases(&args.data, args.vehicle.as_deref())?;
+    let settings = ComparisonSettings {
+        config,
+        trajectories: args.trajectories.clone(),
+        n_choices: args.choices.max(1),
+        seed: args.seed,
+    };
+    let name = data_name(&args.data);
+    let compared =
+        with_progress(|report| compare_models((&name, &cases), start.as_ref(), &settings, report))?;
+    let comparison = compared.ok_or(CliError::Cancelled)?;
+    if let Some(folder) = &args.out {
+        write_comparison(folder, &comparison)?;
+    }
+    if console.json {
+        print_json(console.out, &comparison)?;
+    } else {
+        print_tables(&comparison, console)?;
+    }
+    Ok(Verdict::Clean)
+}
+
+/// Titles, file names and tables of a comparison.
+fn tables(comparison: &Comparison) -> [(&'static str, &'static str, Table); 4] {
+    [
+        ("Models", "models.csv", model_table(comparison)),
+        ("Distance by horizon", "horizons.csv", horizon_table(comparison)),
+        ("Uncertainty", "uncertainty.csv", uncertainty_table(comparison)),
+        ("By cluster of impulse", "clusters.csv", cluster_table(comparison)),
+    ]
+}
+
+/// Prints the tables below each other.
+pub(super) fn print_tables(
+    comparison: &Comparison,
+    console: &mut Console<'_>,
+) -> Result<(), CliError> {
+    writeln!(
+        console.out,
+        "{}: {} trajectories that no model has seen, seed {}",
+        comparison.data,
+        comparison.test.len(),
+        comparison.seed
+    )?;
+    for (title, _, table) in tables(comparison) {
+        if table.rows.is_empty() {
+            continue;
+        }
+        writeln!(console.out, "\n{title}")?;
+        let header: Vec<&str> = table.header.iter().map(String::as_str).collect();
+        print_table(console.out, &header, &table.rows)?;
+    }
+    Ok(())
+}
+
+/// Writes the comparison as JSON, Markdown and CSV.
+pub(super) fn write_comparison(folder: &Path, comparison: &Comparison) -> Result<(), CliError> {
+    let to_error = |source| CliError::Folder { path: folder.to_owned(), source };
+    fs::create_dir_all(folder).map_err(to_error)?;
+    let json = serde_json::to_vec_pretty(comparison).map_err(std::io::Error::from)?;
+    write_atomically(&folder.join("comparison.json"), |out| out.write_all(&json))?;
+    let mut text = format!(
+        "# {}\n\n{} trajectories that no model has seen, seed {}, {} choices of the trajectories.\n",
+        comparison.data,
+        comparison.test.len(),
+        comparison.seed,
+        comparison.n_choices
+    );
+    for (title, file, table) in tables(comparison) {
+        text.push_str(&format!("\n## {title}\n\n{}", table.to_markdown()));
+        let csv = table.to_csv();
+        write_atomically(&folder.join(file), |out| out.write_all(csv.as_bytes()))?;
+    }
+    write_atomically(&folder.join("comparison.md"), |out| out.write_all(text.as_bytes()))?;
+    Ok(())
+}

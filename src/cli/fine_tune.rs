@@ -1,0 +1,111 @@
+//! `impactlab fine-tune response`: fine-tunes the response network on trajectories.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::{Args, Subcommand};
+
+use crate::cli::CliError;
+use crate::cli::response_training::{
+    checkpoint_of, config, data_name, load_cases, print_config, print_model, under_bar,
+};
+use crate::cli::run::{Console, Verdict};
+use crate::data::TEST_SHARE;
+use crate::response::{ResponseModel, ResponseTrainSettings, ResponseTrainingSet, fine_tune};
+
+/// Fine-tune a network on data of your own
+#[derive(Debug, Args)]
+pub(super) struct FineTuneArgs {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Debug, Subcommand)]
+enum What {
+    /// The response network: force history and vehicle to motion after the impact
+    Response(FineTuneResponseArgs),
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+struct FineTuneResponseArgs {
+    /// A pre-trained response network; without one all layers are trained, from random weights
+    #[arg(long, value_name = "MODEL")]
+    model: Option<PathBuf>,
+    /// A trajectory data set; a quarter of its cases is kept apart for the test
+    #[arg(long, value_name = "DIR")]
+    data: PathBuf,
+    /// How many trajectories to learn from; all that are not kept for the test if not given
+    #[arg(long, value_name = "N")]
+    trajectories: Option<usize>,
+    /// The struck vehicle: a preset or a file, instead of the data set's own
+    #[arg(long, value_name = "NAME|FILE")]
+    vehicle: Option<String>,
+    /// Where the model goes; the training is kept beside it in MODEL.training
+    #[arg(long, value_name = "MODEL")]
+    out: PathBuf,
+    /// Settings (TOML) instead of the model's own; layers must be the same
+    #[arg(long, value_name = "CONFIG.toml")]
+    config: Option<PathBuf>,
+    /// Share of the cases that is kept for the test
+    #[arg(long, default_value_t = TEST_SHARE, value_name = "SHARE")]
+    test_share: f64,
+    /// Seed of the split
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Seed of the choice of the trajectories and of all other draws; the split's if not given
+    #[arg(long)]
+    choice: Option<u64>,
+    /// Go on from MODEL.training, if it is there
+    #[arg(long)]
+    resume: bool,
+    /// Print the settings as TOML and stop
+    #[arg(long)]
+    print_config: bool,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  impactlab fine-tune response --model assets/models/response_pretrained.safetensors \\
+      --data datasets/trajectories-fea --trajectories 20 --out response.safetensors
+  impactlab fine-tune response --data datasets/trajectories-pulse --trajectories 5 --out r.safetensors
+
+A training that was killed goes on with --resume to the same weights as if it had not been.
+
+JSON: model, data, data_digest, seed, n_simulated, train, n_test, n_parameters, seconds, epochs, loss,
+  balance, latents";
+
+/// Fine-tunes what was asked for.
+pub(super) fn run(args: &FineTuneArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
+    match &args.what {
+        What::Response(args) => fine_tune_response(args, console),
+    }
+}
+
+fn fine_tune_response(
+    args: &FineTuneResponseArgs,
+    console: &mut Console<'_>,
+) -> Result<Verdict, CliError> {
+    let start = args.model.as_deref().map(ResponseModel::load).transpose()?;
+    let config = match (&args.config, &start) {
+        (None, Some(start)) => start.config().clone(),
+        (path, _) => config(path.as_deref())?,
+    };
+    if args.print_config {
+        return print_config(&config, console);
+    }
+    let cases = load_cases(&args.data, args.vehicle.as_deref())?;
+    let choice = args.choice.unwrap_or(args.seed);
+    let split = (args.seed, args.test_share, choice);
+    let set = ResponseTrainingSet::choose(data_name(&args.data), &cases, args.trajectories, split)?;
+    let settings = ResponseTrainSettings {
+        config,
+        seed: choice,
+        checkpoint: Some(checkpoint_of(&args.out)),
+        resume: args.resume,
+    };
+    let started = Instant::now();
+    let model = under_bar(|report| fine_tune(start.as_ref(), &set, &settings, report))?;
+    model.save(&args.out)?;
+    print_model((&args.out, &model, started.elapsed().as_secs_f64()), console)
+}

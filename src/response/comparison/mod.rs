@@ -1,0 +1,19 @@
+//! The response network beside a tuned 4DOF model, the data sheet and a plain network, on
+//! trajectories that none of them has seen: METHOD of this project, section 7.
+
+mod case_figures;
+mod compare;
+mod figures;
+mod paper;
+mod rival;
+mod tables;
+
+pub use case_figures::{CaseFigures, Coverage};
+pub use compare::{
+    ClusterRow, ComparedCase, ComparedModel, Comparison, ComparisonProgress, ComparisonSettings,
+    compare_models, evaluate_rival,
+};
+pub use figures::{CoverageFigures, MeanStd, ModelFigures, RootMeanSquares};
+pub use paper::{PaperFigure, paper_figure};
+pub use rival::{Rival, RivalKind};
+pub use tables::{Table, cluster_table, horizon_table, model_table, uncertainty_table};

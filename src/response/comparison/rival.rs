@@ -1,0 +1,96 @@
+//! The models that are compared.
+
+use serde::Serialize;
+
+use crate::response::{
+    MotionDistribution, N_RESIDUAL, ResponseCase, ResponseError, ResponseModel, Tuning, rollout,
+};
+use crate::vehicle::VehicleState;
+
+/// What kind of model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RivalKind {
+    /// The 4DOF model by the vehicle's data sheet.
+    Untuned,
+    /// The 4DOF model with tyre and roll parameters from the fine-tune trajectories.
+    Tuned,
+    /// The plain network.
+    Plain,
+    /// The response network.
+    Network,
+}
+
+/// A model to be compared.
+#[derive(Debug)]
+pub enum Rival {
+    /// See [`RivalKind::Untuned`].
+    Untuned,
+    /// See [`RivalKind::Tuned`].
+    Tuned(Tuning),
+    /// See [`RivalKind::Plain`].
+    Plain(Box<ResponseModel>),
+    /// See [`RivalKind::Network`].
+    Network(Box<ResponseModel>),
+}
+
+/// What a model says of a trajectory.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Answer {
+    /// Mean path.
+    pub states: Vec<VehicleState<f64>>,
+    /// Paths whose mean it is: those in which mechanics must hold.
+    pub paths: Vec<Vec<VehicleState<f64>>>,
+    /// With its probabilities, if it has any.
+    pub distribution: Option<MotionDistribution>,
+}
+
+impl RivalKind {
+    /// What a table calls it.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Untuned => "4DOF untuned",
+            Self::Tuned => "4DOF tuned",
+            Self::Plain => "NN-only",
+            Self::Network => "PINN",
+        }
+    }
+}
+
+impl Rival {
+    /// Its kind.
+    pub fn kind(&self) -> RivalKind {
+        match self {
+            Self::Untuned => RivalKind::Untuned,
+            Self::Tuned(_) => RivalKind::Tuned,
+            Self::Plain(_) => RivalKind::Plain,
+            Self::Network(_) => RivalKind::Network,
+        }
+    }
+
+    /// What it says of the motion after the impact of a case.
+    ///
+    /// # Errors
+    /// [`ResponseError::Network`].
+    pub(crate) fn answer(&self, case: &ResponseCase) -> Result<Answer, ResponseError> {
+        let initial = case.states.first().copied().unwrap_or_default();
+        let four_dof = |vehicle| {
+            let states = rollout(vehicle, initial, &case.inputs, |_, _| [0.0; N_RESIDUAL]);
+            Answer { paths: vec![states.clone()], states, distribution: None }
+        };
+        Ok(match self {
+            Self::Untuned => four_dof(&case.vehicle),
+            Self::Tuned(tuning) => four_dof(&tuning.apply(&case.vehicle)),
+            Self::Plain(model) | Self::Network(model) => {
+                let predictor = model.predictor(&case.vehicle)?;
+                let distribution = predictor.motion(&initial, &case.inputs);
+                let of = |component: crate::response::ComponentPath| component.states;
+                Answer {
+                    states: predictor.mean_path(&initial, &case.inputs),
+                    paths: predictor.paths(&initial, &case.inputs).into_iter().map(of).collect(),
+                    distribution: Some(distribution),
+                }
+            }
+        })
+    }
+}
