@@ -194,12 +194,13 @@ fn drawn(weights: &[f64], share: f64) -> usize {
     found.unwrap_or(weights.len().saturating_sub(1))
 }
 
+/// Turns the deviations of the velocities after a step into draws.
+type Noise<'a> = dyn FnMut(&mut [f64; N_RESIDUAL]) + 'a;
+
 /// One path.
-///
-/// - `noise`: turns the deviations of the velocities after a step into draws.
 fn path(
     dynamics: &Dynamics<'_>,
-    (component, latents, noise): (usize, &[f64; N_LATENTS], &mut dyn FnMut(&mut [f64; N_RESIDUAL])),
+    (component, latents, noise): (usize, &[f64; N_LATENTS], &mut Noise<'_>),
     (initial, inputs): (&VehicleState<f64>, &[VehicleInput<f64>]),
     buffers: &mut Buffers,
 ) -> ComponentPath {
