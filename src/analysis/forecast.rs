@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
 
 use crate::collision::{PrincipalDirectionOfForce, Pulse, PulseError, PulseShape};
 use crate::force::metrics::BAND_LEVELS;
@@ -26,7 +27,7 @@ pub struct ForecastSettings {
 }
 
 /// A number with the central intervals that hold 50 % and 90 %, SI.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Spread {
     /// As likely exceeded as not.
     pub median: f64,

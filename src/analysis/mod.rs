@@ -5,6 +5,7 @@ mod bullet;
 mod case;
 mod file;
 mod forecast;
+mod motion_forecast;
 mod scenario;
 
 use crate::collision::{Footprint, PulseError, ScenarioError};
@@ -15,6 +16,10 @@ use crate::vehicle::{ContactPoint, Integrator, Motion, SimulationError, VehicleP
 pub use case::analyse_case;
 pub use file::{FileSetup, analyse_file};
 pub use forecast::{ForceForecast, ForecastSettings, Mode, Spread, pulse_curves};
+pub use motion_forecast::{
+    MotionForecast, MotionForecastError, MotionForecastSettings, Outcome, StruckVehicle,
+    forecast_forces, forecast_scenario,
+};
 pub use scenario::{PulseSetup, analyse_scenario};
 
 /// With what a case is simulated.

@@ -1,6 +1,6 @@
 //! A response network asked about one vehicle: paths, their distribution, and coherent draws.
 
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
@@ -10,13 +10,16 @@ use crate::nn::random_stream;
 use crate::response::propagate::{Buffers, Dynamics, N_JOINT};
 use crate::response::vehicle_network::VehicleNetwork;
 use crate::response::{ComponentMotion, LatentScales, N_LATENTS, N_RESIDUAL, STEP_S};
-use crate::uncertainty::{PlanarMixture, PlanarPart, Unscented};
+use crate::uncertainty::{NormalMixture, NormalPart, PlanarMixture, PlanarPart, Unscented};
 use crate::vehicle::{N_STATE, VehicleInput, VehicleParameters, VehicleState};
 
 /// Points two standard deviations from the mean, as in the paper's four dimensions with α = 1, and so
 /// many dimensions as there are: κ = 4 − n. The centre then has no part in the covariance, which is
 /// positive whatever the step does.
 const POINTS: Unscented = Unscented { alpha: 1.0, beta: 2.0, kappa: 4.0 - N_JOINT as f64 };
+
+/// Variance that a number of a state has at least, as at the start, where all are known.
+const LEAST_VARIANCE: f64 = 1e-12;
 
 /// A model for one vehicle.
 #[derive(Debug, Clone)]
@@ -238,6 +241,11 @@ fn weighted_mean<'a>(
     VehicleState::from_array(sum)
 }
 
+/// X, Y, ψ, v_x, v_y, r.
+fn numbers(x: &VehicleState<f64>) -> SVector<f64, 6> {
+    SVector::from([x.x_m, x.y_m, x.yaw_rad, x.vx_m_s, x.vy_m_s, x.yaw_rate_rad_s])
+}
+
 impl MotionDistribution {
     /// Of components, whose weights are scaled to sum to one.
     pub fn new(mut components: Vec<ComponentMotion>) -> Self {
@@ -267,9 +275,6 @@ impl MotionDistribution {
 
     /// Covariance of [X, Y, ψ, v_x, v_y, r] at an instant, within the components and between them.
     pub fn covariance(&self, instant: usize) -> SMatrix<f64, 6, 6> {
-        let numbers = |x: &VehicleState<f64>| {
-            nalgebra::SVector::from([x.x_m, x.y_m, x.yaw_rad, x.vx_m_s, x.vy_m_s, x.yaw_rate_rad_s])
-        };
         let mean = numbers(&self.mean(instant));
         let part = |component: &ComponentMotion| {
             let state = component.states.get(instant)?;
@@ -277,6 +282,23 @@ impl MotionDistribution {
             Some((state.covariance + off * off.transpose()) * component.weight)
         };
         self.components.iter().filter_map(part).sum()
+    }
+
+    /// The distribution of the heading at an instant, rad, beyond a turn; `None` where it is not
+    /// finite.
+    pub fn heading(&self, instant: usize) -> Option<NormalMixture> {
+        self.marginal(instant, 2)
+    }
+
+    /// The distribution of X, Y, ψ, v_x, v_y or r at an instant; `None` where it is not finite.
+    pub fn marginal(&self, instant: usize, axis: usize) -> Option<NormalMixture> {
+        let part = |component: &ComponentMotion| {
+            let state = component.states.get(instant)?;
+            let mean = numbers(&state.mean)[axis];
+            let std = state.covariance[(axis, axis)].max(LEAST_VARIANCE).sqrt();
+            Some(NormalPart { weight: component.weight, mean, std })
+        };
+        NormalMixture::new(self.components.iter().filter_map(part).collect()).ok()
     }
 
     /// The distribution of the position at an instant.

@@ -8,7 +8,6 @@ use crate::compare::{MotionError, physical_violations};
 use crate::response::comparison::Rival;
 use crate::response::comparison::rival::Answer;
 use crate::response::{MotionDistribution, ResponseCase, ResponseError, motion_series};
-use crate::uncertainty::{NormalMixture, NormalPart};
 use crate::vehicle::VehicleState;
 
 /// Every how many steps the regions are looked at: 0.1 s.
@@ -116,7 +115,7 @@ fn coverage(distribution: &MotionDistribution, case: &ResponseCase) -> Coverage 
         sum.path_90 += f64::from(u8::from(level <= 0.9));
         let numbers = [state.x_m, state.y_m, state.yaw_rad];
         let crps = |axis: usize| {
-            marginal(distribution, at, axis).map_or(f64::INFINITY, |of| of.crps(numbers[axis]))
+            distribution.marginal(at, axis).map_or(f64::INFINITY, |of| of.crps(numbers[axis]))
         };
         sum.crps_x_m += crps(0);
         sum.crps_y_m += crps(1);
@@ -138,17 +137,6 @@ fn coverage(distribution: &MotionDistribution, case: &ResponseCase) -> Coverage 
         crps_yaw_rad: sum.crps_yaw_rad / n,
         energy_score_m: sum.energy_score_m / n,
     }
-}
-
-/// Distribution of X, Y or ψ at an instant; `None` where it is not finite.
-fn marginal(distribution: &MotionDistribution, at: usize, axis: usize) -> Option<NormalMixture> {
-    let part = |component: &crate::response::ComponentMotion| {
-        let state = component.states.get(at)?;
-        let mean = [state.mean.x_m, state.mean.y_m, state.mean.yaw_rad][axis];
-        let std = state.covariance[(axis, axis)].max(0.0).sqrt();
-        Some(NormalPart { weight: component.weight, mean, std })
-    };
-    NormalMixture::new(distribution.components.iter().filter_map(part).collect()).ok()
 }
 
 /// `mean ‖x_i − y‖ − ½ mean ‖x_i − x_j‖` over draws, m.

@@ -1,0 +1,306 @@
+//! Where the struck car goes, and how sure that is: from the distribution of the impact force, or a
+//! recorded force, through the response network to the distribution of its motion.
+//!
+//! Each whole curve drawn from the force's distribution drives its own distribution of motions; all of
+//! them, equally likely, make up the answer. So the impulse is uncertain as a whole, and not instant
+//! by instant.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::analysis::Spread;
+use crate::collision::{Scenario, ScenarioError};
+use crate::data::{ForceAxes, ForceHistory};
+use crate::force::{ForceError, ForceModel, ForcePrediction, ForceScenario};
+use crate::nn::random_stream;
+use crate::response::{MotionDistribution, Predictor, ResponseError, ResponseModel, STEP_S};
+use crate::uncertainty::{ForceCurve, PlanarMixture};
+use crate::vehicle::frames::body_from_world;
+use crate::vehicle::{
+    ContactLoad, ContactPoint, Manoeuvre, VehicleInput, VehicleParameters, VehicleState,
+};
+
+/// Speed below which a car counts as at rest, m/s.
+const REST_SPEED_M_S: f64 = 0.3;
+/// Draws of the end, behind its intervals.
+const N_END_DRAWS: usize = 4000;
+
+/// How a motion is forecast.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MotionForecastSettings {
+    /// Whole force curves to draw.
+    pub n_curves: usize,
+    /// From the start of the impact, s.
+    pub duration_s: f64,
+    /// Height above the ground at which the force acts, m.
+    pub contact_height_m: f64,
+    /// Seed of all draws.
+    pub seed: u64,
+}
+
+impl Default for MotionForecastSettings {
+    fn default() -> Self {
+        Self { n_curves: 20, duration_s: 4.0, contact_height_m: 0.52, seed: 0 }
+    }
+}
+
+/// What the struck car does before it is pushed, and by what.
+#[derive(Debug, Clone)]
+pub struct StruckVehicle {
+    /// Its parameters.
+    pub vehicle: VehicleParameters,
+    /// Its state at the start of the impact.
+    pub initial: VehicleState<f64>,
+    /// Where the force acts.
+    pub contact: ContactPoint,
+}
+
+/// A forecast of a motion.
+#[derive(Debug, Clone)]
+pub struct MotionForecast {
+    /// Every [`STEP_S`].
+    pub distribution: MotionDistribution,
+    /// Its mean path; of each force curve the mean of the components.
+    pub mean: Vec<VehicleState<f64>>,
+    /// Forces that it was driven by, in world axes or heading axes as they came.
+    pub forces: Vec<ForceHistory>,
+    /// What is left of it in the end.
+    pub outcome: Outcome,
+    /// Of a predicted force: the whole prediction.
+    pub force: Option<ForcePrediction>,
+}
+
+/// How a motion ends.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Outcome {
+    /// When: at rest, or at the end of the forecast, s.
+    pub time_s: f64,
+    /// Whether the mean is at rest by then.
+    pub is_at_rest: bool,
+    /// X of the CG, m.
+    pub x_m: Spread,
+    /// Y of the CG, m.
+    pub y_m: Spread,
+    /// Heading against that at the start, rad, positive to the left; goes on beyond a turn.
+    pub heading_change_rad: Spread,
+    /// Speed, m/s, of the mean.
+    pub speed_m_s: f64,
+    /// Area of the smallest region that holds the position with 90 %, m².
+    pub region_90_m2: f64,
+    /// P(|heading change| ≥ 90°).
+    pub p_quarter_turn: f64,
+    /// P(|heading change| ≥ 180°).
+    pub p_half_turn: f64,
+}
+
+/// A forecast that cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum MotionForecastError {
+    /// The scenario has no contact.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// The force network refuses.
+    #[error(transparent)]
+    Force(#[from] ForceError),
+    /// The response network refuses.
+    #[error(transparent)]
+    Response(#[from] ResponseError),
+    /// A duration that is none.
+    #[error("the duration is {duration_s} s, expected 0.1 to 60 s")]
+    Duration {
+        /// As asked for.
+        duration_s: f64,
+    },
+    /// A motion that leaves all numbers behind.
+    #[error("the predicted motion diverges")]
+    Diverged,
+}
+
+impl StruckVehicle {
+    /// The target of a scenario.
+    ///
+    /// - `vehicle`: its kind, whose mass and yaw inertia are replaced by the scenario's.
+    ///
+    /// # Errors
+    /// [`ScenarioError`] if the vehicles do not meet.
+    pub fn of_scenario(
+        scenario: &Scenario,
+        vehicle: &VehicleParameters,
+        contact_height_m: f64,
+    ) -> Result<Self, ScenarioError> {
+        let geometry = scenario.geometry()?;
+        let (target, pose) = (&scenario.target, &geometry.target);
+        let [vx_m_s, vy_m_s] = body_from_world(pose.yaw_rad, [target.vx_m_s, target.vy_m_s]);
+        let [x_m, y_m] = pose.body_from_world(geometry.contact_point_m);
+        Ok(Self {
+            vehicle: vehicle.clone().with_mass(target.mass_kg, Some(target.yaw_inertia_kg_m2)),
+            initial: VehicleState {
+                vx_m_s,
+                vy_m_s,
+                yaw_rad: pose.yaw_rad,
+                yaw_rate_rad_s: target.yaw_rate_rad_s,
+                x_m: pose.x_m,
+                y_m: pose.y_m,
+                ..VehicleState::default()
+            },
+            contact: ContactPoint { x_m, y_m, height_m: contact_height_m },
+        })
+    }
+
+    fn inputs(&self, force: &ForceHistory, duration_s: f64) -> Vec<VehicleInput<f64>> {
+        let manoeuvre = Manoeuvre {
+            initial: self.initial,
+            contact_load: Some(ContactLoad {
+                force: force.clone(),
+                contact: self.contact,
+                recorded_moment: force.mz_n_m.is_some(),
+            }),
+            steer: None,
+            duration_s,
+        };
+        manoeuvre.inputs(STEP_S, (duration_s / STEP_S).round() as usize)
+    }
+}
+
+/// The motion after the force that a force network predicts for a scenario.
+///
+/// # Errors
+/// [`MotionForecastError`].
+pub fn forecast_scenario(
+    scenario: &Scenario,
+    (force_model, response): (&ForceModel, &ResponseModel),
+    struck: &StruckVehicle,
+    settings: &MotionForecastSettings,
+) -> Result<MotionForecast, MotionForecastError> {
+    let prediction = force_model.predict(&ForceScenario::from_scenario(scenario)?)?;
+    let mut rng = random_stream(settings.seed, "force curves", 0);
+    let curves = prediction.mixture.sample(settings.n_curves.max(1), &mut rng);
+    let heading_rad = struck.initial.yaw_rad;
+    let forces: Vec<ForceHistory> =
+        curves.iter().map(|curve| in_world(curve, heading_rad)).collect();
+    let mut forecast = forecast_forces(&forces, response, struck, settings)?;
+    forecast.force = Some(prediction);
+    Ok(forecast)
+}
+
+/// The motion after given forces, each as likely as the others.
+///
+/// # Errors
+/// [`MotionForecastError`].
+pub fn forecast_forces(
+    forces: &[ForceHistory],
+    response: &ResponseModel,
+    struck: &StruckVehicle,
+    settings: &MotionForecastSettings,
+) -> Result<MotionForecast, MotionForecastError> {
+    let duration_s = settings.duration_s;
+    if !(0.1..=60.0).contains(&duration_s) {
+        return Err(MotionForecastError::Duration { duration_s });
+    }
+    let predictor: Predictor = response.predictor(&struck.vehicle)?;
+    let of = |force: &ForceHistory| {
+        let inputs = struck.inputs(force, duration_s);
+        (predictor.motion(&struck.initial, &inputs), predictor.mean_path(&struck.initial, &inputs))
+    };
+    let (parts, paths): (Vec<MotionDistribution>, Vec<Vec<VehicleState<f64>>>) =
+        forces.par_iter().map(of).unzip();
+    let mean = mean_of(&paths);
+    let distribution = MotionDistribution::mixed(parts);
+    let outcome = outcome(&distribution, &mean, settings.seed)
+        .filter(|_| mean.iter().all(|state| state.to_array().iter().all(|v| v.is_finite())))
+        .ok_or(MotionForecastError::Diverged)?;
+    Ok(MotionForecast { distribution, mean, forces: forces.to_vec(), outcome, force: None })
+}
+
+/// A curve in axes along the target's heading at the start, as one in world axes.
+fn in_world(curve: &ForceCurve, heading_rad: f64) -> ForceHistory {
+    let mut history = curve.to_history();
+    let (sin, cos) = heading_rad.sin_cos();
+    for (fx, fy) in history.fx_n.iter_mut().zip(&mut history.fy_n) {
+        (*fx, *fy) = (cos * *fx - sin * *fy, sin * *fx + cos * *fy);
+    }
+    history.axes = ForceAxes::World;
+    history
+}
+
+fn mean_of(paths: &[Vec<VehicleState<f64>>]) -> Vec<VehicleState<f64>> {
+    let n_instants = paths.first().map_or(0, Vec::len);
+    let n = paths.len().max(1) as f64;
+    let at = |i: usize| {
+        let mut sum = [0.0; 8];
+        for state in paths.iter().filter_map(|path| path.get(i)) {
+            for (sum, value) in sum.iter_mut().zip(state.to_array()) {
+                *sum += value / n;
+            }
+        }
+        VehicleState::from_array(sum)
+    };
+    (0..n_instants).map(at).collect()
+}
+
+fn outcome(
+    distribution: &MotionDistribution,
+    mean: &[VehicleState<f64>],
+    seed: u64,
+) -> Option<Outcome> {
+    let speed = |state: &VehicleState<f64>| state.vx_m_s.hypot(state.vy_m_s);
+    let last = mean.len().checked_sub(1)?;
+    let rest = mean.iter().position(|state| speed(state) < REST_SPEED_M_S);
+    let at = rest.unwrap_or(last);
+    let (state, start) = (mean.get(at)?, mean.first()?);
+    let position: PlanarMixture = distribution.position(at);
+    let draws = position.sample(N_END_DRAWS, seed);
+    let of = |axis: usize| Spread::of_draws(draws.iter().map(|point| point[axis]).collect());
+    let heading = distribution.heading(at)?;
+    let beyond = |angle_rad: f64| {
+        let (left, right) = (start.yaw_rad + angle_rad, start.yaw_rad - angle_rad);
+        1.0 - heading.cdf(left) + heading.cdf(right)
+    };
+    let turned = |spread: Spread| Spread {
+        median: spread.median - start.yaw_rad,
+        half: spread.half.map(|value| value - start.yaw_rad),
+        ninety: spread.ninety.map(|value| value - start.yaw_rad),
+    };
+    Some(Outcome {
+        time_s: at as f64 * STEP_S,
+        is_at_rest: rest.is_some(),
+        x_m: of(0),
+        y_m: of(1),
+        heading_change_rad: turned(Spread::of(&heading)),
+        speed_m_s: speed(state),
+        region_90_m2: region_m2(&position, 0.9),
+        p_quarter_turn: beyond(std::f64::consts::FRAC_PI_2),
+        p_half_turn: beyond(std::f64::consts::PI),
+    })
+}
+
+/// Area of the smallest region that holds the position with a probability, m².
+///
+/// `E[1/p(X); p(X) ≥ c]`: the area is the mean of 1/p over draws inside.
+fn region_m2(position: &PlanarMixture, level: f64) -> f64 {
+    let threshold = position.thresholds(&[level]).first().copied().unwrap_or(0.0);
+    let draws = position.sample(N_END_DRAWS, 1);
+    let inverse = draws.iter().map(|point| position.density(*point)).filter(|p| *p >= threshold);
+    inverse.map(|density| 1.0 / density).sum::<f64>() / N_END_DRAWS as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::uncertainty::PlanarPart;
+
+    #[test]
+    fn the_region_of_a_normal_distribution_is_an_ellipse() {
+        let part = PlanarPart { weight: 1.0, mean: [0.0; 2], covariance: [4.0, 0.0, 1.0] };
+        // −2 ln 0.1 = 4.605: π · 4.605 · 2 · 1
+        let area = region_m2(&PlanarMixture::new(vec![part]), 0.9);
+        assert!((area / 28.93 - 1.0).abs() < 0.05, "{area}");
+    }
+
+    #[test]
+    fn a_force_is_turned_into_world_axes() {
+        let curve = ForceCurve { fx_n: vec![0.0; 250], fy_n: vec![1e3; 250], duration_s: 0.1 };
+        let history = in_world(&curve, std::f64::consts::FRAC_PI_2);
+        assert!((history.fx_n[3] + 1e3).abs() < 1e-9 && history.fy_n[3].abs() < 1e-9);
+    }
+}
