@@ -3,7 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
-use crate::analysis::AnalysisError;
+use crate::analysis::{AnalysisError, MotionForecastError};
 use crate::collision::{FilterError, ScenarioError, ScenarioFileError};
 use crate::compare::ReplayError;
 use crate::data::{DataError, SeriesError};
@@ -32,6 +32,17 @@ pub enum CliError {
     /// Training, opening or asking a response network.
     #[error(transparent)]
     Response(Box<ResponseError>),
+    /// A motion that cannot be predicted.
+    #[error("{}: the motion cannot be predicted", path.display())]
+    Forecast {
+        /// The scenario file.
+        path: PathBuf,
+        /// Why.
+        source: Box<MotionForecastError>,
+    },
+    /// No scenario.
+    #[error("nothing to predict: say which scenario with --scenario FILE")]
+    NothingToPredict,
     /// Nothing to test on.
     #[error("{}: the model was trained on every case; --split all evaluates them all the same", path.display())]
     NoTestCase {

@@ -17,6 +17,7 @@ mod evaluate_response;
 mod fine_tune;
 mod impact;
 mod predict;
+mod predict_motion;
 mod render;
 mod render_figure;
 mod simulate;

@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::output::{print_facts, print_json, shown};
+use crate::cli::predict_motion::{self, PredictMotionArgs};
 use crate::cli::quantity::UnitsArg;
 use crate::cli::run::{Console, Verdict};
 use crate::collision::{PrincipalDirectionOfForce, Scenario};
@@ -22,11 +23,14 @@ const LEVELS: [f64; 4] = [0.5, 0.8, 0.9, 0.95];
 /// Draws behind the intervals of peak and impulse.
 const N_DRAWS: usize = 2000;
 
-/// Predict with a trained network
+/// Predict with trained networks: the motion after an impact, or its force alone
 #[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub(super) struct PredictArgs {
     #[command(subcommand)]
-    what: What,
+    what: Option<What>,
+    #[command(flatten)]
+    motion: Option<PredictMotionArgs>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -115,8 +119,10 @@ struct Answer<'a> {
 
 /// Predicts what was asked for.
 pub(super) fn run(args: &PredictArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
-    match &args.what {
-        What::Force(args) => predict_force(args, console),
+    match (&args.what, &args.motion) {
+        (Some(What::Force(args)), _) => predict_force(args, console),
+        (None, Some(args)) => predict_motion::run(args, console),
+        (None, None) => Err(CliError::NothingToPredict),
     }
 }
 

@@ -23,6 +23,17 @@ pub fn write_figure_csv(figure: &Figure, writer: impl Write) -> Result<(), csv::
                     csv.write_record([&series.name, &x.to_string(), &y.to_string()])?;
                 }
             }
+            Element::HeatMap(map) => {
+                for (i, value) in map.values.iter().enumerate().filter(|(_, v)| **v > 0.0) {
+                    let [column, row] = [i % map.size[0].max(1), i / map.size[0].max(1)];
+                    let [x, y] = [
+                        map.low[0] + column as f64 * map.step[0],
+                        map.low[1] + row as f64 * map.step[1],
+                    ];
+                    let name = format!("{} ({value:.6e})", map.name);
+                    csv.write_record([&name, &x.to_string(), &y.to_string()])?;
+                }
+            }
             Element::Band(band) => {
                 for (edge, values) in [("low", &band.low), ("high", &band.high)] {
                     let name = format!("{} ({edge})", band.name);

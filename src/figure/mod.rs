@@ -9,6 +9,7 @@ mod forecast;
 mod impact;
 mod model;
 mod motion;
+mod motion_forecast;
 mod scene;
 mod training;
 
@@ -21,7 +22,11 @@ use force::milliseconds;
 pub use force::{ForceFigure, force_figure};
 pub use forecast::{ForceComponent, ForecastFigure, forecast_figure};
 pub use impact::impact_figure;
-pub use model::{Axis, Band, Element, Figure, LineStyle, Role, Series};
+pub use model::{Axis, Band, Element, Figure, HeatMap, LineStyle, Role, Series};
 pub use motion::{MOTION_CHANNELS, motion_figure, motion_readout};
+pub use motion_forecast::{
+    FORECAST_CHANNELS, ForecastChannel, MotionForecastFigure, forecast_channel_figure,
+    forecast_scene_figure,
+};
 pub use scene::{SceneFigure, SceneVehicle, pose_at, scene_figure, vehicle_outline};
 pub use training::{LossCurve, loss_figure};

@@ -112,9 +112,28 @@ pub struct Band {
     pub high: Vec<f64>,
 }
 
+/// Values at the points of a grid, shown by how much they hide the ground.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeatMap {
+    /// As in the legend.
+    pub name: String,
+    /// Meaning of the colour.
+    pub role: Role,
+    /// First point, in the axes' units.
+    pub low: [f64; 2],
+    /// Between neighbouring points.
+    pub step: [f64; 2],
+    /// Points along x and y.
+    pub size: [usize; 2],
+    /// Row by row from the lowest y on, each from the lowest x on; zero is not seen.
+    pub values: Vec<f64>,
+}
+
 /// Something in a figure.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Element {
+    /// Values on a grid.
+    HeatMap(HeatMap),
     /// A polyline.
     Line(Series),
     /// Points without a line.
@@ -170,6 +189,7 @@ impl Element {
             | Self::Points(series)
             | Self::Polygon(series)
             | Self::Arrow(series) => &series.name,
+            Self::HeatMap(map) => &map.name,
             Self::Band(band) => &band.name,
             Self::VerticalLine { name, .. } => name,
         }
@@ -182,6 +202,7 @@ impl Element {
             | Self::Points(series)
             | Self::Polygon(series)
             | Self::Arrow(series) => series.role,
+            Self::HeatMap(map) => map.role,
             Self::Band(band) => band.role,
             Self::VerticalLine { role, .. } => *role,
         }

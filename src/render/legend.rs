@@ -44,6 +44,7 @@ fn points(element: &Element) -> Vec<[f64; 2]> {
     match element {
         Element::Points(series) => series.points.clone(),
         Element::Line(series) | Element::Polygon(series) | Element::Arrow(series) => along(series),
+        Element::HeatMap(_) => Vec::new(),
         Element::Band(band) => {
             let edge = |edge: &[f64]| band.x.iter().copied().zip(edge.iter().copied()).collect();
             let (low, high): (Vec<_>, Vec<_>) = (edge(&band.low), edge(&band.high));

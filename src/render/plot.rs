@@ -2,13 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use egui::{Id, Stroke, Ui, Vec2b};
+use egui::{Color32, ColorImage, Id, Stroke, TextureOptions, Ui, Vec2b};
 use egui_plot::{
-    Arrows, FilledArea, Legend, Line, LineStyle as PlotLineStyle, Plot, PlotPoint, PlotPoints,
-    PlotUi, Points, Polygon, VLine,
+    Arrows, FilledArea, Legend, Line, LineStyle as PlotLineStyle, Plot, PlotImage, PlotPoint,
+    PlotPoints, PlotUi, Points, Polygon, VLine,
 };
 
-use crate::figure::{Element, Figure, LineStyle, Series};
+use crate::figure::{Element, Figure, HeatMap, LineStyle, Series};
 use crate::render::legend::emptiest_corner;
 use crate::render::theme;
 use crate::render::thin::thinned;
@@ -16,6 +16,9 @@ use crate::render::ticks::{
     X_TICK_CELLS, Y_TICK_CELLS, grid, log_grid, log_tick_label, tick_label,
 };
 use crate::units::significant;
+
+/// Opacity of the largest value of a heat map.
+const HEAT_OPACITY: f32 = 0.85;
 
 /// Names in a legend above which it is written small.
 const LONG_LEGEND: usize = 8;
@@ -133,6 +136,32 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
     FigureResponse { picked_x: response.inner }
 }
 
+/// Draws the cells of a heat map as a picture, each as opaque as the root of its value.
+fn heat_map(plot: &mut PlotUi<'_>, map: &HeatMap, color: Color32) {
+    let [width, height] = map.size;
+    let largest = map.values.iter().copied().fold(0.0, f64::max);
+    if width == 0 || height == 0 || largest <= 0.0 {
+        return;
+    }
+    let [r, g, b, _] = color.to_array();
+    // Pictures have their first row on top.
+    let rows = map.values.chunks_exact(width).rev();
+    let pixel = |value: &f64| {
+        let opacity = (value / largest).max(0.0).sqrt() * f64::from(HEAT_OPACITY);
+        Color32::from_rgba_unmultiplied(r, g, b, (opacity * 255.0).round() as u8)
+    };
+    let pixels: Vec<Color32> = rows.flatten().map(pixel).collect();
+    let image = ColorImage::new([width, height], pixels);
+    let texture = plot.ctx().load_texture(&map.name, image, TextureOptions::LINEAR);
+    let side = |axis: usize| map.step[axis] * map.size[axis] as f64;
+    let centre = |axis: usize| map.low[axis] + 0.5 * (side(axis) - map.step[axis]);
+    let at = PlotPoint::new(centre(0), centre(1));
+    let size = [side(0) as f32, side(1) as f32];
+    plot.image(PlotImage::new(&map.name, texture.id(), at, size).allow_hover(false));
+    // The texture lives as long as its handle: until the next frame takes its place.
+    plot.ctx().data_mut(|data| data.insert_temp(Id::new(("heat map", &map.name)), texture));
+}
+
 fn n_names(figure: &Figure) -> usize {
     figure.elements.iter().map(Element::name).collect::<BTreeSet<_>>().len()
 }
@@ -169,6 +198,7 @@ fn draw_element<'a>(plot: &mut PlotUi<'a>, element: &'a Element, (dark, log_y): 
                 plot.arrows(Arrows::new(&series.name, origin, tip).color(color).tip_length(10.0));
             }
         }
+        Element::HeatMap(map) => heat_map(plot, map, color),
         Element::Band(band) => {
             let edge = |edge: &[f64]| edge.iter().map(|y| height(*y)).collect::<Vec<_>>();
             let (low, high) = (edge(&band.low), edge(&band.high));
