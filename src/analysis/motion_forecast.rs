@@ -40,7 +40,7 @@ pub struct MotionForecastSettings {
 
 impl Default for MotionForecastSettings {
     fn default() -> Self {
-        Self { n_curves: 20, duration_s: 4.0, contact_height_m: 0.52, seed: 0 }
+        Self { n_curves: 30, duration_s: 4.0, contact_height_m: 0.52, seed: 0 }
     }
 }
 

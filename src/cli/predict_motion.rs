@@ -40,7 +40,7 @@ pub(super) struct PredictMotionArgs {
     #[arg(long, value_name = "SCENARIO.toml")]
     scenario: PathBuf,
     /// The struck vehicle: a preset or a file
-    #[arg(long, default_value = "reference", value_name = "NAME|FILE")]
+    #[arg(long, default_value = "reference-2000", value_name = "NAME|FILE")]
     vehicle: String,
     /// A force history instead of the predicted one
     #[arg(long, value_name = "FORCE.csv")]
@@ -55,7 +55,7 @@ pub(super) struct PredictMotionArgs {
     #[arg(long, value_name = "MU")]
     friction: Option<f64>,
     /// Force histories to draw
-    #[arg(long, default_value_t = 20, value_name = "N")]
+    #[arg(long, default_value_t = 30, value_name = "N")]
     draws: usize,
     /// How long, s
     #[arg(long, default_value_t = 4.0, value_name = "S")]

@@ -19,10 +19,8 @@ const LEAST_SIDE_M: f64 = 2.0;
 const BANDS: [(f64, f32); 2] = [(0.9, 0.18), (0.5, 0.25)];
 /// Every how many steps the bands have an edge point.
 const BAND_STRIDE: usize = 5;
-/// Probability of a component below which its path is not drawn.
-const LEAST_WEIGHT: f64 = 0.02;
-/// Component paths that are drawn, the likeliest first.
-const MAX_PATHS: usize = 12;
+/// Component paths that are drawn.
+const MAX_PATHS: usize = 15;
 
 /// What is shown of a forecast.
 #[derive(Debug, Clone, Copy)]
@@ -74,10 +72,9 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
     };
     let at = instant(input);
     let mut elements = vec![Element::HeatMap(density(input, at, &shown))];
-    let mut components: Vec<_> = input.distribution.components.iter().collect();
-    components.sort_by(|a, b| b.weight.total_cmp(&a.weight));
-    let likely = components.iter().filter(|component| component.weight >= LEAST_WEIGHT);
-    for component in likely.take(MAX_PATHS) {
+    let components = &input.distribution.components;
+    let stride = components.len().div_ceil(MAX_PATHS).max(1);
+    for component in components.iter().step_by(stride) {
         let points = path(&mut component.states.iter().map(|state| &state.mean));
         elements.push(Element::line("components", Role::Muted, points));
     }

@@ -157,9 +157,11 @@ fn heat_map(plot: &mut PlotUi<'_>, map: &HeatMap, color: Color32) {
     let centre = |axis: usize| map.low[axis] + 0.5 * (side(axis) - map.step[axis]);
     let at = PlotPoint::new(centre(0), centre(1));
     let size = [side(0) as f32, side(1) as f32];
-    plot.image(PlotImage::new(&map.name, texture.id(), at, size).allow_hover(false));
+    plot.image(PlotImage::new("", texture.id(), at, size).allow_hover(false));
+    // The legend knows colours of lines only.
+    plot.line(Line::new(&map.name, PlotPoints::from(Vec::<[f64; 2]>::new())).color(color));
     // The texture lives as long as its handle: until the next frame takes its place.
-    plot.ctx().data_mut(|data| data.insert_temp(Id::new(("heat map", &map.name)), texture));
+    plot.ctx().data_mut(|data| data.insert_temp(Id::unique(("heat map", &map.name)), texture));
 }
 
 fn n_names(figure: &Figure) -> usize {
