@@ -116,10 +116,11 @@ fn density(
 ) -> HeatMap {
     let position = input.distribution.position(at);
     let mut bounds = position.bounds(REACH).unwrap_or([[0.0; 2]; 2]);
-    for axis in 0..2 {
-        let missing = (LEAST_SIDE_M - (bounds[1][axis] - bounds[0][axis])).max(0.0);
-        bounds[0][axis] -= 0.5 * missing;
-        bounds[1][axis] += 0.5 * missing;
+    let [low, high] = &mut bounds;
+    for (low, high) in low.iter_mut().zip(high) {
+        let missing = (LEAST_SIDE_M - (*high - *low)).max(0.0);
+        *low -= 0.5 * missing;
+        *high += 0.5 * missing;
     }
     let sides = [0, 1].map(|axis: usize| bounds[1][axis] - bounds[0][axis]);
     let step = sides[0].max(sides[1]) / GRID_POINTS as f64;

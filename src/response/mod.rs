@@ -11,8 +11,11 @@ mod features;
 mod step;
 mod vehicle_tokens;
 
+mod effect_operation;
 mod effects_fit;
+mod folded_attention;
 mod network;
+mod network_layers;
 mod one_step;
 mod physics_points;
 mod physics_weight;
@@ -34,6 +37,7 @@ mod rollout;
 mod rollout_loss;
 mod train;
 mod training_file;
+mod training_run;
 mod tuned;
 mod vehicle_network;
 

@@ -22,17 +22,15 @@
 use candle_core::{D, DType, Device, Tensor};
 use rand_chacha::ChaCha8Rng;
 
-use crate::nn::{Activation, Attention, AttentionConfig, Init, Linear, Mlp, NnError, Parameters};
-use crate::response::one_step::token_tensor;
-use crate::response::vehicle_tokens::{N_TOKEN_NUMBERS, N_TOKENS};
+use crate::nn::{Init, NnError, Parameters};
+use crate::response::network_layers::Layers;
 use crate::response::{
     Correction, FEATURE_MIRROR, IS_OF_MODEL, N_EFFECTS, N_FEATURES, N_RESIDUAL, RESIDUAL_MIRROR,
     ResponseNetworkConfig,
 };
-use crate::vehicle::VehicleParameters;
 
 /// Numbers of a component: z_μ, z_σ and z_ω.
-const N_COMPONENT_NUMBERS: usize = 2 * N_RESIDUAL + 1;
+pub(crate) const N_COMPONENT_NUMBERS: usize = 2 * N_RESIDUAL + 1;
 
 /// States with soft boundaries, and these: v_x, v_y, m/s, r, φ̇, rad/s, φ, rad. A struck car that
 /// moves faster than these, or leans further, is none that is modelled here.
@@ -41,9 +39,6 @@ pub(crate) const BOUNDED_STATES: [(usize, f64); 5] =
 
 /// s at first, in units of the bound.
 const FIRST_BOUNDARY_SCALE: f64 = 0.05;
-
-/// The names of the tokens' encoders.
-const TOKEN_NAMES: [&str; N_TOKENS] = ["mass", "geometry", "tires", "suspension"];
 
 /// The network with its parameters.
 #[derive(Debug)]
@@ -61,64 +56,6 @@ pub(crate) struct ResponseNetwork {
     /// 0 for what is not to be seen.
     feature_mask: Tensor,
     output_mirror: Tensor,
-}
-
-#[derive(Debug, Clone)]
-struct Layers {
-    encoder: Mlp,
-    token_encoders: Vec<Mlp>,
-    attention: Attention,
-    trunk: Mlp,
-    head: Linear,
-}
-
-impl Layers {
-    /// N: those of the encoder, the levels of the token encoders, the attention, those of the trunk
-    /// and the head.
-    fn count(&self) -> usize {
-        let tokens = self.token_encoders.first().map_or(0, |encoder| encoder.layers().len());
-        self.encoder.layers().len() + tokens + 1 + self.trunk.layers().len() + 1
-    }
-
-    /// The same layers, of which the first `n_layers` ask for no gradients.
-    fn frozen_up_to(&self, n_layers: usize) -> Self {
-        let mut left = n_layers;
-        let mut take = |count: usize| {
-            let taken = left.min(count);
-            left -= taken;
-            taken
-        };
-        let n_encoder = take(self.encoder.layers().len());
-        let n_tokens = take(self.token_encoders.first().map_or(0, |mlp| mlp.layers().len()));
-        let (n_attention, n_trunk) = (take(1), take(self.trunk.layers().len()));
-        let n_head = take(1);
-        let attention = &self.attention;
-        Self {
-            encoder: self.encoder.frozen_up_to(n_encoder),
-            token_encoders: self
-                .token_encoders
-                .iter()
-                .map(|encoder| encoder.frozen_up_to(n_tokens))
-                .collect(),
-            attention: if n_attention > 0 { attention.frozen() } else { attention.clone() },
-            trunk: self.trunk.frozen_up_to(n_trunk),
-            head: if n_head > 0 { self.head.frozen() } else { self.head.clone() },
-        }
-    }
-
-    /// Names of the parameters of the first `n_layers`, as prefixes.
-    fn frozen_names(&self, n_layers: usize) -> Vec<String> {
-        let n_encoder = self.encoder.layers().len();
-        let n_tokens = self.token_encoders.first().map_or(0, |mlp| mlp.layers().len());
-        let encoder = (0..n_encoder).map(|i| vec![format!("encoder.{i}.")]);
-        let tokens = (0..n_tokens)
-            .map(|i| TOKEN_NAMES.iter().map(|name| format!("token.{name}.{i}.")).collect());
-        let trunk = (0..self.trunk.layers().len()).map(|i| vec![format!("trunk.{i}.")]);
-        let attention = std::iter::once(vec!["attention.".to_owned()]);
-        let head = std::iter::once(vec!["head.".to_owned()]);
-        let all = encoder.chain(tokens).chain(attention).chain(trunk).chain(head);
-        all.take(n_layers).flatten().collect()
-    }
 }
 
 /// Which layers give gradients.
@@ -154,47 +91,13 @@ impl ResponseNetwork {
     ) -> Result<Self, NnError> {
         let mut parameters = Parameters::new(DType::F64);
         let mut root = parameters.builder(rng);
-        let widths = |n_in: usize, widths: &[usize]| -> Vec<usize> {
-            std::iter::once(n_in).chain(widths.iter().copied()).collect()
-        };
-        let hidden = config.encoder.last().copied().unwrap_or(N_FEATURES);
-        let encoder = Mlp::new(
-            &mut root.at("encoder"),
-            &widths(N_FEATURES, &config.encoder),
-            Activation::Silu,
-        )?;
-        let mut token_encoders = Vec::with_capacity(N_TOKENS);
-        for name in TOKEN_NAMES {
-            let widths = widths(N_TOKEN_NUMBERS, &config.token_encoder);
-            token_encoders.push(Mlp::new(
-                &mut root.at("token").at(name),
-                &widths,
-                Activation::Silu,
-            )?);
-        }
-        let attention = AttentionConfig {
-            channels: hidden,
-            key_channels: config.token_encoder[2],
-            heads: config.attention_heads,
-            layer_norm: false,
-        };
-        let attention = Attention::new(&mut root.at("attention"), attention)?;
-        let trunk =
-            Mlp::new(&mut root.at("trunk"), &widths(hidden, &config.trunk), Activation::Silu)?;
-        let n_out = config.components * N_COMPONENT_NUMBERS;
-        let head = Linear::with_init(
-            &mut root.at("head"),
-            [trunk.n_out(), n_out],
-            Activation::None,
-            Init::Zero,
-        )?;
+        let layers = Layers::new(&mut root, config)?;
         let effects = [config.components, N_EFFECTS];
         let strengths = root.at("effects").add("strengths", &effects, Init::Zero)?;
         let boundary_log_scale =
             root.at("boundary").add("log_scale", &[BOUNDED_STATES.len()], Init::Zero)?;
         let component: Vec<f64> =
             RESIDUAL_MIRROR.into_iter().chain([1.0; N_RESIDUAL + 1]).collect();
-        let layers = Layers { encoder, token_encoders, attention, trunk, head };
         Ok(Self {
             fine_tuned: layers.clone(),
             layers,
@@ -260,63 +163,14 @@ impl ResponseNetwork {
         Ok((self.boundary_log_scale.exp()? * FIRST_BOUNDARY_SCALE)?)
     }
 
-    /// The attention to a vehicle.
-    ///
-    /// # Errors
-    /// [`NnError`] if a tensor cannot be read.
-    pub(crate) fn folded_attention(
-        &self,
-        vehicle: &VehicleParameters,
-    ) -> Result<FoldedAttention, NnError> {
-        let tokens = self.encoded_tokens(&self.layers, &token_tensor(vehicle)?)?.squeeze(0)?;
-        let get = |name: &str| {
-            let name = format!("attention.{name}");
-            let found = self.parameters.get(&name).map(|variable| variable.as_detached_tensor());
-            found.ok_or(NnError::MissingTensor { name })
-        };
-        let project = |name: &str| -> Result<Tensor, NnError> {
-            let weight = get(&format!("{name}.weight"))?;
-            Ok(tokens.matmul(&weight.t()?)?.broadcast_add(&get(&format!("{name}.bias"))?)?)
-        };
-        let (keys, values) = (project("key")?, project("value")?);
-        let (query, query_bias) = (get("query.weight")?, get("query.bias")?);
-        let (output, output_bias) = (get("output.weight")?, get("output.bias")?);
-        let heads = self.config.attention_heads;
-        let (n_tokens, hidden) = keys.dims2()?;
-        let width = hidden / heads.max(1);
-        let scale = 1.0 / (width as f64).sqrt();
-        let (mut scores, mut biases, mut seen) = (Vec::new(), Vec::new(), Vec::new());
-        for head in 0..heads {
-            let of_head =
-                |tensor: &Tensor, dim: usize| tensor.narrow(dim, head * width, width)?.contiguous();
-            let keys = (of_head(&keys, 1)? * scale)?;
-            // [tokens, width] · [width, hidden]
-            scores.push(keys.matmul(&of_head(&query, 0)?)?);
-            biases.push(keys.matmul(&of_head(&query_bias, 0)?.unsqueeze(1)?)?.squeeze(1)?);
-            // [tokens, width] · [width, hidden]
-            seen.push(of_head(&values, 1)?.matmul(&of_head(&output, 1)?.t()?.contiguous()?)?);
-        }
-        Ok(FoldedAttention {
-            scores: Tensor::cat(&scores, 0)?.t()?.contiguous()?.detach(),
-            scores_bias: Tensor::cat(&biases, 0)?.detach(),
-            seen: Tensor::cat(&seen, 0)?.detach(),
-            seen_bias: output_bias,
-            n_tokens,
-        })
-    }
-
-    fn encoded_tokens(&self, layers: &Layers, tokens: &Tensor) -> Result<Tensor, NnError> {
-        let token = |(i, encoder): (usize, &Mlp)| -> Result<Tensor, NnError> {
-            encoder.forward(&tokens.narrow(1, i, 1)?.contiguous()?)
-        };
-        let tokens: Vec<Tensor> =
-            layers.token_encoders.iter().enumerate().map(token).collect::<Result<_, _>>()?;
-        Ok(Tensor::cat(&tokens, 1)?)
-    }
-
     /// 1 for the features that the network sees, 0 for others.
     pub(crate) fn feature_mask_values(&self) -> [f64; N_FEATURES] {
         feature_mask(self.config.correction)
+    }
+
+    /// The layers, all with gradients.
+    pub(crate) fn layers(&self) -> &Layers {
+        &self.layers
     }
 
     /// J.
@@ -345,7 +199,7 @@ impl ResponseNetwork {
         let features = features.broadcast_mul(&self.feature_mask)?;
         let mirrored = features.broadcast_mul(&self.feature_mirror)?;
         let hidden = layers.encoder.forward(&Tensor::cat(&[features, mirrored], 1)?)?;
-        let tokens = self.encoded_tokens(layers, tokens)?;
+        let tokens = layers.encoded_tokens(tokens)?;
         let hidden = layers.attention.cross_attention(&hidden, &tokens)?;
         let raw = layers.head.forward(&layers.trunk.forward(&hidden)?)?;
         let shape = (n_sequences, 2 * n_instants, self.config.components, N_COMPONENT_NUMBERS);
@@ -371,20 +225,6 @@ impl ResponseNetwork {
     }
 }
 
-/// Cross-attention to the tokens of one vehicle, folded: `h ← h + softmax_per_head(h S + s₀) U + u₀`.
-pub(crate) struct FoldedAttention {
-    /// S: `[hidden, heads · tokens]`, tokens of a head together.
-    pub scores: Tensor,
-    /// s₀.
-    pub scores_bias: Tensor,
-    /// U: `[heads · tokens, hidden]`.
-    pub seen: Tensor,
-    /// u₀.
-    pub seen_bias: Tensor,
-    /// Tokens.
-    pub n_tokens: usize,
-}
-
 /// A network without the 4DOF model sees nothing of it.
 fn feature_mask(correction: Correction) -> [f64; N_FEATURES] {
     match correction {
@@ -398,6 +238,7 @@ mod tests {
     use super::*;
     use crate::nn::gradient_check::{assert_close, random_tensor};
     use crate::nn::random_stream;
+    use crate::response::vehicle_tokens::{N_TOKEN_NUMBERS, N_TOKENS};
 
     fn network() -> ResponseNetwork {
         let config = ResponseNetworkConfig::default();

@@ -6,9 +6,10 @@ use std::sync::Arc;
 use candle_core::{D, DType, Device, Tensor};
 
 use crate::nn::{NnError, softmax};
+use crate::response::effect_operation::effect_rows;
 use crate::response::loss::{Loss, boundary, diversity, huber_of_squares};
 use crate::response::network::{Gradients, ResponseNetwork};
-use crate::response::step_operations::{Row, effect_rows, feature_rows, step_rows};
+use crate::response::step_operations::{Row, feature_rows, step_rows};
 use crate::response::{
     N_EFFECTS, N_FEATURES, N_RESIDUAL, N_TOKEN_NUMBERS, N_TOKENS, ResponseCase, STEP_S,
     vehicle_tokens,

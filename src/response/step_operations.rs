@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use crate::nn::NnError;
 use crate::nn::storage::{contiguous, cpu_storage};
-use crate::response::{Correction, N_EFFECTS, N_FEATURES, N_RESIDUAL, combined, effects, features};
+use crate::response::{Correction, N_FEATURES, N_RESIDUAL, features};
 use crate::vehicle::{N_STATE, VehicleInput, VehicleParameters, VehicleState};
 
 /// Rows that are worth a task of their own.
@@ -43,24 +43,6 @@ pub(crate) fn feature_rows(x: &Tensor, rows: &Arc<Vec<Row>>) -> Result<Tensor, N
     Ok(x.contiguous()?.apply_op1(FeatureOperation(rows.clone()))?)
 }
 
-/// The residual acceleration by the effects.
-///
-/// - `x`: `[rows, 8]`, `strengths`: of each row, `[rows, N_EFFECTS]`, f64;
-/// - returns `[rows, 4]`.
-///
-/// # Errors
-/// [`NnError::Tensor`] for another shape or type.
-pub(crate) fn effect_rows(
-    x: &Tensor,
-    strengths: &Tensor,
-    rows: &Arc<Vec<Row>>,
-) -> Result<Tensor, NnError> {
-    check(x, N_STATE, rows)?;
-    check(strengths, N_EFFECTS, rows)?;
-    let strengths = strengths.contiguous()?;
-    Ok(x.contiguous()?.apply_op2(&strengths, EffectOperation(rows.clone()))?)
-}
-
 /// The states after a step.
 ///
 /// - `x`: `[rows, 8]`, `value`: what the correction takes, `[rows, 4]`, f64;
@@ -79,7 +61,7 @@ pub(crate) fn step_rows(
     Ok(x.contiguous()?.apply_op2(&value, StepOperation { correction, rows: rows.clone() })?)
 }
 
-fn check(tensor: &Tensor, width: usize, rows: &[Row]) -> Result<(), NnError> {
+pub(super) fn check(tensor: &Tensor, width: usize, rows: &[Row]) -> Result<(), NnError> {
     let expected = [rows.len(), width];
     if tensor.dims() != expected || tensor.dtype() != DType::F64 {
         let name = format!("rows of {:?}", tensor.dtype());
@@ -93,8 +75,6 @@ fn check(tensor: &Tensor, width: usize, rows: &[Row]) -> Result<(), NnError> {
 }
 
 struct FeatureOperation(Arc<Vec<Row>>);
-
-struct EffectOperation(Arc<Vec<Row>>);
 
 struct StepOperation {
     correction: Correction,
@@ -112,28 +92,6 @@ impl FeatureOperation {
             SVector::from(features(&row.vehicle, &state, &input, row.time_s))
         };
         num_dual::jacobian(f, &x)
-    }
-}
-
-impl EffectOperation {
-    fn jacobian(
-        row: &Row,
-        x: SVector<f64, N_STATE>,
-        strengths: &[f64],
-    ) -> SMatrix<f64, N_RESIDUAL, N_STATE> {
-        let input = row.input.map(DualSVec64::<N_STATE>::from);
-        let f = |x: SVector<DualSVec64<N_STATE>, N_STATE>| {
-            let state = VehicleState::from_array(x.into());
-            let now = row.vehicle.evaluate(&state, &input);
-            let effects = effects(&row.vehicle, &state, &input, &now);
-            SVector::from(combined(&effects, strengths))
-        };
-        num_dual::jacobian(f, &x).1
-    }
-
-    fn at(row: &Row, x: [f64; N_STATE]) -> crate::response::Effects<f64> {
-        let state = VehicleState::from_array(x);
-        effects(&row.vehicle, &state, &row.input, &row.vehicle.evaluate(&state, &row.input))
     }
 }
 
@@ -155,7 +113,10 @@ impl StepOperation {
 }
 
 /// `f` of each row, one after the other; the result of a row does not depend on the others.
-fn map_rows<const N: usize>(rows: &[Row], f: impl Fn(usize, &Row) -> [f64; N] + Sync) -> Vec<f64> {
+pub(super) fn map_rows<const N: usize>(
+    rows: &[Row],
+    f: impl Fn(usize, &Row) -> [f64; N] + Sync,
+) -> Vec<f64> {
     let values: Vec<[f64; N]> = rows
         .par_iter()
         .enumerate()
@@ -165,7 +126,7 @@ fn map_rows<const N: usize>(rows: &[Row], f: impl Fn(usize, &Row) -> [f64; N] + 
     values.into_flattened()
 }
 
-fn array<const N: usize>(values: &[f64], row_idx: usize) -> [f64; N] {
+pub(super) fn array<const N: usize>(values: &[f64], row_idx: usize) -> [f64; N] {
     std::array::from_fn(|i| values.get(row_idx * N + i).copied().unwrap_or(f64::NAN))
 }
 
@@ -198,59 +159,6 @@ impl CustomOp1 for FeatureOperation {
             jacobian.tr_mul(&SVector::from(array::<N_FEATURES>(given, idx))).into()
         });
         Ok(Some(Tensor::from_vec(back, x.shape(), &Device::Cpu)?))
-    }
-}
-
-impl CustomOp2 for EffectOperation {
-    fn name(&self) -> &'static str {
-        "effects beside the 4DOF model"
-    }
-
-    fn cpu_fwd(
-        &self,
-        x: &CpuStorage,
-        x_layout: &Layout,
-        strengths: &CpuStorage,
-        strengths_layout: &Layout,
-    ) -> TensorResult<(CpuStorage, Shape)> {
-        let x = contiguous::<f64>(x, x_layout, self.name())?;
-        let strengths = contiguous::<f64>(strengths, strengths_layout, self.name())?;
-        let values = map_rows(&self.0, |idx, row| {
-            let strengths: [f64; N_EFFECTS] = array(strengths, idx);
-            combined(&Self::at(row, array(x, idx)), &strengths)
-        });
-        Ok((CpuStorage::F64(values), (self.0.len(), N_RESIDUAL).into()))
-    }
-
-    fn bwd(
-        &self,
-        x: &Tensor,
-        strengths: &Tensor,
-        _y: &Tensor,
-        gradient: &Tensor,
-    ) -> TensorResult<(Option<Tensor>, Option<Tensor>)> {
-        let gradient = gradient.contiguous()?;
-        let guards = [x, strengths, &gradient].map(Tensor::storage_and_layout);
-        let [states, of_rows, given] = guards.each_ref().map(|(storage, layout)| {
-            contiguous::<f64>(cpu_storage(storage, self.name())?, layout, self.name())
-        });
-        let (states, of_rows, given) = (states?, of_rows?, given?);
-        let to_states = map_rows::<N_STATE>(&self.0, |idx, row| {
-            let strengths: [f64; N_EFFECTS] = array(of_rows, idx);
-            let jacobian = Self::jacobian(row, SVector::from(array(states, idx)), &strengths);
-            jacobian.tr_mul(&SVector::from(array::<N_RESIDUAL>(given, idx))).into()
-        });
-        let to_strengths = map_rows::<N_EFFECTS>(&self.0, |idx, row| {
-            let given: [f64; N_RESIDUAL] = array(given, idx);
-            let share = |effect: [f64; N_RESIDUAL]| {
-                effect.into_iter().zip(given).map(|(effect, given)| effect * given).sum()
-            };
-            Self::at(row, array(states, idx)).map(share)
-        });
-        Ok((
-            Some(Tensor::from_vec(to_states, x.shape(), &Device::Cpu)?),
-            Some(Tensor::from_vec(to_strengths, strengths.shape(), &Device::Cpu)?),
-        ))
     }
 }
 
@@ -301,13 +209,13 @@ impl CustomOp2 for StepOperation {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::nn::gradient_check::{assert_gradients, random_variable};
     use crate::vehicle::{CollisionForce, ContactPoint, Preset};
     use candle_core::Var;
 
-    fn rows() -> Arc<Vec<Row>> {
+    pub(in crate::response) fn rows() -> Arc<Vec<Row>> {
         let vehicle = Arc::new(Preset::Reference.parameters());
         let contact = ContactPoint { x_m: -1.5, y_m: -0.9, height_m: 0.5 };
         let collision = CollisionForce {
@@ -322,7 +230,7 @@ mod tests {
     }
 
     /// States of a car that slides and turns.
-    fn states() -> Var {
+    pub(in crate::response) fn states() -> Var {
         let x = [
             [12.0, 2.0, 0.3, 0.8, 0.02, -0.1, 3.0, 1.0],
             [15.0, -4.0, -0.5, -1.1, -0.03, 0.2, 20.0, 4.0],
@@ -344,14 +252,6 @@ mod tests {
                 step_rows(correction, [&x, &value], &rows).unwrap()
             });
         }
-    }
-
-    #[test]
-    fn gradients_of_the_effects_are_exact() {
-        let (x, strengths, rows) = (states(), random_variable(&[2, N_EFFECTS], 1), rows());
-        assert_gradients(&[x.clone(), strengths.clone()], || {
-            effect_rows(&x, &strengths, &rows).unwrap()
-        });
     }
 
     #[test]

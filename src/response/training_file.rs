@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use crate::nn::{Checkpoint, ModelKind};
-use crate::response::train::SavedTraining;
+use crate::response::training_run::SavedTraining;
 use crate::response::{ResponseConfig, ResponseEpoch, ResponseError, ResponseTrainSettings};
 
 const KIND: ModelKind = ModelKind { name: "training of a response network", version: 1 };

@@ -11,6 +11,7 @@ use candle_core::Tensor;
 
 use crate::nn::NnError;
 use crate::nn::bias_silu_rows;
+use crate::response::folded_attention::FoldedAttention;
 use crate::response::network::ResponseNetwork;
 use crate::response::{
     Correction, FEATURE_MIRROR, N_EFFECTS, N_FEATURES, N_RESIDUAL, RESIDUAL_MIRROR,
@@ -76,7 +77,7 @@ impl VehicleNetwork {
         vehicle: &VehicleParameters,
     ) -> Result<Self, NnError> {
         let config = network.config();
-        let folded = network.folded_attention(vehicle)?;
+        let folded = FoldedAttention::of(network, vehicle)?;
         let dense = |name: String| Dense::of(network, &name);
         let layers = |name: &str, n: usize| -> Result<Vec<Dense>, NnError> {
             (0..n).map(|i| dense(format!("{name}.{i}"))).collect()
