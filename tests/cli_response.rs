@@ -1,0 +1,238 @@
+//! The commands of the response network: pre-train, fine-tune, kill, resume, evaluate, compare,
+//! predict.
+
+#![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::sync::OnceLock;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+const SCENARIO: &str = "assets/scenarios/pit_right_rear.toml";
+const DATA: &str = "datasets/trajectories-fea";
+const PATIENCE: Duration = Duration::from_secs(300);
+
+const TINY: &str = "\
+[network]
+encoder = [8]
+token_encoder = [4, 4, 4]
+attention_heads = 2
+trunk = [8]
+components = 2
+
+[pretraining]
+motions = 4
+epochs = 2
+
+[single_steps]
+epochs = 6
+
+[rollouts]
+lengths = [5]
+epochs = 6
+
+[calibration]
+folds = 2
+
+[tuning]
+particles = 3
+iterations = 1
+";
+
+struct Workplace {
+    folder: TempDir,
+    config: PathBuf,
+    pretrained: PathBuf,
+    tuned: PathBuf,
+}
+
+fn program() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_impactlab"));
+    command.current_dir(env!("CARGO_MANIFEST_DIR"));
+    command
+}
+
+fn ok(output: Output) -> String {
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    assert!(output.status.success(), "{}", text(output.stderr));
+    text(output.stdout)
+}
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
+}
+
+fn fine_tune(place: (&Path, &Path), model: &Path) -> Command {
+    let (config, pretrained) = place;
+    let mut command = program();
+    command.args(["fine-tune", "response", "--data", DATA, "--trajectories", "4", "--json"]);
+    command.arg("--config").arg(config).arg("--model").arg(pretrained).arg("--out").arg(model);
+    command
+}
+
+/// Two tiny models, made once for all tests.
+fn workplace() -> &'static Workplace {
+    static PLACE: OnceLock<Workplace> = OnceLock::new();
+    PLACE.get_or_init(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let [config, pretrained, tuned] =
+            ["tiny.toml", "pretrained", "tuned"].map(|name| folder.path().join(name));
+        fs::write(&config, TINY).unwrap();
+        let mut train = program();
+        train.args(["train", "response", "--data", "datasets/fea", "--json"]);
+        train.arg("--config").arg(&config).arg("--out").arg(&pretrained);
+        let told = json(&ok(train.output().unwrap()));
+        assert_eq!((&told["n_simulated"], &told["epochs"]), (&Value::from(4), &Value::from(2)));
+        let told = json(&ok(fine_tune((&config, &pretrained), &tuned).output().unwrap()));
+        assert_eq!(told["train"].as_array().unwrap().len(), 4);
+        assert_eq!((&told["n_test"], &told["epochs"]), (&Value::from(25), &Value::from(14)));
+        assert_eq!(told["latents"]["n_calibrated"], 4);
+        Workplace { folder, config, pretrained, tuned }
+    })
+}
+
+fn evaluate(model: &Path) -> Value {
+    let mut command = program();
+    command.args(["evaluate", "response", "--data", DATA, "--json", "--model"]).arg(model);
+    json(&ok(command.output().unwrap()))
+}
+
+/// Without what a clock said.
+fn errors(comparison: &Value) -> Value {
+    comparison["models"][0]["average_error_m"].clone()
+}
+
+#[test]
+fn a_killed_fine_tuning_goes_on_to_the_same_model() {
+    let place = workplace();
+    let killed = place.folder.path().join("killed");
+    let start = (place.config.as_path(), place.pretrained.as_path());
+    let mut child =
+        fine_tune(start, &killed).stderr(Stdio::null()).stdout(Stdio::null()).spawn().unwrap();
+    let checkpoint = PathBuf::from(format!("{}.training", killed.display()));
+    let started = Instant::now();
+    while !checkpoint.exists() && started.elapsed() < PATIENCE {
+        thread::sleep(Duration::from_millis(2));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    ok(fine_tune(start, &killed).arg("--resume").output().unwrap());
+    assert_eq!(errors(&evaluate(&killed)), errors(&evaluate(&place.tuned)));
+    let other = fine_tune(start, &killed).args(["--resume", "--seed", "9"]).output().unwrap();
+    let message = String::from_utf8(other.stderr).unwrap();
+    assert!(message.contains("the training to resume had another"), "{message}");
+}
+
+#[test]
+fn evaluation_and_comparison_have_their_keys() {
+    let place = workplace();
+    let evaluated = evaluate(&place.tuned);
+    assert_eq!(evaluated["test"].as_array().unwrap().len(), 25);
+    let out = place.folder.path().join("comparison");
+    let mut command = program();
+    command.args(["compare", "--data", DATA, "--trajectories", "3", "--choices", "2", "--json"]);
+    command.arg("--config").arg(&place.config).arg("--model").arg(&place.pretrained);
+    command.arg("--out").arg(&out);
+    let comparison = json(&ok(command.output().unwrap()));
+    let models = comparison["models"].as_array().unwrap();
+    let names: Vec<&str> = models.iter().map(|model| model["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["4DOF untuned", "4DOF tuned", "NN-only", "PINN"]);
+    for model in models {
+        assert!(model["average_error_m"]["median"].as_f64().unwrap() > 0.0, "{model}");
+        assert!(model["rmse"]["yaw_rate_deg_s"]["mean"].is_number());
+        assert!(model["time_per_step_us"].is_number() && model["violations"].is_number());
+    }
+    let network = &models[3];
+    assert_eq!(network["n"], 50);
+    assert_eq!(network["violations"], 0);
+    assert!(network["coverage"]["90"].as_f64().unwrap() > 0.0);
+    assert!(models[0]["coverage"].is_null());
+    assert!(!comparison["clusters"].as_array().unwrap().is_empty());
+    // The untuned model is the same in both.
+    let untuned = models[0]["average_error_m"]["mean"].as_f64().unwrap();
+    assert!((0.5..1.5).contains(&untuned), "{untuned}");
+    let text = fs::read_to_string(out.join("comparison.md")).unwrap();
+    assert!(text.contains("| PINN | 3 |") && text.contains("other data"), "{text}");
+    for file in ["comparison.json", "models.csv", "horizons.csv", "uncertainty.csv", "clusters.csv"]
+    {
+        assert!(out.join(file).is_file(), "{file}");
+    }
+}
+
+#[test]
+fn a_prediction_writes_trajectory_density_and_outcome() {
+    let place = workplace();
+    let out = place.folder.path().join("prediction");
+    let mut command = program();
+    command.args(["predict", "--scenario", SCENARIO, "--draws", "3", "--duration", "2", "--json"]);
+    command.arg("--response-model").arg(&place.tuned).arg("--out").arg(&out);
+    let answer = json(&ok(command.output().unwrap()));
+    let outcome = &answer["outcome"];
+    assert_eq!((&answer["n_forces"], &outcome["time_s"]), (&Value::from(3), &Value::from(2.0)));
+    let x = &outcome["x_m"];
+    let [low, high] = [0, 1].map(|end| x["ninety"][end].as_f64().unwrap());
+    assert!(low < x["median"].as_f64().unwrap() && x["median"].as_f64().unwrap() < high);
+    let probability = outcome["p_quarter_turn"].as_f64().unwrap();
+    assert!((0.0..=1.0).contains(&probability));
+    let trajectory = fs::read_to_string(out.join("trajectory.csv")).unwrap();
+    assert_eq!(trajectory.lines().count(), 1 + 201);
+    let density = fs::read_to_string(out.join("density.csv")).unwrap();
+    let mut points = density.lines().skip(1).map(|line| {
+        let numbers: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        (numbers[0], numbers[1], numbers[2])
+    });
+    let (x0, y0, first) = points.next().unwrap();
+    let (mut sum, mut step, mut rise) = (first, f64::INFINITY, f64::INFINITY);
+    for (x, y, value) in points {
+        sum += value;
+        step = if x > x0 { step.min(x - x0) } else { step };
+        rise = if y > y0 { rise.min(y - y0) } else { rise };
+    }
+    assert!((sum * step * rise - 1.0).abs() < 0.02, "{}", sum * step * rise);
+    assert!(out.join("outcome.json").is_file() && out.join("scene.csv").is_file());
+}
+
+#[test]
+fn a_recorded_force_takes_the_place_of_the_predicted_one() {
+    let place = workplace();
+    let out = place.folder.path().join("recorded");
+    let mut command = program();
+    command.args(["predict", "--scenario", SCENARIO, "--json"]);
+    command.args(["--force", "datasets/fea/forces/c001.csv", "--response-model"]);
+    command.arg(&place.tuned).arg("--out").arg(&out);
+    let answer = json(&ok(command.output().unwrap()));
+    assert_eq!(answer["n_forces"], 1);
+    assert!(answer["force_model"].is_null() && answer["hooking_probability"].is_null());
+}
+
+#[test]
+fn what_cannot_be_done_is_said_in_one_line() {
+    let place = workplace();
+    let error = |command: &mut Command| {
+        let output = command.output().unwrap();
+        assert!(!output.status.success());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let text = error(program().args(["predict", "--draws", "3"]));
+    assert!(text.contains("--scenario"), "{text}");
+    let text = error(
+        program()
+            .args(["evaluate", "response", "--data", "datasets/fea", "--model"])
+            .arg(&place.tuned),
+    );
+    assert!(text.contains("holds force histories, expected a trajectory data set"), "{text}");
+    let start = (place.config.as_path(), place.pretrained.as_path());
+    let many = fine_tune(start, &place.folder.path().join("many"))
+        .args(["--trajectories", "200"])
+        .output();
+    assert!(!many.unwrap().status.success());
+    let wrong = place.folder.path().join("wrong.toml");
+    fs::write(&wrong, "[network]\ncomponents = 0\n").unwrap();
+    let text = error(program().args(["compare", "--data", DATA, "--config"]).arg(&wrong));
+    assert_eq!(text, "error: network.components is 0, expected 1 or more\n");
+}
