@@ -54,7 +54,7 @@ fn errors_m(model: &ResponseModel) -> [f64; 2] {
     let unseen = case(0.6);
     let (start, inputs) = (unseen.states[0], &unseen.inputs);
     let plain = rollout(&unseen.vehicle, start, inputs, |_, _| [0.0; 4]);
-    let path = model.predictor(&unseen.vehicle).expect("a predictor").mean_path(&start, inputs);
+    let path = model.predictor(&unseen.vehicle).expect("a predictor").central_path(&start, inputs);
     [plain, path].map(|path| average_error_m(&path, &unseen.states))
 }
 

@@ -99,7 +99,7 @@ fn observe(unseen: &Unseen<'_>) -> Vec<Observation> {
         let latents = LatentScales { scales, step_noise, ..LatentScales::default() };
         unseen.predictor.clone().with_latents(latents)
     };
-    let certain = with([0.0; N_LATENTS], 0.0).mean_path(initial, &case.inputs);
+    let certain = with([0.0; N_LATENTS], 0.0).central_path(initial, &case.inputs);
     let noise = with([0.0; N_LATENTS], PROBE_NOISE).motion(initial, &case.inputs);
     // A latent that is one: strengths moved by a probe, all components alike.
     let moved: Vec<Vec<VehicleState<f64>>> = (0..N_LATENTS)

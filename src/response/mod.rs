@@ -11,6 +11,7 @@ mod features;
 mod step;
 mod vehicle_tokens;
 
+mod dense;
 mod effect_operation;
 mod effects_fit;
 mod folded_attention;

@@ -124,13 +124,18 @@ impl Predictor {
         mean_of(&self.paths_at(initial, inputs, |_| latents), inputs.len())
     }
 
-    /// Mean of the paths, each with its probability.
-    pub fn mean_path(
+    /// The path without what is uncertain: all latent factors none, the mean over the components.
+    ///
+    /// It stands for the prediction where one path is asked for. The mean of the distribution is none
+    /// of the ways in which a car can go where some of them spin and others do not, and it moves with
+    /// how uncertain the model is.
+    pub fn central_path(
         &self,
         initial: &VehicleState<f64>,
         inputs: &[VehicleInput<f64>],
     ) -> Vec<VehicleState<f64>> {
-        mean_of(&self.paths(initial, inputs), inputs.len())
+        let paths = self.paths_at(initial, inputs, |_| [0.0; N_LATENTS]);
+        mean_of(&paths, inputs.len())
     }
 
     /// The distribution of the motion.
@@ -214,7 +219,7 @@ fn path(
     for (i, u) in inputs.iter().enumerate() {
         let at = (&state, u, i as f64 * STEP_S);
         let next = dynamics.step((component, latents), at, buffers);
-        let share = Dynamics::weights(buffers).get(component).copied();
+        let share = dynamics.weights(buffers).get(component).copied();
         weight += share.unwrap_or(0.0) / inputs.len() as f64;
         state = next;
         let mut off = dynamics.noise(component, buffers);

@@ -19,9 +19,9 @@ use nalgebra::{SMatrix, SVector};
 use crate::response::features::features_of;
 use crate::response::latents::{LatentScales, N_LATENTS};
 use crate::response::vehicle_network::{ComponentOutput, VehicleNetwork, Workspace};
-use crate::response::{Effects, N_EFFECTS, N_RESIDUAL, STEP_S, combined, effects};
+use crate::response::{Effects, N_EFFECTS, N_FEATURES, N_RESIDUAL, STEP_S, combined, effects};
 use crate::uncertainty::{Unscented, UnscentedWeights};
-use crate::vehicle::{VehicleInput, VehicleParameters, VehicleState};
+use crate::vehicle::{Evaluation, VehicleInput, VehicleParameters, VehicleState};
 
 /// Numbers of ξ.
 pub(crate) const N_JOINT: usize = 8 + N_LATENTS;
@@ -33,6 +33,8 @@ const X: usize = N_DYNAMIC + 1;
 const Y: usize = N_DYNAMIC + 2;
 /// Of velocities and rates in ξ: v_x, v_y, r, φ̇.
 const NOISY: [usize; N_RESIDUAL] = [0, 1, 2, 4];
+/// Latent factors of the collision in ξ: they matter as long as a force acts.
+const OF_COLLISION: [usize; 2] = [5 + 2, 5 + 3];
 /// Variance that is added to every number of ξ so that no covariance is singular.
 const LEAST_VARIANCE: f64 = 1e-12;
 
@@ -69,6 +71,8 @@ pub(crate) struct Dynamics<'a> {
 #[derive(Default)]
 pub(crate) struct Buffers {
     work: Workspace,
+    features: Vec<[f64; N_FEATURES]>,
+    seen: Vec<(VehicleState<f64>, Evaluation<f64>, [f64; N_LATENTS])>,
     outputs: Vec<ComponentOutput>,
 }
 
@@ -99,27 +103,57 @@ impl<'a> Dynamics<'a> {
         (x, u, time_s): (&VehicleState<f64>, &VehicleInput<f64>, f64),
         buffers: &mut Buffers,
     ) -> VehicleState<f64> {
-        let now = self.vehicle.evaluate(x, u);
-        let seen = features_of(self.vehicle, x, &now, time_s);
-        self.network.forward(&seen, &mut buffers.work, &mut buffers.outputs);
-        let of_effects: Effects<f64> = effects(self.vehicle, x, u, &now);
-        let known = combined(&of_effects, &self.strengths(component, latents));
-        let remainder =
-            buffers.outputs.get(component).map_or([0.0; N_RESIDUAL], |output| output.remainder);
-        let value = self.network.bounded(std::array::from_fn(|i| known[i] + remainder[i]));
-        self.network.correction().step(self.vehicle, x, u, value)
+        self.see(std::iter::once((*x, *latents)), (u, time_s), buffers);
+        self.step_seen(component, 0, u, buffers)
     }
 
-    /// Probabilities of the components and the step noise of one, as the latest step left them.
-    pub(crate) fn weights(buffers: &Buffers) -> Vec<f64> {
-        let logits = buffers.outputs.iter().map(|output| output.logit);
+    /// Looks at several states at once.
+    fn see(
+        &self,
+        states: impl Iterator<Item = (VehicleState<f64>, [f64; N_LATENTS])>,
+        (u, time_s): (&VehicleInput<f64>, f64),
+        buffers: &mut Buffers,
+    ) {
+        buffers.seen.clear();
+        buffers.features.clear();
+        for (x, latents) in states {
+            let now = self.vehicle.evaluate(&x, u);
+            buffers.features.push(features_of(self.vehicle, &x, &now, time_s));
+            buffers.seen.push((x, now, latents));
+        }
+        self.network.forward(&buffers.features, &mut buffers.work, &mut buffers.outputs);
+    }
+
+    /// A step from one of the states that were seen last.
+    fn step_seen(
+        &self,
+        component: usize,
+        idx: usize,
+        u: &VehicleInput<f64>,
+        buffers: &Buffers,
+    ) -> VehicleState<f64> {
+        let Some((x, now, latents)) = buffers.seen.get(idx) else {
+            return VehicleState::default();
+        };
+        let of_effects: Effects<f64> = effects(self.vehicle, x, u, now);
+        let known = combined(&of_effects, &self.strengths(component, latents));
+        let output = buffers.outputs.get(idx * self.network.n_components() + component);
+        let remainder = output.map_or([0.0; N_RESIDUAL], |output| output.remainder);
+        let value = self.network.bounded(std::array::from_fn(|i| known[i] + remainder[i]));
+        self.network.correction().step_from(self.vehicle, (x, u, now), value)
+    }
+
+    /// Probabilities of the components at the first of the states that were seen last.
+    pub(crate) fn weights(&self, buffers: &Buffers) -> Vec<f64> {
+        let of_first = buffers.outputs.iter().take(self.network.n_components());
+        let logits = of_first.map(|output| output.logit);
         let largest = logits.clone().fold(f64::NEG_INFINITY, f64::max);
         let shares: Vec<f64> = logits.map(|logit| (logit - largest).exp()).collect();
         let sum: f64 = shares.iter().sum();
         shares.into_iter().map(|share| share / sum).collect()
     }
 
-    /// Deviation of the noise of the latest step.
+    /// Deviation of the noise of a step from the first of the states that were seen last.
     pub(crate) fn noise(&self, component: usize, buffers: &Buffers) -> [f64; N_RESIDUAL] {
         let output = buffers.outputs.get(component);
         output.map_or([0.0; N_RESIDUAL], |output| {
@@ -144,14 +178,19 @@ impl<'a> Dynamics<'a> {
             covariance[(5 + m, 5 + m)] = share.variance.max(LEAST_VARIANCE);
         }
         let weights = unscented.weights(N);
+        let last_struck = inputs.iter().rposition(|input| input.collision.is_some());
+        let n_struck = last_struck.map_or(0, |last| last + 1);
         let mut states = Vec::with_capacity(inputs.len() + 1);
         states.push(StateDistribution::of(&mean, &covariance));
         let mut weight = 0.0;
         for (i, u) in inputs.iter().enumerate() {
-            let at = (u, i as f64 * STEP_S);
+            if i == n_struck {
+                forget(&mut covariance);
+            }
+            let at = (u, i as f64 * STEP_S, i >= n_struck);
             (mean, covariance) =
                 self.propagate((component, &weights), (&mean, &covariance), at, buffers);
-            let share = Self::weights(buffers).get(component).copied();
+            let share = self.weights(buffers).get(component).copied();
             weight += share.unwrap_or(0.0) / inputs.len() as f64;
             states.push(StateDistribution::of(&mean, &covariance));
         }
@@ -159,34 +198,43 @@ impl<'a> Dynamics<'a> {
     }
 
     /// Mean and covariance after a step.
+    ///
+    /// - `is_free`: whether no force will act any more, so that what is uncertain about the collision
+    ///   has had its effect.
     fn propagate(
         &self,
         (component, weights): (usize, &UnscentedWeights),
         (mean, covariance): (&Mean, &Covariance),
-        (u, time_s): (&VehicleInput<f64>, f64),
+        (u, time_s, is_free): (&VehicleInput<f64>, f64, bool),
         buffers: &mut Buffers,
     ) -> (Mean, Covariance) {
         let root = root_of(covariance) * weights.reach;
-        let mut next = |point: &Mean| -> Mean {
-            let (x, latents) = state_of(point);
-            mean_of(&self.step((component, &latents), (&x, u, time_s), buffers), latents)
-        };
-        let mut offsets = [Mean::zeros(); 2 * N];
         // A force in world axes pushes a car that is turned otherwise from another side.
         let depends_on_pose = u.collision.is_some_and(|collision| collision.in_world_axes);
-        let n_stepped = if depends_on_pose { N } else { N_DYNAMIC };
-        // The centre comes last, so that its noise is what stays in the buffers.
-        for i in 0..n_stepped {
+        let matters = |i: &usize| match *i {
+            i if i >= N_DYNAMIC => depends_on_pose,
+            i => !is_free || !OF_COLLISION.contains(&i),
+        };
+        let stepped: Vec<usize> = (0..N).filter(matters).collect();
+        let points = stepped.iter().flat_map(|&i| {
             let column = root.column(i);
-            offsets[2 * i] = next(&(mean + column));
-            offsets[2 * i + 1] = next(&(mean - column));
-        }
-        let centre = next(mean);
-        for offset in offsets.iter_mut().take(2 * n_stepped) {
-            *offset -= centre;
+            [mean + column, mean - column]
+        });
+        let points = std::iter::once(*mean).chain(points).map(|point| state_of(&point));
+        self.see(points, (u, time_s), buffers);
+        let next = |idx: usize| -> Mean {
+            let latents =
+                buffers.seen.get(idx).map_or([0.0; N_LATENTS], |(_, _, latents)| *latents);
+            mean_of(&self.step_seen(component, idx, u, buffers), latents)
+        };
+        let centre = next(0);
+        let mut offsets = [Mean::zeros(); 2 * N];
+        for (k, &i) in stepped.iter().enumerate() {
+            offsets[2 * i] = next(1 + 2 * k) - centre;
+            offsets[2 * i + 1] = next(2 + 2 * k) - centre;
         }
         let moved = [centre[X] - mean[X], centre[Y] - mean[Y]];
-        for i in n_stepped..N {
+        for i in (0..N).filter(|i| !matters(i)) {
             for (sign, slot) in [(1.0, 2 * i), (-1.0, 2 * i + 1)] {
                 offsets[slot] = turned(moved, &(root.column(i) * sign).into_owned());
             }
@@ -207,6 +255,16 @@ impl<'a> Dynamics<'a> {
             covariance[(i, i)] += LEAST_VARIANCE * STEP_S;
         }
         (centre + shift, covariance)
+    }
+}
+
+/// What is uncertain about a collision that is over: its latent factors are no longer part of the
+/// distribution.
+fn forget(covariance: &mut Covariance) {
+    for i in OF_COLLISION {
+        covariance.fill_row(i, 0.0);
+        covariance.fill_column(i, 0.0);
+        covariance[(i, i)] = LEAST_VARIANCE;
     }
 }
 

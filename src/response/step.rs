@@ -10,8 +10,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::numerics::{Scalar, rk4_step};
-use crate::vehicle::{N_STATE, VehicleInput, VehicleParameters, VehicleState};
+use crate::numerics::{Scalar, Stage, rk4_step};
+use crate::vehicle::{Evaluation, N_STATE, VehicleInput, VehicleParameters, VehicleState};
 
 /// Length of a step, s: that of the trajectory data sets.
 pub const STEP_S: f64 = 0.01;
@@ -49,10 +49,20 @@ impl Correction {
         u: &VehicleInput<T>,
         value: [T; N_RESIDUAL],
     ) -> VehicleState<T> {
+        self.step_from(vehicle, (x, u, &vehicle.evaluate(x, u)), value)
+    }
+
+    /// [`Correction::step`] where the 4DOF model was evaluated at the beginning already.
+    pub(crate) fn step_from<T: Scalar>(
+        self,
+        vehicle: &VehicleParameters,
+        (x, u, now): (&VehicleState<T>, &VehicleInput<T>, &Evaluation<T>),
+        value: [T; N_RESIDUAL],
+    ) -> VehicleState<T> {
         match self {
-            Self::Acceleration => step(vehicle, x, u, value),
+            Self::Acceleration => step_from(vehicle, (x, u, now), value),
             Self::StateOffset => {
-                let mut next = step(vehicle, x, u, [T::from(0.0); N_RESIDUAL]);
+                let mut next = step_from(vehicle, (x, u, now), [T::from(0.0); N_RESIDUAL]);
                 let [vx, vy, yaw, roll] = value;
                 next.vx_m_s += vx;
                 next.vy_m_s += vy;
@@ -90,9 +100,20 @@ pub fn step<T: Scalar>(
     u: &VehicleInput<T>,
     residual: [T; N_RESIDUAL],
 ) -> VehicleState<T> {
+    step_from(vehicle, (x, u, &vehicle.evaluate(x, u)), residual)
+}
+
+fn step_from<T: Scalar>(
+    vehicle: &VehicleParameters,
+    (x, u, now): (&VehicleState<T>, &VehicleInput<T>, &Evaluation<T>),
+    residual: [T; N_RESIDUAL],
+) -> VehicleState<T> {
     let [ax, ay, yaw, roll] = residual;
-    let f = |_, x: &[T; 8]| {
-        let mut rate = vehicle.evaluate(&VehicleState::from_array(*x), u).derivative;
+    let f = |stage, x: &[T; 8]| {
+        let mut rate = match stage {
+            Stage::Start => now.derivative,
+            _ => vehicle.evaluate(&VehicleState::from_array(*x), u).derivative,
+        };
         rate.vx_m_s += ax;
         rate.vy_m_s += ay;
         rate.yaw_rate_rad_s += yaw;

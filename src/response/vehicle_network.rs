@@ -10,9 +10,9 @@
 use candle_core::Tensor;
 
 use crate::nn::NnError;
-use crate::nn::bias_silu_rows;
+use crate::response::dense::{Dense, Rows};
 use crate::response::folded_attention::FoldedAttention;
-use crate::response::network::ResponseNetwork;
+use crate::response::network::{N_COMPONENT_NUMBERS, ResponseNetwork};
 use crate::response::{
     Correction, FEATURE_MIRROR, N_EFFECTS, N_FEATURES, N_RESIDUAL, RESIDUAL_MIRROR,
 };
@@ -20,13 +20,6 @@ use crate::vehicle::VehicleParameters;
 
 /// Motion and mirrored motion.
 const N_SIDES: usize = 2;
-
-/// A fully connected layer, `[n_in, n_out]`.
-#[derive(Debug, Clone)]
-struct Dense {
-    weight: Vec<f32>,
-    bias: Vec<f32>,
-}
 
 /// The network for one vehicle.
 #[derive(Debug, Clone)]
@@ -64,9 +57,9 @@ pub(crate) struct ComponentOutput {
 /// Buffers of a forward pass.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Workspace {
-    hidden: Vec<f32>,
-    next: Vec<f32>,
-    scores: Vec<f32>,
+    hidden: Rows,
+    next: Rows,
+    scores: Rows,
 }
 
 impl VehicleNetwork {
@@ -124,28 +117,29 @@ impl VehicleNetwork {
         }
     }
 
-    /// What the network says of an instant: of all components into `out`.
+    /// What the network says of instants: of all components of the first into `out`, then of the
+    /// second, and so on.
     pub(crate) fn forward(
         &self,
-        features: &[f64; N_FEATURES],
+        features: &[[f64; N_FEATURES]],
         work: &mut Workspace,
         out: &mut Vec<ComponentOutput>,
     ) {
-        let seen: [f64; N_FEATURES] = std::array::from_fn(|i| features[i] * self.feature_mask[i]);
-        work.hidden.clear();
-        work.hidden.extend(seen.iter().map(|value| *value as f32));
-        work.hidden
-            .extend(seen.iter().zip(FEATURE_MIRROR).map(|(value, sign)| (value * sign) as f32));
+        let n = features.len();
+        self.fill(features, &mut work.hidden);
         for layer in &self.encoder {
             layer.forward(&work.hidden, &mut work.next, true);
             std::mem::swap(&mut work.hidden, &mut work.next);
         }
         self.scores.forward(&work.hidden, &mut work.scores, false);
-        for of_head in work.scores.chunks_exact_mut(self.n_tokens.max(1)) {
-            softmax_in_place(of_head);
+        let n_scores = self.scores.n_out();
+        for row in work.scores.iter_mut() {
+            for of_head in row[..n_scores].chunks_exact_mut(self.n_tokens.max(1)) {
+                softmax_in_place(of_head);
+            }
         }
         self.seen.forward(&work.scores, &mut work.next, false);
-        for (hidden, seen) in work.hidden.iter_mut().zip(&work.next) {
+        for (hidden, seen) in work.hidden.values.iter_mut().zip(&work.next.values) {
             *hidden += seen;
         }
         for layer in &self.trunk {
@@ -153,68 +147,38 @@ impl VehicleNetwork {
             std::mem::swap(&mut work.hidden, &mut work.next);
         }
         self.head.forward(&work.hidden, &mut work.next, false);
-        let (plain, mirrored) = work.next.split_at(work.next.len() / N_SIDES);
         out.clear();
-        let width = 2 * N_RESIDUAL + 1;
-        for (a, b) in plain.chunks_exact(width).zip(mirrored.chunks_exact(width)) {
-            let mean = |i: usize, sign: f64| 0.5 * (f64::from(a[i]) + sign * f64::from(b[i]));
-            out.push(ComponentOutput {
-                remainder: std::array::from_fn(|i| self.unit[i] * mean(i, RESIDUAL_MIRROR[i])),
-                variance: std::array::from_fn(|i| {
-                    self.min_std * self.min_std + mean(N_RESIDUAL + i, 1.0).exp()
-                }),
-                logit: mean(2 * N_RESIDUAL, 1.0),
-            });
+        for idx in 0..n {
+            let sides = [work.next.row(idx), work.next.row(n + idx)];
+            out.extend((0..self.n_components).map(|j| self.output(sides, j)));
         }
     }
-}
 
-impl Dense {
-    fn of(network: &ResponseNetwork, name: &str) -> Result<Self, NnError> {
-        let find = |part: &str| {
-            let name = format!("{name}.{part}");
-            let found = network.parameters().get(&name).cloned();
-            found.ok_or(NnError::MissingTensor { name })
-        };
-        let (weight, bias) = (find("weight")?, find("bias")?);
-        Self::from_tensors(&weight.t()?, bias.as_tensor())
-    }
-
-    /// - `weight`: `[n_in, n_out]`.
-    fn from_tensors(weight: &Tensor, bias: &Tensor) -> Result<Self, NnError> {
-        let values = |tensor: &Tensor| -> Result<Vec<f32>, NnError> {
-            Ok(tensor.to_dtype(candle_core::DType::F32)?.contiguous()?.flatten_all()?.to_vec1()?)
-        };
-        Ok(Self { weight: values(weight)?, bias: values(bias)? })
-    }
-
-    /// `x W + b` of both sides, then Swish where wanted.
-    fn forward(&self, x: &[f32], out: &mut Vec<f32>, swish: bool) {
-        let (n_in, n_out) = (x.len() / N_SIDES, self.bias.len());
-        out.clear();
-        out.resize(N_SIDES * n_out, 0.0);
-        let (plain, mirrored) = out.split_at_mut(n_out);
-        let (x_plain, x_mirrored) = x.split_at(n_in);
-        multiply([x_plain, x_mirrored], &self.weight, [plain, mirrored]);
-        bias_silu_rows(out, &self.bias, swish);
-    }
-}
-
-/// `out += x W` of both sides, one pass over the weights.
-fn multiply(x: [&[f32]; N_SIDES], weight: &[f32], out: [&mut [f32]; N_SIDES]) {
-    let [plain, mirrored] = out;
-    let n_out = plain.len().max(1);
-    pulp::Arch::new().dispatch(
-        #[inline(always)]
-        || {
-            for ((&a, &b), row) in x[0].iter().zip(x[1]).zip(weight.chunks_exact(n_out)) {
-                for ((p, m), &w) in plain.iter_mut().zip(mirrored.iter_mut()).zip(row) {
-                    *p += a * w;
-                    *m += b * w;
-                }
+    /// Rows of the motions, then of the mirrored ones.
+    fn fill(&self, features: &[[f64; N_FEATURES]], rows: &mut Rows) {
+        rows.reset(N_SIDES * features.len(), N_FEATURES);
+        let signs = [[1.0; N_FEATURES], FEATURE_MIRROR];
+        let sides = signs.iter().flat_map(|signs| features.iter().map(move |row| (signs, row)));
+        for (row, (signs, features)) in rows.iter_mut().zip(sides) {
+            for (i, value) in row.iter_mut().enumerate().take(N_FEATURES) {
+                *value = (features[i] * self.feature_mask[i] * signs[i]) as f32;
             }
-        },
-    );
+        }
+    }
+
+    /// One component, from the heads of motion and mirrored motion.
+    fn output(&self, [plain, mirrored]: [&[f32]; N_SIDES], component: usize) -> ComponentOutput {
+        let first = component * N_COMPONENT_NUMBERS;
+        let number = |of: &[f32], i: usize| f64::from(of.get(first + i).copied().unwrap_or(0.0));
+        let mean = |i: usize, sign: f64| 0.5 * (number(plain, i) + sign * number(mirrored, i));
+        ComponentOutput {
+            remainder: std::array::from_fn(|i| self.unit[i] * mean(i, RESIDUAL_MIRROR[i])),
+            variance: std::array::from_fn(|i| {
+                self.min_std * self.min_std + mean(N_RESIDUAL + i, 1.0).exp()
+            }),
+            logit: mean(2 * N_RESIDUAL, 1.0),
+        }
+    }
 }
 
 fn softmax_in_place(values: &mut [f32]) {
@@ -262,8 +226,13 @@ mod tests {
                 |tensor: &Tensor| -> Vec<f64> { tensor.flatten_all().unwrap().to_vec1().unwrap() };
             let features = of(&features);
             let (mut work, mut outputs) = (Workspace::default(), Vec::new());
-            quick.forward(&std::array::from_fn(|i| features[i]), &mut work, &mut outputs);
-            assert_eq!(outputs.len(), config.components);
+            let row: [f64; N_FEATURES] = std::array::from_fn(|i| features[i]);
+            let mut other = row;
+            other[0] += 1.0;
+            quick.forward(&[row, other], &mut work, &mut outputs);
+            assert_eq!(outputs.len(), 2 * config.components);
+            assert_ne!(outputs[0], outputs[config.components]);
+            outputs.truncate(config.components);
             let (residual, logits) = (of(&slow.residual), of(&slow.logits));
             let variance = of(&slow.log_variance);
             for (j, output) in outputs.iter().enumerate() {

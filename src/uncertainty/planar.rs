@@ -149,7 +149,7 @@ impl PlanarMixture {
     ///
     /// - `levels`: q, 0 to 1.
     pub fn thresholds(&self, levels: &[f64]) -> Vec<f64> {
-        let densities = self.densities_of_draws();
+        let densities = self.densities_of_draws(N_DRAWS);
         let at = |level: &f64| {
             let rank = ((1.0 - level) * densities.len() as f64).floor() as usize;
             densities.get(rank.min(densities.len().saturating_sub(1))).copied().unwrap_or(0.0)
@@ -160,16 +160,16 @@ impl PlanarMixture {
     /// Level of the smallest region that holds a point: 0 at the highest density, 1 far away. A point
     /// drawn from the mixture has a level that is evenly distributed.
     pub fn level_of(&self, point: [f64; 2]) -> f64 {
-        let (densities, at) = (self.densities_of_draws(), self.density(point));
+        let (densities, at) = (self.densities_of_draws(N_DRAWS), self.density(point));
         let n_below = densities.partition_point(|density| *density < at);
         1.0 - n_below as f64 / densities.len().max(1) as f64
     }
 
-    /// Rising.
-    fn densities_of_draws(&self) -> Vec<f64> {
+    /// Densities at `n` draws, rising, 1/m².
+    pub fn densities_of_draws(&self, n: usize) -> Vec<f64> {
         let kernels = self.kernels();
         let density = |point: &[f64; 2]| kernels.iter().map(|kernel| kernel.density(*point)).sum();
-        let mut densities: Vec<f64> = self.sample(N_DRAWS, 0).iter().map(density).collect();
+        let mut densities: Vec<f64> = self.sample(n, 0).iter().map(density).collect();
         densities.sort_by(f64::total_cmp);
         densities
     }

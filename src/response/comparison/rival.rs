@@ -86,7 +86,7 @@ impl Rival {
                 let distribution = predictor.motion(&initial, &case.inputs);
                 let of = |component: crate::response::ComponentPath| component.states;
                 Answer {
-                    states: predictor.mean_path(&initial, &case.inputs),
+                    states: predictor.central_path(&initial, &case.inputs),
                     paths: predictor.paths(&initial, &case.inputs).into_iter().map(of).collect(),
                     distribution: Some(distribution),
                 }
