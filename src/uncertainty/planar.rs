@@ -14,11 +14,10 @@
 
 use std::f64::consts::TAU;
 
-use rand::RngExt;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 use rayon::prelude::*;
-
-use crate::nn::random_stream;
 
 /// Draws behind a level of density: its probability is known to 1 %.
 const N_DRAWS: usize = 2000;
@@ -125,7 +124,7 @@ impl PlanarMixture {
     ///
     /// - `seed`: of the draws.
     pub fn sample(&self, n: usize, seed: u64) -> Vec<[f64; 2]> {
-        let mut rng = random_stream(seed, "positions", 0);
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let draw = |_| {
             let share: f64 = rng.random();
             let mut sum = 0.0;
