@@ -36,6 +36,7 @@ mod sample;
 mod scores;
 
 mod planar;
+mod planar_grid;
 mod unscented;
 
 pub use bands::{Band, CurveBands};
@@ -43,7 +44,8 @@ pub use curve::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
 pub use error::MixtureError;
 pub use mixture::{CurveComponent, CurveMixture};
 pub use normal_mixture::{NormalMixture, NormalPart};
-pub use planar::{PlanarGrid, PlanarKernel, PlanarMixture, PlanarPart};
+pub use planar::{PlanarMixture, PlanarPart};
+pub use planar_grid::{PlanarGrid, PlanarKernel};
 pub use sample::CurveFigures;
 pub use scores::{distance_n, energy_score_n, sample_crps};
 pub use unscented::{Unscented, UnscentedWeights};

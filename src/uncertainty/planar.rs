@@ -12,17 +12,14 @@
 //! Source: R. J. Hyndman, Computing and Graphing Highest Density Regions, The American Statistician 50
 //! (1996) 120–126.
 
-use std::f64::consts::TAU;
-
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
-use rayon::prelude::*;
+
+use crate::uncertainty::PlanarKernel;
 
 /// Draws behind a level of density: its probability is known to 1 %.
 const N_DRAWS: usize = 2000;
-/// Beyond this many standard deviations a part adds nothing: e^(−8²/2) = 1e-14.
-const REACH: f64 = 8.0;
 /// Least variance relative to the larger one, and least of all, m².
 const LEAST_RATIO: f64 = 1e-9;
 const LEAST_VARIANCE_M2: f64 = 1e-8;
@@ -42,30 +39,6 @@ pub struct PlanarPart {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PlanarMixture {
     parts: Vec<PlanarPart>,
-}
-
-/// Points of a rectangle, row by row from the lowest y on.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlanarGrid {
-    /// Lowest x and y of the points, m.
-    pub low_m: [f64; 2],
-    /// Between neighbouring points, m.
-    pub step_m: [f64; 2],
-    /// Points along x and y.
-    pub size: [usize; 2],
-}
-
-/// A part as its density is computed: `c exp(−(a dx² + 2 b dx dy + d dy²)/2)`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlanarKernel {
-    /// Mean [x, y], m.
-    pub mean: [f64; 2],
-    /// Inverse covariance [a, b, d], 1/m².
-    pub precision: [f64; 3],
-    /// c: weight over 2π √det P, 1/m².
-    pub peak: f64,
-    /// Half width and half height of the rectangle outside of which it adds nothing, m.
-    pub reach_m: [f64; 2],
 }
 
 impl PlanarMixture {
@@ -103,21 +76,6 @@ impl PlanarMixture {
     /// Density at a point, 1/m².
     pub fn density(&self, point: [f64; 2]) -> f64 {
         self.parts.iter().map(|part| PlanarKernel::of(part).density(point)).sum()
-    }
-
-    /// Density at the points of a grid, 1/m², row by row.
-    pub fn density_on(&self, grid: &PlanarGrid) -> Vec<f64> {
-        let kernels = self.kernels();
-        let [n_columns, n_rows] = grid.size;
-        let row = |row_idx: usize| {
-            let mut row = vec![0.0; n_columns];
-            for kernel in &kernels {
-                kernel.add_to_row(grid, row_idx, &mut row);
-            }
-            row
-        };
-        let rows: Vec<Vec<f64>> = (0..n_rows).into_par_iter().map(row).collect();
-        rows.concat()
     }
 
     /// Draws of a position.
@@ -189,56 +147,10 @@ impl PlanarMixture {
     }
 }
 
-impl PlanarKernel {
-    fn of(part: &PlanarPart) -> Self {
-        let [xx, xy, yy] = part.covariance;
-        let determinant = xx * yy - xy * xy;
-        Self {
-            mean: part.mean,
-            precision: [yy / determinant, -xy / determinant, xx / determinant],
-            peak: part.weight / (TAU * determinant.sqrt()),
-            reach_m: [REACH * xx.sqrt(), REACH * yy.sqrt()],
-        }
-    }
-
-    fn density(&self, [x, y]: [f64; 2]) -> f64 {
-        let (dx, dy) = (x - self.mean[0], y - self.mean[1]);
-        let [a, b, d] = self.precision;
-        self.peak * (-0.5 * (a * dx * dx + 2.0 * b * dx * dy + d * dy * dy)).exp()
-    }
-
-    fn add_to_row(&self, grid: &PlanarGrid, row_idx: usize, row: &mut [f64]) {
-        let y = grid.low_m[1] + row_idx as f64 * grid.step_m[1];
-        if (y - self.mean[1]).abs() > self.reach_m[1] {
-            return;
-        }
-        let column = |x: f64| ((x - grid.low_m[0]) / grid.step_m[0]).clamp(0.0, row.len() as f64);
-        let first = column(self.mean[0] - self.reach_m[0]).ceil() as usize;
-        let last = column(self.mean[0] + self.reach_m[0]).ceil() as usize;
-        for (i, value) in row.iter_mut().enumerate().take(last).skip(first) {
-            *value += self.density([grid.low_m[0] + i as f64 * grid.step_m[0], y]);
-        }
-    }
-}
-
-impl PlanarGrid {
-    /// About a rectangle, with points on its edges.
-    pub fn over([low_m, high_m]: [[f64; 2]; 2], size: [usize; 2]) -> Self {
-        let step = |axis: usize| {
-            (high_m[axis] - low_m[axis]) / (size[axis].saturating_sub(1)).max(1) as f64
-        };
-        Self { low_m, step_m: [step(0), step(1)], size }
-    }
-
-    /// Area of a cell, m².
-    pub fn cell_m2(&self) -> f64 {
-        self.step_m[0] * self.step_m[1]
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::uncertainty::PlanarGrid;
 
     fn mixture() -> PlanarMixture {
         let part = |weight, mean, covariance| PlanarPart { weight, mean, covariance };
