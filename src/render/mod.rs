@@ -1,5 +1,7 @@
 //! Draws figures: one function for the panel on screen and for the picture off-screen.
 
+mod density;
+mod density_buffers;
 mod legend;
 mod offscreen;
 mod plot;
@@ -8,6 +10,7 @@ pub mod theme;
 mod thin;
 mod ticks;
 
+pub use density::{DensityError, DensityGpu};
 pub use offscreen::{Canvas, RenderError, draw_offscreen, figure_image, save_png};
 pub use plot::{FigureOptions, FigureResponse, figure_ui};
 pub use software::SoftwareRenderer;

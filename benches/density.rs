@@ -1,0 +1,63 @@
+//! How fast the density of a trajectory is computed: 512 × 512 points, 400 instants of a motion of
+//! 4 s with three components each, on the processor's cores and on the graphics processor.
+//!
+//! `cargo bench --bench density`
+
+#![allow(clippy::print_stdout)]
+
+use divan::Bencher;
+use eframe::wgpu::DeviceType;
+use impactlab::error_chain;
+use impactlab::render::DensityGpu;
+use impactlab::uncertainty::{PlanarGrid, PlanarMixture, PlanarPart};
+
+const N_INSTANTS: usize = 400;
+const SIZE: [usize; 2] = [512, 512];
+
+fn main() {
+    match DensityGpu::headless() {
+        Ok(gpu) => {
+            let info = gpu.adapter_info();
+            let software = info.device_type == DeviceType::Cpu;
+            let kind = if software { "a software adapter, on the processor's cores" } else { "" };
+            println!("graphics processor: {} ({:?}) {kind}", info.name, info.backend);
+        }
+        Err(error) => println!("graphics processor: {}", error_chain(&error)),
+    }
+    divan::main();
+}
+
+/// Along 60 m of a bend; the spread grows from 5 cm to 2.5 m, further along the path than across.
+fn trajectory() -> (PlanarMixture, PlanarGrid) {
+    let part = |i: usize| {
+        let (share, component) = ((i / 3) as f64 / (N_INSTANTS - 1) as f64, (i % 3) as f64 - 1.0);
+        let (heading, spread_m) = ((0.6 + 0.2 * component) * share, 0.05 + 2.45 * share);
+        let (sin, cos) = heading.sin_cos();
+        let (along, across) = (spread_m * spread_m, 0.25 * spread_m * spread_m);
+        PlanarPart {
+            weight: 2.0 - component.abs(),
+            mean: [60.0 * share * (0.5 * heading).cos(), 60.0 * share * (0.5 * heading).sin()],
+            covariance: [
+                along * cos * cos + across * sin * sin,
+                (along - across) * sin * cos,
+                along * sin * sin + across * cos * cos,
+            ],
+        }
+    };
+    let mixture = PlanarMixture::new((0..3 * N_INSTANTS).map(part).collect());
+    let bounds = mixture.bounds(3.5).expect("a mixture of some parts");
+    (mixture, PlanarGrid::over(bounds, SIZE))
+}
+
+#[divan::bench]
+fn processor(bencher: Bencher<'_, '_>) {
+    let (mixture, grid) = trajectory();
+    bencher.bench_local(|| mixture.density_on(&grid));
+}
+
+#[divan::bench(sample_count = 20)]
+fn graphics_processor(bencher: Bencher<'_, '_>) {
+    let Ok(gpu) = DensityGpu::headless() else { return };
+    let (mixture, grid) = trajectory();
+    bencher.bench_local(|| gpu.density_on(&mixture, &grid).expect("a density of this size"));
+}

@@ -1,0 +1,222 @@
+//! Density of a planar mixture on a grid, on the graphics processor: the values of
+//! [`PlanarMixture::density_on`] in single precision, for maps that follow a slider.
+//!
+//! Lengths are sent in cells of the grid, means as a whole cell and the remainder, and densities
+//! relative to the largest peak. So single precision holds far from the origin and for any spread.
+//! Values are within 1e-4 of the largest one, as long as no part is a thousand times longer than wide.
+
+use std::borrow::Cow;
+use std::f64::consts::LOG2_E;
+use std::sync::{Mutex, PoisonError};
+
+use eframe::wgpu;
+
+use crate::render::density_buffers::{Buffers, checked};
+use crate::uncertainty::{PlanarGrid, PlanarKernel, PlanarMixture};
+
+/// Points along a side of the tile that a workgroup computes, as in the shader.
+const TILE: usize = 16;
+
+/// Numbers that describe a kernel, as in the shader.
+const KERNEL_LEN: usize = 8;
+
+/// A density that the graphics processor cannot give.
+#[derive(Debug, thiserror::Error)]
+pub enum DensityError {
+    /// No graphics driver.
+    #[error(
+        "no graphics driver is there; install one, as root on Debian or Ubuntu: \
+         apt-get install --no-install-recommends mesa-vulkan-drivers libvulkan1"
+    )]
+    NoAdapter(#[source] wgpu::RequestAdapterError),
+    /// The driver gives no device.
+    #[error("the graphics driver gives no device")]
+    NoDevice(#[from] wgpu::RequestDeviceError),
+    /// More than the device takes.
+    #[error("{what} is {got}, the graphics device takes {most}")]
+    Limit {
+        /// What there is too much of.
+        what: &'static str,
+        /// How much there is.
+        got: u64,
+        /// How much there may be.
+        most: u64,
+    },
+    /// Points that fall on each other, or lie nowhere.
+    #[error("step between points is {step_m:?} m, expected more than 0")]
+    Step {
+        /// Along x and y, m.
+        step_m: [f64; 2],
+    },
+    /// The device refuses a command.
+    #[error("the graphics device refuses a command")]
+    Device(#[from] wgpu::Error),
+    /// The values do not come back.
+    #[error("the graphics device returns no values")]
+    NoValues(#[source] Box<dyn std::error::Error + Send + Sync>),
+}
+
+/// A graphics device that is ready to compute densities; its buffers are kept between calls.
+#[derive(Debug)]
+pub struct DensityGpu {
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    pipeline: wgpu::ComputePipeline,
+    buffers: Mutex<Option<Buffers>>,
+}
+
+impl DensityGpu {
+    /// On a device that is there already, such as the window's.
+    ///
+    /// # Errors
+    /// [`DensityError::Limit`] for a device that computes no tiles of 16 × 16 points, and
+    /// [`DensityError::Device`].
+    pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, DensityError> {
+        let most = device.limits().max_compute_invocations_per_workgroup;
+        check("the size of a workgroup", (TILE * TILE) as u64, most.into())?;
+        let pipeline = checked(&device, || {
+            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("density"),
+                source: wgpu::ShaderSource::Wgsl(Cow::Borrowed(include_str!("density.wgsl"))),
+            });
+            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some("density"),
+                layout: None,
+                module: &module,
+                entry_point: Some("main"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                cache: None,
+            })
+        })?;
+        Ok(Self { device, queue, pipeline, buffers: Mutex::new(None) })
+    }
+
+    /// On a device of its own, without a window.
+    ///
+    /// # Errors
+    /// [`DensityError::NoAdapter`], [`DensityError::NoDevice`], and those of [`DensityGpu::new`].
+    pub fn headless() -> Result<Self, DensityError> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        let adapter = instance.request_adapter(&wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            ..wgpu::RequestAdapterOptions::default()
+        });
+        let adapter = pollster::block_on(adapter).map_err(DensityError::NoAdapter)?;
+        let device = adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("density"),
+            required_limits: adapter.limits(),
+            ..wgpu::DeviceDescriptor::default()
+        });
+        let (device, queue) = pollster::block_on(device)?;
+        Self::new(device, queue)
+    }
+
+    /// Which graphics processor it is, and whether it is a program on the processor's cores.
+    pub fn adapter_info(&self) -> wgpu::AdapterInfo {
+        self.device.adapter_info()
+    }
+
+    /// Density at the points of a grid, 1/m², row by row; see [`PlanarMixture::density_on`].
+    ///
+    /// # Errors
+    /// [`DensityError::Step`], [`DensityError::Limit`] for more points or parts than the device takes,
+    /// [`DensityError::Device`], [`DensityError::NoValues`].
+    pub fn density_on(
+        &self,
+        mixture: &PlanarMixture,
+        grid: &PlanarGrid,
+    ) -> Result<Vec<f64>, DensityError> {
+        let steps_m = steps_m(grid)?;
+        let n_points = grid.size[0].saturating_mul(grid.size[1]);
+        let mut kernels = mixture.kernels();
+        kernels.retain(|kernel| reaches_into(kernel, grid));
+        let (bytes, tiles) = (self.bytes(kernels.len(), n_points)?, self.tiles(grid)?);
+        let largest = kernels.iter().map(|kernel| kernel.peak).fold(0.0, f64::max);
+        if n_points == 0 || largest == 0.0 {
+            return Ok(vec![0.0; n_points]);
+        }
+        let size = [grid.size[0], grid.size[1], kernels.len()].map(|n| n as u32);
+        let packed: Vec<f32> = kernels
+            .iter()
+            .flat_map(|kernel| packed(kernel, grid.low_m, steps_m, largest))
+            .collect();
+        let mut held = self.buffers.lock().unwrap_or_else(PoisonError::into_inner);
+        let (device, pipeline) = (&self.device, &self.pipeline);
+        // Taken out, so that buffers are not used again after an error.
+        let buffers = held
+            .take()
+            .filter(|held| held.bytes().iter().zip(bytes).all(|(held, needed)| *held >= needed));
+        let buffers = checked(device, || {
+            let buffers = buffers.unwrap_or_else(|| Buffers::new(device, pipeline, bytes));
+            buffers.submit((device, &self.queue), pipeline, (size, tiles), &packed);
+            buffers
+        })?;
+        let values = buffers.read(device, n_points, largest)?;
+        *held = Some(buffers);
+        Ok(values)
+    }
+
+    /// Of kernels and of values.
+    fn bytes(&self, n_kernels: usize, n_points: usize) -> Result<[u64; 2], DensityError> {
+        let limits = self.device.limits();
+        let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        // The shader counts points with 32 bits.
+        let most = most.min(u32::MAX.into());
+        let of = |n: usize, len: usize| (n as u64).saturating_mul((len * size_of::<f32>()) as u64);
+        let bytes = [of(n_kernels, KERNEL_LEN), of(n_points, 1)];
+        check("the size of the parts in bytes", bytes[0], most)?;
+        check("the size of the grid in bytes", bytes[1], most)?;
+        Ok(bytes)
+    }
+
+    /// Tiles along x and y.
+    fn tiles(&self, grid: &PlanarGrid) -> Result<[u32; 2], DensityError> {
+        let tiles = grid.size.map(|n| n.div_ceil(TILE));
+        let most = self.device.limits().max_compute_workgroups_per_dimension;
+        for n in tiles {
+            check("the number of tiles along a side", n as u64, most.into())?;
+        }
+        Ok(tiles.map(|n| n as u32))
+    }
+}
+
+fn check(what: &'static str, got: u64, most: u64) -> Result<(), DensityError> {
+    if got > most { Err(DensityError::Limit { what, got, most }) } else { Ok(()) }
+}
+
+/// Sides of a cell, m; a single row or column has any.
+fn steps_m(grid: &PlanarGrid) -> Result<[f64; 2], DensityError> {
+    let fits = |axis: usize| grid.step_m[axis] > 0.0 && grid.step_m[axis].is_finite();
+    if (0..2).any(|axis| grid.size[axis] > 1 && !fits(axis)) {
+        return Err(DensityError::Step { step_m: grid.step_m });
+    }
+    Ok([0, 1].map(|axis| if fits(axis) { grid.step_m[axis] } else { 1.0 }))
+}
+
+/// Whether a rectangle about all that a part adds meets the grid.
+fn reaches_into(kernel: &PlanarKernel, grid: &PlanarGrid) -> bool {
+    let reach_m = kernel.reach_m();
+    (0..2).all(|axis| {
+        let from_mean = grid.low_m[axis] - kernel.mean[axis];
+        let side = grid.size[axis].saturating_sub(1) as f64 * grid.step_m[axis];
+        from_mean <= reach_m[axis] && from_mean + side >= -reach_m[axis]
+    })
+}
+
+/// A kernel as the shader takes it: whole cells and remainder of its mean, falls, slope, peak.
+///
+/// - `largest`: peak of all.
+fn packed(
+    kernel: &PlanarKernel,
+    low_m: [f64; 2],
+    steps_m: [f64; 2],
+    largest: f64,
+) -> [f32; KERNEL_LEN] {
+    let mean = [0, 1].map(|axis| (kernel.mean[axis] - low_m[axis]) / steps_m[axis]);
+    let cell = mean.map(f64::round);
+    let fall = [0, 1].map(|axis| 0.5 * LOG2_E * kernel.precision[axis] * steps_m[axis].powi(2));
+    let slope = kernel.slope * steps_m[1] / steps_m[0];
+    let rest = [mean[0] - cell[0], mean[1] - cell[1]];
+    let peak = kernel.peak / largest;
+    [cell[0], cell[1], rest[0], rest[1], fall[0], fall[1], slope, peak].map(|value| value as f32)
+}

@@ -1,0 +1,137 @@
+//! What the density on the graphics processor is computed from and into.
+
+use std::sync::mpsc;
+
+use eframe::wgpu;
+use wgpu::BufferUsages;
+
+use crate::render::DensityError;
+
+/// Bytes of the grid's uniform: columns, rows, kernels, and a word that fills it up.
+const GRID_BYTES: u64 = 16;
+
+/// Buffers of a device, each at least as large as what is sent.
+#[derive(Debug)]
+pub(super) struct Buffers {
+    grid: wgpu::Buffer,
+    kernels: wgpu::Buffer,
+    values: wgpu::Buffer,
+    /// Where the processor reads the values.
+    mapped: wgpu::Buffer,
+    bindings: wgpu::BindGroup,
+}
+
+impl Buffers {
+    /// - `bytes`: of kernels and of values.
+    pub(super) fn new(
+        device: &wgpu::Device,
+        pipeline: &wgpu::ComputePipeline,
+        bytes: [u64; 2],
+    ) -> Self {
+        let buffer = |label, size, usage| {
+            let (label, mapped_at_creation) = (Some(label), false);
+            device.create_buffer(&wgpu::BufferDescriptor { label, size, usage, mapped_at_creation })
+        };
+        let (sent, read) = (BufferUsages::COPY_DST, BufferUsages::COPY_SRC);
+        let grid = buffer("grid", GRID_BYTES, BufferUsages::UNIFORM | sent);
+        let kernels = buffer("kernels", bytes[0], BufferUsages::STORAGE | sent);
+        let values = buffer("values", bytes[1], BufferUsages::STORAGE | read);
+        let mapped = buffer("mapped values", bytes[1], BufferUsages::MAP_READ | sent);
+        let bound = [&grid, &kernels, &values];
+        let entries: Vec<_> = (0_u32..)
+            .zip(bound)
+            .map(|(binding, buffer)| wgpu::BindGroupEntry {
+                binding,
+                resource: buffer.as_entire_binding(),
+            })
+            .collect();
+        let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("density"),
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &entries,
+        });
+        Self { grid, kernels, values, mapped, bindings }
+    }
+
+    /// Of kernels and of values.
+    pub(super) fn bytes(&self) -> [u64; 2] {
+        [self.kernels.size(), self.values.size()]
+    }
+
+    /// Sends kernels, computes the values and copies them to where they are read.
+    ///
+    /// - `size`: columns, rows, kernels.
+    /// - `tiles`: along x and y.
+    pub(super) fn submit(
+        &self,
+        (device, queue): (&wgpu::Device, &wgpu::Queue),
+        pipeline: &wgpu::ComputePipeline,
+        (size, tiles): ([u32; 3], [u32; 2]),
+        kernels: &[f32],
+    ) {
+        let grid: Vec<u8> = size.into_iter().chain([0]).flat_map(u32::to_le_bytes).collect();
+        let kernels: Vec<u8> = kernels.iter().copied().flat_map(f32::to_le_bytes).collect();
+        queue.write_buffer(&self.grid, 0, &grid);
+        queue.write_buffer(&self.kernels, 0, &kernels);
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &self.bindings, &[]);
+            pass.dispatch_workgroups(tiles[0], tiles[1], 1);
+        }
+        let bytes = u64::from(size[0]) * u64::from(size[1]) * size_of::<f32>() as u64;
+        encoder.copy_buffer_to_buffer(&self.values, 0, &self.mapped, 0, bytes);
+        queue.submit([encoder.finish()]);
+    }
+
+    /// Waits for the values.
+    ///
+    /// - `scale`: of the values.
+    ///
+    /// # Errors
+    /// [`DensityError::NoValues`], such as from a device that is lost.
+    pub(super) fn read(
+        &self,
+        device: &wgpu::Device,
+        n_points: usize,
+        scale: f64,
+    ) -> Result<Vec<f64>, DensityError> {
+        let bytes = (n_points * size_of::<f32>()) as u64;
+        let (sender, receiver) = mpsc::channel();
+        self.mapped.map_async(wgpu::MapMode::Read, 0..bytes, move |outcome| {
+            // Nobody waits any longer after an error below.
+            let _ = sender.send(outcome);
+        });
+        device.poll(wgpu::PollType::wait_indefinitely()).map_err(no_values)?;
+        receiver.recv().map_err(no_values)?.map_err(no_values)?;
+        let view = self.mapped.get_mapped_range(0..bytes).map_err(no_values)?;
+        let (words, _) = view.as_chunks();
+        let values =
+            words.iter().map(|word| scale * f64::from(f32::from_le_bytes(*word))).collect();
+        drop(view);
+        self.mapped.unmap();
+        Ok(values)
+    }
+}
+
+fn no_values(source: impl std::error::Error + Send + Sync + 'static) -> DensityError {
+    DensityError::NoValues(Box::new(source))
+}
+
+/// Runs commands; what the device has against them becomes an error.
+///
+/// # Errors
+/// [`DensityError::Device`].
+pub(super) fn checked<T>(
+    device: &wgpu::Device,
+    commands: impl FnOnce() -> T,
+) -> Result<T, DensityError> {
+    use wgpu::ErrorFilter::{Internal, OutOfMemory, Validation};
+    let scopes = [Internal, OutOfMemory, Validation].map(|filter| device.push_error_scope(filter));
+    let done = commands();
+    // The inner ones end first.
+    let errors: Vec<_> =
+        scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop())).collect();
+    errors.into_iter().next().map_or(Ok(done), |error| Err(error.into()))
+}
