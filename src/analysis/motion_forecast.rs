@@ -62,8 +62,9 @@ pub struct StruckVehicle {
 pub struct MotionForecast {
     /// Every [`STEP_S`].
     pub distribution: MotionDistribution,
-    /// Its mean path; of each force curve the mean of the components.
-    pub mean: Vec<VehicleState<f64>>,
+    /// The path without what is uncertain about the vehicle
+    /// ([`Predictor::central_path`]), the mean over the force curves.
+    pub central: Vec<VehicleState<f64>>,
     /// Forces that it was driven by, in world axes or heading axes as they came.
     pub forces: Vec<ForceHistory>,
     /// What is left of it in the end.
@@ -77,7 +78,7 @@ pub struct MotionForecast {
 pub struct Outcome {
     /// When: at rest, or at the end of the forecast, s.
     pub time_s: f64,
-    /// Whether the mean is at rest by then.
+    /// Whether the central path is at rest by then.
     pub is_at_rest: bool,
     /// X of the CG, m.
     pub x_m: Spread,
@@ -85,7 +86,7 @@ pub struct Outcome {
     pub y_m: Spread,
     /// Heading against that at the start, rad, positive to the left; goes on beyond a turn.
     pub heading_change_rad: Spread,
-    /// Speed, m/s, of the mean.
+    /// Speed on the central path, m/s.
     pub speed_m_s: f64,
     /// Area of the smallest region that holds the position with 90 %, m².
     pub region_90_m2: f64,
@@ -209,12 +210,12 @@ pub fn forecast_forces(
     };
     let (parts, paths): (Vec<MotionDistribution>, Vec<Vec<VehicleState<f64>>>) =
         forces.par_iter().map(of).unzip();
-    let mean = mean_of(&paths);
+    let central = mean_of(&paths);
     let distribution = MotionDistribution::mixed(parts);
-    let outcome = outcome(&distribution, &mean, settings.seed)
-        .filter(|_| mean.iter().all(|state| state.to_array().iter().all(|v| v.is_finite())))
+    let outcome = outcome(&distribution, &central, settings.seed)
+        .filter(|_| central.iter().all(|state| state.to_array().iter().all(|v| v.is_finite())))
         .ok_or(MotionForecastError::Diverged)?;
-    Ok(MotionForecast { distribution, mean, forces: forces.to_vec(), outcome, force: None })
+    Ok(MotionForecast { distribution, central, forces: forces.to_vec(), outcome, force: None })
 }
 
 /// A curve in axes along the target's heading at the start, as one in world axes.
@@ -245,14 +246,14 @@ fn mean_of(paths: &[Vec<VehicleState<f64>>]) -> Vec<VehicleState<f64>> {
 
 fn outcome(
     distribution: &MotionDistribution,
-    mean: &[VehicleState<f64>],
+    central: &[VehicleState<f64>],
     seed: u64,
 ) -> Option<Outcome> {
     let speed = |state: &VehicleState<f64>| state.vx_m_s.hypot(state.vy_m_s);
-    let last = mean.len().checked_sub(1)?;
-    let rest = mean.iter().position(|state| speed(state) < REST_SPEED_M_S);
+    let last = central.len().checked_sub(1)?;
+    let rest = central.iter().position(|state| speed(state) < REST_SPEED_M_S);
     let at = rest.unwrap_or(last);
-    let (state, start) = (mean.get(at)?, mean.first()?);
+    let (state, start) = (central.get(at)?, central.first()?);
     let position: PlanarMixture = distribution.position(at);
     let draws = position.sample(N_END_DRAWS, seed);
     let of = |axis: usize| Spread::of_draws(draws.iter().map(|point| point[axis]).collect());

@@ -75,8 +75,8 @@ const EXAMPLES: &str = "\
 Example:
   impactlab predict --scenario assets/scenarios/pit_right_rear.toml --out prediction
 
-trajectory.csv: time, mean, standard deviation and edges of the 50 and 90 % bands of X, Y, yaw, v_x,
-  v_y and yaw rate. density.csv: probability density of the position of the CG at the end on a grid.
+trajectory.csv: time, central path (nothing uncertain), mean, standard deviation and edges of the 50
+  and 90 % bands of X, Y, yaw, v_x, v_y and yaw rate. density.csv: probability density of the position of the CG at the end on a grid.
 scene.png and one picture per quantity, each with its numbers as CSV beside it (pictures need the
   build with the window).
 
@@ -174,7 +174,7 @@ fn write_files(
     let input = MotionForecastFigure {
         title: &scenario.name,
         distribution: &forecast.distribution,
-        mean: &forecast.mean,
+        central: &forecast.central,
         reference: None,
         simulation: None,
         footprint: scenario.target.footprint(),
@@ -219,7 +219,7 @@ fn write_trajectory(path: &Path, forecast: &MotionForecast) -> Result<(), CliErr
     let mut header = vec!["time_s".to_owned()];
     for channel in FORECAST_CHANNELS {
         let name = channel.channel.header();
-        header.extend([format!("{name}_mean"), format!("{name}_std")]);
+        header.extend(["central", "mean", "std"].map(|kind| format!("{name}_{kind}")));
         for level in LEVELS {
             let percent = (100.0 * level) as u32;
             header.extend([format!("{name}_low_{percent}"), format!("{name}_high_{percent}")]);
@@ -227,15 +227,15 @@ fn write_trajectory(path: &Path, forecast: &MotionForecast) -> Result<(), CliErr
     }
     let failed = |error: csv::Error| CliError::Output(std::io::Error::other(error));
     csv.write_record(&header).map_err(failed)?;
-    for (at, mean) in forecast.mean.iter().enumerate() {
-        let covariance = forecast.distribution.covariance(at);
-        let means =
-            [mean.x_m, mean.y_m, mean.yaw_rad, mean.vx_m_s, mean.vy_m_s, mean.yaw_rate_rad_s];
+    let distribution = &forecast.distribution;
+    for (at, central) in forecast.central.iter().enumerate() {
+        let covariance = distribution.covariance(at);
+        let (central, mean) = (central.planar(), distribution.mean(at).planar());
         let mut row = vec![format!("{:.2}", at as f64 * STEP_S)];
-        for (axis, mean) in means.into_iter().enumerate() {
+        for (axis, (central, mean)) in central.into_iter().zip(mean).enumerate() {
             let std = covariance[(axis, axis)].max(0.0).sqrt();
-            row.extend([format!("{mean:.6}"), format!("{std:.6}")]);
-            let marginal = forecast.distribution.marginal(at, axis);
+            row.extend([central, mean, std].map(|value| format!("{value:.6}")));
+            let marginal = distribution.marginal(at, axis);
             for level in LEVELS {
                 let edges = marginal.as_ref().map_or([mean; 2], |of| of.interval(level));
                 row.extend(edges.map(|edge| format!("{edge:.6}")));

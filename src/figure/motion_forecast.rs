@@ -29,8 +29,8 @@ pub struct MotionForecastFigure<'a> {
     pub title: &'a str,
     /// The forecast.
     pub distribution: &'a MotionDistribution,
-    /// Its mean path.
-    pub mean: &'a [VehicleState<f64>],
+    /// Its central path.
+    pub central: &'a [VehicleState<f64>],
     /// What was recorded, if anything was.
     pub reference: Option<&'a TimeSeries>,
     /// What the 4DOF model says, if it was asked.
@@ -62,7 +62,7 @@ pub const FORECAST_CHANNELS: [ForecastChannel; 6] = [
     ForecastChannel { channel: Channel::YawRate, axis: 5 },
 ];
 
-/// Paths of mean and components, density of the position at a moment, outlines.
+/// The central path and those of components, density of the position at a moment, outlines.
 pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
     let x = Axis::shown("X, along the road", Quantity::Length, input.units);
     let y = Axis::shown("Y, to the left", Quantity::Length, input.units);
@@ -90,10 +90,10 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
     for (name, role, style, series) in others {
         elements.extend(series.and_then(|series| line(name, role, style, series)));
     }
-    elements.push(Element::line("mean", Role::Target, path(&mut input.mean.iter())));
-    if let Some(state) = input.mean.get(at) {
+    elements.push(Element::line("central path", Role::Target, path(&mut input.central.iter())));
+    if let Some(state) = input.central.get(at) {
         let pose = Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad };
-        let look = ("mean", Role::Target, LineStyle::Solid);
+        let look = ("central path", Role::Target, LineStyle::Solid);
         elements.extend(vehicle_outline(look, (&input.footprint, &pose), x.unit));
     }
     if let Some(pose) = input.reference.and_then(|series| pose_at(series, at as f64 * STEP_S)) {
@@ -181,18 +181,11 @@ pub fn forecast_channel_figure(
     for (name, role, style, series) in others {
         elements.extend(series.and_then(|series| line(name, role, style, series)));
     }
-    let value = |state: &VehicleState<f64>| match axis {
-        0 => state.x_m,
-        1 => state.y_m,
-        2 => state.yaw_rad,
-        3 => state.vx_m_s,
-        4 => state.vy_m_s,
-        _ => state.yaw_rate_rad_s,
-    };
-    let mean = input.mean.iter().enumerate();
-    let mean =
-        mean.map(|(i, state)| [x.unit.from_si(i as f64 * STEP_S), y.unit.from_si(value(state))]);
-    elements.push(Element::line("mean", Role::Target, mean.collect()));
+    let central = input.central.iter().enumerate();
+    let central = central.map(|(i, state)| {
+        [x.unit.from_si(i as f64 * STEP_S), y.unit.from_si(state.planar()[axis])]
+    });
+    elements.push(Element::line("central path", Role::Target, central.collect()));
     let title = format!("{}: {} over time", input.title, channel.label());
     Figure { title, x, y, equal_aspect: false, log_y: false, elements }
 }

@@ -315,6 +315,12 @@ impl ResponseConfig {
                 heads > 0 && hidden.is_multiple_of(heads),
                 "a divisor of the encoder's last width",
             ),
+            (
+                "network.effects",
+                network.effects.to_string(),
+                !network.effects || network.correction == Correction::Acceleration,
+                "false where the correction is no acceleration",
+            ),
             positive("network.min_std", network.min_std),
             all_positive("network.bound", network.bound.as_ref().map_or(&[], |bound| bound)),
             all_positive("network.unit", &network.unit),

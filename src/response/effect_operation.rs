@@ -42,7 +42,7 @@ impl EffectOperation {
         let f = |x: SVector<DualSVec64<N_STATE>, N_STATE>| {
             let state = VehicleState::from_array(x.into());
             let now = row.vehicle.evaluate(&state, &input);
-            let effects = effects(&row.vehicle, &state, &input, &now);
+            let effects = effects(&row.vehicle, &state, &now);
             SVector::from(combined(&effects, strengths))
         };
         num_dual::jacobian(f, &x).1
@@ -50,7 +50,7 @@ impl EffectOperation {
 
     fn at(row: &Row, x: [f64; N_STATE]) -> Effects<f64> {
         let state = VehicleState::from_array(x);
-        effects(&row.vehicle, &state, &row.input, &row.vehicle.evaluate(&state, &row.input))
+        effects(&row.vehicle, &state, &row.vehicle.evaluate(&state, &row.input))
     }
 }
 

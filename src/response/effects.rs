@@ -34,7 +34,7 @@
 
 use crate::numerics::Scalar;
 use crate::response::N_RESIDUAL;
-use crate::vehicle::{Evaluation, VehicleInput, VehicleParameters, VehicleState};
+use crate::vehicle::{Evaluation, VehicleParameters, VehicleState};
 
 /// Slip angles at which the axle characteristic is corrected, rad, on a road of friction μ₀.
 const SLIP_KNOTS_RAD: [f64; 10] = [0.01, 0.025, 0.05, 0.09, 0.15, 0.25, 0.4, 0.6, 0.85, 1.2];
@@ -65,11 +65,10 @@ pub type Effects<T> = [[T; N_RESIDUAL]; N_EFFECTS];
 
 /// The effects, scaled so that their strengths are of the order of 0.1 to 1.
 ///
-/// - `now`: the 4DOF model at the same state and input.
+/// - `now`: the 4DOF model at the same state.
 pub fn effects<T: Scalar>(
     vehicle: &VehicleParameters,
     x: &VehicleState<T>,
-    u: &VehicleInput<T>,
     now: &Evaluation<T>,
 ) -> Effects<T> {
     let zero = T::from(0.0);
@@ -86,7 +85,7 @@ pub fn effects<T: Scalar>(
     {
         Axle { vehicle, arm_m, cornering_coefficient, loads_n }.effects(x, now, out);
     }
-    body_effects(vehicle, x, u, now, of_body);
+    body_effects(vehicle, x, now, of_body);
     effects
 }
 
@@ -198,7 +197,6 @@ fn hat<T: Scalar>(knot_idx: usize, slip_rad: T) -> T {
 fn body_effects<T: Scalar>(
     vehicle: &VehicleParameters,
     x: &VehicleState<T>,
-    u: &VehicleInput<T>,
     now: &Evaluation<T>,
     out: &mut [[T; N_RESIDUAL]],
 ) {
@@ -208,7 +206,6 @@ fn body_effects<T: Scalar>(
     let struck_yaw = now.collision_yaw_moment_n_m / mass.yaw_inertia_kg_m2;
     let rate = &now.derivative;
     let [_, ay] = now.acceleration_m_s2;
-    debug_assert!(u.collision.is_some() || fx.re() == 0.0);
     let effects: [[T; N_RESIDUAL]; N_OF_BODY] = [
         [-rate.vx_m_s * 0.05, zero, zero, zero],
         [zero, zero, zero, x.roll_rad * 100.0],
@@ -285,7 +282,7 @@ pub fn combined<T: Scalar>(effects: &Effects<T>, strengths: &[f64]) -> [T; N_RES
 mod tests {
     use super::*;
     use crate::response::RESIDUAL_MIRROR;
-    use crate::vehicle::Preset;
+    use crate::vehicle::{Preset, VehicleInput};
 
     fn state(signs: f64) -> VehicleState<f64> {
         VehicleState {
@@ -300,7 +297,7 @@ mod tests {
 
     fn at(x: &VehicleState<f64>) -> Effects<f64> {
         let (vehicle, u) = (Preset::Reference.parameters(), VehicleInput::released());
-        effects(&vehicle, x, &u, &vehicle.evaluate(x, &u))
+        effects(&vehicle, x, &vehicle.evaluate(x, &u))
     }
 
     #[test]

@@ -95,7 +95,7 @@ mod tests {
                 roll_rate_rad_s: 0.3 * (1.7 * i).cos(),
                 ..VehicleState::default()
             };
-            effects(&vehicle, &x, &u, &vehicle.evaluate(&x, &u))
+            effects(&vehicle, &x, &vehicle.evaluate(&x, &u))
         };
         let instants: Vec<Effects<f64>> = (0..2000).map(at).collect();
         let truth: Vec<f64> = (0..N_EFFECTS).map(|k| 0.3 * (1.1 * k as f64).sin()).collect();

@@ -42,7 +42,8 @@ pub struct LatentScales {
 }
 
 impl Default for LatentScales {
-    /// What the trainings of this project found to be usual.
+    /// A guess from before any calibration, on the wide side: dry roads differ by some percent, and so
+    /// does what a record says of a collision.
     fn default() -> Self {
         Self { scales: [0.02, 0.01, 0.02, 0.02], shared_out: 0, step_noise: 0.1, n_calibrated: 0 }
     }

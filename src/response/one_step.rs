@@ -75,7 +75,7 @@ impl OneStepData {
                 OneStepRow {
                     features: features(motion.centre, x, u, i as f64 * STEP_S),
                     target: difference.map(|change| change / correction.change_per_unit()),
-                    effects: Box::new(effects(motion.centre, x, u, &now)),
+                    effects: Box::new(effects(motion.centre, x, &now)),
                     state: x.to_array(),
                     motion_idx,
                 }

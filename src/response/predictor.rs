@@ -246,11 +246,6 @@ fn weighted_mean<'a>(
     VehicleState::from_array(sum)
 }
 
-/// X, Y, ψ, v_x, v_y, r.
-fn numbers(x: &VehicleState<f64>) -> SVector<f64, 6> {
-    SVector::from([x.x_m, x.y_m, x.yaw_rad, x.vx_m_s, x.vy_m_s, x.yaw_rate_rad_s])
-}
-
 impl MotionDistribution {
     /// Of components, whose weights are scaled to sum to one.
     pub fn new(mut components: Vec<ComponentMotion>) -> Self {
@@ -280,10 +275,10 @@ impl MotionDistribution {
 
     /// Covariance of [X, Y, ψ, v_x, v_y, r] at an instant, within the components and between them.
     pub fn covariance(&self, instant: usize) -> SMatrix<f64, 6, 6> {
-        let mean = numbers(&self.mean(instant));
+        let mean = SVector::from(self.mean(instant).planar());
         let part = |component: &ComponentMotion| {
             let state = component.states.get(instant)?;
-            let off = numbers(&state.mean) - mean;
+            let off = SVector::from(state.mean.planar()) - mean;
             Some((state.covariance + off * off.transpose()) * component.weight)
         };
         self.components.iter().filter_map(part).sum()
@@ -299,7 +294,7 @@ impl MotionDistribution {
     pub fn marginal(&self, instant: usize, axis: usize) -> Option<NormalMixture> {
         let part = |component: &ComponentMotion| {
             let state = component.states.get(instant)?;
-            let mean = numbers(&state.mean)[axis];
+            let mean = state.mean.planar()[axis];
             let std = state.covariance[(axis, axis)].max(LEAST_VARIANCE).sqrt();
             Some(NormalPart { weight: component.weight, mean, std })
         };

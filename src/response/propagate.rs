@@ -135,7 +135,7 @@ impl<'a> Dynamics<'a> {
         let Some((x, now, latents)) = buffers.seen.get(idx) else {
             return VehicleState::default();
         };
-        let of_effects: Effects<f64> = effects(self.vehicle, x, u, now);
+        let of_effects: Effects<f64> = effects(self.vehicle, x, now);
         let known = combined(&of_effects, &self.strengths(component, latents));
         let output = buffers.outputs.get(idx * self.network.n_components() + component);
         let remainder = output.map_or([0.0; N_RESIDUAL], |output| output.remainder);

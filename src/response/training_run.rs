@@ -231,9 +231,12 @@ impl<'a> TrainingRun<'a> {
                 let mut order: Vec<usize> = (0..self.data.rollouts.len()).collect();
                 order.shuffle(&mut rng);
                 for batch in order.chunks(config.rollouts.batch_windows) {
+                    let n_steps = |case_idx: usize| self.data.rollouts[case_idx].case.inputs.len();
+                    // No further than the shortest record of the batch.
+                    let shortest = batch.iter().map(|&case_idx| n_steps(case_idx)).min();
+                    let length = length.min(shortest.unwrap_or(length));
                     let window = |&case_idx: &usize| {
-                        let n_steps = self.data.rollouts[case_idx].case.inputs.len();
-                        let last = n_steps.saturating_sub(length);
+                        let last = n_steps(case_idx).saturating_sub(length);
                         let is_first = rng.random_bool(IMPACT_SHARE);
                         let start = if is_first { 0 } else { rng.random_range(0..=last) };
                         Window { case_idx, start }

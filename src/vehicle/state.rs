@@ -40,6 +40,11 @@ impl<T: Scalar> VehicleState<T> {
         let [vx_m_s, vy_m_s, yaw_rad, yaw_rate_rad_s, roll_rad, roll_rate_rad_s, x_m, y_m] = array;
         Self { vx_m_s, vy_m_s, yaw_rad, yaw_rate_rad_s, roll_rad, roll_rate_rad_s, x_m, y_m }
     }
+
+    /// What trajectories are compared by: [X, Y, ψ, v_x, v_y, r].
+    pub fn planar(&self) -> [T; 6] {
+        [self.x_m, self.y_m, self.yaw_rad, self.vx_m_s, self.vy_m_s, self.yaw_rate_rad_s]
+    }
 }
 
 impl<T: Scalar> VehicleState<T> {
