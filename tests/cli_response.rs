@@ -10,6 +10,7 @@ use std::sync::OnceLock;
 use std::thread;
 use std::time::{Duration, Instant};
 
+use impactlab::response::comparison::Comparison;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -162,6 +163,13 @@ fn evaluation_and_comparison_have_their_keys() {
     {
         assert!(out.join(file).is_file(), "{file}");
     }
+    let read = Comparison::load(&out.join("comparison.json")).unwrap();
+    assert_eq!((read.models.len(), read.test.len()), (4, 25));
+    assert!(read.test.iter().all(|case| case.path.len() >= 40));
+    assert_eq!(read.cases.len(), 25 * (1 + 3 * 2));
+    fs::write(out.join("cut.json"), "{\"data\": \"x\",\n 1}").unwrap();
+    let problem = Comparison::load(&out.join("cut.json")).unwrap_err().to_string();
+    assert!(problem.contains("cut.json") && problem.contains("line 2"), "{problem}");
 }
 
 #[test]

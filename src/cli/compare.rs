@@ -55,9 +55,10 @@ Examples:
 Every model is fitted to the same trajectories and asked about the same others. The column of the
 paper holds what it printed, measured on other data.
 
-JSON: data, seed, n_choices, test, models [name, trajectories, average_error_m {mean, std, median},
+JSON: data, seed, n_choices, test [name, cluster, spins, path [X, Y, yaw] every 0.1 s], models [name, trajectories, average_error_m {mean, std, median},
   rmse {x_m, y_m, vx_km_h, vy_km_h, yaw_rate_deg_s}, horizon_error_m, time_per_step_us, violations,
-  coverage {50, 90, end_50, end_90, …}], clusters [name, n, impulse_n_s, models], cases";
+  coverage {50, 90, end_50, end_90, …}], clusters [name, n, impulse_n_s, models],
+  cases [case, model, trajectories, choice, average_error_m, …, path]";
 
 /// Compares.
 pub(super) fn run(args: &CompareArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
@@ -125,7 +126,8 @@ pub(super) fn print_tables(
 pub(super) fn write_comparison(folder: &Path, comparison: &Comparison) -> Result<(), CliError> {
     let to_error = |source| CliError::Folder { path: folder.to_owned(), source };
     fs::create_dir_all(folder).map_err(to_error)?;
-    let json = serde_json::to_vec_pretty(comparison).map_err(std::io::Error::from)?;
+    // A line for each number of all paths would be long.
+    let json = serde_json::to_vec(comparison).map_err(std::io::Error::from)?;
     write_atomically(&folder.join("comparison.json"), |out| out.write_all(&json))?;
     let mut text = format!(
         "# {}\n\n{} trajectories that no model has seen, seed {}, {} choices of the trajectories.\n",

@@ -1,8 +1,8 @@
 //! Error figures of a predicted motion against a reference (METHOD of this project, section 7).
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
-use crate::data::{Channel, SeriesError, TimeSeries};
+use crate::data::{Channel, SeriesError, TimeSeries, null_as_nan, nulls_as_nan};
 use crate::numerics::{interpolate, wrap_angle_rad};
 use crate::vehicle::VehicleParameters;
 
@@ -13,19 +13,25 @@ pub const HORIZONS_S: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 pub const SPIN_YAW_CHANGE_RAD: f64 = std::f64::consts::FRAC_PI_2;
 
 /// How far a predicted motion lies from a reference, over the reference's samples.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MotionError {
     /// Mean over time of the distance in (X, Y), m.
+    #[serde(deserialize_with = "null_as_nan")]
     pub average_error_m: f64,
     /// Distance at the last sample, m.
+    #[serde(deserialize_with = "null_as_nan")]
     pub final_error_m: f64,
     /// Wrapped difference of yaw at the last sample (prediction − reference), rad.
+    #[serde(deserialize_with = "null_as_nan")]
     pub final_heading_error_rad: f64,
     /// Distance at each of [`HORIZONS_S`], m; the last sample stands for a horizon just behind it.
+    #[serde(deserialize_with = "nulls_as_nan")]
     pub horizon_error_m: [f64; 4],
     /// Root mean square error of X, m.
+    #[serde(deserialize_with = "null_as_nan")]
     pub rmse_x_m: f64,
     /// Root mean square error of Y, m.
+    #[serde(deserialize_with = "null_as_nan")]
     pub rmse_y_m: f64,
     /// Root mean square error of v_x, m/s, where the reference has it.
     pub rmse_vx_m_s: Option<f64>,

@@ -10,6 +10,7 @@ mod dataset;
 mod dialect;
 mod error;
 mod force_history;
+mod json;
 mod loose;
 mod open;
 mod quality;
@@ -32,6 +33,7 @@ pub use dataset::{Case, Dataset, DatasetKind, Outcome};
 pub use dialect::{Dialect, Separator};
 pub use error::DataError;
 pub use force_history::{CumulativeImpulse, ForceAxes, ForceHistory, Sampling};
+pub(crate) use json::{null_as_nan, nulls_as_nan};
 pub use loose::{
     FileKind, Loaded, read_any_series, read_force_file, read_series, read_steer_file,
     read_trajectory_file,

@@ -36,6 +36,14 @@ pub enum ResponseError {
         /// Why, with the line.
         reason: String,
     },
+    /// A comparison cannot be read.
+    #[error("{}: {reason}", path.display())]
+    ComparisonFile {
+        /// The file.
+        path: PathBuf,
+        /// Why, with line and column.
+        reason: String,
+    },
     /// A checkpoint was written by another training.
     #[error("{}: the training to resume had another {what}", path.display())]
     OtherTraining {

@@ -2,9 +2,10 @@
 
 use std::time::Instant;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::compare::{MotionError, physical_violations};
+use crate::data::null_as_nan;
 use crate::response::comparison::Rival;
 use crate::response::comparison::rival::Answer;
 use crate::response::{MotionDistribution, ResponseCase, ResponseError, motion_series};
@@ -16,7 +17,7 @@ const STRIDE: usize = 10;
 const N_DRAWS: usize = 200;
 
 /// How many positions lie in the regions of 50 and 90 %.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Coverage {
     /// Share of the instants inside the 50 % region.
     pub path_50: f64,
@@ -29,17 +30,21 @@ pub struct Coverage {
     /// Probability level of the smallest region that holds the end.
     pub end_level: f64,
     /// Mean over time of the continuous ranked probability score of X, m.
+    #[serde(deserialize_with = "null_as_nan")]
     pub crps_x_m: f64,
     /// The same of Y, m.
+    #[serde(deserialize_with = "null_as_nan")]
     pub crps_y_m: f64,
     /// The same of the heading, rad.
+    #[serde(deserialize_with = "null_as_nan")]
     pub crps_yaw_rad: f64,
     /// Mean over time of the energy score of (X, Y), m.
+    #[serde(deserialize_with = "null_as_nan")]
     pub energy_score_m: f64,
 }
 
 /// One model on one trajectory.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CaseFigures {
     /// Errors of the mean path; infinite where it is not finite.
     #[serde(flatten)]

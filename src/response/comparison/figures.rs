@@ -1,29 +1,34 @@
 //! Figures of a model over trajectories.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
+use crate::data::null_as_nan;
 use crate::numerics::quantile_of_sorted;
 use crate::response::comparison::CaseFigures;
 
 /// Mean, standard deviation and median.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct MeanStd {
     /// Mean.
+    #[serde(deserialize_with = "null_as_nan")]
     pub mean: f64,
     /// Standard deviation over the trajectories (divisor n).
+    #[serde(deserialize_with = "null_as_nan")]
     pub std: f64,
     /// Median.
+    #[serde(deserialize_with = "null_as_nan")]
     pub median: f64,
 }
 
 /// A model over trajectories.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ModelFigures {
     /// Trajectories asked about, counted once for each choice of the fine-tune trajectories.
     pub n: usize,
     /// Average error, m.
     pub average_error_m: MeanStd,
     /// 1/mean of the average error, 1/m.
+    #[serde(deserialize_with = "null_as_nan")]
     pub score: f64,
     /// Root mean square errors.
     pub rmse: RootMeanSquares,
@@ -40,7 +45,7 @@ pub struct ModelFigures {
 }
 
 /// Root mean square errors over a trajectory.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct RootMeanSquares {
     /// Of X, m.
     pub x_m: MeanStd,
@@ -68,7 +73,7 @@ impl RootMeanSquares {
 }
 
 /// How well a model knows what it does not know.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CoverageFigures {
     /// Positions along the path in the 50 % regions, share.
     #[serde(rename = "50")]
@@ -81,12 +86,16 @@ pub struct CoverageFigures {
     /// Ends in the 90 % regions.
     pub end_90: f64,
     /// Mean continuous ranked probability score of X, m.
+    #[serde(deserialize_with = "null_as_nan")]
     pub crps_x_m: f64,
     /// Of Y, m.
+    #[serde(deserialize_with = "null_as_nan")]
     pub crps_y_m: f64,
     /// Of the heading, deg.
+    #[serde(deserialize_with = "null_as_nan")]
     pub crps_yaw_deg: f64,
     /// Mean energy score of (X, Y), m.
+    #[serde(deserialize_with = "null_as_nan")]
     pub energy_score_m: f64,
 }
 

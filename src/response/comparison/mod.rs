@@ -5,15 +5,17 @@ mod case_figures;
 mod compare;
 mod figures;
 mod paper;
+mod result;
 mod rival;
 mod tables;
 
 pub use case_figures::{CaseFigures, Coverage};
-pub use compare::{
-    ClusterRow, ComparedCase, ComparedModel, Comparison, ComparisonProgress, ComparisonSettings,
-    compare_models, evaluate_rival,
-};
+pub use compare::{ComparisonSettings, compare_models, evaluate_rival};
 pub use figures::{CoverageFigures, MeanStd, ModelFigures, RootMeanSquares};
 pub use paper::{PaperFigure, paper_figure};
+use result::path_of;
+pub use result::{
+    ClusterModel, ClusterRow, ComparedCase, ComparedModel, Comparison, PATH_STEP_S, TestCase,
+};
 pub use rival::{Rival, RivalKind};
 pub use tables::{Table, cluster_table, horizon_table, model_table, uncertainty_table};

@@ -1,6 +1,6 @@
 //! The models that are compared.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::response::{
     MotionDistribution, N_RESIDUAL, ResponseCase, ResponseError, ResponseModel, Tuning, rollout,
@@ -8,7 +8,7 @@ use crate::response::{
 use crate::vehicle::VehicleState;
 
 /// What kind of model.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RivalKind {
     /// The 4DOF model by the vehicle's data sheet.

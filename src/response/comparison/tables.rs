@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::response::comparison::{
-    ComparedModel, Comparison, MeanStd, RootMeanSquares, paper_figure,
+    ClusterModel, ComparedModel, Comparison, MeanStd, RootMeanSquares, paper_figure,
 };
 
 /// A table of words and numbers.
@@ -69,7 +69,7 @@ pub fn model_table(comparison: &Comparison) -> Table {
         let by_choice = &model.average_error_by_choice_m;
         let choices = MeanStd::of(by_choice.iter().copied());
         let mut row = vec![
-            model.name.to_owned(),
+            model.name.clone(),
             count(model.trajectories),
             mean_std(figures.average_error_m),
             number(figures.average_error_m.median),
@@ -94,7 +94,7 @@ pub fn model_table(comparison: &Comparison) -> Table {
 pub fn horizon_table(comparison: &Comparison) -> Table {
     let header = words(&["model", "trajectories", "0.5 s, m", "1 s, m", "2 s, m", "4 s, m"]);
     let row = |model: &ComparedModel| {
-        let mut row = vec![model.name.to_owned(), count(model.trajectories)];
+        let mut row = vec![model.name.clone(), count(model.trajectories)];
         row.extend(model.figures.horizon_error_m.map(mean_std));
         row
     };
@@ -119,7 +119,7 @@ pub fn uncertainty_table(comparison: &Comparison) -> Table {
         let of = model.figures.coverage?;
         let share = |value: f64| format!("{:.0} %", 100.0 * value);
         Some(vec![
-            model.name.to_owned(),
+            model.name.clone(),
             count(model.trajectories),
             share(of.path_50),
             share(of.path_90),
@@ -148,12 +148,12 @@ pub fn cluster_table(comparison: &Comparison) -> Table {
     header.extend(rmse_names());
     let mut rows = Vec::new();
     for cluster in &comparison.clusters {
-        for (name, trajectories, figures) in &cluster.models {
+        for ClusterModel { name, trajectories, figures } in &cluster.models {
             let mut row = vec![
                 cluster.name.clone(),
                 cluster.n.to_string(),
                 cluster.impulse_n_s.map_or(String::new(), |impulse| format!("{impulse:.0}")),
-                (*name).to_owned(),
+                name.clone(),
                 count(*trajectories),
                 mean_std(figures.average_error_m),
                 number(figures.average_error_m.median),
