@@ -233,16 +233,20 @@ impl<'a> Inputs<'a> {
         }
     }
 
+    /// None without a force, also while a record goes on with zeros: what holds for a vehicle that
+    /// nothing pushes then holds there.
     fn collision_over(&self, start_s: f64, step_s: f64) -> Option<CollisionForce<f64>> {
         let (cumulative, load) = self.contact.as_ref()?;
         if start_s >= cumulative.end_s() {
             return None;
         }
         let (force_n, moment) = cumulative.mean_over(start_s, start_s + step_s);
-        Some(CollisionForce {
+        let yaw_moment_n_m = moment.filter(|_| load.recorded_moment);
+        let acts = force_n != [0.0; 2] || yaw_moment_n_m.is_some_and(|moment| moment != 0.0);
+        acts.then_some(CollisionForce {
             force_n,
             in_world_axes: load.force.axes == ForceAxes::World,
-            yaw_moment_n_m: moment.filter(|_| load.recorded_moment),
+            yaw_moment_n_m,
             contact: load.contact,
         })
     }
