@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use egui_kittest::Harness;
-use impactlab::app::{App, Command, Pane, Phase, Source, State};
+use impactlab::app::{App, Command, Network, Pane, Phase, Source, State, TrainingCommand};
 
 /// The display's pace.
 const FRAME: Duration = Duration::from_micros(16_667);
@@ -118,11 +118,11 @@ fn main() {
     let form = &mut window.0.state_mut().state_mut().project.force.training;
     form.epochs = 100_000;
     form.config = "assets/models/force.toml".to_owned();
-    window.apply(Command::StartTraining);
+    window.apply(Command::Train(Network::Force, TrainingCommand::Start));
     let is_fitting = |state: &State| matches!(state.session.force.training.phase, Phase::Centre(_));
     window.step_until(is_fitting);
     window.measure_all("while the crush model is fitted");
     window.step_until(|state| !state.session.force.training.history.is_empty());
     window.measure_all("while epochs run");
-    window.apply(Command::CancelTraining);
+    window.apply(Command::Train(Network::Force, TrainingCommand::Cancel));
 }

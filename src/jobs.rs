@@ -78,6 +78,20 @@ pub enum Update<T> {
     Gone,
 }
 
+impl<T> Update<Result<T, String>> {
+    /// What came out, a panic as an error; `None` while it is still at work.
+    ///
+    /// - `who`: “the loader”, for the error of a result that was taken before.
+    pub fn into_result(self, who: &str) -> Option<Result<T, String>> {
+        match self {
+            Self::Running => None,
+            Self::Finished(result) => Some(result),
+            Self::Panicked(text) => Some(Err(format!("internal error: {text}"))),
+            Self::Gone => Some(Err(format!("{who} is gone"))),
+        }
+    }
+}
+
 enum Message<T> {
     Progress(Progress),
     End(Update<T>),

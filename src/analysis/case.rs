@@ -1,9 +1,9 @@
 //! Cases of datasets.
 
-use crate::analysis::{Analysis, AnalysisError, Settings, bullet::bullet_track};
+use crate::analysis::{Analysis, AnalysisError, Settings, StruckVehicle, bullet::bullet_track};
 use crate::collision::Footprint;
 use crate::compare::{recorded_manoeuvre, replay_case};
-use crate::data::{Case, DatasetKind, ForceAttributes};
+use crate::data::{Case, DatasetKind, ForceAttributes, TrajectoryAttributes};
 use crate::vehicle::{ContactLoad, ContactPoint, Manoeuvre, VehicleState};
 
 /// Analyses a case of a force or a trajectory dataset.
@@ -19,13 +19,19 @@ pub fn analyse_case(case: &Case, settings: &Settings) -> Result<Analysis, Analys
 
 fn analyse_trajectory_case(case: &Case, settings: &Settings) -> Result<Analysis, AnalysisError> {
     let replay = replay_case(case, &settings.target, settings.integrator)?;
-    let load = recorded_manoeuvre(case)?.contact_load;
+    let manoeuvre = recorded_manoeuvre(case)?;
+    let friction = TrajectoryAttributes::read(&case.attributes)?.mu;
+    let struck = |load: &ContactLoad| StruckVehicle {
+        vehicle: settings.target.clone().with_friction(friction),
+        initial: manoeuvre.initial,
+        contact: load.contact,
+    };
     Ok(Analysis {
         name: case.name.clone(),
         vehicle: settings.target.name.clone(),
         footprint: Footprint::from(&settings.target.geometry),
-        contact: load.as_ref().map(|load| load.contact),
-        force: load.map(|load| load.force),
+        struck: manoeuvre.contact_load.as_ref().map(struck),
+        force: manoeuvre.contact_load.map(|load| load.force),
         simulation: Some(replay.motion),
         reference: Some(case.series.clone()),
         bullet: None,
@@ -46,8 +52,9 @@ fn analyse_force_case(case: &Case, settings: &Settings) -> Result<Analysis, Anal
     let height_m = attributes.contact_height_m.unwrap_or(vehicle.geometry.cg_height_m);
     let contact = ContactPoint { x_m, y_m, height_m };
     let load = ContactLoad { force: force.clone(), contact, recorded_moment: true };
+    let initial = VehicleState { vx_m_s, vy_m_s, ..VehicleState::default() };
     let manoeuvre = Manoeuvre {
-        initial: VehicleState { vx_m_s, vy_m_s, ..VehicleState::default() },
+        initial,
         contact_load: Some(load),
         steer: None,
         duration_s: settings.duration_s,
@@ -60,9 +67,9 @@ fn analyse_force_case(case: &Case, settings: &Settings) -> Result<Analysis, Anal
         name: case.name.clone(),
         footprint: Footprint::from(&vehicle.geometry),
         simulation: Some(vehicle.simulate(&manoeuvre, settings.integrator)?),
-        vehicle: vehicle.name,
+        vehicle: vehicle.name.clone(),
         force: Some(force),
-        contact: Some(contact),
+        struck: Some(StruckVehicle { vehicle, initial, contact }),
         reference: None,
         bullet: bullet_track(case, &attributes, settings)?,
         error: None,

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{Analysis, AnalysisError, Settings};
+use crate::analysis::{Analysis, AnalysisError, Settings, StruckVehicle};
 use crate::collision::Footprint;
 use crate::compare::{MotionError, initial_state};
 use crate::data::{Channel, FileKind, ForceHistory, Loaded, SeriesError};
@@ -49,6 +49,12 @@ pub fn analyse_file(
     };
     let last_s = file.series.time_s().last().copied().unwrap_or(0.0);
     let duration_s = if reference.is_some() { last_s } else { settings.duration_s };
+    let struck = match (&initial, &force) {
+        (Ok(initial), Some(_)) => {
+            Some(StruckVehicle { vehicle: settings.target.clone(), initial: *initial, contact })
+        }
+        _ => None,
+    };
     let simulation = match (initial, &force, file.kind) {
         (Err(SeriesError::Missing { channel }), ..) => {
             notes.push(format!("not simulated: column {} is missing", channel.header()));
@@ -80,7 +86,7 @@ pub fn analyse_file(
         name: name.to_owned(),
         vehicle: settings.target.name.clone(),
         footprint: Footprint::from(&settings.target.geometry),
-        contact: force.is_some().then_some(contact),
+        struck,
         force,
         simulation,
         reference,

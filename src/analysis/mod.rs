@@ -5,20 +5,24 @@ mod bullet;
 mod case;
 mod file;
 mod forecast;
+mod motion_bands;
+mod motion_density;
 mod motion_forecast;
 mod scenario;
 
 use crate::collision::{Footprint, PulseError, ScenarioError};
 use crate::compare::{MotionError, ReplayError};
 use crate::data::{DataError, ForceHistory, SeriesError, TimeSeries};
-use crate::vehicle::{ContactPoint, Integrator, Motion, SimulationError, VehicleParameters};
+use crate::vehicle::{Integrator, Motion, SimulationError, VehicleParameters};
 
 pub use case::analyse_case;
 pub use file::{FileSetup, analyse_file};
 pub use forecast::{ForceForecast, ForecastSettings, Mode, Spread, pulse_curves};
+pub use motion_bands::{MOTION_BAND_LEVELS, MotionBands};
+pub use motion_density::{DensityMap, DensityTask};
 pub use motion_forecast::{
     MotionForecast, MotionForecastError, MotionForecastSettings, Outcome, StruckVehicle,
-    forecast_forces, forecast_scenario,
+    forecast_collision, forecast_forces,
 };
 pub use scenario::{PulseSetup, analyse_scenario};
 
@@ -55,8 +59,8 @@ pub struct Analysis {
     pub footprint: Footprint,
     /// The force on the target.
     pub force: Option<ForceHistory>,
-    /// Where it acts.
-    pub contact: Option<ContactPoint>,
+    /// The struck vehicle as the force meets it; none without a force.
+    pub struck: Option<StruckVehicle>,
     /// The 4DOF simulation.
     pub simulation: Option<Motion>,
     /// The recorded motion.

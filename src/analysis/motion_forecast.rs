@@ -47,7 +47,7 @@ impl Default for MotionForecastSettings {
 }
 
 /// What the struck car does before it is pushed, and by what.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct StruckVehicle {
     /// Its parameters.
     pub vehicle: VehicleParameters,
@@ -99,9 +99,6 @@ pub struct Outcome {
 /// A forecast that cannot be made.
 #[derive(Debug, thiserror::Error)]
 pub enum MotionForecastError {
-    /// The scenario has no contact.
-    #[error(transparent)]
-    Scenario(#[from] ScenarioError),
     /// The force network refuses.
     #[error(transparent)]
     Force(#[from] ForceError),
@@ -165,17 +162,17 @@ impl StruckVehicle {
     }
 }
 
-/// The motion after the force that a force network predicts for a scenario.
+/// The motion after the force that a force network predicts for a collision.
 ///
 /// # Errors
 /// [`MotionForecastError`].
-pub fn forecast_scenario(
-    scenario: &Scenario,
+pub fn forecast_collision(
+    collision: &ForceScenario,
     (force_model, response): (&ForceModel, &ResponseModel),
     struck: &StruckVehicle,
     settings: &MotionForecastSettings,
 ) -> Result<MotionForecast, MotionForecastError> {
-    let prediction = force_model.predict(&ForceScenario::from_scenario(scenario)?)?;
+    let prediction = force_model.predict(collision)?;
     let mut rng = random_stream(settings.seed, "force curves", 0);
     let curves = prediction.mixture.sample(settings.n_curves.max(1), &mut rng);
     let heading_rad = struck.initial.yaw_rad;

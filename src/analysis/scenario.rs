@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{Analysis, AnalysisError, Settings, Track};
+use crate::analysis::{Analysis, AnalysisError, Settings, StruckVehicle, Track};
 use crate::collision::{Pose, Pulse, PulseShape, Scenario, ScenarioVehicle};
 use crate::data::ForceHistory;
 use crate::vehicle::frames::body_from_world;
@@ -52,19 +52,20 @@ pub fn analyse_scenario(
         let parameters = preset.clone().with_mass(vehicle.mass_kg, Some(vehicle.yaw_inertia_kg_m2));
         let [x_m, y_m] = pose.body_from_world(geometry.contact_point_m);
         let contact = ContactPoint { x_m, y_m, height_m: pulse.contact_height_m };
-        let motion = drive_on(vehicle, &parameters, pose, (force, contact), settings)?;
-        Ok::<_, AnalysisError>((motion, contact))
+        drive_on(vehicle, &parameters, pose, (force, contact), settings)
     };
-    let (target, contact) =
-        run(&scenario.target, &settings.target, &geometry.target, force.clone())?;
-    let (bullet, _) =
-        run(&scenario.bullet, &settings.bullet, &geometry.bullet, history([-px, -py])?)?;
+    let target = run(&scenario.target, &settings.target, &geometry.target, force.clone())?;
+    let bullet = run(&scenario.bullet, &settings.bullet, &geometry.bullet, history([-px, -py])?)?;
     Ok(Analysis {
         name: scenario.name.clone(),
         vehicle: settings.target.name.clone(),
         footprint: scenario.target.footprint(),
         force: Some(force),
-        contact: Some(contact),
+        struck: Some(StruckVehicle::of_scenario(
+            scenario,
+            &settings.target,
+            pulse.contact_height_m,
+        )?),
         simulation: Some(target),
         reference: None,
         bullet: Some(Track { footprint: scenario.bullet.footprint(), motion: bullet.series }),
@@ -130,6 +131,6 @@ mod tests {
         assert!(rate[10] < 0.5 * expected, "{} against {expected}", rate[10]);
         let bullet = analysis.bullet.unwrap().motion;
         assert_eq!(bullet.n_samples(), motion.n_samples());
-        assert!(analysis.contact.unwrap().y_m < 0.0);
+        assert!(analysis.struck.unwrap().contact.y_m < 0.0);
     }
 }

@@ -4,19 +4,18 @@ use std::path::PathBuf;
 
 use egui::Context;
 
-use crate::app::dialogs::{FileDialog, MODEL_ENDING, MappingDialog, Purpose};
+use crate::app::dialogs::{FileDialog, MappingDialog, Purpose};
 use crate::app::export;
+use crate::app::network::Network;
 use crate::app::panes::{Pane, default_layout, show_pane};
 use crate::app::source::{Content, Source};
-use crate::app::state::{ReplayStatus, Session, State, Subject, VehicleChoice};
+use crate::app::state::{ReplayStatus, Session, State, Subject};
 use crate::app::update::target_vehicle;
-use crate::collision::Scenario;
 use crate::compare::replay_dataset;
 use crate::data::{ColumnMap, FileKind, Severity, write_atomically};
 use crate::error_chain;
 use crate::figure::Figure;
 use crate::jobs::Job;
-use crate::vehicle::VehicleParameters;
 
 /// Step of the arrow keys in the scene, s.
 const TIME_STEP_S: f64 = 0.05;
@@ -65,21 +64,21 @@ pub enum Command {
     /// Predict the force of the scenario panel's scenario.
     PredictScenario,
     /// Answer by the model of this file; by the shipped one without.
-    UseModel(Option<PathBuf>),
-    /// Write the force model to a file.
-    SaveModel(PathBuf),
-    /// Train a force model.
-    StartTraining,
-    /// Hold the training up, or let it go on.
-    PauseTraining(bool),
-    /// End the training with the best weights so far.
-    CancelTraining,
+    UseModel(Network, Option<PathBuf>),
+    /// Write a model to a file.
+    SaveModel(Network, PathBuf),
+    /// Train a model.
+    Train(Network, TrainingCommand),
+    /// Compare models.
+    Compare(ComparisonCommand),
     /// Evaluate the force model on a data set.
     Evaluate,
     /// Stop evaluating.
     CancelEvaluation,
     /// Bring a pane to the front.
     Show(Pane),
+    /// Bring the training of a network to the front.
+    ShowTraining(Network),
     /// Put all panes back.
     ResetLayout,
     /// Tell the user something.
@@ -90,6 +89,30 @@ pub enum Command {
     Undo,
     /// Go forth a step.
     Redo,
+}
+
+/// What to do with a training.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TrainingCommand {
+    /// Begin.
+    Start,
+    /// Hold it up, or let it go on.
+    Pause(bool),
+    /// End it with the weights so far.
+    Cancel,
+}
+
+/// What to do with a comparison.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ComparisonCommand {
+    /// Train response models and compare them.
+    Start,
+    /// Stop.
+    Cancel,
+    /// Read one from a file.
+    Open(PathBuf),
+    /// Write it into a folder.
+    Save(PathBuf),
 }
 
 impl State {
@@ -145,70 +168,26 @@ impl State {
             }
             Command::PredictCase => self.predict_case(),
             Command::PredictScenario => self.predict_scenario(),
-            Command::UseModel(path) => {
-                self.project.force.model = path;
-                self.session.force.model.reload();
-            }
-            Command::SaveModel(path) => self.save_model(path, context),
-            Command::StartTraining => self.start_training(context),
-            Command::PauseTraining(pause) => self.session.force.training.set_paused(pause),
-            Command::CancelTraining => self.session.force.training.cancel(),
+            Command::UseModel(network, path) => self.use_model(network, path),
+            Command::SaveModel(network, path) => self.save_model(network, path, context),
+            Command::Train(Network::Force, command) => self.train_force(command, context),
+            Command::Train(Network::Response, command) => self.train_response(command, context),
+            Command::Compare(command) => self.compare(command, context),
             Command::Evaluate => self.evaluate(context),
             Command::CancelEvaluation => {
                 if let Some(job) = &self.session.force.evaluation.job {
                     job.cancel();
                 }
             }
+            Command::ShowTraining(network) => {
+                self.view.trained = network;
+                show_pane(&mut self.view.layout, Pane::Training);
+            }
             Command::Show(pane) => show_pane(&mut self.view.layout, pane),
             Command::ResetLayout => self.view.layout = default_layout(),
             Command::Say(severity, text) => self.say(severity, text),
             Command::DismissMessages => self.session.messages.clear(),
             Command::Undo | Command::Redo => {}
-        }
-    }
-
-    fn open(&mut self, paths: Vec<PathBuf>, context: &Context) {
-        for path in paths {
-            if path.extension().is_some_and(|ending| ending == "toml") {
-                self.open_model(path);
-                continue;
-            }
-            if path.extension().is_some_and(|ending| ending == MODEL_ENDING) {
-                self.apply(Command::UseModel(Some(path)), context);
-                continue;
-            }
-            self.session.sources.retain(|source| source.opened != path);
-            self.session.look_at = Some(path.clone());
-            self.session.sources.push(Source::load(path, wake(context)));
-        }
-    }
-
-    /// Takes a TOML file for a vehicle if it is one, else for a scenario. Such files are small.
-    fn open_model(&mut self, path: PathBuf) {
-        if let Ok(vehicle) = VehicleParameters::load(&path) {
-            self.project.vehicle = VehicleChoice::File(path);
-            self.say(Severity::Info, format!("struck vehicle: {}", vehicle.name));
-            return;
-        }
-        match Scenario::load(&path) {
-            Ok(scenario) => {
-                self.project.scenario = scenario;
-                self.select(Subject::Scenario);
-            }
-            Err(error) => self.say(Severity::Error, error_chain(&error)),
-        }
-    }
-
-    fn close(&mut self, path: &PathBuf) {
-        self.session.sources.retain(|source| source.opened != *path && source.path != *path);
-        let is_open = |open: &PathBuf| self.session.sources.iter().any(|s| s.path == *open);
-        let closed = match &self.project.subject {
-            Some(Subject::Case { dataset, .. }) => !is_open(dataset),
-            Some(Subject::File(file)) => !is_open(file),
-            Some(Subject::Scenario) | None => false,
-        };
-        if closed {
-            self.project.subject = None;
         }
     }
 

@@ -6,7 +6,8 @@ use std::time::Duration;
 use egui::{ComboBox, Grid, Ui};
 use rfd::AsyncFileDialog;
 
-use crate::app::command::Command;
+use crate::app::command::{Command, ComparisonCommand};
+use crate::app::network::Network;
 use crate::data::{
     Channel, ColumnMap, ColumnProposal, ColumnRef, ColumnSource, DataError, FileKind, Severity,
     propose_columns,
@@ -33,10 +34,14 @@ pub enum Purpose {
     Numbers(Box<Figure>),
     /// Save the scenario.
     Scenario,
-    /// Open a force model.
+    /// Open a model.
     OpenModel,
-    /// Save the force model.
-    SaveModel,
+    /// Save a model.
+    SaveModel(Network),
+    /// Open a comparison.
+    OpenComparison,
+    /// Save a comparison into a folder.
+    SaveComparison,
 }
 
 /// A dialog that is answered faster than this was never seen: there is no native dialog.
@@ -78,11 +83,16 @@ impl FileDialog {
             return Vec::new();
         };
         vec![match &self.purpose {
-            Purpose::Folder | Purpose::Files | Purpose::OpenModel => Command::Open(paths),
+            Purpose::Folder | Purpose::Files | Purpose::OpenModel | Purpose::OpenComparison => {
+                Command::Open(paths)
+            }
+            Purpose::SaveComparison => Command::Compare(ComparisonCommand::Save(first)),
             Purpose::Picture(figure) => Command::Export(figure.clone(), with_ending(first, "png")),
             Purpose::Numbers(figure) => Command::Export(figure.clone(), with_ending(first, "csv")),
             Purpose::Scenario => Command::SaveScenario(with_ending(first, "toml")),
-            Purpose::SaveModel => Command::SaveModel(with_ending(first, MODEL_ENDING)),
+            Purpose::SaveModel(network) => {
+                Command::SaveModel(*network, with_ending(first, MODEL_ENDING))
+            }
         }]
     }
 }
@@ -105,13 +115,20 @@ async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
                 .await;
             return files.unwrap_or_default().iter().map(|file| file.path().to_owned()).collect();
         }
-        Purpose::OpenModel => {
+        Purpose::SaveComparison => {
+            dialog.set_title("A folder for the comparison").pick_folder().await
+        }
+        Purpose::OpenComparison => {
             let dialog =
-                dialog.set_title("Open a force model").add_filter("model", &[MODEL_ENDING]);
+                dialog.set_title("Open a comparison").add_filter("comparison.json", &["json"]);
             dialog.pick_file().await
         }
-        Purpose::SaveModel => {
-            save(dialog.add_filter("model", &[MODEL_ENDING]), "force.safetensors").await
+        Purpose::OpenModel => {
+            let dialog = dialog.set_title("Open a model").add_filter("model", &[MODEL_ENDING]);
+            dialog.pick_file().await
+        }
+        Purpose::SaveModel(network) => {
+            save(dialog.add_filter("model", &[MODEL_ENDING]), network.file_name()).await
         }
         Purpose::Picture(_) => save(dialog.add_filter("picture", &["png"]), "figure.png").await,
         Purpose::Numbers(_) => save(dialog.add_filter("table", &["csv"]), "figure.csv").await,

@@ -1,14 +1,16 @@
 //! The menu at the top and the status line at the bottom.
 
+use std::time::Duration;
+
 use egui::{Align, Button, Layout, MenuBar, Panel, ProgressBar, RichText, Ui};
 
-use crate::app::command::Command;
+use crate::app::command::{Command, ComparisonCommand};
 use crate::app::dialogs::Purpose;
-use crate::app::force::TrainingStatus;
 use crate::app::keyboard;
+use crate::app::network::Network;
 use crate::app::panes::Pane;
 use crate::app::source::{Content, Source};
-use crate::app::state::{ReplayStatus, State};
+use crate::app::state::{ReplayStatus, Session, State};
 use crate::app::widgets::duration_text;
 use crate::data::Severity;
 use crate::jobs::Job;
@@ -71,11 +73,17 @@ fn file_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     for (label, shortcut, purpose) in items {
         edit_item(ui, label, shortcut, (true, Command::Ask(purpose)), commands);
     }
-    let has_model = state.session.force.model.current.is_some();
+    let session = &state.session;
+    let has_force = session.force.model.current.is_some();
+    let has_response = session.response.model.current.is_some();
+    let has_comparison = session.response.comparison.comparison().is_some();
     for (label, enabled, purpose) in [
         ("Save scenario…", true, Purpose::Scenario),
         ("Open model…", true, Purpose::OpenModel),
-        ("Save model…", has_model, Purpose::SaveModel),
+        ("Save force model…", has_force, Purpose::SaveModel(Network::Force)),
+        ("Save response model…", has_response, Purpose::SaveModel(Network::Response)),
+        ("Open comparison…", true, Purpose::OpenComparison),
+        ("Save comparison…", has_comparison, Purpose::SaveComparison),
     ] {
         if ui.add_enabled(enabled, Button::new(label)).clicked() {
             commands.push(Command::Ask(purpose));
@@ -143,7 +151,19 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
                 job_ui(ui, &format!("Simulating {name}"), job, cancel, commands);
             }
         }
-        training_job_ui(ui, &state.session.force.training, commands);
+        let Session { force, response, .. } = &state.session;
+        let paused = (force.training.is_paused(), response.training.is_paused());
+        if force.training.is_running() {
+            training_job_ui(ui, (Network::Force, paused.0), force.training.progress(), commands);
+        }
+        if response.training.is_running() {
+            let progress = response.training.progress();
+            training_job_ui(ui, (Network::Response, paused.1), progress, commands);
+        }
+        if let Some(job) = &response.comparison.job {
+            let what = format!("Comparing, {}", job.progress().message);
+            job_ui(ui, &what, job, Command::Compare(ComparisonCommand::Cancel), commands);
+        }
         let Some(latest) = state.session.messages.last() else {
             ui.weak("Ready. Drop a folder or a file here to open it.");
             return;
@@ -170,16 +190,19 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
 }
 
 /// A training under way, which is seen from every pane.
-fn training_job_ui(ui: &mut Ui, training: &TrainingStatus, commands: &mut Vec<Command>) {
-    if !training.is_running() {
-        return;
-    }
+fn training_job_ui(
+    ui: &mut Ui,
+    (network, is_paused): (Network, bool),
+    progress: (Option<f32>, Option<Duration>),
+    commands: &mut Vec<Command>,
+) {
     ui.horizontal(|ui| {
         if ui.small_button("Show").clicked() {
-            commands.push(Command::Show(Pane::Training));
+            commands.push(Command::ShowTraining(network));
         }
-        let what = if training.is_paused() { "Training, paused" } else { "Training" };
-        match training.progress() {
+        let paused = if is_paused { ", paused" } else { "" };
+        let what = format!("{}{paused}", network.label());
+        match progress {
             (Some(fraction), left) => {
                 let left = left.map_or(String::new(), |t| format!(": {} left", duration_text(t)));
                 let bar = ProgressBar::new(fraction).desired_width(420.0);
@@ -199,9 +222,11 @@ fn job_ui<T>(ui: &mut Ui, what: &str, job: &Job<T>, cancel: Command, commands: &
         let progress = job.progress();
         let left = progress.time_left(job.elapsed());
         let left = left.map_or(String::new(), |t| format!(", {} left", duration_text(t)));
-        let text = format!("{what}: {} of {}{left}", progress.done, progress.total);
         match progress.fraction() {
-            Some(fraction) => ui.add(ProgressBar::new(fraction).desired_width(420.0).text(text)),
+            Some(fraction) => {
+                let text = format!("{what}: {:.0} %{left}", 100.0 * fraction);
+                ui.add(ProgressBar::new(fraction).desired_width(420.0).text(text))
+            }
             None => ui.horizontal(|ui| (ui.spinner(), ui.label(what))).response,
         };
     });
@@ -218,6 +243,6 @@ pub fn drop_hint_ui(ui: &Ui) {
         .layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop hint")));
     painter.rect_filled(area, 0.0, egui::Color32::from_black_alpha(160));
     let font = egui::TextStyle::Heading.resolve(ui.style());
-    let text = "Drop to open: a data set folder, a force or trajectory file, a scenario";
+    let text = "Drop to open: a data set folder, a force or trajectory file, a scenario, a model, a comparison";
     painter.text(area.center(), egui::Align2::CENTER_CENTER, text, font, egui::Color32::WHITE);
 }

@@ -7,29 +7,41 @@ mod dialogs;
 mod export;
 mod force;
 mod keyboard;
+mod latest;
 mod menu;
+mod model;
+mod network;
+mod open;
 mod panels;
 mod panes;
+mod response;
 mod source;
 mod state;
 mod store;
+mod training;
 mod update;
 mod widgets;
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use eframe::CreationContext;
+use eframe::wgpu::DeviceType;
 use egui::util::undoer::Undoer;
 use egui::{Context, Ui};
 use egui_tiles::Tree;
 
 use crate::app::store::Store;
 use crate::data::Severity;
-use crate::render::theme;
+use crate::render::{DensityGpu, theme};
 
-pub use command::Command;
+pub use command::{Command, ComparisonCommand, TrainingCommand};
 pub use force::{ForceSession, Forecast, Phase};
+pub use network::Network;
 pub use panes::Pane;
+pub use response::{
+    Course, DensityChoice, ForceChoice, MotionAnswer, ResponsePhase, ResponseSession,
+};
 pub use source::{Content, Source};
 pub use state::{Project, ReplayStatus, State, Subject, VehicleChoice, View};
 
@@ -37,8 +49,8 @@ pub use state::{Project, ReplayStatus, State, Subject, VehicleChoice, View};
 const APP_ID: &str = "impactlab";
 /// The file that keeps the state.
 const STATE_FILE: &str = "state.json";
-/// The file beside it that keeps a training while it runs.
-const TRAINING_FILE: &str = "force-training.safetensors";
+/// The files beside it that keep a training while it runs, force and response network.
+const TRAINING_FILES: [&str; 2] = ["force-training.safetensors", "response-training.safetensors"];
 
 /// A window that could not be opened.
 #[derive(Debug, thiserror::Error)]
@@ -78,7 +90,8 @@ impl App {
     /// Starts from what the last run left in `state_file`, if there is one, and keeps the state
     /// there.
     pub fn new(cc: &CreationContext<'_>, paths: Vec<PathBuf>, state_file: Option<PathBuf>) -> Self {
-        let training_file = state_file.as_ref().map(|file| file.with_file_name(TRAINING_FILE));
+        let training_files =
+            TRAINING_FILES.map(|name| Some(state_file.as_ref()?.with_file_name(name)));
         let mut store = state_file.map(Store::new);
         let saved = store.as_mut().and_then(Store::read);
         let restored = saved.and_then(|text| State::restore(&text));
@@ -88,7 +101,10 @@ impl App {
             (true, false) => last_open,
             (true, true) => shipped_datasets().into_iter().collect(),
         };
-        state.session.force.checkpoint = training_file;
+        let [force, response] = training_files;
+        state.session.force.checkpoint = force;
+        state.session.response.checkpoint = response;
+        state.session.response.gpu = graphics_processor(cc);
         state.apply(Command::Open(to_open), &cc.egui_ctx);
         if state.project.subject.is_some() {
             state.session.look_at = None; // the last run's subject stays
@@ -193,6 +209,14 @@ impl App {
             }
         }
     }
+}
+
+/// The window's graphics processor for density maps; none where a program plays it, which would be
+/// slower than the same on all cores.
+fn graphics_processor(cc: &CreationContext<'_>) -> Option<Arc<DensityGpu>> {
+    let render = cc.wgpu_render_state.as_ref()?;
+    let gpu = DensityGpu::new(render.device.clone(), render.queue.clone()).ok()?;
+    (gpu.adapter_info().device_type != DeviceType::Cpu).then(|| Arc::new(gpu))
 }
 
 /// The shipped data.

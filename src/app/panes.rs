@@ -37,15 +37,19 @@ pub enum Pane {
     Comparison,
     /// What the force network predicts.
     ForcePrediction,
-    /// How the force network learns.
+    /// Where the struck vehicle goes, with how sure that is.
+    MotionForecast,
+    /// How a network learns.
     Training,
     /// How well the force network does.
     Evaluation,
+    /// How well the response network does beside other models.
+    ModelComparison,
 }
 
 impl Pane {
     /// Every pane.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 13] = [
         Self::Data,
         Self::Cases,
         Self::Vehicle,
@@ -55,8 +59,10 @@ impl Pane {
         Self::Force,
         Self::Comparison,
         Self::ForcePrediction,
+        Self::MotionForecast,
         Self::Training,
         Self::Evaluation,
+        Self::ModelComparison,
     ];
 
     /// Its title.
@@ -71,14 +77,16 @@ impl Pane {
             Self::Force => "Force",
             Self::Comparison => "Comparison",
             Self::ForcePrediction => "Force prediction",
+            Self::MotionForecast => "Motion forecast",
             Self::Training => "Training",
-            Self::Evaluation => "Evaluation",
+            Self::Evaluation => "Force evaluation",
+            Self::ModelComparison => "Compare models",
         }
     }
 }
 
 /// On the left data and cases, with scenario and vehicle behind; the rest is one case (scene and
-/// motion, force and figures) or, behind it, the force network.
+/// motion, force and figures) or, behind it, the two networks.
 pub fn default_layout() -> Layout {
     let mut tiles = Tiles::default();
     let mut tabs = |panes: &[Pane]| {
@@ -99,9 +107,15 @@ pub fn default_layout() -> Layout {
     let middle = linear(LinearDir::Vertical, [(scene, 0.45), (motion, 0.55)]);
     let right = linear(LinearDir::Vertical, [(force, 0.5), (comparison, 0.5)]);
     let case = linear(LinearDir::Horizontal, [(middle, 0.59), (right, 0.41)]);
-    let network = [Pane::ForcePrediction, Pane::Training, Pane::Evaluation];
-    let network = network.map(|pane| tiles.insert_pane(pane));
-    let work = tiles.insert_tab_tile(std::iter::once(case).chain(network).collect());
+    let networks = [
+        Pane::ForcePrediction,
+        Pane::MotionForecast,
+        Pane::Training,
+        Pane::Evaluation,
+        Pane::ModelComparison,
+    ];
+    let networks = networks.map(|pane| tiles.insert_pane(pane));
+    let work = tiles.insert_tab_tile(std::iter::once(case).chain(networks).collect());
     let mut row = Linear::new(LinearDir::Horizontal, vec![left, work]);
     row.shares.set_share(left, 0.27);
     row.shares.set_share(work, 0.73);
@@ -148,8 +162,10 @@ impl Behavior<Pane> for PaneContext<'_> {
             Pane::Force => panels::force_ui(ui, self),
             Pane::Comparison => panels::comparison_ui(ui, self),
             Pane::ForcePrediction => panels::prediction_ui(ui, self),
+            Pane::MotionForecast => panels::motion_forecast_ui(ui, self),
             Pane::Training => panels::training_ui(ui, self),
             Pane::Evaluation => panels::evaluation_ui(ui, self),
+            Pane::ModelComparison => panels::model_comparison_ui(ui, self),
         });
         UiResponse::None
     }

@@ -10,7 +10,9 @@ use crate::analysis::{Analysis, FileSetup, PulseSetup};
 use crate::app::case_table::{CaseList, FinishedReplay};
 use crate::app::dialogs::{FileDialog, MappingDialog};
 use crate::app::force::{ForceProject, ForceSession, ForceView};
+use crate::app::network::Network;
 use crate::app::panes::{Layout, default_layout, is_complete};
+use crate::app::response::{ResponseProject, ResponseSession, ResponseView};
 use crate::app::source::Source;
 use crate::collision::{ChannelClass, Scenario};
 use crate::compare::DatasetReplay;
@@ -89,6 +91,8 @@ pub struct Project {
     pub file_setup: FileSetup,
     /// The force network: what it is asked and how it is trained.
     pub force: ForceProject,
+    /// The response network: what it is asked, how it is trained and compared.
+    pub response: ResponseProject,
 }
 
 impl Default for Project {
@@ -106,6 +110,7 @@ impl Default for Project {
             pulse: PulseSetup::default(),
             file_setup: FileSetup::default(),
             force: ForceProject::default(),
+            response: ResponseProject::default(),
         }
     }
 }
@@ -128,6 +133,10 @@ pub struct View {
     pub listed: Option<PathBuf>,
     /// How the force network is shown.
     pub force: ForceView,
+    /// How the response network is shown.
+    pub response: ResponseView,
+    /// Which network the training pane trains.
+    pub trained: Network,
     /// Where the panes stand.
     pub layout: Layout,
 }
@@ -142,6 +151,8 @@ impl Default for View {
             sort_descending: false,
             listed: None,
             force: ForceView::default(),
+            response: ResponseView::default(),
+            trained: Network::default(),
             layout: default_layout(),
         }
     }
@@ -158,6 +169,8 @@ pub struct Session {
     pub replays: Replays,
     /// The force network.
     pub force: ForceSession,
+    /// The response network.
+    pub response: ResponseSession,
     /// Which cases of the listed data set are shown, in which order.
     pub cases: CaseList,
     /// The moment shown in the scene, s.

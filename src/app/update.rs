@@ -38,6 +38,7 @@ impl State {
         cases.update(sources, replays, &self.view);
         self.request_analysis(context);
         self.update_force(context);
+        self.update_response(context);
         self.advance_time(context);
     }
 
@@ -165,7 +166,9 @@ impl State {
         let settled = self.session.sources.iter().filter(|source| source.is_settled()).count();
         let status = &mut self.session.analysis;
         if let Some(requested) = &mut status.requested {
-            requested.force.clone_from(&self.project.force); // no part of an analysis
+            // no part of an analysis
+            requested.force.clone_from(&self.project.force);
+            requested.response.clone_from(&self.project.response);
         }
         let is_current =
             status.requested.as_deref() == Some(&self.project) && status.sources_seen == settled;

@@ -1,7 +1,6 @@
 //! `impactlab compare`: the response network beside tuned and untuned 4DOF model and a plain network.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
@@ -10,11 +9,9 @@ use crate::cli::output::{print_json, print_table};
 use crate::cli::progress::with_progress;
 use crate::cli::response_training::{config, data_name, load_cases};
 use crate::cli::run::{Console, Verdict};
-use crate::data::write_atomically;
 use crate::response::ResponseModel;
 use crate::response::comparison::{
-    Comparison, ComparisonSettings, Table, cluster_table, compare_models, horizon_table,
-    model_table, uncertainty_table,
+    Comparison, ComparisonSettings, all_tables, compare_models, write_comparison,
 };
 
 /// Compare response models on trajectories that none has seen
@@ -89,16 +86,6 @@ pub(super) fn run(args: &CompareArgs, console: &mut Console<'_>) -> Result<Verdi
     Ok(Verdict::Clean)
 }
 
-/// Titles, file names and tables of a comparison.
-fn tables(comparison: &Comparison) -> [(&'static str, &'static str, Table); 4] {
-    [
-        ("Models", "models.csv", model_table(comparison)),
-        ("Distance by horizon", "horizons.csv", horizon_table(comparison)),
-        ("Uncertainty", "uncertainty.csv", uncertainty_table(comparison)),
-        ("By cluster of impulse", "clusters.csv", cluster_table(comparison)),
-    ]
-}
-
 /// Prints the tables below each other.
 pub(super) fn print_tables(
     comparison: &Comparison,
@@ -111,7 +98,7 @@ pub(super) fn print_tables(
         comparison.test.len(),
         comparison.seed
     )?;
-    for (title, _, table) in tables(comparison) {
+    for (title, _, table) in all_tables(comparison) {
         if table.rows.is_empty() {
             continue;
         }
@@ -119,28 +106,5 @@ pub(super) fn print_tables(
         let header: Vec<&str> = table.header.iter().map(String::as_str).collect();
         print_table(console.out, &header, &table.rows)?;
     }
-    Ok(())
-}
-
-/// Writes the comparison as JSON, Markdown and CSV.
-pub(super) fn write_comparison(folder: &Path, comparison: &Comparison) -> Result<(), CliError> {
-    let to_error = |source| CliError::Folder { path: folder.to_owned(), source };
-    fs::create_dir_all(folder).map_err(to_error)?;
-    // A line for each number of all paths would be long.
-    let json = serde_json::to_vec(comparison).map_err(std::io::Error::from)?;
-    write_atomically(&folder.join("comparison.json"), |out| out.write_all(&json))?;
-    let mut text = format!(
-        "# {}\n\n{} trajectories that no model has seen, seed {}, {} choices of the trajectories.\n",
-        comparison.data,
-        comparison.test.len(),
-        comparison.seed,
-        comparison.n_choices
-    );
-    for (title, file, table) in tables(comparison) {
-        text.push_str(&format!("\n## {title}\n\n{}", table.to_markdown()));
-        let csv = table.to_csv();
-        write_atomically(&folder.join(file), |out| out.write_all(csv.as_bytes()))?;
-    }
-    write_atomically(&folder.join("comparison.md"), |out| out.write_all(text.as_bytes()))?;
     Ok(())
 }

@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::cli::CliError;
-use crate::cli::compare::{print_tables, write_comparison};
+use crate::cli::compare::print_tables;
 use crate::cli::evaluate::SplitArg;
 use crate::cli::output::print_json;
 use crate::cli::response_training::{data_name, load_cases};
 use crate::cli::run::{Console, Verdict};
-use crate::response::comparison::{Rival, evaluate_rival};
+use crate::response::comparison::{Rival, evaluate_rival, write_comparison};
 use crate::response::{Correction, ResponseCase, ResponseModel};
 
 #[derive(Debug, Args)]

@@ -18,6 +18,7 @@ mod fine_tune;
 mod impact;
 mod predict;
 mod predict_motion;
+mod predict_motion_files;
 mod render;
 mod render_figure;
 mod simulate;

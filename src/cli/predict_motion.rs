@@ -1,37 +1,24 @@
 //! `impactlab predict`: from a scenario to the distribution of the motion after the impact.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde::Serialize;
 
 use crate::analysis::{
-    MotionForecast, MotionForecastError, MotionForecastSettings, Outcome, Spread, StruckVehicle,
-    forecast_forces, forecast_scenario,
+    MotionForecastSettings, Outcome, Spread, StruckVehicle, forecast_collision, forecast_forces,
 };
 use crate::cli::CliError;
 use crate::cli::output::{print_facts, print_json, shown};
-use crate::cli::quantity::UnitsArg;
+use crate::cli::predict_motion_files::write_files;
+use crate::cli::quantity::{UnitsArg, window_s};
 use crate::cli::run::{Console, Verdict};
 use crate::cli::vehicle_choice::vehicle;
 use crate::collision::Scenario;
 use crate::data::{read_force_file, write_atomically};
-use crate::figure::{
-    FORECAST_CHANNELS, Figure, MotionForecastFigure, forecast_channel_figure,
-    forecast_scene_figure, write_figure_csv,
-};
-use crate::force::{ForceModel, OutsideTraining};
-use crate::response::{ResponseModel, STEP_S};
-use crate::uncertainty::PlanarGrid;
+use crate::force::{ForceModel, ForceScenario, OutsideTraining};
+use crate::response::ResponseModel;
 use crate::units::{Quantity, UnitSystem};
-
-/// Points of the density map along each side.
-const MAP_POINTS: usize = 256;
-/// How many standard deviations of all parts the density map reaches.
-const MAP_REACH: f64 = 4.0;
-/// Levels of the bands in the table.
-const LEVELS: [f64; 2] = [0.5, 0.9];
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -63,12 +50,15 @@ pub(super) struct PredictMotionArgs {
     /// Seed of the draws
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    /// Window of time of the density map, s, instead of the end
+    #[arg(long, value_parser = window_s, value_name = "FROM,TO")]
+    pub(super) window: Option<[f64; 2]>,
     /// Folder for trajectory.csv, density.csv, outcome.json, pictures and their numbers
     #[arg(long, value_name = "DIR")]
-    out: PathBuf,
+    pub(super) out: PathBuf,
     /// Units of text and pictures (JSON and tables are always SI)
     #[arg(long, value_enum, default_value_t)]
-    units: UnitsArg,
+    pub(super) units: UnitsArg,
 }
 
 const EXAMPLES: &str = "\
@@ -76,7 +66,8 @@ Example:
   impactlab predict --scenario assets/scenarios/pit_right_rear.toml --out prediction
 
 trajectory.csv: time, central path (nothing uncertain), mean, standard deviation and edges of the 50
-  and 90 % bands of X, Y, yaw, v_x, v_y and yaw rate. density.csv: probability density of the position of the CG at the end on a grid.
+  and 90 % bands of X, Y, yaw, v_x, v_y and yaw rate. density.csv: probability density of the position of the CG at the end, or its
+  mean over the window, on a grid.
 scene.png and one picture per quantity, each with its numbers as CSV beside it (pictures need the
   build with the window).
 
@@ -129,13 +120,13 @@ pub(super) fn run(
         }
         None => {
             let force = ForceModel::load(&args.force_model)?;
-            forecast_scenario(&scenario, (&force, &response), &struck, &settings)
+            let collision = ForceScenario::from_scenario(&scenario).map_err(unsolved)?;
+            forecast_collision(&collision, (&force, &response), &struck, &settings)
         }
     };
-    let forecast = forecast.map_err(|source| match source {
-        MotionForecastError::Scenario(source) => unsolved(source),
-        source => CliError::Forecast { path: args.scenario.clone(), source: Box::new(source) },
-    })?;
+    let failed =
+        |source| CliError::Forecast { path: args.scenario.clone(), source: Box::new(source) };
+    let forecast = forecast.map_err(failed)?;
     let files = write_files(args, &scenario, &forecast)?;
     let outside = forecast.force.as_ref().map_or(&[][..], |force| &force.outside);
     let answer = Answer {
@@ -158,112 +149,6 @@ pub(super) fn run(
         print_text(&answer, args.units.into(), console)?;
     }
     Ok(Verdict::Clean)
-}
-
-fn write_files(
-    args: &PredictMotionArgs,
-    scenario: &Scenario,
-    forecast: &MotionForecast,
-) -> Result<Vec<PathBuf>, CliError> {
-    let to_error = |source| CliError::Folder { path: args.out.clone(), source };
-    fs::create_dir_all(&args.out).map_err(to_error)?;
-    let (trajectory, map) = (args.out.join("trajectory.csv"), args.out.join("density.csv"));
-    write_trajectory(&trajectory, forecast)?;
-    write_density(&map, forecast)?;
-    let mut files = vec![trajectory, map];
-    let input = MotionForecastFigure {
-        title: &scenario.name,
-        distribution: &forecast.distribution,
-        central: &forecast.central,
-        reference: None,
-        simulation: None,
-        footprint: scenario.target.footprint(),
-        time_s: forecast.outcome.time_s,
-        units: args.units.into(),
-    };
-    let mut figures = vec![("scene".to_owned(), forecast_scene_figure(&input))];
-    for channel in FORECAST_CHANNELS {
-        let name = channel.channel.header().to_owned();
-        figures.push((name, forecast_channel_figure(&input, channel)));
-    }
-    for (name, figure) in &figures {
-        let csv = args.out.join(format!("{name}.csv"));
-        write_atomically(&csv, |file| {
-            write_figure_csv(figure, file).map_err(std::io::Error::other)
-        })?;
-        files.push(csv);
-        let png = args.out.join(format!("{name}.png"));
-        if write_png(figure, &png)? {
-            files.push(png);
-        }
-    }
-    Ok(files)
-}
-
-/// Whether this build draws.
-#[cfg(feature = "gui")]
-fn write_png(figure: &Figure, path: &Path) -> Result<bool, CliError> {
-    let image = crate::render::figure_image(figure, crate::render::Canvas::default())?;
-    crate::render::save_png(&image, path)?;
-    Ok(true)
-}
-
-#[cfg(not(feature = "gui"))]
-#[allow(clippy::unnecessary_wraps, reason = "the build with a window can fail here")]
-fn write_png(_figure: &Figure, _path: &Path) -> Result<bool, CliError> {
-    Ok(false)
-}
-
-fn write_trajectory(path: &Path, forecast: &MotionForecast) -> Result<(), CliError> {
-    let mut csv = csv::Writer::from_writer(Vec::new());
-    let mut header = vec!["time_s".to_owned()];
-    for channel in FORECAST_CHANNELS {
-        let name = channel.channel.header();
-        header.extend(["central", "mean", "std"].map(|kind| format!("{name}_{kind}")));
-        for level in LEVELS {
-            let percent = (100.0 * level) as u32;
-            header.extend([format!("{name}_low_{percent}"), format!("{name}_high_{percent}")]);
-        }
-    }
-    let failed = |error: csv::Error| CliError::Output(std::io::Error::other(error));
-    csv.write_record(&header).map_err(failed)?;
-    let distribution = &forecast.distribution;
-    for (at, central) in forecast.central.iter().enumerate() {
-        let covariance = distribution.covariance(at);
-        let (central, mean) = (central.planar(), distribution.mean(at).planar());
-        let mut row = vec![format!("{:.2}", at as f64 * STEP_S)];
-        for (axis, (central, mean)) in central.into_iter().zip(mean).enumerate() {
-            let std = covariance[(axis, axis)].max(0.0).sqrt();
-            row.extend([central, mean, std].map(|value| format!("{value:.6}")));
-            let marginal = distribution.marginal(at, axis);
-            for level in LEVELS {
-                let edges = marginal.as_ref().map_or([mean; 2], |of| of.interval(level));
-                row.extend(edges.map(|edge| format!("{edge:.6}")));
-            }
-        }
-        csv.write_record(&row).map_err(failed)?;
-    }
-    let bytes = csv.into_inner().map_err(|error| std::io::Error::other(error.to_string()))?;
-    write_atomically(path, |out| out.write_all(&bytes))?;
-    Ok(())
-}
-
-fn write_density(path: &Path, forecast: &MotionForecast) -> Result<(), CliError> {
-    let at = (forecast.outcome.time_s / STEP_S).round() as usize;
-    let position = forecast.distribution.position(at);
-    let bounds = position.bounds(MAP_REACH).unwrap_or([[0.0; 2], [1.0; 2]]);
-    let grid = PlanarGrid::over(bounds, [MAP_POINTS; 2]);
-    let density = position.density_on(&grid);
-    write_atomically(path, |out| {
-        writeln!(out, "x_m,y_m,density_1_m2")?;
-        for (i, value) in density.iter().enumerate() {
-            let x = grid.low_m[0] + (i % MAP_POINTS) as f64 * grid.step_m[0];
-            let y = grid.low_m[1] + (i / MAP_POINTS) as f64 * grid.step_m[1];
-            writeln!(out, "{x:.4},{y:.4},{value:.6e}")?;
-        }
-        Ok(())
-    })?;
-    Ok(())
 }
 
 fn print_text(

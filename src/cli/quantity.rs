@@ -50,6 +50,9 @@ pub(super) enum QuantityError {
     /// Not three numbers.
     #[error("expected three numbers x,y,z in m, such as -1.5,-0.9,0.5")]
     NoPoint,
+    /// Not two moments.
+    #[error("expected two moments in s, such as 0,4")]
+    NoWindow,
     /// Not a size.
     #[error("expected width x height in pixels, such as 1600x1000")]
     NoSize,
@@ -69,6 +72,12 @@ pub(super) fn yaw_rate_rad_s(text: &str) -> Result<f64, QuantityError> {
 /// A duration or a moment, s unless it says otherwise.
 pub(super) fn time_s(text: &str) -> Result<f64, QuantityError> {
     quantity(text, Quantity::Time)
+}
+
+/// A window of time, s unless it says otherwise: `0,2`.
+pub(super) fn window_s(text: &str) -> Result<[f64; 2], QuantityError> {
+    let (from, to) = text.split_once(',').ok_or(QuantityError::NoWindow)?;
+    Ok([time_s(from)?, time_s(to)?])
 }
 
 /// Friction of the road.

@@ -91,7 +91,7 @@ pub fn pit_figure(title: &str, counts: &[u32]) -> Figure {
 /// bars of one standard error.
 pub fn coverage_figure(title: &str, rows: &[(&str, Role, Vec<CoveragePoint>)]) -> Figure {
     let percent = percent();
-    let axis = |label: &str| Axis { label: label.to_owned(), unit: percent };
+    let axis = |label: &str| Axis::new(label, percent);
     let shown = |point: [f64; 2]| point.map(|value| percent.from_si(value));
     let diagonal = [[0.4, 0.4], [1.0, 1.0]].map(shown).to_vec();
     let mut elements = vec![Element::dashed("honest", Role::Muted, diagonal)];

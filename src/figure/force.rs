@@ -26,7 +26,7 @@ const AFTER_CONTACT: f64 = 0.3;
 
 /// F_x, F_y and |F| over time in ms, with markers where contact starts and ends.
 pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
-    let x = Axis { label: "Time".to_owned(), unit: milliseconds() };
+    let x = Axis::new("Time", milliseconds());
     let y = Axis::shown("Force on the target", Quantity::Force, input.units);
     let axes = match input.force.axes {
         ForceAxes::World => "world axes",

@@ -87,7 +87,7 @@ impl ForceComponent {
 
 /// One component of a predicted force over time in ms.
 pub fn forecast_figure(component: ForceComponent, input: &ForecastFigure<'_>) -> Figure {
-    let x = Axis { label: "Time".to_owned(), unit: milliseconds() };
+    let x = Axis::new("Time", milliseconds());
     let label = format!("{} on the target", component.label());
     let y = Axis::shown(label, Quantity::Force, input.units);
     let n_shown = (shown_until_s(input) / crate::uncertainty::CURVE_INTERVAL_S).round() as usize;

@@ -8,6 +8,7 @@ mod force;
 mod forecast;
 mod impact;
 mod model;
+mod model_comparison;
 mod motion;
 mod motion_forecast;
 mod scene;
@@ -23,10 +24,13 @@ pub use force::{ForceFigure, force_figure};
 pub use forecast::{ForceComponent, ForecastFigure, forecast_figure};
 pub use impact::impact_figure;
 pub use model::{Axis, Band, Element, Figure, HeatMap, LineStyle, Role, Series};
+pub use model_comparison::{
+    cluster_figure, compared_case_figure, horizon_figure, model_name, ranking_figure,
+};
 pub use motion::{MOTION_CHANNELS, motion_figure, motion_readout};
 pub use motion_forecast::{
     FORECAST_CHANNELS, ForecastChannel, MotionForecastFigure, forecast_channel_figure,
-    forecast_scene_figure,
+    forecast_readout, forecast_scene_figure, forecast_surroundings,
 };
 pub use scene::{SceneFigure, SceneVehicle, pose_at, scene_figure, vehicle_outline};
-pub use training::{LossCurve, loss_figure};
+pub use training::{LossCurve, balance_figure, loss_figure};

@@ -1,5 +1,7 @@
 //! The parts of a figure.
 
+use std::sync::Arc;
+
 use crate::units::{Quantity, Unit, UnitSystem};
 
 /// A plot: axes and what stands in them, all numbers already in the units of the axes.
@@ -26,12 +28,25 @@ pub struct Axis {
     pub label: String,
     /// Its unit.
     pub unit: Unit,
+    /// What stands at 0, 1, 2 and so on instead of numbers; none on an axis of numbers.
+    pub names: Vec<String>,
 }
 
 impl Axis {
+    /// An axis of numbers in a unit.
+    pub fn new(label: impl Into<String>, unit: Unit) -> Self {
+        Self { label: label.into(), unit, names: Vec::new() }
+    }
+
     /// An axis in the unit in which the quantity is shown.
     pub fn shown(label: impl Into<String>, quantity: Quantity, units: UnitSystem) -> Self {
-        Self { label: label.into(), unit: quantity.display_unit(units) }
+        Self::new(label, quantity.display_unit(units))
+    }
+
+    /// An axis of names at 0, 1, 2 and so on.
+    pub fn named(label: impl Into<String>, names: Vec<String>) -> Self {
+        let unit = Quantity::Ratio.display_unit(UnitSystem::Si);
+        Self { names, ..Self::new(label, unit) }
     }
 
     /// “Label [unit]”.
@@ -126,7 +141,7 @@ pub struct HeatMap {
     /// Points along x and y.
     pub size: [usize; 2],
     /// Row by row from the lowest y on, each from the lowest x on; zero is not seen.
-    pub values: Vec<f64>,
+    pub values: Arc<Vec<f64>>,
 }
 
 /// Something in a figure.

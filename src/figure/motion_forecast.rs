@@ -1,24 +1,20 @@
 //! Where the struck vehicle goes, with how sure that is: from above and over time.
 
+use std::sync::Arc;
+
+use crate::analysis::{DensityMap, MOTION_BAND_LEVELS, MotionBands};
 use crate::collision::{Footprint, Pose};
 use crate::data::{Channel, TimeSeries};
 use crate::figure::scene::vehicle_outline;
 use crate::figure::{Axis, Band, Element, Figure, HeatMap, LineStyle, Role, Series, pose_at};
 use crate::response::{MotionDistribution, STEP_S};
-use crate::uncertainty::PlanarGrid;
 use crate::units::{Quantity, UnitSystem};
 use crate::vehicle::VehicleState;
 
-/// Points of the density along the longer side of the rectangle.
-const GRID_POINTS: usize = 220;
-/// How many standard deviations of all parts the density is shown.
-const REACH: f64 = 3.5;
-/// Least width of the rectangle, m.
-const LEAST_SIDE_M: f64 = 2.0;
-/// Levels of the bands, from the widest on, and how much of the ground each hides.
-const BANDS: [(f64, f32); 2] = [(0.9, 0.18), (0.5, 0.25)];
-/// Every how many steps the bands have an edge point.
-const BAND_STRIDE: usize = 5;
+/// How much of the ground each of [`MOTION_BAND_LEVELS`] hides.
+const BAND_OPACITIES: [f32; MOTION_BAND_LEVELS.len()] = [0.18, 0.25];
+/// How many standard deviations of all parts the surroundings of a vehicle reach.
+const SURROUNDINGS_REACH: f64 = 3.0;
 /// Component paths that are drawn.
 const MAX_PATHS: usize = 15;
 
@@ -31,13 +27,19 @@ pub struct MotionForecastFigure<'a> {
     pub distribution: &'a MotionDistribution,
     /// Its central path.
     pub central: &'a [VehicleState<f64>],
+    /// Its intervals over time.
+    pub bands: &'a MotionBands,
+    /// Where the vehicle is likely to be.
+    pub density: Option<&'a DensityMap>,
+    /// Whether the paths of components are drawn.
+    pub components: bool,
     /// What was recorded, if anything was.
     pub reference: Option<&'a TimeSeries>,
     /// What the 4DOF model says, if it was asked.
     pub simulation: Option<&'a TimeSeries>,
     /// Outline of the vehicle.
     pub footprint: Footprint,
-    /// The moment of density and outlines, s.
+    /// The moment of the outlines, s.
     pub time_s: f64,
     /// Units of the axes.
     pub units: UnitSystem,
@@ -71,12 +73,15 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
         states.map(|state| shown([state.x_m, state.y_m])).collect()
     };
     let at = instant(input);
-    let mut elements = vec![Element::HeatMap(density(input, at, &shown))];
-    let components = &input.distribution.components;
-    let stride = components.len().div_ceil(MAX_PATHS).max(1);
-    for component in components.iter().step_by(stride) {
-        let points = path(&mut component.states.iter().map(|state| &state.mean));
-        elements.push(Element::line("components", Role::Muted, points));
+    let mut elements: Vec<Element> =
+        input.density.map(|map| Element::HeatMap(heat_map(map, &shown))).into_iter().collect();
+    if input.components {
+        let components = &input.distribution.components;
+        let stride = components.len().div_ceil(MAX_PATHS).max(1);
+        for component in components.iter().step_by(stride) {
+            let points = path(&mut component.states.iter().map(|state| &state.mean));
+            elements.push(Element::line("components", Role::Muted, points));
+        }
     }
     let line = |name: &str, role, style, series: &TimeSeries| -> Option<Element> {
         let points = series.get(Channel::X)?.iter().zip(series.get(Channel::Y)?);
@@ -104,37 +109,63 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
     Figure { title, x, y, equal_aspect: true, log_y: false, elements }
 }
 
+/// A window about the vehicle at the moment of the figure that holds its outline and nearly all of its
+/// density: lowest and highest X and Y in the units of the axes.
+pub fn forecast_surroundings(input: &MotionForecastFigure<'_>) -> [[f64; 2]; 2] {
+    let unit = Quantity::Length.display_unit(input.units);
+    let at = instant(input);
+    let position = input.distribution.position(at);
+    let centre = input.central.get(at).map_or([0.0; 2], |state| [state.x_m, state.y_m]);
+    let bounds = position.bounds(SURROUNDINGS_REACH).unwrap_or([centre; 2]);
+    let end = |axis: usize, sign: f64| {
+        let least = centre[axis] + sign * input.footprint.length_m;
+        let of_density = bounds[usize::from(sign > 0.0)][axis];
+        unit.from_si(if sign > 0.0 { of_density.max(least) } else { of_density.min(least) })
+    };
+    [-1.0, 1.0].map(|sign| [end(0, sign), end(1, sign)])
+}
+
+/// “Y 3.21 m, 90 %: 2.9 … 3.6” at the moment of the figure.
+pub fn forecast_readout(input: &MotionForecastFigure<'_>, channel: ForecastChannel) -> String {
+    let ForecastChannel { channel, axis } = channel;
+    let unit = channel.quantity().display_unit(input.units);
+    let at_s = input.time_s;
+    let nearest = |a: &&usize, b: &&usize| {
+        let off = |at: usize| (input.bands.time_s[at] - at_s).abs();
+        off(**a).total_cmp(&off(**b))
+    };
+    let instants: Vec<usize> = (0..input.bands.time_s.len()).collect();
+    let band = instants.iter().min_by(nearest).and_then(|at| input.bands.intervals.get(*at));
+    let (Some(state), Some(band)) = (input.central.get(instant(input)), band) else {
+        return channel.label().to_owned();
+    };
+    let shown = |value: f64| format!("{:.1}", unit.from_si(value));
+    let [low, high] = band[axis][0];
+    let (value, low, high) = (shown(state.planar()[axis]), shown(low), shown(high));
+    format!("{} {value} {} ({low} … {high})", channel.label(), unit.symbol)
+}
+
 fn instant(input: &MotionForecastFigure<'_>) -> usize {
     let last = input.distribution.n_instants().saturating_sub(1);
     ((input.time_s.max(0.0) / STEP_S).round() as usize).min(last)
 }
 
-fn density(
-    input: &MotionForecastFigure<'_>,
-    at: usize,
-    shown: &dyn Fn([f64; 2]) -> [f64; 2],
-) -> HeatMap {
-    let position = input.distribution.position(at);
-    let mut bounds = position.bounds(REACH).unwrap_or([[0.0; 2]; 2]);
-    let [low, high] = &mut bounds;
-    for (low, high) in low.iter_mut().zip(high) {
-        let missing = (LEAST_SIDE_M - (*high - *low)).max(0.0);
-        *low -= 0.5 * missing;
-        *high += 0.5 * missing;
-    }
-    let sides = [0, 1].map(|axis: usize| bounds[1][axis] - bounds[0][axis]);
-    let step = sides[0].max(sides[1]) / GRID_POINTS as f64;
-    let size = sides.map(|side| ((side / step).ceil() as usize).max(2));
-    let grid = PlanarGrid::over(bounds, size);
+fn heat_map(map: &DensityMap, shown: &dyn Fn([f64; 2]) -> [f64; 2]) -> HeatMap {
+    let grid = &map.grid;
     let low = shown(grid.low_m);
     let next = shown([grid.low_m[0] + grid.step_m[0], grid.low_m[1] + grid.step_m[1]]);
+    let [from_s, to_s] = map.window_s;
+    let when = match to_s > from_s {
+        true => format!("{from_s:.2} to {to_s:.2} s"),
+        false => format!("{to_s:.2} s"),
+    };
     HeatMap {
-        name: "density of the CG".to_owned(),
+        name: format!("density of the CG, {when}"),
         role: Role::Model,
         low,
         step: [next[0] - low[0], next[1] - low[1]],
-        size,
-        values: position.density_on(&grid),
+        size: grid.size,
+        values: Arc::clone(&map.values),
     }
 }
 
@@ -147,26 +178,18 @@ pub fn forecast_channel_figure(
     let x = Axis::shown("Time", Quantity::Time, input.units);
     let y = Axis::shown(channel.label(), channel.quantity(), input.units);
     let mut elements = Vec::new();
-    let instants: Vec<usize> = (0..input.distribution.n_instants()).step_by(BAND_STRIDE).collect();
-    let marginals: Vec<_> =
-        instants.iter().map(|at| input.distribution.marginal(*at, axis)).collect();
-    for (level, opacity) in BANDS {
-        let (mut times, mut low, mut high) = (Vec::new(), Vec::new(), Vec::new());
-        for (at, marginal) in instants.iter().zip(&marginals) {
-            let Some(marginal) = marginal else { continue };
-            let [from, to] = marginal.interval(level);
-            times.push(x.unit.from_si(*at as f64 * STEP_S));
-            low.push(y.unit.from_si(from));
-            high.push(y.unit.from_si(to));
-        }
-        let name = format!("{:.0} % band", 100.0 * level);
+    for (rank, (level, opacity)) in MOTION_BAND_LEVELS.into_iter().zip(BAND_OPACITIES).enumerate() {
+        let edge = |end: usize| -> Vec<f64> {
+            let ends = input.bands.intervals.iter().map(|of| of[axis][rank][end]);
+            ends.map(|value| y.unit.from_si(value)).collect()
+        };
         elements.push(Element::Band(Band {
-            name,
+            name: format!("{:.0} % band", 100.0 * level),
             role: Role::Model,
             opacity,
-            x: times,
-            low,
-            high,
+            x: input.bands.time_s.iter().map(|t| x.unit.from_si(*t)).collect(),
+            low: edge(0),
+            high: edge(1),
         }));
     }
     let line = |name: &str, role, style, series: &TimeSeries| -> Option<Element> {

@@ -14,7 +14,7 @@ pub struct LossCurve {
     pub name: String,
     /// On what is learned from, an entry an epoch.
     pub train: Vec<f64>,
-    /// On what is kept back, an entry an epoch.
+    /// On what is kept back, an entry an epoch; none if nothing is.
     pub validation: Vec<f64>,
 }
 
@@ -43,10 +43,13 @@ pub fn loss_figure(
     for (curve, &role) in curves.iter().zip(ROLES.iter().cycle()) {
         let ([train, validation], of_validation) = match curves {
             [_] => (["train".to_owned(), "validation".to_owned()], Role::Validation),
+            _ if curve.validation.is_empty() => ([curve.name.clone(), String::new()], role),
             _ => (["train", "validation"].map(|kind| format!("{}, {kind}", curve.name)), role),
         };
         elements.push(Element::line(train, role, points(&curve.train)));
-        elements.push(Element::dashed(validation, of_validation, points(&curve.validation)));
+        if !curve.validation.is_empty() {
+            elements.push(Element::dashed(validation, of_validation, points(&curve.validation)));
+        }
     }
     if let Some(best) = best_epoch {
         let (name, role) = ("best".to_owned(), Role::Muted);
@@ -57,6 +60,22 @@ pub fn loss_figure(
     };
     let log_y = log && curves.iter().all(is_positive);
     Figure { title: title.to_owned(), x, y, equal_aspect: false, log_y, elements }
+}
+
+/// How much of the loss is data, and the weight of physics, over the epochs: pairs of epoch and value.
+pub fn balance_figure(balances: Vec<[f64; 2]>, physics_weights: Vec<[f64; 2]>) -> Figure {
+    let mut all = balances.iter().chain(&physics_weights);
+    Figure {
+        log_y: all.all(|[_, value]| *value > 0.0),
+        title: "Balance of data and physics".to_owned(),
+        x: Axis::shown("Epoch", Quantity::Ratio, UnitSystem::Si),
+        y: Axis::shown("Share, weight", Quantity::Ratio, UnitSystem::Si),
+        equal_aspect: false,
+        elements: vec![
+            Element::line("share of data in the loss", Role::Model, balances),
+            Element::dashed("weight of physics", Role::Validation, physics_weights),
+        ],
+    }
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
 use crate::data::{DataError, write_atomically};
-use crate::nn::checkpoint_bytes::{decode, encode};
+use crate::nn::checkpoint_bytes::{LENGTH_BYTES, MAX_HEADER_BYTES, decode, encode, kind_in_header};
 use crate::nn::{NamedTensors, NnError};
 
 /// The largest file that is read; the networks here have a few megabytes.
@@ -128,6 +128,19 @@ impl Checkpoint {
             _ => decode(bytes, kind),
         }
     }
+}
+
+/// What kind of model a file says it holds; only its header is read, and no checksum.
+///
+/// # Errors
+/// As for [`Checkpoint::read`].
+pub fn kind_of_file(path: &Path) -> Result<String, NnError> {
+    let to_error = |source| DataError::io(path, source);
+    let file = File::open(path).map_err(to_error)?;
+    let mut bytes = Vec::new();
+    file.take(LENGTH_BYTES as u64 + MAX_HEADER_BYTES).read_to_end(&mut bytes).map_err(to_error)?;
+    let in_file = |source| NnError::InFile { path: path.to_owned(), source: Box::new(source) };
+    kind_in_header(&bytes).map_err(in_file)
 }
 
 /// At most one byte more than [`MAX_MODEL_BYTES`].

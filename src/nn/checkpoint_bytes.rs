@@ -18,10 +18,10 @@ use crate::nn::named_tensors::check_finite;
 use crate::nn::{Checkpoint, ModelKind, NamedTensors, NnError, sha256_hex};
 
 /// The longest header that is read.
-const MAX_HEADER_BYTES: u64 = 8 << 20;
+pub(super) const MAX_HEADER_BYTES: u64 = 8 << 20;
 
 /// Bytes before the header, which hold its length.
-const LENGTH_BYTES: usize = 8;
+pub(super) const LENGTH_BYTES: usize = 8;
 
 /// The key of our own part of the header.
 const OUR_KEY: &str = "impactlab";
@@ -68,10 +68,7 @@ pub(crate) fn decode(bytes: &[u8], kind: ModelKind) -> Result<Checkpoint, NnErro
     check_length(bytes)?;
     let file = SafeTensors::deserialize(bytes).map_err(NnError::Layout)?;
     let (_, header) = SafeTensors::read_metadata(bytes).map_err(NnError::Layout)?;
-    let missing = || NnError::MissingMetadata { key: OUR_KEY.to_owned() };
-    let text = header.metadata().as_ref().and_then(|all| all.get(OUR_KEY)).ok_or_else(missing)?;
-    let to_error = |source| NnError::Metadata { key: OUR_KEY.to_owned(), source };
-    let ours: OurHeader = serde_json::from_str(text).map_err(to_error)?;
+    let (text, ours) = our_header(&header)?;
     if ours.kind != kind.name {
         return Err(NnError::WrongKind { expected: kind.name.to_owned(), got: ours.kind });
     }
@@ -93,8 +90,22 @@ pub(crate) fn decode(bytes: &[u8], kind: ModelKind) -> Result<Checkpoint, NnErro
     Ok(Checkpoint { kind, metadata: ours.metadata, tensors })
 }
 
-/// Whether there are as many bytes as the header says, before anything is allocated for them.
-fn check_length(bytes: &[u8]) -> Result<(), NnError> {
+/// The kind of the model, from the beginning of a file.
+pub(crate) fn kind_in_header(bytes: &[u8]) -> Result<String, NnError> {
+    let (_, header) = header(bytes)?;
+    Ok(our_header(&header)?.1.kind)
+}
+
+/// Our own part of the header: its text, and what it says.
+fn our_header(header: &Metadata) -> Result<(&str, OurHeader), NnError> {
+    let missing = || NnError::MissingMetadata { key: OUR_KEY.to_owned() };
+    let text = header.metadata().as_ref().and_then(|all| all.get(OUR_KEY)).ok_or_else(missing)?;
+    let to_error = |source| NnError::Metadata { key: OUR_KEY.to_owned(), source };
+    Ok((text, serde_json::from_str(text).map_err(to_error)?))
+}
+
+/// Where the numbers start, and the header.
+fn header(bytes: &[u8]) -> Result<(u64, Metadata), NnError> {
     let (length, rest) = bytes.split_first_chunk().ok_or(NnError::NotSafetensors)?;
     let (header_bytes, got) = (u64::from_le_bytes(*length), bytes.len() as u64);
     if header_bytes > MAX_HEADER_BYTES || !rest.starts_with(b"{") {
@@ -104,7 +115,13 @@ fn check_length(bytes: &[u8]) -> Result<(), NnError> {
     let Some(header) = usize::try_from(header_bytes).ok().and_then(|n| rest.get(..n)) else {
         return Err(NnError::Truncated { expected: start, got });
     };
-    let header: Metadata = serde_json::from_slice(header).map_err(NnError::Header)?;
+    Ok((start, serde_json::from_slice(header).map_err(NnError::Header)?))
+}
+
+/// Whether there are as many bytes as the header says, before anything is allocated for them.
+fn check_length(bytes: &[u8]) -> Result<(), NnError> {
+    let (start, header) = header(bytes)?;
+    let got = bytes.len() as u64;
     let expected = start.saturating_add(header.data_len() as u64);
     match expected {
         _ if expected > got => Err(NnError::Truncated { expected, got }),

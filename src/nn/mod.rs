@@ -55,7 +55,7 @@ mod workspace;
 pub use activation::Activation;
 pub(crate) use activation::bias_silu_rows;
 pub use attention::{Attention, AttentionConfig};
-pub use checkpoint::{Checkpoint, MAX_MODEL_BYTES, ModelKind};
+pub use checkpoint::{Checkpoint, MAX_MODEL_BYTES, ModelKind, kind_of_file};
 pub use encoding::positional_encoding;
 pub use error::NnError;
 pub use init::Init;

@@ -1,11 +1,12 @@
 //! A figure in egui_plot.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
-use egui::{Color32, ColorImage, Id, Stroke, TextureOptions, Ui, Vec2b};
+use egui::{Color32, ColorImage, Id, Stroke, TextureHandle, TextureOptions, Ui, Vec2b};
 use egui_plot::{
-    Arrows, FilledArea, Legend, Line, LineStyle as PlotLineStyle, Plot, PlotImage, PlotPoint,
-    PlotPoints, PlotUi, Points, Polygon, VLine,
+    Arrows, FilledArea, Legend, Line, LineStyle as PlotLineStyle, Plot, PlotBounds, PlotImage,
+    PlotPoint, PlotPoints, PlotUi, Points, Polygon, VLine,
 };
 
 use crate::figure::{Element, Figure, HeatMap, LineStyle, Series};
@@ -13,12 +14,16 @@ use crate::render::legend::emptiest_corner;
 use crate::render::theme;
 use crate::render::thin::thinned;
 use crate::render::ticks::{
-    X_TICK_CELLS, Y_TICK_CELLS, grid, log_grid, log_tick_label, tick_label,
+    X_TICK_CELLS, Y_TICK_CELLS, grid, log_grid, log_tick_label, name_grid, name_label, tick_label,
 };
 use crate::units::significant;
 
 /// Opacity of the largest value of a heat map.
 const HEAT_OPACITY: f32 = 0.85;
+
+/// Least width of the vertical axis' labels, and what a character of a name takes, points.
+const LEAST_Y_AXIS_WIDTH: f32 = 44.0;
+const CHARACTER_WIDTH: f32 = 6.5;
 
 /// Names in a legend above which it is written small.
 const LONG_LEGEND: usize = 8;
@@ -36,6 +41,8 @@ pub struct FigureOptions {
     pub height: Option<f32>,
     /// Fit the view to the data again.
     pub reset: bool,
+    /// The view, from lowest to highest x and y in the axes' units; what the user chooses if `None`.
+    pub view: Option<[[f64; 2]; 2]>,
     /// Whether a legend says what the lines are.
     pub legend: bool,
 }
@@ -43,7 +50,7 @@ pub struct FigureOptions {
 impl Default for FigureOptions {
     fn default() -> Self {
         let (id, link, cursor_x, height) = (String::new(), None, None, None);
-        Self { id, link, cursor_x, height, reset: false, legend: true }
+        Self { id, link, cursor_x, height, reset: false, view: None, legend: true }
     }
 }
 
@@ -56,44 +63,10 @@ pub struct FigureResponse {
 
 /// Draws a figure into the space that is left; a hover reads values in the axes' units.
 pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> FigureResponse {
-    let id = if options.id.is_empty() { &figure.title } else { &options.id };
-    let (x, y, log_y) = (figure.x.clone(), figure.y.clone(), figure.log_y);
-    let readout = move |name: &str, at: PlotPoint| {
-        let head = if name.is_empty() { String::new() } else { format!("{name}\n") };
-        let value = if log_y { 10.0_f64.powf(at.y) } else { at.y };
-        format!(
-            "{head}{} {}\n{} {}",
-            significant(at.x),
-            x.unit.symbol,
-            significant(value),
-            y.unit.symbol
-        )
-    };
-    let mut plot = Plot::new(id.as_str())
-        .x_axis_label(figure.x.text())
-        .y_axis_label(figure.y.text())
-        .y_axis_min_width(44.0)
-        .label_formatter(move |position| {
-            let (name, at) = match position {
-                egui_plot::HoverPosition::NearDataPoint { plot_name, position, .. } => {
-                    (*plot_name, *position)
-                }
-                egui_plot::HoverPosition::Elsewhere { position } => ("", *position),
-            };
-            Some(readout(name, at))
-        })
-        .x_grid_spacer(|input| grid(input, X_TICK_CELLS))
-        .y_grid_spacer(move |input| if log_y { log_grid(input) } else { grid(input, Y_TICK_CELLS) })
-        .grid_fade(0.9)
-        .x_axis_formatter(|mark, _| tick_label(mark))
-        .y_axis_formatter(
-            move |mark, _| if log_y { log_tick_label(mark) } else { tick_label(mark) },
-        )
-        .allow_scroll(false)
-        .allow_drag(Vec2b::new(figure.equal_aspect, figure.equal_aspect));
+    let mut plot = plot_with_axes(figure, options);
     if options.legend {
         let legend = Legend::default().position(emptiest_corner(figure));
-        let legend = match n_names(figure) {
+        let legend = match n_legend_names(figure) {
             ..=LONG_LEGEND => legend,
             _ => legend.text_style(egui::TextStyle::Small),
         };
@@ -123,6 +96,9 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
     }
     let dark = ui.visuals().dark_mode;
     let response = plot.show(ui, |plot_ui| {
+        if let Some([low, high]) = options.view {
+            plot_ui.set_plot_bounds(PlotBounds::from_min_max(low, high));
+        }
         for element in &figure.elements {
             draw_element(plot_ui, element, (dark, figure.log_y));
         }
@@ -134,6 +110,62 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         plot_ui.pointer_coordinate().filter(|_| picking).map(|point| point.x)
     });
     FigureResponse { picked_x: response.inner }
+}
+
+/// Axes with their names and ticks, and the readout of a hover.
+fn plot_with_axes<'a>(figure: &Figure, options: &FigureOptions) -> Plot<'a> {
+    let id = if options.id.is_empty() { &figure.title } else { &options.id };
+    let (x, y, log_y) = (figure.x.clone(), figure.y.clone(), figure.log_y);
+    let readout = move |name: &str, at: PlotPoint| {
+        let head = if name.is_empty() { String::new() } else { format!("{name}\n") };
+        let value = if log_y { 10.0_f64.powf(at.y) } else { at.y };
+        format!(
+            "{head}{} {}\n{} {}",
+            significant(at.x),
+            x.unit.symbol,
+            significant(value),
+            y.unit.symbol
+        )
+    };
+    let names = figure.y.names.clone();
+    let n_names = names.len();
+    let longest = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
+    Plot::new(id.as_str())
+        .x_axis_label(figure.x.text())
+        .y_axis_label(figure.y.text())
+        .y_axis_min_width(f32::max(LEAST_Y_AXIS_WIDTH, longest as f32 * CHARACTER_WIDTH))
+        .label_formatter(move |position| {
+            let (name, at) = match position {
+                egui_plot::HoverPosition::NearDataPoint { plot_name, position, .. } => {
+                    (*plot_name, *position)
+                }
+                egui_plot::HoverPosition::Elsewhere { position } => ("", *position),
+            };
+            Some(readout(name, at))
+        })
+        .x_grid_spacer(|input| grid(input, X_TICK_CELLS))
+        .y_grid_spacer(move |input| match (log_y, n_names) {
+            (true, _) => log_grid(input),
+            (false, 0) => grid(input, Y_TICK_CELLS),
+            (false, n) => name_grid(n),
+        })
+        .grid_fade(0.9)
+        .x_axis_formatter(|mark, _| tick_label(mark))
+        .y_axis_formatter(move |mark, _| match names.is_empty() {
+            true if log_y => log_tick_label(mark),
+            true => tick_label(mark),
+            false => name_label(mark, &names),
+        })
+        .allow_scroll(false)
+        .allow_drag(Vec2b::new(figure.equal_aspect, figure.equal_aspect))
+}
+
+/// The picture of a heat map, kept from frame to frame.
+#[derive(Clone)]
+struct Picture {
+    values: Arc<Vec<f64>>,
+    color: Color32,
+    texture: TextureHandle,
 }
 
 /// Draws the cells of a heat map as a picture, each as opaque as the root of its value.
@@ -150,21 +182,29 @@ fn heat_map(plot: &mut PlotUi<'_>, map: &HeatMap, color: Color32) {
         let opacity = (value / largest).max(0.0).sqrt() * f64::from(HEAT_OPACITY);
         Color32::from_rgba_unmultiplied(r, g, b, (opacity * 255.0).round() as u8)
     };
-    let pixels: Vec<Color32> = rows.flatten().map(pixel).collect();
-    let image = ColorImage::new([width, height], pixels);
-    let texture = plot.ctx().load_texture(&map.name, image, TextureOptions::LINEAR);
+    // The texture lives as long as its handle: until another picture takes its place.
+    let id = Id::unique(("heat map", plot.response().id));
+    let known: Option<Picture> = plot.ctx().data(|data| data.get_temp(id));
+    let known =
+        known.filter(|known| Arc::ptr_eq(&known.values, &map.values) && known.color == color);
+    let picture = known.unwrap_or_else(|| {
+        let image = ColorImage::new([width, height], rows.flatten().map(pixel).collect());
+        let texture = plot.ctx().load_texture(&map.name, image, TextureOptions::LINEAR);
+        let picture = Picture { values: Arc::clone(&map.values), color, texture };
+        plot.ctx().data_mut(|data| data.insert_temp(id, picture.clone()));
+        picture
+    });
     let side = |axis: usize| map.step[axis] * map.size[axis] as f64;
     let centre = |axis: usize| map.low[axis] + 0.5 * (side(axis) - map.step[axis]);
     let at = PlotPoint::new(centre(0), centre(1));
     let size = [side(0) as f32, side(1) as f32];
-    plot.image(PlotImage::new("", texture.id(), at, size).allow_hover(false));
-    // The legend knows colours of lines only.
-    plot.line(Line::new(&map.name, PlotPoints::from(Vec::<[f64; 2]>::new())).color(color));
-    // The texture lives as long as its handle: until the next frame takes its place.
-    plot.ctx().data_mut(|data| data.insert_temp(Id::unique(("heat map", &map.name)), texture));
+    plot.image(PlotImage::new("", picture.texture.id(), at, size).allow_hover(false));
+    // The legend knows colours of lines only, and a line has a point at least.
+    let point = PlotPoints::from(vec![[at.x, at.y]]);
+    plot.line(Line::new(&map.name, point).stroke(Stroke::new(0.0, color)).allow_hover(false));
 }
 
-fn n_names(figure: &Figure) -> usize {
+fn n_legend_names(figure: &Figure) -> usize {
     figure.elements.iter().map(Element::name).collect::<BTreeSet<_>>().len()
 }
 

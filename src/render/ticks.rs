@@ -60,6 +60,18 @@ pub fn log_grid(input: GridInput) -> Vec<GridMark> {
     marks.filter(|mark| (low..=high).contains(&mark.value)).collect()
 }
 
+/// Ticks at 0, 1, 2 and so on, one a name.
+pub fn name_grid(n_names: usize) -> Vec<GridMark> {
+    (0..n_names).map(|row| GridMark { value: row as f64, step_size: 1.0 }).collect()
+}
+
+/// The name that stands at a tick.
+pub fn name_label(mark: GridMark, names: &[String]) -> String {
+    let row = mark.value.round();
+    let name = if row < 0.0 { None } else { names.get(row as usize) };
+    name.cloned().unwrap_or_default()
+}
+
 /// 1, 2 or 5 times a power of ten, not less than `wanted`.
 fn nice_step(wanted: f64) -> f64 {
     let magnitude = 10.0_f64.powf(wanted.log10().floor());

@@ -10,7 +10,7 @@ use crate::response::{
 };
 use crate::vehicle::VehicleParameters;
 
-const KIND: ModelKind = ModelKind { name: "response network", version: 1 };
+const KIND: ModelKind = ModelKind { name: ResponseModel::KIND_NAME, version: 1 };
 
 /// A trained response network with all it takes to predict.
 #[derive(Debug)]
@@ -22,6 +22,9 @@ pub struct ResponseModel {
 }
 
 impl ResponseModel {
+    /// What its files say they hold, see [`kind_of_file`](crate::nn::kind_of_file).
+    pub const KIND_NAME: &'static str = "response network";
+
     pub(crate) fn new(
         config: ResponseConfig,
         network: ResponseNetwork,

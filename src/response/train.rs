@@ -39,8 +39,10 @@ pub struct ResponseTrainSettings {
 pub struct ResponseReport<'a> {
     /// Its losses.
     pub record: &'a ResponseEpoch,
-    /// Epochs in all.
+    /// Epochs in all, with those before.
     pub n_epochs: usize,
+    /// Of these, epochs of the pre-training that it starts from.
+    pub n_before: usize,
     /// Which training of several it is: 0 for the model itself, then those for the calibration.
     pub training_idx: usize,
     /// How many trainings there are.

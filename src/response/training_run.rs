@@ -140,6 +140,7 @@ impl<'a> TrainingRun<'a> {
                 let is_broken = report(ResponseReport {
                     record,
                     n_epochs: self.n_before + n_epochs,
+                    n_before: self.n_before,
                     training_idx: 0,
                     n_trainings: 1,
                 })

@@ -7,7 +7,9 @@ use std::time::Duration;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, Forecast, Pane, Phase, State, Subject};
+use impactlab::app::{
+    App, Command, Forecast, Network, Pane, Phase, State, Subject, TrainingCommand,
+};
 use impactlab::data::{Dataset, Severity};
 use impactlab::force::{ForceCase, ForceConfig, TrainSettings, TrainingSet, train};
 
@@ -212,8 +214,8 @@ fn a_model_is_trained_paused_cancelled_saved_and_there_after_a_restart() {
     assert!(!current.is_saved && current.name.starts_with("trained on fea"), "{}", current.name);
 
     let path = folder.path().join("mine.safetensors");
-    apply(&mut harness, Command::SaveModel(path.clone()));
-    step_until(&mut harness, "the file", |state| state.session.force.saving.is_none());
+    apply(&mut harness, Command::SaveModel(Network::Force, path.clone()));
+    step_until(&mut harness, "the file", |state| !state.session.force.model.is_saving());
     assert_eq!(state(&harness).project.force.model.as_ref(), Some(&path));
     harness.run_steps(90);
     let deadline = std::time::Instant::now() + Duration::from_secs(30);
@@ -240,7 +242,7 @@ fn a_bad_model_and_bad_settings_say_what_is_wrong() {
             .any(|m| m.severity == Severity::Error && m.text.contains("no/such.safetensors"))
     });
     harness.state_mut().state_mut().project.force.training.config = "Cargo.toml".to_owned();
-    apply(&mut harness, Command::StartTraining);
+    apply(&mut harness, Command::Train(Network::Force, TrainingCommand::Start));
     step_until(&mut harness, "the problem", |state| !state.session.force.training.is_running());
     let problem = state(&harness).session.force.training.problem.clone().expect("a problem");
     assert!(problem.contains("Cargo.toml: line "), "{problem}");

@@ -4,5 +4,6 @@ mod force_network;
 mod harness;
 mod network_figures;
 mod pictures;
+mod response_network;
 mod snapshots;
 mod workflow;

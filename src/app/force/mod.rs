@@ -3,8 +3,7 @@
 
 mod edit;
 mod evaluation;
-mod model;
-mod predictor;
+mod question;
 mod settings;
 mod training;
 mod update;
@@ -13,28 +12,24 @@ pub use edit::{
     forget_contact, know_contact, set_bullet_heading, set_contact_x, set_mass, set_side,
 };
 pub use evaluation::{EvaluatedCase, EvaluationStatus, FinishedEvaluation};
-pub use model::ModelStatus;
-pub use predictor::{Forecast, Predictor, Question};
+pub use question::{ForceQuestion, Forecast};
 pub use settings::{ForceProject, ForceView, Statistic, TrainingForm};
 pub use training::{Phase, TrainingStatus};
 pub use update::{RecordedCase, force_datasets, source_name};
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
-use crate::jobs::Job;
+use crate::app::latest::Latest;
+use crate::app::model::ModelStatus;
+use crate::force::ForceModel;
 
 /// What is loaded, computed and under way about the force network.
 #[derive(Default)]
 pub struct ForceSession {
     /// The model that answers.
-    pub model: ModelStatus,
-    /// The thread that predicts.
-    pub predictor: Option<Predictor>,
-    /// What it was asked last.
-    pub asked: Option<Question>,
-    /// Its latest answer, or why there is none.
-    pub forecast: Option<Result<Arc<Forecast>, String>>,
+    pub model: ModelStatus<ForceModel>,
+    /// What it says of the collision.
+    pub forecast: Latest<ForceQuestion>,
     /// The selected case, if it has a force to compare with.
     pub recorded: Option<RecordedCase>,
     /// A training, under way or over.
@@ -43,8 +38,4 @@ pub struct ForceSession {
     pub evaluation: EvaluationStatus,
     /// Where a training is kept while it runs, so that it can go on after a crash.
     pub checkpoint: Option<PathBuf>,
-    /// The model being written.
-    pub saving: Option<Job<Result<PathBuf, String>>>,
-    /// A path to which the model is to be saved, being typed.
-    pub typed_model_path: String,
 }

@@ -1,25 +1,18 @@
-//! A training in the background: live losses, pause, resume, cancel.
-//!
-//! The core knows one callback. Here it sends the news to the window and blocks while the training
-//! is paused.
+//! A training of the force network in the background: live losses, pause, resume, cancel.
 
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, Sender, channel};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::Arc;
 use std::time::Duration;
 
 use crate::app::force::TrainingForm;
 use crate::app::source::CheckedDataset;
+use crate::app::training::{Tell, Training, time_left};
 use crate::error_chain;
 use crate::force::{
     CentreFit, EpochRecord, ForceCase, ForceConfig, ForceModel, TrainSettings, TrainingReport,
     TrainingSet, train,
 };
-use crate::jobs::{Job, Progress, Report, Update};
-
-/// Latest epochs by whose pace the time left is estimated.
-const PACE_EPOCHS: usize = 10;
+use crate::jobs::Progress;
 
 /// What a training is doing.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -38,7 +31,7 @@ pub enum Phase {
 /// A training, under way or over.
 #[derive(Default)]
 pub struct TrainingStatus {
-    run: Option<Run>,
+    run: Option<Training<ForceModel, News>>,
     /// What it is doing.
     pub phase: Phase,
     /// Every epoch so far.
@@ -63,12 +56,6 @@ pub struct TrainingData {
     pub extra: Vec<Arc<CheckedDataset>>,
 }
 
-struct Run {
-    job: Job<Result<ForceModel, String>>,
-    news: Receiver<News>,
-    gate: Arc<Gate>,
-}
-
 enum News {
     Phase(Phase),
     /// A case that is left out.
@@ -78,38 +65,6 @@ enum News {
         n_epochs: usize,
         is_best: bool,
     },
-}
-
-/// Holds a thread up while it is closed.
-#[derive(Default)]
-struct Gate {
-    is_closed: Mutex<bool>,
-    changed: Condvar,
-}
-
-impl Gate {
-    fn set_closed(&self, is_closed: bool) {
-        *self.is_closed.lock().unwrap_or_else(PoisonError::into_inner) = is_closed;
-        self.changed.notify_all();
-    }
-
-    fn is_closed(&self) -> bool {
-        *self.is_closed.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn pass(&self) {
-        let mut is_closed = self.is_closed.lock().unwrap_or_else(PoisonError::into_inner);
-        while *is_closed {
-            is_closed = self.changed.wait(is_closed).unwrap_or_else(PoisonError::into_inner);
-        }
-    }
-}
-
-impl Drop for Run {
-    fn drop(&mut self) {
-        self.job.cancel();
-        self.gate.set_closed(false);
-    }
 }
 
 impl TrainingStatus {
@@ -123,21 +78,16 @@ impl TrainingStatus {
         (form, checkpoint): (&TrainingForm, Option<PathBuf>),
         wake: impl Fn() + Send + 'static,
     ) -> std::io::Result<()> {
-        let (sender, news) = channel();
-        let gate = Arc::new(Gate::default());
-        let (form, own_gate, name) = (form.clone(), Arc::clone(&gate), data.name.clone());
-        let job = Job::spawn_in_background("train", wake, move |report| {
-            run(data, (&form, checkpoint), &mut |news| tell(news, (&sender, &own_gate), report))
-        })?;
-        *self = Self { run: Some(Run { job, news, gate }), data: name, ..Self::default() };
+        let (form, name) = (form.clone(), data.name.clone());
+        let run = Training::start(wake, move |tell| run(data, (&form, checkpoint), tell))?;
+        *self = Self { run: Some(run), data: name, ..Self::default() };
         Ok(())
     }
 
     /// Takes in what was reported; the model in the end.
     pub fn poll(&mut self) -> Option<Result<ForceModel, String>> {
-        let run = self.run.as_mut()?;
-        let update = run.job.poll(); // before the news: what it ends with comes after them
-        for news in run.news.try_iter() {
+        let (news, result) = self.run.as_mut()?.poll();
+        for news in news {
             match news {
                 News::Phase(phase) => self.phase = phase,
                 News::LeftOut(why) => self.left_out.push(why),
@@ -150,12 +100,7 @@ impl TrainingStatus {
                 }
             }
         }
-        let result = match update {
-            Update::Running => return None,
-            Update::Finished(result) => result,
-            Update::Panicked(text) => Err(format!("internal error: {text}")),
-            Update::Gone => Err("the training is gone".to_owned()),
-        };
+        let result = result?;
         (self.run, self.phase) = (None, Phase::Ended);
         self.problem = result.as_ref().err().cloned();
         if let Ok(model) = &result {
@@ -173,60 +118,35 @@ impl TrainingStatus {
 
     /// Whether it waits.
     pub fn is_paused(&self) -> bool {
-        self.run.as_ref().is_some_and(|run| run.gate.is_closed())
+        self.run.as_ref().is_some_and(Training::is_paused)
     }
 
     /// Whether it was told to stop.
     pub fn is_cancelled(&self) -> bool {
-        self.run.as_ref().is_some_and(|run| run.job.is_cancelled())
+        self.run.as_ref().is_some_and(Training::is_cancelled)
     }
 
     /// Stops before the next report, or goes on.
     pub fn set_paused(&self, is_paused: bool) {
         if let Some(run) = &self.run {
-            run.gate.set_closed(is_paused);
+            run.set_paused(is_paused);
         }
     }
 
     /// Ends it at the next report, with the best weights so far.
     pub fn cancel(&self) {
         if let Some(run) = &self.run {
-            run.job.cancel();
-            run.gate.set_closed(false);
+            run.cancel();
         }
     }
 
     /// Share done, 0 to 1, and the time left at the pace of the latest epochs.
     pub fn progress(&self) -> (Option<f32>, Option<Duration>) {
         let Phase::Epochs(done, n_epochs) = self.phase else { return (None, None) };
-        let latest: Vec<f64> =
-            self.history.iter().rev().take(PACE_EPOCHS).map(|record| record.seconds).collect();
-        let pace_s = latest.iter().sum::<f64>() / latest.len().max(1) as f64;
-        let left_s = pace_s * n_epochs.saturating_sub(done) as f64;
         let fraction = done as f32 / n_epochs.max(1) as f32;
-        (Some(fraction), Duration::try_from_secs_f64(left_s).ok())
+        let seconds = self.history.iter().map(|record| record.seconds);
+        (Some(fraction), time_left(seconds, n_epochs.saturating_sub(done)))
     }
-}
-
-/// Sends news to the window, waits while paused, and asks whether to go on.
-fn tell(
-    news: News,
-    (sender, gate): (&Sender<News>, &Gate),
-    report: &mut Report<'_>,
-) -> ControlFlow<()> {
-    let progress = match &news {
-        News::Phase(_) | News::LeftOut(_) => Progress::default(),
-        News::Epoch { record, n_epochs, .. } => {
-            Progress::new(record.epoch as u64, *n_epochs as u64, "training")
-        }
-    };
-    // A receiver that is gone means a dropped training, which is cancelled.
-    let _ = sender.send(news);
-    if report(progress.clone()).is_break() {
-        return ControlFlow::Break(());
-    }
-    gate.pass();
-    report(progress)
 }
 
 /// # Errors
@@ -234,7 +154,7 @@ fn tell(
 fn run(
     data: TrainingData,
     (form, checkpoint): (&TrainingForm, Option<PathBuf>),
-    tell: &mut dyn FnMut(News) -> ControlFlow<()>,
+    tell: &mut Tell<'_, News>,
 ) -> Result<ForceModel, String> {
     let mut config = match form.config.trim() {
         "" => ForceConfig::default(),
@@ -245,7 +165,7 @@ fn run(
         let (cases, problems) = ForceCase::of_dataset(&checked.dataset);
         for problem in problems {
             // Cancelling takes effect at the first report of the training itself.
-            let _ = tell(News::LeftOut(error_chain(&problem)));
+            let _ = tell(News::LeftOut(error_chain(&problem)), Progress::default());
         }
         cases
     };
@@ -256,28 +176,11 @@ fn run(
         TrainingSet::new(data.name, &cases, &extra, split).map_err(|error| error_chain(&error))?;
     let settings = TrainSettings { config, seed: form.seed, checkpoint, resume: form.resume };
     let mut report = |report: TrainingReport<'_>| match report {
-        TrainingReport::Centre(fit) => tell(News::Phase(Phase::Centre(fit))),
+        TrainingReport::Centre(fit) => tell(News::Phase(Phase::Centre(fit)), Progress::default()),
         TrainingReport::Epoch { record, n_epochs, is_best } => {
-            tell(News::Epoch { record: *record, n_epochs, is_best })
+            let done = Progress::new(record.epoch as u64, n_epochs as u64, "training");
+            tell(News::Epoch { record: *record, n_epochs, is_best }, done)
         }
     };
     train(&set, &settings, &mut report).map_err(|error| error_chain(&error))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_closed_gate_holds_until_it_is_opened() {
-        let gate = Arc::new(Gate::default());
-        gate.pass();
-        gate.set_closed(true);
-        let inner = Arc::clone(&gate);
-        let mut job = Job::spawn("wait", || {}, move |_| inner.pass()).unwrap();
-        assert!(matches!(job.wait_for(Duration::from_millis(30)), Update::Running));
-        assert!(gate.is_closed());
-        gate.set_closed(false);
-        assert!(matches!(job.wait(), Update::Finished(())));
-    }
 }

@@ -6,16 +6,15 @@ use std::sync::Arc;
 use egui::Context;
 
 use crate::analysis::ForecastSettings;
-use crate::app::command::wake;
+use crate::app::command::{TrainingCommand, wake};
 use crate::app::force::evaluation::EvaluationRequest;
 use crate::app::force::training::TrainingData;
-use crate::app::force::{Forecast, Predictor, Question};
+use crate::app::force::{ForceQuestion, Forecast};
 use crate::app::source::{CheckedDataset, Source};
 use crate::app::state::{State, Subject};
 use crate::data::{DatasetKind, Severity};
 use crate::error_chain;
 use crate::force::{ForceCase, ForceScenario};
-use crate::jobs::{Job, Update};
 use crate::uncertainty::ForceCurve;
 
 /// The force that was recorded in the selected case, in the case's own axes.
@@ -34,19 +33,18 @@ pub struct RecordedCase {
 impl State {
     /// Takes in what loader, predictor and training report, and asks for what is due.
     pub(in crate::app) fn update_force(&mut self, context: &Context) {
-        let news = self.session.force.model.update(&self.project.force.model, wake(context));
-        if let Some(Err(problem)) = news {
-            // Without a shipped model the panel says what to do.
-            if self.project.force.model.is_some() {
-                self.say(Severity::Error, problem);
-            }
+        let force = &mut self.session.force;
+        let problem = force.model.update(&self.project.force.model, wake(context));
+        let saved = force.model.poll_saving();
+        if let Some(Ok(path)) = &saved {
+            self.project.force.model = Some(path.clone());
         }
+        self.say_of_model(problem, saved);
         self.find_recorded_case();
-        self.poll_saving();
         self.poll_training();
         self.session.force.evaluation.poll();
-        self.poll_predictor();
-        self.ask_predictor(context);
+        self.session.force.forecast.poll();
+        self.ask_for_force(context);
     }
 
     fn poll_training(&mut self) {
@@ -64,19 +62,11 @@ impl State {
         }
     }
 
-    fn poll_predictor(&mut self) {
-        let force = &mut self.session.force;
-        let Some(predictor) = &mut force.predictor else { return };
-        if let Some(answer) = predictor.answer() {
-            force.forecast = Some(answer.map(Arc::new));
-        }
-    }
-
     /// Asks if anything has changed since the last question.
-    fn ask_predictor(&mut self, context: &Context) {
+    fn ask_for_force(&mut self, context: &Context) {
         let force = &mut self.session.force;
         let Some(current) = &force.model.current else { return };
-        let question = Question {
+        let question = ForceQuestion {
             model: Arc::clone(&current.model),
             scenario: self.project.force.scenario.clone(),
             settings: ForecastSettings {
@@ -84,21 +74,7 @@ impl State {
                 seed: self.view.force.seed,
             },
         };
-        if force.asked.as_ref().is_some_and(|asked| asked.is_same(&question)) {
-            return;
-        }
-        let is_asked =
-            force.predictor.as_ref().is_some_and(|predictor| predictor.ask(question.clone()));
-        if !is_asked {
-            match Predictor::spawn(wake(context)) {
-                Ok(predictor) => {
-                    predictor.ask(question.clone());
-                    force.predictor = Some(predictor);
-                }
-                Err(error) => force.forecast = Some(Err(error.to_string())),
-            }
-        }
-        force.asked = Some(question);
+        force.forecast.ask(question, wake(context));
     }
 
     /// Looks up the force of the selected case once it is selected.
@@ -136,8 +112,18 @@ impl State {
         }
     }
 
+    /// Does what was asked for with a training.
+    pub(in crate::app) fn train_force(&mut self, command: TrainingCommand, context: &Context) {
+        let training = &self.session.force.training;
+        match command {
+            TrainingCommand::Start => self.start_force_training(context),
+            TrainingCommand::Pause(pause) => training.set_paused(pause),
+            TrainingCommand::Cancel => training.cancel(),
+        }
+    }
+
     /// Starts a training on the chosen data.
-    pub(in crate::app) fn start_training(&mut self, context: &Context) {
+    fn start_force_training(&mut self, context: &Context) {
         let form = &self.project.force.training;
         let datasets = force_datasets(&self.session.sources);
         let chosen = datasets.iter().find(|(path, _)| Some(*path) == form.dataset.as_deref());
@@ -184,44 +170,9 @@ impl State {
         }
     }
 
-    /// Writes the current model to a file.
-    pub(in crate::app) fn save_model(&mut self, path: PathBuf, context: &Context) {
-        let Some(current) = &self.session.force.model.current else {
-            self.say(Severity::Warning, "there is no model to save");
-            return;
-        };
-        let model = Arc::clone(&current.model);
-        let job = Job::spawn("save model", wake(context), move |_| {
-            model.save(&path).map(|()| path).map_err(|error| error_chain(&error))
-        });
-        match job {
-            Ok(job) => self.session.force.saving = Some(job),
-            Err(error) => self.say(Severity::Error, error.to_string()),
-        }
-    }
-
-    fn poll_saving(&mut self) {
-        let Some(job) = &mut self.session.force.saving else { return };
-        let result = match job.poll() {
-            Update::Running => return,
-            Update::Finished(result) => result,
-            Update::Panicked(text) => Err(format!("internal error: {text}")),
-            Update::Gone => Err("the model was not saved".to_owned()),
-        };
-        self.session.force.saving = None;
-        match result {
-            Ok(path) => {
-                self.say(Severity::Info, format!("{} written", path.display()));
-                self.session.force.model.saved_as(&path);
-                self.project.force.model = Some(path);
-            }
-            Err(problem) => self.say(Severity::Error, problem),
-        }
-    }
-
     /// What the network says of the collision, as far as it has answered.
     pub fn forecast(&self) -> Option<&Forecast> {
-        self.session.force.forecast.as_ref()?.as_ref().ok().map(Arc::as_ref)
+        self.session.force.forecast.ok().map(Arc::as_ref)
     }
 }
 

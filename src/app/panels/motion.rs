@@ -32,6 +32,7 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             height: Some(height),
             reset: session.fit_plots,
             legend: channel == MOTION_CHANNELS[0],
+            ..FigureOptions::default()
         };
         let heading = analysis_readout(analysis, channel, (session.time_s, view.units));
         let response = figure_frame(ui, (&heading, &figure), &options, commands);

@@ -1,13 +1,13 @@
 //! What the force network says of a collision: bands of the force over time, and numbers.
 
-use egui::{Id, Panel, RichText, ScrollArea, Ui};
+use egui::{Id, Panel, ScrollArea, Ui};
 
 use crate::app::command::Command;
-use crate::app::dialogs::Purpose;
 use crate::app::force::{ForceSession, Forecast};
+use crate::app::panels::model_row::{model_row_ui, no_model_ui};
 use crate::app::panels::prediction_form::form_ui;
 use crate::app::panels::prediction_numbers::numbers_ui;
-use crate::app::panes::{Pane, PaneContext};
+use crate::app::panes::PaneContext;
 use crate::app::state::{Project, View};
 use crate::app::widgets::figure_frame;
 use crate::data::Severity;
@@ -26,7 +26,9 @@ const TITLE_HEIGHT: f32 = 30.0;
 pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands } = pane;
     if session.force.model.current.is_none() {
-        no_model_ui(ui, &session.force, commands);
+        let use_of_it =
+            "A force model predicts the contact force of a collision, and how sure that is.";
+        no_model_ui(ui, &session.force.model, use_of_it, commands);
         return;
     }
     let left = Panel::left("prediction form").default_size(FORM_WIDTH).size_range(260.0..=520.0);
@@ -34,7 +36,7 @@ pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             model_ui(ui, &session.force, commands);
             form_ui(ui, (project, view), &session.force, commands);
-            if let Some(Ok(forecast)) = &session.force.forecast {
+            if let Some(Ok(forecast)) = &session.force.forecast.answer {
                 ui.separator();
                 numbers_ui(ui, forecast, (&project.force.name, view.units));
             }
@@ -42,7 +44,7 @@ pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     });
     egui::CentralPanel::default_margins().frame(egui::Frame::new().inner_margin(4.0)).show(
         ui,
-        |ui| match &session.force.forecast {
+        |ui| match &session.force.forecast.answer {
             None => drop(ui.horizontal(|ui| (ui.spinner(), ui.label("Predicting…")))),
             Some(Err(problem)) => {
                 let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
@@ -57,65 +59,22 @@ pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     );
 }
 
-fn no_model_ui(ui: &mut Ui, force: &ForceSession, commands: &mut Vec<Command>) {
-    if force.model.is_loading() {
-        ui.horizontal(|ui| (ui.spinner(), ui.label("Loading the force model…")));
-        return;
-    }
-    ui.label(RichText::new("No force model").strong());
-    ui.label("A force model predicts the contact force of a collision, and how sure that is. Open one (a file ending in .safetensors), or train one on a force data set.");
-    if let Some(problem) = &force.model.problem {
-        let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-        ui.colored_label(color, problem);
-    }
-    ui.horizontal_wrapped(|ui| {
-        if ui.button("Open model…").clicked() {
-            commands.push(Command::Ask(Purpose::OpenModel));
-        }
-        if ui.button("Use the shipped model").clicked() {
-            commands.push(Command::UseModel(None));
-        }
-        if ui.button("Train a model").clicked() {
-            commands.push(Command::Show(Pane::Training));
-        }
-    });
-}
-
 fn model_ui(ui: &mut Ui, force: &ForceSession, commands: &mut Vec<Command>) {
     let Some(current) = &force.model.current else { return };
-    ui.horizontal_wrapped(|ui| {
-        let record = current.model.record();
-        let hint = format!(
-            "Trained on {}: {} cases, {} for validation; {} kept for the test. Epoch {} of {}, seed {}, {} weights, impactlab {}",
-            record.data,
-            record.train.len(),
-            record.validation.len(),
-            record.test.len(),
-            record.best_epoch,
-            record.history.len(),
-            record.seed,
-            current.model.n_parameters(),
-            record.version,
-        );
-        ui.strong("Model").on_hover_text(&hint);
-        ui.label(&current.name).on_hover_text(&hint);
-        if !current.is_saved {
-            ui.weak("(not saved)");
-        }
-        if ui.small_button("Open…").on_hover_text("Another model").clicked() {
-            commands.push(Command::Ask(Purpose::OpenModel));
-        }
-        if ui.small_button("Save…").clicked() {
-            commands.push(Command::Ask(Purpose::SaveModel));
-        }
-        if current.name != "shipped" && ui.small_button("Shipped").clicked() {
-            commands.push(Command::UseModel(None));
-        }
-    });
-    if let Some(problem) = &force.model.problem {
-        let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-        ui.colored_label(color, format!("Not opened: {problem}"));
-    }
+    let record = current.model.record();
+    let hint = format!(
+        "Trained on {}: {} cases, {} for validation; {} kept for the test. Epoch {} of {}, seed {}, {} weights, impactlab {}",
+        record.data,
+        record.train.len(),
+        record.validation.len(),
+        record.test.len(),
+        record.best_epoch,
+        record.history.len(),
+        record.seed,
+        current.model.n_parameters(),
+        record.version,
+    );
+    model_row_ui(ui, &force.model, &hint, commands);
 }
 
 fn choices_ui(ui: &mut Ui, view: &mut View) {

@@ -36,7 +36,7 @@ pub fn form_ui(
         contact_ui(ui, scenario, view.units);
         body_ui(ui, scenario, &bodies.unwrap_or_default());
     });
-    if let Some(Ok(forecast)) = &force.forecast {
+    if let Some(Ok(forecast)) = &force.forecast.answer {
         let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
         for outside in &forecast.outside {
             let [low, high] = outside.range.map(significant);

@@ -21,19 +21,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         return;
     };
     let end_s = series.time_s().last().copied().unwrap_or(0.0);
-    ui.horizontal(|ui| {
-        let label = if session.playing { "Pause" } else { "Play" };
-        if ui.button(label).on_hover_text("Space").clicked() {
-            commands.push(Command::TogglePlay);
-        }
-        let name = ui.label("Time");
-        let mut time_s = session.time_s;
-        ui.spacing_mut().slider_width = (ui.available_width() - 90.0).max(80.0);
-        let slider = Slider::new(&mut time_s, 0.0..=end_s).suffix(" s").fixed_decimals(2);
-        if ui.add(slider).labelled_by(name.id).changed() {
-            commands.push(Command::SetTime(time_s));
-        }
-    });
+    clock_ui(ui, (session.time_s, end_s), session.playing, commands);
     let figure = analysis_scene_figure(analysis, session.time_s, view.units);
     let options = FigureOptions {
         id: "scene".to_owned(),
@@ -41,4 +29,26 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         ..FigureOptions::default()
     };
     figure_frame(ui, (&figure.title, &figure), &options, commands);
+}
+
+/// Play, pause, and a slider for the moment, s.
+pub fn clock_ui(
+    ui: &mut Ui,
+    (time_s, end_s): (f64, f64),
+    is_playing: bool,
+    commands: &mut Vec<Command>,
+) {
+    ui.horizontal(|ui| {
+        let label = if is_playing { "Pause" } else { "Play" };
+        if ui.button(label).on_hover_text("Space").clicked() {
+            commands.push(Command::TogglePlay);
+        }
+        let name = ui.label("Time");
+        let mut time_s = time_s;
+        ui.spacing_mut().slider_width = (ui.available_width() - 90.0).max(80.0);
+        let slider = Slider::new(&mut time_s, 0.0..=end_s).suffix(" s").fixed_decimals(2);
+        if ui.add(slider).labelled_by(name.id).changed() {
+            commands.push(Command::SetTime(time_s));
+        }
+    });
 }

@@ -2,6 +2,8 @@
 
 mod figure_frame;
 mod quantity;
+mod spread_table;
 
 pub use figure_frame::figure_frame;
 pub use quantity::{SliderRange, duration_text, quantity_field, quantity_slider, value_row};
+pub use spread_table::{SpreadRow, spread_table_ui};

@@ -100,6 +100,13 @@ pub struct CoverageFigures {
 }
 
 impl MeanStd {
+    /// In another unit.
+    #[must_use]
+    pub fn times(self, factor: f64) -> Self {
+        let Self { mean, std, median } = self;
+        Self { mean: mean * factor, std: std * factor, median: median * factor }
+    }
+
     /// Of values; all zero without any.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
         let mut values: Vec<f64> = values.into_iter().collect();

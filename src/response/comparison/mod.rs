@@ -8,6 +8,7 @@ mod paper;
 mod result;
 mod rival;
 mod tables;
+mod write;
 
 pub use case_figures::{CaseFigures, Coverage};
 pub use compare::{ComparisonSettings, compare_models, evaluate_rival};
@@ -18,4 +19,5 @@ pub use result::{
     ClusterModel, ClusterRow, ComparedCase, ComparedModel, Comparison, PATH_STEP_S, TestCase,
 };
 pub use rival::{Rival, RivalKind};
-pub use tables::{Table, cluster_table, horizon_table, model_table, uncertainty_table};
+pub use tables::{Table, all_tables, cluster_table, horizon_table, model_table, uncertainty_table};
+pub use write::{to_markdown, write_comparison};

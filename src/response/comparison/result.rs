@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use crate::collision::Footprint;
 use crate::force::ImpulseClusters;
 use crate::response::comparison::compare::CaseClusters;
 use crate::response::comparison::{CaseFigures, ComparisonSettings, ModelFigures, RivalKind};
@@ -89,6 +90,8 @@ pub struct TestCase {
     pub cluster: usize,
     /// Whether it turns by more than 90°.
     pub spins: bool,
+    /// Outline of the vehicle.
+    pub footprint: Footprint,
     /// What was recorded: [X, Y, ψ] every [`PATH_STEP_S`], m and rad.
     pub path: Vec<[f64; 3]>,
 }
@@ -199,6 +202,7 @@ impl TestCase {
             name: case.name.clone(),
             cluster: *cluster,
             spins: case.spins,
+            footprint: Footprint::from(&case.vehicle.geometry),
             path: path_of(&case.states),
         }
     }

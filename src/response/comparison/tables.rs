@@ -45,6 +45,16 @@ impl Table {
     }
 }
 
+/// Titles, file names and tables of a comparison.
+pub fn all_tables(comparison: &Comparison) -> [(&'static str, &'static str, Table); 4] {
+    [
+        ("Models", "models.csv", model_table(comparison)),
+        ("Distance by horizon", "horizons.csv", horizon_table(comparison)),
+        ("Uncertainty", "uncertainty.csv", uncertainty_table(comparison)),
+        ("By cluster of impulse", "clusters.csv", cluster_table(comparison)),
+    ]
+}
+
 /// Average error, score, time per step and root mean square errors of each model; what the paper
 /// printed in a column of its own.
 pub fn model_table(comparison: &Comparison) -> Table {

@@ -1,19 +1,17 @@
-//! Predicts on a thread of its own, so that the window keeps its pace: while a slider moves, only
-//! the latest question is answered, and the last answer stays until the next one comes.
+//! What the force network is asked and what it answers.
 
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, channel};
 
 use crate::analysis::{ForceForecast, ForecastSettings, pulse_curves};
+use crate::app::latest::Question;
 use crate::collision::PulseShape;
 use crate::error_chain;
 use crate::force::{ForceModel, ForceScenario, OutsideTraining};
-use crate::jobs::{Job, Progress, Update};
 use crate::uncertainty::ForceCurve;
 
 /// What is to be predicted.
 #[derive(Clone)]
-pub struct Question {
+pub struct ForceQuestion {
     /// By whom.
     pub model: Arc<ForceModel>,
     /// The collision.
@@ -45,65 +43,24 @@ pub struct Forecast {
     pub open: Vec<&'static str>,
 }
 
-/// A thread that answers questions.
-pub struct Predictor {
-    job: Job<()>,
-    questions: Sender<Question>,
-    answers: Receiver<Result<Forecast, String>>,
-}
+impl Question for ForceQuestion {
+    type Answer = Forecast;
+    const NAME: &'static str = "predict force";
 
-impl Question {
-    /// Whether the answer would be the same.
-    pub fn is_same(&self, other: &Self) -> bool {
+    fn is_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.model, &other.model)
             && self.scenario == other.scenario
             && self.settings == other.settings
     }
-}
 
-impl Predictor {
-    /// Starts the thread. `wake` is called after every answer.
-    ///
-    /// # Errors
-    /// The operating system's, if no thread can be started.
-    pub fn spawn(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        let (questions, asked) = channel::<Question>();
-        let (answer, answers) = channel();
-        let job = Job::spawn("predict", wake, move |report| {
-            let mut n_answers = 0;
-            while let Ok(mut question) = asked.recv() {
-                while let Ok(newer) = asked.try_recv() {
-                    question = newer;
-                }
-                n_answers += 1;
-                let progress = Progress::new(n_answers, 0, "predicting");
-                if answer.send(predict(&question)).is_err() || report(progress).is_break() {
-                    break;
-                }
-            }
-        })?;
-        Ok(Self { job, questions, answers })
-    }
-
-    /// Asks; `false` if the thread is gone.
-    pub fn ask(&self, question: Question) -> bool {
-        self.questions.send(question).is_ok()
-    }
-
-    /// The latest answer since the last call. A panic comes as the inner error, after which the
-    /// thread is gone.
-    pub fn answer(&mut self) -> Option<Result<Forecast, String>> {
-        let latest = self.answers.try_iter().last();
-        match self.job.poll() {
-            Update::Panicked(text) => Some(Err(format!("internal error: {text}"))),
-            _ => latest,
-        }
+    fn answer(&self) -> Result<Forecast, String> {
+        predict(self)
     }
 }
 
 /// # Errors
 /// A message for the user.
-fn predict(question: &Question) -> Result<Forecast, String> {
+fn predict(question: &ForceQuestion) -> Result<Forecast, String> {
     let prediction =
         question.model.predict(&question.scenario).map_err(|error| error_chain(&error))?;
     let force = ForceForecast::of(&prediction.mixture, question.settings)

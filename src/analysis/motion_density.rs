@@ -1,0 +1,134 @@
+//! Where a struck vehicle is likely to be: the density of its position on a grid, at a moment or over
+//! a window of time.
+
+use std::sync::Arc;
+
+use crate::response::{MotionDistribution, STEP_S};
+use crate::uncertainty::{PlanarGrid, PlanarMixture, PlanarPart};
+
+/// Points along the longer side of the rectangle.
+const GRID_POINTS: usize = 256;
+/// How many standard deviations of all parts the rectangle reaches.
+const REACH: f64 = 4.0;
+/// Least side of the rectangle, m.
+const LEAST_SIDE_M: f64 = 2.0;
+/// Standard deviation by which every part is blurred, in cells: one that is narrower would fall
+/// between the points, or be all in one.
+const BLUR_CELLS: f64 = 0.5;
+
+/// The density of a position on a grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DensityMap {
+    /// From when to when, s; the same for a moment.
+    pub window_s: [f64; 2],
+    /// The points.
+    pub grid: PlanarGrid,
+    /// Probability density, 1/m²; over a window its mean over time. Row by row from the lowest Y on.
+    pub values: Arc<Vec<f64>>,
+}
+
+/// The distribution of the position in a window of time, each instant as likely as the others, and a
+/// grid about it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DensityTask {
+    /// From when to when, s, on the grid of the motion.
+    pub window_s: [f64; 2],
+    /// The position.
+    pub position: PlanarMixture,
+    /// The points.
+    pub grid: PlanarGrid,
+}
+
+impl DensityTask {
+    /// - `window_s`: from when to when, s; the same twice for a moment.
+    pub fn new(motion: &MotionDistribution, window_s: [f64; 2]) -> Self {
+        let last = motion.n_instants().saturating_sub(1);
+        let instant = |time_s: f64| ((time_s.max(0.0) / STEP_S).round() as usize).min(last);
+        let [from, to] = window_s.map(instant);
+        let (from, to) = (from.min(to), from.max(to));
+        let instants: Vec<PlanarMixture> = (from..=to).map(|at| motion.position(at)).collect();
+        let position = PlanarMixture::mixed(&instants);
+        let grid = grid_about(&position);
+        let blur_m2 = grid.step_m.map(|step_m| (BLUR_CELLS * step_m).powi(2));
+        let blurred = |part: &PlanarPart| {
+            let [xx, xy, yy] = part.covariance;
+            PlanarPart { covariance: [xx + blur_m2[0], xy, yy + blur_m2[1]], ..*part }
+        };
+        let position = PlanarMixture::new(position.parts().iter().map(blurred).collect());
+        Self { window_s: [from, to].map(|at| at as f64 * STEP_S), position, grid }
+    }
+
+    /// The map, computed on the CPU.
+    pub fn on_cpu(self) -> DensityMap {
+        let values = self.position.density_on(&self.grid);
+        self.with(values)
+    }
+
+    /// The map with values that were computed elsewhere.
+    pub fn with(self, values: Vec<f64>) -> DensityMap {
+        DensityMap { window_s: self.window_s, grid: self.grid, values: Arc::new(values) }
+    }
+}
+
+/// Square cells over a rectangle that holds nearly all of it.
+fn grid_about(position: &PlanarMixture) -> PlanarGrid {
+    let mut bounds = position.bounds(REACH).unwrap_or([[0.0; 2]; 2]);
+    let [low, high] = &mut bounds;
+    for (low, high) in low.iter_mut().zip(high) {
+        let missing = (LEAST_SIDE_M - (*high - *low)).max(0.0);
+        *low -= 0.5 * missing;
+        *high += 0.5 * missing;
+    }
+    let sides_m = [0, 1].map(|axis: usize| bounds[1][axis] - bounds[0][axis]);
+    let step_m = sides_m[0].max(sides_m[1]) / (GRID_POINTS - 1) as f64;
+    let size = sides_m.map(|side_m| ((side_m / step_m).ceil() as usize + 1).max(2));
+    let [low, high] = bounds;
+    let high = [0, 1].map(|axis| low[axis].max(high[axis]));
+    PlanarGrid::over([low, high], size)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::response::{ComponentMotion, StateDistribution};
+    use crate::vehicle::VehicleState;
+    use nalgebra::SMatrix;
+
+    /// Ten metres per second along X, the deviation rising from nothing to 0.5 m.
+    fn motion() -> MotionDistribution {
+        let state = |i: usize| StateDistribution {
+            mean: VehicleState { x_m: i as f64 * STEP_S * 10.0, ..VehicleState::default() },
+            covariance: SMatrix::identity() * (0.005 * i as f64).powi(2).max(1e-12),
+        };
+        let states = (0..=100).map(state).collect();
+        MotionDistribution::new(vec![ComponentMotion { weight: 1.0, states }])
+    }
+
+    fn sum(map: &DensityMap) -> f64 {
+        map.values.iter().sum::<f64>() * map.grid.cell_m2()
+    }
+
+    #[test]
+    fn probabilities_sum_to_one_at_a_moment_and_over_a_window() {
+        for window_s in [[1.0, 1.0], [0.0, 0.0], [0.0, 1.0], [0.6, 0.2]] {
+            let map = DensityTask::new(&motion(), window_s).on_cpu();
+            assert!((sum(&map) - 1.0).abs() < 2e-3, "{window_s:?}: {}", sum(&map));
+        }
+    }
+
+    #[test]
+    fn a_window_holds_the_way_and_a_moment_its_end() {
+        let of = |window_s| DensityTask::new(&motion(), window_s).on_cpu();
+        let (moment, window) = (of([1.0, 1.0]), of([0.0, 9.0]));
+        assert_eq!(window.window_s, [0.0, 1.0]);
+        let share_before_5_m = |map: &DensityMap| {
+            let [width, _] = map.grid.size;
+            let x_m = |i: usize| map.grid.low_m[0] + (i % width) as f64 * map.grid.step_m[0];
+            let before = map.values.iter().enumerate().filter(|(i, _)| x_m(*i) < 5.0);
+            before.map(|(_, value)| value).sum::<f64>() * map.grid.cell_m2()
+        };
+        assert!(share_before_5_m(&moment) < 1e-6);
+        let share = share_before_5_m(&window);
+        assert!((share - 0.5).abs() < 0.03, "{share}");
+    }
+}

@@ -1,0 +1,90 @@
+//! The two networks, where the app treats them alike.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error_chain;
+use crate::force::ForceModel;
+use crate::response::ResponseModel;
+
+/// One of the two.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Network {
+    /// Scenario to impact force.
+    #[default]
+    Force,
+    /// Impact force to motion.
+    Response,
+}
+
+impl Network {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Force, Self::Response];
+
+    /// In a sentence: “force model”.
+    pub fn model(self) -> &'static str {
+        match self {
+            Self::Force => "force model",
+            Self::Response => "response model",
+        }
+    }
+
+    /// As a choice.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Force => "Force network",
+            Self::Response => "Response network",
+        }
+    }
+
+    /// What a file with such a model is called at first.
+    pub fn file_name(self) -> &'static str {
+        match self {
+            Self::Force => "force.safetensors",
+            Self::Response => "response.safetensors",
+        }
+    }
+}
+
+/// A model that files hold and trainings make.
+pub trait TrainedModel: Sized + Send + Sync + 'static {
+    /// Of which network.
+    const NETWORK: Network;
+    /// Where the shipped one stands, from the folder of the program or its sources.
+    const SHIPPED: &'static str;
+
+    /// # Errors
+    /// A message for the user.
+    fn read(path: &Path) -> Result<Self, String>;
+
+    /// # Errors
+    /// A message for the user.
+    fn write(&self, path: &Path) -> Result<(), String>;
+}
+
+impl TrainedModel for ForceModel {
+    const NETWORK: Network = Network::Force;
+    const SHIPPED: &'static str = "assets/models/force.safetensors";
+
+    fn read(path: &Path) -> Result<Self, String> {
+        Self::load(path).map_err(|error| error_chain(&error))
+    }
+
+    fn write(&self, path: &Path) -> Result<(), String> {
+        self.save(path).map_err(|error| error_chain(&error))
+    }
+}
+
+impl TrainedModel for ResponseModel {
+    const NETWORK: Network = Network::Response;
+    const SHIPPED: &'static str = "assets/models/response.safetensors";
+
+    fn read(path: &Path) -> Result<Self, String> {
+        Self::load(path).map_err(|error| error_chain(&error))
+    }
+
+    fn write(&self, path: &Path) -> Result<(), String> {
+        self.save(path).map_err(|error| error_chain(&error))
+    }
+}

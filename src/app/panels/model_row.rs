@@ -1,0 +1,113 @@
+//! Which model of a network answers, and the ways to get another.
+
+use egui::{RichText, Ui};
+
+use crate::app::command::Command;
+use crate::app::dialogs::{MODEL_ENDING, Purpose};
+use crate::app::model::{ModelStatus, SHIPPED_NAME};
+use crate::app::network::TrainedModel;
+use crate::data::Severity;
+use crate::render::theme;
+
+/// What to do while there is no model.
+///
+/// - `use_of_it`: what a model does, in a sentence.
+pub fn no_model_ui<M: TrainedModel>(
+    ui: &mut Ui,
+    model: &ModelStatus<M>,
+    use_of_it: &str,
+    commands: &mut Vec<Command>,
+) {
+    let name = M::NETWORK.model();
+    if model.is_loading() {
+        ui.horizontal(|ui| (ui.spinner(), ui.label(format!("Loading the {name}…"))));
+        return;
+    }
+    ui.label(RichText::new(format!("No {name}")).strong());
+    ui.label(format!(
+        "{use_of_it} Open one (a file ending in .{MODEL_ENDING}), or train one on data of your own."
+    ));
+    if let Some(problem) = &model.problem {
+        let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+        ui.colored_label(color, problem);
+    }
+    ui.horizontal_wrapped(|ui| {
+        if ui.button("Open model…").clicked() {
+            commands.push(Command::Ask(Purpose::OpenModel));
+        }
+        if ui.button("Use the shipped model").clicked() {
+            commands.push(Command::UseModel(M::NETWORK, None));
+        }
+        if ui.button("Train a model").clicked() {
+            commands.push(Command::ShowTraining(M::NETWORK));
+        }
+    });
+}
+
+/// The name of the model, with the buttons to open, save and put it back.
+///
+/// - `hint`: how it came to be.
+pub fn model_row_ui<M: TrainedModel>(
+    ui: &mut Ui,
+    model: &ModelStatus<M>,
+    hint: &str,
+    commands: &mut Vec<Command>,
+) {
+    let Some(current) = &model.current else { return };
+    ui.horizontal_wrapped(|ui| {
+        ui.strong("Model").on_hover_text(hint);
+        ui.label(&current.name).on_hover_text(hint);
+        if !current.is_saved {
+            ui.weak("(not saved)");
+        }
+        if ui.small_button("Open…").on_hover_text("Another model").clicked() {
+            commands.push(Command::Ask(Purpose::OpenModel));
+        }
+        if ui.small_button("Save…").clicked() {
+            commands.push(Command::Ask(Purpose::SaveModel(M::NETWORK)));
+        }
+        if current.name != SHIPPED_NAME && ui.small_button("Shipped").clicked() {
+            commands.push(Command::UseModel(M::NETWORK, None));
+        }
+    });
+    if let Some(problem) = &model.problem {
+        let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
+        ui.colored_label(color, format!("Not opened: {problem}"));
+    }
+}
+
+/// The same where a model has just been trained: a field for the path, too, for systems without file
+/// dialogs.
+pub fn save_model_ui<M: TrainedModel>(
+    ui: &mut Ui,
+    model: &mut ModelStatus<M>,
+    commands: &mut Vec<Command>,
+) {
+    let Some(current) = &model.current else { return };
+    ui.horizontal_wrapped(|ui| {
+        ui.strong("Model");
+        let text = RichText::new(&current.name);
+        ui.label(if current.is_saved { text } else { text.italics() });
+        if !current.is_saved {
+            let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+            ui.colored_label(color, "not saved");
+        }
+        if ui.button("Open model…").clicked() {
+            commands.push(Command::Ask(Purpose::OpenModel));
+        }
+        if ui.button("Save model…").clicked() {
+            commands.push(Command::Ask(Purpose::SaveModel(M::NETWORK)));
+        }
+        let field = egui::TextEdit::singleline(&mut model.typed_path).desired_width(240.0);
+        let typed = ui.add(field.hint_text("or type a path and press Enter"));
+        if typed.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter)) {
+            let path = std::mem::take(&mut model.typed_path);
+            if !path.trim().is_empty() {
+                let path = std::path::PathBuf::from(path.trim());
+                let has_ending = path.extension().is_some();
+                let path = if has_ending { path } else { path.with_extension(MODEL_ENDING) };
+                commands.push(Command::SaveModel(M::NETWORK, path));
+            }
+        }
+    });
+}

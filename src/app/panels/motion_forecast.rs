@@ -1,0 +1,262 @@
+//! Where the struck vehicle goes, with how sure that is: from above and over time.
+
+use egui::{DragValue, Id, Panel, ScrollArea, Ui};
+
+use crate::app::command::Command;
+use crate::app::network::Network;
+use crate::app::panels::analysis_or_hint;
+use crate::app::panels::model_row::{model_row_ui, no_model_ui};
+use crate::app::panels::motion_outcome::outcome_ui;
+use crate::app::panels::scene::clock_ui;
+use crate::app::panes::PaneContext;
+use crate::app::response::{
+    DensityChoice, ForceChoice, MotionAnswer, ResponseProject, ResponseSession, ResponseView,
+};
+use crate::app::state::{Session, View};
+use crate::app::widgets::figure_frame;
+use crate::data::Severity;
+use crate::figure::{
+    FORECAST_CHANNELS, MotionForecastFigure, forecast_channel_figure, forecast_readout,
+    forecast_scene_figure, forecast_surroundings,
+};
+use crate::render::{FigureOptions, theme};
+use crate::response::STEP_S;
+
+/// Width of the form at first, points.
+const FORM_WIDTH: f32 = 330.0;
+/// Share of the height that the scene takes.
+const SCENE_SHARE: f32 = 0.52;
+/// Smallest height of a plot over time, points.
+const MIN_PLOT_HEIGHT: f32 = 110.0;
+/// Height of a title row, points.
+const TITLE_HEIGHT: f32 = 30.0;
+/// Plots over time side by side.
+const N_COLUMNS: usize = 3;
+
+/// Draws the form, the outcome, the scene and the quantities over time.
+pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
+    let PaneContext { project, view, session, commands } = pane;
+    if session.response.model.current.is_none() {
+        let use_of_it = "A response model says where a struck vehicle goes after the impact, and how sure that is.";
+        no_model_ui(ui, &session.response.model, use_of_it, commands);
+        return;
+    }
+    let left = Panel::left("motion form").default_size(FORM_WIDTH).size_range(260.0..=520.0);
+    left.show(ui, |ui| {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            model_ui(ui, &session.response, commands);
+            ui.separator();
+            force_ui(ui, &mut project.response, session, commands);
+            ui.separator();
+            shown_ui(ui, &mut view.response, session, commands);
+            if let Some(answer) = session.response.forecast.ok() {
+                ui.separator();
+                outcome_ui(ui, answer, view.units);
+            }
+        });
+    });
+    egui::CentralPanel::default_margins().frame(egui::Frame::new().inner_margin(4.0)).show(
+        ui,
+        |ui| {
+            if analysis_or_hint(ui, session).is_none() {
+                return;
+            }
+            match &session.response.forecast.answer {
+                Some(Ok(answer)) => figures_ui(ui, (answer, session), view, commands),
+                Some(Err(problem)) => {
+                    let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
+                    ui.colored_label(color, format!("No forecast: {problem}"));
+                }
+                None if session.response.forecast.asked.is_some() => {
+                    drop(ui.horizontal(|ui| (ui.spinner(), ui.label("Forecasting…"))));
+                }
+                None => {
+                    ui.label("There is no force on a vehicle here. Pick a case with a force, open a force file, or set up a scenario.");
+                }
+            }
+        },
+    );
+}
+
+fn model_ui(ui: &mut Ui, response: &ResponseSession, commands: &mut Vec<Command>) {
+    let Some(current) = &response.model.current else { return };
+    let record = current.model.record();
+    let calibrated = match current.model.latents().n_calibrated {
+        0 => "Uncertainty: a guess".to_owned(),
+        n => format!("Uncertainty calibrated on {n} trajectories, each unseen"),
+    };
+    let hint = format!(
+        "Trained on {} trajectories of {}; {} kept for the test. Pre-trained on {} simulations. {} epochs, seed {}, {} weights, impactlab {}. {calibrated}.",
+        record.train.len(),
+        record.data,
+        record.test.len(),
+        record.n_simulated,
+        record.history.len(),
+        record.seed,
+        current.model.n_parameters(),
+        record.version,
+    );
+    model_row_ui(ui, &response.model, &hint, commands);
+    if record.train.is_empty() {
+        let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+        ui.colored_label(color, "Pre-trained on simulations alone: no better than the 4DOF model.");
+    }
+}
+
+/// By which force the forecast is driven.
+fn force_ui(
+    ui: &mut Ui,
+    project: &mut ResponseProject,
+    session: &Session,
+    commands: &mut Vec<Command>,
+) {
+    let form = &mut project.forecast;
+    ui.horizontal_wrapped(|ui| {
+        ui.strong("Force");
+        ui.radio_value(&mut form.force, ForceChoice::Given, "as given").on_hover_text(
+            "That of the case or the file; of a scenario the classic pulse with the impulse of the momentum solution",
+        );
+        ui.radio_value(&mut form.force, ForceChoice::Predicted, "as predicted").on_hover_text(
+            "By the force network, with all that is uncertain about it: needs a case of a force data set, or a scenario",
+        );
+    });
+    if form.force == ForceChoice::Given {
+        return;
+    }
+    ui.horizontal(|ui| {
+        let name = ui.label("Force curves");
+        ui.add(DragValue::new(&mut form.n_curves).range(1..=500).speed(0.2))
+            .labelled_by(name.id)
+            .on_hover_text("Whole curves drawn from the predicted force, each as likely; each drives its own distribution of motions");
+        let name = ui.label("Seed");
+        ui.add(DragValue::new(&mut form.seed).speed(0.2)).labelled_by(name.id);
+    });
+    let answer = session.response.forecast.ok();
+    if answer.is_some_and(|answer| !answer.is_predicted) {
+        let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+        ui.colored_label(
+            color,
+            "The collision is not known here, so that its force cannot be predicted: the given force is shown.",
+        );
+        if session.force.model.current.is_none() && ui.button("Open a force model…").clicked() {
+            commands.push(Command::ShowTraining(Network::Force));
+        }
+    }
+    for outside in answer.iter().filter_map(|a| a.forecast.force.as_ref()).flat_map(|f| &f.outside)
+    {
+        let [low, high] = outside.range;
+        let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+        let text = format!(
+            "Outside the training of the force model: {} is {:.3}, trained on {low:.3} to {high:.3}",
+            outside.feature, outside.value
+        );
+        ui.colored_label(color, text);
+    }
+}
+
+/// What is drawn.
+fn shown_ui(ui: &mut Ui, view: &mut ResponseView, session: &Session, commands: &mut Vec<Command>) {
+    ui.horizontal_wrapped(|ui| {
+        ui.strong("Density").on_hover_text("Where the CG is likely to be");
+        for (choice, label, hint) in [
+            (DensityChoice::Moment, "now", "At the moment of the slider"),
+            (DensityChoice::Window, "over time", "Mean over a window of time"),
+            (DensityChoice::Hidden, "none", ""),
+        ] {
+            let radio = ui.radio_value(&mut view.density, choice, label);
+            if !hint.is_empty() {
+                radio.on_hover_text(hint);
+            }
+        }
+    });
+    if view.density == DensityChoice::Window {
+        let end_s = session.response.forecast.ok().map_or(4.0, |answer| end_s(answer));
+        ui.horizontal(|ui| {
+            for (label, value) in ["from", "to"].into_iter().zip(&mut view.window_s) {
+                let name = ui.label(label);
+                let field = DragValue::new(value).range(0.0..=end_s).speed(0.02).suffix(" s");
+                ui.add(field.max_decimals(2)).labelled_by(name.id);
+            }
+        });
+    }
+    ui.horizontal_wrapped(|ui| {
+        ui.strong("Show");
+        ui.checkbox(&mut view.components, "components")
+            .on_hover_text("Mean path of each component of the mixture, 15 at most");
+        ui.checkbox(&mut view.simulation, "4DOF model");
+        ui.checkbox(&mut view.reference, "recorded motion");
+        let follow = ui.checkbox(&mut view.follow, "follow");
+        let hint = "Keep the view on the vehicle at the slider's moment";
+        if follow.on_hover_text(hint).changed() && !view.follow {
+            commands.push(Command::FitPlots);
+        }
+    });
+}
+
+fn end_s(answer: &MotionAnswer) -> f64 {
+    answer.forecast.distribution.n_instants().saturating_sub(1) as f64 * STEP_S
+}
+
+fn figures_ui(
+    ui: &mut Ui,
+    (answer, session): (&MotionAnswer, &Session),
+    view: &View,
+    commands: &mut Vec<Command>,
+) {
+    let choice = &view.response;
+    let analysis = &answer.analysis;
+    let time_s = session.time_s.min(end_s(answer));
+    let density = session.response.density.ok().filter(|_| choice.density != DensityChoice::Hidden);
+    let simulation = analysis.simulation.as_ref().map(|motion| &motion.series);
+    let input = MotionForecastFigure {
+        title: &analysis.name,
+        distribution: &answer.forecast.distribution,
+        central: &answer.forecast.central,
+        bands: &answer.bands,
+        density: density.map(|map| &**map),
+        components: choice.components,
+        reference: analysis.reference.as_ref().filter(|_| choice.reference),
+        simulation: simulation.filter(|_| choice.simulation),
+        footprint: analysis.footprint,
+        time_s,
+        units: view.units,
+    };
+    clock_ui(ui, (time_s, end_s(answer)), session.playing, commands);
+    let all = ui.available_height();
+    let scene = forecast_scene_figure(&input);
+    let options = FigureOptions {
+        view: choice.follow.then(|| forecast_surroundings(&input)),
+        id: "forecast scene".to_owned(),
+        height: Some((all * SCENE_SHARE - TITLE_HEIGHT).max(2.0 * MIN_PLOT_HEIGHT)),
+        reset: session.fit_plots,
+        ..FigureOptions::default()
+    };
+    figure_frame(ui, (&scene.title, &scene), &options, commands);
+    ui.weak("Bands hold 50 and 90 %. Numbers at the cursor: central path, and from where to where 90 %.");
+    let n_rows = FORECAST_CHANNELS.len().div_ceil(N_COLUMNS) as f32;
+    let height = (ui.available_height() / n_rows - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT);
+    ScrollArea::vertical().show(ui, |ui| {
+        for channels in FORECAST_CHANNELS.chunks(N_COLUMNS) {
+            ui.columns(N_COLUMNS, |columns| {
+                for (ui, &channel) in columns.iter_mut().zip(channels) {
+                    let figure = forecast_channel_figure(&input, channel);
+                    let options = FigureOptions {
+                        id: format!("forecast of {}", channel.channel.label()),
+                        link: Some(Id::unique("motion forecast")),
+                        cursor_x: Some(time_s),
+                        height: Some(height),
+                        reset: session.fit_plots,
+                        // As in the scene; too small for one of their own.
+                        legend: false,
+                        ..FigureOptions::default()
+                    };
+                    let heading = forecast_readout(&input, channel);
+                    let response = figure_frame(ui, (&heading, &figure), &options, commands);
+                    if let Some(picked_s) = response.picked_x {
+                        commands.push(Command::SetTime(picked_s.clamp(0.0, end_s(answer))));
+                    }
+                }
+            });
+        }
+    });
+}

@@ -1,0 +1,42 @@
+//! How a forecast motion ends, in numbers.
+
+use egui::{Grid, Ui};
+
+use crate::app::response::MotionAnswer;
+use crate::app::widgets::{SpreadRow, spread_table_ui, value_row};
+use crate::units::{Quantity, UnitSystem};
+
+/// Draws the outcome.
+pub fn outcome_ui(ui: &mut Ui, answer: &MotionAnswer, units: UnitSystem) {
+    let outcome = &answer.forecast.outcome;
+    let when = match outcome.is_at_rest {
+        true => format!("At rest after {:.2} s", outcome.time_s),
+        false => format!("After {:.2} s, still moving", outcome.time_s),
+    };
+    ui.strong(when).on_hover_text("On the central path: nothing about the vehicle uncertain");
+    let unit = |quantity: Quantity| quantity.display_unit(units);
+    let row =
+        |label, quantity, spread, hint| SpreadRow { label, unit: unit(quantity), spread, hint };
+    let rows = [
+        row("X", Quantity::Length, outcome.x_m, "Of the CG, along the road from the impact"),
+        row("Y", Quantity::Length, outcome.y_m, "Of the CG, to the left"),
+        row(
+            "Heading",
+            Quantity::Angle,
+            outcome.heading_change_rad,
+            "Change since the impact, to the left; goes on beyond a turn",
+        ),
+    ];
+    spread_table_ui(ui, &answer.analysis.name, &rows);
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    Grid::new("motion outcome").num_columns(2).show(ui, |ui| {
+        value_row(ui, "Speed", &Quantity::Speed.shown(outcome.speed_m_s, units));
+        value_row(ui, "90 % region of the CG", &format!("{:.1} m²", outcome.region_90_m2));
+        value_row(ui, "P(quarter turn or more)", &percent(outcome.p_quarter_turn));
+        value_row(ui, "P(half turn or more)", &percent(outcome.p_half_turn));
+        let forces = answer.forecast.forces.len();
+        let driven =
+            if answer.is_predicted { format!("{forces} drawn") } else { "given".to_owned() };
+        value_row(ui, "Force", &driven);
+    });
+}

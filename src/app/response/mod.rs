@@ -1,0 +1,44 @@
+//! The response network in the app: which model is loaded, what it forecasts, how it learns, how it
+//! compares. The panels of the same names show it.
+
+mod comparison;
+mod question;
+mod settings;
+mod training;
+mod update;
+
+pub use comparison::{ComparisonRequest, ComparisonStatus};
+pub use question::{DensityQuestion, MotionAnswer, MotionQuestion};
+pub use settings::{
+    ComparisonForm, Course, DensityChoice, ForceChoice, ResponseProject, ResponseTrainingForm,
+    ResponseView,
+};
+pub use training::{ResponsePhase, ResponseTrainingData, ResponseTrainingStatus};
+pub use update::trajectory_datasets;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crate::app::latest::Latest;
+use crate::app::model::ModelStatus;
+use crate::render::DensityGpu;
+use crate::response::ResponseModel;
+
+/// What is loaded, computed and under way about the response network.
+#[derive(Default)]
+pub struct ResponseSession {
+    /// The model that answers.
+    pub model: ModelStatus<ResponseModel>,
+    /// Where the struck vehicle goes.
+    pub forecast: Latest<MotionQuestion>,
+    /// Where it is likely to be.
+    pub density: Latest<DensityQuestion>,
+    /// What computes densities; the CPU without.
+    pub gpu: Option<Arc<DensityGpu>>,
+    /// A training, under way or over.
+    pub training: ResponseTrainingStatus,
+    /// A comparison, under way or over.
+    pub comparison: ComparisonStatus,
+    /// Where a training is kept while it runs, so that it can go on after a crash.
+    pub checkpoint: Option<PathBuf>,
+}

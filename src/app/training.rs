@@ -1,0 +1,153 @@
+//! A training in the background: news while it runs, pause, cancel.
+//!
+//! The core knows one callback. Here it sends the news to the window and blocks while the training
+//! is paused.
+
+use std::ops::ControlFlow;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::time::Duration;
+
+use crate::jobs::{Job, Progress, Report};
+
+/// Latest epochs by whose pace the time left is estimated.
+const PACE_EPOCHS: usize = 10;
+
+/// A training under way: it gives a model of type `M` in the end, and news of type `N` before.
+pub struct Training<M, N> {
+    job: Job<Result<M, String>>,
+    news: Receiver<N>,
+    gate: Arc<Gate>,
+}
+
+/// Sends news to the window, with how far the training is, and says whether to go on.
+pub type Tell<'a, N> = dyn FnMut(N, Progress) -> ControlFlow<()> + 'a;
+
+/// Holds a thread up while it is closed.
+#[derive(Default)]
+struct Gate {
+    is_closed: Mutex<bool>,
+    changed: Condvar,
+}
+
+impl Gate {
+    fn set_closed(&self, is_closed: bool) {
+        *self.is_closed.lock().unwrap_or_else(PoisonError::into_inner) = is_closed;
+        self.changed.notify_all();
+    }
+
+    fn is_closed(&self) -> bool {
+        *self.is_closed.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn pass(&self) {
+        let mut is_closed = self.is_closed.lock().unwrap_or_else(PoisonError::into_inner);
+        while *is_closed {
+            is_closed = self.changed.wait(is_closed).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+impl<M, N> Drop for Training<M, N> {
+    fn drop(&mut self) {
+        self.job.cancel();
+        self.gate.set_closed(false);
+    }
+}
+
+impl<M: Send + 'static, N: Send + 'static> Training<M, N> {
+    /// Starts one.
+    ///
+    /// # Errors
+    /// The operating system's, if no thread can be started.
+    pub fn start(
+        wake: impl Fn() + Send + 'static,
+        work: impl FnOnce(&mut Tell<'_, N>) -> Result<M, String> + Send + 'static,
+    ) -> std::io::Result<Self> {
+        let (sender, news) = channel();
+        let gate = Arc::new(Gate::default());
+        let own_gate = Arc::clone(&gate);
+        let job = Job::spawn_in_background("train", wake, move |report| {
+            work(&mut |news, progress| tell((news, progress), (&sender, &own_gate), report))
+        })?;
+        Ok(Self { job, news, gate })
+    }
+
+    /// What was told since the last time, and the end, if it has come.
+    pub fn poll(&mut self) -> (Vec<N>, Option<Result<M, String>>) {
+        let update = self.job.poll(); // before the news: what it ends with comes after them
+        (self.news.try_iter().collect(), update.into_result("the training"))
+    }
+}
+
+impl<M, N> Training<M, N> {
+    /// Whether it waits.
+    pub fn is_paused(&self) -> bool {
+        self.gate.is_closed()
+    }
+
+    /// Whether it was told to stop.
+    pub fn is_cancelled(&self) -> bool {
+        self.job.is_cancelled()
+    }
+
+    /// Stops before the next news, or goes on.
+    pub fn set_paused(&self, is_paused: bool) {
+        self.gate.set_closed(is_paused);
+    }
+
+    /// Ends it at the next news.
+    pub fn cancel(&self) {
+        self.job.cancel();
+        self.gate.set_closed(false);
+    }
+}
+
+/// Sends news to the window, waits while paused, and asks whether to go on.
+fn tell<N>(
+    (news, progress): (N, Progress),
+    (sender, gate): (&Sender<N>, &Gate),
+    report: &mut Report<'_>,
+) -> ControlFlow<()> {
+    // A receiver that is gone means a dropped training, which is cancelled.
+    let _ = sender.send(news);
+    if report(progress.clone()).is_break() {
+        return ControlFlow::Break(());
+    }
+    gate.pass();
+    report(progress)
+}
+
+/// The time left at the pace of the latest epochs.
+///
+/// - `seconds`: of the epochs so far, the last one last; `n_left`: epochs to come.
+pub fn time_left(seconds: impl DoubleEndedIterator<Item = f64>, n_left: usize) -> Option<Duration> {
+    let latest: Vec<f64> = seconds.rev().take(PACE_EPOCHS).collect();
+    let pace_s = latest.iter().sum::<f64>() / latest.len().max(1) as f64;
+    Duration::try_from_secs_f64(pace_s * n_left as f64).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::jobs::Update;
+
+    #[test]
+    fn a_closed_gate_holds_until_it_is_opened() {
+        let gate = Arc::new(Gate::default());
+        gate.pass();
+        gate.set_closed(true);
+        let inner = Arc::clone(&gate);
+        let mut job = Job::spawn("wait", || {}, move |_| inner.pass()).unwrap();
+        assert!(matches!(job.wait_for(Duration::from_millis(30)), Update::Running));
+        assert!(gate.is_closed());
+        gate.set_closed(false);
+        assert!(matches!(job.wait(), Update::Finished(())));
+    }
+
+    #[test]
+    fn the_pace_is_that_of_the_latest_epochs() {
+        let seconds = (0..100).map(|i| if i < 90 { 9.0 } else { 2.0 });
+        assert_eq!(time_left(seconds, 3), Some(Duration::from_secs(6)));
+    }
+}

@@ -1,0 +1,94 @@
+//! Numbers with their intervals.
+
+use egui::{Grid, Ui};
+
+use crate::analysis::Spread;
+use crate::units::{Unit, significant};
+
+/// Digits of a number beside its interval.
+const DIGITS: i32 = 3;
+
+/// A number, its unit, and what it is.
+pub struct SpreadRow {
+    /// Its name.
+    pub label: &'static str,
+    /// The unit in which it is shown.
+    pub unit: Unit,
+    /// Median and intervals, SI.
+    pub spread: Spread,
+    /// What it is, in a sentence.
+    pub hint: &'static str,
+}
+
+/// A table of numbers with a button that copies it.
+///
+/// - `name`: of what they are, for the copy; tables of one panel differ by it.
+pub fn spread_table_ui(ui: &mut Ui, name: &str, rows: &[SpreadRow]) {
+    ui.horizontal(|ui| {
+        ui.strong("Numbers");
+        let hint = "As a table for a spreadsheet, separated by tabs";
+        if ui.small_button("Copy table").on_hover_text(hint).clicked() {
+            ui.ctx().copy_text(table(name, rows));
+        }
+    });
+    Grid::new("spread table").striped(true).num_columns(4).show(ui, |ui| {
+        for (title, hint) in [
+            ("", ""),
+            ("median", "As likely exceeded as not"),
+            ("50 %", "Interval that holds half of what may happen"),
+            ("90 %", "Interval that holds nine tenths of what may happen"),
+        ] {
+            ui.strong(title).on_hover_text(hint);
+        }
+        ui.end_row();
+        for row in rows {
+            ui.label(format!("{} [{}]", row.label, row.unit.symbol)).on_hover_text(row.hint);
+            let [median, half, ninety] = texts(row);
+            for text in [median, half, ninety] {
+                ui.monospace(text);
+            }
+            ui.end_row();
+        }
+    });
+}
+
+fn texts(row: &SpreadRow) -> [String; 3] {
+    let text = |value| rounded(row.unit.from_si(value));
+    let interval = |[low, high]: [f64; 2]| format!("{} … {}", text(low), text(high));
+    [text(row.spread.median), interval(row.spread.half), interval(row.spread.ninety)]
+}
+
+/// A number with [`DIGITS`] digits, those before the point in any case.
+fn rounded(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let decimals = (DIGITS - 1 - value.abs().log10().floor() as i32).clamp(0, 6) as usize;
+    format!("{value:.decimals$}")
+}
+
+/// Tab-separated, with both ends of the intervals.
+fn table(name: &str, rows: &[SpreadRow]) -> String {
+    let head = format!("{name}\tunit\tmedian\t50 % low\t50 % high\t90 % low\t90 % high");
+    let line = |row: &SpreadRow| {
+        let Spread { median, half: [a, b], ninety: [c, d] } = row.spread;
+        let values = [median, a, b, c, d].map(|value| significant(row.unit.from_si(value)));
+        format!("{}\t{}\t{}", row.label, row.unit.symbol, values.join("\t"))
+    };
+    std::iter::once(head).chain(rows.iter().map(line)).collect::<Vec<_>>().join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::{Quantity, UnitSystem};
+
+    #[test]
+    fn the_copied_table_has_a_row_a_number() {
+        let spread = Spread { median: 3000.0, half: [2900.0, 3100.0], ninety: [2500.0, 3500.0] };
+        let unit = Quantity::Impulse.display_unit(UnitSystem::Si);
+        let rows = [SpreadRow { label: "|P|", unit, spread, hint: "" }];
+        let expected = "c001\tunit\tmedian\t50 % low\t50 % high\t90 % low\t90 % high\n|P|\tkN s\t3.000\t2.900\t3.100\t2.500\t3.500";
+        assert_eq!(table("c001", &rows), expected);
+    }
+}

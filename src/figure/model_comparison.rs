@@ -1,0 +1,180 @@
+//! Models beside each other: errors, boxes, horizons, and what they say of one case.
+
+use crate::collision::Pose;
+use crate::compare::HORIZONS_S;
+use crate::figure::scene::vehicle_outline;
+use crate::figure::{Axis, Element, Figure, LineStyle, Role, Series};
+use crate::numerics::quantile_of_sorted;
+use crate::response::comparison::{ComparedModel, Comparison, MeanStd, RivalKind};
+use crate::units::{Quantity, Unit, UnitSystem};
+
+/// Half the height of a box, of a tick, as shares of a row.
+const BOX_HALF: f64 = 0.28;
+const TICK_HALF: f64 = 0.22;
+
+/// What a model is called, with its number of trajectories.
+pub fn model_name(name: &str, trajectories: usize) -> String {
+    if trajectories == 0 { name.to_owned() } else { format!("{name}, {trajectories}") }
+}
+
+/// The colour of a model.
+fn role(kind: RivalKind) -> Role {
+    match kind {
+        RivalKind::Untuned => Role::Pulse,
+        RivalKind::Tuned => Role::Target,
+        RivalKind::Plain => Role::Validation,
+        RivalKind::Network => Role::Model,
+    }
+}
+
+/// A figure with a row a model, the first on top.
+///
+/// - `elements`: of a model, at the height of its row.
+fn rows_figure<'a>(
+    title: String,
+    x: Axis,
+    models: impl DoubleEndedIterator<Item = &'a ComparedModel> + Clone,
+    elements: impl Fn(&ComparedModel, f64) -> Vec<Element>,
+) -> Figure {
+    let from_below = models.rev();
+    let names = from_below.clone().map(|model| model_name(&model.name, model.trajectories));
+    let y = Axis::named("", names.collect());
+    let of_row = |(row, model): (usize, &'a ComparedModel)| elements(model, row as f64);
+    let elements = from_below.enumerate().flat_map(of_row).collect();
+    Figure { title, x, y, equal_aspect: false, log_y: false, elements }
+}
+
+fn vertical(name: &str, role: Role, x: f64, (row, half): (f64, f64)) -> Element {
+    Element::line(name, role, vec![[x, row - half], [x, row + half]])
+}
+
+/// Mean (point), standard deviation over the trajectories (bar) and median (tick) of a figure of each
+/// model, best mean first.
+///
+/// - `unit`: that of the figure, and of the axis.
+pub fn ranking_figure(
+    comparison: &Comparison,
+    (title, label, unit): (&str, &str, Unit),
+    of: impl Fn(&ComparedModel) -> MeanStd,
+) -> Figure {
+    let mut models: Vec<&ComparedModel> = comparison.models.iter().collect();
+    models.sort_by(|a, b| of(a).mean.total_cmp(&of(b).mean));
+    let elements = |model: &ComparedModel, row: f64| {
+        let MeanStd { mean, std, median } = of(model);
+        if !(mean.is_finite() && std.is_finite()) {
+            return Vec::new(); // a model that leaves all numbers behind has no place here
+        }
+        let (role, name) = (role(model.kind), model_name(&model.name, model.trajectories));
+        let [low, high] = [(mean - std).max(0.0), mean + std];
+        vec![
+            Element::line(&name, role, vec![[low, row], [high, row]]),
+            vertical(&name, role, median, (row, TICK_HALF)),
+            Element::points(&name, role, vec![[mean, row]]),
+        ]
+    };
+    rows_figure(title.to_owned(), Axis::new(label, unit), models.into_iter(), elements)
+}
+
+/// Average error over the trajectories of a cluster: box from quartile to quartile, line at the
+/// median, whiskers to the least and the largest; all choices of trajectories together.
+pub fn cluster_figure(comparison: &Comparison, cluster: usize, units: UnitSystem) -> Figure {
+    let unit = Quantity::Length.display_unit(units);
+    let elements = |model: &ComparedModel, row: f64| {
+        let of_model = comparison.cases.iter().filter(|case| {
+            case.cluster == cluster
+                && case.kind == model.kind
+                && case.trajectories == model.trajectories
+        });
+        let mut errors: Vec<f64> =
+            of_model.map(|case| unit.from_si(case.figures.error.average_error_m)).collect();
+        errors.sort_by(f64::total_cmp);
+        let quantile = |share| quantile_of_sorted(&errors, share).filter(|value| value.is_finite());
+        let quantiles = [0.0, 0.25, 0.5, 0.75, 1.0].map(quantile);
+        let [Some(least), Some(low), Some(median), Some(high), Some(most)] = quantiles else {
+            return Vec::new();
+        };
+        let (role, name) = (role(model.kind), model_name(&model.name, model.trajectories));
+        let (below, above) = (row - BOX_HALF, row + BOX_HALF);
+        let outline = vec![[low, below], [high, below], [high, above], [low, above]];
+        vec![
+            Element::line(&name, role, vec![[least, row], [low, row]]),
+            Element::line(&name, role, vec![[high, row], [most, row]]),
+            Element::polygon(&name, role, outline),
+            vertical(&name, role, median, (row, BOX_HALF)),
+        ]
+    };
+    let title = match comparison.clusters.get(cluster) {
+        Some(row) => {
+            let impulse = row.impulse_n_s.map_or(String::new(), |impulse| {
+                format!(", about {}", Quantity::Impulse.shown(impulse, units))
+            });
+            format!("{}: {} cases{impulse}", row.name, row.n)
+        }
+        None => String::new(),
+    };
+    let x = Axis::new("Average error", unit);
+    rows_figure(title, x, comparison.models.iter(), elements)
+}
+
+/// Mean distance after 0.5, 1, 2 and 4 s of each model; dashed with fewer trajectories than others.
+pub fn horizon_figure(comparison: &Comparison, units: UnitSystem) -> Figure {
+    let x = Axis::shown("Time since the impact", Quantity::Time, units);
+    let y = Axis::shown("Distance, mean", Quantity::Length, units);
+    let line = |model: &ComparedModel| {
+        let points = HORIZONS_S.iter().zip(&model.figures.horizon_error_m);
+        let points: Vec<[f64; 2]> = points
+            .filter(|(_, error)| error.mean.is_finite())
+            .map(|(time_s, error)| [*time_s, y.unit.from_si(error.mean)])
+            .collect();
+        Element::Line(Series {
+            name: model_name(&model.name, model.trajectories),
+            role: role(model.kind),
+            style: style(comparison, model.trajectories),
+            points,
+        })
+    };
+    let elements = comparison.models.iter().map(line).collect();
+    let title = "Error by horizon".to_owned();
+    Figure { title, x, y, equal_aspect: false, log_y: false, elements }
+}
+
+/// Dashed for fewer trajectories than others have.
+fn style(comparison: &Comparison, trajectories: usize) -> LineStyle {
+    let most = comparison.models.iter().map(|model| model.trajectories).max().unwrap_or(0);
+    if trajectories == 0 || trajectories == most { LineStyle::Solid } else { LineStyle::Dashed }
+}
+
+/// What was recorded of a case and where each model says that the vehicle goes, with outlines at the
+/// end. `None` if there is no such case.
+///
+/// - `choice`: of the trajectories that the models were fine-tuned on.
+pub fn compared_case_figure(
+    comparison: &Comparison,
+    (name, choice): (&str, u64),
+    units: UnitSystem,
+) -> Option<Figure> {
+    let case = comparison.test.iter().find(|case| case.name == name)?;
+    let x = Axis::shown("X, along the road", Quantity::Length, units);
+    let y = Axis::shown("Y, to the left", Quantity::Length, units);
+    let of = |name: &str, role, style, path: &[[f64; 3]]| -> Vec<Element> {
+        let points = path.iter().map(|[px, py, _]| [x.unit.from_si(*px), x.unit.from_si(*py)]);
+        let line = Series { name: name.to_owned(), role, style, points: points.collect() };
+        let end = path.last().map(|&[x_m, y_m, yaw_rad]| Pose { x_m, y_m, yaw_rad });
+        let outline =
+            end.map(|pose| vehicle_outline((name, role, style), (&case.footprint, &pose), x.unit));
+        std::iter::once(Element::Line(line)).chain(outline.into_iter().flatten()).collect()
+    };
+    let mut elements = Vec::new();
+    for model in comparison.cases.iter().filter(|model| model.case == name) {
+        // The untuned model has no choice.
+        if model.trajectories > 0 && model.choice != choice {
+            continue;
+        }
+        let style = style(comparison, model.trajectories);
+        let name = model_name(&model.model, model.trajectories);
+        elements.extend(of(&name, role(model.kind), style, &model.path));
+    }
+    elements.extend(of("recorded", Role::Reference, LineStyle::Solid, &case.path));
+    let title = format!("{name}, {}", if case.spins { "spins" } else { "does not spin" });
+    Some(Figure { title, x, y, equal_aspect: true, log_y: false, elements })
+}

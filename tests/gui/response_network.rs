@@ -1,0 +1,232 @@
+//! The response network in the window: forecasts by the shipped model, a small training, a small
+//! comparison.
+
+use std::time::Duration;
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use impactlab::app::{
+    App, Command, ComparisonCommand, Course, DensityChoice, ForceChoice, Network, Pane,
+    ResponsePhase, State, Subject,
+};
+
+use crate::harness::{apply, is_idle, open, open_with, step_until};
+use crate::pictures::save;
+
+const DATA: &str = "datasets/trajectories-fea";
+
+/// Seconds of training.
+const SMALL: &str = "\
+[network]
+encoder = [8]
+token_encoder = [4, 4, 4]
+attention_heads = 2
+trunk = [8]
+components = 2
+[pretraining]
+motions = 4
+epochs = 2
+[single_steps]
+epochs = 2
+[rollouts]
+lengths = [5]
+epochs = 2
+[calibration]
+folds = 2
+[tuning]
+iterations = 2
+particles = 4
+";
+
+fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
+    harness.state().state()
+}
+
+fn select(harness: &mut Harness<'_, App>, dataset: &str, case: &str) {
+    let subject = Subject::Case { dataset: dataset.into(), case: case.to_owned() };
+    apply(harness, Command::Select(subject));
+    step_until(harness, "the forecast of the case", |state| {
+        is_idle(state) && state.motion_forecast().is_some_and(|of| of.analysis.name == case)
+    });
+}
+
+/// Whether the density is that of the moment or window asked for.
+fn is_density_current(state: &State, window_s: [f64; 2]) -> bool {
+    let density = state.session.response.density.ok();
+    density.is_some_and(|map| {
+        map.window_s.iter().zip(window_s).all(|(got, asked)| (got - asked).abs() < 0.006)
+    })
+}
+
+#[test]
+fn a_recorded_case_is_forecast_with_density_and_bands() {
+    let mut harness = open(&[DATA]);
+    step_until(&mut harness, "the data", is_idle);
+    apply(&mut harness, Command::Show(Pane::MotionForecast));
+    select(&mut harness, DATA, "FE_c026");
+    apply(&mut harness, Command::SetTime(2.0));
+    step_until(&mut harness, "the density", |state| is_density_current(state, [2.0, 2.0]));
+    harness.get_by_label_contains("FE_c026: position after 2.00 s");
+    harness.get_by_label_contains("still moving");
+    save(&mut harness, "motion-forecast.png");
+
+    harness.get_by_label("follow").click();
+    harness.run_steps(4);
+    save(&mut harness, "motion-forecast-follow.png");
+    harness.get_by_label("follow").click();
+    harness.run_steps(2);
+
+    // Over a window, in the dark, in US units.
+    {
+        let state = harness.state_mut().state_mut();
+        state.view.response.density = DensityChoice::Window;
+        state.view.dark = true;
+        state.view.units = impactlab::units::UnitSystem::Us;
+    }
+    step_until(&mut harness, "the window", |state| is_density_current(state, [0.0, 3.99]));
+    harness.run_steps(4);
+    save(&mut harness, "motion-forecast-dark.png");
+}
+
+#[test]
+fn a_predicted_force_spreads_the_forecast_and_playing_moves_it() {
+    let mut harness = open(&["datasets/fea", DATA]);
+    step_until(&mut harness, "the data", is_idle);
+    apply(&mut harness, Command::Show(Pane::MotionForecast));
+    select(&mut harness, "datasets/fea", "c002");
+    let area = |state: &State| state.motion_forecast().unwrap().forecast.outcome.region_90_m2;
+    let given = area(state(&harness));
+    harness.get_by_label("as predicted").click();
+    harness.run_steps(2);
+    step_until(&mut harness, "the predicted force", |state| {
+        state.motion_forecast().is_some_and(|of| of.is_predicted)
+    });
+    assert!(area(state(&harness)) > 1.5 * given, "{} {given}", area(state(&harness)));
+    apply(&mut harness, Command::SetTime(1.0));
+    apply(&mut harness, Command::TogglePlay);
+    harness.run_steps(20);
+    assert!(state(&harness).session.time_s > 1.2, "{}", state(&harness).session.time_s);
+    apply(&mut harness, Command::TogglePlay);
+    let time_s = state(&harness).session.time_s;
+    step_until(&mut harness, "the density", |state| is_density_current(state, [time_s; 2]));
+    harness.run_steps(4);
+    save(&mut harness, "motion-forecast-predicted.png");
+    // A trajectory does not say how its cars met: the given force is shown, and that is said.
+    select(&mut harness, DATA, "FE_c002");
+    harness.get_by_label_contains("The collision is not known here");
+    // The choice of force can be undone.
+    harness.run_steps(90);
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(2);
+    assert_eq!(state(&harness).project.response.forecast.force, ForceChoice::Predicted);
+}
+
+#[test]
+fn frames_stay_short_while_time_runs() {
+    let mut harness = open(&[DATA]);
+    step_until(&mut harness, "the data", is_idle);
+    apply(&mut harness, Command::Show(Pane::MotionForecast));
+    select(&mut harness, DATA, "FE_c002");
+    let mut frames_s: Vec<f64> = (0..60)
+        .map(|i| {
+            apply(&mut harness, Command::SetTime(0.05 * f64::from(i)));
+            let start = std::time::Instant::now();
+            harness.step();
+            start.elapsed().as_secs_f64()
+        })
+        .collect();
+    frames_s.sort_by(f64::total_cmp);
+    println!("median frame {:.4} s, longest {:.4} s", frames_s[30], frames_s[59]);
+    assert!(frames_s[30] < 0.25, "{}", frames_s[30]);
+}
+
+#[test]
+fn a_response_model_is_trained_paused_cancelled_and_saved() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let config = folder.path().join("small.toml");
+    std::fs::write(&config, SMALL.replace("epochs = 2", "epochs = 400")).expect("a file");
+    let mut harness = open_with(&[DATA], Some(folder.path().join("state.json")));
+    step_until(&mut harness, "the data", is_idle);
+    apply(&mut harness, Command::ShowTraining(Network::Response));
+    {
+        let form = &mut harness.state_mut().state_mut().project.response.training;
+        (form.course, form.n_trajectories) = (Course::FromScratch, 3);
+        form.config = config.display().to_string();
+    }
+    harness.run_steps(2);
+    harness.get_by_label("Train").click();
+    let n_epochs = |state: &State| state.session.response.training.history.len();
+    step_until(&mut harness, "epochs", |state| n_epochs(state) > 3);
+    harness.get_by_label("Pause").click();
+    harness.run_steps(2);
+    assert!(state(&harness).session.response.training.is_paused());
+    std::thread::sleep(Duration::from_millis(800));
+    harness.run_steps(2);
+    let paused = n_epochs(state(&harness));
+    std::thread::sleep(Duration::from_millis(500));
+    harness.run_steps(2);
+    assert_eq!(n_epochs(state(&harness)), paused, "it went on");
+    harness.get_by_label_contains("paused: single steps, epoch");
+    harness.get_by_label("Resume").click();
+    step_until(&mut harness, "more epochs", |state| n_epochs(state) > paused + 20);
+    save(&mut harness, "training-response.png");
+    harness.get_by_label("Cancel").click();
+    let is_over = |state: &State| !state.session.response.training.is_running();
+    step_until(&mut harness, "the end", is_over);
+    assert_eq!(state(&harness).session.response.training.phase, ResponsePhase::Ended);
+    let current = state(&harness).session.response.model.current.as_ref().expect("a model");
+    assert!(!current.is_saved && current.name == "trained on 3 trajectories of trajectories-fea");
+    let path = folder.path().join("mine.safetensors");
+    apply(&mut harness, Command::SaveModel(Network::Response, path.clone()));
+    step_until(&mut harness, "the file", |state| !state.session.response.model.is_saving());
+    assert_eq!(state(&harness).project.response.model.as_ref(), Some(&path));
+    // A model file is taken for the network that it says it is of.
+    apply(&mut harness, Command::UseModel(Network::Response, None));
+    apply(&mut harness, Command::Open(vec![path.clone()]));
+    assert_eq!(state(&harness).project.response.model.as_ref(), Some(&path));
+    assert_eq!(state(&harness).project.force.model, None);
+}
+
+#[test]
+fn models_are_compared_saved_and_opened_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let config = folder.path().join("small.toml");
+    std::fs::write(&config, SMALL).expect("a file");
+    let mut harness = open(&[DATA]);
+    step_until(&mut harness, "the data", is_idle);
+    apply(&mut harness, Command::Show(Pane::ModelComparison));
+    {
+        let form = &mut harness.state_mut().state_mut().project.response.comparison;
+        form.config = config.display().to_string();
+        (form.trajectories, form.n_choices) = ("three".to_owned(), 1);
+    }
+    harness.run_steps(2);
+    let is_over = |state: &State| state.session.response.comparison.job.is_none();
+    harness.get_by_label("Compare").click();
+    harness.run_steps(2);
+    step_until(&mut harness, "the refusal", is_over);
+    harness.get_by_label_contains("\"three\" is no number of trajectories");
+    harness.state_mut().state_mut().project.response.comparison.trajectories = "3, 6".to_owned();
+    harness.get_by_label("Compare").click();
+    harness.run_steps(2);
+    step_until(&mut harness, "the comparison", is_over);
+    let comparison = state(&harness).session.response.comparison.comparison().expect("a result");
+    assert_eq!((comparison.models.len(), comparison.test.len()), (7, 25));
+    harness.get_by_label_contains("25 trajectories that no model has seen");
+    harness.run_steps(4);
+    save(&mut harness, "compare.png");
+    let out = folder.path().join("saved");
+    apply(&mut harness, Command::Compare(ComparisonCommand::Save(out.clone())));
+    step_until(&mut harness, "the files", |_| out.join("comparison.md").is_file());
+    // What lies below is seen in a tall window.
+    apply(&mut harness, Command::Open(vec![out.join("comparison.json")]));
+    step_until(&mut harness, "the file", is_over);
+    harness.set_size(egui::vec2(1440.0, 2000.0));
+    harness.state_mut().state_mut().view.dark = true;
+    harness.run_steps(6);
+    save(&mut harness, "compare-dark.png");
+    apply(&mut harness, Command::Open(vec!["Cargo.json".into()]));
+    step_until(&mut harness, "the error", is_over);
+    let result = state(&harness).session.response.comparison.result.as_ref();
+    assert!(result.is_some_and(|result| result.as_ref().is_err_and(|e| e.contains("Cargo.json"))));
+}
