@@ -10,7 +10,7 @@ use impactlab::app::{App, Command, State};
 use impactlab::render::SoftwareRenderer;
 
 /// Longest wait for background work.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_secs(240);
 
 /// What a real window shows where nothing is painted.
 const WINDOW_GROUND: Color32 = Color32::BLACK;
