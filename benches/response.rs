@@ -1,0 +1,70 @@
+//! How fast the shipped response network predicts: one step of a path, one step of the joint
+//! distribution, and the distribution of a motion of 4 s; three components, of a car that spins, on one
+//! core.
+//!
+//! `cargo bench --no-default-features --bench response`
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use impactlab::data::Outcome;
+use impactlab::response::{Predictor, ResponseCase, ResponseModel};
+use impactlab::vehicle::VehicleInput;
+
+/// Steps of 4 s.
+const N_STEPS: usize = 400;
+
+fn main() {
+    divan::main();
+}
+
+/// The shipped model asked about the first shipped trajectory that spins. Its force is over before
+/// its record; after the record the car goes on released.
+fn spinning() -> (Predictor, ResponseCase) {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut report = |_| ControlFlow::Continue(());
+    let data = root.join("datasets/trajectories-fea");
+    let Outcome::Complete(cases) =
+        ResponseCase::load_all(&data, None, &mut report).expect("the shipped data set can be read")
+    else {
+        panic!("nobody cancels");
+    };
+    let mut case = cases.into_iter().find(|case| case.spins).expect("some cars spin");
+    case.inputs.resize(N_STEPS, VehicleInput::released());
+    let model = ResponseModel::load(&root.join("assets/models/response.safetensors"))
+        .expect("the shipped model");
+    let predictor = model.predictor(&case.vehicle).expect("a vehicle in range");
+    assert_eq!(predictor.n_components(), 3);
+    (predictor, case)
+}
+
+/// The paths of all components, without a distribution; items are steps of one path.
+#[divan::bench]
+fn path_steps(bencher: Bencher<'_, '_>) {
+    let (predictor, case) = spinning();
+    bencher
+        .counter(ItemsCount::new(predictor.n_components() * N_STEPS))
+        .bench_local(|| predictor.paths(&case.states[0], &case.inputs));
+}
+
+/// One step of the distribution of all components.
+///
+/// - `is_struck`: while the contact force acts, or after.
+#[divan::bench(args = [true, false])]
+fn full_step(bencher: Bencher<'_, '_>, is_struck: bool) {
+    let (predictor, case) = spinning();
+    let acts = |input: &&VehicleInput<f64>| input.collision.is_some() == is_struck;
+    let input = *case.inputs.iter().find(acts).expect("a force that ends");
+    bencher.bench_local(|| predictor.motion(&case.states[0], &[input]));
+}
+
+/// Items are steps of all components.
+#[divan::bench]
+fn motion_of_4_s(bencher: Bencher<'_, '_>) {
+    let (predictor, case) = spinning();
+    bencher
+        .counter(ItemsCount::new(N_STEPS))
+        .bench_local(|| predictor.motion(&case.states[0], &case.inputs));
+}
