@@ -1,7 +1,7 @@
 //! Fully connected layers over a few dozen rows, for predictions: no tensors, no threads.
 //!
 //! Rows and outputs are filled up to whole blocks, so that a block of the product stays in vector
-//! registers: four rows times sixteen outputs.
+//! registers: six rows times sixteen outputs.
 
 use candle_core::{DType, Tensor};
 
@@ -11,12 +11,12 @@ use crate::response::network::ResponseNetwork;
 
 /// Rows of a block, and of one where there are no more than these: motion and mirrored motion of a
 /// single state.
-const ROWS: usize = 4;
+const ROWS: usize = 6;
 const FEW_ROWS: usize = 2;
 /// Outputs of a block.
 const COLUMNS: usize = 16;
 
-/// Rows of numbers, each as long as `stride`, of which the rest is filled with zeros.
+/// Rows of numbers, each as long as `stride`; what fills them up has no meaning.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Rows {
     pub values: Vec<f32>,
@@ -35,10 +35,9 @@ pub(crate) struct Dense {
 }
 
 impl Rows {
-    /// `n` rows of zeros, at least as wide as `width`, and as many more as fill a block.
+    /// Room for `n` rows, at least as wide as `width`, and as many more as fill a block.
     pub(crate) fn reset(&mut self, n: usize, width: usize) {
         self.stride = width.next_multiple_of(COLUMNS);
-        self.values.clear();
         let n = if n <= FEW_ROWS { FEW_ROWS } else { n.next_multiple_of(ROWS) };
         self.values.resize(n * self.stride, 0.0);
     }
@@ -90,28 +89,38 @@ impl Dense {
     pub(crate) fn forward(&self, x: &Rows, out: &mut Rows, swish: bool) {
         let n_rows = x.values.len() / x.stride.max(1);
         out.reset(n_rows, self.n_out);
-        pulp::Arch::new().dispatch(
-            #[inline(always)]
-            || match n_rows {
-                FEW_ROWS => self.multiply::<FEW_ROWS>(x, out),
-                _ => self.multiply::<ROWS>(x, out),
-            },
-        );
+        match n_rows {
+            FEW_ROWS => pulp::Arch::new().dispatch(Product::<FEW_ROWS> { layer: self, x, out }),
+            _ => pulp::Arch::new().dispatch(Product::<ROWS> { layer: self, x, out }),
+        }
         bias_silu_rows(&mut out.values, &self.bias, swish);
     }
+}
+
+/// `x W`, R rows at a time. A closure in its place would be a function of its own, compiled without
+/// the vector instructions.
+struct Product<'a, const R: usize> {
+    layer: &'a Dense,
+    x: &'a Rows,
+    out: &'a mut Rows,
+}
+
+impl<const R: usize> pulp::NullaryFnOnce for Product<'_, R> {
+    type Output = ();
 
     #[inline(always)]
-    fn multiply<const R: usize>(&self, x: &Rows, out: &mut Rows) {
-        let (x_stride, stride) = (x.stride, self.bias.len());
-        let out_blocks = out.values.chunks_exact_mut(R * stride);
-        for (x_rows, out_rows) in x.values.chunks_exact(R * x_stride).zip(out_blocks) {
-            for (block, weights) in self.weight.chunks_exact(self.n_in).enumerate() {
+    fn call(self) {
+        let Dense { weight, bias, n_in, .. } = self.layer;
+        let (x_stride, stride) = (self.x.stride, bias.len());
+        let out_blocks = self.out.values.chunks_exact_mut(R * stride);
+        for (x_rows, out_rows) in self.x.values.chunks_exact(R * x_stride).zip(out_blocks) {
+            let x_rows: [&[f32]; R] = std::array::from_fn(|r| &x_rows[r * x_stride..][..*n_in]);
+            for (block, weights) in weight.chunks_exact(*n_in).enumerate() {
                 let mut sums = [[0.0_f32; COLUMNS]; R];
                 for (i, weights) in weights.iter().enumerate() {
                     for r in 0..R {
-                        let x = x_rows[r * x_stride + i];
                         for k in 0..COLUMNS {
-                            sums[r][k] += x * weights[k];
+                            sums[r][k] += x_rows[r][i] * weights[k];
                         }
                     }
                 }
