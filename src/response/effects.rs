@@ -79,11 +79,14 @@ pub fn effects<T: Scalar>(
         (geometry.cg_to_front_axle_m, tires.cornering_coefficient_front_per_rad, [fl, fr]),
         (-geometry.cg_to_rear_axle_m, tires.cornering_coefficient_rear_per_rad, [rl, rr]),
     ];
+    let forward = (x.vx_m_s / SLOW_M_S).tanh();
     let (of_axles, of_body) = effects.split_at_mut(2 * N_PER_AXLE);
     for ((arm_m, cornering_coefficient, loads_n), out) in
         axles.into_iter().zip(of_axles.chunks_exact_mut(N_PER_AXLE))
     {
-        Axle { vehicle, arm_m, cornering_coefficient, loads_n }.effects(x, now, out);
+        let by_side_force = vehicle.acceleration_of([0.0, 1.0], arm_m);
+        let axle = Axle { vehicle, arm_m, by_side_force, forward, cornering_coefficient, loads_n };
+        axle.effects(x, now, out);
     }
     body_effects(vehicle, x, now, of_body);
     effects
@@ -94,6 +97,10 @@ struct Axle<'a, T> {
     vehicle: &'a VehicleParameters,
     /// From the CG, forward, m.
     arm_m: f64,
+    /// v̇_x, v̇_y, ṙ, φ̈ by a side force of 1 N.
+    by_side_force: [f64; N_RESIDUAL],
+    /// Which way the car rolls, −1 to 1.
+    forward: T,
     cornering_coefficient: f64,
     /// Of its left and its right wheel.
     loads_n: [T; 2],
@@ -105,7 +112,8 @@ impl<T: Scalar> Axle<'_, T> {
         let load_n = self.loads_n[0] + self.loads_n[1];
         let u = x.vx_m_s;
         let w = x.vy_m_s + x.yaw_rate_rad_s * self.arm_m;
-        let slip_rad = -(w / (u.abs() + SLOW_M_S)).atan();
+        let slope = w / (u.abs() + SLOW_M_S);
+        let slip_rad = -slope.atan();
         let grip_n = load_n * friction;
         let mut out = out.iter_mut();
         let mut put = |acceleration| {
@@ -118,10 +126,10 @@ impl<T: Scalar> Axle<'_, T> {
         for k in 0..SLIP_KNOTS_RAD.len() {
             put(self.side_force(hat(k, scaled_rad) * grip_n * (0.125 * side)));
         }
-        let (sin, cos) = slip_rad.abs().sin_cos();
-        let forward = (u / SLOW_M_S).tanh();
+        let cos = (slope * slope + 1.0).sqrt().recip();
+        let sin = slope.abs() * cos;
         for shape in [sin, sin * sin, sin * cos * 2.0, cos] {
-            put(self.along_force(-shape * grip_n * forward * 0.125));
+            put(self.along_force(-shape * grip_n * self.forward * 0.125));
         }
         for share in WHEEL_MASS_SHARES {
             let mass_kg = 2.0 * share * self.vehicle.mass.mass_kg;
@@ -152,7 +160,7 @@ impl<T: Scalar> Axle<'_, T> {
     }
 
     fn side_force(&self, force_n: T) -> [T; N_RESIDUAL] {
-        self.vehicle.acceleration_of([T::from(0.0), force_n], force_n * self.arm_m)
+        self.by_side_force.map(|acceleration| force_n * acceleration)
     }
 
     fn along_force(&self, force_n: T) -> [T; N_RESIDUAL] {

@@ -219,8 +219,7 @@ fn path(
     for (i, u) in inputs.iter().enumerate() {
         let at = (&state, u, i as f64 * STEP_S);
         let next = dynamics.step((component, latents), at, buffers);
-        let share = dynamics.weights(buffers).get(component).copied();
-        weight += share.unwrap_or(0.0) / inputs.len() as f64;
+        weight += dynamics.weight(component, buffers) / inputs.len() as f64;
         state = next;
         let mut off = dynamics.noise(component, buffers);
         noise(&mut off);

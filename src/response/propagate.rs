@@ -7,8 +7,9 @@
 //! (m, P)(t+1) = unscented transform of (Step(x, u; δ_j(z) + u ⊙ z_μ,j), z) + diag(q² σ_j²) on v_x, v_y, r, φ̇
 //! ```
 //!
-//! Pose comes last in ξ: the points that move the pose alone have the mean's motion turned and shifted,
-//! and need no step of their own. The paper restarts from a certain pose at every step, so that its
+//! Points off the mean come in pairs along the columns of a lower triangular root of P, so that a
+//! column leaves alone what comes before it in ξ: those of the latents see what the mean sees, those of
+//! the pose have the mean's step turned and shifted. The paper restarts from a certain pose at every step, so that its
 //! spread never grows along the path; with a certain pose this is its formula.
 //!
 //! Source: `eq:sigma_points_gmm` to `eq:complete_trajectory_gmm` of
@@ -18,23 +19,27 @@ use nalgebra::{SMatrix, SVector};
 
 use crate::response::features::features_of;
 use crate::response::latents::{LatentScales, N_LATENTS};
-use crate::response::vehicle_network::{ComponentOutput, VehicleNetwork, Workspace};
-use crate::response::{Effects, N_EFFECTS, N_FEATURES, N_RESIDUAL, STEP_S, combined, effects};
+use crate::response::vehicle_network::{VehicleNetwork, Workspace};
+use crate::response::{N_EFFECTS, N_FEATURES, N_RESIDUAL, STEP_S, combined, effects};
 use crate::uncertainty::{Unscented, UnscentedWeights};
 use crate::vehicle::{Evaluation, VehicleInput, VehicleParameters, VehicleState};
 
 /// Numbers of ξ.
 pub(crate) const N_JOINT: usize = 8 + N_LATENTS;
 const N: usize = N_JOINT;
-/// Those that the step depends on: velocities, roll and latents.
-const N_DYNAMIC: usize = 5 + N_LATENTS;
+/// Points about the mean.
+const N_POINTS: usize = 2 * N;
+/// Those that the network sees: velocities and roll.
+const N_SEEN: usize = 5;
+/// Those that the step depends on: these and the latents.
+const N_DYNAMIC: usize = N_SEEN + N_LATENTS;
 const PSI: usize = N_DYNAMIC;
 const X: usize = N_DYNAMIC + 1;
 const Y: usize = N_DYNAMIC + 2;
 /// Of velocities and rates in ξ: v_x, v_y, r, φ̇.
 const NOISY: [usize; N_RESIDUAL] = [0, 1, 2, 4];
 /// Latent factors of the collision in ξ: they matter as long as a force acts.
-const OF_COLLISION: [usize; 2] = [5 + 2, 5 + 3];
+const OF_COLLISION: [usize; 2] = [N_SEEN + 2, N_SEEN + 3];
 /// Variance that is added to every number of ξ so that no covariance is singular.
 const LEAST_VARIANCE: f64 = 1e-12;
 
@@ -64,16 +69,37 @@ pub(crate) struct Dynamics<'a> {
     pub vehicle: &'a VehicleParameters,
     pub network: &'a VehicleNetwork,
     pub scales: LatentScales,
-    pub directions: [[f64; N_EFFECTS]; N_LATENTS],
+    /// Change of the strengths of the effects with each latent, where there is one.
+    directions: [Vec<(usize, f64)>; N_LATENTS],
 }
 
-/// Buffers.
+/// Buffers, and what was seen last.
 #[derive(Default)]
 pub(crate) struct Buffers {
     work: Workspace,
     features: Vec<[f64; N_FEATURES]>,
-    seen: Vec<(VehicleState<f64>, Evaluation<f64>, [f64; N_LATENTS])>,
-    outputs: Vec<ComponentOutput>,
+    seen: Vec<Seen>,
+}
+
+/// A state that was looked at.
+struct Seen {
+    x: VehicleState<f64>,
+    now: Evaluation<f64>,
+    /// Effects and remainder of the component with all latents none, before the bound.
+    value: [f64; N_RESIDUAL],
+    /// What a latent of one adds to that.
+    by_latents: [[f64; N_RESIDUAL]; N_LATENTS],
+}
+
+/// What has to be done for a point that differs from the mean in one number of ξ and those after it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Anew {
+    /// All.
+    Look,
+    /// A step from what is seen at the mean.
+    Step,
+    /// The mean's step in its place.
+    Place,
 }
 
 impl<'a> Dynamics<'a> {
@@ -82,83 +108,80 @@ impl<'a> Dynamics<'a> {
         network: &'a VehicleNetwork,
         scales: LatentScales,
     ) -> Self {
-        Self { vehicle, network, scales, directions: scales.directions() }
+        let changed = |strengths: [f64; N_EFFECTS]| {
+            strengths.into_iter().enumerate().filter(|(_, change)| *change != 0.0).collect()
+        };
+        Self { vehicle, network, scales, directions: scales.directions().map(changed) }
     }
 
-    /// Strengths of a component at latent factors.
-    fn strengths(&self, component: usize, latents: &[f64; N_LATENTS]) -> [f64; N_EFFECTS] {
-        let mut strengths = self.network.strengths(component).copied().unwrap_or([0.0; N_EFFECTS]);
-        for (direction, z) in self.directions.iter().zip(latents) {
-            for (strength, change) in strengths.iter_mut().zip(direction) {
-                *strength += z * change;
-            }
-        }
-        strengths
-    }
-
-    /// One step at given latent factors; the network's word on all components is left in `buffers`.
+    /// One step at given latent factors.
     pub(crate) fn step(
         &self,
         (component, latents): (usize, &[f64; N_LATENTS]),
         (x, u, time_s): (&VehicleState<f64>, &VehicleInput<f64>, f64),
         buffers: &mut Buffers,
     ) -> VehicleState<f64> {
-        self.see(std::iter::once((*x, *latents)), (u, time_s), buffers);
-        self.step_seen(component, 0, u, buffers)
+        self.see(component, std::iter::once(*x), (u, time_s), buffers);
+        let seen = buffers.seen.first();
+        seen.map_or(*x, |seen| self.step_from(seen, latents, u))
     }
 
     /// Looks at several states at once.
     fn see(
         &self,
-        states: impl Iterator<Item = (VehicleState<f64>, [f64; N_LATENTS])>,
+        component: usize,
+        states: impl Iterator<Item = VehicleState<f64>>,
         (u, time_s): (&VehicleInput<f64>, f64),
         buffers: &mut Buffers,
     ) {
-        buffers.seen.clear();
-        buffers.features.clear();
-        for (x, latents) in states {
+        let Buffers { work, features, seen } = buffers;
+        features.clear();
+        seen.clear();
+        let strengths = self.network.strengths(component);
+        for x in states {
             let now = self.vehicle.evaluate(&x, u);
-            buffers.features.push(features_of(self.vehicle, &x, &now, time_s));
-            buffers.seen.push((x, now, latents));
+            features.push(features_of(self.vehicle, &x, &now, time_s));
+            let effects = effects(self.vehicle, &x, &now);
+            let known = strengths.map(|strengths| combined(&effects, strengths));
+            let by_latents = self.directions.each_ref().map(|direction| {
+                let mut sum = [0.0; N_RESIDUAL];
+                for &(k, change) in direction {
+                    add(&mut sum, change, &effects[k]);
+                }
+                sum
+            });
+            seen.push(Seen { x, now, value: known.unwrap_or_default(), by_latents });
         }
-        self.network.forward(&buffers.features, &mut buffers.work, &mut buffers.outputs);
+        self.network.forward(features, work);
+        for (idx, seen) in seen.iter_mut().enumerate() {
+            add(&mut seen.value, 1.0, &self.network.remainder(work, [idx, component]));
+        }
     }
 
-    /// A step from one of the states that were seen last.
-    fn step_seen(
+    /// A step from a state that was looked at.
+    fn step_from(
         &self,
-        component: usize,
-        idx: usize,
+        seen: &Seen,
+        latents: &[f64; N_LATENTS],
         u: &VehicleInput<f64>,
-        buffers: &Buffers,
     ) -> VehicleState<f64> {
-        let Some((x, now, latents)) = buffers.seen.get(idx) else {
-            return VehicleState::default();
-        };
-        let of_effects: Effects<f64> = effects(self.vehicle, x, now);
-        let known = combined(&of_effects, &self.strengths(component, latents));
-        let output = buffers.outputs.get(idx * self.network.n_components() + component);
-        let remainder = output.map_or([0.0; N_RESIDUAL], |output| output.remainder);
-        let value = self.network.bounded(std::array::from_fn(|i| known[i] + remainder[i]));
-        self.network.correction().step_from(self.vehicle, (x, u, now), value)
+        let mut value = seen.value;
+        for (z, by_latent) in latents.iter().zip(&seen.by_latents) {
+            add(&mut value, *z, by_latent);
+        }
+        let value = self.network.bounded(value);
+        self.network.correction().step_from(self.vehicle, (&seen.x, u, &seen.now), value)
     }
 
-    /// Probabilities of the components at the first of the states that were seen last.
-    pub(crate) fn weights(&self, buffers: &Buffers) -> Vec<f64> {
-        let of_first = buffers.outputs.iter().take(self.network.n_components());
-        let logits = of_first.map(|output| output.logit);
-        let largest = logits.clone().fold(f64::NEG_INFINITY, f64::max);
-        let shares: Vec<f64> = logits.map(|logit| (logit - largest).exp()).collect();
-        let sum: f64 = shares.iter().sum();
-        shares.into_iter().map(|share| share / sum).collect()
+    /// Probability of a component at the first of the states that were seen last.
+    pub(crate) fn weight(&self, component: usize, buffers: &Buffers) -> f64 {
+        self.network.weight(&buffers.work, [0, component])
     }
 
     /// Deviation of the noise of a step from the first of the states that were seen last.
     pub(crate) fn noise(&self, component: usize, buffers: &Buffers) -> [f64; N_RESIDUAL] {
-        let output = buffers.outputs.get(component);
-        output.map_or([0.0; N_RESIDUAL], |output| {
-            output.variance.map(|variance| self.scales.step_noise * variance.sqrt())
-        })
+        let variance = self.network.variance(&buffers.work, [0, component]);
+        variance.map(|variance| self.scales.step_noise * variance.sqrt())
     }
 
     /// The distribution of a component's motion.
@@ -170,15 +193,15 @@ impl<'a> Dynamics<'a> {
         buffers: &mut Buffers,
     ) -> ComponentMotion {
         let n_components = self.network.n_components();
-        let mut mean = mean_of(initial, [0.0; N_LATENTS]);
+        let mut mean = mean_of(initial, &[0.0; N_LATENTS]);
         let mut covariance = Covariance::identity() * LEAST_VARIANCE;
         let shares = self.scales.of_component(component, n_components);
         for (m, share) in shares.into_iter().enumerate() {
-            mean[5 + m] = share.mean;
-            covariance[(5 + m, 5 + m)] = share.variance.max(LEAST_VARIANCE);
+            mean[N_SEEN + m] = share.mean;
+            covariance[(N_SEEN + m, N_SEEN + m)] = share.variance.max(LEAST_VARIANCE);
         }
         let weights = unscented.weights(N);
-        let last_struck = inputs.iter().rposition(|input| input.collision.is_some());
+        let last_struck = inputs.iter().rposition(is_struck);
         let n_struck = last_struck.map_or(0, |last| last + 1);
         let mut states = Vec::with_capacity(inputs.len() + 1);
         states.push(StateDistribution::of(&mean, &covariance));
@@ -190,8 +213,7 @@ impl<'a> Dynamics<'a> {
             let at = (u, i as f64 * STEP_S, i >= n_struck);
             (mean, covariance) =
                 self.propagate((component, &weights), (&mean, &covariance), at, buffers);
-            let share = self.weights(buffers).get(component).copied();
-            weight += share.unwrap_or(0.0) / inputs.len() as f64;
+            weight += self.weight(component, buffers) / inputs.len() as f64;
             states.push(StateDistribution::of(&mean, &covariance));
         }
         ComponentMotion { weight, states }
@@ -210,45 +232,49 @@ impl<'a> Dynamics<'a> {
     ) -> (Mean, Covariance) {
         let root = root_of(covariance) * weights.reach;
         // A force in world axes pushes a car that is turned otherwise from another side.
-        let depends_on_pose = u.collision.is_some_and(|collision| collision.in_world_axes);
-        let matters = |i: &usize| match *i {
-            i if i >= N_DYNAMIC => depends_on_pose,
-            i => !is_free || !OF_COLLISION.contains(&i),
+        let depends_on_pose =
+            !is_free && u.collision.is_some_and(|collision| collision.in_world_axes);
+        let anew = |i: usize| match i {
+            _ if depends_on_pose => Anew::Look,
+            i if i < N_SEEN => Anew::Look,
+            i if i < N_DYNAMIC && !(is_free && OF_COLLISION.contains(&i)) => Anew::Step,
+            _ => Anew::Place,
         };
-        let stepped: Vec<usize> = (0..N).filter(matters).collect();
-        let points = stepped.iter().flat_map(|&i| {
-            let column = root.column(i);
-            [mean + column, mean - column]
+        let mut offsets: [Mean; N_POINTS] = std::array::from_fn(|k| {
+            let column = root.column(k / 2).into_owned();
+            if k.is_multiple_of(2) { column } else { -column }
         });
-        let points = std::iter::once(*mean).chain(points).map(|point| state_of(&point));
-        self.see(points, (u, time_s), buffers);
-        let next = |idx: usize| -> Mean {
-            let latents =
-                buffers.seen.get(idx).map_or([0.0; N_LATENTS], |(_, _, latents)| *latents);
-            mean_of(&self.step_seen(component, idx, u, buffers), latents)
-        };
-        let centre = next(0);
-        let mut offsets = [Mean::zeros(); 2 * N];
-        for (k, &i) in stepped.iter().enumerate() {
-            offsets[2 * i] = next(1 + 2 * k) - centre;
-            offsets[2 * i + 1] = next(2 + 2 * k) - centre;
-        }
-        let moved = [centre[X] - mean[X], centre[Y] - mean[Y]];
-        for i in (0..N).filter(|i| !matters(i)) {
-            for (sign, slot) in [(1.0, 2 * i), (-1.0, 2 * i + 1)] {
-                offsets[slot] = turned(moved, &(root.column(i) * sign).into_owned());
+        // Where the pose does not matter, a step starts from the mean's and is turned afterwards.
+        let start = |offset: &Mean| {
+            let mut start = *offset;
+            if !depends_on_pose {
+                start.fixed_rows_mut::<3>(PSI).fill(0.0);
             }
+            start
+        };
+        let looks = offsets.iter().enumerate().filter(|(k, _)| anew(k / 2) == Anew::Look);
+        let looks = looks.map(|(_, offset)| state_of(&(mean + start(offset))));
+        let states = std::iter::once(state_of(mean)).chain(looks);
+        self.see(component, states, (u, time_s), buffers);
+        let mut seen = buffers.seen.iter();
+        let at_mean = seen.next();
+        let step = |seen: &Seen, point: &Mean| self.step_from(seen, &latents_of(point), u);
+        let of_mean = at_mean.map_or(state_of(mean), |seen| step(seen, mean));
+        let centre = mean_of(&of_mean, &latents_of(mean));
+        for (k, offset) in offsets.iter_mut().enumerate() {
+            let point = mean + *offset;
+            let from = match anew(k / 2) {
+                Anew::Look => seen.next(),
+                Anew::Step => at_mean,
+                Anew::Place => None,
+            };
+            let next = from.map_or(of_mean, |seen| step(seen, &point));
+            let next = mean_of(&next, &latents_of(&point));
+            let way = [next[X] - mean[X], next[Y] - mean[Y]];
+            *offset = turned(next - centre, way, &(*offset - start(offset)));
         }
-        let noise = self.noise(component, buffers);
-        let shift: Mean = offsets.iter().sum::<Mean>() * weights.other;
-        let mut covariance = Covariance::zeros();
-        for offset in &offsets {
-            let off = offset - shift;
-            covariance.syger(weights.other, &off, &off, 1.0);
-        }
-        covariance.syger(weights.centre_covariance, &shift, &shift, 1.0);
-        covariance.fill_upper_triangle_with_lower_triangle();
-        for (idx, std) in NOISY.into_iter().zip(noise) {
+        let (shift, mut covariance) = moments(&offsets, weights);
+        for (idx, std) in NOISY.into_iter().zip(self.noise(component, buffers)) {
             covariance[(idx, idx)] += std * std;
         }
         for i in 0..N {
@@ -256,6 +282,32 @@ impl<'a> Dynamics<'a> {
         }
         (centre + shift, covariance)
     }
+}
+
+/// Mean and covariance of points about the centre.
+fn moments(offsets: &[Mean; N_POINTS], weights: &UnscentedWeights) -> (Mean, Covariance) {
+    let mut spread = SMatrix::<f64, N, N_POINTS>::from_columns(offsets);
+    let shift = spread.column_sum() * weights.other;
+    for mut column in spread.column_iter_mut() {
+        column -= shift;
+    }
+    let of_centre = shift * shift.transpose() * weights.centre_covariance;
+    (shift, spread * spread.transpose() * weights.other + of_centre)
+}
+
+/// `sum += factor · values`.
+fn add(sum: &mut [f64; N_RESIDUAL], factor: f64, values: &[f64; N_RESIDUAL]) {
+    for (sum, value) in sum.iter_mut().zip(values) {
+        *sum += factor * value;
+    }
+}
+
+/// Whether a force acts: a record goes on with forces of zero after the contact.
+fn is_struck(input: &VehicleInput<f64>) -> bool {
+    input.collision.is_some_and(|collision| {
+        collision.force_n != [0.0; 2]
+            || collision.yaw_moment_n_m.is_some_and(|moment| moment != 0.0)
+    })
 }
 
 /// What is uncertain about a collision that is over: its latent factors are no longer part of the
@@ -284,22 +336,23 @@ fn root_of(covariance: &Covariance) -> Covariance {
     }
 }
 
-/// Where a point goes, against the mean, that differs from it in the pose alone.
+/// A point against the centre, stepped from another pose.
 ///
-/// - `moved`: way of the mean over the step, m; `pose`: the point against the mean.
-fn turned([dx, dy]: [f64; 2], pose: &Mean) -> Mean {
+/// - `offset`, `way`: of its step from the mean's pose, against the centre's and in m; `pose`: how far
+///   off its own pose was.
+fn turned(mut offset: Mean, [dx, dy]: [f64; 2], pose: &Mean) -> Mean {
     let (sin, cos) = pose[PSI].sin_cos();
-    let mut offset = *pose;
+    offset += pose;
     offset[X] += cos * dx - sin * dy - dx;
     offset[Y] += sin * dx + cos * dy - dy;
     offset
 }
 
-fn mean_of(x: &VehicleState<f64>, latents: [f64; N_LATENTS]) -> Mean {
+fn mean_of(x: &VehicleState<f64>, latents: &[f64; N_LATENTS]) -> Mean {
     let mut mean = Mean::zeros();
     let state = [x.vx_m_s, x.vy_m_s, x.yaw_rate_rad_s, x.roll_rad, x.roll_rate_rad_s];
-    for (slot, value) in mean.iter_mut().zip(state.into_iter().chain(latents)) {
-        *slot = value;
+    for (slot, value) in mean.iter_mut().zip(state.iter().chain(latents)) {
+        *slot = *value;
     }
     mean[PSI] = x.yaw_rad;
     mean[X] = x.x_m;
@@ -307,8 +360,8 @@ fn mean_of(x: &VehicleState<f64>, latents: [f64; N_LATENTS]) -> Mean {
     mean
 }
 
-fn state_of(point: &Mean) -> (VehicleState<f64>, [f64; N_LATENTS]) {
-    let state = VehicleState {
+fn state_of(point: &Mean) -> VehicleState<f64> {
+    VehicleState {
         vx_m_s: point[0],
         vy_m_s: point[1],
         yaw_rate_rad_s: point[2],
@@ -317,14 +370,17 @@ fn state_of(point: &Mean) -> (VehicleState<f64>, [f64; N_LATENTS]) {
         yaw_rad: point[PSI],
         x_m: point[X],
         y_m: point[Y],
-    };
-    (state, std::array::from_fn(|m| point[5 + m]))
+    }
+}
+
+fn latents_of(point: &Mean) -> [f64; N_LATENTS] {
+    std::array::from_fn(|m| point[N_SEEN + m])
 }
 
 impl StateDistribution {
     fn of(mean: &Mean, covariance: &Covariance) -> Self {
         let order = [X, Y, PSI, 0, 1, 2];
         let covariance = SMatrix::from_fn(|i, j| covariance[(order[i], order[j])]);
-        Self { mean: state_of(mean).0, covariance }
+        Self { mean: state_of(mean), covariance }
     }
 }

@@ -43,23 +43,13 @@ pub(crate) struct VehicleNetwork {
     min_std: f64,
 }
 
-/// What the network says of an instant, of one component.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct ComponentOutput {
-    /// z_μ in units of the correction: what is added to the effects before the bound.
-    pub remainder: [f64; N_RESIDUAL],
-    /// σ² of the velocities after a step, (m/s)², (rad/s)².
-    pub variance: [f64; N_RESIDUAL],
-    /// z_ω.
-    pub logit: f64,
-}
-
-/// Buffers of a forward pass.
+/// Buffers of a forward pass, and what came out of it.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Workspace {
     hidden: Rows,
     next: Rows,
     scores: Rows,
+    n_instants: usize,
 }
 
 impl VehicleNetwork {
@@ -117,15 +107,9 @@ impl VehicleNetwork {
         }
     }
 
-    /// What the network says of instants: of all components of the first into `out`, then of the
-    /// second, and so on.
-    pub(crate) fn forward(
-        &self,
-        features: &[[f64; N_FEATURES]],
-        work: &mut Workspace,
-        out: &mut Vec<ComponentOutput>,
-    ) {
-        let n = features.len();
+    /// Looks at instants; what the network says of them is left in `work`.
+    pub(crate) fn forward(&self, features: &[[f64; N_FEATURES]], work: &mut Workspace) {
+        work.n_instants = features.len();
         self.fill(features, &mut work.hidden);
         for layer in &self.encoder {
             layer.forward(&work.hidden, &mut work.next, true);
@@ -147,11 +131,27 @@ impl VehicleNetwork {
             std::mem::swap(&mut work.hidden, &mut work.next);
         }
         self.head.forward(&work.hidden, &mut work.next, false);
-        out.clear();
-        for idx in 0..n {
-            let sides = [work.next.row(idx), work.next.row(n + idx)];
-            out.extend((0..self.n_components).map(|j| self.output(sides, j)));
-        }
+    }
+
+    /// z_μ of an instant in units of the correction: what is added to the effects before the bound.
+    ///
+    /// - `at`: instant and component.
+    pub(crate) fn remainder(&self, work: &Workspace, at: [usize; 2]) -> [f64; N_RESIDUAL] {
+        std::array::from_fn(|i| self.unit[i] * number(work, at, i, RESIDUAL_MIRROR[i]))
+    }
+
+    /// σ² of the velocities after a step from an instant, (m/s)², (rad/s)².
+    pub(crate) fn variance(&self, work: &Workspace, at: [usize; 2]) -> [f64; N_RESIDUAL] {
+        std::array::from_fn(|i| {
+            self.min_std * self.min_std + number(work, at, N_RESIDUAL + i, 1.0).exp()
+        })
+    }
+
+    /// ω of an instant.
+    pub(crate) fn weight(&self, work: &Workspace, [instant, component]: [usize; 2]) -> f64 {
+        let logit = |component| number(work, [instant, component], 2 * N_RESIDUAL, 1.0);
+        let own = logit(component);
+        1.0 / (0..self.n_components).map(|other| (logit(other) - own).exp()).sum::<f64>()
     }
 
     /// Rows of the motions, then of the mirrored ones.
@@ -165,20 +165,16 @@ impl VehicleNetwork {
             }
         }
     }
+}
 
-    /// One component, from the heads of motion and mirrored motion.
-    fn output(&self, [plain, mirrored]: [&[f32]; N_SIDES], component: usize) -> ComponentOutput {
-        let first = component * N_COMPONENT_NUMBERS;
-        let number = |of: &[f32], i: usize| f64::from(of.get(first + i).copied().unwrap_or(0.0));
-        let mean = |i: usize, sign: f64| 0.5 * (number(plain, i) + sign * number(mirrored, i));
-        ComponentOutput {
-            remainder: std::array::from_fn(|i| self.unit[i] * mean(i, RESIDUAL_MIRROR[i])),
-            variance: std::array::from_fn(|i| {
-                self.min_std * self.min_std + mean(N_RESIDUAL + i, 1.0).exp()
-            }),
-            logit: mean(2 * N_RESIDUAL, 1.0),
-        }
-    }
+/// A number of a component: the mean of the heads of motion and mirrored motion.
+fn number(work: &Workspace, [instant, component]: [usize; 2], i: usize, mirror: f64) -> f64 {
+    let column = component * N_COMPONENT_NUMBERS + i;
+    let head = |row: usize| {
+        let value = work.next.row(row).get(column).copied();
+        f64::from(value.unwrap_or(0.0))
+    };
+    0.5 * (head(instant) + mirror * head(work.n_instants + instant))
 }
 
 fn softmax_in_place(values: &mut [f32]) {
@@ -225,25 +221,26 @@ mod tests {
             let of =
                 |tensor: &Tensor| -> Vec<f64> { tensor.flatten_all().unwrap().to_vec1().unwrap() };
             let features = of(&features);
-            let (mut work, mut outputs) = (Workspace::default(), Vec::new());
+            let mut work = Workspace::default();
             let row: [f64; N_FEATURES] = std::array::from_fn(|i| features[i]);
             let mut other = row;
             other[0] += 1.0;
-            quick.forward(&[row, other], &mut work, &mut outputs);
-            assert_eq!(outputs.len(), 2 * config.components);
-            assert_ne!(outputs[0], outputs[config.components]);
-            outputs.truncate(config.components);
+            quick.forward(&[row, other], &mut work);
+            assert_ne!(quick.remainder(&work, [0, 0]), quick.remainder(&work, [1, 0]));
             let (residual, logits) = (of(&slow.residual), of(&slow.logits));
             let variance = of(&slow.log_variance);
-            for (j, output) in outputs.iter().enumerate() {
-                let value = quick.bounded(output.remainder);
+            let sum: f64 = logits.iter().map(|logit| logit.exp()).sum();
+            for j in 0..config.components {
+                let value = quick.bounded(quick.remainder(&work, [0, j]));
+                let got = quick.variance(&work, [0, j]);
                 for i in 0..N_RESIDUAL {
                     let off = value[i] - residual[j * N_RESIDUAL + i];
                     assert!(off.abs() < 1e-4, "{j} {i}: {off}");
                     let expected = variance[j * N_RESIDUAL + i].exp() + 1e-4;
-                    assert!((output.variance[i] / expected - 1.0).abs() < 1e-4);
+                    assert!((got[i] / expected - 1.0).abs() < 1e-4);
                 }
-                assert!((output.logit - logits[j]).abs() < 1e-4);
+                let weight = quick.weight(&work, [0, j]);
+                assert!((weight - logits[j].exp() / sum).abs() < 1e-4, "{j}: {weight}");
             }
         }
     }
