@@ -244,3 +244,25 @@ fn what_cannot_be_done_is_said_in_one_line() {
     let text = error(program().args(["compare", "--data", DATA, "--config"]).arg(&wrong));
     assert_eq!(text, "error: network.components is 0, expected 1 or more\n");
 }
+
+#[test]
+fn a_forecast_is_rendered_beside_the_record() {
+    let place = workplace();
+    let out = place.folder.path().join("forecast.csv");
+    let render = |extra: &[&str]| {
+        let mut command = program();
+        command.args(["render", "forecast", DATA, "--case", "FE_c002", "--out"]).arg(&out);
+        command.arg("--response-model").arg(&place.tuned).args(extra);
+        command.output().unwrap()
+    };
+    ok(render(&["--channel", "yaw"]));
+    let text = fs::read_to_string(&out).unwrap();
+    for name in ["90 % band (low)", "reference", "central path", "4DOF model"] {
+        assert!(text.contains(name), "{name}");
+    }
+    ok(render(&["--window", "0,2"]));
+    assert!(fs::read_to_string(&out).unwrap().contains("density of the CG, 0.00 to 2.00 s"));
+    let late = render(&["--time", "9"]);
+    assert_eq!(late.status.code(), Some(1));
+    assert!(String::from_utf8(late.stderr).unwrap().contains("--time is 9 s"));
+}

@@ -177,6 +177,12 @@ pub enum CliError {
         /// Duration of the simulation, s.
         duration_s: f64,
     },
+    /// No force, so that nothing can be forecast.
+    #[error("{}: has no force on a vehicle to forecast a motion from", path.display())]
+    NoForce {
+        /// The file or data set.
+        path: PathBuf,
+    },
     /// Nothing of what a figure shows is known.
     #[error("{}: nothing is known of {channel} over time", path.display())]
     NothingToShow {

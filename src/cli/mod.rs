@@ -21,6 +21,7 @@ mod predict_motion;
 mod predict_motion_files;
 mod render;
 mod render_figure;
+mod render_forecast;
 mod simulate;
 mod simulate_answer;
 mod simulate_dataset;

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::cli::output::print_json;
 use crate::cli::quantity::{UnitsArg, contact_point, size_px, time_s};
+use crate::cli::render_forecast::{self, ForecastArgs};
 use crate::cli::run::{Console, Verdict};
 use crate::cli::{CliError, render_figure};
 use crate::collision::ChannelClass;
@@ -46,6 +47,12 @@ Example:\n  impactlab render motion datasets/trajectories-fea --case FE_c002 --c
 Example:\n  impactlab render scene datasets/trajectories-fea --case FE_c002 --time 1.5 \
 --out scene.png --dark")]
     Scene(SceneArgs),
+    /// Where the response network says the struck vehicle goes under the recorded force, beside the
+    /// record
+    #[command(after_help = "\
+Example:\n  impactlab render forecast datasets/trajectories-fea --case FE_c002 --time 2 --out forecast.png\n  \
+impactlab render forecast datasets/trajectories-fea --case FE_c002 --channel yaw --out yaw.png")]
+    Forecast(ForecastArgs),
     /// The impact of a scenario from above: impulse and delta-v
     #[command(after_help = "\
 Example:\n  impactlab render impact assets/scenarios/pit_right_rear.toml --out impact.png")]
@@ -216,6 +223,7 @@ pub(super) fn run(args: &RenderArgs, console: &mut Console<'_>) -> Result<Verdic
         FigureArgs::Force(args) => &args.output,
         FigureArgs::Motion(args) => &args.output,
         FigureArgs::Scene(args) => &args.output,
+        FigureArgs::Forecast(args) => &args.output,
         FigureArgs::Impact(args) => &args.output,
     };
     let ending = output.out.extension().map(|end| end.to_ascii_lowercase());
@@ -241,6 +249,7 @@ pub(super) fn run(args: &RenderArgs, console: &mut Console<'_>) -> Result<Verdic
         FigureArgs::Scene(args) => {
             render_figure::scene(&args.source, &args.vehicle, args.time, units)?
         }
+        FigureArgs::Forecast(args) => render_forecast::figure(args, units)?,
         FigureArgs::Impact(args) => render_figure::impact(&args.scenario, args.paper, units)?,
     };
     draw(&figure, output)?;

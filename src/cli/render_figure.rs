@@ -20,7 +20,7 @@ use crate::vehicle::Integrator;
 const DURATION_S: f64 = 4.0;
 
 /// A figure and what should be said with it.
-type Noted = (Figure, Vec<String>);
+pub(super) type Noted = (Figure, Vec<String>);
 
 /// The force of a case or a file, filtered if a class is given.
 pub(super) fn force(
@@ -106,7 +106,7 @@ fn choose_source(source: &SourceArgs) -> Result<Chosen, CliError> {
 }
 
 /// Simulates a case or a trajectory file and compares.
-fn analyse(source: &SourceArgs, vehicles: &VehicleArgs) -> Result<Analysis, CliError> {
+pub(super) fn analyse(source: &SourceArgs, vehicles: &VehicleArgs) -> Result<Analysis, CliError> {
     let settings = |own: Option<&Path>| -> Result<Settings, CliError> {
         Ok(Settings {
             target: vehicle_or_own(vehicles.vehicle.as_deref(), own, &source.path)?,

@@ -89,7 +89,7 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
         Some(Element::Line(Series { name: name.to_owned(), role, style, points }))
     };
     let others = [
-        ("4DOF model", Role::Simulation, LineStyle::Dotted, input.simulation),
+        ("4DOF model", Role::Pulse, LineStyle::Dotted, input.simulation),
         ("reference", Role::Reference, LineStyle::Dashed, input.reference),
     ];
     for (name, role, style, series) in others {
@@ -125,7 +125,8 @@ pub fn forecast_surroundings(input: &MotionForecastFigure<'_>) -> [[f64; 2]; 2] 
     [-1.0, 1.0].map(|sign| [end(0, sign), end(1, sign)])
 }
 
-/// “Y 3.21 m, 90 %: 2.9 … 3.6” at the moment of the figure.
+/// “Y 3.2 (2.9 … 3.6)” at the moment of the figure, in the axis' unit: central path, and from where to
+/// where 90 % lie.
 pub fn forecast_readout(input: &MotionForecastFigure<'_>, channel: ForecastChannel) -> String {
     let ForecastChannel { channel, axis } = channel;
     let unit = channel.quantity().display_unit(input.units);
@@ -142,7 +143,7 @@ pub fn forecast_readout(input: &MotionForecastFigure<'_>, channel: ForecastChann
     let shown = |value: f64| format!("{:.1}", unit.from_si(value));
     let [low, high] = band[axis][0];
     let (value, low, high) = (shown(state.planar()[axis]), shown(low), shown(high));
-    format!("{} {value} {} ({low} … {high})", channel.label(), unit.symbol)
+    format!("{} {value} ({low} … {high})", channel.label())
 }
 
 fn instant(input: &MotionForecastFigure<'_>) -> usize {
@@ -198,7 +199,7 @@ pub fn forecast_channel_figure(
         Some(Element::Line(Series { name: name.to_owned(), role, style, points }))
     };
     let others = [
-        ("4DOF model", Role::Simulation, LineStyle::Dotted, input.simulation),
+        ("4DOF model", Role::Pulse, LineStyle::Dotted, input.simulation),
         ("reference", Role::Reference, LineStyle::Dashed, input.reference),
     ];
     for (name, role, style, series) in others {

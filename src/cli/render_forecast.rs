@@ -1,0 +1,110 @@
+//! `impactlab render forecast`: what the response network says of a recorded case.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use crate::analysis::{DensityTask, MotionBands, MotionForecastSettings, forecast_forces};
+use crate::cli::CliError;
+use crate::cli::quantity::{time_s, window_s};
+use crate::cli::render::{OutputArgs, SourceArgs, VehicleArgs};
+use crate::cli::render_figure::{Noted, analyse};
+use crate::data::Channel;
+use crate::figure::{
+    FORECAST_CHANNELS, MotionForecastFigure, forecast_channel_figure, forecast_scene_figure,
+};
+use crate::response::ResponseModel;
+use crate::units::UnitSystem;
+
+/// Every how many steps the bands over time have an edge.
+const BAND_STRIDE: usize = 5;
+
+/// What is drawn of which forecast.
+#[derive(Debug, Args)]
+pub(super) struct ForecastArgs {
+    #[command(flatten)]
+    source: SourceArgs,
+    /// This quantity over time instead of the scene
+    #[arg(long, value_enum)]
+    channel: Option<ForecastChannelArg>,
+    /// The moment of outlines and density, s; the end if not given
+    #[arg(long, value_parser = time_s)]
+    time: Option<f64>,
+    /// Density over a window of time, s, instead of the moment
+    #[arg(long, value_parser = window_s, value_name = "FROM,TO")]
+    window: Option<[f64; 2]>,
+    /// The response network
+    #[arg(long, default_value = "assets/models/response.safetensors", value_name = "MODEL")]
+    response_model: PathBuf,
+    #[command(flatten)]
+    vehicle: VehicleArgs,
+    #[command(flatten)]
+    pub(super) output: OutputArgs,
+}
+
+/// A quantity with bands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum ForecastChannelArg {
+    X,
+    Y,
+    Yaw,
+    Vx,
+    Vy,
+    YawRate,
+}
+
+impl From<ForecastChannelArg> for Channel {
+    fn from(channel: ForecastChannelArg) -> Self {
+        match channel {
+            ForecastChannelArg::X => Self::X,
+            ForecastChannelArg::Y => Self::Y,
+            ForecastChannelArg::Yaw => Self::Yaw,
+            ForecastChannelArg::Vx => Self::Vx,
+            ForecastChannelArg::Vy => Self::Vy,
+            ForecastChannelArg::YawRate => Self::YawRate,
+        }
+    }
+}
+
+/// The scene or a quantity over time, with what was recorded and what the 4DOF model says.
+pub(super) fn figure(args: &ForecastArgs, units: UnitSystem) -> Result<Noted, CliError> {
+    let path = || args.source.path.clone();
+    let mut analysis = analyse(&args.source, &args.vehicle)?;
+    let (Some(struck), Some(force)) = (&analysis.struck, &analysis.force) else {
+        return Err(CliError::NoForce { path: path() });
+    };
+    let model = ResponseModel::load(&args.response_model)?;
+    let recorded = analysis.reference.as_ref().and_then(|of| of.time_s().last().copied());
+    let settings = MotionForecastSettings::default();
+    let duration_s = recorded.unwrap_or(settings.duration_s);
+    let settings = MotionForecastSettings { duration_s, ..settings };
+    let failed = |source| CliError::Forecast { path: path(), source: Box::new(source) };
+    let forecast = forecast_forces(std::slice::from_ref(force), &model, struck, &settings);
+    let forecast = forecast.map_err(failed)?;
+    let at_s = args.time.unwrap_or(duration_s);
+    if !(0.0..=duration_s).contains(&at_s) {
+        return Err(CliError::TimeOutside { time_s: at_s, start_s: 0.0, end_s: duration_s });
+    }
+    let density = DensityTask::new(&forecast.distribution, args.window.unwrap_or([at_s; 2]));
+    let (density, bands) = (density.on_cpu(), MotionBands::of(&forecast.distribution, BAND_STRIDE));
+    let input = MotionForecastFigure {
+        title: &analysis.name,
+        distribution: &forecast.distribution,
+        central: &forecast.central,
+        bands: &bands,
+        density: Some(&density),
+        components: true,
+        reference: analysis.reference.as_ref(),
+        simulation: analysis.simulation.as_ref().map(|motion| &motion.series),
+        footprint: analysis.footprint,
+        time_s: at_s,
+        units,
+    };
+    let wanted = args.channel.map(Channel::from);
+    let channel = FORECAST_CHANNELS.into_iter().find(|of| Some(of.channel) == wanted);
+    let figure = match channel {
+        Some(channel) => forecast_channel_figure(&input, channel),
+        None => forecast_scene_figure(&input),
+    };
+    Ok((figure, std::mem::take(&mut analysis.notes)))
+}
