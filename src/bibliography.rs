@@ -8,6 +8,9 @@ macro_rules! sources {
 }
 
 sources! {
+    /// Y. Bar-Shalom, X. R. Li, T. Kirubarajan, *Estimation with Applications to Tracking and
+    /// Navigation*, Wiley, 2001. Kinematic models of targets and their process noise.
+    BarShalom2001;
     /// R. M. Brach, R. M. Brach, *Vehicle Accident Analysis and Reconstruction Methods*, 2nd ed.,
     /// SAE International, 2011. Planar impact mechanics, restitution and impulse ratio.
     Brach2011;
@@ -45,6 +48,9 @@ sources! {
     /// C. E. Rasmussen, C. K. I. Williams, *Gaussian Processes for Machine Learning*, MIT Press,
     /// 2006. Regression, marginal likelihood and its gradient.
     RasmussenWilliams2006;
+    /// H. E. Rauch, F. Tung, C. T. Striebel, *Maximum likelihood estimates of linear dynamic systems*,
+    /// AIAA Journal 3(8), 1965. Smoothing over a fixed interval.
+    RauchTungStriebel1965;
     /// P. J. Rousseeuw, *Silhouettes: a graphical aid to the interpretation and validation of cluster
     /// analysis*, Journal of Computational and Applied Mathematics 20, 1987.
     Rousseeuw1987;

@@ -8,6 +8,7 @@ mod least_squares;
 mod normal;
 mod ode;
 mod scalar;
+mod smoother;
 mod statistics;
 
 pub use angle::wrap_angle_rad;
@@ -20,4 +21,5 @@ pub use least_squares::{LeastSquares, levenberg_marquardt};
 pub use normal::{normal_cdf, normal_density, normal_quantile};
 pub use ode::{Stage, euler_step, rk4_step};
 pub use scalar::Scalar;
+pub use smoother::{Track, TrackPoint, TrackSample};
 pub use statistics::{Summary, quantile_of_sorted};
