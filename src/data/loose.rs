@@ -109,6 +109,21 @@ pub fn read_trajectory_file(path: &Path, map: Option<&ColumnMap>) -> Result<Load
     read_series(path, map, FileKind::Trajectory)
 }
 
+/// Reads a motion of which the heading is known too: time, position, yaw, and whatever else is
+/// recognised.
+///
+/// # Errors
+/// [`DataError`], with the place in the file and what to do.
+pub fn read_motion_log(path: &Path, map: Option<&ColumnMap>) -> Result<Loaded, DataError> {
+    let table = Table::read(path)?;
+    let columns = Columns::of(&table, map)?;
+    let has_position = FileKind::Trajectory.first_missing(&columns).is_none();
+    if has_position && !columns.by_channel.contains_key(&Channel::Yaw) {
+        return Err(columns.missing(&table, Channel::Yaw, "time, x, y and yaw"));
+    }
+    load(&table, columns, FileKind::Trajectory, map.is_some())
+}
+
 /// Reads road-wheel angles over time.
 ///
 /// # Errors
