@@ -8,7 +8,7 @@ use crate::collision::{FilterError, ScenarioError, ScenarioFileError};
 use crate::compare::ReplayError;
 use crate::data::{DataError, SeriesError};
 use crate::force::{EvaluateError, ForceError, LoadError};
-use crate::response::{ResponseError, ResponseLoadError};
+use crate::response::{LogError, ResponseError, ResponseLoadError};
 use crate::vehicle::{SimulationError, VehicleError};
 
 /// A command that could not do its work.
@@ -29,6 +29,23 @@ pub enum CliError {
     /// A trajectory data set.
     #[error(transparent)]
     ResponseData(Box<ResponseLoadError>),
+    /// A log of an impact.
+    #[error(transparent)]
+    Log(Box<LogError>),
+    /// Not a force for every log.
+    #[error("{n_forces} force files for {n_logs} logs, expected one for each or none")]
+    ForcesOfLogs {
+        /// How many there are.
+        n_forces: usize,
+        /// How many logs.
+        n_logs: usize,
+    },
+    /// A folder without logs.
+    #[error("{}: holds no file that ends in .csv", path.display())]
+    NoLogs {
+        /// The folder.
+        path: PathBuf,
+    },
     /// Training, opening or asking a response network.
     #[error(transparent)]
     Response(Box<ResponseError>),
@@ -252,6 +269,12 @@ impl From<LoadError> for CliError {
 impl From<ResponseLoadError> for CliError {
     fn from(error: ResponseLoadError) -> Self {
         Self::ResponseData(Box::new(error))
+    }
+}
+
+impl From<LogError> for CliError {
+    fn from(error: LogError) -> Self {
+        Self::Log(Box::new(error))
     }
 }
 

@@ -6,12 +6,15 @@ use std::time::Instant;
 use clap::{Args, Subcommand};
 
 use crate::cli::CliError;
+use crate::cli::fine_tune_log::{LogArgs, LogFacts};
 use crate::cli::response_training::{
     checkpoint_of, config, data_name, load_cases, print_config, print_model, under_bar,
 };
 use crate::cli::run::{Console, Verdict};
 use crate::data::TEST_SHARE;
-use crate::response::{ResponseModel, ResponseTrainSettings, ResponseTrainingSet, fine_tune};
+use crate::response::{
+    ResponseCase, ResponseModel, ResponseTrainSettings, ResponseTrainingSet, fine_tune,
+};
 
 /// Fine-tune a network on data of your own
 #[derive(Debug, Args)]
@@ -33,8 +36,10 @@ struct FineTuneResponseArgs {
     #[arg(long, value_name = "MODEL")]
     model: Option<PathBuf>,
     /// A trajectory data set; a quarter of its cases is kept apart for the test
-    #[arg(long, value_name = "DIR")]
-    data: PathBuf,
+    #[arg(long, value_name = "DIR", required_unless_present = "log")]
+    data: Option<PathBuf>,
+    #[command(flatten)]
+    logs: LogArgs,
     /// How many trajectories to learn from; all that are not kept for the test if not given
     #[arg(long, value_name = "N")]
     trajectories: Option<usize>,
@@ -69,11 +74,19 @@ Examples:
   impactlab fine-tune response --model assets/models/response_pretrained.safetensors \\
       --data datasets/trajectories-fea --trajectories 20 --out response.safetensors
   impactlab fine-tune response --data datasets/trajectories-pulse --trajectories 5 --out r.safetensors
+  impactlab fine-tune response --model assets/models/response_pretrained.safetensors \\
+      --log impact.csv --vehicle scaled-target-100 --out scaled.safetensors
+
+A log is smoothed (position, yaw and what else it has of yaw rate and velocity) and taken from the
+first contact on. Without a force file the impulse is the one that explains the change of momentum.
+With a single log there is nothing to calibrate on: the uncertainty is a guess.
 
 A training that was killed goes on with --resume to the same weights as if it had not been.
 
 JSON: model, data, data_digest, seed, n_simulated, train, n_test, n_parameters, seconds, epochs, loss,
-  balance, latents";
+  balance, latents, keeps_latents; with --log: logs [{log, start_s, contact_s [s, s] or null, force
+  (recorded, estimated, none), impulse_n_s [x, y], n_samples, noise {position_m, velocity_m_s,
+  yaw_rad, yaw_rate_rad_s}}]";
 
 /// Fine-tunes what was asked for.
 pub(super) fn run(args: &FineTuneArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
@@ -94,10 +107,8 @@ fn fine_tune_response(
     if args.print_config {
         return print_config(&config, console);
     }
-    let cases = load_cases(&args.data, args.vehicle.as_deref())?;
     let choice = args.choice.unwrap_or(args.seed);
-    let split = (args.seed, args.test_share, choice);
-    let set = ResponseTrainingSet::choose(data_name(&args.data), &cases, args.trajectories, split)?;
+    let (set, logs) = training_set(args, choice)?;
     let settings = ResponseTrainSettings {
         config,
         seed: choice,
@@ -107,5 +118,24 @@ fn fine_tune_response(
     let started = Instant::now();
     let model = under_bar(|report| fine_tune(start.as_ref(), &set, &settings, report))?;
     model.save(&args.out)?;
-    print_model((&args.out, &model, started.elapsed().as_secs_f64()), console)
+    print_model((&args.out, &model, started.elapsed().as_secs_f64()), &logs, console)
+}
+
+/// Trajectories of the data set, or of the logs and what they are.
+fn training_set(
+    args: &FineTuneResponseArgs,
+    choice: u64,
+) -> Result<(ResponseTrainingSet, Vec<LogFacts>), CliError> {
+    let name = args.vehicle.as_deref();
+    if let Some(data) = &args.data {
+        let cases = load_cases(data, name)?;
+        let split = (args.seed, args.test_share, choice);
+        let set = ResponseTrainingSet::choose(data_name(data), &cases, args.trajectories, split)?;
+        return Ok((set, Vec::new()));
+    }
+    let (facts, found): (Vec<_>, Vec<_>) =
+        args.logs.read(name.unwrap_or_default())?.into_iter().unzip();
+    let train: Vec<ResponseCase> = found.into_iter().map(|found| found.case).collect();
+    let names: Vec<&str> = train.iter().map(|case| case.name.as_str()).collect();
+    Ok((ResponseTrainingSet { name: names.join(", "), train, test: Vec::new() }, facts))
 }

@@ -15,6 +15,7 @@ mod compare;
 mod evaluate;
 mod evaluate_response;
 mod fine_tune;
+mod fine_tune_log;
 mod impact;
 mod predict;
 mod predict_motion;

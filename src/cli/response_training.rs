@@ -8,6 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use crate::cli::CliError;
+use crate::cli::fine_tune_log::LogFacts;
 use crate::cli::output::{print_facts, print_json};
 use crate::cli::progress::{complete, with_progress};
 use crate::cli::run::{Console, Verdict};
@@ -111,11 +112,15 @@ struct Answer<'a> {
     loss: Option<ResponseLossTerms>,
     balance: Option<f64>,
     latents: &'a crate::response::LatentScales,
+    keeps_latents: bool,
+    #[serde(skip_serializing_if = "<[LogFacts]>::is_empty")]
+    logs: &'a [LogFacts],
 }
 
 /// Prints what was trained.
 pub(super) fn print_model(
     (path, model, seconds): (&Path, &ResponseModel, f64),
+    logs: &[LogFacts],
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
     let record = model.record();
@@ -134,6 +139,8 @@ pub(super) fn print_model(
         loss: last.map(|epoch| epoch.loss),
         balance: last.map(|epoch| epoch.balance),
         latents: model.latents(),
+        keeps_latents: record.keeps_latents,
+        logs,
     };
     if console.json {
         print_json(console.out, &answer)?;
@@ -150,6 +157,7 @@ pub(super) fn print_model(
         .collect::<Vec<_>>()
         .join(", ");
     let calibrated = match answer.latents.n_calibrated {
+        0 if record.keeps_latents => "a guess: the model before, at least the usual".to_owned(),
         0 => "usual values".to_owned(),
         n => format!("from {n} trajectories, each unseen"),
     };
@@ -168,5 +176,8 @@ pub(super) fn print_model(
         ("loss", loss),
     ];
     print_facts(console.out, &facts)?;
+    for log in logs {
+        writeln!(console.out, "{}", log.shown())?;
+    }
     Ok(Verdict::Clean)
 }

@@ -57,7 +57,7 @@ The network learns on simulations of the 4DOF model, under the forces of the dat
 vehicle, another road and another speed change. No recorded motion is looked at.
 
 JSON: model, data, data_digest, seed, n_simulated, train, n_test, n_parameters, seconds, epochs, loss,
-  balance, latents";
+  balance, latents, keeps_latents";
 
 /// Pre-trains.
 pub(super) fn run(
@@ -82,7 +82,7 @@ pub(super) fn run(
     let name = data_name(&args.data);
     let model = under_bar(|report| pretrain((&name, &records), &settings, report))?;
     model.save(&args.out)?;
-    print_model((&args.out, &model, started.elapsed().as_secs_f64()), console)
+    print_model((&args.out, &model, started.elapsed().as_secs_f64()), &[], console)
 }
 
 /// Forces of the cases that are not kept for a test.

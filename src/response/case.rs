@@ -51,7 +51,7 @@ pub enum ResponseCaseError {
 }
 
 /// Fewest samples of a case.
-const MIN_SAMPLES: usize = 10;
+pub(crate) const MIN_SAMPLES: usize = 10;
 
 impl ResponseCase {
     /// Of a case of a trajectory data set.
@@ -72,14 +72,25 @@ impl ResponseCase {
         }
         let inputs = manoeuvre.inputs(STEP_S, states.len() - 1);
         let spins = largest_yaw_change_rad(&case.series).map_err(in_case)? > SPIN_YAW_CHANGE_RAD;
-        Ok(Self {
-            name: case.name.clone(),
-            vehicle: vehicle.clone().with_friction(friction),
-            digest: digest(&states, &inputs),
-            states,
-            inputs,
-            spins,
-        })
+        let vehicle = vehicle.clone().with_friction(friction);
+        Ok(Self { spins, ..Self::of_motion(case.name.clone(), vehicle, states, inputs) })
+    }
+
+    /// Of a motion on the grid.
+    ///
+    /// - `states`: every [`STEP_S`] from the start of the impact;
+    /// - `inputs`: over each step, one fewer than states.
+    pub fn of_motion(
+        name: String,
+        vehicle: VehicleParameters,
+        states: Vec<VehicleState<f64>>,
+        inputs: Vec<VehicleInput<f64>>,
+    ) -> Self {
+        let first_rad = states.first().map_or(0.0, |state| state.yaw_rad);
+        let turns =
+            |state: &VehicleState<f64>| (state.yaw_rad - first_rad).abs() > SPIN_YAW_CHANGE_RAD;
+        let (spins, digest) = (states.iter().any(turns), digest(&states, &inputs));
+        Self { name, vehicle, states, inputs, spins, digest }
     }
 
     /// Vehicle, driving state and forces, without what followed; `None` for a case without states.

@@ -65,6 +65,16 @@ impl LatentScales {
         self
     }
 
+    /// The wider of these scales and the usual ones, uncalibrated.
+    #[must_use]
+    pub fn at_least_usual(mut self) -> Self {
+        let usual = Self::default();
+        self.scales = std::array::from_fn(|m| self.scales[m].max(usual.scales[m]));
+        self.step_noise = self.step_noise.max(usual.step_noise);
+        self.n_calibrated = 0;
+        self
+    }
+
     /// Change of the strengths by one standard deviation of each latent.
     pub(crate) fn directions(&self) -> [[f64; N_EFFECTS]; N_LATENTS] {
         let of =

@@ -120,6 +120,13 @@ impl ResponseModel {
         self.latents = latents;
     }
 
+    /// Takes the uncertainty of the model that a fine-tuning started from, nowhere below the usual
+    /// one: it was calibrated on other motions.
+    pub(crate) fn keep_latents(&mut self, of_start: &LatentScales) {
+        self.latents = of_start.at_least_usual();
+        self.record.keeps_latents = true;
+    }
+
     /// The model for one vehicle.
     ///
     /// # Errors

@@ -77,6 +77,10 @@ pub struct ResponseRecord {
     pub test: Vec<CaseId>,
     /// Every epoch.
     pub history: Vec<ResponseEpoch>,
+    /// Whether the uncertainty is that of the model it started from, nowhere below the usual one, as
+    /// there were no two trajectories to calibrate it on.
+    #[serde(default)]
+    pub keeps_latents: bool,
 }
 
 impl fmt::Display for ResponseStage {

@@ -91,6 +91,9 @@ pub fn pretrain(
 ///
 /// A training that was killed goes on from its checkpoint to the same weights as if it had not been.
 ///
+/// A calibration takes two trajectories or more. With one the uncertainty is that of the model it
+/// started from, nowhere below the usual one; the record says so.
+///
 /// # Errors
 /// [`ResponseError`].
 pub fn fine_tune(
@@ -124,6 +127,10 @@ pub fn fine_tune(
     }
     if !is_cut.get() && !unseen.is_empty() {
         model.set_latents(calibrate(&unseen, settings.config.calibration.prior_std));
+    } else if set.train.len() == 1
+        && let Some(start) = start.filter(|start| start.latents().n_calibrated > 0)
+    {
+        model.keep_latents(start.latents());
     }
     Ok(model)
 }
@@ -211,5 +218,6 @@ fn record(
         train,
         test: set.test.clone(),
         history,
+        keeps_latents: false,
     }
 }
