@@ -334,6 +334,12 @@ impl ResponseConfig {
             positive("physics.epoch_scale", physics.epoch_scale),
             positive("physics.quality_distance", physics.quality_distance),
             positive("effects.ridge", effects.ridge),
+            (
+                "effects.common",
+                effects.common.to_string(),
+                (0.0..1.0).contains(&effects.common),
+                "0 to below 1",
+            ),
             positive("effects.huber", effects.huber),
         ];
         match settings.into_iter().find(|(_, _, is_right, _)| !is_right) {
