@@ -79,7 +79,8 @@ Examples:
 
 A log is smoothed (position, yaw and what else it has of yaw rate and velocity) and taken from the
 first contact on. Without a force file the impulse is the one that explains the change of momentum.
-With a single log there is nothing to calibrate on: the uncertainty is a guess.
+With a single log there is nothing to calibrate on: the uncertainty is a guess. Without --config
+effects.ridge and effects.common are those for few samples, see --print-config.
 
 A training that was killed goes on with --resume to the same weights as if it had not been.
 
@@ -100,10 +101,13 @@ fn fine_tune_response(
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
     let start = args.model.as_deref().map(ResponseModel::load).transpose()?;
-    let config = match (&args.config, &start) {
+    let mut config = match (&args.config, &start) {
         (None, Some(start)) => start.config().clone(),
         (path, _) => config(path.as_deref())?,
     };
+    if args.config.is_none() && !args.logs.log.is_empty() {
+        config.effects = config.effects.few_samples();
+    }
     if args.print_config {
         return print_config(&config, console);
     }

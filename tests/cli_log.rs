@@ -1,0 +1,213 @@
+//! `impactlab fine-tune response --log`: a log of 100 samples of a simulated scaled vehicle.
+
+#![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use impactlab::collision::{Pulse, PulseShape};
+use impactlab::data::{Channel, TimeSeries, write_series_csv};
+use impactlab::response::{N_RESIDUAL, ResponseModel, STEP_S, average_error_m, rollout};
+use impactlab::vehicle::{
+    ContactLoad, ContactPoint, Integrator, Manoeuvre, Preset, VehicleParameters, VehicleState,
+};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
+use serde_json::Value;
+use tempfile::TempDir;
+
+const VEHICLE: &str = "scaled-target-100";
+const CONTACT_M: &str = "--contact=-0.7,-0.3,0.126";
+/// Of the scatter of position, m, yaw, rad, yaw rate, rad/s, velocity, m/s.
+const NOISE: [(Channel, f64); 6] = [
+    (Channel::X, 0.02),
+    (Channel::Y, 0.02),
+    (Channel::Yaw, 0.008_727),
+    (Channel::YawRate, 0.017_453),
+    (Channel::Vx, 0.05),
+    (Channel::Vy, 0.05),
+];
+const TINY: &str = "\
+[network]
+encoder = [8]
+token_encoder = [4, 4, 4]
+attention_heads = 2
+trunk = [8]
+components = 2
+
+[single_steps]
+epochs = 3
+
+[rollouts]
+lengths = [20, 500]
+epochs = 2
+
+[effects]
+ridge = 0.1
+common = 0.99
+";
+
+fn truth() -> VehicleParameters {
+    let mut vehicle = Preset::ScaledTarget.parameters().with_friction(0.6);
+    vehicle.mass.yaw_inertia_kg_m2 *= 1.1;
+    vehicle
+}
+
+/// A push of a lateral impulse against the right rear quarter.
+fn manoeuvre(speed_m_s: f64, impulse_y_n_s: f64, start_s: f64) -> Manoeuvre {
+    let pulse = Pulse::new(PulseShape::HalfSine, [10.0, impulse_y_n_s], start_s, 0.09).unwrap();
+    let contact = ContactPoint { x_m: -0.7, y_m: -0.3, height_m: 0.126 };
+    let force = pulse.to_history(1e-3).unwrap();
+    Manoeuvre {
+        initial: VehicleState::driving_straight(speed_m_s),
+        contact_load: Some(ContactLoad { force, contact, recorded_moment: false }),
+        steer: None,
+        duration_s: 4.0,
+    }
+}
+
+/// Writes a log of 100 samples and its force.
+fn write_log(folder: &Path, name: &str, (stride, seed): (usize, u64)) -> [PathBuf; 2] {
+    let manoeuvre = manoeuvre(6.0, 90.0, 0.2);
+    let motion = truth().simulate(&manoeuvre, Integrator::Rk4).unwrap().series;
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let time_s = motion.time_s().iter().copied().step_by(stride).take(100).collect();
+    let mut series = TimeSeries::new(time_s).unwrap();
+    for (channel, std) in NOISE {
+        let exact = motion.get(channel).unwrap().iter().step_by(stride).take(100);
+        let noisy = exact.map(|value| value + std * rng.sample::<f64, _>(StandardNormal));
+        series.insert(channel, noisy.collect()).unwrap();
+    }
+    let paths = ["", "_force"].map(|end| folder.join(format!("{name}{end}.csv")));
+    write_series_csv(&paths[0], &series).unwrap();
+    let force = manoeuvre.contact_load.unwrap().force.to_series().unwrap();
+    write_series_csv(&paths[1], &force).unwrap();
+    paths
+}
+
+fn fine_tune(folder: &Path) -> Command {
+    let config = folder.join("tiny.toml");
+    fs::write(&config, TINY).unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_impactlab"));
+    command.current_dir(folder).args(["fine-tune", "response", "--json", "--out", "model"]);
+    command.arg("--config").arg(&config);
+    command
+}
+
+fn ok(output: Output) -> Value {
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn error(command: &mut Command) -> String {
+    let output = command.output().unwrap();
+    assert!(!output.status.success());
+    String::from_utf8(output.stderr).unwrap()
+}
+
+/// Mean error of the next impacts of the same vehicle: untuned 4DOF model, model of the file.
+fn errors_m(model: &Path) -> [f64; 2] {
+    let model = ResponseModel::load(model).unwrap();
+    let data_sheet = Preset::ScaledTarget.parameters();
+    let predictor = model.predictor(&data_sheet).unwrap();
+    let mut sums = [0.0; 2];
+    let next = [(5.0, 110.0), (7.0, 80.0), (6.5, 60.0)];
+    for (speed_m_s, impulse_n_s) in next {
+        let manoeuvre = manoeuvre(speed_m_s, impulse_n_s, 0.0);
+        let inputs = manoeuvre.inputs(STEP_S, 400);
+        let drive =
+            |vehicle| rollout(vehicle, manoeuvre.initial, &inputs, |_, _| [0.0; N_RESIDUAL]);
+        let truth = truth();
+        let reference = drive(&truth);
+        sums[0] += average_error_m(&drive(&data_sheet), &reference);
+        sums[1] +=
+            average_error_m(&predictor.central_path(&manoeuvre.initial, &inputs), &reference);
+    }
+    sums.map(|sum| sum / next.len() as f64)
+}
+
+#[test]
+fn a_log_of_100_samples_makes_the_next_impact_better_known() {
+    let folder = TempDir::new().unwrap();
+    for (stride, hz, n_states) in [(1, 100, 80), (4, 25, 377)] {
+        let [log, force] = write_log(folder.path(), "log", (stride, 1));
+        let mut command = fine_tune(folder.path());
+        command.arg("--log").arg(&log).arg("--force").arg(&force).args([CONTACT_M, "--vehicle"]);
+        let told = ok(command.arg(VEHICLE).output().unwrap());
+        let facts = &told["logs"][0];
+        assert_eq!(facts["force"], "recorded", "{hz} Hz");
+        assert_eq!(facts["n_samples"], n_states, "{hz} Hz");
+        let position_m = facts["noise"]["position_m"].as_f64().unwrap();
+        assert!((0.015..0.026).contains(&position_m), "{hz} Hz: {position_m}");
+        assert_eq!(told["train"], serde_json::json!(["log"]));
+        assert_eq!((&told["latents"]["n_calibrated"], &told["n_test"]), (&0.into(), &0.into()));
+        let [untuned_m, tuned_m] = errors_m(&folder.path().join("model"));
+        assert!(tuned_m < 0.7 * untuned_m, "{hz} Hz: {tuned_m} of {untuned_m}");
+    }
+}
+
+#[test]
+fn without_a_force_the_impulse_is_estimated_and_two_logs_are_calibrated_on() {
+    let folder = TempDir::new().unwrap();
+    let logs = folder.path().join("logs");
+    fs::create_dir(&logs).unwrap();
+    for seed in [1, 2] {
+        let [_, force] = write_log(&logs, &format!("log_{seed}"), (1, seed));
+        fs::remove_file(force).unwrap();
+    }
+    let mut command = fine_tune(folder.path());
+    let told = ok(command.args(["--vehicle", VEHICLE, "--log"]).arg(&logs).output().unwrap());
+    assert_eq!(told["train"], serde_json::json!(["log_1", "log_2"]));
+    assert_eq!(
+        (&told["latents"]["n_calibrated"], &told["keeps_latents"]),
+        (&2.into(), &false.into())
+    );
+    for facts in told["logs"].as_array().unwrap() {
+        assert_eq!(facts["force"], "estimated");
+        let impulse_n_s = facts["impulse_n_s"][1].as_f64().unwrap();
+        assert!((70.0..110.0).contains(&impulse_n_s), "{facts}");
+    }
+    // One log, from a model that was calibrated: its uncertainty, nowhere below the usual one.
+    let start = folder.path().join("start");
+    fs::rename(folder.path().join("model"), &start).unwrap();
+    let mut command = fine_tune(folder.path());
+    command.args(["--vehicle", VEHICLE, "--log"]).arg(logs.join("log_1.csv"));
+    let told = ok(command.arg("--model").arg(&start).output().unwrap());
+    assert_eq!(
+        (&told["latents"]["n_calibrated"], &told["keeps_latents"]),
+        (&0.into(), &true.into())
+    );
+    for (scale, usual) in
+        told["latents"]["scales"].as_array().unwrap().iter().zip([0.02, 0.01, 0.02, 0.02])
+    {
+        assert!(scale.as_f64().unwrap() >= usual, "{told}");
+    }
+}
+
+#[test]
+fn what_is_wrong_with_a_log_is_said_with_its_place() {
+    let folder = TempDir::new().unwrap();
+    let [log, force] = write_log(folder.path(), "log", (1, 1));
+    let with = |text: &str| {
+        let path = folder.path().join("bad.csv");
+        fs::write(&path, text).unwrap();
+        error(fine_tune(folder.path()).args(["--vehicle", VEHICLE, "--log"]).arg(path))
+    };
+    let text = with("t [s],x [m],y [m]\n0,0,0\n0.01,0.1,0\n");
+    assert!(text.contains("bad.csv:1: no column for time, x, y and yaw"), "{text}");
+    let text = with("t [s],x [m],y [m],yaw [deg]\n0,0,0,0\n0.01,0.1,n/a,0\n");
+    assert!(text.contains("bad.csv:3:3: ") && text.contains("n/a"), "{text}");
+    let mut command = fine_tune(folder.path());
+    command.args(["--vehicle", VEHICLE, "--log"]).arg(&log).arg("--force").arg(&force);
+    let text = error(&mut command);
+    assert!(text.contains("log_force.csv: has no yaw moment"), "{text}");
+    let text = error(command.arg("--force").arg(&force));
+    assert!(text.contains("2 force files for 1 logs"), "{text}");
+    let text = error(fine_tune(folder.path()).arg("--log").arg(&log));
+    assert!(text.contains("--vehicle"), "{text}");
+    let both = ["--vehicle", VEHICLE, "--data", "datasets/trajectories-fea", "--log"];
+    let text = error(fine_tune(folder.path()).args(both).arg(&log));
+    assert!(text.contains("cannot be used with"), "{text}");
+}
