@@ -35,12 +35,14 @@ struct FineTuneResponseArgs {
     /// A pre-trained response network; without one all layers are trained, from random weights
     #[arg(long, value_name = "MODEL")]
     model: Option<PathBuf>,
-    /// A trajectory data set; a quarter of its cases is kept apart for the test
+    /// A trajectory data set, of which a quarter of the cases is kept apart for the test; several if
+    /// given again
     #[arg(long, value_name = "DIR", required_unless_present = "log")]
-    data: Option<PathBuf>,
+    data: Vec<PathBuf>,
     #[command(flatten)]
     logs: LogArgs,
-    /// How many trajectories to learn from; all that are not kept for the test if not given
+    /// How many trajectories of each data set to learn from; all that are not kept for the test if not
+    /// given
     #[arg(long, value_name = "N")]
     trajectories: Option<usize>,
     /// The struck vehicle: a preset or a file, instead of the data set's own
@@ -73,7 +75,8 @@ const EXAMPLES: &str = "\
 Examples:
   impactlab fine-tune response --model assets/models/response_pretrained.safetensors \\
       --data datasets/trajectories-fea --trajectories 20 --out response.safetensors
-  impactlab fine-tune response --data datasets/trajectories-pulse --trajectories 5 --out r.safetensors
+  impactlab fine-tune response --data datasets/trajectories-fea --data datasets/trajectories-pulse \\
+      --out r.safetensors
   impactlab fine-tune response --model assets/models/response_pretrained.safetensors \\
       --log impact.csv --vehicle scaled-target-100 --out scaled.safetensors
 
@@ -131,11 +134,15 @@ fn training_set(
     choice: u64,
 ) -> Result<(ResponseTrainingSet, Vec<LogFacts>), CliError> {
     let name = args.vehicle.as_deref();
-    if let Some(data) = &args.data {
-        let cases = load_cases(data, name)?;
-        let split = (args.seed, args.test_share, choice);
-        let set = ResponseTrainingSet::choose(data_name(data), &cases, args.trajectories, split)?;
-        return Ok((set, Vec::new()));
+    if !args.data.is_empty() {
+        let chosen = |data: &PathBuf| -> Result<ResponseTrainingSet, CliError> {
+            let cases = load_cases(data, name)?;
+            let split = (args.seed, args.test_share, choice);
+            let name = data_name(data);
+            Ok(ResponseTrainingSet::choose(name, &cases, args.trajectories, split)?)
+        };
+        let sets = args.data.iter().map(chosen).collect::<Result<Vec<_>, _>>()?;
+        return Ok((ResponseTrainingSet::joined(sets), Vec::new()));
     }
     let (facts, found): (Vec<_>, Vec<_>) =
         args.logs.read(name.unwrap_or_default())?.into_iter().unzip();

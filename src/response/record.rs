@@ -128,6 +128,18 @@ impl ResponseTrainingSet {
         })
     }
 
+    /// Several sets as one, called after all of them.
+    pub fn joined(sets: Vec<Self>) -> Self {
+        let names: Vec<&str> = sets.iter().map(|set| set.name.as_str()).collect();
+        let name = names.join(" and ");
+        let mut joined = Self { name, ..Self::default() };
+        for set in sets {
+            joined.train.extend(set.train);
+            joined.test.extend(set.test);
+        }
+        joined
+    }
+
     /// SHA-256 over the digests of the trajectories to learn from.
     pub fn digest(&self) -> String {
         sha256_hex(self.train.iter().map(|case| case.digest.as_bytes()))
@@ -184,6 +196,20 @@ mod tests {
         assert_eq!(of(0), of(0));
         assert_ne!(of(0).digest(), of(1).digest());
         assert_eq!(of(0).test, of(1).test);
+    }
+
+    #[test]
+    fn joined_sets_keep_what_was_chosen() {
+        let of = |name: &str, choice| {
+            ResponseTrainingSet::choose(name, &cases(), Some(10), (0, 0.25, choice)).unwrap()
+        };
+        let joined = ResponseTrainingSet::joined(vec![of("a", 0), of("b", 1)]);
+        assert_eq!(
+            (joined.name.as_str(), joined.train.len(), joined.test.len()),
+            ("a and b", 20, 50)
+        );
+        let alone = of("a", 0);
+        assert_eq!(ResponseTrainingSet::joined(vec![alone.clone()]), alone);
     }
 
     #[test]
