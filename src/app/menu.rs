@@ -152,11 +152,11 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             }
         }
         let Session { force, response, .. } = &state.session;
-        let paused = (force.training.is_paused(), response.training.is_paused());
-        if force.training.is_running() {
+        let paused = (force.training.run.is_paused(), response.training.run.is_paused());
+        if force.training.run.is_running() {
             training_job_ui(ui, (Network::Force, paused.0), force.training.progress(), commands);
         }
-        if response.training.is_running() {
+        if response.training.run.is_running() {
             let progress = response.training.progress();
             training_job_ui(ui, (Network::Response, paused.1), progress, commands);
         }

@@ -74,32 +74,68 @@ impl<M: Send + 'static, N: Send + 'static> Training<M, N> {
     }
 
     /// What was told since the last time, and the end, if it has come.
-    pub fn poll(&mut self) -> (Vec<N>, Option<Result<M, String>>) {
+    fn poll(&mut self) -> (Vec<N>, Option<Result<M, String>>) {
         let update = self.job.poll(); // before the news: what it ends with comes after them
         (self.news.try_iter().collect(), update.into_result("the training"))
     }
 }
 
-impl<M, N> Training<M, N> {
+/// A training, if one is under way.
+pub struct TrainingSlot<M, N>(Option<Training<M, N>>);
+
+impl<M, N> Default for TrainingSlot<M, N> {
+    fn default() -> Self {
+        Self(None)
+    }
+}
+
+impl<M, N> From<Training<M, N>> for TrainingSlot<M, N> {
+    fn from(training: Training<M, N>) -> Self {
+        Self(Some(training))
+    }
+}
+
+impl<M, N> TrainingSlot<M, N> {
+    /// Whether a training is under way, paused or not.
+    pub fn is_running(&self) -> bool {
+        self.0.is_some()
+    }
+
     /// Whether it waits.
     pub fn is_paused(&self) -> bool {
-        self.gate.is_closed()
+        self.0.as_ref().is_some_and(|training| training.gate.is_closed())
     }
 
     /// Whether it was told to stop.
     pub fn is_cancelled(&self) -> bool {
-        self.job.is_cancelled()
+        self.0.as_ref().is_some_and(|training| training.job.is_cancelled())
     }
 
     /// Stops before the next news, or goes on.
     pub fn set_paused(&self, is_paused: bool) {
-        self.gate.set_closed(is_paused);
+        if let Some(training) = &self.0 {
+            training.gate.set_closed(is_paused);
+        }
     }
 
-    /// Ends it at the next news.
+    /// Ends it at the next news, with the weights so far.
     pub fn cancel(&self) {
-        self.job.cancel();
-        self.gate.set_closed(false);
+        if let Some(training) = &self.0 {
+            training.job.cancel();
+            training.gate.set_closed(false);
+        }
+    }
+}
+
+impl<M: Send + 'static, N: Send + 'static> TrainingSlot<M, N> {
+    /// What was told since the last time; with the end, if it has come, after which the slot is empty.
+    pub fn poll(&mut self) -> (Vec<N>, Option<Result<M, String>>) {
+        let Some(training) = &mut self.0 else { return (Vec::new(), None) };
+        let (news, result) = training.poll();
+        if result.is_some() {
+            self.0 = None;
+        }
+        (news, result)
     }
 }
 

@@ -189,7 +189,7 @@ fn a_model_is_trained_paused_cancelled_saved_and_there_after_a_restart() {
     step_until(&mut harness, "an epoch", |state| state.session.force.training.history.len() > 2);
     harness.get_by_label("Pause").click();
     harness.run_steps(2);
-    assert!(state(&harness).session.force.training.is_paused());
+    assert!(state(&harness).session.force.training.run.is_paused());
     let epoch_s = |harness: &Harness<'_, App>| {
         let history = &state(harness).session.force.training.history;
         history.iter().map(|record| record.seconds).fold(0.2, f64::max)
@@ -208,7 +208,7 @@ fn a_model_is_trained_paused_cancelled_saved_and_there_after_a_restart() {
     });
     save(&mut harness, "training.png");
     harness.get_by_label("Cancel").click();
-    step_until(&mut harness, "the end", |state| !state.session.force.training.is_running());
+    step_until(&mut harness, "the end", |state| !state.session.force.training.run.is_running());
     assert_eq!(state(&harness).session.force.training.phase, Phase::Ended);
     let current = state(&harness).session.force.model.current.as_ref().expect("the best so far");
     assert!(!current.is_saved && current.name.starts_with("trained on fea"), "{}", current.name);
@@ -243,7 +243,7 @@ fn a_bad_model_and_bad_settings_say_what_is_wrong() {
     });
     harness.state_mut().state_mut().project.force.training.config = "Cargo.toml".to_owned();
     apply(&mut harness, Command::Train(Network::Force, TrainingCommand::Start));
-    step_until(&mut harness, "the problem", |state| !state.session.force.training.is_running());
+    step_until(&mut harness, "the problem", |state| !state.session.force.training.run.is_running());
     let problem = state(&harness).session.force.training.problem.clone().expect("a problem");
     assert!(problem.contains("Cargo.toml: line "), "{problem}");
 }

@@ -159,7 +159,7 @@ fn a_response_model_is_trained_paused_cancelled_and_saved() {
     step_until(&mut harness, "epochs", |state| n_epochs(state) > 3);
     harness.get_by_label("Pause").click();
     harness.run_steps(2);
-    assert!(state(&harness).session.response.training.is_paused());
+    assert!(state(&harness).session.response.training.run.is_paused());
     std::thread::sleep(Duration::from_millis(800));
     harness.run_steps(2);
     let paused = n_epochs(state(&harness));
@@ -171,7 +171,7 @@ fn a_response_model_is_trained_paused_cancelled_and_saved() {
     step_until(&mut harness, "more epochs", |state| n_epochs(state) > paused + 20);
     save(&mut harness, "training-response.png");
     harness.get_by_label("Cancel").click();
-    let is_over = |state: &State| !state.session.response.training.is_running();
+    let is_over = |state: &State| !state.session.response.training.run.is_running();
     step_until(&mut harness, "the end", is_over);
     assert_eq!(state(&harness).session.response.training.phase, ResponsePhase::Ended);
     let current = state(&harness).session.response.model.current.as_ref().expect("a model");

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use crate::app::force::TrainingForm;
 use crate::app::source::CheckedDataset;
-use crate::app::training::{Tell, Training, time_left};
+use crate::app::training::{Tell, Training, TrainingSlot, time_left};
 use crate::error_chain;
 use crate::force::{
     CentreFit, EpochRecord, ForceCase, ForceConfig, ForceModel, TrainSettings, TrainingReport,
@@ -31,7 +31,8 @@ pub enum Phase {
 /// A training, under way or over.
 #[derive(Default)]
 pub struct TrainingStatus {
-    run: Option<Training<ForceModel, News>>,
+    /// Under way.
+    pub run: TrainingSlot<ForceModel, News>,
     /// What it is doing.
     pub phase: Phase,
     /// Every epoch so far.
@@ -56,7 +57,8 @@ pub struct TrainingData {
     pub extra: Vec<Arc<CheckedDataset>>,
 }
 
-enum News {
+/// What a training tells.
+pub enum News {
     Phase(Phase),
     /// A case that is left out.
     LeftOut(String),
@@ -80,13 +82,13 @@ impl TrainingStatus {
     ) -> std::io::Result<()> {
         let (form, name) = (form.clone(), data.name.clone());
         let run = Training::start(wake, move |tell| run(data, (&form, checkpoint), tell))?;
-        *self = Self { run: Some(run), data: name, ..Self::default() };
+        *self = Self { run: run.into(), data: name, ..Self::default() };
         Ok(())
     }
 
     /// Takes in what was reported; the model in the end.
     pub fn poll(&mut self) -> Option<Result<ForceModel, String>> {
-        let (news, result) = self.run.as_mut()?.poll();
+        let (news, result) = self.run.poll();
         for news in news {
             match news {
                 News::Phase(phase) => self.phase = phase,
@@ -101,7 +103,7 @@ impl TrainingStatus {
             }
         }
         let result = result?;
-        (self.run, self.phase) = (None, Phase::Ended);
+        self.phase = Phase::Ended;
         self.problem = result.as_ref().err().cloned();
         if let Ok(model) = &result {
             // A resumed training has epochs from before it.
@@ -109,35 +111,6 @@ impl TrainingStatus {
             self.best_epoch = Some(model.record().best_epoch);
         }
         Some(result)
-    }
-
-    /// Whether a training is under way, paused or not.
-    pub fn is_running(&self) -> bool {
-        self.run.is_some()
-    }
-
-    /// Whether it waits.
-    pub fn is_paused(&self) -> bool {
-        self.run.as_ref().is_some_and(Training::is_paused)
-    }
-
-    /// Whether it was told to stop.
-    pub fn is_cancelled(&self) -> bool {
-        self.run.as_ref().is_some_and(Training::is_cancelled)
-    }
-
-    /// Stops before the next report, or goes on.
-    pub fn set_paused(&self, is_paused: bool) {
-        if let Some(run) = &self.run {
-            run.set_paused(is_paused);
-        }
-    }
-
-    /// Ends it at the next report, with the best weights so far.
-    pub fn cancel(&self) {
-        if let Some(run) = &self.run {
-            run.cancel();
-        }
     }
 
     /// Share done, 0 to 1, and the time left at the pace of the latest epochs.

@@ -117,8 +117,8 @@ impl State {
         let training = &self.session.force.training;
         match command {
             TrainingCommand::Start => self.start_force_training(context),
-            TrainingCommand::Pause(pause) => training.set_paused(pause),
-            TrainingCommand::Cancel => training.cancel(),
+            TrainingCommand::Pause(pause) => training.run.set_paused(pause),
+            TrainingCommand::Cancel => training.run.cancel(),
         }
     }
 

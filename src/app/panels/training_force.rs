@@ -7,7 +7,7 @@ use crate::app::force::{Phase, TrainingForm, TrainingStatus, force_datasets, sou
 use crate::app::network::Network;
 use crate::app::panels::model_row::save_model_ui;
 use crate::app::panels::training_parts::{
-    RunState, loss_choice_ui, run_buttons_ui, run_problems_ui, run_progress_ui,
+    RunState, loss_choice_ui, run_buttons_ui, run_problems_ui, run_progress_ui, settings_rows_ui,
 };
 use crate::app::panes::PaneContext;
 use crate::app::source::Source;
@@ -34,9 +34,9 @@ pub fn force_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let run = RunState {
         network: Network::Force,
         can_start: has_data,
-        is_running: status.is_running(),
-        is_paused: status.is_paused(),
-        is_cancelled: status.is_cancelled(),
+        is_running: status.run.is_running(),
+        is_paused: status.run.is_paused(),
+        is_cancelled: status.run.is_cancelled(),
     };
     run_buttons_ui(ui, run, commands);
     progress_ui(ui, status);
@@ -103,16 +103,11 @@ fn data_form_ui(ui: &mut Ui, form: &mut TrainingForm, sources: &[Source]) -> boo
             .labelled_by(name.id)
             .on_hover_text("Of the split and of every random number: same seed, same weights");
         ui.end_row();
-        let name = ui.label("Settings file");
-        let field = egui::TextEdit::singleline(&mut form.config).desired_width(320.0);
-        ui.add(field.hint_text("TOML, optional: network, loss, training, crush"))
-            .labelled_by(name.id)
-            .on_hover_text("What it leaves out keeps its default; epochs are those above");
-        ui.end_row();
-        ui.label("");
-        ui.checkbox(&mut form.resume, "go on where a training of these settings was interrupted")
-            .on_hover_text("To the same weights as if it had not been");
-        ui.end_row();
+        settings_rows_ui(
+            ui,
+            "network, loss, training, crush",
+            (&mut form.config, &mut form.resume),
+        );
     });
     !datasets.is_empty()
 }
@@ -120,14 +115,14 @@ fn data_form_ui(ui: &mut Ui, form: &mut TrainingForm, sources: &[Source]) -> boo
 fn progress_ui(ui: &mut Ui, status: &TrainingStatus) {
     let (fraction, left) = status.progress();
     let what = match status.phase {
-        _ if status.is_cancelled() => "ending".to_owned(),
+        _ if status.run.is_cancelled() => "ending".to_owned(),
         Phase::Preparing => "preparing".to_owned(),
         Phase::Centre(fit) => fit.to_string(),
         Phase::Epochs(done, n_epochs) => format!("epoch {done} of {n_epochs}"),
         Phase::Ended => "over".to_owned(),
     };
-    if status.is_running() {
-        let what = if status.is_paused() { format!("paused: {what}") } else { what };
+    if status.run.is_running() {
+        let what = if status.run.is_paused() { format!("paused: {what}") } else { what };
         run_progress_ui(ui, &what, (fraction, left));
     }
     run_problems_ui(ui, status.problem.as_deref(), &status.left_out);

@@ -25,6 +25,20 @@ pub struct RunState {
     pub is_cancelled: bool,
 }
 
+/// Rows of a two-column grid: a file with settings, and whether to go on from a checkpoint.
+pub fn settings_rows_ui(ui: &mut Ui, parts: &str, (config, resume): (&mut String, &mut bool)) {
+    let name = ui.label("Settings file");
+    let field = egui::TextEdit::singleline(config).desired_width(320.0);
+    ui.add(field.hint_text(format!("TOML, optional: {parts}")))
+        .labelled_by(name.id)
+        .on_hover_text("What it leaves out keeps its default; `--print-config` prints them all");
+    ui.end_row();
+    ui.label("");
+    ui.checkbox(resume, "go on where a training of these settings was interrupted")
+        .on_hover_text("To the same weights as if it had not been");
+    ui.end_row();
+}
+
 /// Train, pause, cancel.
 pub fn run_buttons_ui(ui: &mut Ui, run: RunState, commands: &mut Vec<Command>) {
     let RunState { network, can_start, is_running, is_paused, is_cancelled } = run;

@@ -7,7 +7,7 @@ use crate::app::force::source_name;
 use crate::app::network::Network;
 use crate::app::panels::model_row::save_model_ui;
 use crate::app::panels::training_parts::{
-    RunState, loss_choice_ui, run_buttons_ui, run_problems_ui, run_progress_ui,
+    RunState, loss_choice_ui, run_buttons_ui, run_problems_ui, run_progress_ui, settings_rows_ui,
 };
 use crate::app::panes::PaneContext;
 use crate::app::response::{
@@ -37,9 +37,9 @@ pub fn response_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let run = RunState {
         network: Network::Response,
         can_start: has_data,
-        is_running: status.is_running(),
-        is_paused: status.is_paused(),
-        is_cancelled: status.is_cancelled(),
+        is_running: status.run.is_running(),
+        is_paused: status.run.is_paused(),
+        is_cancelled: status.run.is_cancelled(),
     };
     run_buttons_ui(ui, run, commands);
     progress_ui(ui, status);
@@ -122,21 +122,16 @@ fn numbers_ui(ui: &mut Ui, form: &mut ResponseTrainingForm) {
         .labelled_by(name.id)
         .on_hover_text("Which trajectories are learned from, and every other random number");
     ui.end_row();
-    let name = ui.label("Settings file");
-    let field = egui::TextEdit::singleline(&mut form.config).desired_width(320.0);
-    ui.add(field.hint_text("TOML, optional: network, single_steps, rollouts, physics, …"))
-        .labelled_by(name.id)
-        .on_hover_text("What it leaves out keeps its default; empty: the model's own");
-    ui.end_row();
-    ui.label("");
-    ui.checkbox(&mut form.resume, "go on where a training of these settings was interrupted")
-        .on_hover_text("To the same weights as if it had not been");
-    ui.end_row();
+    settings_rows_ui(
+        ui,
+        "network, single_steps, rollouts, physics, …",
+        (&mut form.config, &mut form.resume),
+    );
 }
 
 fn progress_ui(ui: &mut Ui, status: &ResponseTrainingStatus) {
     let what = match status.phase {
-        _ if status.is_cancelled() => "ending".to_owned(),
+        _ if status.run.is_cancelled() => "ending".to_owned(),
         ResponsePhase::Preparing => "preparing".to_owned(),
         ResponsePhase::Epochs { done, n_epochs, training_idx: 0, .. } => {
             let stage = status.history.last().map_or(String::new(), |last| last.stage.to_string());
@@ -148,8 +143,8 @@ fn progress_ui(ui: &mut Ui, status: &ResponseTrainingStatus) {
         }
         ResponsePhase::Ended => "over".to_owned(),
     };
-    if status.is_running() {
-        let what = if status.is_paused() { format!("paused: {what}") } else { what };
+    if status.run.is_running() {
+        let what = if status.run.is_paused() { format!("paused: {what}") } else { what };
         run_progress_ui(ui, &what, status.progress());
     }
     run_problems_ui(ui, status.problem.as_deref(), &status.left_out);

@@ -8,7 +8,7 @@ use crate::app::network::TrainedModel;
 use crate::app::response::{Course, ResponseTrainingForm};
 use crate::app::shipped;
 use crate::app::source::CheckedDataset;
-use crate::app::training::{Tell, Training, time_left};
+use crate::app::training::{Tell, Training, TrainingSlot, time_left};
 use crate::data::{TEST_SHARE, split};
 use crate::error_chain;
 use crate::jobs::Progress;
@@ -45,7 +45,8 @@ pub enum ResponsePhase {
 /// A training, under way or over.
 #[derive(Default)]
 pub struct ResponseTrainingStatus {
-    run: Option<Training<ResponseModel, News>>,
+    /// Under way.
+    pub run: TrainingSlot<ResponseModel, News>,
     /// What it is doing.
     pub phase: ResponsePhase,
     /// Every epoch of the model itself so far, those of a pre-training before it left out.
@@ -72,7 +73,8 @@ pub struct ResponseTrainingData {
     pub current: Option<Arc<ResponseModel>>,
 }
 
-enum News {
+/// What a training tells.
+pub enum News {
     /// A case that is left out.
     LeftOut(String),
     Epoch {
@@ -94,13 +96,13 @@ impl ResponseTrainingStatus {
     ) -> std::io::Result<()> {
         let (form, name) = (form.clone(), data.name.clone());
         let run = Training::start(wake, move |tell| run(&data, (&form, checkpoint), tell))?;
-        *self = Self { run: Some(run), data: name, ..Self::default() };
+        *self = Self { run: run.into(), data: name, ..Self::default() };
         Ok(())
     }
 
     /// Takes in what was reported; the model in the end.
     pub fn poll(&mut self) -> Option<Result<ResponseModel, String>> {
-        let (news, result) = self.run.as_mut()?.poll();
+        let (news, result) = self.run.poll();
         for news in news {
             match news {
                 News::LeftOut(why) => self.left_out.push(why),
@@ -114,42 +116,13 @@ impl ResponseTrainingStatus {
             }
         }
         let result = result?;
-        (self.run, self.phase) = (None, ResponsePhase::Ended);
+        self.phase = ResponsePhase::Ended;
         self.problem = result.as_ref().err().cloned();
         if let Ok(model) = &result {
             // A resumed training has epochs from before it.
             self.history.clone_from(&model.record().history);
         }
         Some(result)
-    }
-
-    /// Whether a training is under way, paused or not.
-    pub fn is_running(&self) -> bool {
-        self.run.is_some()
-    }
-
-    /// Whether it waits.
-    pub fn is_paused(&self) -> bool {
-        self.run.as_ref().is_some_and(Training::is_paused)
-    }
-
-    /// Whether it was told to stop.
-    pub fn is_cancelled(&self) -> bool {
-        self.run.as_ref().is_some_and(Training::is_cancelled)
-    }
-
-    /// Stops before the next report, or goes on.
-    pub fn set_paused(&self, is_paused: bool) {
-        if let Some(run) = &self.run {
-            run.set_paused(is_paused);
-        }
-    }
-
-    /// Ends it at the next report, with the weights as they are.
-    pub fn cancel(&self) {
-        if let Some(run) = &self.run {
-            run.cancel();
-        }
     }
 
     /// Share done, 0 to 1, and the time left at the pace of the latest epochs.

@@ -115,8 +115,8 @@ impl State {
         let training = &self.session.response.training;
         match command {
             TrainingCommand::Start => self.start_response_training(context),
-            TrainingCommand::Pause(pause) => training.set_paused(pause),
-            TrainingCommand::Cancel => training.cancel(),
+            TrainingCommand::Pause(pause) => training.run.set_paused(pause),
+            TrainingCommand::Cancel => training.run.cancel(),
         }
     }
 
