@@ -140,7 +140,8 @@ pub fn forecast_readout(input: &MotionForecastFigure<'_>, channel: ForecastChann
     let (Some(state), Some(band)) = (input.central.get(instant(input)), band) else {
         return channel.label().to_owned();
     };
-    let shown = |value: f64| format!("{:.1}", unit.from_si(value));
+    // Rounded first, and without the sign of a zero.
+    let shown = |value: f64| format!("{:.1}", (unit.from_si(value) * 10.0).round() / 10.0 + 0.0);
     let [low, high] = band[axis][0];
     let (value, low, high) = (shown(state.planar()[axis]), shown(low), shown(high));
     format!("{} {value} ({low} … {high})", channel.label())

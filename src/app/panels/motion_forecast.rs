@@ -1,7 +1,10 @@
 //! Where the struck vehicle goes, with how sure that is: from above and over time.
 
+use std::sync::Arc;
+
 use egui::{DragValue, Id, Panel, ScrollArea, Ui};
 
+use crate::analysis::DensityMap;
 use crate::app::command::Command;
 use crate::app::network::Network;
 use crate::app::panels::analysis_or_hint;
@@ -30,6 +33,8 @@ const SCENE_SHARE: f32 = 0.52;
 const MIN_PLOT_HEIGHT: f32 = 110.0;
 /// Height of a title row, points.
 const TITLE_HEIGHT: f32 = 30.0;
+/// A density of this much before or after the slider's moment is not shown any more, s.
+const STALE_S: f64 = 0.15;
 /// Plots over time side by side.
 const N_COLUMNS: usize = 3;
 
@@ -206,7 +211,12 @@ fn figures_ui(
     let choice = &view.response;
     let analysis = &answer.analysis;
     let time_s = session.time_s.min(end_s(answer));
-    let density = session.response.density.ok().filter(|_| choice.density != DensityChoice::Hidden);
+    let is_shown = |map: &&Arc<DensityMap>| match choice.density {
+        DensityChoice::Hidden => false,
+        DensityChoice::Moment => (map.window_s[0] - time_s).abs() < STALE_S,
+        DensityChoice::Window => true,
+    };
+    let density = session.response.density.ok().filter(is_shown);
     let simulation = analysis.simulation.as_ref().map(|motion| &motion.series);
     let input = MotionForecastFigure {
         title: &analysis.name,
