@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use impactlab::response::comparison::{Rival, evaluate_rival};
 use impactlab::response::{
     Correction, ImpactRecord, ResponseCase, ResponseConfig, ResponseError, ResponseModel,
     ResponseReport, ResponseStage, ResponseTrainSettings, ResponseTrainingSet, average_error_m,
@@ -153,4 +154,29 @@ fn nothing_is_learned_from_nothing() {
     assert!(matches!(fitted, Err(ResponseError::NoCases)));
     let fitted = pretrain(("none", &[]), &settings(small()), &mut go_on);
     assert!(matches!(fitted, Err(ResponseError::NoCases)));
+}
+
+/// What ships does on its test trajectories what docs/VALIDATION.md says.
+#[test]
+fn the_shipped_model_keeps_its_word() {
+    let model = ResponseModel::load(Path::new("assets/models/response.safetensors")).unwrap();
+    for (data, most_m) in [("trajectories-fea", 0.2), ("trajectories-pulse", 0.25)] {
+        let path = Path::new("datasets").join(data);
+        let mut go_on = |_| ControlFlow::Continue(());
+        let cases = ResponseCase::load_all(&path, None, &mut go_on).unwrap().complete().unwrap();
+        let kept = &model.record().test;
+        let is_kept = |case: &&ResponseCase| kept.iter().any(|id| id.digest == case.digest);
+        let test: Vec<&ResponseCase> = cases.iter().filter(is_kept).collect();
+        assert_eq!(test.len(), 25, "{data}");
+        assert!(test.iter().all(|case| !model.is_trained_on(case)));
+        let copy = Box::new(model.copied().unwrap());
+        let compared = evaluate_rival((data, &test), &Rival::Network(copy), (150, 0)).unwrap();
+        let figures = &compared.models[0].figures;
+        assert!(figures.average_error_m.mean < most_m, "{data}: {:?}", figures.average_error_m);
+        assert_eq!(figures.violations, 0);
+        let coverage = figures.coverage.as_ref().unwrap();
+        for share in [coverage.path_90, coverage.end_90] {
+            assert!((0.85..=0.99).contains(&share), "{data}: {coverage:?}");
+        }
+    }
 }
