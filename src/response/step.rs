@@ -121,7 +121,8 @@ fn step_from<T: Scalar>(
         rate.to_array()
     };
     let next = VehicleState::from_array(rk4_step(f, &x.to_array(), STEP_S));
-    let is_free = u.collision.is_none() && u.axle_drive_n.iter().all(|force| force.re() <= 0.0);
+    let drives = u.axle_drive_n.is_some_and(|axles_n| axles_n.iter().any(|force| force.re() > 0.0));
+    let is_free = u.collision.is_none() && !drives;
     if is_free { without_energy_gain(vehicle, x, next) } else { next }
 }
 

@@ -67,8 +67,9 @@ pub struct CollisionForce<T> {
 pub struct VehicleInput<T> {
     /// Road-wheel angle δ of the front axle, rad, positive to the left.
     pub steer_rad: T,
-    /// Drive (positive) or brake (negative) force of the front and the rear axle, N.
-    pub axle_drive_n: [T; 2],
+    /// Drive (positive) or brake (negative) force of the front and the rear axle, N; `None`: all
+    /// wheels roll freely.
+    pub axle_drive_n: Option<[T; 2]>,
     /// Collision force; `None` without contact.
     pub collision: Option<CollisionForce<T>>,
 }
@@ -76,14 +77,14 @@ pub struct VehicleInput<T> {
 impl<T: Scalar> VehicleInput<T> {
     /// Wheel and throttle released, no contact: what follows a PIT impact.
     pub fn released() -> Self {
-        Self { steer_rad: T::from(0.0), axle_drive_n: [T::from(0.0); 2], collision: None }
+        Self { steer_rad: T::from(0.0), axle_drive_n: None, collision: None }
     }
 
     /// The same input in another scalar.
     pub fn map<U: Scalar>(self, convert: impl Fn(T) -> U + Copy) -> VehicleInput<U> {
         VehicleInput {
             steer_rad: convert(self.steer_rad),
-            axle_drive_n: self.axle_drive_n.map(convert),
+            axle_drive_n: self.axle_drive_n.map(|force_n| force_n.map(convert)),
             collision: self.collision.map(|collision| CollisionForce {
                 force_n: collision.force_n.map(convert),
                 in_world_axes: collision.in_world_axes,
@@ -125,13 +126,19 @@ impl VehicleParameters {
         let collision = collision_wrench(x.yaw_rad, u.collision.as_ref());
         let contact_height_m =
             u.collision.map_or(self.geometry.cg_height_m, |c| c.contact.height_m);
-        let (tires, vertical_loads_n) = self.tire_wrench(x, u, collision.force_n, contact_height_m);
+        let leaning_n_m = self.gravity_roll_moment_n_m(x.roll_rad);
+        let contact_arm_m = contact_height_m - self.geometry.cg_height_m;
+        let of_body = LoadTransfer {
+            to_front_n_m: collision.force_n[0] * contact_arm_m,
+            to_right_n_m: leaning_n_m - collision.force_n[1] * contact_arm_m,
+        };
+        let (tires, vertical_loads_n) = self.tire_wrench(x, u, of_body);
 
         let mass_kg = self.mass.mass_kg;
         let ax = (tires.force_n[0] + collision.force_n[0]) / mass_kg;
         let ay = (tires.force_n[1] + collision.force_n[1]) / mass_kg;
         let yaw_moment = tires.yaw_moment_n_m + collision.yaw_moment_n_m;
-        let roll_moment = self.roll_moment_n_m(x, ay)
+        let roll_moment = leaning_n_m + self.roll_moment_n_m(x, ay)
             - collision.force_n[1] * (contact_height_m - self.suspension.roll_axis_height_m);
         let [yaw_acceleration, roll_acceleration] = self.solve_yaw_roll(yaw_moment, roll_moment);
         Evaluation {
@@ -169,31 +176,53 @@ impl VehicleParameters {
     }
 
     /// Sum of the tyre forces, and the vertical loads under which they arise.
+    ///
+    /// - `of_body`: load transfer by all but the tyre forces.
     fn tire_wrench<T: Scalar>(
         &self,
         x: &VehicleState<T>,
         u: &VehicleInput<T>,
-        collision_force_n: [T; 2],
-        contact_height_m: f64,
+        of_body: LoadTransfer<T>,
     ) -> (Wrench<T>, [T; 4]) {
         let (sin_steer, cos_steer) = u.steer_rad.sin_cos();
         let slips = Wheel::ALL.map(|wheel| self.wheel_slip(wheel, x, [sin_steer, cos_steer]));
-        let cg_height_m = self.geometry.cg_height_m;
-        let contact_arm_m = contact_height_m - cg_height_m;
-        let leaning = self.gravity_roll_moment_n_m(x.roll_rad);
+        let force_n = |wheel_idx: usize, load_n: T, drive_n: T| {
+            let [along, across] = slips[wheel_idx].force_n(load_n, drive_n);
+            if Wheel::ALL[wheel_idx].is_front() {
+                [cos_steer * along - sin_steer * across, sin_steer * along + cos_steer * across]
+            } else {
+                [along, across]
+            }
+        };
+        // Without drive a force goes with its load.
+        let shares: [[T; 2]; 4] = std::array::from_fn(|i| force_n(i, T::from(1.0), T::from(0.0)));
+        let forces_n = |loads_n: &[T; 4]| -> [[T; 2]; 4] {
+            std::array::from_fn(|i| match u.axle_drive_n {
+                None => shares[i].map(|share| share * loads_n[i]),
+                Some(axles_n) => force_n(i, loads_n[i], axles_n[i / 2] / 2.0),
+            })
+        };
 
-        let mut loads = vertical_loads_n(self, LoadTransfer::none());
-        let mut tires = self.sum_wheels(&slips, &loads, u.axle_drive_n, [sin_steer, cos_steer]);
+        let cg_height_m = self.geometry.cg_height_m;
+        let mut loads_n = vertical_loads_n(self, LoadTransfer::none());
+        let mut tires_n = forces_n(&loads_n);
         for _ in 0..LOAD_PASSES {
-            let transfer = LoadTransfer {
-                to_front_n_m: collision_force_n[0] * contact_arm_m - tires.force_n[0] * cg_height_m,
-                to_right_n_m: tires.force_n[1] * cg_height_m - collision_force_n[1] * contact_arm_m
-                    + leaning,
-            };
-            loads = vertical_loads_n(self, transfer);
-            tires = self.sum_wheels(&slips, &loads, u.axle_drive_n, [sin_steer, cos_steer]);
+            let [fx, fy] = sum(&tires_n);
+            loads_n = vertical_loads_n(
+                self,
+                LoadTransfer {
+                    to_front_n_m: of_body.to_front_n_m - fx * cg_height_m,
+                    to_right_n_m: of_body.to_right_n_m + fy * cg_height_m,
+                },
+            );
+            tires_n = forces_n(&loads_n);
         }
-        (tires, loads)
+        let mut yaw_moment_n_m = T::from(0.0);
+        for (wheel, [fx, fy]) in Wheel::ALL.into_iter().zip(tires_n) {
+            let [px, py] = wheel.position_m(self);
+            yaw_moment_n_m += fy * px - fx * py;
+        }
+        (Wrench { force_n: sum(&tires_n), yaw_moment_n_m }, loads_n)
     }
 
     fn wheel_slip<T: Scalar>(
@@ -214,42 +243,16 @@ impl VehicleParameters {
         }
     }
 
-    fn sum_wheels<T: Scalar>(
-        &self,
-        slips: &[WheelSlip<T>; 4],
-        loads_n: &[T; 4],
-        axle_drive_n: [T; 2],
-        [sin_steer, cos_steer]: [T; 2],
-    ) -> Wrench<T> {
-        let zero = T::from(0.0);
-        let mut sum = Wrench { force_n: [zero; 2], yaw_moment_n_m: zero };
-        for ((wheel, slip), &load) in Wheel::ALL.into_iter().zip(slips).zip(loads_n) {
-            let [drive_front, drive_rear] = axle_drive_n;
-            let [fx, fy] = if wheel.is_front() {
-                let [along, across] = slip.force_n(load, drive_front / 2.0);
-                [cos_steer * along - sin_steer * across, sin_steer * along + cos_steer * across]
-            } else {
-                slip.force_n(load, drive_rear / 2.0)
-            };
-            let [px, py] = wheel.position_m(self);
-            sum.force_n[0] += fx;
-            sum.force_n[1] += fy;
-            sum.yaw_moment_n_m += fy * px - fx * py;
-        }
-        sum
-    }
-
     /// Moment of the sprung weight about the roll axis, `m_s g h sin φ`, N m.
     pub(super) fn gravity_roll_moment_n_m<T: Scalar>(&self, roll_rad: T) -> T {
         let sprung_kg = self.mass.sprung_mass_kg;
         roll_rad.sin() * (sprung_kg * STANDARD_GRAVITY_M_S2 * self.suspension.roll_arm_m)
     }
 
-    /// Right-hand side of the roll equation without the collision, N m.
+    /// Right-hand side of the roll equation without weight and collision, N m.
     fn roll_moment_n_m<T: Scalar>(&self, x: &VehicleState<T>, ay_m_s2: T) -> T {
         let suspension = &self.suspension;
-        self.gravity_roll_moment_n_m(x.roll_rad)
-            + ay_m_s2 * (self.mass.sprung_mass_kg * suspension.roll_arm_m)
+        ay_m_s2 * (self.mass.sprung_mass_kg * suspension.roll_arm_m)
             - x.roll_rad * suspension.roll_stiffness_n_m_rad
             - x.roll_rate_rad_s * suspension.roll_damping_n_m_s_rad
     }
@@ -264,6 +267,12 @@ impl VehicleParameters {
             (roll_moment * izz - yaw_moment * ixz) / determinant,
         ]
     }
+}
+
+/// Sum of the forces of the wheels.
+fn sum<T: Scalar>(forces_n: &[[T; 2]; 4]) -> [T; 2] {
+    let [front_left, front_right, rear_left, rear_right] = forces_n;
+    std::array::from_fn(|i| front_left[i] + front_right[i] + (rear_left[i] + rear_right[i]))
 }
 
 /// The collision force in body axes and its yaw moment about the CG.
@@ -283,4 +292,26 @@ pub(super) fn collision_wrench<T: Scalar>(
     let ContactPoint { x_m, y_m, .. } = collision.contact;
     let at_contact = force_n[1] * x_m - force_n[0] * y_m;
     Wrench { force_n, yaw_moment_n_m: collision.yaw_moment_n_m.unwrap_or(at_contact) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vehicle::Preset;
+
+    #[test]
+    fn a_drive_of_zero_is_none() {
+        let vehicle = Preset::Reference.parameters();
+        for (vx_m_s, vy_m_s, yaw_rate_rad_s) in
+            [(20.0, 1.0, 0.3), (-8.0, 3.0, -2.0), (0.0, 5.0, 1.0), (0.0, 0.0, 0.0)]
+        {
+            let x = VehicleState { vx_m_s, vy_m_s, yaw_rate_rad_s, ..VehicleState::default() };
+            let free = VehicleInput { steer_rad: 0.05, ..VehicleInput::released() };
+            let driven = VehicleInput { axle_drive_n: Some([0.0; 2]), ..free };
+            let [(free, by_free), (driven, by_driven)] =
+                [free, driven].map(|u| vehicle.jacobian(&x, &u));
+            assert!((free - driven).amax() < 1e-12, "{x:?}: {free} {driven}");
+            assert!((by_free - by_driven).amax() < 1e-9, "{x:?}: {by_free} {by_driven}");
+        }
+    }
 }

@@ -85,8 +85,8 @@ pub fn vertical_loads_n<T: Scalar>(
 ) -> [T; 4] {
     let weight = vehicle.mass.mass_kg * STANDARD_GRAVITY_M_S2;
     let geometry = &vehicle.geometry;
-    let front =
-        (transfer.to_front_n_m + weight * geometry.cg_to_rear_axle_m) / geometry.wheelbase_m();
+    let front = (transfer.to_front_n_m + weight * geometry.cg_to_rear_axle_m)
+        * (1.0 / geometry.wheelbase_m());
     let front = clamp(front, T::from(0.0), T::from(weight));
     let axle = |load: T, share: f64| {
         let half = load / 2.0;
