@@ -6,6 +6,7 @@ pub mod comparison;
 mod config;
 mod error;
 
+mod axle_effects;
 mod effects;
 mod features;
 mod step;
