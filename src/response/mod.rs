@@ -25,6 +25,7 @@ mod simulated;
 mod step_operations;
 
 mod calibration;
+mod joint_state;
 mod latents;
 mod load;
 mod loss;

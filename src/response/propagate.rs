@@ -15,36 +15,23 @@
 //! Source: `eq:sigma_points_gmm` to `eq:complete_trajectory_gmm` of
 //! [`PitPinnPaper`](crate::bibliography::PitPinnPaper).
 
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SMatrix;
 
 use crate::response::features::features_of;
+pub(crate) use crate::response::joint_state::N_JOINT;
+use crate::response::joint_state::{
+    Covariance, LEAST_VARIANCE, Mean, N_DYNAMIC, N_SEEN, NOISY, OF_COLLISION, PSI, X, Y, forget,
+    latents_of, mean_of, state_of, turned,
+};
 use crate::response::latents::{LatentScales, N_LATENTS};
 use crate::response::vehicle_network::{VehicleNetwork, Workspace};
 use crate::response::{N_EFFECTS, N_FEATURES, N_RESIDUAL, STEP_S, combined, effects};
 use crate::uncertainty::{Unscented, UnscentedWeights};
 use crate::vehicle::{Evaluation, VehicleInput, VehicleParameters, VehicleState};
 
-/// Numbers of ξ.
-pub(crate) const N_JOINT: usize = 8 + N_LATENTS;
 const N: usize = N_JOINT;
 /// Points about the mean.
 const N_POINTS: usize = 2 * N;
-/// Those that the network sees: velocities and roll.
-const N_SEEN: usize = 5;
-/// Those that the step depends on: these and the latents.
-const N_DYNAMIC: usize = N_SEEN + N_LATENTS;
-const PSI: usize = N_DYNAMIC;
-const X: usize = N_DYNAMIC + 1;
-const Y: usize = N_DYNAMIC + 2;
-/// Of velocities and rates in ξ: v_x, v_y, r, φ̇.
-const NOISY: [usize; N_RESIDUAL] = [0, 1, 2, 4];
-/// Latent factors of the collision in ξ: they matter as long as a force acts.
-const OF_COLLISION: [usize; 2] = [N_SEEN + 2, N_SEEN + 3];
-/// Variance that is added to every number of ξ so that no covariance is singular.
-const LEAST_VARIANCE: f64 = 1e-12;
-
-type Mean = SVector<f64, N>;
-type Covariance = SMatrix<f64, N, N>;
 
 /// Normal distribution of the state at an instant, of one component.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -201,7 +188,7 @@ impl<'a> Dynamics<'a> {
             covariance[(N_SEEN + m, N_SEEN + m)] = share.variance.max(LEAST_VARIANCE);
         }
         let weights = unscented.weights(N);
-        let last_struck = inputs.iter().rposition(is_struck);
+        let last_struck = inputs.iter().rposition(|u| u.collision.is_some());
         let n_struck = last_struck.map_or(0, |last| last + 1);
         let mut states = Vec::with_capacity(inputs.len() + 1);
         states.push(StateDistribution::of(&mean, &covariance));
@@ -302,24 +289,6 @@ fn add(sum: &mut [f64; N_RESIDUAL], factor: f64, values: &[f64; N_RESIDUAL]) {
     }
 }
 
-/// Whether a force acts: a record goes on with forces of zero after the contact.
-fn is_struck(input: &VehicleInput<f64>) -> bool {
-    input.collision.is_some_and(|collision| {
-        collision.force_n != [0.0; 2]
-            || collision.yaw_moment_n_m.is_some_and(|moment| moment != 0.0)
-    })
-}
-
-/// What is uncertain about a collision that is over: its latent factors are no longer part of the
-/// distribution.
-fn forget(covariance: &mut Covariance) {
-    for i in OF_COLLISION {
-        covariance.fill_row(i, 0.0);
-        covariance.fill_column(i, 0.0);
-        covariance[(i, i)] = LEAST_VARIANCE;
-    }
-}
-
 /// A lower triangular root of a covariance; what rounding took from its being positive is put back.
 fn root_of(covariance: &Covariance) -> Covariance {
     let mut added = 0.0;
@@ -334,47 +303,6 @@ fn root_of(covariance: &Covariance) -> Covariance {
         }
         added = if added == 0.0 { 1e-12 } else { added * 100.0 };
     }
-}
-
-/// A point against the centre, stepped from another pose.
-///
-/// - `offset`, `way`: of its step from the mean's pose, against the centre's and in m; `pose`: how far
-///   off its own pose was.
-fn turned(mut offset: Mean, [dx, dy]: [f64; 2], pose: &Mean) -> Mean {
-    let (sin, cos) = pose[PSI].sin_cos();
-    offset += pose;
-    offset[X] += cos * dx - sin * dy - dx;
-    offset[Y] += sin * dx + cos * dy - dy;
-    offset
-}
-
-fn mean_of(x: &VehicleState<f64>, latents: &[f64; N_LATENTS]) -> Mean {
-    let mut mean = Mean::zeros();
-    let state = [x.vx_m_s, x.vy_m_s, x.yaw_rate_rad_s, x.roll_rad, x.roll_rate_rad_s];
-    for (slot, value) in mean.iter_mut().zip(state.iter().chain(latents)) {
-        *slot = *value;
-    }
-    mean[PSI] = x.yaw_rad;
-    mean[X] = x.x_m;
-    mean[Y] = x.y_m;
-    mean
-}
-
-fn state_of(point: &Mean) -> VehicleState<f64> {
-    VehicleState {
-        vx_m_s: point[0],
-        vy_m_s: point[1],
-        yaw_rate_rad_s: point[2],
-        roll_rad: point[3],
-        roll_rate_rad_s: point[4],
-        yaw_rad: point[PSI],
-        x_m: point[X],
-        y_m: point[Y],
-    }
-}
-
-fn latents_of(point: &Mean) -> [f64; N_LATENTS] {
-    std::array::from_fn(|m| point[N_SEEN + m])
 }
 
 impl StateDistribution {
