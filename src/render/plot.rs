@@ -119,13 +119,11 @@ fn plot_with_axes<'a>(figure: &Figure, options: &FigureOptions) -> Plot<'a> {
     let readout = move |name: &str, at: PlotPoint| {
         let head = if name.is_empty() { String::new() } else { format!("{name}\n") };
         let value = if log_y { 10.0_f64.powf(at.y) } else { at.y };
-        format!(
-            "{head}{} {}\n{} {}",
-            significant(at.x),
-            x.unit.symbol,
-            significant(value),
-            y.unit.symbol
-        )
+        let of_y = match y.names.is_empty() {
+            true => format!("\n{} {}", significant(value), y.unit.symbol),
+            false => String::new(), // the name says it
+        };
+        format!("{head}{} {}{of_y}", significant(at.x), x.unit.symbol)
     };
     let names = figure.y.names.clone();
     let n_names = names.len();

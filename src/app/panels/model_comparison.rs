@@ -11,6 +11,7 @@ use crate::app::response::{ComparisonForm, ComparisonStatus, trajectory_datasets
 use crate::app::source::Source;
 use crate::app::widgets::duration_text;
 use crate::data::Severity;
+use crate::figure::model_name;
 use crate::render::theme;
 use crate::response::comparison::{Comparison, Table, all_tables, paper_figure, to_markdown};
 
@@ -142,11 +143,14 @@ fn heading_ui(ui: &mut Ui, comparison: &Comparison) {
     });
     let of_paper = comparison.models.iter().filter_map(|model| {
         let paper = paper_figure(model.kind, model.trajectories)?;
-        Some(format!("{} {:.2} m", model.name, paper.average_error_m))
+        let name = model_name(&model.name, paper.trajectories.unwrap_or(0));
+        Some(format!("{name}: {:.2} m", paper.average_error_m))
     });
-    let of_paper: Vec<String> = of_paper.collect();
+    let mut of_paper: Vec<String> = of_paper.collect();
+    of_paper.sort();
+    of_paper.dedup(); // one figure of the paper stands for several models here
     if !of_paper.is_empty() {
-        let text = of_paper.join(", ");
+        let text = of_paper.join("; ");
         ui.weak(format!("The paper printed, for other data that are not comparable: {text}"));
     }
 }

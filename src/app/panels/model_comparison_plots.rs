@@ -180,7 +180,8 @@ fn cases_ui(
     let unit = Quantity::Length.display_unit(units);
     let mut clicked = None;
     ui.label(format!("Average error [{}]", unit.symbol));
-    ScrollArea::both().id_salt("compared cases").max_height(BROWSER_HEIGHT).show(ui, |ui| {
+    let area = ScrollArea::both().id_salt("compared cases").max_height(BROWSER_HEIGHT);
+    area.min_scrolled_height(BROWSER_HEIGHT).show(ui, |ui| {
         Grid::new("compared cases").striped(true).show(ui, |ui| {
             for title in ["case", "spins", "cluster"] {
                 ui.strong(title);
