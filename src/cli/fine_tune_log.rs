@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::cli::CliError;
 use crate::cli::quantity::{contact_point, time_s};
 use crate::cli::vehicle_choice::vehicle;
-use crate::data::{ColumnMap, DataError, ForceHistory, read_any_series, read_force_file};
+use crate::data::{ColumnMap, DataError, ForceHistory, read_any_series};
 use crate::response::{ForceOrigin, LogNoise, LogSettings, LoggedImpact, MotionLog};
 use crate::vehicle::{ContactLoad, ContactPoint, VehicleParameters};
 
@@ -106,10 +106,10 @@ impl LogArgs {
     }
 
     fn load(&self, path: &Path, vehicle: &VehicleParameters) -> Result<ContactLoad, CliError> {
-        let sampling = read_any_series(path, None)?.force_sampling();
-        let series = read_force_file(path, None)?.series;
+        let loaded = read_any_series(path, None)?;
         let in_file = |source| CliError::Series { path: path.to_owned(), source };
-        let force = ForceHistory::from_series(&series, sampling).map_err(in_file)?;
+        let force =
+            ForceHistory::from_series(&loaded.series, loaded.force_sampling()).map_err(in_file)?;
         if self.contact.is_none() && force.mz_n_m.is_none() {
             return Err(CliError::NoYawMoment { path: path.to_owned() });
         }

@@ -62,13 +62,6 @@ impl Predictor {
         self
     }
 
-    /// The same with other points of the unscented transform.
-    #[must_use]
-    pub fn with_unscented(mut self, unscented: Unscented) -> Self {
-        self.unscented = unscented;
-        self
-    }
-
     /// The vehicle.
     pub fn vehicle(&self) -> &VehicleParameters {
         &self.vehicle
