@@ -6,7 +6,7 @@ use egui::{DragValue, Id, Panel, ScrollArea, Ui};
 
 use crate::analysis::DensityMap;
 use crate::app::command::Command;
-use crate::app::network::Network;
+use crate::app::dialogs::Purpose;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panels::model_row::{model_row_ui, no_model_ui};
 use crate::app::panels::motion_outcome::outcome_ui;
@@ -139,12 +139,14 @@ fn force_ui(
     let answer = session.response.forecast.ok();
     if answer.is_some_and(|answer| !answer.is_predicted) {
         let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-        ui.colored_label(
-            color,
-            "The collision is not known here, so that its force cannot be predicted: the given force is shown.",
-        );
-        if session.force.model.current.is_none() && ui.button("Open a force model…").clicked() {
-            commands.push(Command::ShowTraining(Network::Force));
+        if session.force.model.current.is_none() {
+            ui.colored_label(color, "There is no force model: the given force is shown.");
+            if ui.button("Open a force model…").clicked() {
+                commands.push(Command::Ask(Purpose::OpenModel));
+            }
+        } else {
+            let text = "The collision is not known here, so that its force cannot be predicted: the given force is shown.";
+            ui.colored_label(color, text);
         }
     }
     for outside in answer.iter().filter_map(|a| a.forecast.force.as_ref()).flat_map(|f| &f.outside)
