@@ -19,7 +19,7 @@ pub use case::analyse_case;
 pub use file::{FileSetup, analyse_file};
 pub use forecast::{ForceForecast, ForecastSettings, Mode, Spread, pulse_curves};
 pub use motion_bands::{MOTION_BAND_LEVELS, MotionBands};
-pub use motion_density::{DensityMap, DensityTask};
+pub use motion_density::{DensityMap, DensityTask, Region};
 pub use motion_forecast::{
     MotionForecast, MotionForecastError, MotionForecastSettings, Outcome, StruckVehicle,
     forecast_collision, forecast_forces,

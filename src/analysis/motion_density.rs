@@ -3,6 +3,9 @@
 
 use std::sync::Arc;
 
+use contour::ContourBuilder;
+
+use crate::analysis::MOTION_BAND_LEVELS;
 use crate::response::{MotionDistribution, STEP_S};
 use crate::uncertainty::{PlanarGrid, PlanarMixture, PlanarPart};
 
@@ -29,6 +32,17 @@ pub struct DensityMap {
     pub grid: PlanarGrid,
     /// Probability density, 1/m²; over a window its mean over time. Row by row from the lowest Y on.
     pub values: Arc<Vec<f64>>,
+    /// The smallest regions that hold the position with each of [`MOTION_BAND_LEVELS`].
+    pub regions: Vec<Region>,
+}
+
+/// A region of a map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Region {
+    /// Probability of the position being inside, 0 to 1.
+    pub level: f64,
+    /// Closed outlines of its parts, and of what they leave out, m.
+    pub outlines: Vec<Vec<[f64; 2]>>,
 }
 
 /// The distribution of the position in a window of time, each instant as likely as the others, and a
@@ -70,8 +84,39 @@ impl DensityTask {
 
     /// The map with values that were computed elsewhere.
     pub fn with(self, values: Vec<f64>) -> DensityMap {
-        DensityMap { window_s: self.window_s, grid: self.grid, values: Arc::new(values) }
+        let regions = regions(&self.grid, &values);
+        DensityMap { window_s: self.window_s, grid: self.grid, values: Arc::new(values), regions }
     }
+}
+
+/// Where the density is above the value above which there is as much probability as each level says.
+fn regions(grid: &PlanarGrid, values: &[f64]) -> Vec<Region> {
+    let mut falling = values.to_vec();
+    falling.sort_unstable_by(|a, b| b.total_cmp(a));
+    let total: f64 = falling.iter().sum();
+    let threshold = |level: f64| {
+        let mut inside = 0.0;
+        let last = falling.iter().find(|value| {
+            inside += **value;
+            inside >= level * total
+        });
+        last.copied().unwrap_or(0.0)
+    };
+    let [width, height] = grid.size;
+    // There, a value stands in the middle of its cell.
+    let origin = [0, 1].map(|axis| grid.low_m[axis] - 0.5 * grid.step_m[axis]);
+    let builder = ContourBuilder::new(width, height, true)
+        .x_origin(origin[0])
+        .y_origin(origin[1])
+        .x_step(grid.step_m[0])
+        .y_step(grid.step_m[1]);
+    let region = |level: f64| {
+        let lines = builder.lines(values, &[threshold(level)]).unwrap_or_default();
+        let rings = lines.into_iter().flat_map(|line| line.into_inner().0);
+        let outlines = rings.map(|ring| ring.into_iter().map(|at| [at.x, at.y]).collect());
+        Region { level, outlines: outlines.collect() }
+    };
+    MOTION_BAND_LEVELS.map(region).to_vec()
 }
 
 /// Square cells over a rectangle that holds nearly all of it.
@@ -117,6 +162,20 @@ mod tests {
         for window_s in [[1.0, 1.0], [0.0, 0.0], [0.0, 1.0], [0.6, 0.2]] {
             let map = DensityTask::new(&motion(), window_s).on_cpu();
             assert!((sum(&map) - 1.0).abs() < 2e-3, "{window_s:?}: {}", sum(&map));
+        }
+    }
+
+    /// −2 ln(1 − q): radius of the region that holds q of a round normal distribution, squared.
+    #[test]
+    fn regions_of_a_round_distribution_are_circles_about_its_mean() {
+        let map = DensityTask::new(&motion(), [1.0, 1.0]).on_cpu();
+        for region in &map.regions {
+            let expected_m = 0.5 * (-2.0 * (1.0 - region.level).ln()).sqrt();
+            let [outline] = &region.outlines[..] else { panic!("{} parts", region.outlines.len()) };
+            for [x_m, y_m] in outline {
+                let radius_m = (x_m - 10.0).hypot(*y_m);
+                assert!((radius_m / expected_m - 1.0).abs() < 0.02, "{radius_m} {expected_m}");
+            }
         }
     }
 

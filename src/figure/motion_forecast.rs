@@ -75,6 +75,14 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
     let at = instant(input);
     let mut elements: Vec<Element> =
         input.density.map(|map| Element::HeatMap(heat_map(map, &shown))).into_iter().collect();
+    for region in input.density.iter().flat_map(|map| &map.regions) {
+        let name = format!("{:.0} % region", 100.0 * region.level);
+        let outline = |points: &Vec<[f64; 2]>| {
+            let points = points.iter().map(|point| shown(*point)).collect();
+            Element::line(&name, Role::Model, points)
+        };
+        elements.extend(region.outlines.iter().map(outline));
+    }
     if input.components {
         let components = &input.distribution.components;
         let stride = components.len().div_ceil(MAX_PATHS).max(1);
@@ -131,12 +139,9 @@ pub fn forecast_readout(input: &MotionForecastFigure<'_>, channel: ForecastChann
     let ForecastChannel { channel, axis } = channel;
     let unit = channel.quantity().display_unit(input.units);
     let at_s = input.time_s;
-    let nearest = |a: &&usize, b: &&usize| {
-        let off = |at: usize| (input.bands.time_s[at] - at_s).abs();
-        off(**a).total_cmp(&off(**b))
-    };
-    let instants: Vec<usize> = (0..input.bands.time_s.len()).collect();
-    let band = instants.iter().min_by(nearest).and_then(|at| input.bands.intervals.get(*at));
+    let bands = input.bands.time_s.iter().zip(&input.bands.intervals);
+    let off = |(time_s, _): &(&f64, _)| (**time_s - at_s).abs();
+    let band = bands.min_by(|a, b| off(a).total_cmp(&off(b))).map(|(_, band)| band);
     let (Some(state), Some(band)) = (input.central.get(instant(input)), band) else {
         return channel.label().to_owned();
     };
