@@ -16,7 +16,7 @@
 //!    whose velocity is meant;
 //! 4. kinetic energy never grows ([`Regime::EnergyLimited`]).
 //!
-//! Validated in `tests/validation_collision.rs` against the published worked example and against
+//! Validated in `tests/library/validation_collision.rs` against the published worked example and against
 //! finite-element runs.
 
 use serde::{Deserialize, Serialize};

@@ -35,7 +35,7 @@ pub struct MomentumModel {
 
 impl MomentumModel {
     /// Before any case is known: a push on the right rear wheel by a corner of the bullet's front,
-    /// the values that fit the shipped finite-element runs (`tests/validation_collision.rs`).
+    /// the values that fit the shipped finite-element runs (`tests/library/validation_collision.rs`).
     pub fn prior(uses_contact: bool) -> Self {
         Self {
             restitution: 0.3,

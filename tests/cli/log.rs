@@ -4,7 +4,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Command;
 
 use impactlab::collision::{Pulse, PulseShape};
 use impactlab::data::{Channel, TimeSeries, write_series_csv};
@@ -15,8 +15,9 @@ use impactlab::vehicle::{
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
-use serde_json::Value;
 use tempfile::TempDir;
+
+use crate::program::{TINY_RESPONSE_NETWORK, TRAJECTORIES, json, ok, program};
 
 const VEHICLE: &str = "scaled-target-100";
 const CONTACT_M: &str = "--contact=-0.7,-0.3,0.126";
@@ -29,14 +30,7 @@ const NOISE: [(Channel, f64); 6] = [
     (Channel::Vx, 0.05),
     (Channel::Vy, 0.05),
 ];
-const TINY: &str = "\
-[network]
-encoder = [8]
-token_encoder = [4, 4, 4]
-attention_heads = 2
-trunk = [8]
-components = 2
-
+const EFFORT: &str = "\
 [single_steps]
 epochs = 3
 
@@ -89,16 +83,11 @@ fn write_log(folder: &Path, name: &str, (stride, seed): (usize, u64)) -> [PathBu
 
 fn fine_tune(folder: &Path) -> Command {
     let config = folder.join("tiny.toml");
-    fs::write(&config, TINY).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_impactlab"));
+    fs::write(&config, [TINY_RESPONSE_NETWORK, EFFORT].concat()).unwrap();
+    let mut command = program();
     command.current_dir(folder).args(["fine-tune", "response", "--json", "--out", "model"]);
     command.arg("--config").arg(&config);
     command
-}
-
-fn ok(output: Output) -> Value {
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice(&output.stdout).unwrap()
 }
 
 fn error(command: &mut Command) -> String {
@@ -135,7 +124,7 @@ fn a_log_of_100_samples_makes_the_next_impact_better_known() {
         let [log, force] = write_log(folder.path(), "log", (stride, 1));
         let mut command = fine_tune(folder.path());
         command.arg("--log").arg(&log).arg("--force").arg(&force).args([CONTACT_M, "--vehicle"]);
-        let told = ok(command.arg(VEHICLE).output().unwrap());
+        let told = json(&ok(command.arg(VEHICLE).output().unwrap()));
         let facts = &told["logs"][0];
         assert_eq!(facts["force"], "recorded", "{hz} Hz");
         assert_eq!(facts["n_samples"], n_states, "{hz} Hz");
@@ -158,7 +147,8 @@ fn without_a_force_the_impulse_is_estimated_and_two_logs_are_calibrated_on() {
         fs::remove_file(force).unwrap();
     }
     let mut command = fine_tune(folder.path());
-    let told = ok(command.args(["--vehicle", VEHICLE, "--log"]).arg(&logs).output().unwrap());
+    let told =
+        json(&ok(command.args(["--vehicle", VEHICLE, "--log"]).arg(&logs).output().unwrap()));
     assert_eq!(told["train"], serde_json::json!(["log_1", "log_2"]));
     assert_eq!(
         (&told["latents"]["n_calibrated"], &told["keeps_latents"]),
@@ -174,7 +164,7 @@ fn without_a_force_the_impulse_is_estimated_and_two_logs_are_calibrated_on() {
     fs::rename(folder.path().join("model"), &start).unwrap();
     let mut command = fine_tune(folder.path());
     command.args(["--vehicle", VEHICLE, "--log"]).arg(logs.join("log_1.csv"));
-    let told = ok(command.arg("--model").arg(&start).output().unwrap());
+    let told = json(&ok(command.arg("--model").arg(&start).output().unwrap()));
     assert_eq!(
         (&told["latents"]["n_calibrated"], &told["keeps_latents"]),
         (&0.into(), &true.into())
@@ -207,7 +197,7 @@ fn what_is_wrong_with_a_log_is_said_with_its_place() {
     assert!(text.contains("2 force files for 1 logs"), "{text}");
     let text = error(fine_tune(folder.path()).arg("--log").arg(&log));
     assert!(text.contains("--vehicle"), "{text}");
-    let both = ["--vehicle", VEHICLE, "--data", "datasets/trajectories-fea", "--log"];
+    let both = ["--vehicle", VEHICLE, "--data", TRAJECTORIES, "--log"];
     let text = error(fine_tune(folder.path()).args(both).arg(&log));
     assert!(text.contains("cannot be used with"), "{text}");
 }

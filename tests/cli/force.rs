@@ -3,17 +3,15 @@
 #![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
-use std::thread;
-use std::time::{Duration, Instant};
+use std::path::Path;
+use std::process::{Command, Output};
 
 use serde_json::Value;
 use tempfile::TempDir;
 
-const SCENARIO: &str = "assets/scenarios/pit_right_rear.toml";
+use crate::program::{SCENARIO, json, kill_at_checkpoint, ok, program};
+
 const DATA: &str = "datasets/fea";
-const PATIENCE: Duration = Duration::from_secs(300);
 
 const TINY: &str = "\
 [network]
@@ -34,12 +32,6 @@ folds = 2
 max_steps = 1
 ";
 
-fn program() -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_impactlab"));
-    command.current_dir(env!("CARGO_MANIFEST_DIR"));
-    command
-}
-
 fn train(folder: &TempDir, model: &Path) -> Command {
     let config = folder.path().join("tiny.toml");
     fs::write(&config, TINY).unwrap();
@@ -49,20 +41,10 @@ fn train(folder: &TempDir, model: &Path) -> Command {
     command
 }
 
-fn ok(output: Output) -> String {
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    assert!(output.status.success(), "{}", text(output.stderr));
-    text(output.stdout)
-}
-
 fn predict(model: &Path, extra: &[&str]) -> Output {
     let mut command = program();
     command.args(["predict", "force", "--scenario", SCENARIO, "--json", "--model"]).arg(model);
     command.args(extra).output().unwrap()
-}
-
-fn json(text: &str) -> Value {
-    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
 }
 
 /// What a prediction says, without the name of the model.
@@ -80,16 +62,7 @@ fn train_kill_resume_predict() {
     assert_eq!((&told["n_test"], &told["epochs"]), (&Value::from(25), &Value::from(6)));
     assert_eq!(told["n_train"].as_u64().unwrap() + told["n_validation"].as_u64().unwrap(), 75);
 
-    // Killed for good (no signal that could be caught) as soon as there is a checkpoint.
-    let mut child = train(&folder, &killed).stderr(Stdio::null()).spawn().unwrap();
-    let checkpoint = PathBuf::from(format!("{}.training", killed.display()));
-    let started = Instant::now();
-    while !checkpoint.exists() && started.elapsed() < PATIENCE {
-        thread::sleep(Duration::from_millis(5));
-    }
-    child.kill().unwrap();
-    child.wait().unwrap();
-    assert!(checkpoint.exists(), "no checkpoint within {PATIENCE:?}");
+    kill_at_checkpoint(&mut train(&folder, &killed), &killed);
     ok(train(&folder, &killed).arg("--resume").output().unwrap());
     assert_eq!(answer(&killed), answer(&whole), "bit for bit");
 

@@ -1,17 +1,13 @@
-//! The command line as its users see it: help, exit codes, JSON keys, errors, results.
-//!
-//! Longer than our other files: a test binary of its own for each command would be linked anew.
+//! The commands without networks, help, and what all commands have in common.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
-use assert_cmd::Command;
 use serde_json::Value;
 use tempfile::TempDir;
 
-const SCENARIO: &str = "assets/scenarios/pit_right_rear.toml";
-const TRAJECTORIES: &str = "datasets/trajectories-fea";
+use crate::program::{SCENARIO, TRAJECTORIES, program};
 
 /// What a command printed, and its exit code.
 struct Ran {
@@ -37,11 +33,7 @@ impl Ran {
 }
 
 fn impactlab(args: &[&str]) -> Ran {
-    let output = Command::cargo_bin("impactlab")
-        .expect("the program was built")
-        .args(args)
-        .output()
-        .expect("the program can be started");
+    let output = program().args(args).output().expect("the program can be started");
     Ran {
         code: output.status.code().expect("no signal ended it"),
         out: String::from_utf8(output.stdout).expect("UTF-8"),
@@ -356,7 +348,7 @@ fn a_build_without_drawing_says_so() {
 #[cfg(all(feature = "gui", target_os = "linux"))]
 #[test]
 fn without_a_display_the_headless_commands_are_named() {
-    let mut command = Command::cargo_bin("impactlab").unwrap();
+    let mut command = program();
     command.env("DISPLAY", "").env_remove("WAYLAND_DISPLAY");
     let output = command.output().unwrap();
     assert_eq!(output.status.code(), Some(1));
@@ -378,12 +370,8 @@ fn a_printed_vehicle_is_a_vehicle_file() {
 #[test]
 fn a_closed_pipe_is_no_panic() {
     for args in [&["check", "datasets", "--all", "--json"][..], &["vehicles"], &["--help"]] {
-        let mut child = std::process::Command::new(assert_cmd::cargo::cargo_bin!("impactlab"))
-            .args(args)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
+        let mut child =
+            program().args(args).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         drop(child.stdout.take());
         let output = child.wait_with_output().unwrap();
         let err = String::from_utf8(output.stderr).unwrap();

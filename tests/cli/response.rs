@@ -5,27 +5,18 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::Command;
 use std::sync::OnceLock;
-use std::thread;
-use std::time::{Duration, Instant};
 
 use impactlab::response::comparison::Comparison;
 use serde_json::Value;
 use tempfile::TempDir;
 
-const SCENARIO: &str = "assets/scenarios/pit_right_rear.toml";
-const DATA: &str = "datasets/trajectories-fea";
-const PATIENCE: Duration = Duration::from_secs(300);
+use crate::program::{
+    SCENARIO, TINY_RESPONSE_NETWORK, TRAJECTORIES as DATA, json, kill_at_checkpoint, ok, program,
+};
 
-const TINY: &str = "\
-[network]
-encoder = [8]
-token_encoder = [4, 4, 4]
-attention_heads = 2
-trunk = [8]
-components = 2
-
+const EFFORT: &str = "\
 [pretraining]
 motions = 4
 epochs = 2
@@ -52,22 +43,6 @@ struct Workplace {
     tuned: PathBuf,
 }
 
-fn program() -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_impactlab"));
-    command.current_dir(env!("CARGO_MANIFEST_DIR"));
-    command
-}
-
-fn ok(output: Output) -> String {
-    let text = |bytes| String::from_utf8(bytes).unwrap();
-    assert!(output.status.success(), "{}", text(output.stderr));
-    text(output.stdout)
-}
-
-fn json(text: &str) -> Value {
-    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
-}
-
 fn fine_tune(place: (&Path, &Path), model: &Path) -> Command {
     let (config, pretrained) = place;
     let mut command = program();
@@ -83,7 +58,7 @@ fn workplace() -> &'static Workplace {
         let folder = tempfile::tempdir().unwrap();
         let [config, pretrained, tuned] =
             ["tiny.toml", "pretrained", "tuned"].map(|name| folder.path().join(name));
-        fs::write(&config, TINY).unwrap();
+        fs::write(&config, [TINY_RESPONSE_NETWORK, EFFORT].concat()).unwrap();
         let mut train = program();
         train.args(["train", "response", "--data", "datasets/fea", "--json"]);
         train.arg("--config").arg(&config).arg("--out").arg(&pretrained);
@@ -113,15 +88,7 @@ fn a_killed_fine_tuning_goes_on_to_the_same_model() {
     let place = workplace();
     let killed = place.folder.path().join("killed");
     let start = (place.config.as_path(), place.pretrained.as_path());
-    let mut child =
-        fine_tune(start, &killed).stderr(Stdio::null()).stdout(Stdio::null()).spawn().unwrap();
-    let checkpoint = PathBuf::from(format!("{}.training", killed.display()));
-    let started = Instant::now();
-    while !checkpoint.exists() && started.elapsed() < PATIENCE {
-        thread::sleep(Duration::from_millis(2));
-    }
-    child.kill().unwrap();
-    child.wait().unwrap();
+    kill_at_checkpoint(&mut fine_tune(start, &killed), &killed);
     ok(fine_tune(start, &killed).arg("--resume").output().unwrap());
     assert_eq!(errors(&evaluate(&killed)), errors(&evaluate(&place.tuned)));
     let other = fine_tune(start, &killed).args(["--resume", "--seed", "9"]).output().unwrap();

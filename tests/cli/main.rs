@@ -1,0 +1,9 @@
+//! The command line as its users see it: help, exit codes, JSON keys, errors, results.
+//!
+//! One program: each test program of its own would link everything anew.
+
+mod commands;
+mod force;
+mod log;
+mod program;
+mod response;

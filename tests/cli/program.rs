@@ -1,0 +1,58 @@
+//! The program under test and what it printed.
+
+#![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+pub const SCENARIO: &str = "assets/scenarios/pit_right_rear.toml";
+pub const TRAJECTORIES: &str = "datasets/trajectories-fea";
+
+/// Layers of a response network that is trained within seconds.
+pub const TINY_RESPONSE_NETWORK: &str = "\
+[network]
+encoder = [8]
+token_encoder = [4, 4, 4]
+attention_heads = 2
+trunk = [8]
+components = 2
+
+";
+
+/// Longest wait for a checkpoint.
+const PATIENCE: Duration = Duration::from_secs(300);
+
+/// The program, in the project's folder.
+pub fn program() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_impactlab"));
+    command.current_dir(env!("CARGO_MANIFEST_DIR"));
+    command
+}
+
+/// What it printed, where it succeeded.
+pub fn ok(output: Output) -> String {
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    assert!(output.status.success(), "{}", text(output.stderr));
+    text(output.stdout)
+}
+
+pub fn json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
+}
+
+/// Kills a training for good (no signal that could be caught) as soon as there is a checkpoint.
+pub fn kill_at_checkpoint(training: &mut Command, model: &Path) {
+    let mut child = training.stderr(Stdio::null()).stdout(Stdio::null()).spawn().unwrap();
+    let checkpoint = PathBuf::from(format!("{}.training", model.display()));
+    let started = Instant::now();
+    while !checkpoint.exists() && started.elapsed() < PATIENCE {
+        thread::sleep(Duration::from_millis(2));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(checkpoint.exists(), "no checkpoint within {PATIENCE:?}");
+}
