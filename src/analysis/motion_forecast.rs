@@ -13,7 +13,9 @@ use crate::collision::{Scenario, ScenarioError};
 use crate::data::{ForceAxes, ForceHistory};
 use crate::force::{ForceError, ForceModel, ForcePrediction, ForceScenario};
 use crate::nn::random_stream;
-use crate::response::{MotionDistribution, Predictor, ResponseError, ResponseModel, STEP_S};
+use crate::response::{
+    MotionDistribution, Predictor, ResponseError, ResponseModel, STEP_S, weighted_mean,
+};
 use crate::uncertainty::{ForceCurve, PlanarMixture};
 use crate::vehicle::frames::body_from_world;
 use crate::vehicle::{
@@ -228,17 +230,9 @@ fn in_world(curve: &ForceCurve, heading_rad: f64) -> ForceHistory {
 
 fn mean_of(paths: &[Vec<VehicleState<f64>>]) -> Vec<VehicleState<f64>> {
     let n_instants = paths.first().map_or(0, Vec::len);
-    let n = paths.len().max(1) as f64;
-    let at = |i: usize| {
-        let mut sum = [0.0; 8];
-        for state in paths.iter().filter_map(|path| path.get(i)) {
-            for (sum, value) in sum.iter_mut().zip(state.to_array()) {
-                *sum += value / n;
-            }
-        }
-        VehicleState::from_array(sum)
-    };
-    (0..n_instants).map(at).collect()
+    let weight = 1.0 / paths.len().max(1) as f64;
+    let states = |i: usize| paths.iter().filter_map(move |path| Some((weight, path.get(i)?)));
+    (0..n_instants).map(|i| weighted_mean(states(i))).collect()
 }
 
 fn outcome(

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::data::{
-    ColumnMap, DataError, Dataset, FileKind, Flag, Loaded, Opened, Outcome, check_case,
-    check_series, open, read_series,
+    ColumnMap, DataError, Dataset, DatasetKind, FileKind, Flag, Loaded, Opened, Outcome,
+    check_case, check_series, open, read_series,
 };
 use crate::error_chain;
 use crate::jobs::Job;
@@ -41,6 +41,32 @@ pub struct CheckedDataset {
     pub flags: Vec<Vec<Flag>>,
     /// What its `vehicle.toml` says; `None` without one.
     pub vehicle: Option<Result<VehicleParameters, String>>,
+}
+
+/// A dataset that is open.
+#[derive(Clone, Copy)]
+pub struct OpenDataset<'a> {
+    /// Its folder.
+    pub path: &'a Path,
+    /// What was read of it.
+    pub checked: &'a Arc<CheckedDataset>,
+}
+
+/// The datasets of a kind that are open, in the order of the sources.
+pub fn open_datasets(sources: &[Source], kind: DatasetKind) -> Vec<OpenDataset<'_>> {
+    let datasets = sources
+        .iter()
+        .filter_map(|source| Some(OpenDataset { path: &source.path, checked: source.dataset()? }));
+    datasets.filter(|of| of.checked.dataset.kind == kind).collect()
+}
+
+/// The wanted one of the datasets, or else the first.
+pub fn chosen_dataset<'a>(
+    datasets: &[OpenDataset<'a>],
+    wanted: Option<&Path>,
+) -> Option<OpenDataset<'a>> {
+    let chosen = datasets.iter().find(|of| Some(of.path) == wanted);
+    chosen.or(datasets.first()).copied()
 }
 
 /// A single file with its checks.
@@ -101,8 +127,7 @@ impl Source {
 
     /// The last part of its path.
     pub fn name(&self) -> String {
-        let name = self.path.file_name().unwrap_or(self.path.as_os_str());
-        name.to_string_lossy().into_owned()
+        last_part(&self.path)
     }
 
     /// The dataset, if it is one.
@@ -112,6 +137,17 @@ impl Source {
             _ => None,
         }
     }
+}
+
+impl OpenDataset<'_> {
+    /// The last part of its path.
+    pub fn name(&self) -> String {
+        last_part(self.path)
+    }
+}
+
+fn last_part(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
 fn contents(path: &Path, opened: Opened) -> Vec<(PathBuf, Content)> {

@@ -60,6 +60,7 @@ pub use loss::ResponseLossTerms;
 pub use model::ResponseModel;
 pub use motion_log::{ForceOrigin, LogError, LogNoise, LogSettings, LoggedImpact, MotionLog};
 pub use motion_series::motion_series;
+pub(crate) use predictor::weighted_mean;
 pub use predictor::{ComponentPath, MotionDistribution, Predictor};
 pub use propagate::{ComponentMotion, StateDistribution};
 pub use record::{ResponseEpoch, ResponseRecord, ResponseStage, ResponseTrainingSet};

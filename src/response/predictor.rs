@@ -226,7 +226,8 @@ fn path(
     ComponentPath { weight, states }
 }
 
-fn weighted_mean<'a>(
+/// `Σ w x`; the weights sum to one.
+pub(crate) fn weighted_mean<'a>(
     states: impl Iterator<Item = (f64, &'a VehicleState<f64>)>,
 ) -> VehicleState<f64> {
     let mut sum = [0.0; N_STATE];

@@ -15,7 +15,7 @@ pub use evaluation::{EvaluatedCase, EvaluationStatus, FinishedEvaluation};
 pub use question::{ForceQuestion, Forecast};
 pub use settings::{ForceProject, ForceView, Statistic, TrainingForm};
 pub use training::{Phase, TrainingStatus};
-pub use update::{RecordedCase, force_datasets, source_name};
+pub use update::RecordedCase;
 
 use std::path::PathBuf;
 

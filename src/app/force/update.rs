@@ -10,7 +10,7 @@ use crate::app::command::{TrainingCommand, wake};
 use crate::app::force::evaluation::EvaluationRequest;
 use crate::app::force::training::TrainingData;
 use crate::app::force::{ForceQuestion, Forecast};
-use crate::app::source::{CheckedDataset, Source};
+use crate::app::source::{OpenDataset, Source, chosen_dataset, open_datasets};
 use crate::app::state::{State, Subject};
 use crate::data::{DatasetKind, Severity};
 use crate::error_chain;
@@ -125,19 +125,18 @@ impl State {
     /// Starts a training on the chosen data.
     fn start_force_training(&mut self, context: &Context) {
         let form = &self.project.force.training;
-        let datasets = force_datasets(&self.session.sources);
-        let chosen = datasets.iter().find(|(path, _)| Some(*path) == form.dataset.as_deref());
-        let Some(&(path, checked)) = chosen.or(datasets.first()) else {
+        let datasets = open_datasets(&self.session.sources, DatasetKind::Force);
+        let Some(chosen) = chosen_dataset(&datasets, form.dataset.as_deref()) else {
             self.say(Severity::Warning, "open a force data set to train on first");
             return;
         };
-        let others: Vec<_> =
-            datasets.iter().filter(|(other, _)| form.use_others && *other != path).collect();
-        let names = std::iter::once(path).chain(others.iter().map(|(path, _)| *path));
+        let is_extra = |of: &OpenDataset<'_>| form.use_others && of.path != chosen.path;
+        let extra: Vec<_> = datasets.iter().copied().filter(is_extra).collect();
+        let names = std::iter::once(&chosen).chain(&extra).map(OpenDataset::name);
         let data = TrainingData {
-            name: names.map(source_name).collect::<Vec<_>>().join(" and "),
-            dataset: Arc::clone(checked),
-            extra: others.into_iter().map(|(_, checked)| Arc::clone(checked)).collect(),
+            name: names.collect::<Vec<_>>().join(" and "),
+            dataset: Arc::clone(chosen.checked),
+            extra: extra.iter().map(|of| Arc::clone(of.checked)).collect(),
         };
         let settings = (form, self.session.force.checkpoint.clone());
         if let Err(error) = self.session.force.training.start(data, settings, wake(context)) {
@@ -147,22 +146,17 @@ impl State {
 
     /// Evaluates the current model on the chosen data.
     pub(in crate::app) fn evaluate(&mut self, context: &Context) {
-        let datasets = force_datasets(&self.session.sources);
-        let wanted = self.view.force.evaluated.as_deref();
-        let chosen = datasets.iter().find(|(path, _)| Some(*path) == wanted);
-        let dataset = chosen
-            .or(datasets.first())
-            .map(|(path, checked)| (source_name(path), Arc::clone(checked)));
-        let (Some((data, dataset)), Some(current)) = (dataset, &self.session.force.model.current)
-        else {
+        let datasets = open_datasets(&self.session.sources, DatasetKind::Force);
+        let chosen = chosen_dataset(&datasets, self.view.force.evaluated.as_deref());
+        let (Some(chosen), Some(current)) = (chosen, &self.session.force.model.current) else {
             self.say(Severity::Warning, "an evaluation needs a force model and a force data set");
             return;
         };
         let request = EvaluationRequest {
             model: Arc::clone(&current.model),
             name: current.name.clone(),
-            data,
-            dataset,
+            data: chosen.name(),
+            dataset: Arc::clone(chosen.checked),
             all: self.view.force.evaluate_all,
         };
         if let Err(error) = self.session.force.evaluation.start(request, wake(context)) {
@@ -174,17 +168,6 @@ impl State {
     pub fn forecast(&self) -> Option<&Forecast> {
         self.session.force.forecast.ok().map(Arc::as_ref)
     }
-}
-
-/// The force data sets that are open, by path.
-pub fn force_datasets(sources: &[Source]) -> Vec<(&Path, &Arc<CheckedDataset>)> {
-    let datasets = sources.iter().filter_map(|s| Some((s.path.as_path(), s.dataset()?)));
-    datasets.filter(|(_, checked)| checked.dataset.kind == DatasetKind::Force).collect()
-}
-
-/// The last part of a data set's path.
-pub fn source_name(path: &Path) -> String {
-    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
 fn force_case(sources: &[Source], (path, name): (&Path, &str)) -> Option<RecordedCase> {

@@ -1,14 +1,15 @@
 //! How well the force network does on a data set.
 
-use egui::{ComboBox, ProgressBar, ScrollArea, Ui};
+use egui::{ProgressBar, ScrollArea, Ui};
 
 use crate::app::command::Command;
-use crate::app::force::{FinishedEvaluation, ForceSession, ForceView, force_datasets, source_name};
+use crate::app::force::{FinishedEvaluation, ForceSession, ForceView};
 use crate::app::panels::evaluation_plots::plots_ui;
 use crate::app::panels::evaluation_tables::tables_ui;
 use crate::app::panes::PaneContext;
-use crate::app::source::Source;
-use crate::data::Severity;
+use crate::app::source::{Source, open_datasets};
+use crate::app::widgets::{dataset_choice, no_dataset_ui};
+use crate::data::{DatasetKind, Severity};
 use crate::render::theme;
 
 /// Draws the choice of data, the tables and the plots.
@@ -43,31 +44,20 @@ fn start_ui(
     sources: &[Source],
     commands: &mut Vec<Command>,
 ) {
-    let datasets = force_datasets(sources);
+    let datasets = open_datasets(sources, DatasetKind::Force);
     let Some(current) = &force.model.current else {
         ui.label("There is no force model to evaluate: open or train one in the Training pane.");
         return;
     };
     if datasets.is_empty() {
-        ui.label("No force data set is open. Open a folder with cases.csv and forces/, e.g. the shipped datasets/fea.");
+        no_dataset_ui(ui, DatasetKind::Force);
         return;
     }
     ui.horizontal_wrapped(|ui| {
         ui.strong("Model");
         ui.label(&current.name);
         let name = ui.label("on");
-        let chosen = datasets.iter().find(|(path, _)| Some(*path) == view.evaluated.as_deref());
-        let text = chosen.or(datasets.first()).map_or(String::new(), |(path, _)| source_name(path));
-        ComboBox::from_id_salt("evaluated data")
-            .selected_text(text)
-            .show_ui(ui, |ui| {
-                for (path, _) in &datasets {
-                    let value = Some((*path).to_owned());
-                    ui.selectable_value(&mut view.evaluated, value, source_name(path));
-                }
-            })
-            .response
-            .labelled_by(name.id);
+        dataset_choice(ui, "evaluated data", &datasets, &mut view.evaluated).labelled_by(name.id);
         ui.radio_value(&mut view.evaluate_all, false, "cases it has not seen")
             .on_hover_text("By content: a training case under another name is recognised");
         ui.radio_value(&mut view.evaluate_all, true, "all cases")

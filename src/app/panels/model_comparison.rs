@@ -1,16 +1,15 @@
 //! The response network beside other models, on trajectories that none has seen.
 
-use egui::{ComboBox, DragValue, Grid, ProgressBar, ScrollArea, Ui};
+use egui::{DragValue, Grid, ProgressBar, ScrollArea, Ui};
 
 use crate::app::command::{Command, ComparisonCommand};
 use crate::app::dialogs::Purpose;
-use crate::app::force::source_name;
 use crate::app::panels::model_comparison_plots::{browser_ui, overview_ui};
 use crate::app::panes::PaneContext;
-use crate::app::response::{ComparisonForm, ComparisonStatus, trajectory_datasets};
-use crate::app::source::Source;
-use crate::app::widgets::duration_text;
-use crate::data::Severity;
+use crate::app::response::{ComparisonForm, ComparisonStatus};
+use crate::app::source::{Source, open_datasets};
+use crate::app::widgets::{dataset_choice, duration_text, no_dataset_ui};
+use crate::data::{DatasetKind, Severity};
 use crate::figure::model_name;
 use crate::render::theme;
 use crate::response::comparison::{Comparison, Table, all_tables, paper_figure, to_markdown};
@@ -19,9 +18,9 @@ use crate::response::comparison::{Comparison, Table, all_tables, paper_figure, t
 pub fn model_comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        form_ui(ui, &mut project.response.comparison, &session.sources);
+        let has_data = form_ui(ui, &mut project.response.comparison, &session.sources);
         let status = &mut session.response.comparison;
-        buttons_ui(ui, status, !trajectory_datasets(&session.sources).is_empty(), commands);
+        buttons_ui(ui, status, has_data, commands);
         match &status.result {
             None => {
                 ui.weak("The 4DOF model by the data sheet and tuned by particle swarm, a plain network, and the response network: fitted to the same trajectories, asked about the same others. Takes some minutes a choice; or open a comparison.json that `impactlab compare --out` has written.");
@@ -43,26 +42,15 @@ pub fn model_comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     });
 }
 
-fn form_ui(ui: &mut Ui, form: &mut ComparisonForm, sources: &[Source]) {
-    let datasets = trajectory_datasets(sources);
+/// Whether there is something to compare on.
+fn form_ui(ui: &mut Ui, form: &mut ComparisonForm, sources: &[Source]) -> bool {
+    let datasets = open_datasets(sources, DatasetKind::Trajectory);
     if datasets.is_empty() {
-        ui.label("No trajectory data set is open. Open a folder with cases.csv, trajectories/ and vehicle.toml, e.g. the shipped datasets/trajectories-fea.");
+        no_dataset_ui(ui, DatasetKind::Trajectory);
     }
     ui.horizontal_wrapped(|ui| {
         let name = ui.label("On");
-        let chosen = datasets.iter().find(|(path, _)| Some(*path) == form.dataset.as_deref());
-        let text =
-            chosen.or(datasets.first()).map_or("none is open".into(), |of| source_name(of.0));
-        ComboBox::from_id_salt("compared data")
-            .selected_text(text)
-            .show_ui(ui, |ui| {
-                for (path, _) in &datasets {
-                    let value = Some((*path).to_owned());
-                    ui.selectable_value(&mut form.dataset, value, source_name(path));
-                }
-            })
-            .response
-            .labelled_by(name.id);
+        dataset_choice(ui, "compared data", &datasets, &mut form.dataset).labelled_by(name.id);
         let name = ui.label("trajectories");
         ui.add(egui::TextEdit::singleline(&mut form.trajectories).desired_width(70.0))
             .labelled_by(name.id)
@@ -79,6 +67,7 @@ fn form_ui(ui: &mut Ui, form: &mut ComparisonForm, sources: &[Source]) {
         let field = egui::TextEdit::singleline(&mut form.config).desired_width(160.0);
         ui.add(field.hint_text("TOML, optional")).labelled_by(name.id);
     });
+    !datasets.is_empty()
 }
 
 fn buttons_ui(

@@ -1,18 +1,19 @@
 //! How the force network learns.
 
-use egui::{ComboBox, Grid, Ui};
+use egui::{Grid, Ui};
 
 use crate::app::command::Command;
-use crate::app::force::{Phase, TrainingForm, TrainingStatus, force_datasets, source_name};
+use crate::app::force::{Phase, TrainingForm, TrainingStatus};
 use crate::app::network::Network;
 use crate::app::panels::model_row::save_model_ui;
 use crate::app::panels::training_parts::{
     RunState, loss_choice_ui, run_buttons_ui, run_problems_ui, run_progress_ui, settings_rows_ui,
 };
 use crate::app::panes::PaneContext;
-use crate::app::source::Source;
+use crate::app::source::{Source, open_datasets};
 use crate::app::state::View;
-use crate::app::widgets::{figure_frame, value_row};
+use crate::app::widgets::{dataset_choice, figure_frame, no_dataset_ui, value_row};
+use crate::data::DatasetKind;
 use crate::figure::{LossCurve, loss_figure};
 use crate::force::{EpochRecord, LossTerms};
 use crate::render::FigureOptions;
@@ -28,7 +29,7 @@ pub fn force_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands } = pane;
     let has_data = data_form_ui(ui, &mut project.force.training, &session.sources);
     if !has_data {
-        ui.label("No force data set is open. Open a folder with cases.csv and forces/, e.g. the shipped datasets/fea.");
+        no_dataset_ui(ui, DatasetKind::Force);
     }
     let status = &session.force.training;
     let run = RunState {
@@ -64,26 +65,11 @@ pub fn force_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 
 /// Whether there is something to train on.
 fn data_form_ui(ui: &mut Ui, form: &mut TrainingForm, sources: &[Source]) -> bool {
-    let datasets = force_datasets(sources);
+    let datasets = open_datasets(sources, DatasetKind::Force);
     Grid::new("training form").num_columns(2).show(ui, |ui| {
         let hint = "Some of its cases are kept for the test, chosen by the seed";
         let name = ui.label("Force data set").on_hover_text(hint);
-        let chosen = datasets.iter().find(|(path, _)| Some(*path) == form.dataset.as_deref());
-        let label = |(path, checked): &(&std::path::Path, &std::sync::Arc<_>)| {
-            let checked: &crate::app::source::CheckedDataset = checked;
-            format!("{}, {} cases", source_name(path), checked.dataset.cases.len())
-        };
-        let text = chosen.or(datasets.first()).map_or("none is open".to_owned(), label);
-        ComboBox::from_id_salt("training data")
-            .selected_text(text)
-            .width(220.0)
-            .show_ui(ui, |ui| {
-                for dataset in &datasets {
-                    let value = Some(dataset.0.to_owned());
-                    ui.selectable_value(&mut form.dataset, value, label(dataset));
-                }
-            })
-            .response
+        dataset_choice(ui, "training data", &datasets, &mut form.dataset)
             .labelled_by(name.id)
             .on_hover_text(hint);
         ui.end_row();

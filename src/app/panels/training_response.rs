@@ -3,19 +3,17 @@
 use egui::{ComboBox, Grid, Ui};
 
 use crate::app::command::Command;
-use crate::app::force::source_name;
 use crate::app::network::Network;
 use crate::app::panels::model_row::save_model_ui;
 use crate::app::panels::training_parts::{
     RunState, loss_choice_ui, run_buttons_ui, run_problems_ui, run_progress_ui, settings_rows_ui,
 };
 use crate::app::panes::PaneContext;
-use crate::app::response::{
-    Course, ResponsePhase, ResponseTrainingForm, ResponseTrainingStatus, trajectory_datasets,
-};
-use crate::app::source::Source;
+use crate::app::response::{Course, ResponsePhase, ResponseTrainingForm, ResponseTrainingStatus};
+use crate::app::source::{Source, open_datasets};
 use crate::app::state::View;
-use crate::app::widgets::{figure_frame, value_row};
+use crate::app::widgets::{dataset_choice, figure_frame, no_dataset_ui, value_row};
+use crate::data::DatasetKind;
 use crate::figure::{Figure, LossCurve, balance_figure, loss_figure};
 use crate::render::FigureOptions;
 use crate::response::{ResponseEpoch, ResponseLossTerms};
@@ -31,7 +29,7 @@ pub fn response_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands } = pane;
     let has_data = form_ui(ui, &mut project.response.training, &session.sources);
     if !has_data {
-        ui.label("No trajectory data set is open. Open a folder with cases.csv, trajectories/ and vehicle.toml, e.g. the shipped datasets/trajectories-fea.");
+        no_dataset_ui(ui, DatasetKind::Trajectory);
     }
     let status = &session.response.training;
     let run = RunState {
@@ -63,7 +61,7 @@ pub fn response_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 
 /// Whether there is something to train on.
 fn form_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, sources: &[Source]) -> bool {
-    let datasets = trajectory_datasets(sources);
+    let datasets = open_datasets(sources, DatasetKind::Trajectory);
     Grid::new("response training form").num_columns(2).show(ui, |ui| {
         let name = ui.label("Course");
         ComboBox::from_id_salt("course")
@@ -80,21 +78,7 @@ fn form_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, sources: &[Source]) -> 
         ui.end_row();
         let hint = "A quarter of its cases is kept for the test, chosen by the seed of the split";
         let name = ui.label("Trajectory data set").on_hover_text(hint);
-        let chosen = datasets.iter().find(|(path, _)| Some(*path) == form.dataset.as_deref());
-        let text =
-            chosen.or(datasets.first()).map_or("none is open".to_owned(), |(path, checked)| {
-                format!("{}, {} cases", source_name(path), checked.dataset.cases.len())
-            });
-        ComboBox::from_id_salt("trajectories")
-            .selected_text(text)
-            .width(320.0)
-            .show_ui(ui, |ui| {
-                for (path, _) in &datasets {
-                    let value = Some((*path).to_owned());
-                    ui.selectable_value(&mut form.dataset, value, source_name(path));
-                }
-            })
-            .response
+        dataset_choice(ui, "trajectories", &datasets, &mut form.dataset)
             .labelled_by(name.id)
             .on_hover_text(hint);
         ui.end_row();

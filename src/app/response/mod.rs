@@ -14,7 +14,6 @@ pub use settings::{
     ResponseView,
 };
 pub use training::{ResponsePhase, ResponseTrainingData, ResponseTrainingStatus};
-pub use update::trajectory_datasets;
 
 use std::path::PathBuf;
 use std::sync::Arc;

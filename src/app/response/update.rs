@@ -7,12 +7,11 @@ use egui::Context;
 
 use crate::analysis::{Analysis, MotionForecastSettings};
 use crate::app::command::{ComparisonCommand, TrainingCommand, wake};
-use crate::app::force::source_name;
 use crate::app::response::{
     ComparisonRequest, DensityChoice, DensityQuestion, ForceChoice, MotionAnswer, MotionQuestion,
     ResponseTrainingData,
 };
-use crate::app::source::{CheckedDataset, Source};
+use crate::app::source::{CheckedDataset, chosen_dataset, open_datasets};
 use crate::app::state::{State, Subject};
 use crate::app::update::target_vehicle;
 use crate::data::{DatasetKind, Severity};
@@ -170,11 +169,9 @@ impl State {
         &mut self,
         wanted: Option<&Path>,
     ) -> Option<(String, Arc<CheckedDataset>, VehicleParameters)> {
-        let datasets = trajectory_datasets(&self.session.sources);
-        let chosen = datasets.iter().find(|(path, _)| Some(*path) == wanted);
-        let found = chosen.or(datasets.first());
-        let Some((name, dataset)) = found.map(|(path, of)| (source_name(path), Arc::clone(of)))
-        else {
+        let datasets = open_datasets(&self.session.sources, DatasetKind::Trajectory);
+        let chosen = chosen_dataset(&datasets, wanted);
+        let Some((name, dataset)) = chosen.map(|of| (of.name(), Arc::clone(of.checked))) else {
             self.say(Severity::Warning, "open a trajectory data set first");
             return None;
         };
@@ -197,10 +194,4 @@ impl State {
 fn duration_s(analysis: &Analysis, otherwise_s: f64) -> f64 {
     let recorded = analysis.reference.as_ref().and_then(|series| series.time_s().last().copied());
     recorded.unwrap_or(otherwise_s)
-}
-
-/// The trajectory data sets that are open, by path.
-pub fn trajectory_datasets(sources: &[Source]) -> Vec<(&Path, &Arc<CheckedDataset>)> {
-    let datasets = sources.iter().filter_map(|s| Some((s.path.as_path(), s.dataset()?)));
-    datasets.filter(|(_, checked)| checked.dataset.kind == DatasetKind::Trajectory).collect()
 }

@@ -1,9 +1,11 @@
 //! Parts that several panels use.
 
+mod dataset_choice;
 mod figure_frame;
 mod quantity;
 mod spread_table;
 
+pub use dataset_choice::{dataset_choice, no_dataset_ui};
 pub use figure_frame::figure_frame;
 pub use quantity::{SliderRange, duration_text, quantity_field, quantity_slider, value_row};
 pub use spread_table::{SpreadRow, spread_table_ui};
