@@ -86,9 +86,8 @@ impl<'a, T: Scalar> Axle<'a, T> {
         for shape in [sin, sin * sin, sin * cos * 2.0, cos] {
             put(self.along_force(shape * drag_n));
         }
-        for share in WHEEL_MASS_SHARES {
-            let mass_kg = 2.0 * share * self.vehicle.mass.mass_kg;
-            let [along, across] = spin_lag_n([u, w, x.yaw_rate_rad_s], grip_n, mass_kg);
+        let masses_kg = WHEEL_MASS_SHARES.map(|share| 2.0 * share * self.vehicle.mass.mass_kg);
+        for [along, across] in spin_lags_n([u, w, x.yaw_rate_rad_s], grip_n, masses_kg) {
             put(self.along_force(along * 0.3));
             put(self.side_force(across * 0.3));
         }
@@ -123,20 +122,30 @@ impl<'a, T: Scalar> Axle<'a, T> {
     }
 }
 
-/// Drag, and the loss of side force, of an axle whose wheels roll slower or faster than they move, N.
-fn spin_lag_n<T: Scalar>([u, w, yaw_rate]: [T; 3], grip_n: T, mass_kg: f64) -> [T; 2] {
-    let lag_per_slip = (grip_n + 100.0).recip() * mass_kg;
+/// Drag, and the loss of side force, of an axle whose wheels roll slower or faster than they move, N,
+/// for each mass.
+fn spin_lags_n<T: Scalar, const N: usize>(
+    [u, w, yaw_rate]: [T; 3],
+    grip_n: T,
+    masses_kg: [f64; N],
+) -> [[T; 2]; N] {
+    let yaw_rate_per_grip = yaw_rate / (grip_n + 100.0);
     let rest = w * w + 0.1;
     let across = rest.sqrt();
-    let (mut slip, mut along) = (w.abs() + 0.3, T::from(0.0));
+    let (mut slips, mut alongs) = ([w.abs() + 0.3; N], [T::from(0.0); N]);
+    // All masses in a pass: their divisions and roots do not wait for each other.
     for _ in 0..SPIN_LAG_PASSES {
-        let turned = yaw_rate * slip * lag_per_slip;
-        let rolling = (u - turned * w) / (turned * turned + 1.0);
-        along = u - rolling;
-        slip = (along * along + rest).sqrt();
+        for ((slip, along), mass_kg) in slips.iter_mut().zip(&mut alongs).zip(masses_kg) {
+            let turned = yaw_rate_per_grip * *slip * mass_kg;
+            let rolling = (u - turned * w) / (turned * turned + 1.0);
+            *along = u - rolling;
+            *slip = (*along * *along + rest).sqrt();
+        }
     }
-    let lost = w / slip - w / across;
-    [-grip_n * along / slip, -grip_n * lost]
+    std::array::from_fn(|i| {
+        let lost = w / slips[i] - w / across;
+        [-grip_n * alongs[i] / slips[i], -grip_n * lost]
+    })
 }
 
 /// The hat functions over [`SLIP_KNOTS_RAD`] that are not zero, with their heights: those of the knots
@@ -177,10 +186,10 @@ mod tests {
     fn wheels_lag_behind_a_fast_rotation_and_drag() {
         let grip_n = 7_000.0;
         // Rolling backwards after half a turn: the wheels still brake.
-        let [along, _] = spin_lag_n([-30.0, 0.5, 4.0], grip_n, 120.0);
+        let [[along, _]] = spin_lags_n([-30.0, 0.5, 4.0], grip_n, [120.0]);
         assert!(along > 0.0 && along <= grip_n, "{along}");
         // In a gentle curve the drag is that of the wheels' inertia, m_w r w.
-        let [along, _]: [f64; 2] = spin_lag_n([20.0, 1.0, 0.2], grip_n, 30.0);
+        let [[along, _]]: [[f64; 2]; 1] = spin_lags_n([20.0, 1.0, 0.2], grip_n, [30.0]);
         assert!((along / (-30.0 * 0.2 * 1.0) - 1.0).abs() < 0.1, "{along}");
     }
 }

@@ -33,9 +33,12 @@ pub(super) type Covariance = SMatrix<f64, N_JOINT, N_JOINT>;
 /// A point against the centre, stepped from another pose.
 ///
 /// - `offset`, `way`: of its step from the mean's pose, against the centre's and in m; `pose`: how far
-///   off its own pose was.
-pub(super) fn turned(mut offset: Mean, [dx, dy]: [f64; 2], pose: &Mean) -> Mean {
-    let (sin, cos) = pose[PSI].sin_cos();
+///   off its own pose was, with sine and cosine of its turn.
+pub(super) fn turned(
+    mut offset: Mean,
+    [dx, dy]: [f64; 2],
+    (pose, [sin, cos]): (&Mean, [f64; 2]),
+) -> Mean {
     offset += pose;
     offset[X] += cos * dx - sin * dy - dx;
     offset[Y] += sin * dx + cos * dy - dy;

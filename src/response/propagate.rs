@@ -8,8 +8,9 @@
 //! ```
 //!
 //! Points off the mean come in pairs along the columns of a lower triangular root of P, so that a
-//! column leaves alone what comes before it in ξ: those of the latents see what the mean sees, those of
-//! the pose have the mean's step turned and shifted. The paper restarts from a certain pose at every step, so that its
+//! column leaves alone what comes before it in ξ: those of the latents see what the mean sees, and the
+//! second of a pair has the first one's step mirrored at the mean's; those of the pose have the mean's
+//! step turned and shifted. The paper restarts from a certain pose at every step, so that its
 //! spread never grows along the path; with a certain pose this is its formula.
 //!
 //! Source: `eq:sigma_points_gmm` to `eq:complete_trajectory_gmm` of
@@ -25,7 +26,7 @@ use crate::response::joint_state::{
 };
 use crate::response::latents::{LatentScales, N_LATENTS};
 use crate::response::vehicle_network::{VehicleNetwork, Workspace};
-use crate::response::{N_EFFECTS, N_FEATURES, N_RESIDUAL, STEP_S, combined, effects};
+use crate::response::{Correction, N_EFFECTS, N_FEATURES, N_RESIDUAL, STEP_S, combined, effects};
 use crate::uncertainty::{Unscented, UnscentedWeights};
 use crate::vehicle::{Evaluation, VehicleInput, VehicleParameters, VehicleState};
 
@@ -110,7 +111,7 @@ impl<'a> Dynamics<'a> {
     ) -> VehicleState<f64> {
         self.see(component, std::iter::once(*x), (u, time_s), buffers);
         let seen = buffers.seen.first();
-        seen.map_or(*x, |seen| self.step_from(seen, latents, u))
+        seen.map_or(*x, |seen| self.step_from(seen, self.correction(seen, latents), u))
     }
 
     /// Looks at several states at once.
@@ -145,18 +146,22 @@ impl<'a> Dynamics<'a> {
         }
     }
 
-    /// A step from a state that was looked at.
-    fn step_from(
-        &self,
-        seen: &Seen,
-        latents: &[f64; N_LATENTS],
-        u: &VehicleInput<f64>,
-    ) -> VehicleState<f64> {
+    /// The correction at a state that was looked at.
+    fn correction(&self, seen: &Seen, latents: &[f64; N_LATENTS]) -> [f64; N_RESIDUAL] {
         let mut value = seen.value;
         for (z, by_latent) in latents.iter().zip(&seen.by_latents) {
             add(&mut value, *z, by_latent);
         }
-        let value = self.network.bounded(value);
+        self.network.bounded(value)
+    }
+
+    /// A step from a state that was looked at, with a correction.
+    fn step_from(
+        &self,
+        seen: &Seen,
+        value: [f64; N_RESIDUAL],
+        u: &VehicleInput<f64>,
+    ) -> VehicleState<f64> {
         self.network.correction().step_from(self.vehicle, (&seen.x, u, &seen.now), value)
     }
 
@@ -245,22 +250,41 @@ impl<'a> Dynamics<'a> {
         self.see(component, states, (u, time_s), buffers);
         let mut seen = buffers.seen.iter();
         let at_mean = seen.next();
-        let step = |seen: &Seen, point: &Mean| self.step_from(seen, &latents_of(point), u);
-        let of_mean = at_mean.map_or(state_of(mean), |seen| step(seen, mean));
+        let here =
+            at_mean.map_or([0.0; N_RESIDUAL], |seen| self.correction(seen, &latents_of(mean)));
+        let of_mean = at_mean.map_or(state_of(mean), |seen| self.step_from(seen, here, u));
         let centre = mean_of(&of_mean, &latents_of(mean));
+        let correction = self.network.correction();
+        // Of the point before.
+        let (mut next, mut value, mut turn) = (centre, here, [0.0, 1.0]);
         for (k, offset) in offsets.iter_mut().enumerate() {
             let point = mean + *offset;
+            let latents = latents_of(&point);
             let from = match anew(k / 2) {
                 Anew::Look => seen.next(),
                 Anew::Step => at_mean,
                 Anew::Place => None,
             };
-            let next = from.map_or(of_mean, |seen| step(seen, &point));
-            let next = mean_of(&next, &latents_of(&point));
+            next = match (from, anew(k / 2)) {
+                (Some(seen), Anew::Step) if !k.is_multiple_of(2) => {
+                    let own = self.correction(seen, &latents);
+                    opposite(correction, [&next, &centre], [&value, &here, &own])
+                }
+                (Some(seen), _) => {
+                    value = self.correction(seen, &latents);
+                    mean_of(&self.step_from(seen, value, u), &latents)
+                }
+                (None, _) => mean_of(&of_mean, &latents),
+            };
             let way = [next[X] - mean[X], next[Y] - mean[Y]];
-            *offset = turned(next - centre, way, &(*offset - start(offset)));
+            let pose = *offset - start(offset);
+            turn = match k.is_multiple_of(2) {
+                true => pose[PSI].sin_cos().into(),
+                false => [-turn[0], turn[1]],
+            };
+            *offset = turned(next - centre, way, (&pose, turn));
         }
-        let (shift, mut covariance) = moments(&offsets, weights);
+        let (shift, mut covariance) = moments(offsets, weights);
         for (idx, std) in NOISY.into_iter().zip(self.noise(component, buffers)) {
             covariance[(idx, idx)] += std * std;
         }
@@ -271,15 +295,60 @@ impl<'a> Dynamics<'a> {
     }
 }
 
-/// Mean and covariance of points about the centre.
-fn moments(offsets: &[Mean; N_POINTS], weights: &UnscentedWeights) -> (Mean, Covariance) {
-    let mut spread = SMatrix::<f64, N, N_POINTS>::from_columns(offsets);
-    let shift = spread.column_sum() * weights.other;
-    for mut column in spread.column_iter_mut() {
-        column -= shift;
+/// Where a step ends with a correction about as far to the other side of the centre's as that of
+/// another step from the same state: it is constant over the step, so that it moves the end in
+/// proportion to itself, to the third order of the step's length.
+///
+/// - `ends`: with the other correction, with the centre's; `values`: the other one, the centre's, its
+///   own.
+pub(super) fn opposite(
+    correction: Correction,
+    [other, centre]: [&Mean; 2],
+    [there, here, own]: [&[f64; N_RESIDUAL]; 3],
+) -> Mean {
+    let per_unit = correction.change_per_unit();
+    let mut end = centre * 2.0 - other;
+    for (i, idx) in NOISY.into_iter().enumerate() {
+        end[idx] += per_unit * (there[i] + own[i] - 2.0 * here[i]);
     }
+    end
+}
+
+/// Mean and covariance of points about the centre.
+fn moments(mut offsets: [Mean; N_POINTS], weights: &UnscentedWeights) -> (Mean, Covariance) {
+    let shift = offsets.iter().sum::<Mean>() * weights.other;
+    offsets.iter_mut().for_each(|offset| *offset -= shift);
+    let spread = pulp::Arch::new().dispatch(SumOfSquares(&offsets));
     let of_centre = shift * shift.transpose() * weights.centre_covariance;
-    (shift, spread * spread.transpose() * weights.other + of_centre)
+    (shift, spread * weights.other + of_centre)
+}
+
+/// `Σ x xᵀ`, compiled with the machine's vector instructions, a few columns at a time, so that they
+/// stay in registers.
+struct SumOfSquares<'a>(&'a [Mean; N_POINTS]);
+
+impl pulp::NullaryFnOnce for SumOfSquares<'_> {
+    type Output = Covariance;
+
+    #[inline(always)]
+    fn call(self) -> Covariance {
+        const COLUMNS: usize = 4;
+        const { assert!(N.is_multiple_of(COLUMNS)) };
+        let mut columns = [[0.0; N]; N];
+        for (block_idx, block) in columns.as_chunks_mut::<COLUMNS>().0.iter_mut().enumerate() {
+            let mut sums = [[0.0; N]; COLUMNS];
+            for x in self.0 {
+                let [x] = x.data.0;
+                for (c, sums) in sums.iter_mut().enumerate() {
+                    for (sum, value) in sums.iter_mut().zip(x) {
+                        *sum += x[block_idx * COLUMNS + c] * value;
+                    }
+                }
+            }
+            *block = sums;
+        }
+        Covariance::from(columns)
+    }
 }
 
 /// `sum += factor · values`.
@@ -291,9 +360,9 @@ fn add(sum: &mut [f64; N_RESIDUAL], factor: f64, values: &[f64; N_RESIDUAL]) {
 
 /// A lower triangular root of a covariance; what rounding took from its being positive is put back.
 fn root_of(covariance: &Covariance) -> Covariance {
-    let mut added = 0.0;
+    let mut lifted = *covariance;
+    let mut added = 1e-12;
     loop {
-        let lifted = covariance + Covariance::from_diagonal(&(covariance.diagonal() * added));
         if let Some(root) = lifted.cholesky() {
             return root.unpack();
         }
@@ -301,7 +370,8 @@ fn root_of(covariance: &Covariance) -> Covariance {
             // Not finite: nothing is known any more.
             return Covariance::identity();
         }
-        added = if added == 0.0 { 1e-12 } else { added * 100.0 };
+        lifted = covariance + Covariance::from_diagonal(&(covariance.diagonal() * added));
+        added *= 100.0;
     }
 }
 

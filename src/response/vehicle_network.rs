@@ -8,6 +8,7 @@
 //! double precision.
 
 use candle_core::Tensor;
+use wide::f64x4;
 
 use crate::nn::NnError;
 use crate::response::dense::{Dense, Rows};
@@ -102,7 +103,10 @@ impl VehicleNetwork {
     /// `a_bound ⊙ tanh(a/a_bound)`.
     pub(crate) fn bounded(&self, free: [f64; N_RESIDUAL]) -> [f64; N_RESIDUAL] {
         match self.bound {
-            Some(bound) => std::array::from_fn(|i| bound[i] * (free[i] / bound[i]).tanh()),
+            Some(bound) => {
+                let bound = f64x4::new(bound);
+                ((f64x4::new(free) / bound).tanh() * bound).to_array()
+            }
             None => free,
         }
     }

@@ -185,7 +185,7 @@ impl VehicleParameters {
         of_body: LoadTransfer<T>,
     ) -> (Wrench<T>, [T; 4]) {
         let (sin_steer, cos_steer) = u.steer_rad.sin_cos();
-        let slips = Wheel::ALL.map(|wheel| self.wheel_slip(wheel, x, [sin_steer, cos_steer]));
+        let slips = self.wheel_slips(x, [sin_steer, cos_steer]);
         let force_n = |wheel_idx: usize, load_n: T, drive_n: T| {
             let [along, across] = slips[wheel_idx].force_n(load_n, drive_n);
             if Wheel::ALL[wheel_idx].is_front() {
@@ -225,22 +225,26 @@ impl VehicleParameters {
         (Wrench { force_n: sum(&tires_n), yaw_moment_n_m }, loads_n)
     }
 
-    fn wheel_slip<T: Scalar>(
+    fn wheel_slips<T: Scalar>(
         &self,
-        wheel: Wheel,
         x: &VehicleState<T>,
         [sin_steer, cos_steer]: [T; 2],
-    ) -> WheelSlip<T> {
-        let [px, py] = wheel.position_m(self);
-        let u = x.vx_m_s - x.yaw_rate_rad_s * py;
-        let w = x.vy_m_s + x.yaw_rate_rad_s * px;
+    ) -> [WheelSlip<T>; 4] {
         let tires = &self.tires;
-        if wheel.is_front() {
-            let in_wheel = [cos_steer * u + sin_steer * w, cos_steer * w - sin_steer * u];
-            tires.slip(tires.cornering_coefficient_front_per_rad, in_wheel)
-        } else {
-            tires.slip(tires.cornering_coefficient_rear_per_rad, [u, w])
-        }
+        let cornering_coefficients_per_rad = Wheel::ALL.map(|wheel| match wheel.is_front() {
+            true => tires.cornering_coefficient_front_per_rad,
+            false => tires.cornering_coefficient_rear_per_rad,
+        });
+        let velocities_m_s = Wheel::ALL.map(|wheel| {
+            let [px, py] = wheel.position_m(self);
+            let u = x.vx_m_s - x.yaw_rate_rad_s * py;
+            let w = x.vy_m_s + x.yaw_rate_rad_s * px;
+            match wheel.is_front() {
+                true => [cos_steer * u + sin_steer * w, cos_steer * w - sin_steer * u],
+                false => [u, w],
+            }
+        });
+        tires.slips(cornering_coefficients_per_rad, velocities_m_s)
     }
 
     /// Moment of the sprung weight about the roll axis, `m_s g h sin φ`, N m.

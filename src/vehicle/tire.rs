@@ -67,16 +67,30 @@ pub struct WheelSlip<T> {
 }
 
 impl TireParameters {
-    /// Slip of a wheel whose centre moves at `[u, w]` m/s in the wheel's own axes (u along its
+    /// Slips of four wheels whose centres move at `[u, w]` m/s in their own axes (u along a wheel's
     /// plane, w to the left).
-    pub fn slip<T: Scalar>(
+    pub fn slips<T: Scalar>(
+        &self,
+        cornering_coefficients_per_rad: [f64; 4],
+        velocities_m_s: [[T; 2]; 4],
+    ) -> [WheelSlip<T>; 4] {
+        // −atan2(w, |u| + ε): the second argument is positive, and atan is the faster half of it.
+        let slopes = velocities_m_s.map(|[u, w]| -w / (u.abs() + SLIP_ANGLE_SPEED_M_S));
+        let slip_angles_rad = T::atan_each(slopes);
+        std::array::from_fn(|i| {
+            let [u, _] = velocities_m_s[i];
+            self.slip(cornering_coefficients_per_rad[i], u, slip_angles_rad[i])
+        })
+    }
+
+    /// Slip of a wheel that moves at u along its plane.
+    fn slip<T: Scalar>(
         &self,
         cornering_coefficient_per_rad: f64,
-        [u, w]: [T; 2],
+        u: T,
+        slip_angle_rad: T,
     ) -> WheelSlip<T> {
         let speed = u.abs();
-        // atan2(w, |u| + ε): the second argument is positive, and atan is the faster half of it.
-        let slip_angle_rad = -(w / (speed + SLIP_ANGLE_SPEED_M_S)).atan();
         let beyond_peak = slip_angle_rad * slip_angle_rad / SLIDING_SLIP_ANGLE_RAD.powi(2);
         let sliding_loss = if self.sliding_friction_ratio < 1.0 {
             -((-beyond_peak).exp() - 1.0) * (1.0 - self.sliding_friction_ratio)
@@ -136,31 +150,36 @@ mod tests {
         rolling_resistance_s2_m2: 2e-5,
     };
 
+    fn slip(tire: &TireParameters, coefficient: f64, velocity_m_s: [f64; 2]) -> WheelSlip<f64> {
+        let [slip, ..] = tire.slips([coefficient; 4], [velocity_m_s; 4]);
+        slip
+    }
+
     #[test]
     fn the_slope_at_zero_slip_is_the_cornering_stiffness() {
         let tire = TireParameters { rolling_resistance_s2_m2: 0.0, ..TIRE };
         let (u, w) = (1e3, 1e-3);
-        let [fx, fy]: [f64; 2] = tire.slip(13.0, [u, -w]).force_n(5e3, 0.0);
+        let [fx, fy] = slip(&tire, 13.0, [u, -w]).force_n(5e3, 0.0);
         let free_of_rolling = (1.0 - (fx / (0.8 * 5e3)).powi(2)).sqrt();
         assert!((fy / (13.0 * 5e3 * w / u * free_of_rolling) - 1.0).abs() < 1e-3, "{fy} {fx}");
     }
 
     #[test]
     fn a_wheel_that_slides_sideways_has_sliding_friction() {
-        let [_, fy]: [f64; 2] = TIRE.slip(20.0, [0.0, 10.0]).force_n(4000.0, 0.0);
+        let [_, fy] = slip(&TIRE, 20.0, [0.0, 10.0]).force_n(4000.0, 0.0);
         let [full, sliding] = [0.8 * 4000.0, 0.8 * 0.8 * 4000.0];
         assert!(fy < 0.0 && fy.abs() < 1.01 * sliding && fy.abs() < full, "{fy}");
     }
 
     #[test]
     fn a_lifted_wheel_has_no_force() {
-        assert_eq!(TIRE.slip(20.0, [5.0, 3.0]).force_n(0.0, 0.0), [0.0, 0.0]);
+        assert_eq!(slip(&TIRE, 20.0, [5.0, 3.0]).force_n(0.0, 0.0), [0.0, 0.0]);
     }
 
     proptest! {
         #[test]
         fn a_tyre_never_puts_energy_in(u in -60.0..60.0, w in -60.0..60.0, load in 0.0..2e4) {
-            let [fx, fy] = TIRE.slip(13.0, [u, w]).force_n(load, 0.0);
+            let [fx, fy] = slip(&TIRE, 13.0, [u, w]).force_n(load, 0.0);
             prop_assert!(fx * u + fy * w <= 0.0);
         }
 
@@ -168,14 +187,14 @@ mod tests {
         fn the_force_stays_in_the_friction_circle(
             u in -60.0..60.0, w in -60.0..60.0, load in 0.0..2e4, drive in -2e4..2e4,
         ) {
-            let [fx, fy] = TIRE.slip(13.0, [u, w]).force_n(load, drive);
+            let [fx, fy] = slip(&TIRE, 13.0, [u, w]).force_n(load, drive);
             prop_assert!(f64::hypot(fx, fy) <= 0.8 * load * (1.0 + 1e-12));
         }
 
         #[test]
         fn backwards_is_the_mirror_of_forwards(u in 0.1..60.0, w in -60.0..60.0) {
-            let [fx, fy]: [f64; 2] = TIRE.slip(13.0, [u, w]).force_n(5e3, 0.0);
-            let [bx, by] = TIRE.slip(13.0, [-u, w]).force_n(5e3, 0.0);
+            let [fx, fy] = slip(&TIRE, 13.0, [u, w]).force_n(5e3, 0.0);
+            let [bx, by] = slip(&TIRE, 13.0, [-u, w]).force_n(5e3, 0.0);
             prop_assert!((fx + bx).abs() < 1e-9 && (fy - by).abs() < 1e-9);
         }
     }
