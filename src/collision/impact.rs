@@ -348,7 +348,7 @@ impl<T: Scalar> ImpactBody<T> {
     /// Kinetic energy `½ m v² + ½ I r²`, J.
     pub fn kinetic_energy_j(&self) -> T {
         let translation = self.mass_kg * dot(self.velocity_m_s, self.velocity_m_s);
-        (translation + self.yaw_inertia_kg_m2 * self.yaw_rate_rad_s.powi(2)) * 0.5
+        (translation + self.yaw_inertia_kg_m2 * self.yaw_rate_rad_s.squared()) * 0.5
     }
 
     fn after(&self, impulse: [T; 2]) -> BodyAfter<T> {
@@ -414,12 +414,12 @@ impl<T: Scalar> RestitutionLine<T> {
             (p_t, regime) = (sliding, Regime::Sliding);
         }
         let slope = v_t - coupling * v_n;
-        let e2 = self.restitution.powi(2);
-        let at_frictionless = (-e2 + 1.0) * v_n.powi(2) / self.k_nn * 0.5;
-        let created = schur * p_t.powi(2) * 0.5 - slope * p_t - at_frictionless;
+        let e2 = self.restitution.squared();
+        let at_frictionless = (-e2 + 1.0) * v_n.squared() / self.k_nn * 0.5;
+        let created = schur * p_t.squared() * 0.5 - slope * p_t - at_frictionless;
         // Below rounding there is nothing to limit: e = 1 without friction sits exactly at zero.
         if created.re() > 1e-12 * (at_frictionless.re() + (slope * p_t).re().abs()) {
-            let root = (slope.powi(2) + schur * at_frictionless * 2.0).sqrt();
+            let root = (slope.squared() + schur * at_frictionless * 2.0).sqrt();
             (p_t, regime) = ((slope + root * sign) / schur, Regime::EnergyLimited);
         }
         Ok((p_t, regime))

@@ -1,6 +1,6 @@
 //! One step of an explicit integrator, generic over the scalar.
 
-use crate::numerics::Scalar;
+use crate::numerics::Lanes;
 
 /// Where within a step the right-hand side is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,7 +14,7 @@ pub enum Stage {
 }
 
 /// Explicit Euler step of ẋ = f: `x + h f(x)`. First order.
-pub fn euler_step<T: Scalar, const N: usize>(
+pub fn euler_step<T: Lanes, const N: usize>(
     f: impl Fn(Stage, &[T; N]) -> [T; N],
     x: &[T; N],
     h: f64,
@@ -28,7 +28,7 @@ pub fn euler_step<T: Scalar, const N: usize>(
 /// k₁ = f(t, x)   k₂ = f(t + h/2, x + h/2 k₁)   k₃ = f(t + h/2, x + h/2 k₂)   k₄ = f(t + h, x + h k₃)
 /// x⁺ = x + h/6 (k₁ + 2 k₂ + 2 k₃ + k₄)
 /// ```
-pub fn rk4_step<T: Scalar, const N: usize>(
+pub fn rk4_step<T: Lanes, const N: usize>(
     f: impl Fn(Stage, &[T; N]) -> [T; N],
     x: &[T; N],
     h: f64,
@@ -40,7 +40,7 @@ pub fn rk4_step<T: Scalar, const N: usize>(
     std::array::from_fn(|i| x[i] + (k1[i] + (k2[i] + k3[i]) * 2.0 + k4[i]) * (h / 6.0))
 }
 
-fn advance<T: Scalar, const N: usize>(x: &[T; N], k: &[T; N], h: f64) -> [T; N] {
+fn advance<T: Lanes, const N: usize>(x: &[T; N], k: &[T; N], h: f64) -> [T; N] {
     std::array::from_fn(|i| x[i] + k[i] * h)
 }
 

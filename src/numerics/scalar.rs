@@ -1,27 +1,218 @@
-//! The number that the physics is written in.
+//! The numbers that the physics is written in.
+
+use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub};
 
 use num_dual::{Dual64, DualNum, DualSVec64};
-use wide::f64x4;
+use wide::{f64x2, f64x4};
 
-/// A real number with or without derivatives: `f64` simulates, a dual number of `num_dual` gives
-/// the exact Jacobian of the same lines.
-pub trait Scalar: DualNum<Primitive = f64> + Copy {
+/// A real number, or several side by side: what the equations of motion are written in.
+///
+/// - `f64` simulates;
+/// - a dual number of `num_dual` gives the exact Jacobian of the same lines;
+/// - `f64x2` takes two motions through them at once.
+///
+/// There is no order, since of two numbers side by side one may be the smaller and one the larger:
+/// what depends on it is chosen for each by [`Lanes::if_less`].
+pub trait Lanes:
+    Copy
+    + From<f64>
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<f64, Output = Self>
+    + AddAssign
+    + MulAssign
+{
+    /// |x|.
+    fn abs(self) -> Self;
+    /// √x.
+    fn sqrt(self) -> Self;
+    /// 1/x.
+    fn recip(self) -> Self;
+    /// eˣ.
+    fn exp(self) -> Self;
+    /// Hyperbolic tangent.
+    fn tanh(self) -> Self;
+    /// Arc tangent, rad.
+    fn atan(self) -> Self;
+    /// Sine of an angle in rad.
+    fn sin(self) -> Self;
+    /// Sine and cosine of an angle in rad.
+    fn sin_cos(self) -> (Self, Self);
+
+    /// x².
+    fn squared(self) -> Self {
+        self * self
+    }
+
     /// Arc tangents of four numbers, rad; in vector instructions where there are no derivatives, at
     /// a third of the time.
     fn atan_each(x: [Self; 4]) -> [Self; 4] {
-        x.map(|x| x.atan())
+        x.map(Self::atan)
+    }
+
+    /// `then` where this number is less than the limit, `otherwise` where it is not.
+    fn if_less(self, limit: Self, then: Self, otherwise: Self) -> Self;
+
+    /// Whether this number is less than the limit, for at least one of those side by side.
+    fn any_less(self, limit: Self) -> bool;
+
+    /// 1 with the number's sign, without slope; 1 at 0.
+    fn sign(self) -> Self {
+        self.if_less(Self::from(0.0), Self::from(-1.0), Self::from(1.0))
+    }
+
+    /// The number, or the nearer end of the range where it lies outside.
+    fn clamped(self, low: Self, high: Self) -> Self {
+        self.if_less(low, low, high.if_less(self, high, self))
     }
 }
 
-impl Scalar for f64 {
+/// One real number with or without derivatives.
+pub trait Scalar: Lanes + PartialOrd {
+    /// Without its derivatives.
+    fn re(self) -> f64;
+}
+
+/// What a type has from `num_dual`.
+macro_rules! lanes_of_one {
+    () => {
+        fn abs(self) -> Self {
+            magnitude(self)
+        }
+
+        fn sqrt(self) -> Self {
+            DualNum::sqrt(&self)
+        }
+
+        fn recip(self) -> Self {
+            DualNum::recip(&self)
+        }
+
+        fn exp(self) -> Self {
+            DualNum::exp(&self)
+        }
+
+        fn tanh(self) -> Self {
+            DualNum::tanh(&self)
+        }
+
+        fn atan(self) -> Self {
+            DualNum::atan(&self)
+        }
+
+        fn sin(self) -> Self {
+            DualNum::sin(&self)
+        }
+
+        fn sin_cos(self) -> (Self, Self) {
+            DualNum::sin_cos(&self)
+        }
+
+        fn if_less(self, limit: Self, then: Self, otherwise: Self) -> Self {
+            if self < limit { then } else { otherwise }
+        }
+
+        fn any_less(self, limit: Self) -> bool {
+            self < limit
+        }
+    };
+}
+
+/// |x| with the slope of the side that x lies on.
+fn magnitude<T: DualNum<Primitive = f64>>(x: T) -> T {
+    x.abs()
+}
+
+impl Lanes for f64 {
+    lanes_of_one!();
+
     fn atan_each(x: [Self; 4]) -> [Self; 4] {
         f64x4::new(x).atan().to_array()
     }
 }
 
-impl Scalar for Dual64 {}
+impl Lanes for Dual64 {
+    lanes_of_one!();
+}
 
-impl<const N: usize> Scalar for DualSVec64<N> {}
+impl<const N: usize> Lanes for DualSVec64<N> {
+    lanes_of_one!();
+}
+
+impl Scalar for f64 {
+    fn re(self) -> f64 {
+        self
+    }
+}
+
+impl Scalar for Dual64 {
+    fn re(self) -> f64 {
+        self.re
+    }
+}
+
+impl<const N: usize> Scalar for DualSVec64<N> {
+    fn re(self) -> f64 {
+        self.re
+    }
+}
+
+impl Lanes for f64x2 {
+    fn abs(self) -> Self {
+        self.abs()
+    }
+
+    fn sqrt(self) -> Self {
+        self.sqrt()
+    }
+
+    fn recip(self) -> Self {
+        Self::ONE / self
+    }
+
+    // One after the other is as fast here.
+    fn exp(self) -> Self {
+        Self::new(self.to_array().map(f64::exp))
+    }
+
+    fn tanh(self) -> Self {
+        self.tanh()
+    }
+
+    fn atan(self) -> Self {
+        self.atan()
+    }
+
+    fn sin(self) -> Self {
+        let (sin, _) = self.sin_cos();
+        sin
+    }
+
+    fn sin_cos(self) -> (Self, Self) {
+        self.sin_cos()
+    }
+
+    fn atan_each(x: [Self; 4]) -> [Self; 4] {
+        let [[a, b], [c, d], [e, f], [g, h]] = x.map(Self::to_array);
+        let [a, b, c, d] = f64x4::new([a, b, c, d]).atan().to_array();
+        let [e, f, g, h] = f64x4::new([e, f, g, h]).atan().to_array();
+        [[a, b], [c, d], [e, f], [g, h]].map(Self::new)
+    }
+
+    fn if_less(self, limit: Self, then: Self, otherwise: Self) -> Self {
+        self.simd_lt(limit).select(then, otherwise)
+    }
+
+    fn any_less(self, limit: Self) -> bool {
+        self.simd_lt(limit).any()
+    }
+}
 
 #[cfg(test)]
 mod tests {
@@ -29,14 +220,46 @@ mod tests {
 
     use super::*;
 
+    fn number() -> impl Strategy<Value = f64> {
+        prop_oneof![-1e-3..1e-3, -5.0..5.0, -1e4..1e4]
+    }
+
+    fn assert_near(got: f64, expected: f64) {
+        assert!((got - expected).abs() <= 4.0 * f64::EPSILON * expected.abs(), "{got} {expected}");
+    }
+
     proptest! {
         #[test]
-        fn four_arc_tangents_are_those_of_each(
-            x in prop::array::uniform4(prop_oneof![-1e-3..1e-3, -5.0..5.0, -1e9..1e9]),
-        ) {
+        fn four_arc_tangents_are_those_of_each(x in prop::array::uniform4(number())) {
             for (got, x) in f64::atan_each(x).into_iter().zip(x) {
-                prop_assert!((got - x.atan()).abs() <= 4.0 * f64::EPSILON * x.atan().abs(), "{x}");
+                assert_near(got, f64::atan(x));
             }
+            let pairs = f64x2::atan_each(x.map(|x| f64x2::new([x, -2.0 * x])));
+            for (got, x) in pairs.into_iter().zip(x) {
+                assert_near(got.to_array()[0], f64::atan(x));
+                assert_near(got.to_array()[1], f64::atan(-2.0 * x));
+            }
+        }
+
+        #[test]
+        fn two_side_by_side_are_each_of_them(x in number(), y in number(), limit in number()) {
+            fn all<T: Lanes>(x: T, limit: f64) -> [T; 10] {
+                let (sin, cos) = x.sin_cos();
+                let limit = T::from(limit);
+                [
+                    x.abs(), x.abs().sqrt(), x.recip(), (-x.abs()).exp(), x.tanh(), x.atan(), x.sign(),
+                    x.if_less(limit, x * 2.0, limit), x.clamped(-limit.abs(), limit.abs()), sin - cos,
+                ]
+            }
+            let both = all(f64x2::new([x, y]), limit);
+            let (of_x, of_y) = (all(x, limit), all(y, limit));
+            for ((both, x), y) in both.into_iter().zip(of_x).zip(of_y) {
+                let off = |got: f64, one: f64| (got - one).abs() / (1e-12 + one.abs());
+                prop_assert!(off(both.to_array()[0], x) < 1e-11, "{both:?} {x}");
+                prop_assert!(off(both.to_array()[1], y) < 1e-11, "{both:?} {y}");
+            }
+            let any = f64x2::new([x, y]).any_less(f64x2::from(limit));
+            prop_assert_eq!(any, x < limit || y < limit);
         }
     }
 

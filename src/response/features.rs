@@ -1,7 +1,7 @@
 //! State, force and time as the response network sees them: what tyres and inertia feel, in numbers
 //! of the order of one.
 
-use crate::numerics::Scalar;
+use crate::numerics::Lanes;
 use crate::vehicle::{Evaluation, VehicleInput, VehicleParameters, VehicleState};
 
 /// Numbers of an instant.
@@ -48,7 +48,7 @@ const HORIZON_S: f64 = 4.0;
 /// v_x/V, v_y/V                         direction of motion
 /// e^(−t/0.2 s), t/4 s                  time since the impact began
 /// ```
-pub fn features<T: Scalar>(
+pub fn features<T: Lanes>(
     vehicle: &VehicleParameters,
     x: &VehicleState<T>,
     u: &VehicleInput<T>,
@@ -58,7 +58,7 @@ pub fn features<T: Scalar>(
 }
 
 /// [`features`] where the 4DOF model was evaluated already.
-pub(crate) fn features_of<T: Scalar>(
+pub(crate) fn features_of<T: Lanes>(
     vehicle: &VehicleParameters,
     x: &VehicleState<T>,
     now: &Evaluation<T>,

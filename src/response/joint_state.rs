@@ -37,7 +37,7 @@ pub(super) type Covariance = SMatrix<f64, N_JOINT, N_JOINT>;
 pub(super) fn turned(
     mut offset: Mean,
     [dx, dy]: [f64; 2],
-    (pose, [sin, cos]): (&Mean, [f64; 2]),
+    (pose, [sin, cos]): &(Mean, [f64; 2]),
 ) -> Mean {
     offset += pose;
     offset[X] += cos * dx - sin * dy - dx;

@@ -13,6 +13,7 @@ mod step;
 mod vehicle_tokens;
 
 mod dense;
+mod dynamics;
 mod effect_operation;
 mod effects_fit;
 mod folded_attention;

@@ -7,7 +7,8 @@ use rand_distr::StandardNormal;
 use rayon::prelude::*;
 
 use crate::nn::random_stream;
-use crate::response::propagate::{Buffers, Dynamics, N_JOINT};
+use crate::response::dynamics::{Dynamics, Questions};
+use crate::response::joint_state::N_JOINT;
 use crate::response::vehicle_network::VehicleNetwork;
 use crate::response::{ComponentMotion, LatentScales, N_LATENTS, N_RESIDUAL, STEP_S};
 use crate::uncertainty::{NormalMixture, NormalPart, PlanarMixture, PlanarPart, Unscented};
@@ -95,10 +96,10 @@ impl Predictor {
         inputs: &[VehicleInput<f64>],
         latents: impl Fn(usize) -> [f64; N_LATENTS],
     ) -> Vec<ComponentPath> {
-        let (dynamics, mut buffers) = (self.dynamics(), Buffers::default());
+        let (dynamics, mut questions) = (self.dynamics(), Questions::default());
         let mut none = |std: &mut [f64; N_RESIDUAL]| *std = [0.0; N_RESIDUAL];
         let of = |j: usize| {
-            path(&dynamics, (j, &latents(j), &mut none), (initial, inputs), &mut buffers)
+            path(&dynamics, (j, &latents(j), &mut none), (initial, inputs), &mut questions)
         };
         let mut paths: Vec<ComponentPath> = (0..self.n_components()).map(of).collect();
         let sum: f64 = paths.iter().map(|path| path.weight).sum();
@@ -139,8 +140,8 @@ impl Predictor {
         initial: &VehicleState<f64>,
         inputs: &[VehicleInput<f64>],
     ) -> MotionDistribution {
-        let (dynamics, mut buffers) = (self.dynamics(), Buffers::default());
-        let component = |j| dynamics.motion((j, self.unscented), initial, inputs, &mut buffers);
+        let dynamics = self.dynamics();
+        let component = |j| dynamics.motion((j, self.unscented), initial, inputs);
         MotionDistribution::new((0..self.n_components()).map(component).collect())
     }
 
@@ -166,8 +167,8 @@ impl Predictor {
             let mut noise = |std: &mut [f64; N_RESIDUAL]| {
                 std.iter_mut().for_each(|std| *std *= normal(&mut rng));
             };
-            let mut buffers = Buffers::default();
-            path(&dynamics, (j, &latents, &mut noise), (initial, inputs), &mut buffers).states
+            let mut questions = Questions::default();
+            path(&dynamics, (j, &latents, &mut noise), (initial, inputs), &mut questions).states
         };
         (0..n).into_par_iter().map(draw).collect()
     }
@@ -203,7 +204,7 @@ fn path(
     dynamics: &Dynamics<'_>,
     (component, latents, noise): (usize, &[f64; N_LATENTS], &mut Noise<'_>),
     (initial, inputs): (&VehicleState<f64>, &[VehicleInput<f64>]),
-    buffers: &mut Buffers,
+    questions: &mut Questions,
 ) -> ComponentPath {
     let mut states = Vec::with_capacity(inputs.len() + 1);
     let mut state = *initial;
@@ -211,10 +212,10 @@ fn path(
     let mut weight = 0.0;
     for (i, u) in inputs.iter().enumerate() {
         let at = (&state, u, i as f64 * STEP_S);
-        let next = dynamics.step((component, latents), at, buffers);
-        weight += dynamics.weight(component, buffers) / inputs.len() as f64;
+        let next = dynamics.step((component, latents), at, questions);
+        weight += dynamics.weight(component, questions) / inputs.len() as f64;
         state = next;
-        let mut off = dynamics.noise(component, buffers);
+        let mut off = dynamics.noise(component, questions);
         noise(&mut off);
         let [vx, vy, yaw, roll] = off;
         state.vx_m_s += vx;

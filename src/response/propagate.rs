@@ -8,27 +8,28 @@
 //! ```
 //!
 //! Points off the mean come in pairs along the columns of a lower triangular root of P, so that a
-//! column leaves alone what comes before it in ξ: those of the latents see what the mean sees, and the
-//! second of a pair has the first one's step mirrored at the mean's; those of the pose have the mean's
-//! step turned and shifted. The paper restarts from a certain pose at every step, so that its
+//! column leaves alone what comes before it in ξ: those of the latents see what the mean sees, those of
+//! the pose have the mean's step turned and shifted. The two of a pair go through the equations of
+//! motion side by side. The paper restarts from a certain pose at every step, so that its
 //! spread never grows along the path; with a certain pose this is its formula.
 //!
 //! Source: `eq:sigma_points_gmm` to `eq:complete_trajectory_gmm` of
 //! [`PitPinnPaper`](crate::bibliography::PitPinnPaper).
 
 use nalgebra::SMatrix;
+use wide::f64x2;
 
+use crate::response::STEP_S;
+use crate::response::dynamics::{Correcting, Dynamics, Questions};
 use crate::response::features::features_of;
 pub(crate) use crate::response::joint_state::N_JOINT;
 use crate::response::joint_state::{
     Covariance, LEAST_VARIANCE, Mean, N_DYNAMIC, N_SEEN, NOISY, OF_COLLISION, PSI, X, Y, forget,
     latents_of, mean_of, state_of, turned,
 };
-use crate::response::latents::{LatentScales, N_LATENTS};
-use crate::response::vehicle_network::{VehicleNetwork, Workspace};
-use crate::response::{Correction, N_EFFECTS, N_FEATURES, N_RESIDUAL, STEP_S, combined, effects};
+use crate::response::latents::N_LATENTS;
 use crate::uncertainty::{Unscented, UnscentedWeights};
-use crate::vehicle::{Evaluation, VehicleInput, VehicleParameters, VehicleState};
+use crate::vehicle::{Evaluation, VehicleInput, VehicleState};
 
 const N: usize = N_JOINT;
 /// Points about the mean.
@@ -52,31 +53,18 @@ pub struct ComponentMotion {
     pub states: Vec<StateDistribution>,
 }
 
-/// What a step needs besides the state.
-pub(crate) struct Dynamics<'a> {
-    pub vehicle: &'a VehicleParameters,
-    pub network: &'a VehicleNetwork,
-    pub scales: LatentScales,
-    /// Change of the strengths of the effects with each latent, where there is one.
-    directions: [Vec<(usize, f64)>; N_LATENTS],
-}
-
-/// Buffers, and what was seen last.
+/// Buffers of a motion.
 #[derive(Default)]
-pub(crate) struct Buffers {
-    work: Workspace,
-    features: Vec<[f64; N_FEATURES]>,
-    seen: Vec<Seen>,
+struct Buffers {
+    questions: Questions,
+    looks: Vec<Look>,
 }
 
-/// A state that was looked at.
-struct Seen {
-    x: VehicleState<f64>,
-    now: Evaluation<f64>,
-    /// Effects and remainder of the component with all latents none, before the bound.
-    value: [f64; N_RESIDUAL],
-    /// What a latent of one adds to that.
-    by_latents: [[f64; N_RESIDUAL]; N_LATENTS],
+/// The two points at a column of the root, side by side, and what is seen of them.
+struct Look {
+    x: VehicleState<f64x2>,
+    now: Evaluation<f64x2>,
+    correcting: [Correcting; 2],
 }
 
 /// What has to be done for a point that differs from the mean in one number of ξ and those after it.
@@ -90,100 +78,50 @@ enum Anew {
     Place,
 }
 
-impl<'a> Dynamics<'a> {
-    pub(crate) fn new(
-        vehicle: &'a VehicleParameters,
-        network: &'a VehicleNetwork,
-        scales: LatentScales,
-    ) -> Self {
-        let changed = |strengths: [f64; N_EFFECTS]| {
-            strengths.into_iter().enumerate().filter(|(_, change)| *change != 0.0).collect()
-        };
-        Self { vehicle, network, scales, directions: scales.directions().map(changed) }
+/// What the points of a step differ in.
+#[derive(Clone, Copy)]
+struct Plan {
+    /// No force will act any more: what is uncertain about the collision has had its effect.
+    is_free: bool,
+    /// A force in world axes pushes a car that is turned otherwise from another side.
+    depends_on_pose: bool,
+}
+
+impl Plan {
+    fn new(u: &VehicleInput<f64>, is_free: bool) -> Self {
+        let in_world = u.collision.is_some_and(|collision| collision.in_world_axes);
+        Self { is_free, depends_on_pose: !is_free && in_world }
     }
 
-    /// One step at given latent factors.
-    pub(crate) fn step(
-        &self,
-        (component, latents): (usize, &[f64; N_LATENTS]),
-        (x, u, time_s): (&VehicleState<f64>, &VehicleInput<f64>, f64),
-        buffers: &mut Buffers,
-    ) -> VehicleState<f64> {
-        self.see(component, std::iter::once(*x), (u, time_s), buffers);
-        let seen = buffers.seen.first();
-        seen.map_or(*x, |seen| self.step_from(seen, self.correction(seen, latents), u))
-    }
-
-    /// Looks at several states at once.
-    fn see(
-        &self,
-        component: usize,
-        states: impl Iterator<Item = VehicleState<f64>>,
-        (u, time_s): (&VehicleInput<f64>, f64),
-        buffers: &mut Buffers,
-    ) {
-        let Buffers { work, features, seen } = buffers;
-        features.clear();
-        seen.clear();
-        let strengths = self.network.strengths(component);
-        for x in states {
-            let now = self.vehicle.evaluate(&x, u);
-            features.push(features_of(self.vehicle, &x, &now, time_s));
-            let effects = effects(self.vehicle, &x, &now);
-            let known = strengths.map(|strengths| combined(&effects, strengths));
-            let by_latents = self.directions.each_ref().map(|direction| {
-                let mut sum = [0.0; N_RESIDUAL];
-                for &(k, change) in direction {
-                    add(&mut sum, change, &effects[k]);
-                }
-                sum
-            });
-            seen.push(Seen { x, now, value: known.unwrap_or_default(), by_latents });
-        }
-        self.network.forward(features, work);
-        for (idx, seen) in seen.iter_mut().enumerate() {
-            add(&mut seen.value, 1.0, &self.network.remainder(work, [idx, component]));
+    /// - `i`: number of ξ.
+    fn anew(self, i: usize) -> Anew {
+        match i {
+            _ if self.depends_on_pose => Anew::Look,
+            i if i < N_SEEN => Anew::Look,
+            i if i < N_DYNAMIC && !(self.is_free && OF_COLLISION.contains(&i)) => Anew::Step,
+            _ => Anew::Place,
         }
     }
 
-    /// The correction at a state that was looked at.
-    fn correction(&self, seen: &Seen, latents: &[f64; N_LATENTS]) -> [f64; N_RESIDUAL] {
-        let mut value = seen.value;
-        for (z, by_latent) in latents.iter().zip(&seen.by_latents) {
-            add(&mut value, *z, by_latent);
+    /// Where a point starts: where the pose does not matter, at the mean's, and is turned afterwards.
+    fn start(self, offset: &Mean) -> Mean {
+        let mut start = *offset;
+        if !self.depends_on_pose {
+            start.fixed_rows_mut::<3>(PSI).fill(0.0);
         }
-        self.network.bounded(value)
+        start
     }
+}
 
-    /// A step from a state that was looked at, with a correction.
-    fn step_from(
-        &self,
-        seen: &Seen,
-        value: [f64; N_RESIDUAL],
-        u: &VehicleInput<f64>,
-    ) -> VehicleState<f64> {
-        self.network.correction().step_from(self.vehicle, (&seen.x, u, &seen.now), value)
-    }
-
-    /// Probability of a component at the first of the states that were seen last.
-    pub(crate) fn weight(&self, component: usize, buffers: &Buffers) -> f64 {
-        self.network.weight(&buffers.work, [0, component])
-    }
-
-    /// Deviation of the noise of a step from the first of the states that were seen last.
-    pub(crate) fn noise(&self, component: usize, buffers: &Buffers) -> [f64; N_RESIDUAL] {
-        let variance = self.network.variance(&buffers.work, [0, component]);
-        variance.map(|variance| self.scales.step_noise * variance.sqrt())
-    }
-
+impl Dynamics<'_> {
     /// The distribution of a component's motion.
     pub(crate) fn motion(
         &self,
         (component, unscented): (usize, Unscented),
         initial: &VehicleState<f64>,
         inputs: &[VehicleInput<f64>],
-        buffers: &mut Buffers,
     ) -> ComponentMotion {
+        let mut buffers = Buffers::default();
         let n_components = self.network.n_components();
         let mut mean = mean_of(initial, &[0.0; N_LATENTS]);
         let mut covariance = Covariance::identity() * LEAST_VARIANCE;
@@ -204,8 +142,8 @@ impl<'a> Dynamics<'a> {
             }
             let at = (u, i as f64 * STEP_S, i >= n_struck);
             (mean, covariance) =
-                self.propagate((component, &weights), (&mean, &covariance), at, buffers);
-            weight += self.weight(component, buffers) / inputs.len() as f64;
+                self.propagate((component, &weights), (&mean, &covariance), at, &mut buffers);
+            weight += self.weight(component, &buffers.questions) / inputs.len() as f64;
             states.push(StateDistribution::of(&mean, &covariance));
         }
         ComponentMotion { weight, states }
@@ -213,8 +151,7 @@ impl<'a> Dynamics<'a> {
 
     /// Mean and covariance after a step.
     ///
-    /// - `is_free`: whether no force will act any more, so that what is uncertain about the collision
-    ///   has had its effect.
+    /// - `is_free`: whether no force will act any more.
     fn propagate(
         &self,
         (component, weights): (usize, &UnscentedWeights),
@@ -222,70 +159,57 @@ impl<'a> Dynamics<'a> {
         (u, time_s, is_free): (&VehicleInput<f64>, f64, bool),
         buffers: &mut Buffers,
     ) -> (Mean, Covariance) {
+        let Buffers { questions, looks } = buffers;
+        let plan = Plan::new(u, is_free);
         let root = root_of(covariance) * weights.reach;
-        // A force in world axes pushes a car that is turned otherwise from another side.
-        let depends_on_pose =
-            !is_free && u.collision.is_some_and(|collision| collision.in_world_axes);
-        let anew = |i: usize| match i {
-            _ if depends_on_pose => Anew::Look,
-            i if i < N_SEEN => Anew::Look,
-            i if i < N_DYNAMIC && !(is_free && OF_COLLISION.contains(&i)) => Anew::Step,
-            _ => Anew::Place,
-        };
-        let mut offsets: [Mean; N_POINTS] = std::array::from_fn(|k| {
-            let column = root.column(k / 2).into_owned();
-            if k.is_multiple_of(2) { column } else { -column }
-        });
-        // Where the pose does not matter, a step starts from the mean's and is turned afterwards.
-        let start = |offset: &Mean| {
-            let mut start = *offset;
-            if !depends_on_pose {
-                start.fixed_rows_mut::<3>(PSI).fill(0.0);
+        let columns: [Mean; N] = std::array::from_fn(|i| root.column(i).into_owned());
+        let x = state_of(mean);
+        let now = self.vehicle.evaluate(&x, u);
+        let mut correcting = self.effects_at(component, &x, &now);
+        questions.clear();
+        questions.push(features_of(self.vehicle, &x, &now, time_s));
+        let u_pair = u.map(f64x2::from);
+        looks.clear();
+        for (_, column) in columns.iter().enumerate().filter(|(i, _)| plan.anew(*i) == Anew::Look) {
+            let offset = plan.start(column);
+            let x = pair([mean + offset, mean - offset].map(|point| state_of(&point)));
+            looks.push(self.look(component, (x, &u_pair, time_s), questions));
+        }
+        self.ask(questions);
+        self.add_remainder(&mut correcting, questions, [0, component]);
+        for (i, look) in looks.iter_mut().enumerate() {
+            for (lane, correcting) in look.correcting.iter_mut().enumerate() {
+                self.add_remainder(correcting, questions, [1 + 2 * i + lane, component]);
             }
-            start
-        };
-        let looks = offsets.iter().enumerate().filter(|(k, _)| anew(k / 2) == Anew::Look);
-        let looks = looks.map(|(_, offset)| state_of(&(mean + start(offset))));
-        let states = std::iter::once(state_of(mean)).chain(looks);
-        self.see(component, states, (u, time_s), buffers);
-        let mut seen = buffers.seen.iter();
-        let at_mean = seen.next();
-        let here =
-            at_mean.map_or([0.0; N_RESIDUAL], |seen| self.correction(seen, &latents_of(mean)));
-        let of_mean = at_mean.map_or(state_of(mean), |seen| self.step_from(seen, here, u));
+        }
+
+        let of_mean = self.correction(&correcting, &latents_of(mean));
+        let of_mean = self.advance((&x, &now), of_mean, u);
         let centre = mean_of(&of_mean, &latents_of(mean));
-        let correction = self.network.correction();
-        // Of the point before.
-        let (mut next, mut value, mut turn) = (centre, here, [0.0, 1.0]);
-        for (k, offset) in offsets.iter_mut().enumerate() {
-            let point = mean + *offset;
-            let latents = latents_of(&point);
-            let from = match anew(k / 2) {
+        let at_mean =
+            Look { x: x.map(f64x2::from), now: now.map(f64x2::from), correcting: [correcting; 2] };
+        let mut seen = looks.iter();
+        let mut offsets = [Mean::zeros(); N_POINTS];
+        for (i, (column, offsets)) in columns.iter().zip(offsets.as_chunks_mut::<2>().0).enumerate()
+        {
+            let latents = [mean + column, mean - column].map(|point| latents_of(&point));
+            let from = match plan.anew(i) {
                 Anew::Look => seen.next(),
-                Anew::Step => at_mean,
+                Anew::Step => Some(&at_mean),
                 Anew::Place => None,
             };
-            next = match (from, anew(k / 2)) {
-                (Some(seen), Anew::Step) if !k.is_multiple_of(2) => {
-                    let own = self.correction(seen, &latents);
-                    opposite(correction, [&next, &centre], [&value, &here, &own])
-                }
-                (Some(seen), _) => {
-                    value = self.correction(seen, &latents);
-                    mean_of(&self.step_from(seen, value, u), &latents)
-                }
-                (None, _) => mean_of(&of_mean, &latents),
-            };
-            let way = [next[X] - mean[X], next[Y] - mean[Y]];
-            let pose = *offset - start(offset);
-            turn = match k.is_multiple_of(2) {
-                true => pose[PSI].sin_cos().into(),
-                false => [-turn[0], turn[1]],
-            };
-            *offset = turned(next - centre, way, (&pose, turn));
+            let ends = from.map_or([of_mean; 2], |look| self.advance_pair(look, &latents, &u_pair));
+            let pose = column - plan.start(column);
+            let (sin, cos) = pose[PSI].sin_cos();
+            let poses = [(pose, [sin, cos]), (-pose, [-sin, cos])];
+            *offsets = std::array::from_fn(|lane| {
+                let next = mean_of(&ends[lane], &latents[lane]);
+                let way = [next[X] - mean[X], next[Y] - mean[Y]];
+                turned(next - centre, way, &poses[lane])
+            });
         }
         let (shift, mut covariance) = moments(offsets, weights);
-        for (idx, std) in NOISY.into_iter().zip(self.noise(component, buffers)) {
+        for (idx, std) in NOISY.into_iter().zip(self.noise(component, questions)) {
             covariance[(idx, idx)] += std * std;
         }
         for i in 0..N {
@@ -293,25 +217,42 @@ impl<'a> Dynamics<'a> {
         }
         (centre + shift, covariance)
     }
+
+    /// Looks at two states side by side.
+    fn look(
+        &self,
+        component: usize,
+        (x, u, time_s): (VehicleState<f64x2>, &VehicleInput<f64x2>, f64),
+        questions: &mut Questions,
+    ) -> Look {
+        let now = self.vehicle.evaluate(&x, u);
+        let features = features_of(self.vehicle, &x, &now, time_s).map(f64x2::to_array);
+        let correcting = [0, 1].map(|lane| {
+            questions.push(features.map(|pair| pair[lane]));
+            let of_lane = |pair: f64x2| pair.to_array()[lane];
+            self.effects_at(component, &x.map(of_lane), &now.map(of_lane))
+        });
+        Look { x, now, correcting }
+    }
+
+    /// The states after a step from two side by side.
+    fn advance_pair(
+        &self,
+        look: &Look,
+        latents: &[[f64; N_LATENTS]; 2],
+        u: &VehicleInput<f64x2>,
+    ) -> [VehicleState<f64>; 2] {
+        let [first, second] = [0, 1].map(|i| self.correction(&look.correcting[i], &latents[i]));
+        let correction = std::array::from_fn(|i| f64x2::new([first[i], second[i]]));
+        let next = self.advance((&look.x, &look.now), correction, u);
+        [0, 1].map(|lane| next.map(|pair| pair.to_array()[lane]))
+    }
 }
 
-/// Where a step ends with a correction about as far to the other side of the centre's as that of
-/// another step from the same state: it is constant over the step, so that it moves the end in
-/// proportion to itself, to the third order of the step's length.
-///
-/// - `ends`: with the other correction, with the centre's; `values`: the other one, the centre's, its
-///   own.
-pub(super) fn opposite(
-    correction: Correction,
-    [other, centre]: [&Mean; 2],
-    [there, here, own]: [&[f64; N_RESIDUAL]; 3],
-) -> Mean {
-    let per_unit = correction.change_per_unit();
-    let mut end = centre * 2.0 - other;
-    for (i, idx) in NOISY.into_iter().enumerate() {
-        end[idx] += per_unit * (there[i] + own[i] - 2.0 * here[i]);
-    }
-    end
+/// Two states side by side.
+fn pair([first, second]: [VehicleState<f64>; 2]) -> VehicleState<f64x2> {
+    let (first, second) = (first.to_array(), second.to_array());
+    VehicleState::from_array(std::array::from_fn(|i| f64x2::new([first[i], second[i]])))
 }
 
 /// Mean and covariance of points about the centre.
@@ -348,13 +289,6 @@ impl pulp::NullaryFnOnce for SumOfSquares<'_> {
             *block = sums;
         }
         Covariance::from(columns)
-    }
-}
-
-/// `sum += factor · values`.
-fn add(sum: &mut [f64; N_RESIDUAL], factor: f64, values: &[f64; N_RESIDUAL]) {
-    for (sum, value) in sum.iter_mut().zip(values) {
-        *sum += factor * value;
     }
 }
 

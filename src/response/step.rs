@@ -10,7 +10,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::numerics::{Scalar, Stage, rk4_step};
+use crate::numerics::{Lanes, Stage, rk4_step};
 use crate::vehicle::{Evaluation, N_STATE, VehicleInput, VehicleParameters, VehicleState};
 
 /// Length of a step, s: that of the trajectory data sets.
@@ -42,7 +42,7 @@ impl Correction {
     ///
     /// - `value`: v̇_x, v̇_y, ṙ, φ̈ in m/s² and rad/s², or for [`Correction::StateOffset`] v_x, v_y,
     ///   r, φ̇ in m/s and rad/s.
-    pub fn step<T: Scalar>(
+    pub fn step<T: Lanes>(
         self,
         vehicle: &VehicleParameters,
         x: &VehicleState<T>,
@@ -53,7 +53,7 @@ impl Correction {
     }
 
     /// [`Correction::step`] where the 4DOF model was evaluated at the beginning already.
-    pub(crate) fn step_from<T: Scalar>(
+    pub(crate) fn step_from<T: Lanes>(
         self,
         vehicle: &VehicleParameters,
         (x, u, now): (&VehicleState<T>, &VehicleInput<T>, &Evaluation<T>),
@@ -94,7 +94,7 @@ impl Correction {
 ///
 /// - `u`: the input, its force the mean over the step.
 /// - `residual`: v̇_x, v̇_y, m/s², ṙ, φ̈, rad/s², constant over the step.
-pub fn step<T: Scalar>(
+pub fn step<T: Lanes>(
     vehicle: &VehicleParameters,
     x: &VehicleState<T>,
     u: &VehicleInput<T>,
@@ -103,7 +103,7 @@ pub fn step<T: Scalar>(
     step_from(vehicle, (x, u, &vehicle.evaluate(x, u)), residual)
 }
 
-fn step_from<T: Scalar>(
+fn step_from<T: Lanes>(
     vehicle: &VehicleParameters,
     (x, u, now): (&VehicleState<T>, &VehicleInput<T>, &Evaluation<T>),
     residual: [T; N_RESIDUAL],
@@ -121,19 +121,21 @@ fn step_from<T: Scalar>(
         rate.to_array()
     };
     let next = VehicleState::from_array(rk4_step(f, &x.to_array(), STEP_S));
-    let drives = u.axle_drive_n.is_some_and(|axles_n| axles_n.iter().any(|force| force.re() > 0.0));
+    let drives = u
+        .axle_drive_n
+        .is_some_and(|axles_n| axles_n.iter().any(|force| T::from(0.0).any_less(*force)));
     let is_free = u.collision.is_none() && !drives;
     if is_free { without_energy_gain(vehicle, x, next) } else { next }
 }
 
-fn without_energy_gain<T: Scalar>(
+fn without_energy_gain<T: Lanes>(
     vehicle: &VehicleParameters,
     before: &VehicleState<T>,
     mut after: VehicleState<T>,
 ) -> VehicleState<T> {
     let (old, new) = (planar_energy_j(vehicle, before), planar_energy_j(vehicle, &after));
-    if new.re() > old.re() {
-        let share = (old / new).sqrt();
+    if old.any_less(new) {
+        let share = old.if_less(new, (old / new).sqrt(), T::from(1.0));
         after.vx_m_s *= share;
         after.vy_m_s *= share;
         after.yaw_rate_rad_s *= share;
@@ -142,7 +144,7 @@ fn without_energy_gain<T: Scalar>(
 }
 
 /// `m (v_x² + v_y²)/2 + I_zz r²/2`, J.
-fn planar_energy_j<T: Scalar>(vehicle: &VehicleParameters, x: &VehicleState<T>) -> T {
+fn planar_energy_j<T: Lanes>(vehicle: &VehicleParameters, x: &VehicleState<T>) -> T {
     let speed_squared = x.vx_m_s * x.vx_m_s + x.vy_m_s * x.vy_m_s;
     let spin_squared = x.yaw_rate_rad_s * x.yaw_rate_rad_s;
     let mass = &vehicle.mass;
@@ -152,9 +154,10 @@ fn planar_energy_j<T: Scalar>(vehicle: &VehicleParameters, x: &VehicleState<T>) 
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
+    use wide::f64x2;
 
     use super::*;
-    use crate::vehicle::Preset;
+    use crate::vehicle::{CollisionForce, ContactPoint, Preset};
 
     fn state(vx_m_s: f64, vy_m_s: f64, yaw_rate_rad_s: f64) -> VehicleState<f64> {
         VehicleState { vx_m_s, vy_m_s, yaw_rate_rad_s, ..VehicleState::default() }
@@ -180,6 +183,34 @@ mod tests {
             let next = step(&vehicle, &x, &VehicleInput::released(), a);
             let [before, after] = [&x, &next].map(|x| planar_energy_j(&vehicle, x));
             prop_assert!(after <= before * (1.0 + 1e-12), "{before} {after}");
+        }
+
+        #[test]
+        fn two_side_by_side_go_where_each_goes(
+            first in prop::array::uniform3(-15.0..15.0), second in prop::array::uniform3(-15.0..15.0),
+            drive_n in prop::option::of(prop::array::uniform2(-2e4..1e4)),
+            push_n in prop::option::of(prop::array::uniform2(-3e4..3e4)),
+            a in prop::array::uniform4(-10.0..10.0),
+        ) {
+            let vehicle = Preset::Reference.parameters();
+            let contact = ContactPoint { x_m: -1.5, y_m: -0.9, height_m: 0.5 };
+            let collision = push_n.map(|force_n| CollisionForce {
+                force_n, in_world_axes: true, yaw_moment_n_m: None, contact,
+            });
+            let u = VehicleInput { steer_rad: 0.1, axle_drive_n: drive_n, collision };
+            let states = [first, second].map(|[vx, vy, r]| VehicleState {
+                yaw_rad: vy, roll_rad: r / 50.0, ..state(vx, vy, r / 3.0)
+            });
+            let [one, other] = states.map(|x| x.to_array());
+            let both = std::array::from_fn(|i| f64x2::new([one[i], other[i]]));
+            let both = VehicleState::from_array(both);
+            let next = step(&vehicle, &both, &u.map(f64x2::from), a.map(f64x2::from)).to_array();
+            for (lane, x) in states.iter().enumerate() {
+                for (got, expected) in next.iter().zip(step(&vehicle, x, &u, a).to_array()) {
+                    let off = got.to_array()[lane] - expected;
+                    prop_assert!(off.abs() < 1e-9 * (1.0 + expected.abs()), "{off} of {expected}");
+                }
+            }
         }
 
         #[test]

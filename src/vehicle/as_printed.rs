@@ -9,7 +9,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::numerics::Scalar;
+use crate::numerics::Lanes;
 use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::four_dof::{LOAD_PASSES, collision_wrench};
 use crate::vehicle::loads::Wheel;
@@ -28,7 +28,7 @@ pub enum Equations {
 
 impl VehicleParameters {
     /// The right-hand side as the paper prints it.
-    pub(super) fn evaluate_as_printed<T: Scalar>(
+    pub(super) fn evaluate_as_printed<T: Lanes>(
         &self,
         x: &VehicleState<T>,
         u: &VehicleInput<T>,
@@ -66,7 +66,7 @@ impl VehicleParameters {
     }
 
     /// `eq:tire_model` to `eq:tire_model3`, summed by `eq:4dof2`: `[F_x, F_y]` and M_z.
-    fn tires_as_printed<T: Scalar>(
+    fn tires_as_printed<T: Lanes>(
         &self,
         x: &VehicleState<T>,
         steer_rad: T,
@@ -101,7 +101,7 @@ impl VehicleParameters {
     }
 
     /// `eq:tire_model4`, with the share of the CORNERING stiffness as printed.
-    fn loads_as_printed<T: Scalar>(&self, [ax, ay]: [T; 2], roll_rad: T) -> [T; 4] {
+    fn loads_as_printed<T: Lanes>(&self, [ax, ay]: [T; 2], roll_rad: T) -> [T; 4] {
         let (mass, geometry, tires) = (&self.mass, &self.geometry, &self.tires);
         let (lf, lr) = (geometry.cg_to_front_axle_m, geometry.cg_to_rear_axle_m);
         let weight = mass.mass_kg * STANDARD_GRAVITY_M_S2;

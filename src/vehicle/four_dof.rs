@@ -28,7 +28,7 @@
 use nalgebra::{SMatrix, SVector};
 use num_dual::DualSVec64;
 
-use crate::numerics::Scalar;
+use crate::numerics::Lanes;
 use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::frames::body_from_world;
 use crate::vehicle::loads::{LoadTransfer, Wheel, vertical_loads_n};
@@ -74,14 +74,14 @@ pub struct VehicleInput<T> {
     pub collision: Option<CollisionForce<T>>,
 }
 
-impl<T: Scalar> VehicleInput<T> {
+impl<T: Lanes> VehicleInput<T> {
     /// Wheel and throttle released, no contact: what follows a PIT impact.
     pub fn released() -> Self {
         Self { steer_rad: T::from(0.0), axle_drive_n: None, collision: None }
     }
 
     /// The same input in another scalar.
-    pub fn map<U: Scalar>(self, convert: impl Fn(T) -> U + Copy) -> VehicleInput<U> {
+    pub fn map<U: Lanes>(self, convert: impl Fn(T) -> U + Copy) -> VehicleInput<U> {
         VehicleInput {
             steer_rad: convert(self.steer_rad),
             axle_drive_n: self.axle_drive_n.map(|force_n| force_n.map(convert)),
@@ -110,6 +110,19 @@ pub struct Evaluation<T> {
     pub collision_yaw_moment_n_m: T,
 }
 
+impl<T: Lanes> Evaluation<T> {
+    /// The same evaluation in another scalar.
+    pub(crate) fn map<U: Lanes>(self, convert: impl Fn(T) -> U + Copy) -> Evaluation<U> {
+        Evaluation {
+            derivative: self.derivative.map(convert),
+            acceleration_m_s2: self.acceleration_m_s2.map(convert),
+            vertical_loads_n: self.vertical_loads_n.map(convert),
+            collision_force_n: self.collision_force_n.map(convert),
+            collision_yaw_moment_n_m: convert(self.collision_yaw_moment_n_m),
+        }
+    }
+}
+
 /// Forces and moments in body axes: `[F_x, F_y]` and `M_z` about the CG.
 #[derive(Clone, Copy)]
 pub(super) struct Wrench<T> {
@@ -119,7 +132,7 @@ pub(super) struct Wrench<T> {
 
 impl VehicleParameters {
     /// The right-hand side f(x, u) of the equations of motion.
-    pub fn evaluate<T: Scalar>(&self, x: &VehicleState<T>, u: &VehicleInput<T>) -> Evaluation<T> {
+    pub fn evaluate<T: Lanes>(&self, x: &VehicleState<T>, u: &VehicleInput<T>) -> Evaluation<T> {
         if self.equations == Equations::Paper {
             return self.evaluate_as_printed(x, u);
         }
@@ -168,7 +181,7 @@ impl VehicleParameters {
     /// Acceleration that a further force at the ground would give: v̇_x, v̇_y, m/s², ṙ, φ̈, rad/s².
     ///
     /// - `force_n`: body axes; `yaw_moment_n_m`: about the CG.
-    pub fn acceleration_of<T: Scalar>(&self, force_n: [T; 2], yaw_moment_n_m: T) -> [T; 4] {
+    pub fn acceleration_of<T: Lanes>(&self, force_n: [T; 2], yaw_moment_n_m: T) -> [T; 4] {
         let [ax, ay] = force_n.map(|force| force / self.mass.mass_kg);
         let roll_moment = ay * (self.mass.sprung_mass_kg * self.suspension.roll_arm_m);
         let [yaw, roll] = self.solve_yaw_roll(yaw_moment_n_m, roll_moment);
@@ -178,7 +191,7 @@ impl VehicleParameters {
     /// Sum of the tyre forces, and the vertical loads under which they arise.
     ///
     /// - `of_body`: load transfer by all but the tyre forces.
-    fn tire_wrench<T: Scalar>(
+    fn tire_wrench<T: Lanes>(
         &self,
         x: &VehicleState<T>,
         u: &VehicleInput<T>,
@@ -225,7 +238,7 @@ impl VehicleParameters {
         (Wrench { force_n: sum(&tires_n), yaw_moment_n_m }, loads_n)
     }
 
-    fn wheel_slips<T: Scalar>(
+    fn wheel_slips<T: Lanes>(
         &self,
         x: &VehicleState<T>,
         [sin_steer, cos_steer]: [T; 2],
@@ -248,13 +261,13 @@ impl VehicleParameters {
     }
 
     /// Moment of the sprung weight about the roll axis, `m_s g h sin φ`, N m.
-    pub(super) fn gravity_roll_moment_n_m<T: Scalar>(&self, roll_rad: T) -> T {
+    pub(super) fn gravity_roll_moment_n_m<T: Lanes>(&self, roll_rad: T) -> T {
         let sprung_kg = self.mass.sprung_mass_kg;
         roll_rad.sin() * (sprung_kg * STANDARD_GRAVITY_M_S2 * self.suspension.roll_arm_m)
     }
 
     /// Right-hand side of the roll equation without weight and collision, N m.
-    fn roll_moment_n_m<T: Scalar>(&self, x: &VehicleState<T>, ay_m_s2: T) -> T {
+    fn roll_moment_n_m<T: Lanes>(&self, x: &VehicleState<T>, ay_m_s2: T) -> T {
         let suspension = &self.suspension;
         ay_m_s2 * (self.mass.sprung_mass_kg * suspension.roll_arm_m)
             - x.roll_rad * suspension.roll_stiffness_n_m_rad
@@ -262,7 +275,7 @@ impl VehicleParameters {
     }
 
     /// Solves the coupled yaw and roll equations for `[ṙ, φ̈]`, rad/s².
-    fn solve_yaw_roll<T: Scalar>(&self, yaw_moment: T, roll_moment: T) -> [T; 2] {
+    fn solve_yaw_roll<T: Lanes>(&self, yaw_moment: T, roll_moment: T) -> [T; 2] {
         let (izz, ixx) = (self.mass.yaw_inertia_kg_m2, self.mass.roll_inertia_kg_m2);
         let ixz = self.mass.roll_yaw_product_kg_m2;
         let determinant = izz * ixx - ixz * ixz; // > 0: checked with the parameters
@@ -274,13 +287,13 @@ impl VehicleParameters {
 }
 
 /// Sum of the forces of the wheels.
-fn sum<T: Scalar>(forces_n: &[[T; 2]; 4]) -> [T; 2] {
+fn sum<T: Lanes>(forces_n: &[[T; 2]; 4]) -> [T; 2] {
     let [front_left, front_right, rear_left, rear_right] = forces_n;
     std::array::from_fn(|i| front_left[i] + front_right[i] + (rear_left[i] + rear_right[i]))
 }
 
 /// The collision force in body axes and its yaw moment about the CG.
-pub(super) fn collision_wrench<T: Scalar>(
+pub(super) fn collision_wrench<T: Lanes>(
     yaw_rad: T,
     collision: Option<&CollisionForce<T>>,
 ) -> Wrench<T> {

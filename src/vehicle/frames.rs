@@ -4,16 +4,16 @@
 //! - Body, at the centre of gravity (CG): x forward, y left, z up.
 //! - Yaw ψ from X to x, counter-clockwise positive. Roll φ about x, positive leans right.
 
-use crate::numerics::Scalar;
+use crate::numerics::Lanes;
 
 /// Turns a vector from world into body axes: `R(−ψ) v`.
-pub fn body_from_world<T: Scalar>(yaw_rad: T, [x, y]: [T; 2]) -> [T; 2] {
+pub fn body_from_world<T: Lanes>(yaw_rad: T, [x, y]: [T; 2]) -> [T; 2] {
     let (sin, cos) = yaw_rad.sin_cos();
     [cos * x + sin * y, cos * y - sin * x]
 }
 
 /// Turns a vector from body into world axes: `R(ψ) v`.
-pub fn world_from_body<T: Scalar>(yaw_rad: T, [x, y]: [T; 2]) -> [T; 2] {
+pub fn world_from_body<T: Lanes>(yaw_rad: T, [x, y]: [T; 2]) -> [T; 2] {
     let (sin, cos) = yaw_rad.sin_cos();
     [cos * x - sin * y, sin * x + cos * y]
 }

@@ -11,7 +11,7 @@
 //! - Every load is ≥ 0 and their sum is m g: a wheel that lifts leaves its load to the other wheel
 //!   of the axle, an axle that lifts to the other axle.
 
-use crate::numerics::Scalar;
+use crate::numerics::Lanes;
 use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::VehicleParameters;
 
@@ -67,7 +67,7 @@ pub struct LoadTransfer<T> {
     pub to_right_n_m: T,
 }
 
-impl<T: Scalar> LoadTransfer<T> {
+impl<T: Lanes> LoadTransfer<T> {
     /// Loads at rest.
     pub fn none() -> Self {
         Self { to_front_n_m: T::from(0.0), to_right_n_m: T::from(0.0) }
@@ -79,7 +79,7 @@ impl<T: Scalar> LoadTransfer<T> {
 /// ```text
 /// F_z,front = (m g l_r + M_front) / (l_f + l_r)      F_z,right − F_z,left = 2 share_axle M_right / w
 /// ```
-pub fn vertical_loads_n<T: Scalar>(
+pub fn vertical_loads_n<T: Lanes>(
     vehicle: &VehicleParameters,
     transfer: LoadTransfer<T>,
 ) -> [T; 4] {
@@ -87,26 +87,17 @@ pub fn vertical_loads_n<T: Scalar>(
     let geometry = &vehicle.geometry;
     let front = (transfer.to_front_n_m + weight * geometry.cg_to_rear_axle_m)
         * (1.0 / geometry.wheelbase_m());
-    let front = clamp(front, T::from(0.0), T::from(weight));
+    let front = front.clamped(T::from(0.0), T::from(weight));
     let axle = |load: T, share: f64| {
         let half = load / 2.0;
-        let shift = clamp(transfer.to_right_n_m * (share / geometry.track_width_m), -half, half);
+        let shift = transfer.to_right_n_m * (share / geometry.track_width_m);
+        let shift = shift.clamped(-half, half);
         [half - shift, half + shift]
     };
     let share = vehicle.suspension.front_roll_stiffness_share;
     let [front_left, front_right] = axle(front, share);
     let [rear_left, rear_right] = axle(-(front - weight), 1.0 - share);
     [front_left, front_right, rear_left, rear_right]
-}
-
-fn clamp<T: Scalar>(value: T, low: T, high: T) -> T {
-    if value < low {
-        low
-    } else if value > high {
-        high
-    } else {
-        value
-    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The state of the 4DOF vehicle.
 
-use crate::numerics::Scalar;
+use crate::numerics::Lanes;
 use crate::vehicle::frames::world_from_body;
 
 /// State x = [v_x, v_y, ψ, r, φ, φ̇, X, Y] (`eq:state_vector`), velocities in body axes.
@@ -27,7 +27,7 @@ pub struct VehicleState<T> {
 /// Number of state components.
 pub const N_STATE: usize = 8;
 
-impl<T: Scalar> VehicleState<T> {
+impl<T: Lanes> VehicleState<T> {
     /// The state as an array, in the order of `eq:state_vector`.
     pub fn to_array(self) -> [T; N_STATE] {
         let Self { vx_m_s, vy_m_s, yaw_rad, yaw_rate_rad_s, roll_rad, roll_rate_rad_s, x_m, y_m } =
@@ -41,13 +41,18 @@ impl<T: Scalar> VehicleState<T> {
         Self { vx_m_s, vy_m_s, yaw_rad, yaw_rate_rad_s, roll_rad, roll_rate_rad_s, x_m, y_m }
     }
 
+    /// The same state in another scalar.
+    pub fn map<U: Lanes>(self, convert: impl Fn(T) -> U) -> VehicleState<U> {
+        VehicleState::from_array(self.to_array().map(convert))
+    }
+
     /// What trajectories are compared by: [X, Y, ψ, v_x, v_y, r].
     pub fn planar(&self) -> [T; 6] {
         [self.x_m, self.y_m, self.yaw_rad, self.vx_m_s, self.vy_m_s, self.yaw_rate_rad_s]
     }
 }
 
-impl<T: Scalar> VehicleState<T> {
+impl<T: Lanes> VehicleState<T> {
     /// ẋ from the acceleration `[a_x, a_y]` of the CG in body axes, m/s², and `[ṙ, φ̈]`, rad/s².
     ///
     /// ```text

@@ -19,7 +19,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::numerics::Scalar;
+use crate::numerics::Lanes;
 
 /// Regularisation ε of the slip angle, m/s. At standstill the side force is a viscous one of rate
 /// c g / ε ≈ 400 1/s, which the reference step of 1 ms resolves.
@@ -69,7 +69,7 @@ pub struct WheelSlip<T> {
 impl TireParameters {
     /// Slips of four wheels whose centres move at `[u, w]` m/s in their own axes (u along a wheel's
     /// plane, w to the left).
-    pub fn slips<T: Scalar>(
+    pub fn slips<T: Lanes>(
         &self,
         cornering_coefficients_per_rad: [f64; 4],
         velocities_m_s: [[T; 2]; 4],
@@ -84,7 +84,7 @@ impl TireParameters {
     }
 
     /// Slip of a wheel that moves at u along its plane.
-    fn slip<T: Scalar>(
+    fn slip<T: Lanes>(
         &self,
         cornering_coefficient_per_rad: f64,
         u: T,
@@ -112,11 +112,12 @@ impl TireParameters {
 }
 
 /// tanh, without its detour over cosh², which overflows in the derivative from some 350 on.
-fn smooth_sign<T: Scalar>(x: T) -> T {
-    if x.re().abs() > 20.0 { T::from(x.re().signum()) } else { x.tanh() }
+fn smooth_sign<T: Lanes>(x: T) -> T {
+    let end = T::from(20.0); // tanh is 1 from here on
+    if x.abs().any_less(end) { x.clamped(-end, end).tanh() } else { x.sign() }
 }
 
-impl<T: Scalar> WheelSlip<T> {
+impl<T: Lanes> WheelSlip<T> {
     /// Force `[F_x, F_y]`, N, in the wheel's axes under a vertical load ≥ 0, inside the friction
     /// circle:
     ///
@@ -126,11 +127,10 @@ impl<T: Scalar> WheelSlip<T> {
     pub fn force_n(&self, vertical_load_n: T, drive_force_n: T) -> [T; 2] {
         let limit = self.friction * vertical_load_n;
         let wanted = self.rolling_share * vertical_load_n + drive_force_n;
-        if wanted.abs() >= limit {
-            // Locked or spinning: nothing is left for the side. A square root of zero has no slope.
-            return [limit * wanted.re().signum(), T::from(0.0)];
-        }
-        [wanted, self.lateral_share * (limit * limit - wanted * wanted).sqrt()]
+        // Locked or spinning: nothing is left for the side. A square root of zero has no slope.
+        let along = wanted.abs().if_less(limit, wanted, limit * wanted.sign());
+        let across = self.lateral_share * (limit * limit - wanted * wanted).sqrt();
+        [along, wanted.abs().if_less(limit, across, T::from(0.0))]
     }
 }
 
