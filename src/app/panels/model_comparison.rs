@@ -121,7 +121,7 @@ fn buttons_ui(
 fn heading_ui(ui: &mut Ui, comparison: &Comparison) {
     ui.horizontal_wrapped(|ui| {
         ui.strong(format!(
-            "{}: {} trajectories that no model has seen, {} choices of those to learn from",
+            "{}: {} trajectories that no model has seen; choices of those to learn from: {}",
             comparison.data,
             comparison.test.len(),
             comparison.n_choices
