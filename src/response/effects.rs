@@ -49,13 +49,23 @@ pub type Effects<T> = [[T; N_RESIDUAL]; N_EFFECTS];
 /// The effects, scaled so that their strengths are of the order of 0.1 to 1.
 ///
 /// - `now`: the 4DOF model at the same state.
+#[inline] // where it is called, the numbers are written to their place instead of copied
 pub fn effects<T: Scalar>(
     vehicle: &VehicleParameters,
     x: &VehicleState<T>,
     now: &Evaluation<T>,
 ) -> Effects<T> {
-    let zero = T::from(0.0);
-    let mut effects = [[zero; N_RESIDUAL]; N_EFFECTS];
+    let mut effects = [[T::from(0.0); N_RESIDUAL]; N_EFFECTS];
+    fill(&mut effects, vehicle, x, now);
+    effects
+}
+
+fn fill<T: Scalar>(
+    effects: &mut Effects<T>,
+    vehicle: &VehicleParameters,
+    x: &VehicleState<T>,
+    now: &Evaluation<T>,
+) {
     let geometry = &vehicle.geometry;
     let (tires, [fl, fr, rl, rr]) = (&vehicle.tires, now.vertical_loads_n);
     let axles = [
@@ -68,7 +78,6 @@ pub fn effects<T: Scalar>(
         Axle::new(vehicle, arm_m, cornering_coefficient, loads_n).effects(x, now, out);
     }
     body_effects(vehicle, x, now, of_body);
-    effects
 }
 
 fn body_effects<T: Scalar>(

@@ -34,18 +34,20 @@ pub(super) type Covariance = SMatrix<f64, N_JOINT, N_JOINT>;
 ///
 /// - `offset`, `way`: of its step from the mean's pose, against the centre's and in m; `pose`: how far
 ///   off its own pose was, with sine and cosine of its turn.
+#[inline]
 pub(super) fn turned(
-    mut offset: Mean,
+    offset: &Mean,
     [dx, dy]: [f64; 2],
-    (pose, [sin, cos]): &(Mean, [f64; 2]),
+    (pose, [sin, cos]): (&Mean, [f64; 2]),
 ) -> Mean {
-    offset += pose;
+    let mut offset = offset + pose;
     offset[X] += cos * dx - sin * dy - dx;
     offset[Y] += sin * dx + cos * dy - dy;
     offset
 }
 
 /// The point of a state with latents.
+#[inline]
 pub(super) fn mean_of(x: &VehicleState<f64>, latents: &[f64; N_LATENTS]) -> Mean {
     let mut mean = Mean::zeros();
     let state = [x.vx_m_s, x.vy_m_s, x.yaw_rate_rad_s, x.roll_rad, x.roll_rate_rad_s];
@@ -59,6 +61,7 @@ pub(super) fn mean_of(x: &VehicleState<f64>, latents: &[f64; N_LATENTS]) -> Mean
 }
 
 /// The state of a point.
+#[inline]
 pub(super) fn state_of(point: &Mean) -> VehicleState<f64> {
     VehicleState {
         vx_m_s: point[0],
@@ -73,6 +76,7 @@ pub(super) fn state_of(point: &Mean) -> VehicleState<f64> {
 }
 
 /// The latents of a point.
+#[inline]
 pub(super) fn latents_of(point: &Mean) -> [f64; N_LATENTS] {
     std::array::from_fn(|m| point[N_SEEN + m])
 }

@@ -34,6 +34,8 @@ use crate::vehicle::{Evaluation, VehicleInput, VehicleState};
 const N: usize = N_JOINT;
 /// Points about the mean.
 const N_POINTS: usize = 2 * N;
+/// On which sides of the mean the points of a pair lie.
+const SIDES: [f64; 2] = [1.0, -1.0];
 
 /// Normal distribution of the state at an instant, of one component.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -172,7 +174,7 @@ impl Dynamics<'_> {
         looks.clear();
         for (_, column) in columns.iter().enumerate().filter(|(i, _)| plan.anew(*i) == Anew::Look) {
             let offset = plan.start(column);
-            let x = pair([mean + offset, mean - offset].map(|point| state_of(&point)));
+            let x = pair(SIDES.map(|side| state_of(&(mean + offset * side))));
             looks.push(self.look(component, (x, &u_pair, time_s), questions));
         }
         self.ask(questions);
@@ -192,7 +194,7 @@ impl Dynamics<'_> {
         let mut offsets = [Mean::zeros(); N_POINTS];
         for (i, (column, offsets)) in columns.iter().zip(offsets.as_chunks_mut::<2>().0).enumerate()
         {
-            let latents = [mean + column, mean - column].map(|point| latents_of(&point));
+            let latents = SIDES.map(|side| latents_of(&(mean + column * side)));
             let from = match plan.anew(i) {
                 Anew::Look => seen.next(),
                 Anew::Step => Some(&at_mean),
@@ -201,12 +203,11 @@ impl Dynamics<'_> {
             let ends = from.map_or([of_mean; 2], |look| self.advance_pair(look, &latents, &u_pair));
             let pose = column - plan.start(column);
             let (sin, cos) = pose[PSI].sin_cos();
-            let poses = [(pose, [sin, cos]), (-pose, [-sin, cos])];
-            *offsets = std::array::from_fn(|lane| {
+            for (lane, (offset, side)) in offsets.iter_mut().zip(SIDES).enumerate() {
                 let next = mean_of(&ends[lane], &latents[lane]);
                 let way = [next[X] - mean[X], next[Y] - mean[Y]];
-                turned(next - centre, way, &poses[lane])
-            });
+                *offset = turned(&(next - centre), way, (&(pose * side), [sin * side, cos]));
+            }
         }
         let (shift, mut covariance) = moments(offsets, weights);
         for (idx, std) in NOISY.into_iter().zip(self.noise(component, questions)) {
