@@ -110,7 +110,7 @@ impl<'a, T: Scalar> Axle<'a, T> {
         let slope = load_n * self.cornering_coefficient / (flattening * flattening.sqrt());
         let force_n = -slope * turning * RELAXATION_LENGTH_M / speed_squared.sqrt();
         let limit_n = load_n * RELAXATION_LIMIT;
-        if force_n.re().abs() > limit_n.re() { limit_n * sign(force_n) } else { force_n }
+        force_n.clamped(-limit_n, limit_n)
     }
 
     fn side_force(&self, force_n: T) -> [T; N_RESIDUAL] {

@@ -22,10 +22,9 @@ use wide::f64x2;
 use crate::response::STEP_S;
 use crate::response::dynamics::{Correcting, Dynamics, Questions};
 use crate::response::features::features_of;
-pub(crate) use crate::response::joint_state::N_JOINT;
 use crate::response::joint_state::{
-    Covariance, LEAST_VARIANCE, Mean, N_DYNAMIC, N_SEEN, NOISY, OF_COLLISION, PSI, X, Y, forget,
-    latents_of, mean_of, state_of, turned,
+    Covariance, LEAST_VARIANCE, Mean, N_DYNAMIC, N_JOINT, N_SEEN, NOISY, OF_COLLISION, PSI, X, Y,
+    forget, latents_of, mean_of, state_of, turned,
 };
 use crate::response::latents::N_LATENTS;
 use crate::uncertainty::{Unscented, UnscentedWeights};
