@@ -12,11 +12,10 @@ use crate::cli::output::{print_json, print_table};
 use crate::cli::progress::{complete, with_progress};
 use crate::cli::run::{Console, Verdict};
 use crate::data::write_atomically;
-use crate::force::baselines::ColumnSet;
 use crate::force::metrics::Figures;
 use crate::force::{
-    CrossValidation, Evaluation, EvaluationSettings, ForceCase, ForceModel, cross_validate,
-    evaluate_model,
+    ColumnSet, CrossValidation, Evaluation, EvaluationSettings, ForceCase, ForceModel,
+    cross_validate, evaluate_model,
 };
 
 /// Measure a trained network against data

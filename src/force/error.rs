@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::collision::ImpactError;
-use crate::force::baselines::BaselineError;
+use crate::force::regression::BaselineError;
 use crate::nn::NnError;
 use crate::uncertainty::MixtureError;
 

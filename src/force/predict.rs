@@ -3,10 +3,9 @@
 use candle_core::DType;
 use rayon::prelude::*;
 
-use crate::force::batch::network_input;
-use crate::force::centre::CentreCurve;
-use crate::force::features::{OutsideTraining, features};
-use crate::force::model::ForceModel;
+use crate::force::network::{OutsideTraining, features};
+use crate::force::physics::CentreCurve;
+use crate::force::train::{ForceModel, network_input};
 use crate::force::{ForceError, ForceScenario};
 use crate::uncertainty::{CURVE_N_INSTANTS, CurveComponent, CurveMixture, ForceCurve};
 

@@ -4,9 +4,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use impactlab::data::{Dataset, Outcome, TEST_SHARE, split};
-use impactlab::force::baselines::ColumnSet;
 use impactlab::force::{
-    Evaluation, EvaluationError, EvaluationSettings, ForceCase, Prediction, evaluate,
+    ColumnSet, Evaluation, EvaluationError, EvaluationSettings, ForceCase, Prediction, evaluate,
 };
 
 fn shipped_cases() -> Vec<ForceCase> {

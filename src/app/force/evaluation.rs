@@ -9,9 +9,10 @@ use crate::analysis::{ForceForecast, ForecastSettings, Spread};
 use crate::app::source::CheckedDataset;
 use crate::data::Outcome;
 use crate::error_chain;
-use crate::force::baselines::ColumnSet;
 use crate::force::metrics::ProbabilisticSettings;
-use crate::force::{Evaluation, EvaluationSettings, ForceCase, ForceModel, evaluate_model};
+use crate::force::{
+    ColumnSet, Evaluation, EvaluationSettings, ForceCase, ForceModel, evaluate_model,
+};
 use crate::jobs::{Job, Progress, Report, Update};
 use crate::uncertainty::CurveMixture;
 

@@ -69,7 +69,7 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::force::case::tests::shipped;
+    use crate::force::input::shipped;
 
     #[test]
     fn a_perfect_prediction_has_no_error() {

@@ -178,7 +178,7 @@ mod tests {
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::force::case::tests::shipped;
+    use crate::force::input::shipped;
     use crate::uncertainty::{CurveComponent, ForceCurve};
 
     /// A coherent normal distribution about a curve.

@@ -1,0 +1,112 @@
+//! Clusters of collisions by their impulse: METHOD of this project, section 7.
+
+use serde::Serialize;
+
+use crate::data::{ForceHistory, contact_interval};
+use crate::numerics::{ClusterError, Clusters, Summary};
+
+/// What collisions are clustered by; the same for a mirrored one.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ImpulseFeatures {
+    /// Impulse along x, N s.
+    pub impulse_x_n_s: f64,
+    /// Size of the impulse along y, N s.
+    pub impulse_y_n_s: f64,
+    /// Size of the impulse, N s.
+    pub impulse_n_s: f64,
+    /// Largest `|F|`, N.
+    pub peak_n: f64,
+    /// Mean of `|F|` over the contact, N.
+    pub mean_n: f64,
+    /// Standard deviation of `|F|` over the contact, N.
+    pub std_n: f64,
+}
+
+/// Clusters C0, C1, … by rising impulse.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ImpulseClusters {
+    clusters: Clusters,
+}
+
+impl ImpulseFeatures {
+    /// Of a force history; `None` without force.
+    pub fn of(history: &ForceHistory) -> Option<Self> {
+        let (from_s, to_s) = contact_interval(history)?;
+        let [px, py] = history.impulse_n_s();
+        let samples = history.time_s.iter().zip(history.fx_n.iter().zip(&history.fy_n));
+        let in_contact = samples.filter(|(time_s, _)| (from_s..=to_s).contains(*time_s));
+        let magnitude = Summary::of(in_contact.map(|(_, (x, y))| x.hypot(*y)))?;
+        Some(Self {
+            impulse_x_n_s: px,
+            impulse_y_n_s: py.abs(),
+            impulse_n_s: px.hypot(py),
+            peak_n: magnitude.max,
+            mean_n: magnitude.mean,
+            std_n: magnitude.std,
+        })
+    }
+
+    fn row(&self) -> Vec<f64> {
+        let impulses = [self.impulse_x_n_s, self.impulse_y_n_s, self.impulse_n_s];
+        impulses.into_iter().chain([self.peak_n, self.mean_n, self.std_n]).collect()
+    }
+}
+
+impl ImpulseClusters {
+    /// Of these collisions, with a seed for the initialisations.
+    ///
+    /// # Errors
+    /// [`ClusterError`].
+    pub fn fit(features: &[ImpulseFeatures], seed: u64) -> Result<Self, ClusterError> {
+        let rows: Vec<Vec<f64>> = features.iter().map(ImpulseFeatures::row).collect();
+        let clusters = Clusters::fit(&rows, seed)?;
+        let impulse_n_s = |centre: &[f64]| centre.get(2).copied().unwrap_or(0.0);
+        Ok(Self { clusters: clusters.ordered_by(impulse_n_s) })
+    }
+
+    /// How many there are.
+    pub fn n_clusters(&self) -> usize {
+        self.clusters.n_clusters()
+    }
+
+    /// Number of the cluster of a collision.
+    pub fn of(&self, features: &ImpulseFeatures) -> usize {
+        self.clusters.nearest(&features.row())
+    }
+
+    /// What a table calls a cluster.
+    pub fn label(cluster: usize) -> String {
+        format!("C{cluster}")
+    }
+
+    /// Impulse at the centre of a cluster, N s.
+    pub fn impulse_n_s(&self, cluster: usize) -> Option<f64> {
+        self.clusters.centre(cluster)?.get(2).copied()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::force::input::shipped;
+
+    #[test]
+    fn the_shipped_cases_cluster_by_rising_impulse() {
+        let cases = shipped("fea");
+        let features: Vec<ImpulseFeatures> = cases
+            .iter()
+            .map(|case| ImpulseFeatures::of(&case.curve.to_history()).unwrap())
+            .collect();
+        let clusters = ImpulseClusters::fit(&features, 0).unwrap();
+        assert!((2..=6).contains(&clusters.n_clusters()));
+        let impulses: Vec<f64> =
+            (0..clusters.n_clusters()).map(|c| clusters.impulse_n_s(c).unwrap()).collect();
+        assert!(impulses.is_sorted(), "{impulses:?}");
+        for (case, features) in cases.iter().zip(&features) {
+            let mirrored = ImpulseFeatures::of(&case.curve.mirrored().to_history()).unwrap();
+            assert_eq!(clusters.of(&mirrored), clusters.of(features), "{}", case.name);
+            assert!((features.peak_n - case.peak_n).abs() < 1e-9, "{}", case.name);
+        }
+        assert_eq!(clusters, ImpulseClusters::fit(&features, 0).unwrap());
+    }
+}

@@ -1,0 +1,202 @@
+//! A force model on test cases, beside the baselines that it must beat.
+//!
+//! Nothing is fitted to test cases or chosen by them: baselines and clusters see training cases only.
+
+use rayon::prelude::*;
+
+use crate::data::Outcome;
+use crate::force::evaluate::baselines::{NearestBaseline, PulseBaseline};
+use crate::force::evaluate::scored::Scored;
+use crate::force::evaluate::{
+    BaselineFigures, CaseErrors, ClusterFigures, Evaluation, EvaluationError,
+};
+use crate::force::metrics::ProbabilisticSettings;
+use crate::force::regression::{BaselineError, ColumnSet, StatisticalBaseline};
+use crate::force::{ForceCase, ForceScenario, ImpulseClusters, ImpulseFeatures, Prediction};
+use crate::jobs::{Progress, Report};
+use crate::numerics::ClusterError;
+use crate::uncertainty::ForceCurve;
+
+/// What an evaluation needs to be told.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct EvaluationSettings {
+    /// What baselines may know of a scenario: as much as the model.
+    pub columns: ColumnSet,
+    /// Seed of folds, clusters and the baselines' draws.
+    pub seed: u64,
+    /// Draws for the scores of distributions.
+    pub probabilistic: ProbabilisticSettings,
+}
+
+/// Baselines fitted to training cases.
+#[derive(Debug, Clone)]
+pub struct FittedBaselines {
+    /// Classic pulse.
+    pub pulse: PulseBaseline,
+    /// Nearest case.
+    pub nearest: NearestBaseline,
+    /// Gaussian processes.
+    pub statistical: StatisticalBaseline,
+}
+
+impl FittedBaselines {
+    /// Fits all three and chooses their options.
+    ///
+    /// # Errors
+    /// [`EvaluationError::Baseline`].
+    pub fn fit(
+        train: &[&ForceCase],
+        columns: ColumnSet,
+        seed: u64,
+    ) -> Result<Self, EvaluationError> {
+        let failed = |baseline| move |source| EvaluationError::Baseline { baseline, source };
+        Ok(Self {
+            pulse: PulseBaseline::fit(train, columns, seed).map_err(failed("pulse"))?,
+            nearest: NearestBaseline::fit(train, columns, seed).map_err(failed("nearest"))?,
+            statistical: StatisticalBaseline::fit(train, columns, seed)
+                .map_err(failed("statistical"))?,
+        })
+    }
+}
+
+/// Evaluates a model beside baselines that are fitted here to the training cases.
+///
+/// - `predictions`: of the test cases, in their order, canonical axes;
+/// - `report`: is told of each step; breaks to cancel.
+///
+/// # Errors
+/// [`EvaluationError`].
+pub fn evaluate(
+    model: &str,
+    (train, test): (&[&ForceCase], &[&ForceCase]),
+    predictions: &[Prediction],
+    settings: &EvaluationSettings,
+    report: &mut Report<'_>,
+) -> Result<Outcome<Evaluation>, EvaluationError> {
+    const N_STEPS: u64 = 3;
+    check(test, predictions)?;
+    let mut go_on =
+        |done, message: &str| report(Progress::new(done, N_STEPS, message)).is_continue();
+    if !go_on(0, "fitting baselines") {
+        return Ok(Outcome::Cancelled);
+    }
+    let baselines = FittedBaselines::fit(train, settings.columns, settings.seed)?;
+    if !go_on(1, "scoring baselines") {
+        return Ok(Outcome::Cancelled);
+    }
+    let mut problems = Vec::new();
+    let mut score = |name: &str, predict: &PredictOne<'_>| {
+        let predictions = predict_all(test, (name, predict), &mut problems);
+        Scored::of(test, &predictions, settings.probabilistic)
+    };
+    let pulse = score("pulse", &|scenario| baselines.pulse.predict(scenario))?;
+    let nearest = score("nearest", &|scenario| baselines.nearest.predict(scenario))?;
+    let statistical = score("statistical", &|scenario| baselines.statistical.predict(scenario))?;
+    if !go_on(2, "scoring the model") {
+        return Ok(Outcome::Cancelled);
+    }
+    let scored = Scored::of(test, predictions, settings.probabilistic)?;
+    let clusters = cluster(train, settings.seed)?;
+    let all = [&scored, &pulse, &nearest, &statistical];
+    let figures = |of: &Scored| of.figures(test).ok_or(EvaluationError::NoCases);
+    let evaluation = Evaluation {
+        model: model.to_owned(),
+        columns: settings.columns,
+        n_train: train.len(),
+        figures: figures(&scored)?,
+        baselines: BaselineFigures {
+            pulse: figures(&pulse)?,
+            nearest: figures(&nearest)?,
+            statistical: figures(&statistical)?,
+        },
+        clusters: cluster_figures(test, &clusters, (&scored, &statistical)),
+        cases: case_errors(test, &clusters, all),
+        problems,
+    };
+    go_on(N_STEPS, "evaluated");
+    Ok(Outcome::Complete(evaluation))
+}
+
+fn check(test: &[&ForceCase], predictions: &[Prediction]) -> Result<(), EvaluationError> {
+    let (expected, got) = (test.len(), predictions.len());
+    if expected == 0 {
+        return Err(EvaluationError::NoCases);
+    }
+    if expected != got {
+        return Err(EvaluationError::Predictions { expected, got });
+    }
+    let is_finite = |p: &Prediction| {
+        let values = p.curve.to_values().into_iter().chain(p.impulse_n_s);
+        values.chain([p.peak_n]).all(f64::is_finite)
+    };
+    match test.iter().zip(predictions).find(|(_, prediction)| !is_finite(prediction)) {
+        Some((case, _)) => Err(EvaluationError::NotFinite { case: case.name.clone() }),
+        None => Ok(()),
+    }
+}
+
+/// A model as a function.
+type PredictOne<'a> = dyn Fn(&ForceScenario) -> Result<Prediction, BaselineError> + Sync + 'a;
+
+fn predict_all(
+    test: &[&ForceCase],
+    (name, predict): (&str, &PredictOne<'_>),
+    problems: &mut Vec<String>,
+) -> Vec<Prediction> {
+    let predictions: Vec<_> = test.par_iter().map(|case| predict(&case.scenario)).collect();
+    let mut or_no_force = |(case, prediction): (&&ForceCase, Result<Prediction, BaselineError>)| {
+        prediction.unwrap_or_else(|error| {
+            problems.push(format!("{name}, case {}: {}", case.name, crate::error_chain(&error)));
+            let zeros = vec![0.0; case.curve.n_instants()];
+            let (fx_n, fy_n) = (zeros.clone(), zeros);
+            Prediction::of_curve(ForceCurve { fx_n, fy_n, duration_s: 0.0 })
+        })
+    };
+    test.iter().zip(predictions).map(&mut or_no_force).collect()
+}
+
+fn features(case: &ForceCase) -> Option<ImpulseFeatures> {
+    ImpulseFeatures::of(&case.curve.to_history())
+}
+
+fn cluster(train: &[&ForceCase], seed: u64) -> Result<ImpulseClusters, ClusterError> {
+    let rows: Vec<ImpulseFeatures> = train.iter().filter_map(|case| features(case)).collect();
+    ImpulseClusters::fit(&rows, seed)
+}
+
+fn cluster_figures(
+    test: &[&ForceCase],
+    clusters: &ImpulseClusters,
+    (model, statistical): (&Scored, &Scored),
+) -> Vec<ClusterFigures> {
+    let of = |number: usize| {
+        let is_in = |case: &ForceCase| features(case).is_some_and(|f| clusters.of(&f) == number);
+        Some(ClusterFigures {
+            name: ImpulseClusters::label(number),
+            impulse_n_s: clusters.impulse_n_s(number)?,
+            model: model.chosen(test, is_in)?,
+            statistical: statistical.chosen(test, is_in)?,
+        })
+    };
+    (0..clusters.n_clusters()).filter_map(of).collect()
+}
+
+fn case_errors(
+    test: &[&ForceCase],
+    clusters: &ImpulseClusters,
+    [model, pulse, nearest, statistical]: [&Scored; 4],
+) -> Vec<CaseErrors> {
+    let of = |(idx, case): (usize, &&ForceCase)| {
+        let number = clusters.of(&features(case)?);
+        Some(CaseErrors {
+            name: case.name.clone(),
+            clean: case.is_clean(),
+            cluster: ImpulseClusters::label(number),
+            model: *model.errors.get(idx)?,
+            pulse: *pulse.errors.get(idx)?,
+            nearest: *nearest.errors.get(idx)?,
+            statistical: *statistical.errors.get(idx)?,
+        })
+    };
+    test.iter().enumerate().filter_map(of).collect()
+}

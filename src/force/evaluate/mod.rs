@@ -1,0 +1,23 @@
+//! A force model on test cases, beside the baselines that it must beat.
+
+mod error;
+
+mod clusters;
+
+pub mod baselines;
+
+mod report;
+mod scored;
+
+mod evaluation;
+mod table;
+
+mod model_evaluation;
+
+pub use clusters::{ImpulseClusters, ImpulseFeatures};
+pub use error::EvaluationError;
+pub use evaluation::{EvaluationSettings, FittedBaselines, evaluate};
+pub use model_evaluation::{
+    Compared, CrossValidation, EvaluateError, cross_validate, evaluate_model,
+};
+pub use report::{BaselineFigures, CaseErrors, ClusterFigures, Evaluation, ModelFigures};

@@ -1,0 +1,56 @@
+//! One model on all test cases.
+
+use rayon::prelude::*;
+
+use crate::force::evaluate::{EvaluationError, ModelFigures};
+use crate::force::metrics::{Figures, PointErrors, ProbabilisticScores, ProbabilisticSettings};
+use crate::force::{ForceCase, Prediction};
+
+/// Scores of one model on all test cases.
+pub(super) struct Scored {
+    pub errors: Vec<PointErrors>,
+    /// Empty without distributions.
+    scores: Vec<ProbabilisticScores>,
+}
+
+impl Scored {
+    pub(super) fn of(
+        test: &[&ForceCase],
+        predictions: &[Prediction],
+        settings: ProbabilisticSettings,
+    ) -> Result<Self, EvaluationError> {
+        let pairs = || test.iter().zip(predictions);
+        let errors = pairs().map(|(case, prediction)| PointErrors::of(case, prediction)).collect();
+        if predictions.iter().any(|prediction| prediction.mixture.is_none()) {
+            return Ok(Self { errors, scores: Vec::new() });
+        }
+        let tasks: Vec<_> = pairs().enumerate().collect();
+        let scores = tasks.par_iter().filter_map(|(stream, (case, prediction))| {
+            let mixture = prediction.mixture.as_ref()?;
+            let scores = ProbabilisticScores::of(case, mixture, settings, *stream as u64);
+            let named = |source| EvaluationError::Mixture { case: case.name.clone(), source };
+            Some(scores.map_err(named))
+        });
+        Ok(Self { errors, scores: scores.collect::<Result<_, _>>()? })
+    }
+
+    pub(super) fn figures(&self, test: &[&ForceCase]) -> Option<ModelFigures> {
+        Some(ModelFigures {
+            overall: self.chosen(test, |_| true)?,
+            separated: self.chosen(test, ForceCase::is_clean),
+        })
+    }
+
+    /// Figures over the cases that `choose` takes.
+    pub(super) fn chosen(
+        &self,
+        test: &[&ForceCase],
+        choose: impl Fn(&ForceCase) -> bool,
+    ) -> Option<Figures> {
+        let taken: Vec<usize> =
+            test.iter().enumerate().filter(|(_, case)| choose(case)).map(|(idx, _)| idx).collect();
+        let errors: Vec<_> = taken.iter().filter_map(|idx| self.errors.get(*idx)).collect();
+        let scores: Vec<_> = taken.iter().filter_map(|idx| self.scores.get(*idx)).collect();
+        Figures::of(&errors, &scores)
+    }
+}

@@ -1,0 +1,286 @@
+//! Cases of a force data set as the force models learn from them: canonical, over the time grid.
+
+use sha2::{Digest, Sha256};
+
+use crate::data::{
+    Case, DataError, Dataset, ForceAxes, ForceHistory, SeriesError, Stratified, contact_interval,
+};
+use crate::force::ForceScenario;
+use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
+
+/// Steps to which numbers are rounded before they are hashed, so that a file written again with
+/// fewer digits, or read on another machine, keeps its hash: 1e-4 in the units of the scenario.
+const DIGEST_STEP: f64 = 1e-4;
+
+/// The same for forces: 1 N of some 50 kN.
+const DIGEST_STEP_N: f64 = 1.0;
+
+/// A collision with its force curve, in the canonical form of [`ForceScenario::canonical`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForceCase {
+    /// Its name in the data set.
+    pub name: String,
+    /// What is known beforehand, canonical.
+    pub scenario: ForceScenario,
+    /// Whether the recorded case is the mirror image of this one.
+    pub mirrored: bool,
+    /// Force on the target, time from the start of the record; its duration from first touch to
+    /// last separation. Mirrored like the scenario.
+    pub curve: ForceCurve,
+    /// First touch, s from the start of the record.
+    pub onset_s: f64,
+    /// Impulse of the curve, N s: what is recorded within the time grid.
+    pub impulse_n_s: [f64; 2],
+    /// Largest `|F|` of the curve, N, a mean over 1 ms.
+    pub peak_n: f64,
+    /// When it is reached, s.
+    pub peak_time_s: f64,
+    /// Whether the bullet's corner stays caught; `false` where nothing tells.
+    pub hooked: bool,
+    /// Whether the vehicles have separated at the end; `true` where nothing tells.
+    pub separated: bool,
+    /// SHA-256 in hex of scenario and curve: the same for the same content under another name, in
+    /// another folder, or mirrored.
+    pub digest: String,
+}
+
+/// A case from which nothing can be learned.
+#[derive(Debug, thiserror::Error)]
+pub enum ForceCaseError {
+    /// Its row in the table of cases lacks something.
+    #[error(transparent)]
+    Attributes(#[from] DataError),
+    /// Its file lacks something.
+    #[error("case {case}")]
+    Series {
+        /// Name of the case.
+        case: String,
+        /// What it lacks.
+        source: SeriesError,
+    },
+    /// Its force is in axes that turn with the target, unknown how far.
+    #[error("case {case}: the force is in body axes, expected world axes (fx_n, fy_n)")]
+    BodyAxes {
+        /// Name of the case.
+        case: String,
+    },
+    /// No force within the time grid.
+    #[error("case {case}: no force in the first {grid_s} s of the record")]
+    NoForce {
+        /// Name of the case.
+        case: String,
+        /// Length of the time grid, s.
+        grid_s: f64,
+    },
+}
+
+impl ForceCase {
+    /// Of a case of a force data set.
+    ///
+    /// The contact lasts from `t_start_s` to `t_end_s` where the table has them, else as
+    /// [`contact_interval`] says: from the first to the last instant with more than 1 % of the peak.
+    ///
+    /// # Errors
+    /// [`ForceCaseError`].
+    pub fn from_case(case: &Case) -> Result<Self, ForceCaseError> {
+        let name = || case.name.clone();
+        let scenario = ForceScenario::from_case(case)?;
+        let history = case
+            .force_history()
+            .map_err(|source| ForceCaseError::Series { case: name(), source })?;
+        if history.axes != ForceAxes::World {
+            return Err(ForceCaseError::BodyAxes { case: name() });
+        }
+        let number = |column| case.attributes.number(column);
+        let interval = number("t_start_s").zip(number("t_end_s"));
+        let interval = interval.or_else(|| contact_interval(&history));
+        let start_s = record_start_s(&history);
+        let (curve, onset_s) = match interval.zip(curve_on_grid(&history, start_s)) {
+            Some(((from, to), curve)) => {
+                (ForceCurve { duration_s: to - from, ..curve }, from - start_s)
+            }
+            None => {
+                let grid_s = CURVE_N_INSTANTS as f64 * CURVE_INTERVAL_S;
+                return Err(ForceCaseError::NoForce { case: name(), grid_s });
+            }
+        };
+        let (scenario, mirrored) = scenario.canonical();
+        let curve = if mirrored { curve.mirrored() } else { curve };
+        let (peak_n, peak_time_s) = curve.peak();
+        Ok(Self {
+            name: name(),
+            digest: digest(&scenario, &curve),
+            scenario,
+            mirrored,
+            onset_s,
+            impulse_n_s: curve.impulse_n_s(),
+            peak_n,
+            peak_time_s,
+            hooked: case.attributes.flag("hooked").unwrap_or(false),
+            separated: case.attributes.flag("separated").unwrap_or(true),
+            curve,
+        })
+    }
+
+    /// All cases of a force data set, and what is wrong with the rest.
+    pub fn of_dataset(dataset: &Dataset) -> (Vec<Self>, Vec<ForceCaseError>) {
+        let (mut cases, mut problems) = (Vec::new(), Vec::new());
+        for case in &dataset.cases {
+            match Self::from_case(case) {
+                Ok(case) => cases.push(case),
+                Err(problem) => problems.push(problem),
+            }
+        }
+        (cases, problems)
+    }
+
+    /// Whether the vehicles part for good: not hooked, and separated.
+    pub fn is_clean(&self) -> bool {
+        self.separated && !self.hooked
+    }
+
+    /// A curve of this canonical form as it is in the recorded case's axes.
+    pub fn as_recorded(&self, curve: &ForceCurve) -> ForceCurve {
+        if self.mirrored { curve.mirrored() } else { curve.clone() }
+    }
+}
+
+/// Means of a force history over the time grid from `start_s`; zero outside the record. Its duration
+/// is not set. `None` if there is no force on it.
+pub fn curve_on_grid(history: &ForceHistory, start_s: f64) -> Option<ForceCurve> {
+    let cumulative = history.cumulative();
+    let mut curve = ForceCurve::default();
+    for i in 0..CURVE_N_INSTANTS {
+        let edge = |i: usize| start_s + i as f64 * CURVE_INTERVAL_S;
+        let ([fx, fy], _) = cumulative.mean_over(edge(i), edge(i + 1));
+        curve.fx_n.push(fx);
+        curve.fy_n.push(fy);
+    }
+    (curve.peak().0 > 0.0).then_some(curve)
+}
+
+/// Start of the first interval of a record, s.
+fn record_start_s(history: &ForceHistory) -> f64 {
+    history.cumulative().knots_s.first().copied().unwrap_or(0.0)
+}
+
+fn digest(scenario: &ForceScenario, curve: &ForceCurve) -> String {
+    let mut hasher = Sha256::new();
+    let mut add = |value: f64, step: f64| {
+        hasher.update(((value / step).round() as i64).to_le_bytes());
+    };
+    let [vx, vy] = scenario.relative_velocity_m_s();
+    let [m_t, m_b] = scenario.mass_kg;
+    for value in [m_t, m_b, vx, vy, scenario.theta_b_rad] {
+        add(value, DIGEST_STEP);
+    }
+    for force in curve.fx_n.iter().chain(&curve.fy_n) {
+        add(*force, DIGEST_STEP_N);
+    }
+    add(curve.duration_s, DIGEST_STEP);
+    hex(&hasher.finalize())
+}
+
+pub(crate) fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+impl Stratified for ForceCase {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn is_ordinary(&self) -> bool {
+        self.is_clean()
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use std::ops::ControlFlow;
+    use std::path::Path;
+
+    use super::*;
+
+    /// The cases of a shipped data set.
+    pub(crate) fn shipped(name: &str) -> Vec<ForceCase> {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets").join(name);
+        let mut report = |_| ControlFlow::Continue(());
+        let dataset = Dataset::load(&root, &mut report).unwrap().complete().unwrap();
+        let (cases, problems) = ForceCase::of_dataset(&dataset);
+        assert!(problems.is_empty(), "{problems:?}");
+        cases
+    }
+
+    #[test]
+    fn the_shipped_cases_keep_their_impulse_peak_and_duration() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/fea");
+        let mut report = |_| ControlFlow::Continue(());
+        let dataset = Dataset::load(&root, &mut report).unwrap().complete().unwrap();
+        assert_eq!(dataset.cases.len(), 100);
+        let mut off_s = Vec::new();
+        for recorded in &dataset.cases {
+            let case = ForceCase::from_case(recorded).unwrap();
+            let number = |name| recorded.attributes.number(name).unwrap();
+            let sign = if case.mirrored { -1.0 } else { 1.0 };
+            // What comes after 0.25 s is not in the curve.
+            if number("t_end_s") < 0.25 {
+                let [px, py] = case.impulse_n_s;
+                let off = (px - number("impulse_x_n_s")).hypot(sign * py - number("impulse_y_n_s"));
+                let total = px.hypot(py);
+                assert!(off < 2e-3 * total, "{}: {off} of {total} N s", case.name);
+            }
+            // The table has the peak of 0.5 ms means.
+            let ratio = case.peak_n / number("peak_force_n");
+            assert!((0.85..1.001).contains(&ratio), "{}: peak {ratio}", case.name);
+            let from_force = contact_interval(&recorded.force_history().unwrap()).unwrap();
+            off_s.push((from_force.1 - from_force.0 - case.curve.duration_s).abs());
+            assert!(case.scenario.theta_b_rad > 0.0 && case.impulse_n_s[1] > 0.0, "{}", case.name);
+        }
+        // Where the table gave no times: weak contact at the end is cut.
+        let off_s = crate::numerics::Summary::of(off_s).unwrap();
+        assert!(off_s.median < 5e-3 && off_s.p90 < 0.025, "{off_s:?}");
+    }
+
+    #[test]
+    fn the_shipped_cases_split_as_in_the_first_trials() {
+        let cases = shipped("fea");
+        let split = crate::data::split(&cases, 0, crate::data::TEST_SHARE);
+        let count = |of: &dyn Fn(&ForceCase) -> bool| {
+            split.test.iter().filter(|idx| of(&cases[**idx])).count()
+        };
+        assert_eq!((split.train.len(), split.test.len()), (75, 25));
+        assert_eq!(count(&ForceCase::is_clean), 22);
+        assert_eq!((count(&|case| case.hooked), count(&|case| !case.separated)), (3, 3));
+        // By an independent script that hashes "0:c001" and so on.
+        let first: Vec<&str> =
+            split.test.iter().take(3).map(|idx| cases[*idx].name.as_str()).collect();
+        assert_eq!(first, ["c002", "c006", "c008"]);
+    }
+
+    #[test]
+    fn a_case_is_recognised_mirrored_and_renamed() {
+        let cases = shipped("fea");
+        let case = &cases[0];
+        let (mirrored, _) = case.scenario.mirrored().canonical();
+        let again = digest(&mirrored, &case.curve.mirrored().mirrored());
+        assert_eq!(again, case.digest);
+        let mut other = case.curve.clone();
+        other.fy_n[20] += 5.0;
+        assert_ne!(digest(&case.scenario, &other), case.digest);
+        let digests: std::collections::BTreeSet<_> = cases.iter().map(|c| &c.digest).collect();
+        assert_eq!(digests.len(), cases.len(), "two cases with one digest");
+        assert_eq!(case.digest.len(), 64);
+    }
+
+    #[test]
+    fn curves_turn_back_to_the_recorded_axes() {
+        for case in shipped("fea").iter().take(10) {
+            let recorded = case.as_recorded(&case.curve);
+            assert_eq!(
+                recorded.fy_n[30],
+                case.curve.fy_n[30] * if case.mirrored { -1.0 } else { 1.0 }
+            );
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! What force models learn from and are asked: scenarios in canonical form, and cases with a
+//! recorded force.
+
+mod scenario;
+
+mod case;
+mod load;
+
+pub(crate) use case::hex;
+#[cfg(test)]
+pub(crate) use case::tests::shipped;
+pub use case::{ForceCase, ForceCaseError, curve_on_grid};
+pub use load::LoadError;
+pub use scenario::ForceScenario;
+#[cfg(test)]
+pub(crate) use scenario::tests::example;

@@ -1,0 +1,9 @@
+//! The force network: what it sees of a collision, its layers, and the distribution it gives.
+
+mod features;
+
+mod force_network;
+
+pub(crate) use features::{N_FEATURES, N_INSTANT_FEATURES, features, instant_features};
+pub use features::{OpenFeatures, OutsideTraining, Standardisation};
+pub(crate) use force_network::{DURATION_UNIT_S, ForceNetwork, NetworkInput, NetworkOutput};

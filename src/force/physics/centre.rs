@@ -1,0 +1,441 @@
+//! What physics says of a collision before any network does: the curve on which the network is
+//! centred, and its impulse.
+
+use std::fmt;
+use std::ops::ControlFlow;
+
+use serde::{Deserialize, Serialize};
+
+use crate::collision::crush::{
+    BodyCrush, CrushFit, CrushHistory, CrushLaw, CrushSample, CrushScenario, Nose,
+};
+use crate::collision::{Impact, PulseShape};
+use crate::data::{Split, folds};
+use crate::force::physics::committee::Committee;
+use crate::force::{Centre, CrushConfig, ForceCase, ForceError, ForceScenario, MomentumModel};
+use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
+
+/// Yaw inertia over mass where none is known, m²: a uniform body of 4.5 m × 1.8 m has 1.96, cars
+/// 1.5 to 2.1 (MacInnis et al., SAE 970951); the shipped runs have 1.8.
+const YAW_INERTIA_PER_MASS_M2: f64 = 1.8;
+/// Where the rear axle is if no case says, target's body axes, m: the middle of the contacts.
+const NO_NAME: &str = "";
+/// A force below this share of the peak is no contact.
+const CONTACT_SHARE: f64 = 0.01;
+
+/// The physics of one scenario, on the time grid. Canonical axes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CentreCurve {
+    /// Force and its duration.
+    pub curve: ForceCurve,
+    /// Greatest overlap of the outlines, m; zero where the centre knows none.
+    pub depth_m: Vec<f64>,
+    /// Sliding velocity at the contact, m/s; zero where the centre knows none.
+    pub slip_m_s: Vec<f64>,
+    /// Impulse to which the network's is tied, N s.
+    pub impulse_n_s: [f64; 2],
+    /// Impulse of the momentum solution, N s.
+    pub momentum_impulse_n_s: [f64; 2],
+    /// Largest `|F|`, N: the unit of force of the network.
+    pub scale_n: f64,
+    /// Inverse mass K at the contact, 1/kg, and closing velocity there, m/s: energy of an impulse.
+    pub inverse_mass_1_kg: [[f64; 2]; 2],
+    /// Velocity of the bullet's contact point relative to the target's, m/s.
+    pub closing_velocity_m_s: [f64; 2],
+}
+
+impl CentreCurve {
+    /// The first force above 1 % of the peak, s.
+    pub fn onset_s(&self) -> f64 {
+        let magnitude = self.curve.magnitude_n();
+        let is_contact = |force: &f64| *force > CONTACT_SHARE * self.scale_n;
+        magnitude.iter().position(is_contact).unwrap_or(0) as f64 * CURVE_INTERVAL_S
+    }
+}
+
+/// How far the fits of a centre have come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CentreFit {
+    /// A law of the crush model is being fitted.
+    Crush {
+        /// Which fold, from 0.
+        fit: usize,
+        /// How many.
+        n_fits: usize,
+        /// Its cost so far.
+        cost: f64,
+    },
+    /// A regression is being fitted.
+    Regression {
+        /// Which, from 0.
+        fit: usize,
+        /// How many.
+        n_fits: usize,
+    },
+}
+
+impl fmt::Display for CentreFit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Crush { fit, n_fits, cost } => {
+                write!(f, "fitting crush law {} of {n_fits}, cost {cost:.3}", fit + 1)
+            }
+            Self::Regression { fit, n_fits } => {
+                write!(f, "fitting regression {} of {n_fits}", fit + 1)
+            }
+        }
+    }
+}
+
+impl CentreFit {
+    /// Fits of this kind done, and how many there are.
+    pub fn progress(self) -> (usize, usize) {
+        match self {
+            Self::Crush { fit, n_fits, .. } | Self::Regression { fit, n_fits } => (fit, n_fits),
+        }
+    }
+}
+
+/// Force and contact on the time grid.
+struct History {
+    curve: ForceCurve,
+    /// Zero where the centre knows none.
+    depth_m: Vec<f64>,
+    slip_m_s: Vec<f64>,
+}
+
+impl History {
+    fn without_contact(curve: ForceCurve) -> Self {
+        let none = vec![0.0; CURVE_N_INSTANTS];
+        Self { curve, depth_m: none.clone(), slip_m_s: none }
+    }
+}
+
+/// The fitted physics.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CentreModel {
+    kind: Centre,
+    /// One per fold, each fitted without it.
+    laws: Vec<CrushLaw>,
+    /// What is averaged with the crush model.
+    committee: Option<Committee>,
+    /// Mean contact duration of the training cases, s.
+    duration_s: f64,
+    /// Mean peak of the training cases, N.
+    peak_n: f64,
+    /// The momentum solution, fitted on the training cases.
+    momentum: MomentumModel,
+}
+
+impl CentreModel {
+    /// Fits the physics on training cases.
+    ///
+    /// - `report`: is told of each accepted step; breaking ends the fits where they are.
+    /// - returns the model and, for each training case, the curve of a part of it that has not seen
+    ///   the case.
+    ///
+    /// # Errors
+    /// [`ForceError::TooFewCases`], [`ForceError::NoCrushFit`], [`ForceError::Regression`],
+    /// [`ForceError::Impact`].
+    pub fn fit(
+        cases: &[ForceCase],
+        (kind, config): (Centre, CrushConfig),
+        seed: u64,
+        report: &mut dyn FnMut(CentreFit) -> ControlFlow<()>,
+    ) -> Result<(Self, Vec<CentreCurve>), ForceError> {
+        let n = cases.len();
+        if n < config.folds {
+            return Err(ForceError::TooFewCases { n_cases: n, least: config.folds });
+        }
+        let plain: Vec<&ForceCase> = cases.iter().filter(|case| case.is_clean()).collect();
+        let plain = if plain.is_empty() { cases.iter().collect() } else { plain };
+        let mean = |of: &dyn Fn(&ForceCase) -> f64| cases.iter().map(of).sum::<f64>() / n as f64;
+        let mut model = Self {
+            kind,
+            laws: Vec::new(),
+            committee: None,
+            duration_s: mean(&|case| case.curve.duration_s),
+            peak_n: mean(&|case| case.peak_n),
+            momentum: MomentumModel::fit(&plain, true),
+        };
+        let folds = folds(cases, config.folds, seed);
+        model.laws = fit_laws((cases, &folds), (kind, config), report)?;
+        let mut histories = model.unseen_histories(cases, &folds)?;
+        if kind == Centre::Committee {
+            let crush: Vec<ForceCurve> = histories.iter().map(|of| of.curve.clone()).collect();
+            let mut told = |fit, n_fits| report(CentreFit::Regression { fit, n_fits });
+            let fitted = Committee::fit((cases, &folds), &crush, seed, &mut told)?;
+            if let Some((committee, curves)) = fitted {
+                model.committee = Some(committee);
+                for (history, curve) in histories.iter_mut().zip(curves) {
+                    history.curve = curve;
+                }
+            }
+        }
+        let curve = |(case, history): (&ForceCase, History)| {
+            let (contact_m, _) = model.known(&case.scenario);
+            model.centre_curve(history, &case.scenario, contact_m)
+        };
+        let unseen = cases.iter().zip(histories).map(curve).collect::<Result<_, _>>()?;
+        Ok((model, unseen))
+    }
+
+    /// The kinds of bullet bodies that were seen, in the order of their index.
+    pub fn bodies(&self) -> Vec<String> {
+        let bodies = self.laws.first().map(|law| law.bodies.as_slice()).unwrap_or_default();
+        bodies.iter().map(|body| body.name.clone()).collect()
+    }
+
+    /// The rear axle of the target, body axes, m: contact offsets count from it.
+    pub fn rear_axle_x_m(&self) -> f64 {
+        self.laws.first().map_or(0.0, |law| law.rear_axle_x_m)
+    }
+
+    /// The physics of a scenario: the mean over all laws, and over the committee.
+    ///
+    /// - `scenario`: canonical.
+    /// - `contact_m`, `body_idx`: what the scenario may leave open.
+    ///
+    /// # Errors
+    /// [`ForceError::Impact`], [`ForceError::Regression`].
+    pub fn curve(
+        &self,
+        scenario: &ForceScenario,
+        contact_m: [f64; 2],
+        body_idx: usize,
+    ) -> Result<CentreCurve, ForceError> {
+        let laws: Vec<&CrushLaw> = self.laws.iter().collect();
+        let mut history = self.history(&laws, scenario, (contact_m, body_idx))?;
+        if let Some(committee) = &self.committee {
+            let body = self.laws.first().and_then(|law| law.bodies.get(body_idx));
+            let name = body.map(|body| body.name.clone()).filter(|name| name != NO_NAME);
+            let known =
+                ForceScenario { contact_m: Some(contact_m), bullet_body: name, ..scenario.clone() };
+            history.curve = committee.curve(&history.curve, &known)?;
+        }
+        self.centre_curve(history, scenario, contact_m)
+    }
+
+    fn unseen_histories(
+        &self,
+        cases: &[ForceCase],
+        folds: &[Split],
+    ) -> Result<Vec<History>, ForceError> {
+        let law_of = |idx: usize| {
+            let fold = folds.iter().position(|fold| fold.test.contains(&idx));
+            fold.and_then(|fold| self.laws.get(fold)).or(self.laws.first())
+        };
+        let history = |(idx, case): (usize, &ForceCase)| {
+            let laws: Vec<&CrushLaw> = law_of(idx).into_iter().collect();
+            self.history(&laws, &case.scenario, self.known(&case.scenario))
+        };
+        cases.iter().enumerate().map(history).collect()
+    }
+
+    /// Contact and body of a training case.
+    fn known(&self, scenario: &ForceScenario) -> ([f64; 2], usize) {
+        let contact = scenario.contact_m.unwrap_or([self.rear_axle_x_m(), 0.0]);
+        let body = self.laws.first().and_then(|law| law.body_idx(body_name(scenario)));
+        (contact, body.unwrap_or(0))
+    }
+
+    fn history(
+        &self,
+        laws: &[&CrushLaw],
+        scenario: &ForceScenario,
+        (contact_m, body_idx): ([f64; 2], usize),
+    ) -> Result<History, ForceError> {
+        Ok(match self.kind {
+            Centre::Committee | Centre::Crush => {
+                mean_history(laws, &crush_scenario(scenario, contact_m, body_idx))
+            }
+            Centre::Momentum => {
+                let momentum = self.impact(scenario, contact_m).solve()?.impulse_n_s;
+                History::without_contact(self.pulse(momentum))
+            }
+            Centre::None => History::without_contact(self.nothing()),
+        })
+    }
+
+    fn impact(&self, scenario: &ForceScenario, contact_m: [f64; 2]) -> Impact {
+        let known = ForceScenario { contact_m: Some(contact_m), ..scenario.clone() };
+        self.momentum.impact(&known)
+    }
+
+    /// A history with what follows from it and from the momentum solution.
+    fn centre_curve(
+        &self,
+        History { curve, depth_m, slip_m_s }: History,
+        scenario: &ForceScenario,
+        contact_m: [f64; 2],
+    ) -> Result<CentreCurve, ForceError> {
+        let impact = self.impact(scenario, contact_m);
+        let has_force = self.kind != Centre::None;
+        Ok(CentreCurve {
+            depth_m,
+            slip_m_s,
+            impulse_n_s: match has_force {
+                true => curve.impulse_n_s(),
+                false => [0.0, self.peak_n * self.duration_s / 2.0],
+            },
+            momentum_impulse_n_s: impact.solve()?.impulse_n_s,
+            scale_n: if has_force { curve.peak().0.max(1.0) } else { self.peak_n },
+            inverse_mass_1_kg: impact.inverse_mass_1_kg(),
+            closing_velocity_m_s: impact.relative_velocity_m_s(),
+            curve,
+        })
+    }
+
+    /// A haversine of the mean duration that carries an impulse.
+    fn pulse(&self, [px, py]: [f64; 2]) -> ForceCurve {
+        let shape = |i: usize| {
+            let at = (i as f64 + 0.5) * CURVE_INTERVAL_S / self.duration_s;
+            PulseShape::Haversine.density(at) / self.duration_s
+        };
+        let force = |p: f64| (0..CURVE_N_INSTANTS).map(|i| p * shape(i)).collect();
+        ForceCurve { fx_n: force(px), fy_n: force(py), duration_s: self.duration_s }
+    }
+
+    fn nothing(&self) -> ForceCurve {
+        let none = vec![0.0; CURVE_N_INSTANTS];
+        ForceCurve { fx_n: none.clone(), fy_n: none, duration_s: self.duration_s }
+    }
+}
+
+fn yaw_inertia(scenario: &ForceScenario) -> [f64; 2] {
+    [0, 1].map(|i| {
+        scenario.yaw_inertia_kg_m2[i].unwrap_or(YAW_INERTIA_PER_MASS_M2 * scenario.mass_kg[i])
+    })
+}
+
+fn body_name(scenario: &ForceScenario) -> Option<&str> {
+    Some(scenario.bullet_body.as_deref().unwrap_or(NO_NAME))
+}
+
+fn crush_scenario(scenario: &ForceScenario, contact_m: [f64; 2], body_idx: usize) -> CrushScenario {
+    CrushScenario {
+        mass_kg: scenario.mass_kg,
+        yaw_inertia_kg_m2: yaw_inertia(scenario),
+        relative_velocity_m_s: scenario.relative_velocity_m_s(),
+        theta_b_rad: scenario.theta_b_rad,
+        contact_m,
+        body_idx,
+    }
+}
+
+fn sample(case: &ForceCase, law: &CrushLaw, hooked_weight: f64) -> Option<CrushSample> {
+    let contact_m = case.scenario.contact_m?;
+    let body_idx = law.body_idx(body_name(&case.scenario))?;
+    let weight = if case.is_clean() { 1.0 } else { hooked_weight };
+    (weight > 0.0).then(|| CrushSample {
+        scenario: crush_scenario(&case.scenario, contact_m, body_idx),
+        fx_n: case.curve.fx_n.clone(),
+        fy_n: case.curve.fy_n.clone(),
+        weight,
+    })
+}
+
+/// The prior of the crush model with the bodies that the cases name, their noses from the points
+/// of first contact, and the middle of the contacts for the rear axle.
+fn prior_law(cases: &[ForceCase]) -> CrushLaw {
+    let mut names: Vec<&str> = cases.iter().filter_map(|case| body_name(&case.scenario)).collect();
+    names.sort_unstable();
+    names.dedup();
+    let bodies = names.iter().map(|name| {
+        let contacts: Vec<(f64, [f64; 2])> = cases
+            .iter()
+            .filter(|case| body_name(&case.scenario) == Some(*name))
+            .filter_map(|case| nose_contact(&case.scenario))
+            .collect();
+        BodyCrush::prior(*name, Nose::fit(&contacts).unwrap_or_default())
+    });
+    let contacts: Vec<f64> =
+        cases.iter().filter_map(|case| case.scenario.contact_m.map(|[x, _]| x)).collect();
+    let (low, high) = contacts
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+    let middle = if low.is_finite() { (low + high) / 2.0 } else { 0.0 };
+    CrushLaw::prior(bodies.collect(), middle)
+}
+
+/// Angle of the target's side against the bullet, and where the bullet touches it in its own axes.
+fn nose_contact(scenario: &ForceScenario) -> Option<(f64, [f64; 2])> {
+    let ([x, y], [bullet_x, bullet_y]) = (scenario.contact_m?, scenario.bullet_position_m?);
+    let (sin, cos) = scenario.theta_b_rad.sin_cos();
+    let [dx, dy] = [x - bullet_x, y - bullet_y];
+    Some((scenario.theta_b_rad, [cos * dx + sin * dy, cos * dy - sin * dx]))
+}
+
+/// One law per fold, fitted without it; the prior alone if the centre knows no crush.
+fn fit_laws(
+    (cases, folds): (&[ForceCase], &[Split]),
+    (kind, config): (Centre, CrushConfig),
+    report: &mut dyn FnMut(CentreFit) -> ControlFlow<()>,
+) -> Result<Vec<CrushLaw>, ForceError> {
+    let prior = prior_law(cases);
+    if !kind.has_crush() {
+        return Ok(vec![prior]);
+    }
+    let n_fits = folds.len();
+    let settings = CrushFit {
+        dt_s: CURVE_INTERVAL_S,
+        prior_weight: config.prior_weight,
+        impulse_weight: config.impulse_weight,
+        max_steps: config.max_steps,
+    };
+    let law = |(fit, fold): (usize, &Split)| {
+        let train = fold.train.iter().filter_map(|&idx| cases.get(idx));
+        let samples: Vec<CrushSample> =
+            train.filter_map(|case| sample(case, &prior, config.hooked_weight)).collect();
+        let mut told = |cost| report(CentreFit::Crush { fit, n_fits, cost });
+        let law = prior.fit(&samples, settings, &mut told);
+        law.ok_or(ForceError::NoCrushFit { n_cases: samples.len() })
+    };
+    folds.iter().enumerate().map(law).collect()
+}
+
+/// The mean over the laws; its duration from the first to the last force above 1 % of the peak.
+fn mean_history(laws: &[&CrushLaw], scenario: &CrushScenario) -> History {
+    let n = CURVE_N_INSTANTS;
+    let histories: Vec<_> =
+        laws.iter().filter_map(|law| law.simulate(scenario, n, CURVE_INTERVAL_S)).collect();
+    let series = |of: fn(&CrushHistory) -> &[f64]| -> Vec<f64> {
+        let at = |t: usize| histories.iter().filter_map(move |history| of(history).get(t));
+        (0..n).map(|t| at(t).sum::<f64>() / histories.len().max(1) as f64).collect()
+    };
+    let mut curve =
+        ForceCurve { fx_n: series(|of| &of.fx_n), fy_n: series(|of| &of.fy_n), duration_s: 0.0 };
+    let (magnitude, peak_n) = (curve.magnitude_n(), curve.peak().0);
+    let in_contact = |force: &f64| *force > CONTACT_SHARE * peak_n && peak_n > 0.0;
+    let first = magnitude.iter().position(in_contact).unwrap_or(0);
+    let last = magnitude.iter().rposition(in_contact).unwrap_or(0);
+    curve.duration_s = (last + 1 - first) as f64 * CURVE_INTERVAL_S;
+    History { curve, depth_m: series(|of| &of.depth_m), slip_m_s: series(|of| &of.slip_m_s) }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// A haversine along y from the first instant on.
+    pub(crate) fn haversine_centre(duration_s: f64, peak_n: f64) -> CentreCurve {
+        let n = CURVE_N_INSTANTS;
+        let force = |i: usize| {
+            let share = (i as f64 + 0.5) * CURVE_INTERVAL_S / duration_s;
+            peak_n * PulseShape::Haversine.density(share) / PulseShape::Haversine.density(0.5)
+        };
+        let fy_n: Vec<f64> = (0..n).map(force).collect();
+        let curve = ForceCurve { fx_n: vec![0.0; n], fy_n, duration_s };
+        CentreCurve {
+            impulse_n_s: curve.impulse_n_s(),
+            momentum_impulse_n_s: curve.impulse_n_s(),
+            scale_n: peak_n,
+            depth_m: vec![0.0; n],
+            slip_m_s: vec![0.0; n],
+            inverse_mass_1_kg: [[1e-3, 0.0], [0.0, 1e-3]],
+            closing_velocity_m_s: [0.0, 3.0],
+            curve,
+        }
+    }
+}

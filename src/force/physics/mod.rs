@@ -1,0 +1,17 @@
+//! What physics and regressions say of a collision: the curve in the centre, around which the
+//! network learns, and what it leaves over on cases that it has not seen.
+
+mod momentum;
+
+pub mod regression;
+
+mod centre;
+mod committee;
+
+mod residuals;
+
+#[cfg(test)]
+pub(crate) use centre::tests::haversine_centre;
+pub use centre::{CentreCurve, CentreFit, CentreModel};
+pub use momentum::MomentumModel;
+pub(crate) use residuals::ResidualModel;

@@ -1,0 +1,71 @@
+//! Which options do best on training cases that were left out.
+
+use rayon::prelude::*;
+
+use crate::force::ForceCase;
+use crate::force::regression::scales::Scales;
+use crate::force::regression::shapes::Shapes;
+use crate::force::regression::{
+    Alignment, BaselineError, ColumnSet, StatisticalBaseline, StatisticalOptions, best_of,
+    case_folds, history_error, mean,
+};
+
+/// Numbers of components that are tried, rising.
+const N_COMPONENTS: [usize; 2] = [4, 8];
+
+/// The options with the smallest mean history error in cross-validation.
+pub(super) fn choose(
+    cases: &[&ForceCase],
+    columns: ColumnSet,
+    seed: u64,
+) -> Result<StatisticalOptions, BaselineError> {
+    let folds = case_folds(cases, seed);
+    let tasks: Vec<_> = folds.iter().flat_map(|fold| [(fold, false), (fold, true)]).collect();
+    let losses = tasks.par_iter().map(|((train, test), with_impulse)| {
+        fold_losses((train, test), columns, *with_impulse, seed)
+    });
+    let losses: Vec<Vec<(f64, StatisticalOptions)>> = losses.collect::<Result<_, _>>()?;
+    let candidates = candidates().map(|options| {
+        let of = losses.iter().flatten().filter(|(_, other)| *other == options);
+        (of.map(|(loss, _)| loss).sum(), options)
+    });
+    best_of(candidates.collect::<Vec<_>>())
+        .filter(|_| !losses.is_empty())
+        .ok_or(BaselineError::NoCases)
+}
+
+fn candidates() -> impl Iterator<Item = StatisticalOptions> {
+    let inputs = [false, true].into_iter();
+    inputs.flat_map(|with_impulse| {
+        Alignment::CANDIDATES.into_iter().flat_map(move |alignment| {
+            let options =
+                move |n_components| StatisticalOptions { alignment, n_components, with_impulse };
+            N_COMPONENTS.into_iter().map(options)
+        })
+    })
+}
+
+/// Mean history error on the cases left out, summed over them, for all options with these inputs:
+/// the regressions that options share are fitted once.
+fn fold_losses(
+    (train, test): (&[&ForceCase], &[&ForceCase]),
+    columns: ColumnSet,
+    with_impulse: bool,
+    seed: u64,
+) -> Result<Vec<(f64, StatisticalOptions)>, BaselineError> {
+    let scales = Scales::fit(train, columns, with_impulse)?;
+    let mut losses = Vec::new();
+    for alignment in Alignment::CANDIDATES {
+        let most = N_COMPONENTS[N_COMPONENTS.len() - 1];
+        let options = StatisticalOptions { alignment, n_components: most, with_impulse };
+        let shapes = Shapes::fit(train, &scales, options)?;
+        for n_components in N_COMPONENTS {
+            let options = StatisticalOptions { n_components, ..options };
+            let parts = (scales.clone(), shapes.clone().truncated(n_components));
+            let model = StatisticalBaseline::of_parts(train, parts, options, seed);
+            let error = |case: &&ForceCase| history_error(case, model.point(&case.scenario));
+            losses.push((mean(test.iter().map(error)) * test.len() as f64, options));
+        }
+    }
+    Ok(losses)
+}

@@ -1,0 +1,380 @@
+//! The loss of the force network, term by term.
+//!
+//! Source: METHOD of this project, section 4, after `eq:physic_cons2` of
+//! [`PitPinnPaper`](crate::bibliography::PitPinnPaper), which has no likelihood.
+
+use std::f64::consts::TAU;
+
+use candle_core::{D, Tensor};
+use serde::{Deserialize, Serialize};
+
+use crate::force::network::{DURATION_UNIT_S, NetworkOutput};
+use crate::force::{ForceError, LossWeights};
+use crate::uncertainty::CURVE_INTERVAL_S;
+
+/// Mean over cases of every term, unweighted, and their weighted sum.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LossTerms {
+    /// What is minimised.
+    pub total: f64,
+    /// Negative log-likelihood of whole curves, per value, forces in peaks of the centre.
+    pub likelihood: f64,
+    /// ‖F̂ − F‖² / ‖F‖² of the mean curve.
+    pub data: f64,
+    /// |P̂ − P|² / |P|².
+    pub impulse: f64,
+    /// Squared error of the energy as a share of the kinetic energy of approach, and squared energy
+    /// out of nothing.
+    pub energy: f64,
+    /// Squared error of the duration, units of 0.1 s.
+    pub duration: f64,
+    /// Cross entropy of hooking.
+    pub hooking: f64,
+}
+
+/// What the loss compares with, for some cases.
+#[derive(Debug, Clone)]
+pub(crate) struct Targets {
+    /// The curves as `[F_x…, F_y…, duration]`, in peaks of the centre and 0.1 s, `[cases, values]`.
+    pub values: Tensor,
+    /// Impulse of the curve, peaks × s, `[cases, 2]`.
+    pub impulse: Tensor,
+    /// 1 where the case hooks, `[cases]`.
+    pub hooked: Tensor,
+    /// Closing velocity of the contact points, m/s, `[cases, 2]`.
+    pub closing: Tensor,
+    /// K times the unit of impulse, so that K P is in m/s, `[cases, 2, 2]`.
+    pub inverse_mass: Tensor,
+}
+
+/// The terms as tensors, for the gradient.
+pub(crate) struct Loss {
+    pub total: Tensor,
+    terms: [Tensor; 6],
+}
+
+impl Loss {
+    pub(crate) fn of(
+        output: &NetworkOutput,
+        targets: &Targets,
+        weights: &LossWeights,
+    ) -> Result<Self, ForceError> {
+        let terms = [
+            likelihood(output, targets)?,
+            data(output, targets)?,
+            impulse(output, targets)?,
+            energy(output, targets)?,
+            duration(output, targets)?,
+            hooking(output, targets)?,
+        ];
+        let weights = [
+            weights.likelihood,
+            weights.data,
+            weights.impulse,
+            weights.energy,
+            weights.duration,
+            weights.hooking,
+        ];
+        let mut total = (&terms[0] * weights[0])?;
+        for (term, weight) in terms.iter().zip(weights).skip(1).filter(|(_, w)| *w > 0.0) {
+            total = (total + (term * weight)?)?;
+        }
+        Ok(Self { total, terms })
+    }
+
+    /// The numbers.
+    pub(crate) fn values(&self) -> Result<LossTerms, ForceError> {
+        let number = |tensor: &Tensor| -> Result<f64, ForceError> {
+            Ok(tensor.to_dtype(candle_core::DType::F64)?.to_scalar::<f64>()?)
+        };
+        let [likelihood, data, impulse, energy, duration, hooking] = &self.terms;
+        Ok(LossTerms {
+            total: number(&self.total)?,
+            likelihood: number(likelihood)?,
+            data: number(data)?,
+            impulse: number(impulse)?,
+            energy: number(energy)?,
+            duration: number(duration)?,
+            hooking: number(hooking)?,
+        })
+    }
+}
+
+impl LossTerms {
+    /// Name and value of each, the sum first.
+    pub fn named(&self) -> [(&'static str, f64); 7] {
+        [
+            ("total", self.total),
+            ("likelihood", self.likelihood),
+            ("data", self.data),
+            ("impulse", self.impulse),
+            ("energy", self.energy),
+            ("duration", self.duration),
+            ("hooking", self.hooking),
+        ]
+    }
+
+    /// The mean over batches, each weighted by its cases.
+    pub(crate) fn mean(batches: &[(usize, Self)]) -> Self {
+        let n: usize = batches.iter().map(|(n, _)| n).sum();
+        let mean = |of: fn(&Self) -> f64| {
+            batches.iter().map(|(n, terms)| *n as f64 * of(terms)).sum::<f64>() / n.max(1) as f64
+        };
+        Self {
+            total: mean(|t| t.total),
+            likelihood: mean(|t| t.likelihood),
+            data: mean(|t| t.data),
+            impulse: mean(|t| t.impulse),
+            energy: mean(|t| t.energy),
+            duration: mean(|t| t.duration),
+            hooking: mean(|t| t.hooking),
+        }
+    }
+}
+
+/// −ln Σ_k π_k N(y; μ_k, D_k + U_k U_kᵀ) / values, mean over cases.
+fn likelihood(output: &NetworkOutput, targets: &Targets) -> Result<Tensor, ForceError> {
+    let n_values = targets.values.dim(1)? as f64;
+    let log_weight = candle_nn::ops::log_softmax(&output.logits, D::Minus1)?;
+    let joint = (log_weight + log_normal(output, &targets.values)?)?;
+    Ok((joint.log_sum_exp(D::Minus1)?.mean_all()? / -n_values)?)
+}
+
+/// ln N of the values under each component, `[cases, K]`, by Woodbury's identity, with z and W the
+/// whitened residual and factors:
+///
+/// ```text
+/// rᵀ Σ⁻¹ r = |z|² − vᵀ M⁻¹ v     ln |Σ| = ln |D R| + ln |M|     M = 1 + Wᵀ W,  v = Wᵀ z
+/// ```
+pub(crate) fn log_normal(output: &NetworkOutput, values: &Tensor) -> Result<Tensor, ForceError> {
+    let residual = values.unsqueeze(1)?.broadcast_sub(&output.mean)?;
+    let deviation = output.variance.sqrt()?;
+    let residual = whitened(&(residual / &deviation)?.unsqueeze(3)?, &output.lag_correlation)?;
+    let mut square = residual.sqr()?.sum(3)?.sum(2)?;
+    let n_steps = 2.0 * ((values.dim(1)? - 1) / 2 - 1) as f64;
+    let log_fresh = ((1.0 - output.lag_correlation.sqr()?)?.log()? * n_steps)?;
+    let mut log_det = (output.variance.log()?.sum(2)? + log_fresh)?;
+    if let Some(factors) = &output.factors {
+        let (n_cases, k, n_values, q) = factors.dims4()?;
+        let flat = (n_cases * k, n_values, q);
+        let scaled = factors.broadcast_div(&deviation.unsqueeze(3)?)?;
+        let factors = whitened(&scaled, &output.lag_correlation)?.reshape(flat)?;
+        let factors_t = factors.transpose(1, 2)?.contiguous()?;
+        let m = factors_t.matmul(&factors)?;
+        let v = factors_t.matmul(&residual.reshape((n_cases * k, n_values, 1))?)?;
+        let (m_square, m_log_det) = cholesky_forms(&m, &v)?;
+        square = (square - m_square.reshape((n_cases, k))?)?;
+        log_det = (log_det + m_log_det.reshape((n_cases, k))?)?;
+    }
+    let constant = values.dim(1)? as f64 * TAU.ln();
+    Ok((((square + log_det)? + constant)? * -0.5)?)
+}
+
+/// Rows over their deviations to rows without correlation between neighbouring instants,
+/// `[cases, K, values, n]`; φ: `[cases, K]`.
+///
+/// ```text
+/// z_i = (x_i − φ x_(i−1)) / √(1 − φ²)      z = x at the first of an axis and for the duration
+/// ```
+fn whitened(rows: &Tensor, lag_correlation: &Tensor) -> Result<Tensor, ForceError> {
+    let n_instants = (rows.dim(2)? - 1) / 2;
+    let phi = lag_correlation.unsqueeze(2)?.unsqueeze(3)?;
+    let fresh = (1.0 - phi.sqr()?)?.sqrt()?;
+    let mut parts = Vec::with_capacity(5);
+    for first in [0, n_instants] {
+        let before = rows.narrow(2, first, n_instants - 1)?;
+        let after = rows.narrow(2, first + 1, n_instants - 1)?;
+        parts.push(rows.narrow(2, first, 1)?);
+        parts.push((after - before.broadcast_mul(&phi)?)?.broadcast_div(&fresh)?);
+    }
+    parts.push(rows.narrow(2, 2 * n_instants, 1)?);
+    Ok(Tensor::cat(&parts, 2)?)
+}
+
+/// `vᵀ (1 + m)⁻¹ v` and `ln |1 + m|` of small matrices by Cholesky's method, written out so that
+/// gradients pass; `m`: `[batch, q, q]`, `v`: `[batch, q, 1]`, both results `[batch]`.
+fn cholesky_forms(m: &Tensor, v: &Tensor) -> Result<(Tensor, Tensor), ForceError> {
+    let q = m.dim(1)?;
+    let entry = |i: usize, j: usize| -> Result<Tensor, ForceError> {
+        let entry = m.narrow(1, i, 1)?.narrow(2, j, 1)?.flatten_all()?;
+        Ok(if i == j { (entry + 1.0)? } else { entry })
+    };
+    let mut lower: Vec<Vec<Tensor>> = Vec::with_capacity(q);
+    let mut solved: Vec<Tensor> = Vec::with_capacity(q);
+    let mut log_det: Option<Tensor> = None;
+    let mut square: Option<Tensor> = None;
+    for i in 0..q {
+        let mut row: Vec<Tensor> = Vec::with_capacity(i + 1);
+        for (j, above) in lower.iter().enumerate() {
+            let mut sum = entry(i, j)?;
+            for (left, right) in row.iter().zip(above) {
+                sum = (sum - (left * right)?)?;
+            }
+            row.push((sum / &above[j])?);
+        }
+        let mut diagonal = entry(i, i)?;
+        for left in &row {
+            diagonal = (diagonal - left.sqr()?)?;
+        }
+        row.push(diagonal.sqrt()?);
+        let mut right = v.narrow(1, i, 1)?.flatten_all()?;
+        for (factor, y) in row.iter().zip(&solved) {
+            right = (right - (factor * y)?)?;
+        }
+        let y = (right / &row[i])?;
+        let (log_diagonal, y_square) = ((row[i].log()? * 2.0)?, y.sqr()?);
+        log_det = Some(match log_det {
+            Some(sum) => (sum + log_diagonal)?,
+            None => log_diagonal,
+        });
+        square = Some(match square {
+            Some(sum) => (sum + y_square)?,
+            None => y_square,
+        });
+        solved.push(y);
+        lower.push(row);
+    }
+    let zero = || Tensor::zeros(m.dim(0)?, m.dtype(), m.device());
+    Ok((square.map_or_else(zero, Ok)?, log_det.map_or_else(zero, Ok)?))
+}
+
+/// π_k, `[cases, K, 1]`.
+fn weights(output: &NetworkOutput) -> Result<Tensor, ForceError> {
+    Ok(candle_nn::ops::softmax(&output.logits, D::Minus1)?.unsqueeze(2)?)
+}
+
+fn data(output: &NetworkOutput, targets: &Targets) -> Result<Tensor, ForceError> {
+    let n_forces = targets.values.dim(1)? - 1;
+    let mean = output.mean.broadcast_mul(&weights(output)?)?.sum(1)?.narrow(1, 0, n_forces)?;
+    let truth = targets.values.narrow(1, 0, n_forces)?;
+    let error = (mean - &truth)?.sqr()?.sum(1)?;
+    Ok((error / (truth.sqr()?.sum(1)? + 1e-9)?)?.mean_all()?)
+}
+
+/// Of F_base: the impulse that the physics layer holds, and that of the mean curve.
+fn impulse(output: &NetworkOutput, targets: &Targets) -> Result<Tensor, ForceError> {
+    let (n_cases, _, n_values) = output.mean.dims3()?;
+    let n_instants = (n_values - 1) / 2;
+    let mean = output.mean.broadcast_mul(&weights(output)?)?.sum(1)?;
+    let mean = mean.narrow(1, 0, 2 * n_instants)?.reshape((n_cases, 2, n_instants))?;
+    let of_mean = (mean.sum(2)? * CURVE_INTERVAL_S)?;
+    let size = (targets.impulse.sqr()?.sum(1)? + 1e-12)?;
+    let share = |impulse: &Tensor| -> Result<Tensor, ForceError> {
+        let error = (impulse - &targets.impulse)?.sqr()?.sum(1)?;
+        Ok((error / &size)?.mean_all()?)
+    };
+    Ok(((share(&output.impulse)? + share(&of_mean)?)? * 0.5)?)
+}
+
+/// W = v·P − ½ PᵀKP is the energy that the contact takes: it is compared with that of the known
+/// impulse, and must not be negative. In units of ½ v·v / K̄.
+fn energy(output: &NetworkOutput, targets: &Targets) -> Result<Tensor, ForceError> {
+    let work = |impulse: &Tensor| -> Result<Tensor, ForceError> {
+        let velocity = targets.inverse_mass.matmul(&impulse.unsqueeze(2)?)?.squeeze(2)?;
+        let first = (&targets.closing * impulse)?.sum(1)?;
+        Ok((first - ((impulse * velocity)?.sum(1)? * 0.5)?)?)
+    };
+    let trace = (targets.inverse_mass.narrow(1, 0, 1)?.narrow(2, 0, 1)?.flatten_all()?
+        + targets.inverse_mass.narrow(1, 1, 1)?.narrow(2, 1, 1)?.flatten_all()?)?;
+    let unit = (targets.closing.sqr()?.sum(1)? / trace)?;
+    let unit = (unit + 1e-12)?;
+    let got = (work(&output.impulse)? / &unit)?;
+    let known = (work(&targets.impulse)? / &unit)?;
+    let from_nothing = got.neg()?.relu()?.sqr()?;
+    Ok(((got - known)?.sqr()? + from_nothing)?.mean_all()?)
+}
+
+fn duration(output: &NetworkOutput, targets: &Targets) -> Result<Tensor, ForceError> {
+    let known = targets.values.narrow(1, targets.values.dim(1)? - 1, 1)?.squeeze(1)?;
+    let got = (&output.duration_s / DURATION_UNIT_S)?;
+    Ok((got - known)?.sqr()?.mean_all()?)
+}
+
+/// −ln π of the right kind of component; 0 with a single one.
+fn hooking(output: &NetworkOutput, targets: &Targets) -> Result<Tensor, ForceError> {
+    let k = output.logits.dim(1)?;
+    if k < 2 {
+        return Ok(targets.hooked.zeros_like()?.mean_all()?);
+    }
+    let log_weight = candle_nn::ops::log_softmax(&output.logits, D::Minus1)?;
+    let of_hooking = log_weight.narrow(1, k - 1, 1)?.squeeze(1)?;
+    let of_others = log_weight.narrow(1, 0, k - 1)?.log_sum_exp(D::Minus1)?;
+    let others = (1.0 - &targets.hooked)?;
+    Ok(((&targets.hooked * of_hooking)? + (others * of_others)?)?.mean_all()?.neg()?)
+}
+
+#[cfg(test)]
+mod tests {
+    use candle_core::{DType, Device};
+
+    use super::*;
+    use crate::uncertainty::{CurveComponent, CurveMixture, ForceCurve};
+
+    /// A small output with two components, two factors and three instants.
+    fn output() -> (NetworkOutput, Tensor) {
+        let (k, q, values) = (2, 2, 7);
+        let wave = |n: usize, a: f64| -> Vec<f64> {
+            (0..n).map(|i| (a * (i as f64 + 1.0)).sin()).collect()
+        };
+        let tensor =
+            |data: Vec<f64>, shape: &[usize]| Tensor::from_vec(data, shape, &Device::Cpu).unwrap();
+        let variance = wave(k * values, 0.7).into_iter().map(|x| 0.5 + x * x).collect();
+        let output = NetworkOutput {
+            logits: tensor(vec![0.3, -0.4], &[1, k]),
+            mean: tensor(wave(k * values, 1.3), &[1, k, values]),
+            variance: tensor(variance, &[1, k, values]),
+            lag_correlation: tensor(vec![0.0, 0.6], &[1, k]),
+            factors: Some(tensor(wave(k * values * q, 0.9), &[1, k, values, q])),
+            impulse: tensor(vec![0.1, 0.2], &[1, 2]),
+            duration_s: tensor(vec![0.1], &[1]),
+        };
+        (output, tensor(wave(values, 2.1), &[1, values]))
+    }
+
+    #[test]
+    fn the_likelihood_is_that_of_the_mixture() {
+        let (output, values) = output();
+        let weights = candle_nn::ops::softmax(&output.logits, 1).unwrap();
+        let weights = weights.to_vec2::<f64>().unwrap();
+        let rows = |tensor: &Tensor| tensor.squeeze(0).unwrap().to_vec2::<f64>().unwrap();
+        let factors = output.factors.as_ref().unwrap().squeeze(0).unwrap();
+        let factors = factors.to_vec3::<f64>().unwrap();
+        let components = (0..2).map(|k| CurveComponent {
+            weight: weights[0][k],
+            mean: rows(&output.mean)[k].clone(),
+            variance: rows(&output.variance)[k].clone(),
+            lag_correlation: output.lag_correlation.to_vec2::<f64>().unwrap()[0][k],
+            factors: nalgebra::DMatrix::from_fn(7, 2, |i, j| factors[k][i][j]),
+        });
+        let mixture = CurveMixture::new(components.collect()).unwrap();
+        let curve = ForceCurve::from_values(&values.to_vec2::<f64>().unwrap()[0]);
+        let expected = mixture.log_density(&curve).unwrap();
+        let log_weight = candle_nn::ops::log_softmax(&output.logits, 1).unwrap();
+        let joint = (log_weight + log_normal(&output, &values).unwrap()).unwrap();
+        let got = joint.log_sum_exp(1).unwrap().to_vec1::<f64>().unwrap()[0];
+        assert!((got - expected).abs() < 1e-9, "{got} {expected}");
+    }
+
+    #[test]
+    fn energy_out_of_nothing_costs() {
+        let (mut output, values) = output();
+        let tensor = |data: &[f64], shape: &[usize]| {
+            Tensor::from_vec(data.to_vec(), shape, &Device::Cpu).unwrap()
+        };
+        let targets = Targets {
+            values,
+            impulse: tensor(&[0.0, 1.0], &[1, 2]),
+            hooked: Tensor::zeros(1, DType::F64, &Device::Cpu).unwrap(),
+            closing: tensor(&[0.0, 1.0], &[1, 2]),
+            inverse_mass: tensor(&[1.0, 0.0, 0.0, 1.0], &[1, 2, 2]),
+        };
+        let mut at = |py: f64| {
+            output.impulse = tensor(&[0.0, py], &[1, 2]);
+            energy(&output, &targets).unwrap().to_scalar::<f64>().unwrap()
+        };
+        // W(P) = P − P²/2 in units of ½: known at P = 1, negative beyond P = 2.
+        assert!(at(1.0).abs() < 1e-12);
+        assert!(at(0.5) > 0.0 && at(3.0) > at(2.0) + 1.0);
+    }
+}

@@ -1,0 +1,22 @@
+//! From cases to a trained model: losses, training with checkpoints, calibration, model files.
+
+mod batch;
+mod loss;
+
+mod calibration;
+
+mod record;
+
+mod model;
+
+mod training;
+mod training_file;
+
+pub(crate) use batch::network_input;
+pub use calibration::VarianceFactors;
+pub use loss::LossTerms;
+pub use model::ForceModel;
+pub use record::{CaseId, EpochRecord, TrainingRecord, TrainingSet};
+pub use training::{
+    TrainSettings, TrainingProgress, TrainingReport, fit_physics, train, train_around,
+};

@@ -1,0 +1,191 @@
+//! A trained force network and its file.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use candle_core::{DType, Device, Tensor};
+use serde::{Deserialize, Serialize};
+
+use crate::force::network::{ForceNetwork, OpenFeatures, Standardisation};
+use crate::force::physics::{CentreModel, ResidualModel};
+use crate::force::{ForceCase, ForceConfig, ForceError, ForceScenario, TrainingRecord};
+use crate::nn::{Checkpoint, ModelKind, NnError, random_stream};
+use crate::uncertainty::{CURVE_N_INSTANTS, ForceCurve};
+
+const KIND: ModelKind = ModelKind { name: "force network", version: 4 };
+const CURVES: &str = "curves";
+
+/// A trained force network with all it takes to predict, and the cases it was trained on, with
+/// which the baselines are fitted and known cases recognised.
+#[derive(Debug)]
+pub struct ForceModel {
+    pub(crate) config: ForceConfig,
+    pub(crate) centre: CentreModel,
+    pub(crate) residuals: ResidualModel,
+    pub(crate) standardisation: Standardisation,
+    pub(crate) open: OpenFeatures,
+    pub(crate) network: ForceNetwork,
+    pub(crate) record: TrainingRecord,
+    pub(crate) cases: Vec<ForceCase>,
+}
+
+/// A training case without its curve.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StoredCase {
+    name: String,
+    scenario: ForceScenario,
+    mirrored: bool,
+    onset_s: f64,
+    hooked: bool,
+    separated: bool,
+    digest: String,
+}
+
+impl ForceModel {
+    /// The configuration it was trained with.
+    pub fn config(&self) -> &ForceConfig {
+        &self.config
+    }
+
+    /// How it came to be.
+    pub fn record(&self) -> &TrainingRecord {
+        &self.record
+    }
+
+    /// The training cases, validation included; forces to single precision.
+    pub fn training_cases(&self) -> &[ForceCase] {
+        &self.cases
+    }
+
+    /// The kinds of bullet bodies it knows; a single empty name if the data had none.
+    pub fn bodies(&self) -> Vec<String> {
+        self.centre.bodies()
+    }
+
+    /// The rear axle of the target, body axes, m: contact offsets count from it.
+    pub fn rear_axle_x_m(&self) -> f64 {
+        self.centre.rear_axle_x_m()
+    }
+
+    /// How many weights it has.
+    pub fn n_parameters(&self) -> usize {
+        self.network.parameters().n_values()
+    }
+
+    /// Whether a case was seen in training, whatever it is called now.
+    pub fn is_trained_on(&self, case: &ForceCase) -> bool {
+        self.cases.iter().any(|known| known.digest == case.digest)
+    }
+
+    /// Writes the model, whole or not at all.
+    ///
+    /// # Errors
+    /// [`ForceError::Network`].
+    pub fn save(&self, path: &Path) -> Result<(), ForceError> {
+        let mut file = Checkpoint::new(KIND);
+        file.put("config", &self.config)?;
+        file.put("centre", &self.centre)?;
+        file.put("residuals", &self.residuals)?;
+        file.put("standardisation", &self.standardisation)?;
+        file.put("open", &self.open)?;
+        file.put("record", &self.record)?;
+        let stored: Vec<StoredCase> = self.cases.iter().map(StoredCase::of).collect();
+        file.put("cases", &stored)?;
+        file.put_group("network", self.network.parameters().export()?);
+        let values: Vec<f32> = self
+            .cases
+            .iter()
+            .flat_map(|case| case.curve.to_values())
+            .map(|value| value as f32)
+            .collect();
+        let shape = (self.cases.len(), 2 * CURVE_N_INSTANTS + 1);
+        let curves = Tensor::from_vec(values, shape, &Device::Cpu)?;
+        file.put_group("cases", BTreeMap::from([(CURVES.to_owned(), curves)]));
+        Ok(file.write(path)?)
+    }
+
+    /// Reads a model.
+    ///
+    /// # Errors
+    /// [`ForceError::Network`] that says what is wrong with the file.
+    pub fn load(path: &Path) -> Result<Self, ForceError> {
+        Self::from_checkpoint(Checkpoint::read(path, KIND)?)
+    }
+
+    /// Takes a model that is part of the program.
+    ///
+    /// # Errors
+    /// As for [`ForceModel::load`].
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, ForceError> {
+        Self::from_checkpoint(Checkpoint::from_bytes(bytes, KIND)?)
+    }
+
+    fn from_checkpoint(mut file: Checkpoint) -> Result<Self, ForceError> {
+        let config: ForceConfig = file.get("config")?;
+        config.check()?;
+        let centre: CentreModel = file.get("centre")?;
+        let residuals: ResidualModel = file.get("residuals")?;
+        residuals.check(config.network.factors)?;
+        let stored: Vec<StoredCase> = file.get("cases")?;
+        let n_bodies = centre.bodies().len();
+        let mut rng = random_stream(0, "force network", 0);
+        let network = ForceNetwork::new(&config.network, n_bodies, &mut rng, DType::F32)?;
+        network.parameters().import(&file.take_group("network"))?;
+        let missing = || NnError::MissingTensor { name: format!("cases.{CURVES}") };
+        let curves = file.take_group("cases").remove(CURVES).ok_or_else(missing)?;
+        file.check_all_taken()?;
+        let expected = [stored.len(), 2 * CURVE_N_INSTANTS + 1];
+        if curves.dims() != expected {
+            return Err(ForceError::Network(NnError::WrongShape {
+                name: format!("cases.{CURVES}"),
+                expected: expected.to_vec(),
+                got: curves.dims().to_vec(),
+            }));
+        }
+        let rows = curves.to_dtype(DType::F64)?.to_vec2::<f64>()?;
+        let cases = stored.into_iter().zip(rows).map(|(case, row)| case.with_curve(&row));
+        Ok(Self {
+            standardisation: file.get("standardisation")?,
+            open: file.get("open")?,
+            record: file.get("record")?,
+            cases: cases.collect(),
+            config,
+            centre,
+            residuals,
+            network,
+        })
+    }
+}
+
+impl StoredCase {
+    fn of(case: &ForceCase) -> Self {
+        Self {
+            name: case.name.clone(),
+            scenario: case.scenario.clone(),
+            mirrored: case.mirrored,
+            onset_s: case.onset_s,
+            hooked: case.hooked,
+            separated: case.separated,
+            digest: case.digest.clone(),
+        }
+    }
+
+    fn with_curve(self, values: &[f64]) -> ForceCase {
+        let curve = ForceCurve::from_values(values);
+        let (peak_n, peak_time_s) = curve.peak();
+        ForceCase {
+            name: self.name,
+            scenario: self.scenario,
+            mirrored: self.mirrored,
+            onset_s: self.onset_s,
+            impulse_n_s: curve.impulse_n_s(),
+            peak_n,
+            peak_time_s,
+            hooked: self.hooked,
+            separated: self.separated,
+            digest: self.digest,
+            curve,
+        }
+    }
+}
