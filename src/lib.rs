@@ -11,10 +11,12 @@
 //! 7. [`uncertainty`]: distributions of whole force curves;
 //! 8. [`force`]: the force network, its baselines and how well they do;
 //! 9. [`compare`]: simulation against reference;
-//! 10. [`analysis`]: one case, from its file to a motion;
-//! 11. [`figure`]: what a plot shows, as plain data;
-//! 12. `render` (feature `gui`): one drawing function for the panel and the off-screen picture;
-//! 13. `cli` and `app` (feature `gui`): the command line and the window.
+//! 10. [`response`]: the response network: the motion after the impact;
+//! 11. [`shipped`]: the trained networks that are part of the program;
+//! 12. [`analysis`]: one case, from its file to a motion;
+//! 13. [`figure`]: what a plot shows, as plain data;
+//! 14. `render` (feature `gui`): one drawing function for the panel and the off-screen picture;
+//! 15. `cli` and `app` (feature `gui`): the command line and the window.
 //!
 //! ```
 //! use impactlab::vehicle::{Integrator, Manoeuvre, Preset, VehicleState};
@@ -47,6 +49,7 @@ pub mod numerics;
 #[cfg(feature = "gui")]
 pub mod render;
 pub mod response;
+pub mod shipped;
 pub mod uncertainty;
 pub mod units;
 pub mod vehicle;

@@ -219,18 +219,14 @@ fn graphics_processor(cc: &CreationContext<'_>) -> Option<Arc<DensityGpu>> {
     (gpu.adapter_info().device_type != DeviceType::Cpu).then(|| Arc::new(gpu))
 }
 
-/// The shipped data.
+/// The data sets of the repository, which are too large to be part of the program: below the current
+/// folder, beside the program, or in the sources it was built from.
 fn shipped_datasets() -> Option<PathBuf> {
-    shipped("datasets/fea")?.parent().map(PathBuf::from)
-}
-
-/// A shipped file or folder: below the current folder, beside the program, or in the sources it was
-/// built from.
-fn shipped(path: &str) -> Option<PathBuf> {
     let program = std::env::current_exe().unwrap_or_default();
     let roots = [PathBuf::from(".")]
         .into_iter()
         .chain(program.ancestors().skip(1).map(PathBuf::from))
         .chain([PathBuf::from(env!("CARGO_MANIFEST_DIR"))]);
-    roots.map(|root| root.join(path)).find(|path| path.exists())
+    let folders = roots.map(|root| root.join("datasets"));
+    folders.into_iter().find(|folder| folder.join("fea").exists())
 }

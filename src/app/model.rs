@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::app::network::TrainedModel;
-use crate::app::shipped;
 use crate::jobs::Job;
+use crate::shipped::ModelSource;
 
 /// What the shipped model is called.
 pub const SHIPPED_NAME: &str = "shipped";
@@ -42,8 +42,7 @@ impl<M> Default for ModelStatus<M> {
 }
 
 impl<M: TrainedModel> ModelStatus<M> {
-    /// Starts loading if another model is wanted than the last time. A problem with a file comes
-    /// back; without a shipped model the panels say what to do.
+    /// Starts loading if another model is wanted than the last time. A problem comes back.
     pub fn update(
         &mut self,
         wanted: &Option<PathBuf>,
@@ -67,7 +66,7 @@ impl<M: TrainedModel> ModelStatus<M> {
             }
             Err(problem) => {
                 self.problem = Some(problem.clone());
-                wanted.is_some().then_some(problem)
+                Some(problem)
             }
         }
     }
@@ -123,15 +122,11 @@ impl<M: TrainedModel> ModelStatus<M> {
 }
 
 fn load<M: TrainedModel>(path: Option<PathBuf>) -> Result<(M, String), String> {
-    let (path, name) = match path {
-        Some(path) => (path.clone(), file_name(&path)),
-        None => match shipped(M::SHIPPED) {
-            Some(path) => (path, SHIPPED_NAME.to_owned()),
-            None => return Err(format!("{} is not beside the program", M::SHIPPED)),
-        },
+    let (source, name) = match path {
+        Some(path) => (ModelSource::File(path.clone()), file_name(&path)),
+        None => (ModelSource::Shipped, SHIPPED_NAME.to_owned()),
     };
-    let problem = |problem| format!("{}: {problem}", path.display());
-    M::read(&path).map(|model| (model, name)).map_err(problem)
+    M::read(&source).map(|model| (model, name)).map_err(|problem| format!("{source}: {problem}"))
 }
 
 fn file_name(path: &Path) -> String {

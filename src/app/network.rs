@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::error_chain;
 use crate::force::ForceModel;
 use crate::response::ResponseModel;
+use crate::shipped::ModelSource;
 
 /// One of the two.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -51,12 +52,12 @@ impl Network {
 pub trait TrainedModel: Sized + Send + Sync + 'static {
     /// Of which network.
     const NETWORK: Network;
-    /// Where the shipped one stands, from the folder of the program or its sources.
-    const SHIPPED: &'static str;
 
+    /// Reads the model of a file, or the one that comes with the program.
+    ///
     /// # Errors
     /// A message for the user.
-    fn read(path: &Path) -> Result<Self, String>;
+    fn read(source: &ModelSource) -> Result<Self, String>;
 
     /// # Errors
     /// A message for the user.
@@ -65,10 +66,9 @@ pub trait TrainedModel: Sized + Send + Sync + 'static {
 
 impl TrainedModel for ForceModel {
     const NETWORK: Network = Network::Force;
-    const SHIPPED: &'static str = "assets/models/force.safetensors";
 
-    fn read(path: &Path) -> Result<Self, String> {
-        Self::load(path).map_err(|error| error_chain(&error))
+    fn read(source: &ModelSource) -> Result<Self, String> {
+        source.force_model().map_err(|error| error_chain(&error))
     }
 
     fn write(&self, path: &Path) -> Result<(), String> {
@@ -78,10 +78,9 @@ impl TrainedModel for ForceModel {
 
 impl TrainedModel for ResponseModel {
     const NETWORK: Network = Network::Response;
-    const SHIPPED: &'static str = "assets/models/response.safetensors";
 
-    fn read(path: &Path) -> Result<Self, String> {
-        Self::load(path).map_err(|error| error_chain(&error))
+    fn read(source: &ModelSource) -> Result<Self, String> {
+        source.response_model().map_err(|error| error_chain(&error))
     }
 
     fn write(&self, path: &Path) -> Result<(), String> {

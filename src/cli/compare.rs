@@ -9,10 +9,10 @@ use crate::cli::output::{print_json, print_table};
 use crate::cli::progress::with_progress;
 use crate::cli::response_training::{config, data_name, load_cases};
 use crate::cli::run::{Console, Verdict};
-use crate::response::ResponseModel;
 use crate::response::comparison::{
     Comparison, ComparisonSettings, all_tables, compare_models, write_comparison,
 };
+use crate::shipped::ModelSource;
 
 /// Compare response models on trajectories that none has seen
 #[derive(Debug, Args)]
@@ -30,9 +30,9 @@ pub(super) struct CompareArgs {
     /// Seed of the split and of the first choice
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// A pre-trained response network; pre-trained here if not given
+    /// A pre-trained response network: `shipped-pretrained` or a file; pre-trained here if not given
     #[arg(long, value_name = "MODEL")]
-    model: Option<PathBuf>,
+    model: Option<ModelSource>,
     /// The struck vehicle: a preset or a file, instead of the data set's own
     #[arg(long, value_name = "NAME|FILE")]
     vehicle: Option<String>,
@@ -59,7 +59,7 @@ JSON: data, seed, n_choices, test [name, cluster, spins, path [X, Y, yaw] every 
 
 /// Compares.
 pub(super) fn run(args: &CompareArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
-    let start = args.model.as_deref().map(ResponseModel::load).transpose()?;
+    let start = args.model.as_ref().map(ModelSource::response_model).transpose()?;
     let config = match (&args.config, &start) {
         (None, Some(start)) => start.config().clone(),
         (path, _) => config(path.as_deref())?,

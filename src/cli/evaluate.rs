@@ -14,9 +14,10 @@ use crate::cli::run::{Console, Verdict};
 use crate::data::write_atomically;
 use crate::force::metrics::Figures;
 use crate::force::{
-    ColumnSet, CrossValidation, Evaluation, EvaluationSettings, ForceCase, ForceModel,
-    cross_validate, evaluate_model,
+    ColumnSet, CrossValidation, Evaluation, EvaluationSettings, ForceCase, cross_validate,
+    evaluate_model,
 };
+use crate::shipped::ModelSource;
 
 /// Measure a trained network against data
 #[derive(Debug, Args)]
@@ -55,9 +56,9 @@ enum ColumnsArg {
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 struct EvaluateForceArgs {
-    /// A trained force network
+    /// A trained force network: `shipped` or a file
     #[arg(long, value_name = "MODEL")]
-    model: PathBuf,
+    model: ModelSource,
     /// A force data set
     #[arg(long, value_name = "DIR")]
     data: PathBuf,
@@ -81,8 +82,8 @@ struct EvaluateForceArgs {
 
 const EXAMPLES: &str = "\
 Examples:
-  impactlab evaluate force --model assets/models/force.safetensors --data datasets/fea --json
-  impactlab evaluate force --model assets/models/force.safetensors --data datasets/fea \\
+  impactlab evaluate force --model shipped --data datasets/fea --json
+  impactlab evaluate force --model shipped --data datasets/fea \\
       --columns theta --out evaluation
 
 The baselines are fitted here, to the cases that the model was trained on, which it carries.
@@ -94,7 +95,7 @@ JSON: overall and separated (without hooked and unseparated cases), each with rm
 
 #[derive(Debug, Serialize)]
 struct Answer<'a> {
-    model_file: &'a Path,
+    model_file: &'a ModelSource,
     data: &'a Path,
     split: SplitArg,
     n_test: usize,
@@ -115,7 +116,7 @@ fn evaluate_force(
     args: &EvaluateForceArgs,
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
-    let model = ForceModel::load(&args.model)?;
+    let model = args.model.force_model()?;
     let cases = complete(with_progress(|report| ForceCase::load_all(&args.data, report))?)?;
     let columns = match args.columns {
         ColumnsArg::Full => ColumnSet::ThetaContactAndBody,

@@ -12,13 +12,14 @@ use crate::cli::response_training::{data_name, load_cases};
 use crate::cli::run::{Console, Verdict};
 use crate::response::comparison::{Rival, evaluate_rival, write_comparison};
 use crate::response::{Correction, ResponseCase, ResponseModel};
+use crate::shipped::ModelSource;
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct EvaluateResponseArgs {
-    /// A fine-tuned response network
+    /// A fine-tuned response network: `shipped` or a file
     #[arg(long, value_name = "MODEL")]
-    model: PathBuf,
+    model: ModelSource,
     /// A trajectory data set
     #[arg(long, value_name = "DIR")]
     data: PathBuf,
@@ -38,8 +39,7 @@ pub(super) struct EvaluateResponseArgs {
 
 const EXAMPLES: &str = "\
 Example:
-  impactlab evaluate response --model assets/models/response.safetensors \\
-      --data datasets/trajectories-fea --json
+  impactlab evaluate response --model shipped --data datasets/trajectories-fea --json
 
 --split test: the trajectories that the model was not trained on, recognised by their content; if the
 model knows which were kept for its test, those of them that are there.
@@ -51,7 +51,7 @@ pub(super) fn run(
     args: &EvaluateResponseArgs,
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
-    let model = ResponseModel::load(&args.model)?;
+    let model = args.model.response_model()?;
     let cases = load_cases(&args.data, args.vehicle.as_deref())?;
     let chosen: Vec<&ResponseCase> = match args.split {
         SplitArg::All => cases.iter().collect(),

@@ -12,9 +12,8 @@ use crate::cli::response_training::{
 };
 use crate::cli::run::{Console, Verdict};
 use crate::data::TEST_SHARE;
-use crate::response::{
-    ResponseCase, ResponseModel, ResponseTrainSettings, ResponseTrainingSet, fine_tune,
-};
+use crate::response::{ResponseCase, ResponseTrainSettings, ResponseTrainingSet, fine_tune};
+use crate::shipped::ModelSource;
 
 /// Fine-tune a network on data of your own
 #[derive(Debug, Args)]
@@ -32,9 +31,10 @@ enum What {
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 struct FineTuneResponseArgs {
-    /// A pre-trained response network; without one all layers are trained, from random weights
+    /// A pre-trained response network: `shipped-pretrained` or a file; without one all layers are
+    /// trained, from random weights
     #[arg(long, value_name = "MODEL")]
-    model: Option<PathBuf>,
+    model: Option<ModelSource>,
     /// A trajectory data set, of which a quarter of the cases is kept apart for the test; several if
     /// given again
     #[arg(long, value_name = "DIR", required_unless_present = "log")]
@@ -73,11 +73,11 @@ struct FineTuneResponseArgs {
 
 const EXAMPLES: &str = "\
 Examples:
-  impactlab fine-tune response --model assets/models/response_pretrained.safetensors \\
+  impactlab fine-tune response --model shipped-pretrained \\
       --data datasets/trajectories-fea --trajectories 20 --out response.safetensors
   impactlab fine-tune response --data datasets/trajectories-fea --data datasets/trajectories-pulse \\
       --out r.safetensors
-  impactlab fine-tune response --model assets/models/response_pretrained.safetensors \\
+  impactlab fine-tune response --model shipped-pretrained \\
       --log impact.csv --vehicle scaled-target-100 --out scaled.safetensors
 
 A log is smoothed (position, yaw and what else it has of yaw rate and velocity) and taken from the
@@ -103,7 +103,7 @@ fn fine_tune_response(
     args: &FineTuneResponseArgs,
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
-    let start = args.model.as_deref().map(ResponseModel::load).transpose()?;
+    let start = args.model.as_ref().map(ModelSource::response_model).transpose()?;
     let mut config = match (&args.config, &start) {
         (None, Some(start)) => start.config().clone(),
         (path, _) => config(path.as_deref())?,

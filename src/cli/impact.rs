@@ -20,8 +20,8 @@ use crate::units::{Quantity, UnitSystem};
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct ImpactArgs {
-    /// The scenario file
-    #[arg(value_name = "SCENARIO.toml")]
+    /// The scenario: a file, or `pit-right-rear`
+    #[arg(value_name = "NAME|FILE")]
     scenario: PathBuf,
     /// Units of the text (JSON is always SI)
     #[arg(long, value_enum, default_value_t)]
@@ -33,7 +33,7 @@ pub(super) struct ImpactArgs {
 
 const EXAMPLES: &str = "\
 Example:
-  impactlab impact assets/scenarios/pit_right_rear.toml --units us
+  impactlab impact pit-right-rear --units us
 
 The impulse acts ON the target. World axes: X along the road, Y to the left; yaw to the left is
 positive. PDOF: clockwise from straight ahead, where the force comes from.
@@ -107,7 +107,7 @@ pub(super) fn run(args: &ImpactArgs, console: &mut Console<'_>) -> Result<Verdic
 
 /// The scenario of a file, with the paper's friction if asked for.
 pub(super) fn load(path: &std::path::Path, paper: bool) -> Result<Scenario, CliError> {
-    let mut scenario = Scenario::load(path)?;
+    let mut scenario = Scenario::preset_or_file(path)?;
     if paper {
         scenario.contact.friction_model = FrictionModel::Paper;
     }

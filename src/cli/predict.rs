@@ -13,8 +13,9 @@ use crate::cli::quantity::UnitsArg;
 use crate::cli::run::{Console, Verdict};
 use crate::collision::{PrincipalDirectionOfForce, Scenario};
 use crate::data::{write_atomically, write_series_csv};
-use crate::force::{ForceModel, ForcePrediction, ForceScenario, OutsideTraining};
+use crate::force::{ForcePrediction, ForceScenario, OutsideTraining};
 use crate::nn::random_stream;
+use crate::shipped::ModelSource;
 use crate::uncertainty::{CurveBands, CurveFigures, ForceCurve};
 use crate::units::Quantity;
 
@@ -42,11 +43,11 @@ enum What {
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 struct PredictForceArgs {
-    /// A trained force network
-    #[arg(long, value_name = "MODEL")]
-    model: PathBuf,
-    /// The scenario file
-    #[arg(long, value_name = "SCENARIO.toml")]
+    /// The force network: `shipped` or a file
+    #[arg(long, default_value_t, value_name = "MODEL")]
+    model: ModelSource,
+    /// The scenario: a file, or `pit-right-rear`
+    #[arg(long, value_name = "NAME|FILE")]
     scenario: PathBuf,
     /// Kind of bullet body, as the training data name it; left open if not given
     #[arg(long, value_name = "NAME")]
@@ -70,8 +71,7 @@ struct PredictForceArgs {
 
 const EXAMPLES: &str = "\
 Example:
-  impactlab predict force --model assets/models/force.safetensors \\
-      --scenario assets/scenarios/pit_right_rear.toml --samples 5 --out prediction
+  impactlab predict force --scenario pit-right-rear --samples 5 --out prediction
 
 bands.csv: time, mean and the edges of the 50, 80, 90 and 95 % bands of F_x, F_y and |F|, N.
 mean.csv and sample_001.csv, …: force histories that every other command reads.
@@ -103,7 +103,7 @@ struct Impulse {
 #[derive(Debug, Serialize)]
 struct Answer<'a> {
     scenario: &'a str,
-    model: &'a Path,
+    model: &'a ModelSource,
     impulse_n_s: Impulse,
     peak_n: Figure,
     duration_s: Figure,
@@ -127,8 +127,8 @@ pub(super) fn run(args: &PredictArgs, console: &mut Console<'_>) -> Result<Verdi
 }
 
 fn predict_force(args: &PredictForceArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
-    let model = ForceModel::load(&args.model)?;
-    let scenario = Scenario::load(&args.scenario)?;
+    let model = args.model.force_model()?;
+    let scenario = Scenario::preset_or_file(&args.scenario)?;
     let unsolved = |source| CliError::Scenario { path: args.scenario.clone(), source };
     let mut question = ForceScenario::from_scenario(&scenario).map_err(unsolved)?;
     question.bullet_body = args.body.clone();

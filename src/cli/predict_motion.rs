@@ -16,15 +16,15 @@ use crate::cli::run::{Console, Verdict};
 use crate::cli::vehicle_choice::vehicle;
 use crate::collision::Scenario;
 use crate::data::{read_force_file, write_atomically};
-use crate::force::{ForceModel, ForceScenario, OutsideTraining};
-use crate::response::ResponseModel;
+use crate::force::{ForceScenario, OutsideTraining};
+use crate::shipped::ModelSource;
 use crate::units::{Quantity, UnitSystem};
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(super) struct PredictMotionArgs {
-    /// The scenario file: both vehicles, and where they meet
-    #[arg(long, value_name = "SCENARIO.toml")]
+    /// The scenario, both vehicles and where they meet: a file, or `pit-right-rear`
+    #[arg(long, value_name = "NAME|FILE")]
     scenario: PathBuf,
     /// The struck vehicle: a preset or a file
     #[arg(long, default_value = "reference-2000", value_name = "NAME|FILE")]
@@ -32,12 +32,12 @@ pub(super) struct PredictMotionArgs {
     /// A force history instead of the predicted one
     #[arg(long, value_name = "FORCE.csv")]
     force: Option<PathBuf>,
-    /// The force network
-    #[arg(long, default_value = "assets/models/force.safetensors", value_name = "MODEL")]
-    force_model: PathBuf,
-    /// The response network
-    #[arg(long, default_value = "assets/models/response.safetensors", value_name = "MODEL")]
-    response_model: PathBuf,
+    /// The force network: `shipped` or a file
+    #[arg(long, default_value_t, value_name = "MODEL")]
+    force_model: ModelSource,
+    /// The response network: `shipped`, `shipped-pretrained` or a file
+    #[arg(long, default_value_t, value_name = "MODEL")]
+    response_model: ModelSource,
     /// Friction of the road, instead of the vehicle's
     #[arg(long, value_name = "MU")]
     friction: Option<f64>,
@@ -63,7 +63,7 @@ pub(super) struct PredictMotionArgs {
 
 const EXAMPLES: &str = "\
 Example:
-  impactlab predict --scenario assets/scenarios/pit_right_rear.toml --out prediction
+  impactlab predict --scenario pit-right-rear --out prediction
 
 trajectory.csv: time, central path (nothing uncertain), mean, standard deviation and edges of the 50
   and 90 % bands of X, Y, yaw, v_x, v_y and yaw rate. density.csv: probability density of the position of the CG at the end, or its
@@ -80,8 +80,8 @@ struct Answer<'a> {
     scenario: &'a str,
     vehicle: &'a str,
     force: Option<&'a Path>,
-    force_model: Option<&'a Path>,
-    response_model: &'a Path,
+    force_model: Option<&'a ModelSource>,
+    response_model: &'a ModelSource,
     n_forces: usize,
     outcome: &'a Outcome,
     hooking_probability: Option<f64>,
@@ -94,7 +94,7 @@ pub(super) fn run(
     args: &PredictMotionArgs,
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
-    let scenario = Scenario::load(&args.scenario)?;
+    let scenario = Scenario::preset_or_file(&args.scenario)?;
     let mut kind = vehicle(&args.vehicle)?;
     if let Some(friction) = args.friction {
         kind = kind.with_friction(friction);
@@ -108,7 +108,7 @@ pub(super) fn run(
     let unsolved = |source| CliError::Scenario { path: args.scenario.clone(), source };
     let struck = StruckVehicle::of_scenario(&scenario, &kind, settings.contact_height_m)
         .map_err(unsolved)?;
-    let response = ResponseModel::load(&args.response_model)?;
+    let response = args.response_model.response_model()?;
     let forecast = match &args.force {
         Some(path) => {
             let loaded = read_force_file(path, None)?;
@@ -119,7 +119,7 @@ pub(super) fn run(
             forecast_forces(&[force], &response, &struck, &settings)
         }
         None => {
-            let force = ForceModel::load(&args.force_model)?;
+            let force = args.force_model.force_model()?;
             let collision = ForceScenario::from_scenario(&scenario).map_err(unsolved)?;
             forecast_collision(&collision, (&force, &response), &struck, &settings)
         }
@@ -133,7 +133,7 @@ pub(super) fn run(
         scenario: &scenario.name,
         vehicle: &struck.vehicle.name,
         force: args.force.as_deref(),
-        force_model: args.force.is_none().then_some(&*args.force_model),
+        force_model: args.force.is_none().then_some(&args.force_model),
         response_model: &args.response_model,
         n_forces: forecast.forces.len(),
         outcome: &forecast.outcome,

@@ -27,7 +27,7 @@ const EXAMPLES: &str = "\
 Examples:
   impactlab render force datasets/fea --case c001 --cfc 60 --out force.png
   impactlab render scene datasets/trajectories-fea --case FE_c002 --time 1.5 --out scene.png
-  impactlab render impact assets/scenarios/pit_right_rear.toml --out impact.csv
+  impactlab render impact pit-right-rear --out impact.csv
 
 JSON: out, title, x_axis, y_axis, notes";
 
@@ -55,7 +55,7 @@ impactlab render forecast datasets/trajectories-fea --case FE_c002 --channel yaw
     Forecast(ForecastArgs),
     /// The impact of a scenario from above: impulse and delta-v
     #[command(after_help = "\
-Example:\n  impactlab render impact assets/scenarios/pit_right_rear.toml --out impact.png")]
+Example:\n  impactlab render impact pit-right-rear --out impact.png")]
     Impact(ImpactArgs),
 }
 
@@ -146,8 +146,8 @@ struct SceneArgs {
 
 #[derive(Debug, Args)]
 struct ImpactArgs {
-    /// The scenario file
-    #[arg(value_name = "SCENARIO.toml")]
+    /// The scenario: a file, or `pit-right-rear`
+    #[arg(value_name = "NAME|FILE")]
     scenario: PathBuf,
     /// Friction as in the paper: always sliding
     #[arg(long)]

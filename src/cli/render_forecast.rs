@@ -1,7 +1,5 @@
 //! `impactlab render forecast`: what the response network says of a recorded case.
 
-use std::path::PathBuf;
-
 use clap::{Args, ValueEnum};
 
 use crate::analysis::{DensityTask, MotionBands, MotionForecastSettings, forecast_forces};
@@ -13,7 +11,7 @@ use crate::data::Channel;
 use crate::figure::{
     FORECAST_CHANNELS, MotionForecastFigure, forecast_channel_figure, forecast_scene_figure,
 };
-use crate::response::ResponseModel;
+use crate::shipped::ModelSource;
 use crate::units::UnitSystem;
 
 /// Every how many steps the bands over time have an edge.
@@ -33,9 +31,9 @@ pub(super) struct ForecastArgs {
     /// Density over a window of time, s, instead of the moment
     #[arg(long, value_parser = window_s, value_name = "FROM,TO")]
     window: Option<[f64; 2]>,
-    /// The response network
-    #[arg(long, default_value = "assets/models/response.safetensors", value_name = "MODEL")]
-    response_model: PathBuf,
+    /// The response network: `shipped`, `shipped-pretrained` or a file
+    #[arg(long, default_value_t, value_name = "MODEL")]
+    response_model: ModelSource,
     #[command(flatten)]
     vehicle: VehicleArgs,
     #[command(flatten)]
@@ -73,7 +71,7 @@ pub(super) fn figure(args: &ForecastArgs, units: UnitSystem) -> Result<Noted, Cl
     let (Some(struck), Some(force)) = (&analysis.struck, &analysis.force) else {
         return Err(CliError::NoForce { path: path() });
     };
-    let model = ResponseModel::load(&args.response_model)?;
+    let model = args.response_model.response_model()?;
     let recorded = analysis.reference.as_ref().and_then(|of| of.time_s().last().copied());
     let settings = MotionForecastSettings::default();
     let duration_s = recorded.unwrap_or(settings.duration_s);

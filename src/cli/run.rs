@@ -28,10 +28,9 @@ Without a command the window opens.
 Examples:
   impactlab
   impactlab check datasets
-  impactlab impact assets/scenarios/pit_right_rear.toml
+  impactlab impact pit-right-rear
   impactlab simulate --dataset datasets/trajectories-fea
-  impactlab predict force --model assets/models/force.safetensors \
-      --scenario assets/scenarios/pit_right_rear.toml
+  impactlab predict force --scenario pit-right-rear
 
 Exit codes: 0 = ok, 1 = the work failed or found problems, 2 = wrong usage";
 

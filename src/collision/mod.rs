@@ -24,6 +24,7 @@ mod contact_distribution;
 mod footprint;
 mod scenario;
 mod scenario_file;
+mod scenario_preset;
 mod scenario_write;
 mod toml_section;
 
@@ -52,3 +53,4 @@ pub use scenario::{
     ScenarioContact, ScenarioError, ScenarioGeometry, ScenarioVehicle,
 };
 pub use scenario_file::ScenarioFileError;
+pub use scenario_preset::SCENARIO_PRESETS;

@@ -6,7 +6,6 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
@@ -242,16 +241,6 @@ impl Scenario {
                 friction_model: self.contact.friction_model,
             },
         })
-    }
-
-    /// The PIT that comes with the program: `assets/scenarios/pit_right_rear.toml`.
-    pub fn example() -> Self {
-        let path = Path::new("assets/scenarios/pit_right_rear.toml");
-        let text = include_str!("../../assets/scenarios/pit_right_rear.toml");
-        match Self::from_toml(text, path) {
-            Ok(scenario) => scenario,
-            Err(error) => unreachable!("a shipped scenario is bad (a test reads it): {error}"),
-        }
     }
 
     /// Impulse, post-impact motion and energy.

@@ -17,6 +17,7 @@ const LAYERS: &[&[&str]] = &[
     &["force"],
     &["compare"],
     &["response"],
+    &["shipped"],
     &["analysis"],
     &["figure"],
     &["render"],

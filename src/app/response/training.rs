@@ -6,7 +6,6 @@ use std::time::Duration;
 
 use crate::app::network::TrainedModel;
 use crate::app::response::{Course, ResponseTrainingForm};
-use crate::app::shipped;
 use crate::app::source::CheckedDataset;
 use crate::app::training::{Tell, Training, TrainingSlot, time_left};
 use crate::data::{TEST_SHARE, split};
@@ -16,10 +15,8 @@ use crate::response::{
     ImpactRecord, ResponseCase, ResponseConfig, ResponseEpoch, ResponseModel, ResponseReport,
     ResponseTrainSettings, ResponseTrainingSet, fine_tune, pretrain,
 };
+use crate::shipped::ModelSource;
 use crate::vehicle::VehicleParameters;
-
-/// Where the shipped pre-trained network stands, from the folder of the program or its sources.
-const SHIPPED_PRETRAINED: &str = "assets/models/response_pretrained.safetensors";
 
 /// What a training is doing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -189,9 +186,7 @@ fn start_of(
 ) -> Result<Option<Arc<ResponseModel>>, String> {
     Ok(match course {
         Course::FineTuneShipped => {
-            let missing = || format!("{SHIPPED_PRETRAINED} is not beside the program");
-            let path = shipped(SHIPPED_PRETRAINED).ok_or_else(missing)?;
-            Some(Arc::new(ResponseModel::read(&path)?))
+            Some(Arc::new(ResponseModel::read(&ModelSource::ShippedPretrained)?))
         }
         Course::FineTuneCurrent => {
             let current = data.current.clone();

@@ -1,0 +1,148 @@
+//! The trained networks that are part of the program, so that it works from any folder.
+//!
+//! A [`ModelSource`] names a model: the word `shipped` or `shipped-pretrained`, or a file. A file
+//! with the name of such a word is reached as `./shipped`.
+//!
+//! Vehicles and scenarios that are part of the program stand with their types:
+//! [`Preset`](crate::vehicle::Preset), [`SCENARIO_PRESETS`](crate::collision::SCENARIO_PRESETS).
+
+use std::ffi::OsString;
+use std::fmt::{self, Display};
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::force::{ForceError, ForceModel};
+use crate::response::{ResponseError, ResponseModel};
+
+/// The word for the model that comes with the program.
+const SHIPPED: &str = "shipped";
+
+/// The word for the response network that comes with the program, before any fine-tuning.
+const SHIPPED_PRETRAINED: &str = "shipped-pretrained";
+
+const FORCE_MODEL: &[u8] = include_bytes!("../assets/models/force.safetensors");
+const RESPONSE_MODEL: &[u8] = include_bytes!("../assets/models/response.safetensors");
+const PRETRAINED_RESPONSE_MODEL: &[u8] =
+    include_bytes!("../assets/models/response_pretrained.safetensors");
+
+/// Where a model comes from. Written as its word or as the path of its file.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "PathBuf", into = "PathBuf")]
+pub enum ModelSource {
+    /// The model that comes with the program, `shipped`.
+    #[default]
+    Shipped,
+    /// The response network that comes with the program, pre-trained on simulations and not yet
+    /// fine-tuned, `shipped-pretrained`.
+    ShippedPretrained,
+    /// A model file.
+    File(PathBuf),
+}
+
+impl ModelSource {
+    /// Loads the force network.
+    ///
+    /// # Errors
+    /// [`ForceError`] if the file cannot be read or holds something else.
+    pub fn force_model(&self) -> Result<ForceModel, ForceError> {
+        match self {
+            Self::Shipped => ForceModel::from_bytes(FORCE_MODEL),
+            Self::ShippedPretrained => ForceModel::from_bytes(PRETRAINED_RESPONSE_MODEL),
+            Self::File(path) => ForceModel::load(path),
+        }
+    }
+
+    /// Loads the response network.
+    ///
+    /// # Errors
+    /// [`ResponseError`] if the file cannot be read or holds something else.
+    pub fn response_model(&self) -> Result<ResponseModel, ResponseError> {
+        match self {
+            Self::Shipped => ResponseModel::from_bytes(RESPONSE_MODEL),
+            Self::ShippedPretrained => ResponseModel::from_bytes(PRETRAINED_RESPONSE_MODEL),
+            Self::File(path) => ResponseModel::load(path),
+        }
+    }
+
+    /// The word or the path.
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Shipped => Path::new(SHIPPED),
+            Self::ShippedPretrained => Path::new(SHIPPED_PRETRAINED),
+            Self::File(path) => path,
+        }
+    }
+}
+
+impl Display for ModelSource {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.path().display().fmt(f)
+    }
+}
+
+impl From<PathBuf> for ModelSource {
+    fn from(path: PathBuf) -> Self {
+        match path.to_str() {
+            Some(SHIPPED) => Self::Shipped,
+            Some(SHIPPED_PRETRAINED) => Self::ShippedPretrained,
+            _ => Self::File(path),
+        }
+    }
+}
+
+impl From<OsString> for ModelSource {
+    fn from(argument: OsString) -> Self {
+        PathBuf::from(argument).into()
+    }
+}
+
+impl From<ModelSource> for PathBuf {
+    fn from(source: ModelSource) -> Self {
+        source.path().to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn source(text: &str) -> ModelSource {
+        PathBuf::from(text).into()
+    }
+
+    #[test]
+    fn words_are_shipped_models_and_all_else_is_a_file() {
+        assert_eq!(source("shipped"), ModelSource::Shipped);
+        assert_eq!(source("shipped-pretrained"), ModelSource::ShippedPretrained);
+        assert_eq!(source("./shipped"), ModelSource::File("./shipped".into()));
+        for text in ["shipped", "shipped-pretrained", "my/model.safetensors"] {
+            assert_eq!(source(text).to_string(), text);
+            let json = serde_json::to_string(&source(text)).unwrap();
+            assert_eq!(json, format!("{text:?}"));
+            assert_eq!(serde_json::from_str::<ModelSource>(&json).unwrap(), source(text));
+        }
+    }
+
+    #[test]
+    fn every_shipped_model_is_the_one_of_its_file() {
+        let file = |name: &str| source(&format!("assets/models/{name}.safetensors"));
+        let of_file = file("force").force_model().unwrap();
+        let embedded = ModelSource::Shipped.force_model().unwrap();
+        assert_eq!(embedded.record().data_digest, of_file.record().data_digest);
+        for (shipped, name) in
+            [("shipped", "response"), ("shipped-pretrained", "response_pretrained")]
+        {
+            let of_file = file(name).response_model().unwrap();
+            let embedded = source(shipped).response_model().unwrap();
+            assert_eq!(embedded.n_parameters(), of_file.n_parameters(), "{name}");
+            assert_eq!(embedded.record().train.len(), of_file.record().train.len(), "{name}");
+        }
+    }
+
+    #[test]
+    fn a_response_network_is_no_force_network() {
+        let text = crate::error_chain(&ModelSource::ShippedPretrained.force_model().unwrap_err());
+        assert!(text.contains("response network"), "{text}");
+    }
+}
