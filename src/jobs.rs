@@ -313,7 +313,8 @@ mod tests {
             },
         );
         drop(job);
-        assert!(receiver.recv_timeout(Duration::from_secs(10)).is_ok(), "the thread went on");
+        // A thread that goes on for ever would hold the test up here.
+        assert!(receiver.recv().is_ok());
     }
 
     #[test]

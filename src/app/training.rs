@@ -5,7 +5,7 @@
 
 use std::ops::ControlFlow;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use crate::jobs::{Job, Progress, Report};
@@ -26,25 +26,42 @@ pub type Tell<'a, N> = dyn FnMut(N, Progress) -> ControlFlow<()> + 'a;
 /// Holds a thread up while it is closed.
 #[derive(Default)]
 struct Gate {
-    is_closed: Mutex<bool>,
+    state: Mutex<GateState>,
     changed: Condvar,
 }
 
+#[derive(Default)]
+struct GateState {
+    is_closed: bool,
+    is_held: bool,
+}
+
 impl Gate {
+    fn state(&self) -> MutexGuard<'_, GateState> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     fn set_closed(&self, is_closed: bool) {
-        *self.is_closed.lock().unwrap_or_else(PoisonError::into_inner) = is_closed;
+        self.state().is_closed = is_closed;
         self.changed.notify_all();
     }
 
     fn is_closed(&self) -> bool {
-        *self.is_closed.lock().unwrap_or_else(PoisonError::into_inner)
+        self.state().is_closed
+    }
+
+    /// Whether a thread is being held up.
+    fn is_holding(&self) -> bool {
+        self.state().is_held
     }
 
     fn pass(&self) {
-        let mut is_closed = self.is_closed.lock().unwrap_or_else(PoisonError::into_inner);
-        while *is_closed {
-            is_closed = self.changed.wait(is_closed).unwrap_or_else(PoisonError::into_inner);
+        let mut state = self.state();
+        while state.is_closed {
+            state.is_held = true;
+            state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
+        state.is_held = false;
     }
 }
 
@@ -101,9 +118,14 @@ impl<M, N> TrainingSlot<M, N> {
         self.0.is_some()
     }
 
-    /// Whether it waits.
+    /// Whether it was asked to pause: the epoch under way comes to its end first.
     pub fn is_paused(&self) -> bool {
         self.0.as_ref().is_some_and(|training| training.gate.is_closed())
+    }
+
+    /// Whether it has come to rest after it was asked to pause.
+    pub fn is_at_rest(&self) -> bool {
+        self.0.as_ref().is_some_and(|training| training.gate.is_holding())
     }
 
     /// Whether it was told to stop.
@@ -175,10 +197,14 @@ mod tests {
         gate.set_closed(true);
         let inner = Arc::clone(&gate);
         let mut job = Job::spawn("wait", || {}, move |_| inner.pass()).unwrap();
-        assert!(matches!(job.wait_for(Duration::from_millis(30)), Update::Running));
+        while !gate.is_holding() {
+            assert!(matches!(job.poll(), Update::Running));
+            std::thread::yield_now();
+        }
         assert!(gate.is_closed());
         gate.set_closed(false);
         assert!(matches!(job.wait(), Update::Finished(())));
+        assert!(!gate.is_holding());
     }
 
     #[test]

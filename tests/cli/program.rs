@@ -23,8 +23,8 @@ components = 2
 
 ";
 
-/// Longest wait for a checkpoint.
-const PATIENCE: Duration = Duration::from_secs(300);
+/// Longest wait for a checkpoint: only a training that hangs takes so long.
+const PATIENCE: Duration = Duration::from_secs(3600);
 
 /// The program, in the project's folder.
 pub fn program() -> Command {

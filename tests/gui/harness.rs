@@ -9,8 +9,8 @@ use image::RgbaImage;
 use impactlab::app::{App, Command, State};
 use impactlab::render::SoftwareRenderer;
 
-/// Longest wait for background work.
-const PATIENCE: Duration = Duration::from_secs(240);
+/// Longest wait for background work: only work that hangs takes so long.
+const PATIENCE: Duration = Duration::from_secs(3600);
 
 /// What a real window shows where nothing is painted.
 const WINDOW_GROUND: Color32 = Color32::BLACK;

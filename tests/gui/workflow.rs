@@ -165,10 +165,7 @@ fn a_scenario_is_solved_simulated_and_survives_a_kill() {
 
     // A second is enough to have it on disk; the app is not closed but dropped, as by a kill.
     harness.run_steps(90);
-    let deadline = std::time::Instant::now() + std::time::Duration::from_secs(30);
-    while !state_file.exists() && std::time::Instant::now() < deadline {
-        harness.step();
-    }
+    step_until(&mut harness, "the saved state", |_| state_file.exists());
     let before = state(&harness).project.clone();
     let layout = state(&harness).view.layout.clone();
     drop(harness);
