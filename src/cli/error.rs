@@ -4,12 +4,12 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::analysis::{AnalysisError, MotionForecastError};
-use crate::collision::{FilterError, ScenarioError, ScenarioFileError};
+use crate::collision::{FilterError, ScenarioError};
 use crate::compare::ReplayError;
-use crate::data::{DataError, SeriesError};
+use crate::data::{DataError, SeriesError, TomlError};
 use crate::force::{EvaluateError, ForceError, LoadError};
 use crate::response::{LogError, ResponseError, ResponseLoadError};
-use crate::vehicle::{SimulationError, VehicleError};
+use crate::vehicle::SimulationError;
 
 /// A command that could not do its work.
 #[derive(Debug, thiserror::Error)]
@@ -69,12 +69,9 @@ pub enum CliError {
     /// An evaluation that cannot be made.
     #[error("the evaluation failed")]
     Evaluation(#[source] Box<EvaluateError>),
-    /// A vehicle file.
+    /// A vehicle or scenario file.
     #[error(transparent)]
-    Vehicle(#[from] VehicleError),
-    /// A scenario file.
-    #[error(transparent)]
-    ScenarioFile(#[from] ScenarioFileError),
+    TomlFile(#[from] TomlError),
     /// A scenario without a solution.
     #[error("{}: cannot be solved", path.display())]
     Scenario {

@@ -26,7 +26,6 @@ mod scenario;
 mod scenario_file;
 mod scenario_preset;
 mod scenario_write;
-mod toml_section;
 
 pub mod crush;
 
@@ -52,5 +51,4 @@ pub use scenario::{
     ContactLocation, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, ImpactCase, Scenario,
     ScenarioContact, ScenarioError, ScenarioGeometry, ScenarioVehicle,
 };
-pub use scenario_file::ScenarioFileError;
 pub use scenario_preset::SCENARIO_PRESETS;

@@ -29,97 +29,18 @@
 //! Each quantity is given once, in any unit of [`Quantity::units`]: the key ends in the unit's
 //! symbol with `_` for `/`, `·` and blanks and digits for powers.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use crate::collision::toml_section::{Range, Section, Source};
 use crate::collision::{
     ContactLocation, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, FrictionModel, Scenario,
     ScenarioContact, ScenarioVehicle, Side,
 };
+use crate::data::{TomlError, TomlFile, TomlTable};
 use crate::units::Quantity;
 
-/// A scenario file that cannot be read. All but the first read `file:line:column: …`, from 1.
-#[derive(Debug, thiserror::Error)]
-pub enum ScenarioFileError {
-    /// The file cannot be opened or is not text.
-    #[error("{}: cannot be read", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// Not TOML.
-    #[error("{}:{line}:{column}: {message}", path.display())]
-    Syntax {
-        /// The file.
-        path: PathBuf,
-        /// Line.
-        line: usize,
-        /// Column.
-        column: usize,
-        /// The parser's words.
-        message: String,
-    },
-    /// A value of the wrong kind or outside its range.
-    #[error("{}:{line}:{column}: {key} is {value}, expected {expected}", path.display())]
-    Value {
-        /// The file.
-        path: PathBuf,
-        /// Line of the value.
-        line: usize,
-        /// Column of the value.
-        column: usize,
-        /// The key with its table.
-        key: String,
-        /// The value as written.
-        value: String,
-        /// The range, in the key's own unit, or the kind.
-        expected: String,
-    },
-    /// A key that this table does not have, most likely a slip or another unit.
-    #[error("{}:{line}:{column}: {key} is not known here", path.display())]
-    UnknownKey {
-        /// The file.
-        path: PathBuf,
-        /// Line of the key.
-        line: usize,
-        /// Column of the key.
-        column: usize,
-        /// The key with its table.
-        key: String,
-    },
-    /// A key without which the scenario says too little.
-    #[error("{}:{line}:{column}: {key} is missing", path.display())]
-    MissingKey {
-        /// The file.
-        path: PathBuf,
-        /// Line of the table.
-        line: usize,
-        /// Column of the table.
-        column: usize,
-        /// The key with its table, and what may stand for it.
-        key: String,
-    },
-    /// Two keys that say the same thing.
-    #[error("{}:{line}:{column}: {key} and {other} say the same thing, expected one", path.display())]
-    Conflict {
-        /// The file.
-        path: PathBuf,
-        /// Line of the second key.
-        line: usize,
-        /// Column of the second key.
-        column: usize,
-        /// The second key with its table.
-        key: String,
-        /// The first key.
-        other: String,
-    },
-}
-
-const ANY_POSITION_M: Range = Range(-1e6, 1e6);
-const ANY_ANGLE_RAD: Range = Range(-4.0 * std::f64::consts::PI, 4.0 * std::f64::consts::PI);
-const ANY_SPEED_M_S: Range = Range(-150.0, 150.0);
+const ANY_POSITION_M: [f64; 2] = [-1e6, 1e6];
+const ANY_ANGLE_RAD: [f64; 2] = [-4.0 * std::f64::consts::PI, 4.0 * std::f64::consts::PI];
+const ANY_SPEED_M_S: [f64; 2] = [-150.0, 150.0];
 
 pub(super) const LOCATIONS: [&str; 3] = ["footprints", "side", "point"];
 pub(super) const FRICTION_MODELS: [&str; 2] = ["limit", "paper"];
@@ -128,21 +49,19 @@ impl Scenario {
     /// Reads a scenario file and checks every key and range.
     ///
     /// # Errors
-    /// [`ScenarioFileError`].
-    pub fn load(path: &Path) -> Result<Self, ScenarioFileError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| ScenarioFileError::Read { path: path.to_owned(), source })?;
-        Self::from_toml(&text, path)
+    /// [`TomlError`].
+    pub fn load(path: &Path) -> Result<Self, TomlError> {
+        Self::from_toml(&TomlFile::read(path)?, path)
     }
 
     /// Reads a scenario from text; `path` only names it in errors.
     ///
     /// # Errors
-    /// [`ScenarioFileError`], but for [`ScenarioFileError::Read`].
-    pub fn from_toml(text: &str, path: &Path) -> Result<Self, ScenarioFileError> {
-        let source = Source { path, text };
-        let root = source.parse()?;
-        let mut top = Section::root(source, &root);
+    /// [`TomlError`], but for [`TomlError::Read`].
+    pub fn from_toml(text: &str, path: &Path) -> Result<Self, TomlError> {
+        let file = TomlFile { path, text };
+        let root = file.parse()?;
+        let mut top = TomlTable::root(file, &root);
         let name = top.string("name")?.unwrap_or_default();
         let notes = top.string("notes")?.unwrap_or_default();
         let (mut target, mut bullet) = (top.table("target")?, top.table("bullet")?);
@@ -163,21 +82,21 @@ impl Scenario {
     }
 }
 
-fn position(section: &mut Section<'_>, base: &str) -> Result<Option<f64>, ScenarioFileError> {
+fn position(section: &mut TomlTable<'_>, base: &str) -> Result<Option<f64>, TomlError> {
     section.number(base, Quantity::Length, ANY_POSITION_M)
 }
 
-fn read_vehicle(mut section: Section<'_>) -> Result<ScenarioVehicle, ScenarioFileError> {
+fn read_vehicle(mut section: TomlTable<'_>) -> Result<ScenarioVehicle, TomlError> {
     let s = &mut section;
-    let mass_kg = s.require("mass", Quantity::Mass, Range(1.0, 1e8))?;
-    let inertia = (Quantity::MomentOfInertia, Range(0.1, 1e10));
+    let mass_kg = s.require("mass", Quantity::Mass, [1.0, 1e8])?;
+    let inertia = (Quantity::MomentOfInertia, [0.1, 1e10]);
     let yaw_inertia_kg_m2 = s.require("yaw_inertia", inertia.0, inertia.1)?;
-    let length_m = s.require("length", Quantity::Length, Range(0.1, 100.0))?;
-    let width_m = s.require("width", Quantity::Length, Range(0.1, 20.0))?;
-    let cg_from_front_m = s.require("cg_from_front", Quantity::Length, Range(0.0, length_m))?;
+    let length_m = s.require("length", Quantity::Length, [0.1, 100.0])?;
+    let width_m = s.require("width", Quantity::Length, [0.1, 20.0])?;
+    let cg_from_front_m = s.require("cg_from_front", Quantity::Length, [0.0, length_m])?;
     let heading = s.number("heading", Quantity::Angle, ANY_ANGLE_RAD)?;
     let heading_rad = heading.unwrap_or(0.0);
-    let rate = (Quantity::AngularVelocity, Range(-50.0, 50.0));
+    let rate = (Quantity::AngularVelocity, [-50.0, 50.0]);
     let yaw_rate_rad_s = s.number("yaw_rate", rate.0, rate.1)?.unwrap_or(0.0);
     let speed = s.number("speed", Quantity::Speed, ANY_SPEED_M_S)?;
     let first = s.last_key();
@@ -206,10 +125,10 @@ fn read_vehicle(mut section: Section<'_>) -> Result<ScenarioVehicle, ScenarioFil
 }
 
 fn read_location(
-    contact: &mut Section<'_>,
-    bullet: &mut Section<'_>,
-) -> Result<ContactLocation, ScenarioFileError> {
-    let mut bullet_at = || -> Result<(f64, f64), ScenarioFileError> {
+    contact: &mut TomlTable<'_>,
+    bullet: &mut TomlTable<'_>,
+) -> Result<ContactLocation, TomlError> {
+    let mut bullet_at = || -> Result<(f64, f64), TomlError> {
         let x_m = bullet.require("x", Quantity::Length, ANY_POSITION_M)?;
         Ok((x_m, bullet.require("y", Quantity::Length, ANY_POSITION_M)?))
     };
@@ -224,14 +143,14 @@ fn read_location(
             let side = idx.and_then(|idx| Side::ALL.get(idx).copied());
             Ok(ContactLocation::Side {
                 side: side.ok_or_else(|| contact.missing("side"))?,
-                offset_m: contact.require("offset", Quantity::Length, Range(-50.0, 50.0))?,
+                offset_m: contact.require("offset", Quantity::Length, [-50.0, 50.0])?,
             })
         }
         _ => {
             let (bullet_x_m, bullet_y_m) = bullet_at()?;
             Ok(ContactLocation::Point {
-                x_m: contact.require("x", Quantity::Length, Range(-100.0, 100.0))?,
-                y_m: contact.require("y", Quantity::Length, Range(-100.0, 100.0))?,
+                x_m: contact.require("x", Quantity::Length, [-100.0, 100.0])?,
+                y_m: contact.require("y", Quantity::Length, [-100.0, 100.0])?,
                 normal_rad: contact.require("normal", Quantity::Angle, ANY_ANGLE_RAD)?,
                 bullet_x_m,
                 bullet_y_m,
@@ -241,12 +160,12 @@ fn read_location(
 }
 
 fn read_contact(
-    mut section: Section<'_>,
+    mut section: TomlTable<'_>,
     location: ContactLocation,
-) -> Result<ScenarioContact, ScenarioFileError> {
+) -> Result<ScenarioContact, TomlError> {
     let s = &mut section;
-    let restitution = s.number("restitution", Quantity::Ratio, Range(0.0, 1.0))?;
-    let friction_limit = s.number("friction_limit", Quantity::Ratio, Range(0.0, 10.0))?;
+    let restitution = s.number("restitution", Quantity::Ratio, [0.0, 1.0])?;
+    let friction_limit = s.number("friction_limit", Quantity::Ratio, [0.0, 10.0])?;
     let friction_model = match s.choice("friction_model", &FRICTION_MODELS)? {
         Some(1) => FrictionModel::Paper,
         _ => FrictionModel::Limit,
@@ -266,7 +185,7 @@ mod tests {
 
     const PIT: &str = include_str!("../../assets/scenarios/pit_right_rear.toml");
 
-    fn read(text: &str) -> Result<Scenario, ScenarioFileError> {
+    fn read(text: &str) -> Result<Scenario, TomlError> {
         Scenario::from_toml(text, Path::new("scenario.toml"))
     }
 

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use crate::collision::{Scenario, ScenarioFileError};
+use crate::collision::Scenario;
+use crate::data::TomlError;
 
 const PIT_RIGHT_REAR: &str = include_str!("../../assets/scenarios/pit_right_rear.toml");
 const CARPENTER_WELCHER_BARRIER: &str =
@@ -17,8 +18,8 @@ impl Scenario {
     /// name of such a scenario is reached as `./NAME`.
     ///
     /// # Errors
-    /// [`ScenarioFileError`] as of [`Scenario::load`].
-    pub fn preset_or_file(name_or_file: &Path) -> Result<Self, ScenarioFileError> {
+    /// [`TomlError`] as of [`Scenario::load`].
+    pub fn preset_or_file(name_or_file: &Path) -> Result<Self, TomlError> {
         match SCENARIO_PRESETS.iter().find(|(name, _)| Path::new(name) == name_or_file) {
             Some((_, text)) => Self::from_toml(text, name_or_file),
             None => Self::load(name_or_file),

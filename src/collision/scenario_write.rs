@@ -88,11 +88,11 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::collision::ScenarioFileError;
+    use crate::data::TomlError;
 
     const PIT: &str = include_str!("../../assets/scenarios/pit_right_rear.toml");
 
-    fn read(text: &str) -> Result<Scenario, ScenarioFileError> {
+    fn read(text: &str) -> Result<Scenario, TomlError> {
         Scenario::from_toml(text, Path::new("scenario.toml"))
     }
 

@@ -20,6 +20,8 @@ mod spelling;
 mod split;
 mod table;
 mod text;
+mod toml_file;
+mod toml_table;
 mod write;
 
 pub use attributes::{Attributes, Value};
@@ -45,4 +47,6 @@ pub use settings::read_settings;
 pub use split::{Split, Stratified, TEST_SHARE, folds, split};
 pub use table::Table;
 pub use text::MAX_FILE_BYTES;
+pub use toml_file::{TomlError, TomlFile};
+pub use toml_table::TomlTable;
 pub use write::{write_atomically, write_series_csv};

@@ -4,16 +4,12 @@ use std::path::Path;
 
 use serde::de::DeserializeOwned;
 
-/// Settings from a TOML file.
+use crate::data::{TomlError, TomlFile};
+
+/// Reads settings from a TOML file; what the file does not name keeps its default.
 ///
 /// # Errors
-/// Why not, with the line where the file is at fault.
-pub fn read_settings<T: DeserializeOwned>(path: &Path) -> Result<T, String> {
-    let text = std::fs::read_to_string(path).map_err(|error| error.to_string())?;
-    toml::from_str(&text).map_err(|error| {
-        let line = error.span().map_or(1, |span| {
-            1 + text.get(..span.start).map_or(0, |before| before.matches('\n').count())
-        });
-        format!("line {line}: {}", error.message())
-    })
+/// [`TomlError`], with the place in the file.
+pub fn read_settings<T: DeserializeOwned>(path: &Path) -> Result<T, TomlError> {
+    TomlFile { path, text: &TomlFile::read(path)? }.to()
 }

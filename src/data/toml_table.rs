@@ -1,53 +1,18 @@
-//! One table of a TOML file, read key by key with the place of each: units in the key names, ranges,
-//! nothing unknown.
+//! One table of a TOML file, read key by key: the unit is part of a key's name, each number has a
+//! range, and a key that was not asked for is an error.
 
 use std::collections::BTreeSet;
-use std::path::Path;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::collision::ScenarioFileError;
+use crate::data::{TomlError, TomlFile};
 use crate::units::{Quantity, Unit};
 
-/// Lowest and highest value, SI.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Range(pub f64, pub f64);
-
-/// A file's name and text.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Source<'a> {
-    pub path: &'a Path,
-    pub text: &'a str,
-}
-
-impl<'a> Source<'a> {
-    pub fn parse(self) -> Result<Spanned<DeTable<'a>>, ScenarioFileError> {
-        DeTable::parse(self.text).map_err(|error| {
-            let at = error.span().map_or(0, |span| span.start);
-            let (line, column) = self.line_column(at);
-            ScenarioFileError::Syntax {
-                path: self.path.to_owned(),
-                line,
-                column,
-                message: error.message().to_owned(),
-            }
-        })
-    }
-
-    /// Line and column of a byte, both from 1, columns in characters.
-    fn line_column(self, at: usize) -> (usize, usize) {
-        let before = self.text.get(..at).unwrap_or(self.text);
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        let column = before[line_start..].chars().count() + 1;
-        (before.matches('\n').count() + 1, column)
-    }
-}
-
-/// A table, and which of its keys were read.
+/// A table, and which of its keys were read. Ranges are `[lowest, highest]` in SI units.
 #[derive(Debug)]
-pub(super) struct Section<'a> {
-    source: Source<'a>,
+pub struct TomlTable<'a> {
+    file: TomlFile<'a>,
     name: String,
     at: usize,
     table: &'a DeTable<'a>,
@@ -55,27 +20,35 @@ pub(super) struct Section<'a> {
     last_key: String,
 }
 
-impl<'a> Section<'a> {
-    pub fn root(source: Source<'a>, root: &'a Spanned<DeTable<'a>>) -> Self {
-        Self::new(source, String::new(), 0, root.get_ref())
+impl<'a> TomlTable<'a> {
+    /// The top level of a file.
+    pub fn root(file: TomlFile<'a>, root: &'a Spanned<DeTable<'a>>) -> Self {
+        Self::new(file, String::new(), 0, root.get_ref())
     }
 
-    fn new(source: Source<'a>, name: String, at: usize, table: &'a DeTable<'a>) -> Self {
-        Self { source, name, at, table, used: BTreeSet::new(), last_key: String::new() }
+    fn new(file: TomlFile<'a>, name: String, at: usize, table: &'a DeTable<'a>) -> Self {
+        Self { file, name, at, table, used: BTreeSet::new(), last_key: String::new() }
     }
 
-    /// A table inside this one; it must be there.
-    pub fn table(&mut self, key: &str) -> Result<Self, ScenarioFileError> {
+    /// A table inside this one, which must be there.
+    ///
+    /// # Errors
+    /// [`TomlError::MissingKey`], [`TomlError::Value`].
+    pub fn table(&mut self, key: &str) -> Result<Self, TomlError> {
         let Some((at, value)) = self.take(key) else {
             return Err(self.missing(&format!("[{key}]")));
         };
         let Some(table) = value.get_ref().as_table() else {
             return Err(self.bad_value(key, value, "a table".to_owned()));
         };
-        Ok(Self::new(self.source, key.to_owned(), at, table))
+        Ok(Self::new(self.file, key.to_owned(), at, table))
     }
 
-    pub fn string(&mut self, key: &str) -> Result<Option<String>, ScenarioFileError> {
+    /// A text.
+    ///
+    /// # Errors
+    /// [`TomlError::Value`].
+    pub fn string(&mut self, key: &str) -> Result<Option<String>, TomlError> {
         let Some((_, value)) = self.take(key) else {
             return Ok(None);
         };
@@ -85,12 +58,11 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Index of the word that the key gives.
-    pub fn choice(
-        &mut self,
-        key: &str,
-        words: &[&str],
-    ) -> Result<Option<usize>, ScenarioFileError> {
+    /// The index in `words` of the word that the key gives.
+    ///
+    /// # Errors
+    /// [`TomlError::Value`].
+    pub fn choice(&mut self, key: &str, words: &[&str]) -> Result<Option<usize>, TomlError> {
         let Some((_, value)) = self.take(key) else {
             return Ok(None);
         };
@@ -104,13 +76,16 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// A number in SI units from the one key `base_unit` that is there.
+    /// A number in SI units from the key `BASE_UNIT`, in any unit of the quantity.
+    ///
+    /// # Errors
+    /// [`TomlError::Value`]; [`TomlError::Conflict`] if it is given in two units.
     pub fn number(
         &mut self,
         base: &str,
         quantity: Quantity,
-        range: Range,
-    ) -> Result<Option<f64>, ScenarioFileError> {
+        range: [f64; 2],
+    ) -> Result<Option<f64>, TomlError> {
         let mut found: Option<(String, f64)> = None;
         for unit in quantity.units() {
             let key = key_of(base, unit);
@@ -126,25 +101,31 @@ impl<'a> Section<'a> {
         Ok(found.map(|(_, si)| si))
     }
 
-    /// As [`Section::number`], for a quantity that must be there.
+    /// As [`TomlTable::number`], for a quantity that must be there.
+    ///
+    /// # Errors
+    /// As for [`TomlTable::number`]; [`TomlError::MissingKey`].
     pub fn require(
         &mut self,
         base: &str,
         quantity: Quantity,
-        range: Range,
-    ) -> Result<f64, ScenarioFileError> {
+        range: [f64; 2],
+    ) -> Result<f64, TomlError> {
         let key = key_of(base, &quantity.si_unit());
         self.number(base, quantity, range)?.ok_or_else(|| self.missing(&key))
     }
 
-    /// Refuses what was not read.
-    pub fn finish(self) -> Result<(), ScenarioFileError> {
+    /// Checks that every key of the table was read.
+    ///
+    /// # Errors
+    /// [`TomlError::UnknownKey`] with the first that was not.
+    pub fn finish(self) -> Result<(), TomlError> {
         for key in self.table.keys() {
             let name: &str = key.get_ref();
             if !self.used.contains(name) {
-                let (line, column) = self.source.line_column(key.span().start);
-                return Err(ScenarioFileError::UnknownKey {
-                    path: self.source.path.to_owned(),
+                let (line, column) = self.file.line_column(key.span().start);
+                return Err(TomlError::UnknownKey {
+                    path: self.file.path.to_owned(),
                     line,
                     column,
                     key: self.full(name),
@@ -154,28 +135,24 @@ impl<'a> Section<'a> {
         Ok(())
     }
 
-    /// The last key that was there.
+    /// The last key that was read and is there.
     pub fn last_key(&self) -> String {
         self.last_key.clone()
     }
 
-    pub fn missing(&self, key: &str) -> ScenarioFileError {
-        let (line, column) = self.source.line_column(self.at);
-        ScenarioFileError::MissingKey {
-            path: self.source.path.to_owned(),
-            line,
-            column,
-            key: self.full(key),
-        }
+    /// The error for a key that must be there.
+    pub fn missing(&self, key: &str) -> TomlError {
+        let (line, column) = self.file.line_column(self.at);
+        TomlError::MissingKey { path: self.file.path.to_owned(), line, column, key: self.full(key) }
     }
 
-    /// The last key that was there says again what `other` says.
-    pub fn conflict(&self, other: &str) -> ScenarioFileError {
+    /// The error for the last key that was read, which says again what `other` says.
+    pub fn conflict(&self, other: &str) -> TomlError {
         let here = self.table.keys().find(|key| *key.get_ref() == self.last_key);
         let at = here.map_or(self.at, |key| key.span().start);
-        let (line, column) = self.source.line_column(at);
-        ScenarioFileError::Conflict {
-            path: self.source.path.to_owned(),
+        let (line, column) = self.file.line_column(at);
+        TomlError::Conflict {
+            path: self.file.path.to_owned(),
             line,
             column,
             key: self.full(&self.last_key),
@@ -196,8 +173,8 @@ impl<'a> Section<'a> {
         key: &str,
         value: &Spanned<DeValue<'_>>,
         unit: &Unit,
-        Range(low, high): Range,
-    ) -> Result<f64, ScenarioFileError> {
+        [low, high]: [f64; 2],
+    ) -> Result<f64, TomlError> {
         // Rounding in the unit's factor must not refuse the limit itself.
         let slack = 1e-12 * low.abs().max(high.abs());
         let si = parse_number(value.get_ref()).map(|number| unit.to_si(number));
@@ -214,17 +191,12 @@ impl<'a> Section<'a> {
         }
     }
 
-    fn bad_value(
-        &self,
-        key: &str,
-        value: &Spanned<DeValue<'_>>,
-        expected: String,
-    ) -> ScenarioFileError {
+    fn bad_value(&self, key: &str, value: &Spanned<DeValue<'_>>, expected: String) -> TomlError {
         let span = value.span();
-        let (line, column) = self.source.line_column(span.start);
-        let text = self.source.text.get(span).unwrap_or_default();
-        ScenarioFileError::Value {
-            path: self.source.path.to_owned(),
+        let (line, column) = self.file.line_column(span.start);
+        let text = self.file.text.get(span).unwrap_or_default();
+        TomlError::Value {
+            path: self.file.path.to_owned(),
             line,
             column,
             key: self.full(key),

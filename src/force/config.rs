@@ -203,10 +203,9 @@ impl ForceConfig {
     /// Reads a TOML file.
     ///
     /// # Errors
-    /// [`ForceError::ConfigFile`] with line and column, [`ForceError::Setting`].
+    /// [`ForceError::ConfigFile`], [`ForceError::Setting`].
     pub fn load(path: &Path) -> Result<Self, ForceError> {
-        let wrong = |reason| ForceError::ConfigFile { path: path.to_owned(), reason };
-        let config: Self = crate::data::read_settings(path).map_err(wrong)?;
+        let config: Self = crate::data::read_settings(path)?;
         config.check()?;
         Ok(config)
     }
@@ -290,7 +289,7 @@ mod tests {
         let path = folder.path().join("c.toml");
         std::fs::write(&path, "[network]\ncomponents = 2\ncolour = 1\n").unwrap();
         let error = ForceConfig::load(&path).unwrap_err().to_string();
-        assert!(error.contains("c.toml: line 3: unknown field `colour`"), "{error}");
+        assert!(error.contains("c.toml:3:1: unknown field `colour`"), "{error}");
         std::fs::write(&path, "[training]\nbatch_cases = 0\n").unwrap();
         let error = ForceConfig::load(&path).unwrap_err().to_string();
         assert_eq!(error, "training.batch_cases is 0, expected 1 or more");

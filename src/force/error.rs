@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use crate::collision::ImpactError;
+use crate::data::TomlError;
 use crate::force::regression::BaselineError;
 use crate::nn::NnError;
 use crate::uncertainty::MixtureError;
@@ -29,13 +30,8 @@ pub enum ForceError {
         expected: &'static str,
     },
     /// A configuration file cannot be read.
-    #[error("{}: {reason}", path.display())]
-    ConfigFile {
-        /// The file.
-        path: PathBuf,
-        /// Why, with the line.
-        reason: String,
-    },
+    #[error(transparent)]
+    ConfigFile(#[from] TomlError),
     /// The law of the crush model cannot be fitted.
     #[error("the crush model cannot be fitted: none of the {n_cases} cases has a force")]
     NoCrushFit {

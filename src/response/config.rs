@@ -277,10 +277,9 @@ impl ResponseConfig {
     /// Reads settings.
     ///
     /// # Errors
-    /// [`ResponseError::ConfigFile`] with the line, [`ResponseError::Setting`].
+    /// [`ResponseError::ConfigFile`], [`ResponseError::Setting`].
     pub fn load(path: &Path) -> Result<Self, ResponseError> {
-        let wrong = |reason| ResponseError::ConfigFile { path: path.to_owned(), reason };
-        let config: Self = crate::data::read_settings(path).map_err(wrong)?;
+        let config: Self = crate::data::read_settings(path)?;
         config.check()?;
         Ok(config)
     }

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::data::TomlError;
 use crate::nn::NnError;
 
 /// A response model cannot be trained, opened or asked.
@@ -29,13 +30,8 @@ pub enum ResponseError {
         expected: &'static str,
     },
     /// A configuration file cannot be read.
-    #[error("{}: {reason}", path.display())]
-    ConfigFile {
-        /// The file.
-        path: PathBuf,
-        /// Why, with the line.
-        reason: String,
-    },
+    #[error(transparent)]
+    ConfigFile(#[from] TomlError),
     /// A comparison cannot be read.
     #[error("{}: {reason}", path.display())]
     ComparisonFile {

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::data::{DataError, Dataset, DatasetKind, Outcome};
+use crate::data::{DataError, Dataset, DatasetKind, Outcome, TomlError};
 use crate::jobs::Report;
 use crate::response::{ResponseCase, ResponseCaseError};
-use crate::vehicle::{VehicleError, VehicleParameters};
+use crate::vehicle::VehicleParameters;
 
 /// A folder that gives no trajectories.
 #[derive(Debug, thiserror::Error)]
@@ -27,7 +27,7 @@ pub enum ResponseLoadError {
     },
     /// Its vehicle cannot be read.
     #[error(transparent)]
-    Vehicle(#[from] VehicleError),
+    Vehicle(#[from] TomlError),
     /// A case lacks something.
     #[error("{}", path.display())]
     Case {

@@ -17,9 +17,7 @@ pub use as_printed::Equations;
 pub use four_dof::{CollisionForce, ContactPoint, Evaluation, VehicleInput};
 pub use loads::Wheel;
 pub use multibody_record::MultibodyRecord;
-pub use parameters::{
-    GeometryParameters, MassParameters, SuspensionParameters, VehicleError, VehicleParameters,
-};
+pub use parameters::{GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters};
 pub use preset::Preset;
 pub use simulate::{
     ContactLoad, Integrator, MAX_DURATION_S, Manoeuvre, Motion, MotionFlag, OUTPUT_INTERVAL_S,

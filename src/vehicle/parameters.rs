@@ -1,14 +1,13 @@
 //! Parameters of the 4DOF vehicle: TOML files with units in the key names, range-checked on load.
 
 use std::collections::BTreeMap;
-use std::fs;
-use std::ops::RangeInclusive;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::vehicle::Equations;
+use crate::data::{TomlError, TomlFile};
 use crate::vehicle::tire::TireParameters;
+use crate::vehicle::{Equations, MultibodyRecord};
 
 /// One vehicle. SI units; every value lies in a range that is checked on load.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -93,75 +92,27 @@ impl GeometryParameters {
     }
 }
 
-/// A vehicle that cannot be used.
-#[derive(Debug, thiserror::Error)]
-pub enum VehicleError {
-    /// The file cannot be read.
-    #[error("{}: cannot be read", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// The operating system's word.
-        source: std::io::Error,
-    },
-    /// The file is no vehicle.
-    #[error("{}:{line}:{column}: {message}", path.display())]
-    Parse {
-        /// The file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: usize,
-        /// Column, from 1.
-        column: usize,
-        /// The parser's word.
-        message: String,
-    },
-    /// A value lies outside what a road vehicle can have.
-    #[error("{}:{line}: {key} is {value}, expected {low} to {high}", path.display())]
-    Range {
-        /// The file.
-        path: PathBuf,
-        /// Line, from 1; 0 where the value stands in no line.
-        line: usize,
-        /// The key, with its table.
-        key: &'static str,
-        /// The value found.
-        value: f64,
-        /// Smallest value allowed.
-        low: f64,
-        /// Largest value allowed.
-        high: f64,
-    },
-}
-
 impl VehicleParameters {
     /// Reads a vehicle: our own format, or the record of a multibody model that comes with a
-    /// trajectory dataset (see [`MultibodyRecord`](crate::vehicle::MultibodyRecord)).
+    /// trajectory dataset (see [`MultibodyRecord`]).
     ///
     /// # Errors
-    /// [`VehicleError`], naming file, line, key, value and range.
-    pub fn load(path: &Path) -> Result<Self, VehicleError> {
-        let text = fs::read_to_string(path)
-            .map_err(|source| VehicleError::Read { path: path.to_owned(), source })?;
-        Self::parse(&text, path)
+    /// [`TomlError`], naming file, line, key, value and range.
+    pub fn load(path: &Path) -> Result<Self, TomlError> {
+        Self::parse(&TomlFile::read(path)?, path)
     }
 
     /// Reads a vehicle from the text of a file; `path` is for messages.
     ///
     /// # Errors
     /// As [`VehicleParameters::load`].
-    pub fn parse(text: &str, path: &Path) -> Result<Self, VehicleError> {
-        let parse_error = |error: toml::de::Error| parse_error(text, path, &error);
-        let table: toml::Table = toml::from_str(text).map_err(parse_error)?;
+    pub fn parse(text: &str, path: &Path) -> Result<Self, TomlError> {
+        let file = TomlFile { path, text };
+        let table: toml::Table = file.to()?;
         let is_multibody = table.get("mass").is_some_and(|mass| mass.get("total").is_some());
-        let vehicle: Self = if is_multibody {
-            let record: crate::vehicle::MultibodyRecord =
-                toml::from_str(text).map_err(parse_error)?;
-            record.parameters()
-        } else {
-            toml::from_str(text).map_err(parse_error)?
-        };
-        vehicle.check(text, path)?;
+        let vehicle: Self =
+            if is_multibody { file.to::<MultibodyRecord>()?.parameters() } else { file.to()? };
+        vehicle.check(file)?;
         Ok(vehicle)
     }
 
@@ -198,63 +149,62 @@ impl VehicleParameters {
         self
     }
 
-    /// Checks every value against its range; `text` is where the line is looked up.
-    fn check(&self, text: &str, path: &Path) -> Result<(), VehicleError> {
-        for (key, value, range) in self.ranges() {
-            if !range.contains(&value) {
-                let (low, high) = (*range.start(), *range.end());
-                let (path, line) = (path.to_owned(), line_of(text, key));
-                return Err(VehicleError::Range { path, line, key, value, low, high });
-            }
+    /// Checks every value against its range.
+    fn check(&self, file: TomlFile<'_>) -> Result<(), TomlError> {
+        let is_outside = |(_, value, [low, high]): &(_, f64, [f64; 2])| {
+            !(*low..=*high).contains(value) // also for NaN
+        };
+        match self.ranges().into_iter().find(is_outside) {
+            Some((key, value, range)) => Err(file.out_of_range(key, value, range)),
+            None => Ok(()),
         }
-        Ok(())
     }
 
-    /// Every value with its range, wide enough for a 1:10 model and a heavy truck.
-    fn ranges(&self) -> Vec<(&'static str, f64, RangeInclusive<f64>)> {
+    /// Every value with its `[lowest, highest]`, wide enough for a 1:10 model and a heavy truck.
+    fn ranges(&self) -> Vec<(&'static str, f64, [f64; 2])> {
         let Self { mass, geometry, suspension, tires, .. } = self;
         let coupling = (mass.yaw_inertia_kg_m2 * mass.roll_inertia_kg_m2).max(0.0).sqrt() * 0.95;
         vec![
-            ("mass.mass_kg", mass.mass_kg, 1.0..=50_000.0),
-            ("mass.sprung_mass_kg", mass.sprung_mass_kg, 0.5..=mass.mass_kg),
-            ("mass.yaw_inertia_kg_m2", mass.yaw_inertia_kg_m2, 1e-3..=1e6),
-            ("mass.roll_inertia_kg_m2", mass.roll_inertia_kg_m2, 1e-3..=1e5),
-            ("mass.roll_yaw_product_kg_m2", mass.roll_yaw_product_kg_m2, -coupling..=coupling),
-            ("geometry.cg_to_front_axle_m", geometry.cg_to_front_axle_m, 0.05..=10.0),
-            ("geometry.cg_to_rear_axle_m", geometry.cg_to_rear_axle_m, 0.05..=10.0),
-            ("geometry.track_width_m", geometry.track_width_m, 0.05..=4.0),
-            ("geometry.cg_height_m", geometry.cg_height_m, 0.01..=3.0),
-            ("geometry.outer_length_m", geometry.outer_length_m, 0.1..=25.0),
-            ("geometry.outer_width_m", geometry.outer_width_m, 0.05..=4.0),
+            ("mass.mass_kg", mass.mass_kg, [1.0, 50_000.0]),
+            ("mass.sprung_mass_kg", mass.sprung_mass_kg, [0.5, mass.mass_kg]),
+            ("mass.yaw_inertia_kg_m2", mass.yaw_inertia_kg_m2, [1e-3, 1e6]),
+            ("mass.roll_inertia_kg_m2", mass.roll_inertia_kg_m2, [1e-3, 1e5]),
+            ("mass.roll_yaw_product_kg_m2", mass.roll_yaw_product_kg_m2, [-coupling, coupling]),
+            ("geometry.cg_to_front_axle_m", geometry.cg_to_front_axle_m, [0.05, 10.0]),
+            ("geometry.cg_to_rear_axle_m", geometry.cg_to_rear_axle_m, [0.05, 10.0]),
+            ("geometry.track_width_m", geometry.track_width_m, [0.05, 4.0]),
+            ("geometry.cg_height_m", geometry.cg_height_m, [0.01, 3.0]),
+            ("geometry.outer_length_m", geometry.outer_length_m, [0.1, 25.0]),
+            ("geometry.outer_width_m", geometry.outer_width_m, [0.05, 4.0]),
             (
                 "geometry.cg_to_front_end_m",
                 geometry.cg_to_front_end_m,
-                0.0..=geometry.outer_length_m,
+                [0.0, geometry.outer_length_m],
             ),
-            ("suspension.roll_axis_height_m", suspension.roll_axis_height_m, -1.0..=2.0),
-            ("suspension.roll_arm_m", suspension.roll_arm_m, 0.0..=3.0),
-            ("suspension.roll_stiffness_n_m_rad", suspension.roll_stiffness_n_m_rad, 1.0..=1e7),
-            ("suspension.roll_damping_n_m_s_rad", suspension.roll_damping_n_m_s_rad, 0.0..=1e6),
+            ("suspension.roll_axis_height_m", suspension.roll_axis_height_m, [-1.0, 2.0]),
+            ("suspension.roll_arm_m", suspension.roll_arm_m, [0.0, 3.0]),
+            ("suspension.roll_stiffness_n_m_rad", suspension.roll_stiffness_n_m_rad, [1.0, 1e7]),
+            ("suspension.roll_damping_n_m_s_rad", suspension.roll_damping_n_m_s_rad, [0.0, 1e6]),
             (
                 "suspension.front_roll_stiffness_share",
                 suspension.front_roll_stiffness_share,
-                0.0..=1.0,
+                [0.0, 1.0],
             ),
             (
                 "tires.cornering_coefficient_front_per_rad",
                 tires.cornering_coefficient_front_per_rad,
-                1.0..=60.0,
+                [1.0, 60.0],
             ),
             (
                 "tires.cornering_coefficient_rear_per_rad",
                 tires.cornering_coefficient_rear_per_rad,
-                1.0..=60.0,
+                [1.0, 60.0],
             ),
-            ("tires.friction", tires.friction, 0.01..=2.0),
-            ("tires.sliding_friction_ratio", tires.sliding_friction_ratio, 0.1..=1.0),
-            ("tires.rolling_resistance", tires.rolling_resistance, 0.0..=0.5),
-            ("tires.rolling_resistance_s_m", tires.rolling_resistance_s_m, 0.0..=0.01),
-            ("tires.rolling_resistance_s2_m2", tires.rolling_resistance_s2_m2, 0.0..=0.001),
+            ("tires.friction", tires.friction, [0.01, 2.0]),
+            ("tires.sliding_friction_ratio", tires.sliding_friction_ratio, [0.1, 1.0]),
+            ("tires.rolling_resistance", tires.rolling_resistance, [0.0, 0.5]),
+            ("tires.rolling_resistance_s_m", tires.rolling_resistance_s_m, [0.0, 0.01]),
+            ("tires.rolling_resistance_s2_m2", tires.rolling_resistance_s2_m2, [0.0, 0.001]),
         ]
     }
 }
@@ -263,31 +213,12 @@ fn is_corrected(equations: &Equations) -> bool {
     *equations == Equations::Corrected
 }
 
-fn parse_error(text: &str, path: &Path, error: &toml::de::Error) -> VehicleError {
-    let before = error.span().and_then(|span| text.get(..span.start)).unwrap_or("");
-    VehicleError::Parse {
-        path: path.to_owned(),
-        line: before.matches('\n').count() + 1,
-        column: before.chars().rev().take_while(|&c| c != '\n').count() + 1,
-        message: error.message().to_owned(),
-    }
-}
-
-/// Line of a `table.key`, from 1; 0 if it stands in no line.
-fn line_of(text: &str, key: &str) -> usize {
-    let name = key.rsplit('.').next().unwrap_or(key);
-    let is_key = |line: &str| {
-        line.trim_start().strip_prefix(name).is_some_and(|rest| rest.trim_start().starts_with('='))
-    };
-    text.lines().position(is_key).map_or(0, |index| index + 1)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::vehicle::Preset;
 
-    fn reference_with(old: &str, new: &str) -> Result<VehicleParameters, VehicleError> {
+    fn reference_with(old: &str, new: &str) -> Result<VehicleParameters, TomlError> {
         let text = Preset::Reference.text();
         assert!(text.contains(old), "{old} not in {text}");
         VehicleParameters::parse(&text.replace(old, new), Path::new("car.toml"))
@@ -296,7 +227,7 @@ mod tests {
     #[test]
     fn a_value_out_of_range_names_file_line_key_value_and_range() {
         let error = reference_with("mass_kg = 2000.0", "mass_kg = -3.0").unwrap_err();
-        assert_eq!(error.to_string(), "car.toml:5: mass.mass_kg is -3, expected 1 to 50000");
+        assert_eq!(error.to_string(), "car.toml:5:11: mass.mass_kg is -3.0, expected 1 to 50000");
         assert!(reference_with("mass_kg = 2000.0", "mass_kg = nan").is_err());
     }
 
