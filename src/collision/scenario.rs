@@ -6,7 +6,6 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-
 use serde::{Deserialize, Serialize};
 
 use crate::collision::{
