@@ -5,9 +5,9 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::data::{Channel, TimeSeries, contact_interval};
-use crate::response::case::MIN_SAMPLES;
 use crate::response::motion_log::impulse::estimated_load;
 use crate::response::motion_log::tracks::Window;
+use crate::response::train::case::MIN_SAMPLES;
 use crate::response::{LogError, LogNoise, MotionLog, N_RESIDUAL, ResponseCase, STEP_S, step};
 use crate::vehicle::{
     ContactLoad, Manoeuvre, SteerHistory, VehicleInput, VehicleParameters, VehicleState,

@@ -1,0 +1,168 @@
+//! Error figures of one model on one trajectory.
+
+use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
+
+use crate::compare::{MotionError, physical_violations};
+use crate::data::null_as_nan;
+use crate::response::evaluate::Rival;
+use crate::response::evaluate::rival::Answer;
+use crate::response::{MotionDistribution, ResponseCase, ResponseError, motion_series};
+use crate::vehicle::VehicleState;
+
+/// Every how many steps the regions are looked at: 0.1 s.
+const STRIDE: usize = 10;
+/// Draws behind an energy score.
+const N_DRAWS: usize = 200;
+
+/// How many positions lie in the regions of 50 and 90 %.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Coverage {
+    /// Share of the instants inside the 50 % region.
+    pub path_50: f64,
+    /// Share of the instants inside the 90 % region.
+    pub path_90: f64,
+    /// Whether the end lies in the 50 % region, 0 or 1.
+    pub end_50: f64,
+    /// Whether the end lies in the 90 % region, 0 or 1.
+    pub end_90: f64,
+    /// Probability level of the smallest region that holds the end.
+    pub end_level: f64,
+    /// Mean over time of the continuous ranked probability score of X, m.
+    #[serde(deserialize_with = "null_as_nan")]
+    pub crps_x_m: f64,
+    /// The same of Y, m.
+    #[serde(deserialize_with = "null_as_nan")]
+    pub crps_y_m: f64,
+    /// The same of the heading, rad.
+    #[serde(deserialize_with = "null_as_nan")]
+    pub crps_yaw_rad: f64,
+    /// Mean over time of the energy score of (X, Y), m.
+    #[serde(deserialize_with = "null_as_nan")]
+    pub energy_score_m: f64,
+}
+
+/// One model on one trajectory.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CaseFigures {
+    /// Errors of the mean path; infinite where it is not finite.
+    #[serde(flatten)]
+    pub error: MotionError,
+    /// Instants at which kinetic energy grows with no force on the vehicle, over all its paths.
+    pub violations: usize,
+    /// Time for a step of the whole answer, µs.
+    pub time_per_step_us: f64,
+    /// Of a model with a distribution.
+    pub coverage: Option<Coverage>,
+}
+
+impl CaseFigures {
+    /// Asks a model about a trajectory and compares, with what it said.
+    ///
+    /// # Errors
+    /// [`ResponseError::Network`].
+    pub(crate) fn of(
+        rival: &Rival,
+        case: &ResponseCase,
+    ) -> Result<(Self, Vec<VehicleState<f64>>), ResponseError> {
+        let started = Instant::now();
+        let answer = rival.answer(case)?;
+        let seconds = started.elapsed().as_secs_f64();
+        let Answer { states, paths, distribution } = answer;
+        let error = motion_series(&states, &case.inputs)
+            .and_then(|predicted| {
+                MotionError::between(&predicted, &motion_series(&case.states, &case.inputs)?)
+            })
+            .unwrap_or_else(|_| infinite());
+        let violations = paths.iter().map(|path| violations(path, case)).sum();
+        let figures = Self {
+            error,
+            violations,
+            time_per_step_us: seconds * 1e6 / case.inputs.len().max(1) as f64,
+            coverage: distribution.map(|distribution| coverage(&distribution, case)),
+        };
+        Ok((figures, states))
+    }
+}
+
+/// A path whose numbers are not finite breaks mechanics at every step.
+fn violations(path: &[VehicleState<f64>], case: &ResponseCase) -> usize {
+    let series = motion_series(path, &case.inputs);
+    series
+        .and_then(|series| physical_violations(&series, &case.vehicle))
+        .unwrap_or(case.inputs.len())
+}
+
+fn infinite() -> MotionError {
+    MotionError {
+        average_error_m: f64::INFINITY,
+        final_error_m: f64::INFINITY,
+        final_heading_error_rad: f64::INFINITY,
+        horizon_error_m: [f64::INFINITY; 4],
+        rmse_x_m: f64::INFINITY,
+        rmse_y_m: f64::INFINITY,
+        rmse_vx_m_s: Some(f64::INFINITY),
+        rmse_vy_m_s: Some(f64::INFINITY),
+        rmse_yaw_rate_rad_s: Some(f64::INFINITY),
+    }
+}
+
+fn coverage(distribution: &MotionDistribution, case: &ResponseCase) -> Coverage {
+    let last = case.states.len().saturating_sub(1);
+    let mut sum = Coverage::default();
+    let mut n = 0.0;
+    for (at, state) in case.states.iter().enumerate().skip(STRIDE).step_by(STRIDE) {
+        let point = [state.x_m, state.y_m];
+        let position = distribution.position(at);
+        let level = position.level_of(point);
+        sum.path_50 += f64::from(u8::from(level <= 0.5));
+        sum.path_90 += f64::from(u8::from(level <= 0.9));
+        let numbers = [state.x_m, state.y_m, state.yaw_rad];
+        let crps = |axis: usize| {
+            distribution.marginal(at, axis).map_or(f64::INFINITY, |of| of.crps(numbers[axis]))
+        };
+        sum.crps_x_m += crps(0);
+        sum.crps_y_m += crps(1);
+        sum.crps_yaw_rad += crps(2);
+        sum.energy_score_m += energy_score_m(&position.sample(N_DRAWS, at as u64), point);
+        n += 1.0;
+    }
+    let end = case.states.last().copied().unwrap_or_default();
+    let end_level = distribution.position(last).level_of([end.x_m, end.y_m]);
+    let n = f64::max(n, 1.0);
+    Coverage {
+        path_50: sum.path_50 / n,
+        path_90: sum.path_90 / n,
+        end_50: f64::from(u8::from(end_level <= 0.5)),
+        end_90: f64::from(u8::from(end_level <= 0.9)),
+        end_level,
+        crps_x_m: sum.crps_x_m / n,
+        crps_y_m: sum.crps_y_m / n,
+        crps_yaw_rad: sum.crps_yaw_rad / n,
+        energy_score_m: sum.energy_score_m / n,
+    }
+}
+
+/// `mean ‖x_i − y‖ − ½ mean ‖x_i − x_j‖` over draws, m.
+///
+/// Source: T. Gneiting, A. E. Raftery, Strictly Proper Scoring Rules, JASA 102 (2007) 359–378.
+fn energy_score_m(draws: &[[f64; 2]], point: [f64; 2]) -> f64 {
+    let distance = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
+    let n = draws.len().max(1) as f64;
+    let to_point = draws.iter().map(|draw| distance(draw, &point)).sum::<f64>() / n;
+    // Neighbours in the order of the draws are independent: as good as all pairs, at less cost.
+    let among = draws.iter().zip(draws.iter().skip(1)).map(|(a, b)| distance(a, b)).sum::<f64>();
+    to_point - 0.5 * among / (n - 1.0).max(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_energy_score_of_a_point_is_its_distance() {
+        let score = energy_score_m(&[[1.0, 0.0]; 50], [4.0, 4.0]);
+        assert!((score - 5.0).abs() < 1e-12, "{score}");
+    }
+}

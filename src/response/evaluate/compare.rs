@@ -1,0 +1,227 @@
+//! Trains all models on the same trajectories and asks them about the same others.
+
+use std::cell::Cell;
+use std::ops::ControlFlow;
+
+use crate::data::TEST_SHARE;
+use crate::force::{ImpulseClusters, ImpulseFeatures};
+use crate::jobs::{Progress, Report};
+use crate::response::evaluate::{CaseFigures, ComparedCase, Comparison, Rival, path_of};
+use crate::response::{
+    ImpactRecord, ResponseCase, ResponseConfig, ResponseError, ResponseModel,
+    ResponseTrainSettings, ResponseTrainingSet, Tuning, fine_tune, pretrain,
+};
+use rayon::prelude::*;
+
+/// What to compare.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ComparisonSettings {
+    /// Sizes, weights and rates of the networks.
+    pub config: ResponseConfig,
+    /// Numbers of fine-tune trajectories.
+    pub trajectories: Vec<usize>,
+    /// Choices of the trajectories for each number.
+    pub n_choices: u64,
+    /// Of the split into training and test, and of the first choice.
+    pub seed: u64,
+}
+
+/// Trains the models of every number and choice of trajectories and compares them on the trajectories
+/// kept for the test. `None` if it was broken off.
+///
+/// - `start`: a pre-trained response network; `None` to pre-train one here.
+///
+/// # Errors
+/// [`ResponseError`].
+pub fn compare_models(
+    (name, cases): (&str, &[ResponseCase]),
+    start: Option<&ResponseModel>,
+    settings: &ComparisonSettings,
+    report: &mut Report<'_>,
+) -> Result<Option<Comparison>, ResponseError> {
+    let all = ResponseTrainingSet::choose(name, cases, None, (settings.seed, TEST_SHARE, 0))?;
+    let test: Vec<&ResponseCase> =
+        cases.iter().filter(|case| all.test.iter().any(|id| id.digest == case.digest)).collect();
+    let clusters = clusters(&test, settings.seed);
+    let mut work = Work::new(settings, report);
+    let Some(starts) = work.pretrained(&all, start)? else { return Ok(None) };
+    let mut rows = answers((&Rival::Untuned, 0, settings.seed), &test, &clusters)?;
+    let mut times = Vec::new();
+    for &n in &settings.trajectories {
+        for choice in settings.seed..settings.seed + settings.n_choices {
+            let split = (settings.seed, TEST_SHARE, choice);
+            let set = ResponseTrainingSet::choose(name, cases, Some(n), split)?;
+            let Some(rivals) = work.trained(&set, &starts, choice)? else { return Ok(None) };
+            for (rival, seconds) in rivals {
+                times.push((rival.kind(), n, seconds));
+                rows.extend(answers((&rival, n, choice), &test, &clusters)?);
+            }
+        }
+    }
+    Ok(Some(Comparison::of((name, settings), &test, &clusters, rows, &times)))
+}
+
+/// One model on trajectories, as a comparison of one.
+///
+/// # Errors
+/// [`ResponseError`].
+pub fn evaluate_rival(
+    (name, cases): (&str, &[&ResponseCase]),
+    rival: &Rival,
+    (trajectories, seed): (usize, u64),
+) -> Result<Comparison, ResponseError> {
+    let clusters = clusters(cases, seed);
+    let rows = answers((rival, trajectories, seed), cases, &clusters)?;
+    let settings = ComparisonSettings {
+        config: ResponseConfig::default(),
+        trajectories: vec![trajectories],
+        n_choices: 1,
+        seed,
+    };
+    Ok(Comparison::of((name, &settings), cases, &clusters, rows, &[]))
+}
+
+/// Cluster of each trajectory, and the clusters, if there are any.
+pub(super) struct CaseClusters {
+    pub of_case: Vec<usize>,
+    pub clusters: Option<ImpulseClusters>,
+}
+
+fn clusters(cases: &[&ResponseCase], seed: u64) -> CaseClusters {
+    let features: Vec<Option<ImpulseFeatures>> =
+        cases.iter().map(|case| ImpulseFeatures::of(&case.force_history())).collect();
+    let known: Vec<ImpulseFeatures> = features.iter().flatten().copied().collect();
+    // Too few trajectories to cluster make one cluster.
+    let clusters = ImpulseClusters::fit(&known, seed).ok();
+    let of = |features: &Option<ImpulseFeatures>| match (&clusters, features) {
+        (Some(clusters), Some(features)) => clusters.of(features),
+        _ => 0,
+    };
+    CaseClusters { of_case: features.iter().map(of).collect(), clusters }
+}
+
+fn answers(
+    (rival, trajectories, choice): (&Rival, usize, u64),
+    cases: &[&ResponseCase],
+    clusters: &CaseClusters,
+) -> Result<Vec<ComparedCase>, ResponseError> {
+    let kind = rival.kind();
+    let answer = |(case, cluster): (&&ResponseCase, &usize)| {
+        let (figures, states) = CaseFigures::of(rival, case)?;
+        Ok(ComparedCase {
+            case: case.name.clone(),
+            cluster: *cluster,
+            model: kind.label().to_owned(),
+            kind,
+            trajectories,
+            choice,
+            figures,
+            path: path_of(&states),
+        })
+    };
+    cases.par_iter().zip(&clusters.of_case).map(answer).collect()
+}
+
+/// Trainings, one after the other, under one progress.
+struct Work<'a, 'b> {
+    settings: &'a ComparisonSettings,
+    report: &'a mut Report<'b>,
+    is_broken: Cell<bool>,
+    done: u64,
+    total: u64,
+}
+
+impl<'a, 'b> Work<'a, 'b> {
+    fn new(settings: &'a ComparisonSettings, report: &'a mut Report<'b>) -> Self {
+        let n_sets = settings.trajectories.len() as u64 * settings.n_choices;
+        // Two pre-trainings; of each set a tuning, a network and a plain network.
+        Self { settings, report, is_broken: Cell::new(false), done: 0, total: 2 + 3 * n_sets }
+    }
+
+    fn tell(&mut self, share: f64, message: &str) -> ControlFlow<()> {
+        let done = self.done * 100 + (share * 100.0) as u64;
+        let flow = (self.report)(Progress::new(done, self.total * 100, message));
+        self.is_broken.set(self.is_broken.get() || flow.is_break());
+        flow
+    }
+
+    fn is_broken(&mut self) -> bool {
+        self.done += 1;
+        self.is_broken.get()
+    }
+
+    /// The pre-trained network and the pre-trained plain one.
+    fn pretrained(
+        &mut self,
+        set: &ResponseTrainingSet,
+        start: Option<&ResponseModel>,
+    ) -> Result<Option<[ResponseModel; 2]>, ResponseError> {
+        let records: Vec<ImpactRecord> =
+            set.train.iter().filter_map(ResponseCase::impact).collect();
+        let mut models = Vec::new();
+        for (config, message) in [
+            (self.settings.config.clone(), "pre-training"),
+            (self.settings.config.plain(), "pre-training the plain network"),
+        ] {
+            let is_given = models.is_empty() && start.is_some();
+            let model = match start.filter(|_| is_given) {
+                Some(start) => start.copied()?,
+                None => {
+                    let settings = training_settings(config, self.settings.seed);
+                    pretrain((&set.name, &records), &settings, &mut |told| {
+                        let share = told.record.epoch as f64 / told.n_epochs.max(1) as f64;
+                        self.tell(share, message)
+                    })?
+                }
+            };
+            models.push(model);
+            if self.is_broken() {
+                return Ok(None);
+            }
+        }
+        Ok(<[ResponseModel; 2]>::try_from(models).ok())
+    }
+
+    /// The models of one set, with the seconds that each took.
+    fn trained(
+        &mut self,
+        set: &ResponseTrainingSet,
+        [start, plain_start]: &[ResponseModel; 2],
+        choice: u64,
+    ) -> Result<Option<Vec<(Rival, f64)>>, ResponseError> {
+        let n = set.train.len();
+        let mut rivals = Vec::new();
+        let config = self.settings.config.clone();
+        let started = std::time::Instant::now();
+        let cases: Vec<&ResponseCase> = set.train.iter().collect();
+        let tuning = Tuning::fit(&cases, config.tuning, choice, &mut |done, _| {
+            let share = done as f64 / config.tuning.iterations.max(1) as f64;
+            self.tell(share.min(1.0), &format!("4DOF tuned on {n} trajectories"))
+        });
+        rivals.push((Rival::Tuned(tuning), started.elapsed().as_secs_f64()));
+        if self.is_broken() {
+            return Ok(None);
+        }
+        let of = [(config.clone(), start, "PINN"), (config.plain(), plain_start, "NN-only")];
+        for (idx, (config, start, label)) in of.into_iter().enumerate() {
+            let started = std::time::Instant::now();
+            let settings = training_settings(config, choice);
+            let model = fine_tune(Some(start), set, &settings, &mut |told| {
+                let in_training = told.record.epoch as f64 / told.n_epochs.max(1) as f64;
+                let share = (told.training_idx as f64 + in_training) / told.n_trainings as f64;
+                self.tell(share, &format!("{label} on {n} trajectories, {}", told.record.stage))
+            })?;
+            let model = Box::new(model);
+            let rival = if idx == 0 { Rival::Network(model) } else { Rival::Plain(model) };
+            rivals.push((rival, started.elapsed().as_secs_f64()));
+            if self.is_broken() {
+                return Ok(None);
+            }
+        }
+        Ok(Some(rivals))
+    }
+}
+
+fn training_settings(config: ResponseConfig, seed: u64) -> ResponseTrainSettings {
+    ResponseTrainSettings { config, seed, checkpoint: None, resume: false }
+}

@@ -1,0 +1,171 @@
+//! Figures of a model over trajectories.
+
+use serde::{Deserialize, Serialize};
+
+use crate::data::null_as_nan;
+use crate::numerics::quantile_of_sorted;
+use crate::response::evaluate::CaseFigures;
+
+/// Mean, standard deviation and median.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct MeanStd {
+    /// Mean.
+    #[serde(deserialize_with = "null_as_nan")]
+    pub mean: f64,
+    /// Standard deviation over the trajectories (divisor n).
+    #[serde(deserialize_with = "null_as_nan")]
+    pub std: f64,
+    /// Median.
+    #[serde(deserialize_with = "null_as_nan")]
+    pub median: f64,
+}
+
+/// A model over trajectories.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ModelFigures {
+    /// Trajectories asked about, counted once for each choice of the fine-tune trajectories.
+    pub n: usize,
+    /// Average error, m.
+    pub average_error_m: MeanStd,
+    /// 1/mean of the average error, 1/m.
+    #[serde(deserialize_with = "null_as_nan")]
+    pub score: f64,
+    /// Root mean square errors.
+    pub rmse: RootMeanSquares,
+    /// Size of the final heading error, deg.
+    pub final_heading_error_deg: MeanStd,
+    /// Distance after 0.5, 1, 2 and 4 s, m.
+    pub horizon_error_m: [MeanStd; 4],
+    /// Instants at which kinetic energy grows with no force.
+    pub violations: usize,
+    /// Time for a step, µs: the median.
+    pub time_per_step_us: f64,
+    /// Of a model with a distribution.
+    pub coverage: Option<CoverageFigures>,
+}
+
+/// Root mean square errors over a trajectory.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct RootMeanSquares {
+    /// Of X, m.
+    pub x_m: MeanStd,
+    /// Of Y, m.
+    pub y_m: MeanStd,
+    /// Of v_x, km/h.
+    pub vx_km_h: MeanStd,
+    /// Of v_y, km/h.
+    pub vy_km_h: MeanStd,
+    /// Of the yaw rate, deg/s.
+    pub yaw_rate_deg_s: MeanStd,
+}
+
+impl RootMeanSquares {
+    /// What tables call them, with their units, and the figures.
+    pub fn named(&self) -> [(&'static str, MeanStd); 5] {
+        [
+            ("X, m", self.x_m),
+            ("Y, m", self.y_m),
+            ("v_x, km/h", self.vx_km_h),
+            ("v_y, km/h", self.vy_km_h),
+            ("yaw rate, deg/s", self.yaw_rate_deg_s),
+        ]
+    }
+}
+
+/// How well a model knows what it does not know.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct CoverageFigures {
+    /// Positions along the path in the 50 % regions, share.
+    #[serde(rename = "50")]
+    pub path_50: f64,
+    /// In the 90 % regions.
+    #[serde(rename = "90")]
+    pub path_90: f64,
+    /// Ends in the 50 % regions.
+    pub end_50: f64,
+    /// Ends in the 90 % regions.
+    pub end_90: f64,
+    /// Mean continuous ranked probability score of X, m.
+    #[serde(deserialize_with = "null_as_nan")]
+    pub crps_x_m: f64,
+    /// Of Y, m.
+    #[serde(deserialize_with = "null_as_nan")]
+    pub crps_y_m: f64,
+    /// Of the heading, deg.
+    #[serde(deserialize_with = "null_as_nan")]
+    pub crps_yaw_deg: f64,
+    /// Mean energy score of (X, Y), m.
+    #[serde(deserialize_with = "null_as_nan")]
+    pub energy_score_m: f64,
+}
+
+impl MeanStd {
+    /// In another unit.
+    #[must_use]
+    pub fn times(self, factor: f64) -> Self {
+        let Self { mean, std, median } = self;
+        Self { mean: mean * factor, std: std * factor, median: median * factor }
+    }
+
+    /// Of values; all zero without any.
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
+        let mut values: Vec<f64> = values.into_iter().collect();
+        values.sort_by(f64::total_cmp);
+        let n = values.len().max(1) as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / n;
+        let median = quantile_of_sorted(&values, 0.5).unwrap_or(0.0);
+        Self { mean, std: variance.sqrt(), median }
+    }
+}
+
+const KM_H_PER_M_S: f64 = 3.6;
+
+impl ModelFigures {
+    /// Over trajectories.
+    pub fn of(cases: &[&CaseFigures]) -> Self {
+        let over =
+            |value: &dyn Fn(&CaseFigures) -> f64| MeanStd::of(cases.iter().map(|case| value(case)));
+        let known = |value: Option<f64>| value.unwrap_or(f64::NAN);
+        let average_error_m = over(&|case| case.error.average_error_m);
+        Self {
+            n: cases.len(),
+            average_error_m,
+            score: 1.0 / average_error_m.mean,
+            rmse: RootMeanSquares {
+                x_m: over(&|case| case.error.rmse_x_m),
+                y_m: over(&|case| case.error.rmse_y_m),
+                vx_km_h: over(&|case| known(case.error.rmse_vx_m_s) * KM_H_PER_M_S),
+                vy_km_h: over(&|case| known(case.error.rmse_vy_m_s) * KM_H_PER_M_S),
+                yaw_rate_deg_s: over(&|case| known(case.error.rmse_yaw_rate_rad_s).to_degrees()),
+            },
+            final_heading_error_deg: over(&|case| {
+                case.error.final_heading_error_rad.to_degrees().abs()
+            }),
+            horizon_error_m: std::array::from_fn(|i| over(&|case| case.error.horizon_error_m[i])),
+            violations: cases.iter().map(|case| case.violations).sum(),
+            time_per_step_us: over(&|case| case.time_per_step_us).median,
+            coverage: CoverageFigures::of(cases),
+        }
+    }
+}
+
+impl CoverageFigures {
+    fn of(cases: &[&CaseFigures]) -> Option<Self> {
+        let all: Option<Vec<_>> = cases.iter().map(|case| case.coverage).collect();
+        let all = all.filter(|all| !all.is_empty())?;
+        let mean = |value: fn(&crate::response::evaluate::Coverage) -> f64| {
+            all.iter().map(value).sum::<f64>() / all.len() as f64
+        };
+        Some(Self {
+            path_50: mean(|of| of.path_50),
+            path_90: mean(|of| of.path_90),
+            end_50: mean(|of| of.end_50),
+            end_90: mean(|of| of.end_90),
+            crps_x_m: mean(|of| of.crps_x_m),
+            crps_y_m: mean(|of| of.crps_y_m),
+            crps_yaw_deg: mean(|of| of.crps_yaw_rad).to_degrees(),
+            energy_score_m: mean(|of| of.energy_score_m),
+        })
+    }
+}

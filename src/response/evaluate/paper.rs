@@ -1,0 +1,53 @@
+//! What the paper printed, for a column of its own: measured on other data.
+
+use crate::response::evaluate::RivalKind;
+
+/// A figure of the paper.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PaperFigure {
+    /// The model.
+    pub kind: RivalKind,
+    /// Trajectories it was fine-tuned on, where the paper has several of a kind.
+    pub trajectories: Option<usize>,
+    /// Average error, m.
+    pub average_error_m: f64,
+    /// Time per step, ms.
+    pub time_per_step_ms: f64,
+}
+
+/// Average errors and times per step of [`PitPinnPaper`](crate::bibliography::PitPinnPaper). They were
+/// measured on other data, on another machine, against a 4DOF model with errors: to be shown beside
+/// figures of this program, never as such.
+const PAPER_FIGURES: [PaperFigure; 4] = [
+    PaperFigure {
+        kind: RivalKind::Untuned,
+        trajectories: None,
+        average_error_m: 35.20,
+        time_per_step_ms: 3.21,
+    },
+    PaperFigure {
+        kind: RivalKind::Network,
+        trajectories: Some(5),
+        average_error_m: 14.13,
+        time_per_step_ms: 10.75,
+    },
+    PaperFigure {
+        kind: RivalKind::Network,
+        trajectories: Some(20),
+        average_error_m: 10.47,
+        time_per_step_ms: 10.78,
+    },
+    PaperFigure {
+        kind: RivalKind::Plain,
+        trajectories: None,
+        average_error_m: 8.25,
+        time_per_step_ms: 7.45,
+    },
+];
+
+/// What the paper printed for such a model, if it had one.
+pub fn paper_figure(kind: RivalKind, trajectories: usize) -> Option<PaperFigure> {
+    PAPER_FIGURES
+        .into_iter()
+        .find(|figure| figure.kind == kind && figure.trajectories.is_none_or(|n| n == trajectories))
+}

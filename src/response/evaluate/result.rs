@@ -1,0 +1,218 @@
+//! What a comparison finds, as it is written to and read from `comparison.json`.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::collision::Footprint;
+use crate::force::ImpulseClusters;
+use crate::response::evaluate::compare::CaseClusters;
+use crate::response::evaluate::{CaseFigures, ComparisonSettings, ModelFigures, RivalKind};
+use crate::response::{ResponseCase, ResponseError, STEP_S};
+use crate::vehicle::VehicleState;
+
+/// Between the points of the paths of a comparison, s.
+pub const PATH_STEP_S: f64 = 0.1;
+/// Decimals that are kept of them: tenths of a millimetre.
+const PATH_UNIT: f64 = 1e4;
+
+/// A model with its figures.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ComparedModel {
+    /// Such as `PINN`.
+    pub name: String,
+    /// Its kind.
+    pub kind: RivalKind,
+    /// Trajectories it was fine-tuned on; 0 for none.
+    pub trajectories: usize,
+    /// Over all trajectories asked about.
+    #[serde(flatten)]
+    pub figures: ModelFigures,
+    /// Mean average error of each choice of the fine-tune trajectories, m.
+    pub average_error_by_choice_m: Vec<f64>,
+    /// Seconds that a training took, mean over the choices.
+    pub training_s: f64,
+}
+
+/// One model on one trajectory.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ComparedCase {
+    /// Name of the trajectory.
+    pub case: String,
+    /// Its cluster by impulse.
+    pub cluster: usize,
+    /// The model.
+    pub model: String,
+    /// Its kind.
+    pub kind: RivalKind,
+    /// Trajectories it was fine-tuned on.
+    pub trajectories: usize,
+    /// Which choice of them.
+    pub choice: u64,
+    /// Its figures.
+    #[serde(flatten)]
+    pub figures: CaseFigures,
+    /// Where it says the vehicle goes: [X, Y, ψ] every [`PATH_STEP_S`], m and rad.
+    pub path: Vec<[f64; 3]>,
+}
+
+/// The models on one cluster of trajectories.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ClusterRow {
+    /// Such as `C0`, by rising impulse.
+    pub name: String,
+    /// Trajectories in it.
+    pub n: usize,
+    /// Impulse at its centre, N s.
+    pub impulse_n_s: Option<f64>,
+    /// Each model on them.
+    pub models: Vec<ClusterModel>,
+}
+
+/// A model on one cluster.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ClusterModel {
+    /// Such as `PINN`.
+    pub name: String,
+    /// Trajectories it was fine-tuned on; 0 for none.
+    pub trajectories: usize,
+    /// Over the trajectories of the cluster.
+    #[serde(flatten)]
+    pub figures: ModelFigures,
+}
+
+/// A trajectory asked about.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TestCase {
+    /// Its name.
+    pub name: String,
+    /// Its cluster by impulse.
+    pub cluster: usize,
+    /// Whether it turns by more than 90°.
+    pub spins: bool,
+    /// Outline of the vehicle.
+    pub footprint: Footprint,
+    /// What was recorded: [X, Y, ψ] every [`PATH_STEP_S`], m and rad.
+    pub path: Vec<[f64; 3]>,
+}
+
+/// All models on the same trajectories.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Comparison {
+    /// What the data are called.
+    pub data: String,
+    /// Of the split and the first choice.
+    pub seed: u64,
+    /// Choices for each number of trajectories.
+    pub n_choices: u64,
+    /// The trajectories asked about.
+    pub test: Vec<TestCase>,
+    /// The models.
+    pub models: Vec<ComparedModel>,
+    /// By cluster.
+    pub clusters: Vec<ClusterRow>,
+    /// By trajectory.
+    pub cases: Vec<ComparedCase>,
+}
+
+impl Comparison {
+    pub(super) fn of(
+        (name, settings): (&str, &ComparisonSettings),
+        test: &[&ResponseCase],
+        clusters: &CaseClusters,
+        cases: Vec<ComparedCase>,
+        times: &[(RivalKind, usize, f64)],
+    ) -> Self {
+        let mut kinds: Vec<(RivalKind, usize)> =
+            cases.iter().map(|row| (row.kind, row.trajectories)).collect();
+        kinds.sort_by_key(|(kind, n)| (*n, *kind));
+        kinds.dedup();
+        let of_kind = |(kind, n): (RivalKind, usize)| -> Vec<&ComparedCase> {
+            cases.iter().filter(|row| row.kind == kind && row.trajectories == n).collect()
+        };
+        let model = |&(kind, n): &(RivalKind, usize)| {
+            let rows = of_kind((kind, n));
+            let figures: Vec<&CaseFigures> = rows.iter().map(|row| &row.figures).collect();
+            let mut choices: Vec<u64> = rows.iter().map(|row| row.choice).collect();
+            choices.sort_unstable();
+            choices.dedup();
+            let mean = |choice: &u64| {
+                let of = rows.iter().filter(|row| row.choice == *choice);
+                let errors: Vec<f64> = of.map(|row| row.figures.error.average_error_m).collect();
+                errors.iter().sum::<f64>() / errors.len().max(1) as f64
+            };
+            let of_times = times.iter().filter(|(k, m, _)| (*k, *m) == (kind, n));
+            let seconds: Vec<f64> = of_times.map(|(_, _, seconds)| *seconds).collect();
+            ComparedModel {
+                name: kind.label().to_owned(),
+                kind,
+                trajectories: n,
+                figures: ModelFigures::of(&figures),
+                average_error_by_choice_m: choices.iter().map(mean).collect(),
+                training_s: seconds.iter().sum::<f64>() / seconds.len().max(1) as f64,
+            }
+        };
+        let models: Vec<ComparedModel> = kinds.iter().map(model).collect();
+        let n_clusters = clusters.clusters.as_ref().map_or(1, ImpulseClusters::n_clusters);
+        let cluster = |cluster: usize| {
+            let of_model = |&(kind, n): &(RivalKind, usize)| {
+                let rows = of_kind((kind, n));
+                let figures: Vec<&CaseFigures> = rows
+                    .iter()
+                    .filter(|row| row.cluster == cluster)
+                    .map(|row| &row.figures)
+                    .collect();
+                let figures = ModelFigures::of(&figures);
+                ClusterModel { name: kind.label().to_owned(), trajectories: n, figures }
+            };
+            ClusterRow {
+                name: ImpulseClusters::label(cluster),
+                n: clusters.of_case.iter().filter(|of| **of == cluster).count(),
+                impulse_n_s: clusters.clusters.as_ref().and_then(|of| of.impulse_n_s(cluster)),
+                models: kinds.iter().map(of_model).collect(),
+            }
+        };
+        Self {
+            data: name.to_owned(),
+            seed: settings.seed,
+            n_choices: settings.n_choices,
+            test: test.iter().zip(&clusters.of_case).map(TestCase::of).collect(),
+            models,
+            clusters: (0..n_clusters).map(cluster).filter(|row| row.n > 0).collect(),
+            cases,
+        }
+    }
+}
+
+impl Comparison {
+    /// Reads a `comparison.json`.
+    ///
+    /// # Errors
+    /// [`ResponseError::ComparisonFile`] with line and column.
+    pub fn load(path: &Path) -> Result<Self, ResponseError> {
+        let wrong = |reason| ResponseError::ComparisonFile { path: path.to_owned(), reason };
+        let bytes = std::fs::read(path).map_err(|error| wrong(error.to_string()))?;
+        serde_json::from_slice(&bytes).map_err(|error| wrong(error.to_string()))
+    }
+}
+
+impl TestCase {
+    fn of((case, cluster): (&&ResponseCase, &usize)) -> Self {
+        Self {
+            name: case.name.clone(),
+            cluster: *cluster,
+            spins: case.spins,
+            footprint: Footprint::from(&case.vehicle.geometry),
+            path: path_of(&case.states),
+        }
+    }
+}
+
+/// [X, Y, ψ] every [`PATH_STEP_S`], as long as they are finite.
+pub(super) fn path_of(states: &[VehicleState<f64>]) -> Vec<[f64; 3]> {
+    let stride = (PATH_STEP_S / STEP_S).round() as usize;
+    let rounded = |value: f64| (value * PATH_UNIT).round() / PATH_UNIT;
+    let pose = |state: &VehicleState<f64>| [state.x_m, state.y_m, state.yaw_rad].map(rounded);
+    let is_finite = |pose: &[f64; 3]| pose.iter().all(|value| value.is_finite());
+    states.iter().step_by(stride).map(pose).take_while(is_finite).collect()
+}

@@ -1,0 +1,197 @@
+//! The tables of a comparison: as text for a terminal, as Markdown, as CSV.
+
+use std::fmt::Write;
+
+use crate::response::evaluate::{
+    ClusterModel, ComparedModel, Comparison, MeanStd, RootMeanSquares, paper_figure,
+};
+
+/// A table of words and numbers.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Table {
+    /// Names of the columns, with units.
+    pub header: Vec<String>,
+    /// Cells, row by row.
+    pub rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// As a table in Markdown.
+    pub fn to_markdown(&self) -> String {
+        let mut text = String::new();
+        let mut line = |cells: &[String]| {
+            // Writing to a string does not fail.
+            let _ = writeln!(text, "| {} |", cells.join(" | "));
+        };
+        line(&self.header);
+        let rules: Vec<String> = (0..self.header.len())
+            .map(|idx| if idx == 0 { "---".to_owned() } else { "---:".to_owned() })
+            .collect();
+        line(&rules);
+        self.rows.iter().for_each(|row| line(row));
+        text
+    }
+
+    /// As CSV.
+    pub fn to_csv(&self) -> String {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        // Writing to a vector does not fail.
+        for row in std::iter::once(&self.header).chain(&self.rows) {
+            let _ = writer.write_record(row);
+        }
+        writer
+            .into_inner()
+            .map_or_else(|_| String::new(), |bytes| String::from_utf8_lossy(&bytes).into_owned())
+    }
+}
+
+/// Titles, file names and tables of a comparison.
+pub fn all_tables(comparison: &Comparison) -> [(&'static str, &'static str, Table); 4] {
+    [
+        ("Models", "models.csv", model_table(comparison)),
+        ("Distance by horizon", "horizons.csv", horizon_table(comparison)),
+        ("Uncertainty", "uncertainty.csv", uncertainty_table(comparison)),
+        ("By cluster of impulse", "clusters.csv", cluster_table(comparison)),
+    ]
+}
+
+/// Average error, score, time per step and root mean square errors of each model; what the paper
+/// printed in a column of its own.
+pub fn model_table(comparison: &Comparison) -> Table {
+    let mut header = words(&[
+        "model",
+        "trajectories",
+        "average error, m",
+        "median, m",
+        "choices, m",
+        "score, 1/m",
+    ]);
+    header.extend(rmse_names());
+    header.extend(words(&[
+        "final heading, deg",
+        "violations",
+        "time per step, us",
+        "training, s",
+        "paper's average error, m (other data)",
+    ]));
+    let row = |model: &ComparedModel| {
+        let figures = &model.figures;
+        let by_choice = &model.average_error_by_choice_m;
+        let choices = MeanStd::of(by_choice.iter().copied());
+        let mut row = vec![
+            model.name.clone(),
+            count(model.trajectories),
+            mean_std(figures.average_error_m),
+            number(figures.average_error_m.median),
+            if by_choice.len() > 1 { mean_std(choices) } else { String::new() },
+            number(figures.score),
+        ];
+        row.extend(figures.rmse.named().map(|(_, value)| mean_std(value)));
+        let paper = paper_figure(model.kind, model.trajectories);
+        row.extend([
+            mean_std(figures.final_heading_error_deg),
+            figures.violations.to_string(),
+            format!("{:.1}", figures.time_per_step_us),
+            if model.training_s > 0.0 { format!("{:.1}", model.training_s) } else { String::new() },
+            paper.map_or(String::new(), |paper| format!("{:.2}", paper.average_error_m)),
+        ]);
+        row
+    };
+    Table { header, rows: comparison.models.iter().map(row).collect() }
+}
+
+/// Distance after 0.5, 1, 2 and 4 s.
+pub fn horizon_table(comparison: &Comparison) -> Table {
+    let header = words(&["model", "trajectories", "0.5 s, m", "1 s, m", "2 s, m", "4 s, m"]);
+    let row = |model: &ComparedModel| {
+        let mut row = vec![model.name.clone(), count(model.trajectories)];
+        row.extend(model.figures.horizon_error_m.map(mean_std));
+        row
+    };
+    Table { header, rows: comparison.models.iter().map(row).collect() }
+}
+
+/// Coverage and scores of the models that have a distribution.
+pub fn uncertainty_table(comparison: &Comparison) -> Table {
+    let header = words(&[
+        "model",
+        "trajectories",
+        "in 50 % along the path",
+        "in 90 %",
+        "in 50 % at the end",
+        "in 90 %",
+        "CRPS X, m",
+        "CRPS Y, m",
+        "CRPS heading, deg",
+        "energy score, m",
+    ]);
+    let row = |model: &ComparedModel| {
+        let of = model.figures.coverage?;
+        let share = |value: f64| format!("{:.0} %", 100.0 * value);
+        Some(vec![
+            model.name.clone(),
+            count(model.trajectories),
+            share(of.path_50),
+            share(of.path_90),
+            share(of.end_50),
+            share(of.end_90),
+            number(of.crps_x_m),
+            number(of.crps_y_m),
+            number(of.crps_yaw_deg),
+            number(of.energy_score_m),
+        ])
+    };
+    Table { header, rows: comparison.models.iter().filter_map(row).collect() }
+}
+
+/// Average error and root mean square errors by cluster of impulse.
+pub fn cluster_table(comparison: &Comparison) -> Table {
+    let mut header = words(&[
+        "cluster",
+        "cases",
+        "impulse, N s",
+        "model",
+        "trajectories",
+        "average error, m",
+        "median, m",
+    ]);
+    header.extend(rmse_names());
+    let mut rows = Vec::new();
+    for cluster in &comparison.clusters {
+        for ClusterModel { name, trajectories, figures } in &cluster.models {
+            let mut row = vec![
+                cluster.name.clone(),
+                cluster.n.to_string(),
+                cluster.impulse_n_s.map_or(String::new(), |impulse| format!("{impulse:.0}")),
+                name.clone(),
+                count(*trajectories),
+                mean_std(figures.average_error_m),
+                number(figures.average_error_m.median),
+            ];
+            row.extend(figures.rmse.named().map(|(_, value)| mean_std(value)));
+            rows.push(row);
+        }
+    }
+    Table { header, rows }
+}
+
+fn rmse_names() -> Vec<String> {
+    let named = RootMeanSquares::default().named();
+    named.into_iter().map(|(name, _)| format!("RMSE {name}")).collect()
+}
+
+fn words(words: &[&str]) -> Vec<String> {
+    words.iter().map(|word| (*word).to_owned()).collect()
+}
+
+fn count(n: usize) -> String {
+    if n == 0 { String::new() } else { n.to_string() }
+}
+
+fn number(value: f64) -> String {
+    format!("{value:.3}")
+}
+
+fn mean_std(value: MeanStd) -> String {
+    format!("{:.3} ± {:.3}", value.mean, value.std)
+}

@@ -1,0 +1,46 @@
+//! A comparison as files.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+use crate::data::{DataError, write_atomically};
+use crate::response::evaluate::{Comparison, all_tables};
+
+/// All tables as Markdown.
+pub fn to_markdown(comparison: &Comparison) -> String {
+    let mut text = format!(
+        "# {}\n\n{} trajectories that no model has seen, seed {}, {} choices of the trajectories.\n",
+        comparison.data,
+        comparison.test.len(),
+        comparison.seed,
+        comparison.n_choices
+    );
+    for (title, _, table) in all_tables(comparison) {
+        if !table.rows.is_empty() {
+            // Writing to a string does not fail.
+            let _ = write!(text, "\n## {title}\n\n{}", table.to_markdown());
+        }
+    }
+    text
+}
+
+/// Writes `comparison.json`, `comparison.md` and each table as CSV into a folder, which is made if it
+/// is not there.
+///
+/// # Errors
+/// [`DataError::Io`] with the file.
+pub fn write_comparison(folder: &Path, comparison: &Comparison) -> Result<(), DataError> {
+    fs::create_dir_all(folder).map_err(|source| DataError::io(folder, source))?;
+    let file = folder.join("comparison.json");
+    let to_error = |source: serde_json::Error| DataError::io(&file, source.into());
+    // A line for each number of all paths would be long.
+    let json = serde_json::to_vec(comparison).map_err(to_error)?;
+    write_atomically(&file, |out| out.write_all(&json))?;
+    for (_, name, table) in all_tables(comparison) {
+        let csv = table.to_csv();
+        write_atomically(&folder.join(name), |out| out.write_all(csv.as_bytes()))?;
+    }
+    let text = to_markdown(comparison);
+    write_atomically(&folder.join("comparison.md"), |out| out.write_all(text.as_bytes()))
+}

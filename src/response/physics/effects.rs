@@ -1,0 +1,199 @@
+//! What the 4DOF model leaves out though its form is known: each effect as the residual acceleration
+//! it gives at a strength of one.
+//!
+//! ```text
+//! a_effects = Σ_k c_k e_k(x, u)          e_k(x, u): [v̇_x, v̇_y, ṙ, φ̈]
+//! ```
+//!
+//! The strengths c_k are few, the same everywhere and linear, so that five trajectories say much
+//! about them and they hold for motions that no trajectory shows; what is left is the network's.
+//! Each axle i moves at `[u, w_i]`, `w_i = v_y + l_i r`, with slip angle `α_i`, load `F_zi`, and
+//! friction μ:
+//!
+//! - *axle characteristic*: side force `μ F_zi Λ_k(|α_i| μ₀/μ) sgn α_i`, Λ_k hat functions over the
+//!   slip angle, as a tyre's curve differs from its formula;
+//! - *drag*: `−μ F_zi [sin α, sin² α, sin 2α, cos α]` along the car, from toe, camber and compliance;
+//! - *wheel inertia*: `−v̇_x`, as wheels are spun up with the car;
+//! - *wheel spin lag*: a wheel under a large slip angle has little grip along its plane, so that its
+//!   rolling speed lags behind that of a car that turns under it; for a steady rotation with
+//!
+//! ```text
+//! u_w = (u − τ r w)/(1 + (r τ)²)    τ = m_w S/(μ F_z)    S² = (u − u_w)² + w²
+//! ```
+//!
+//!   it drags with `μ F_z (u − u_w)/S` and loses side force `μ F_z (1 − |w|/S)`, for two equivalent
+//!   masses m_w;
+//! - *relaxation*: side force lags behind the slip angle, `−σ/V ∂F_y/∂α α̇`;
+//! - *load transfer*: an axle whose load rests on one wheel has less side force, `F_y (ΔF_z/F_z)²`;
+//! - *roll*: `φ`, `φ̇`, `a_y` and `F_y/m` in φ̈, and φ̇ in v̇_y and ṙ, φ̈ in ṙ (compliance, steer);
+//! - *contact*: shares of the collision force and moment that come late or are taken up elsewhere.
+//!
+//! Sources: tyres with rolling wheels, relaxation and load dependence, H. B. Pacejka, Tire and
+//! Vehicle Dynamics, 3rd ed., 2012, chapters 1, 4 and 7. The set was chosen by cross-validation on
+//! training trajectories.
+
+use crate::numerics::Scalar;
+use crate::response::N_RESIDUAL;
+use crate::response::physics::axle_effects::{Axle, N_PER_AXLE, N_SLIP_KNOTS};
+use crate::vehicle::{Evaluation, VehicleParameters, VehicleState};
+
+/// Effects of the body.
+const N_OF_BODY: usize = 11;
+
+/// How many effects there are.
+pub const N_EFFECTS: usize = 2 * N_PER_AXLE + N_OF_BODY;
+
+/// Residual acceleration of each effect at strength one: v̇_x, v̇_y, m/s², ṙ, φ̈, rad/s².
+pub type Effects<T> = [[T; N_RESIDUAL]; N_EFFECTS];
+
+/// The effects, scaled so that their strengths are of the order of 0.1 to 1.
+///
+/// - `now`: the 4DOF model at the same state.
+#[inline] // where it is called, the numbers are written to their place instead of copied
+pub fn effects<T: Scalar>(
+    vehicle: &VehicleParameters,
+    x: &VehicleState<T>,
+    now: &Evaluation<T>,
+) -> Effects<T> {
+    let mut effects = [[T::from(0.0); N_RESIDUAL]; N_EFFECTS];
+    fill(&mut effects, vehicle, x, now);
+    effects
+}
+
+fn fill<T: Scalar>(
+    effects: &mut Effects<T>,
+    vehicle: &VehicleParameters,
+    x: &VehicleState<T>,
+    now: &Evaluation<T>,
+) {
+    let geometry = &vehicle.geometry;
+    let (tires, [fl, fr, rl, rr]) = (&vehicle.tires, now.vertical_loads_n);
+    let axles = [
+        (geometry.cg_to_front_axle_m, tires.cornering_coefficient_front_per_rad, [fl, fr]),
+        (-geometry.cg_to_rear_axle_m, tires.cornering_coefficient_rear_per_rad, [rl, rr]),
+    ];
+    let (of_axles, of_body) = effects.split_at_mut(2 * N_PER_AXLE);
+    let (of_axles, _) = of_axles.as_chunks_mut();
+    for ((arm_m, cornering_coefficient, loads_n), out) in axles.into_iter().zip(of_axles) {
+        Axle::new(vehicle, arm_m, cornering_coefficient, loads_n).effects(x, now, out);
+    }
+    body_effects(vehicle, x, now, of_body);
+}
+
+fn body_effects<T: Scalar>(
+    vehicle: &VehicleParameters,
+    x: &VehicleState<T>,
+    now: &Evaluation<T>,
+    out: &mut [[T; N_RESIDUAL]],
+) {
+    let zero = T::from(0.0);
+    let mass = &vehicle.mass;
+    let [fx, fy] = now.collision_force_n.map(|force| force / mass.mass_kg);
+    let struck_yaw = now.collision_yaw_moment_n_m / mass.yaw_inertia_kg_m2;
+    let rate = &now.derivative;
+    let [_, ay] = now.acceleration_m_s2;
+    let effects: [[T; N_RESIDUAL]; N_OF_BODY] = [
+        [-rate.vx_m_s * 0.05, zero, zero, zero],
+        [zero, zero, zero, x.roll_rad * 100.0],
+        [zero, zero, zero, x.roll_rate_rad_s * 10.0],
+        [zero, zero, zero, ay],
+        [zero, zero, zero, fy],
+        [fx * 0.1, zero, zero, zero],
+        [zero, fy * 0.1, zero, zero],
+        [zero, zero, struck_yaw * 0.1, zero],
+        [zero, x.roll_rate_rad_s, zero, zero],
+        [zero, zero, x.roll_rate_rad_s, zero],
+        [zero, zero, rate.roll_rate_rad_s * 0.05, zero],
+    ];
+    for (slot, effect) in out.iter_mut().zip(effects) {
+        *slot = effect;
+    }
+}
+
+/// A change of several strengths together that has a name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Direction {
+    /// Side force of both axles, as a share of the friction.
+    Grip,
+    /// The same, more in front and less behind.
+    Balance,
+    /// Yaw moment of the collision, as a share.
+    YawImpulse,
+    /// Lateral force of the collision, as a share.
+    LateralImpulse,
+}
+
+/// Strengths at which the change is a whole: side force of all the friction, the whole collision force.
+pub(crate) fn direction(direction: Direction) -> [f64; N_EFFECTS] {
+    let mut strengths = [0.0; N_EFFECTS];
+    let (front, rear) = (0, N_PER_AXLE);
+    let mut side_force = |axle: usize, sign: f64| {
+        strengths.iter_mut().skip(axle).take(N_SLIP_KNOTS).for_each(|value| *value = sign / 0.125);
+    };
+    match direction {
+        Direction::Grip => {
+            side_force(front, 1.0);
+            side_force(rear, 1.0);
+        }
+        Direction::Balance => {
+            side_force(front, 1.0);
+            side_force(rear, -1.0);
+        }
+        Direction::YawImpulse => strengths[2 * N_PER_AXLE + 7] = 10.0,
+        Direction::LateralImpulse => strengths[2 * N_PER_AXLE + 6] = 10.0,
+    }
+    strengths
+}
+
+/// `Σ_k c_k e_k`, m/s² and rad/s².
+///
+/// - `strengths`: c_k, as many as effects.
+pub fn combined<T: Scalar>(effects: &Effects<T>, strengths: &[f64]) -> [T; N_RESIDUAL] {
+    let mut sum = [T::from(0.0); N_RESIDUAL];
+    for (effect, strength) in effects.iter().zip(strengths) {
+        for (sum, value) in sum.iter_mut().zip(effect) {
+            *sum += *value * *strength;
+        }
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::response::RESIDUAL_MIRROR;
+    use crate::vehicle::{Preset, VehicleInput};
+
+    fn state(signs: f64) -> VehicleState<f64> {
+        VehicleState {
+            vx_m_s: 12.0,
+            vy_m_s: 3.0 * signs,
+            yaw_rate_rad_s: -1.7 * signs,
+            roll_rad: 0.02 * signs,
+            roll_rate_rad_s: -0.1 * signs,
+            ..VehicleState::default()
+        }
+    }
+
+    fn at(x: &VehicleState<f64>) -> Effects<f64> {
+        let (vehicle, u) = (Preset::Reference.parameters(), VehicleInput::released());
+        effects(&vehicle, x, &vehicle.evaluate(x, &u))
+    }
+
+    #[test]
+    fn mirrored_motion_has_mirrored_effects() {
+        for (plain, mirrored) in at(&state(1.0)).iter().zip(at(&state(-1.0))) {
+            for ((a, b), sign) in plain.iter().zip(mirrored).zip(RESIDUAL_MIRROR) {
+                assert!((a - sign * b).abs() < 1e-12, "{plain:?} {mirrored:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_car_that_goes_straight_feels_drag_alone() {
+        let x = VehicleState::driving_straight(20.0);
+        let strengths = [1.0; N_EFFECTS];
+        let [ax, ay, yaw, roll] = combined(&at(&x), &strengths);
+        assert!(ax < -0.1 && ay == 0.0 && yaw == 0.0 && roll == 0.0, "{ax} {ay} {yaw} {roll}");
+    }
+}

@@ -1,0 +1,152 @@
+//! A step of a component: what is seen of a state, and where it goes from there at given latent
+//! factors.
+
+use crate::numerics::Lanes;
+use crate::response::network::vehicle_network::{VehicleNetwork, Workspace};
+use crate::response::physics::features::features_of;
+use crate::response::predict::latents::{LatentScales, N_LATENTS};
+use crate::response::{N_EFFECTS, N_FEATURES, N_RESIDUAL, combined, effects};
+use crate::vehicle::{Evaluation, VehicleInput, VehicleParameters, VehicleState};
+
+/// What a step needs besides the state.
+pub(crate) struct Dynamics<'a> {
+    pub vehicle: &'a VehicleParameters,
+    pub network: &'a VehicleNetwork,
+    pub scales: LatentScales,
+    /// Change of the strengths of the effects with each latent, where there is one.
+    directions: [Vec<(usize, f64)>; N_LATENTS],
+}
+
+/// What the network is asked about the states of a step, and its answers.
+#[derive(Default)]
+pub(crate) struct Questions {
+    work: Workspace,
+    features: Vec<[f64; N_FEATURES]>,
+}
+
+/// The correction at a state before the bound.
+#[derive(Clone, Copy)]
+pub(super) struct Correcting {
+    /// Effects and remainder of the component with all latents none.
+    value: [f64; N_RESIDUAL],
+    /// What a latent of one adds to that.
+    by_latents: [[f64; N_RESIDUAL]; N_LATENTS],
+}
+
+impl Questions {
+    pub(super) fn clear(&mut self) {
+        self.features.clear();
+    }
+
+    pub(super) fn push(&mut self, features: [f64; N_FEATURES]) {
+        self.features.push(features);
+    }
+}
+
+impl<'a> Dynamics<'a> {
+    pub(crate) fn new(
+        vehicle: &'a VehicleParameters,
+        network: &'a VehicleNetwork,
+        scales: LatentScales,
+    ) -> Self {
+        let changed = |strengths: [f64; N_EFFECTS]| {
+            strengths.into_iter().enumerate().filter(|(_, change)| *change != 0.0).collect()
+        };
+        Self { vehicle, network, scales, directions: scales.directions().map(changed) }
+    }
+
+    /// One step at given latent factors.
+    pub(crate) fn step(
+        &self,
+        (component, latents): (usize, &[f64; N_LATENTS]),
+        (x, u, time_s): (&VehicleState<f64>, &VehicleInput<f64>, f64),
+        questions: &mut Questions,
+    ) -> VehicleState<f64> {
+        let now = self.vehicle.evaluate(x, u);
+        questions.clear();
+        questions.push(features_of(self.vehicle, x, &now, time_s));
+        let mut correcting = self.effects_at(component, x, &now);
+        self.ask(questions);
+        self.add_remainder(&mut correcting, questions, [0, component]);
+        self.advance((x, &now), self.correction(&correcting, latents), u)
+    }
+
+    /// The known effects of a component.
+    pub(super) fn effects_at(
+        &self,
+        component: usize,
+        x: &VehicleState<f64>,
+        now: &Evaluation<f64>,
+    ) -> Correcting {
+        let effects = effects(self.vehicle, x, now);
+        let known = self.network.strengths(component).map(|known| combined(&effects, known));
+        let by_latents = self.directions.each_ref().map(|direction| {
+            let mut sum = [0.0; N_RESIDUAL];
+            for &(k, change) in direction {
+                add(&mut sum, change, &effects[k]);
+            }
+            sum
+        });
+        Correcting { value: known.unwrap_or_default(), by_latents }
+    }
+
+    /// Has all questions answered.
+    pub(super) fn ask(&self, questions: &mut Questions) {
+        self.network.forward(&questions.features, &mut questions.work);
+    }
+
+    /// Adds what the network says.
+    ///
+    /// - `at`: question and component.
+    pub(super) fn add_remainder(
+        &self,
+        correcting: &mut Correcting,
+        questions: &Questions,
+        at: [usize; 2],
+    ) {
+        add(&mut correcting.value, 1.0, &self.network.remainder(&questions.work, at));
+    }
+
+    /// The correction at given latent factors.
+    pub(super) fn correction(
+        &self,
+        correcting: &Correcting,
+        latents: &[f64; N_LATENTS],
+    ) -> [f64; N_RESIDUAL] {
+        let mut value = correcting.value;
+        for (z, by_latent) in latents.iter().zip(&correcting.by_latents) {
+            add(&mut value, *z, by_latent);
+        }
+        self.network.bounded(value)
+    }
+
+    /// The state after a step with a correction.
+    ///
+    /// - `now`: the 4DOF model at the beginning.
+    pub(super) fn advance<T: Lanes>(
+        &self,
+        (x, now): (&VehicleState<T>, &Evaluation<T>),
+        correction: [T; N_RESIDUAL],
+        u: &VehicleInput<T>,
+    ) -> VehicleState<T> {
+        self.network.correction().step_from(self.vehicle, (x, u, now), correction)
+    }
+
+    /// Probability of a component at the first question.
+    pub(crate) fn weight(&self, component: usize, questions: &Questions) -> f64 {
+        self.network.weight(&questions.work, [0, component])
+    }
+
+    /// Deviation of the noise of a step from the state of the first question.
+    pub(crate) fn noise(&self, component: usize, questions: &Questions) -> [f64; N_RESIDUAL] {
+        let variance = self.network.variance(&questions.work, [0, component]);
+        variance.map(|variance| self.scales.step_noise * variance.sqrt())
+    }
+}
+
+/// `sum += factor · values`.
+fn add(sum: &mut [f64; N_RESIDUAL], factor: f64, values: &[f64; N_RESIDUAL]) {
+    for (sum, value) in sum.iter_mut().zip(values) {
+        *sum += factor * value;
+    }
+}

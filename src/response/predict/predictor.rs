@@ -1,0 +1,311 @@
+//! A response network asked about one vehicle: paths, their distribution, and coherent draws.
+
+use nalgebra::{SMatrix, SVector};
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
+use rayon::prelude::*;
+
+use crate::nn::random_stream;
+use crate::response::network::vehicle_network::VehicleNetwork;
+use crate::response::predict::dynamics::{Dynamics, Questions};
+use crate::response::predict::joint_state::N_JOINT;
+use crate::response::{ComponentMotion, LatentScales, N_LATENTS, N_RESIDUAL, STEP_S};
+use crate::uncertainty::{NormalMixture, NormalPart, PlanarMixture, PlanarPart, Unscented};
+use crate::vehicle::{N_STATE, VehicleInput, VehicleParameters, VehicleState};
+
+/// Points two standard deviations from the mean, as in the paper's four dimensions with α = 1, and so
+/// many dimensions as there are: κ = 4 − n. The centre then has no part in the covariance, which is
+/// positive whatever the step does.
+const POINTS: Unscented = Unscented { alpha: 1.0, beta: 2.0, kappa: 4.0 - N_JOINT as f64 };
+
+/// Variance that a number of a state has at least, as at the start, where all are known.
+const LEAST_VARIANCE: f64 = 1e-12;
+
+/// A model for one vehicle.
+#[derive(Debug, Clone)]
+pub struct Predictor {
+    vehicle: VehicleParameters,
+    network: VehicleNetwork,
+    latents: LatentScales,
+    unscented: Unscented,
+}
+
+/// Where the vehicle goes by one component of the mixture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ComponentPath {
+    /// Mean probability of the component along the path.
+    pub weight: f64,
+    /// States every [`STEP_S`].
+    pub states: Vec<VehicleState<f64>>,
+}
+
+/// The distribution of a motion: a mixture of normal distributions at every instant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MotionDistribution {
+    /// Its components; their weights sum to one.
+    pub components: Vec<ComponentMotion>,
+}
+
+impl Predictor {
+    pub(crate) fn new(
+        vehicle: VehicleParameters,
+        network: VehicleNetwork,
+        latents: LatentScales,
+    ) -> Self {
+        Self { vehicle, network, latents, unscented: POINTS }
+    }
+
+    /// The same with another uncertainty.
+    #[must_use]
+    pub fn with_latents(mut self, latents: LatentScales) -> Self {
+        self.latents = latents;
+        self
+    }
+
+    /// The vehicle.
+    pub fn vehicle(&self) -> &VehicleParameters {
+        &self.vehicle
+    }
+
+    /// J.
+    pub fn n_components(&self) -> usize {
+        self.network.n_components()
+    }
+
+    fn dynamics(&self) -> Dynamics<'_> {
+        Dynamics::new(&self.vehicle, &self.network, self.latents)
+    }
+
+    /// The path of each component with its latent factors at their means.
+    ///
+    /// - `inputs`: over each step.
+    pub fn paths(
+        &self,
+        initial: &VehicleState<f64>,
+        inputs: &[VehicleInput<f64>],
+    ) -> Vec<ComponentPath> {
+        let n = self.n_components();
+        self.paths_at(initial, inputs, |j| self.latents.of_component(j, n).map(|share| share.mean))
+    }
+
+    /// The path of each component at given latent factors.
+    fn paths_at(
+        &self,
+        initial: &VehicleState<f64>,
+        inputs: &[VehicleInput<f64>],
+        latents: impl Fn(usize) -> [f64; N_LATENTS],
+    ) -> Vec<ComponentPath> {
+        let (dynamics, mut questions) = (self.dynamics(), Questions::default());
+        let mut none = |std: &mut [f64; N_RESIDUAL]| *std = [0.0; N_RESIDUAL];
+        let of = |j: usize| {
+            path(&dynamics, (j, &latents(j), &mut none), (initial, inputs), &mut questions)
+        };
+        let mut paths: Vec<ComponentPath> = (0..self.n_components()).map(of).collect();
+        let sum: f64 = paths.iter().map(|path| path.weight).sum();
+        paths.iter_mut().for_each(|path| path.weight /= sum);
+        paths
+    }
+
+    /// Mean over the components of the paths on which one latent factor is one and the others none.
+    pub(crate) fn path_at(
+        &self,
+        initial: &VehicleState<f64>,
+        inputs: &[VehicleInput<f64>],
+        latent: usize,
+    ) -> Vec<VehicleState<f64>> {
+        let latents = std::array::from_fn(|m| if m == latent { 1.0 } else { 0.0 });
+        mean_of(&self.paths_at(initial, inputs, |_| latents), inputs.len())
+    }
+
+    /// The path without what is uncertain: all latent factors none, the mean over the components.
+    ///
+    /// It stands for the prediction where one path is asked for. The mean of the distribution is none
+    /// of the ways in which a car can go where some of them spin and others do not, and it moves with
+    /// how uncertain the model is.
+    pub fn central_path(
+        &self,
+        initial: &VehicleState<f64>,
+        inputs: &[VehicleInput<f64>],
+    ) -> Vec<VehicleState<f64>> {
+        let paths = self.paths_at(initial, inputs, |_| [0.0; N_LATENTS]);
+        mean_of(&paths, inputs.len())
+    }
+
+    /// The distribution of the motion.
+    ///
+    /// - `inputs`: over each step.
+    pub fn motion(
+        &self,
+        initial: &VehicleState<f64>,
+        inputs: &[VehicleInput<f64>],
+    ) -> MotionDistribution {
+        let dynamics = self.dynamics();
+        let component = |j| dynamics.motion((j, self.unscented), initial, inputs);
+        MotionDistribution::new((0..self.n_components()).map(component).collect())
+    }
+
+    /// Coherent draws: a component, latent factors drawn once, and the noise of each step. The
+    /// reference that [`Predictor::motion`] is compared with.
+    ///
+    /// - `n`: how many; `seed`: of the draws.
+    pub fn sample(
+        &self,
+        (initial, inputs): (&VehicleState<f64>, &[VehicleInput<f64>]),
+        (n, seed): (usize, u64),
+    ) -> Vec<Vec<VehicleState<f64>>> {
+        let dynamics = self.dynamics();
+        let weights: Vec<f64> =
+            self.paths(initial, inputs).iter().map(|path| path.weight).collect();
+        let draw = |idx: usize| {
+            let mut rng = random_stream(seed, "coherent motions", idx as u64);
+            let j = drawn(&weights, rng.random());
+            let shares = self.latents.of_component(j, weights.len());
+            let latents: [f64; N_LATENTS] = std::array::from_fn(|m| {
+                shares[m].mean + shares[m].variance.sqrt() * normal(&mut rng)
+            });
+            let mut noise = |std: &mut [f64; N_RESIDUAL]| {
+                std.iter_mut().for_each(|std| *std *= normal(&mut rng));
+            };
+            let mut questions = Questions::default();
+            path(&dynamics, (j, &latents, &mut noise), (initial, inputs), &mut questions).states
+        };
+        (0..n).into_par_iter().map(draw).collect()
+    }
+}
+
+/// Mean of paths of `n_steps` steps.
+fn mean_of(paths: &[ComponentPath], n_steps: usize) -> Vec<VehicleState<f64>> {
+    let at = |i: usize| {
+        let states = paths.iter().filter_map(|path| Some((path.weight, path.states.get(i)?)));
+        weighted_mean(states)
+    };
+    (0..=n_steps).map(at).collect()
+}
+
+fn normal(rng: &mut ChaCha8Rng) -> f64 {
+    rng.sample(StandardNormal)
+}
+
+fn drawn(weights: &[f64], share: f64) -> usize {
+    let mut sum = 0.0;
+    let found = weights.iter().position(|weight| {
+        sum += weight;
+        share < sum
+    });
+    found.unwrap_or(weights.len().saturating_sub(1))
+}
+
+/// Turns the deviations of the velocities after a step into draws.
+type Noise<'a> = dyn FnMut(&mut [f64; N_RESIDUAL]) + 'a;
+
+/// One path.
+fn path(
+    dynamics: &Dynamics<'_>,
+    (component, latents, noise): (usize, &[f64; N_LATENTS], &mut Noise<'_>),
+    (initial, inputs): (&VehicleState<f64>, &[VehicleInput<f64>]),
+    questions: &mut Questions,
+) -> ComponentPath {
+    let mut states = Vec::with_capacity(inputs.len() + 1);
+    let mut state = *initial;
+    states.push(state);
+    let mut weight = 0.0;
+    for (i, u) in inputs.iter().enumerate() {
+        let at = (&state, u, i as f64 * STEP_S);
+        let next = dynamics.step((component, latents), at, questions);
+        weight += dynamics.weight(component, questions) / inputs.len() as f64;
+        state = next;
+        let mut off = dynamics.noise(component, questions);
+        noise(&mut off);
+        let [vx, vy, yaw, roll] = off;
+        state.vx_m_s += vx;
+        state.vy_m_s += vy;
+        state.yaw_rate_rad_s += yaw;
+        state.roll_rate_rad_s += roll;
+        states.push(state);
+    }
+    ComponentPath { weight, states }
+}
+
+/// `Σ w x`; the weights sum to one.
+pub(crate) fn weighted_mean<'a>(
+    states: impl Iterator<Item = (f64, &'a VehicleState<f64>)>,
+) -> VehicleState<f64> {
+    let mut sum = [0.0; N_STATE];
+    for (weight, state) in states {
+        for (sum, value) in sum.iter_mut().zip(state.to_array()) {
+            *sum += weight * value;
+        }
+    }
+    VehicleState::from_array(sum)
+}
+
+impl MotionDistribution {
+    /// Of components, whose weights are scaled to sum to one.
+    pub fn new(mut components: Vec<ComponentMotion>) -> Self {
+        let sum: f64 = components.iter().map(|component| component.weight).sum();
+        components.iter_mut().for_each(|component| component.weight /= sum);
+        Self { components }
+    }
+
+    /// Of several distributions that are equally likely, such as one for each drawn force curve.
+    pub fn mixed(parts: Vec<Self>) -> Self {
+        Self::new(parts.into_iter().flat_map(|part| part.components).collect())
+    }
+
+    /// Instants.
+    pub fn n_instants(&self) -> usize {
+        self.components.first().map_or(0, |component| component.states.len())
+    }
+
+    /// Mean at an instant.
+    pub fn mean(&self, instant: usize) -> VehicleState<f64> {
+        let of = self
+            .components
+            .iter()
+            .filter_map(|component| Some((component.weight, &component.states.get(instant)?.mean)));
+        weighted_mean(of)
+    }
+
+    /// Covariance of [X, Y, ψ, v_x, v_y, r] at an instant, within the components and between them.
+    pub fn covariance(&self, instant: usize) -> SMatrix<f64, 6, 6> {
+        let mean = SVector::from(self.mean(instant).planar());
+        let part = |component: &ComponentMotion| {
+            let state = component.states.get(instant)?;
+            let off = SVector::from(state.mean.planar()) - mean;
+            Some((state.covariance + off * off.transpose()) * component.weight)
+        };
+        self.components.iter().filter_map(part).sum()
+    }
+
+    /// The distribution of the heading at an instant, rad, beyond a turn; `None` where it is not
+    /// finite.
+    pub fn heading(&self, instant: usize) -> Option<NormalMixture> {
+        self.marginal(instant, 2)
+    }
+
+    /// The distribution of X, Y, ψ, v_x, v_y or r at an instant; `None` where it is not finite.
+    pub fn marginal(&self, instant: usize, axis: usize) -> Option<NormalMixture> {
+        let part = |component: &ComponentMotion| {
+            let state = component.states.get(instant)?;
+            let mean = state.mean.planar()[axis];
+            let std = state.covariance[(axis, axis)].max(LEAST_VARIANCE).sqrt();
+            Some(NormalPart { weight: component.weight, mean, std })
+        };
+        NormalMixture::new(self.components.iter().filter_map(part).collect()).ok()
+    }
+
+    /// The distribution of the position at an instant.
+    pub fn position(&self, instant: usize) -> PlanarMixture {
+        let part = |component: &ComponentMotion| {
+            let state = component.states.get(instant)?;
+            let p = &state.covariance;
+            Some(PlanarPart {
+                weight: component.weight,
+                mean: [state.mean.x_m, state.mean.y_m],
+                covariance: [p[(0, 0)], p[(0, 1)], p[(1, 1)]],
+            })
+        };
+        PlanarMixture::new(self.components.iter().filter_map(part).collect())
+    }
+}

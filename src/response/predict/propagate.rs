@@ -1,0 +1,318 @@
+//! The distribution of a motion: for each component the joint normal distribution of state and latent
+//! factors, carried through the full step, so that what is uncertain about heading and position
+//! accumulates.
+//!
+//! ```text
+//! ξ = [v_x, v_y, r, φ, φ̇, z_1 … z_m, ψ, X, Y]
+//! (m, P)(t+1) = unscented transform of (Step(x, u; δ_j(z) + u ⊙ z_μ,j), z) + diag(q² σ_j²) on v_x, v_y, r, φ̇
+//! ```
+//!
+//! Points off the mean come in pairs along the columns of a lower triangular root of P, so that a
+//! column leaves alone what comes before it in ξ: those of the latents see what the mean sees, those of
+//! the pose have the mean's step turned and shifted. The two of a pair go through the equations of
+//! motion side by side. The paper restarts from a certain pose at every step, so that its
+//! spread never grows along the path; with a certain pose this is its formula.
+//!
+//! Source: `eq:sigma_points_gmm` to `eq:complete_trajectory_gmm` of
+//! [`PitPinnPaper`](crate::bibliography::PitPinnPaper).
+
+use nalgebra::SMatrix;
+use wide::f64x2;
+
+use crate::response::STEP_S;
+use crate::response::physics::features::features_of;
+use crate::response::predict::dynamics::{Correcting, Dynamics, Questions};
+use crate::response::predict::joint_state::{
+    Covariance, LEAST_VARIANCE, Mean, N_DYNAMIC, N_JOINT, N_SEEN, NOISY, OF_COLLISION, PSI, X, Y,
+    forget, latents_of, mean_of, state_of, turned,
+};
+use crate::response::predict::latents::N_LATENTS;
+use crate::uncertainty::{Unscented, UnscentedWeights};
+use crate::vehicle::{Evaluation, VehicleInput, VehicleState};
+
+const N: usize = N_JOINT;
+/// Points about the mean.
+const N_POINTS: usize = 2 * N;
+/// On which sides of the mean the points of a pair lie.
+const SIDES: [f64; 2] = [1.0, -1.0];
+
+/// Normal distribution of the state at an instant, of one component.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StateDistribution {
+    /// Mean; the heading goes on beyond a turn.
+    pub mean: VehicleState<f64>,
+    /// Covariance of [X, Y, ψ, v_x, v_y, r], m, rad, m/s, rad/s.
+    pub covariance: SMatrix<f64, 6, 6>,
+}
+
+/// Where the vehicle goes by one component, with how sure that is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ComponentMotion {
+    /// Probability.
+    pub weight: f64,
+    /// Every [`STEP_S`].
+    pub states: Vec<StateDistribution>,
+}
+
+/// Buffers of a motion.
+#[derive(Default)]
+struct Buffers {
+    questions: Questions,
+    looks: Vec<Look>,
+}
+
+/// The two points at a column of the root, side by side, and what is seen of them.
+struct Look {
+    x: VehicleState<f64x2>,
+    now: Evaluation<f64x2>,
+    correcting: [Correcting; 2],
+}
+
+/// What has to be done for a point that differs from the mean in one number of ξ and those after it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Anew {
+    /// All.
+    Look,
+    /// A step from what is seen at the mean.
+    Step,
+    /// The mean's step in its place.
+    Place,
+}
+
+/// What the points of a step differ in.
+#[derive(Clone, Copy)]
+struct Plan {
+    /// No force will act any more: what is uncertain about the collision has had its effect.
+    is_free: bool,
+    /// A force in world axes pushes a car that is turned otherwise from another side.
+    depends_on_pose: bool,
+}
+
+impl Plan {
+    fn new(u: &VehicleInput<f64>, is_free: bool) -> Self {
+        let in_world = u.collision.is_some_and(|collision| collision.in_world_axes);
+        Self { is_free, depends_on_pose: !is_free && in_world }
+    }
+
+    /// - `i`: number of ξ.
+    fn anew(self, i: usize) -> Anew {
+        match i {
+            _ if self.depends_on_pose => Anew::Look,
+            i if i < N_SEEN => Anew::Look,
+            i if i < N_DYNAMIC && !(self.is_free && OF_COLLISION.contains(&i)) => Anew::Step,
+            _ => Anew::Place,
+        }
+    }
+
+    /// Where a point starts: where the pose does not matter, at the mean's, and is turned afterwards.
+    fn start(self, offset: &Mean) -> Mean {
+        let mut start = *offset;
+        if !self.depends_on_pose {
+            start.fixed_rows_mut::<3>(PSI).fill(0.0);
+        }
+        start
+    }
+}
+
+impl Dynamics<'_> {
+    /// The distribution of a component's motion.
+    pub(crate) fn motion(
+        &self,
+        (component, unscented): (usize, Unscented),
+        initial: &VehicleState<f64>,
+        inputs: &[VehicleInput<f64>],
+    ) -> ComponentMotion {
+        let mut buffers = Buffers::default();
+        let n_components = self.network.n_components();
+        let mut mean = mean_of(initial, &[0.0; N_LATENTS]);
+        let mut covariance = Covariance::identity() * LEAST_VARIANCE;
+        let shares = self.scales.of_component(component, n_components);
+        for (m, share) in shares.into_iter().enumerate() {
+            mean[N_SEEN + m] = share.mean;
+            covariance[(N_SEEN + m, N_SEEN + m)] = share.variance.max(LEAST_VARIANCE);
+        }
+        let weights = unscented.weights(N);
+        let last_struck = inputs.iter().rposition(|u| u.collision.is_some());
+        let n_struck = last_struck.map_or(0, |last| last + 1);
+        let mut states = Vec::with_capacity(inputs.len() + 1);
+        states.push(StateDistribution::of(&mean, &covariance));
+        let mut weight = 0.0;
+        for (i, u) in inputs.iter().enumerate() {
+            if i == n_struck {
+                forget(&mut covariance);
+            }
+            let at = (u, i as f64 * STEP_S, i >= n_struck);
+            (mean, covariance) =
+                self.propagate((component, &weights), (&mean, &covariance), at, &mut buffers);
+            weight += self.weight(component, &buffers.questions) / inputs.len() as f64;
+            states.push(StateDistribution::of(&mean, &covariance));
+        }
+        ComponentMotion { weight, states }
+    }
+
+    /// Mean and covariance after a step.
+    ///
+    /// - `is_free`: whether no force will act any more.
+    fn propagate(
+        &self,
+        (component, weights): (usize, &UnscentedWeights),
+        (mean, covariance): (&Mean, &Covariance),
+        (u, time_s, is_free): (&VehicleInput<f64>, f64, bool),
+        buffers: &mut Buffers,
+    ) -> (Mean, Covariance) {
+        let Buffers { questions, looks } = buffers;
+        let plan = Plan::new(u, is_free);
+        let root = root_of(covariance) * weights.reach;
+        let columns: [Mean; N] = std::array::from_fn(|i| root.column(i).into_owned());
+        let x = state_of(mean);
+        let now = self.vehicle.evaluate(&x, u);
+        let mut correcting = self.effects_at(component, &x, &now);
+        questions.clear();
+        questions.push(features_of(self.vehicle, &x, &now, time_s));
+        let u_pair = u.map(f64x2::from);
+        looks.clear();
+        for (_, column) in columns.iter().enumerate().filter(|(i, _)| plan.anew(*i) == Anew::Look) {
+            let offset = plan.start(column);
+            let x = pair(SIDES.map(|side| state_of(&(mean + offset * side))));
+            looks.push(self.look(component, (x, &u_pair, time_s), questions));
+        }
+        self.ask(questions);
+        self.add_remainder(&mut correcting, questions, [0, component]);
+        for (i, look) in looks.iter_mut().enumerate() {
+            for (lane, correcting) in look.correcting.iter_mut().enumerate() {
+                self.add_remainder(correcting, questions, [1 + 2 * i + lane, component]);
+            }
+        }
+
+        let of_mean = self.correction(&correcting, &latents_of(mean));
+        let of_mean = self.advance((&x, &now), of_mean, u);
+        let centre = mean_of(&of_mean, &latents_of(mean));
+        let at_mean =
+            Look { x: x.map(f64x2::from), now: now.map(f64x2::from), correcting: [correcting; 2] };
+        let mut seen = looks.iter();
+        let mut offsets = [Mean::zeros(); N_POINTS];
+        for (i, (column, offsets)) in columns.iter().zip(offsets.as_chunks_mut::<2>().0).enumerate()
+        {
+            let latents = SIDES.map(|side| latents_of(&(mean + column * side)));
+            let from = match plan.anew(i) {
+                Anew::Look => seen.next(),
+                Anew::Step => Some(&at_mean),
+                Anew::Place => None,
+            };
+            let ends = from.map_or([of_mean; 2], |look| self.advance_pair(look, &latents, &u_pair));
+            let pose = column - plan.start(column);
+            let (sin, cos) = pose[PSI].sin_cos();
+            for (lane, (offset, side)) in offsets.iter_mut().zip(SIDES).enumerate() {
+                let next = mean_of(&ends[lane], &latents[lane]);
+                let way = [next[X] - mean[X], next[Y] - mean[Y]];
+                *offset = turned(&(next - centre), way, (&(pose * side), [sin * side, cos]));
+            }
+        }
+        let (shift, mut covariance) = moments(offsets, weights);
+        for (idx, std) in NOISY.into_iter().zip(self.noise(component, questions)) {
+            covariance[(idx, idx)] += std * std;
+        }
+        for i in 0..N {
+            covariance[(i, i)] += LEAST_VARIANCE * STEP_S;
+        }
+        (centre + shift, covariance)
+    }
+
+    /// Looks at two states side by side.
+    fn look(
+        &self,
+        component: usize,
+        (x, u, time_s): (VehicleState<f64x2>, &VehicleInput<f64x2>, f64),
+        questions: &mut Questions,
+    ) -> Look {
+        let now = self.vehicle.evaluate(&x, u);
+        let features = features_of(self.vehicle, &x, &now, time_s).map(f64x2::to_array);
+        let correcting = [0, 1].map(|lane| {
+            questions.push(features.map(|pair| pair[lane]));
+            let of_lane = |pair: f64x2| pair.to_array()[lane];
+            self.effects_at(component, &x.map(of_lane), &now.map(of_lane))
+        });
+        Look { x, now, correcting }
+    }
+
+    /// The states after a step from two side by side.
+    fn advance_pair(
+        &self,
+        look: &Look,
+        latents: &[[f64; N_LATENTS]; 2],
+        u: &VehicleInput<f64x2>,
+    ) -> [VehicleState<f64>; 2] {
+        let [first, second] = [0, 1].map(|i| self.correction(&look.correcting[i], &latents[i]));
+        let correction = std::array::from_fn(|i| f64x2::new([first[i], second[i]]));
+        let next = self.advance((&look.x, &look.now), correction, u);
+        [0, 1].map(|lane| next.map(|pair| pair.to_array()[lane]))
+    }
+}
+
+/// Two states side by side.
+fn pair([first, second]: [VehicleState<f64>; 2]) -> VehicleState<f64x2> {
+    let (first, second) = (first.to_array(), second.to_array());
+    VehicleState::from_array(std::array::from_fn(|i| f64x2::new([first[i], second[i]])))
+}
+
+/// Mean and covariance of points about the centre.
+fn moments(mut offsets: [Mean; N_POINTS], weights: &UnscentedWeights) -> (Mean, Covariance) {
+    let shift = offsets.iter().sum::<Mean>() * weights.other;
+    offsets.iter_mut().for_each(|offset| *offset -= shift);
+    let spread = pulp::Arch::new().dispatch(SumOfSquares(&offsets));
+    let of_centre = shift * shift.transpose() * weights.centre_covariance;
+    (shift, spread * weights.other + of_centre)
+}
+
+/// `Σ x xᵀ`, compiled with the machine's vector instructions, a few columns at a time, so that they
+/// stay in registers.
+struct SumOfSquares<'a>(&'a [Mean; N_POINTS]);
+
+impl pulp::NullaryFnOnce for SumOfSquares<'_> {
+    type Output = Covariance;
+
+    #[inline(always)]
+    fn call(self) -> Covariance {
+        const COLUMNS: usize = 4;
+        const { assert!(N.is_multiple_of(COLUMNS)) };
+        let mut columns = [[0.0; N]; N];
+        for (block_idx, block) in columns.as_chunks_mut::<COLUMNS>().0.iter_mut().enumerate() {
+            let mut sums = [[0.0; N]; COLUMNS];
+            for x in self.0 {
+                let [x] = x.data.0;
+                for (c, sums) in sums.iter_mut().enumerate() {
+                    for (sum, value) in sums.iter_mut().zip(x) {
+                        *sum += x[block_idx * COLUMNS + c] * value;
+                    }
+                }
+            }
+            *block = sums;
+        }
+        Covariance::from(columns)
+    }
+}
+
+/// A lower triangular root of a covariance; what rounding took from its being positive is put back.
+fn root_of(covariance: &Covariance) -> Covariance {
+    let mut lifted = *covariance;
+    let mut added = 1e-12;
+    loop {
+        if let Some(root) = lifted.cholesky() {
+            return root.unpack();
+        }
+        if added > 1.0 {
+            // Not finite: nothing is known any more.
+            return Covariance::identity();
+        }
+        lifted = covariance + Covariance::from_diagonal(&(covariance.diagonal() * added));
+        added *= 100.0;
+    }
+}
+
+impl StateDistribution {
+    fn of(mean: &Mean, covariance: &Covariance) -> Self {
+        let order = [X, Y, PSI, 0, 1, 2];
+        let covariance = SMatrix::from_fn(|i, j| covariance[(order[i], order[j])]);
+        Self { mean: state_of(mean), covariance }
+    }
+}

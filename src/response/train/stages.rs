@@ -1,0 +1,222 @@
+//! Trains the response network: on simulations, then on trajectories, on single steps and on
+//! rollouts of growing length.
+
+use std::cell::Cell;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+
+use crate::data::{Split, folds};
+use crate::force::CaseId;
+use crate::nn::{random_stream, sha256_hex};
+use crate::response::network::response_network::ResponseNetwork;
+use crate::response::physics::effects_fit::fit_strengths;
+use crate::response::predict::calibration::{Unseen, calibrate};
+use crate::response::train::record::case_id;
+use crate::response::train::simulated::{ImpactRecord, SimulatedMotion, simulate};
+use crate::response::train::training_file::TrainingFile;
+use crate::response::train::training_run::{Planned, TrainingData, TrainingRun};
+use crate::response::{
+    Correction, ResponseConfig, ResponseEpoch, ResponseError, ResponseModel, ResponseRecord,
+    ResponseStage, ResponseTrainingSet,
+};
+
+/// What to train and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResponseTrainSettings {
+    /// Sizes, weights and rates.
+    pub config: ResponseConfig,
+    /// All draws come from it.
+    pub seed: u64,
+    /// Where the training is saved every few epochs.
+    pub checkpoint: Option<PathBuf>,
+    /// Whether to go on from that file, if it is there.
+    pub resume: bool,
+}
+
+/// How far a training has come: an epoch is over.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ResponseReport<'a> {
+    /// Its losses.
+    pub record: &'a ResponseEpoch,
+    /// Epochs in all, with those before.
+    pub n_epochs: usize,
+    /// Of these, epochs of the pre-training that it starts from.
+    pub n_before: usize,
+    /// Which training of several it is: 0 for the model itself, then those for the calibration.
+    pub training_idx: usize,
+    /// How many trainings there are.
+    pub n_trainings: usize,
+}
+
+/// The callback of a training: breaking ends it with the weights as they are.
+pub type ResponseProgress<'a> = dyn FnMut(ResponseReport<'_>) -> ControlFlow<()> + 'a;
+
+/// Pre-trains a network on simulations of the 4DOF model under recorded forces.
+///
+/// - `records`: vehicles, driving states and forces; no motion after the impact is looked at.
+///
+/// # Errors
+/// [`ResponseError`].
+pub fn pretrain(
+    (name, records): (&str, &[ImpactRecord]),
+    settings: &ResponseTrainSettings,
+    report: &mut ResponseProgress<'_>,
+) -> Result<ResponseModel, ResponseError> {
+    settings.config.check()?;
+    let config = &settings.config;
+    let motions = simulate(records, config.pretraining.motions, (true, settings.seed));
+    if motions.is_empty() {
+        return Err(ResponseError::NoCases);
+    }
+    let network = fresh_network(settings)?;
+    // The last state: the whole motion led there.
+    let last: Vec<Vec<u8>> = motions.iter().map(bytes_of_last).collect();
+    let identity = sha256_hex(last.iter().map(Vec::as_slice));
+    let data = TrainingData::of_simulations(&motions, config);
+    let set = ResponseTrainingSet { name: name.to_owned(), ..ResponseTrainingSet::default() };
+    let plan =
+        vec![Planned { stage: ResponseStage::Pretraining, n_epochs: config.pretraining.epochs }];
+    let file = TrainingFile::new(settings, identity.clone());
+    let training = TrainingRun::new(settings, (network, data, plan), Vec::new())?;
+    let (network, history) = training.run(&file, report)?;
+    let record = record((&set, identity), settings, (motions.len(), history));
+    Ok(ResponseModel::new(config.clone(), network, record))
+}
+
+/// Fine-tunes a network on trajectories, and calibrates how uncertain it is.
+///
+/// - `start`: a pre-trained model, whose first layers stay as they are; `None` for a fresh network,
+///   all of whose layers are trained.
+///
+/// A training that was killed goes on from its checkpoint to the same weights as if it had not been.
+///
+/// A calibration takes two trajectories or more. With one the uncertainty is that of the model it
+/// started from, nowhere below the usual one; the record says so.
+///
+/// # Errors
+/// [`ResponseError`].
+pub fn fine_tune(
+    start: Option<&ResponseModel>,
+    set: &ResponseTrainingSet,
+    settings: &ResponseTrainSettings,
+    report: &mut ResponseProgress<'_>,
+) -> Result<ResponseModel, ResponseError> {
+    settings.config.check()?;
+    let folds = calibration_folds(set, settings);
+    let n_trainings = folds.len() + 1;
+    let (training_idx, is_cut) = (Cell::new(0), Cell::new(false));
+    let mut told = |told: ResponseReport<'_>| {
+        let flow = report(ResponseReport { training_idx: training_idx.get(), n_trainings, ..told });
+        is_cut.set(is_cut.get() || flow.is_break());
+        flow
+    };
+    let mut model = fine_tune_once(start, set, settings, &mut told)?;
+    let mut unseen = Vec::new();
+    for fold in &folds {
+        if is_cut.get() {
+            return Ok(model);
+        }
+        training_idx.set(training_idx.get() + 1);
+        let part = part_of(set, &fold.train);
+        let quiet = ResponseTrainSettings { checkpoint: None, ..settings.clone() };
+        let member = fine_tune_once(start, &part, &quiet, &mut told)?;
+        for case in fold.test.iter().filter_map(|&idx| set.train.get(idx)) {
+            unseen.push(Unseen { case, predictor: member.predictor(&case.vehicle)? });
+        }
+    }
+    if !is_cut.get() && !unseen.is_empty() {
+        model.set_latents(calibrate(&unseen, settings.config.calibration.prior_std));
+    } else if set.train.len() == 1
+        && let Some(start) = start.filter(|start| start.latents().n_calibrated > 0)
+    {
+        model.keep_latents(start.latents());
+    }
+    Ok(model)
+}
+
+/// The trajectories that each of the trainings for the calibration leaves out.
+fn calibration_folds(set: &ResponseTrainingSet, settings: &ResponseTrainSettings) -> Vec<Split> {
+    let n_folds = settings.config.calibration.folds.min(set.train.len());
+    match n_folds {
+        0 | 1 => Vec::new(),
+        n_folds => folds(&set.train, n_folds, settings.seed),
+    }
+}
+
+fn part_of(set: &ResponseTrainingSet, indices: &[usize]) -> ResponseTrainingSet {
+    let train = indices.iter().filter_map(|&idx| set.train.get(idx).cloned()).collect();
+    ResponseTrainingSet { train, ..set.clone() }
+}
+
+fn fine_tune_once(
+    start: Option<&ResponseModel>,
+    set: &ResponseTrainingSet,
+    settings: &ResponseTrainSettings,
+    report: &mut ResponseProgress<'_>,
+) -> Result<ResponseModel, ResponseError> {
+    let config = &settings.config;
+    if !set.train.iter().any(|case| case.states.len() > 1 && !case.inputs.is_empty()) {
+        return Err(ResponseError::NoCases);
+    }
+    let mut network = fresh_network(settings)?;
+    let (mut n_simulated, mut history) = (0, Vec::new());
+    if let Some(start) = start {
+        network.parameters().import(&start.network().parameters().export()?)?;
+        if config.network.correction != Correction::Whole {
+            network.silence()?;
+        }
+        network.freeze(config.single_steps.frozen_share);
+        n_simulated = start.record().n_simulated;
+        history.clone_from(&start.record().history);
+    } else {
+        network.freeze(0.0);
+    }
+    let data = TrainingData::of_trajectories(&set.train, config, settings.seed);
+    if config.network.effects {
+        let rows: Vec<_> =
+            data.instants.rows().iter().map(|row| (&*row.effects, row.target)).collect();
+        network.set_strengths(&fit_strengths(&rows, config.network.unit, config.effects))?;
+    }
+    let mut plan =
+        vec![Planned { stage: ResponseStage::SingleSteps, n_epochs: config.single_steps.epochs }];
+    plan.extend(config.rollouts.lengths.iter().map(|&length| Planned {
+        stage: ResponseStage::Rollouts { length },
+        n_epochs: config.rollouts.epochs,
+    }));
+    let start_digest = start.map_or(String::new(), |start| start.record().data_digest.clone());
+    let identity = sha256_hex([set.digest().as_bytes(), start_digest.as_bytes()]);
+    let file = TrainingFile::new(settings, identity);
+    let training = TrainingRun::new(settings, (network, data, plan), history)?;
+    let (network, history) = training.run(&file, report)?;
+    let record = record((set, set.digest()), settings, (n_simulated, history));
+    Ok(ResponseModel::new(config.clone(), network, record))
+}
+
+fn fresh_network(settings: &ResponseTrainSettings) -> Result<ResponseNetwork, ResponseError> {
+    let mut rng = random_stream(settings.seed, "response network", 0);
+    Ok(ResponseNetwork::new(&settings.config.network, &mut rng)?)
+}
+
+fn bytes_of_last(motion: &SimulatedMotion) -> Vec<u8> {
+    let last = motion.states.last().copied().unwrap_or_default().to_array();
+    last.iter().flat_map(|value| value.to_le_bytes()).collect()
+}
+
+fn record(
+    (set, data_digest): (&ResponseTrainingSet, String),
+    settings: &ResponseTrainSettings,
+    (n_simulated, history): (usize, Vec<ResponseEpoch>),
+) -> ResponseRecord {
+    let train: Vec<CaseId> = set.train.iter().map(case_id).collect();
+    ResponseRecord {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        data: set.name.clone(),
+        data_digest,
+        seed: settings.seed,
+        n_simulated,
+        train,
+        test: set.test.clone(),
+        history,
+        keeps_latents: false,
+    }
+}

@@ -1,0 +1,318 @@
+//! The epochs of a training, one stage after the other, with its checkpoints.
+
+use std::time::Instant;
+
+use candle_core::{DType, Tensor};
+use rand::RngExt;
+use rand::seq::SliceRandom;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
+
+use crate::nn::{
+    AdamW, AdamWConfig, NamedTensors, OptimizerState, Schedule, StepReport, random_stream,
+};
+use crate::response::network::loss::{Loss, boundary, diversity, single_step_terms};
+use crate::response::network::one_step::{MotionView, OneStepData};
+use crate::response::network::response_network::{Gradients, ResponseNetwork};
+use crate::response::network::rollout_loss::{RolloutCase, Window, rollout_loss};
+use crate::response::train::physics_points::PhysicsPoints;
+use crate::response::train::simulated::{ImpactRecord, SimulatedMotion};
+use crate::response::train::stages::{ResponseProgress, ResponseReport, ResponseTrainSettings};
+use crate::response::train::training_file::TrainingFile;
+use crate::response::{
+    ResponseCase, ResponseConfig, ResponseEpoch, ResponseError, ResponseLossTerms, ResponseStage,
+};
+
+/// Share of the optimiser's steps over which the learning rate of single steps rises.
+const WARMUP_SHARE: f64 = 0.1;
+/// Epochs between two checkpoints.
+const CHECKPOINT_EPOCHS: usize = 5;
+/// Share of the windows of a rollout that start with the impact.
+const IMPACT_SHARE: f64 = 0.5;
+
+/// Some epochs of one kind.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Planned {
+    pub stage: ResponseStage,
+    pub n_epochs: usize,
+}
+
+/// What is learned from.
+pub(super) struct TrainingData<'a> {
+    pub instants: OneStepData,
+    /// Away from the data; none for pre-training.
+    physics_points: Option<PhysicsPoints>,
+    rollouts: Vec<RolloutCase<'a>>,
+}
+
+impl<'a> TrainingData<'a> {
+    pub(super) fn of_simulations(motions: &[SimulatedMotion], config: &ResponseConfig) -> Self {
+        let views: Vec<MotionView<'_>> = motions.iter().map(SimulatedMotion::view).collect();
+        let instants = OneStepData::of(&views, &config.network);
+        Self { instants, physics_points: None, rollouts: Vec::new() }
+    }
+
+    pub(super) fn of_trajectories(
+        cases: &'a [ResponseCase],
+        config: &ResponseConfig,
+        seed: u64,
+    ) -> Self {
+        let view = |case: &'a ResponseCase| MotionView {
+            centre: &case.vehicle,
+            vehicle: &case.vehicle,
+            states: &case.states,
+            inputs: &case.inputs,
+        };
+        let views: Vec<MotionView<'_>> = cases.iter().map(view).collect();
+        let instants = OneStepData::of(&views, &config.network);
+        let records: Vec<ImpactRecord> = cases.iter().filter_map(ResponseCase::impact).collect();
+        let physics_points = (config.loss.physics > 0.0 && config.physics.batch_instants > 0)
+            .then(|| PhysicsPoints::about(&instants, &records, (config, seed)));
+        let rollouts = cases
+            .iter()
+            .map(|case| RolloutCase { case, vehicle: case.vehicle.clone().into() })
+            .collect();
+        Self { instants, physics_points, rollouts }
+    }
+}
+
+/// What a checkpoint holds.
+pub(super) struct SavedTraining {
+    pub parameters: NamedTensors,
+    pub moments: NamedTensors,
+    pub step: u64,
+    pub history: Vec<ResponseEpoch>,
+}
+
+/// A training under way.
+pub(super) struct TrainingRun<'a> {
+    settings: &'a ResponseTrainSettings,
+    network: ResponseNetwork,
+    data: TrainingData<'a>,
+    plan: Vec<Planned>,
+    /// Of the stage under way.
+    optimizer: AdamW,
+    /// Of this training and those before.
+    history: Vec<ResponseEpoch>,
+    /// Epochs of those before.
+    n_before: usize,
+}
+
+impl<'a> TrainingRun<'a> {
+    pub(super) fn new(
+        settings: &'a ResponseTrainSettings,
+        (network, data, plan): (ResponseNetwork, TrainingData<'a>, Vec<Planned>),
+        history: Vec<ResponseEpoch>,
+    ) -> Result<Self, ResponseError> {
+        let optimizer = AdamW::new(AdamWConfig::default(), network.parameters())?;
+        let n_before = history.len();
+        Ok(Self { settings, network, data, plan, optimizer, history, n_before })
+    }
+
+    /// All epochs that are left.
+    pub(super) fn run(
+        mut self,
+        file: &TrainingFile,
+        report: &mut ResponseProgress<'_>,
+    ) -> Result<(ResponseNetwork, Vec<ResponseEpoch>), ResponseError> {
+        let n_epochs: usize = self.plan.iter().map(|planned| planned.n_epochs).sum();
+        let saved = file.read()?;
+        let mut skip =
+            saved.as_ref().map_or(0, |saved| saved.history.len().saturating_sub(self.n_before));
+        let mut moments = None;
+        if let Some(saved) = saved {
+            self.network.parameters().import(&saved.parameters)?;
+            moments = Some(OptimizerState { step: saved.step, moments: saved.moments });
+            self.history = saved.history;
+        }
+        for planned in self.plan.clone() {
+            if skip >= planned.n_epochs {
+                skip -= planned.n_epochs;
+                continue;
+            }
+            self.optimizer = AdamW::new(self.optimizer_config(planned), self.network.parameters())?;
+            if let Some(moments) = moments.take().filter(|_| skip > 0) {
+                self.optimizer.import(&moments)?;
+            }
+            for in_stage in std::mem::take(&mut skip)..planned.n_epochs {
+                self.epoch(planned.stage)?;
+                let Some(record) = self.history.last() else { continue };
+                let is_broken = report(ResponseReport {
+                    record,
+                    n_epochs: self.n_before + n_epochs,
+                    n_before: self.n_before,
+                    training_idx: 0,
+                    n_trainings: 1,
+                })
+                .is_break();
+                let is_last = in_stage + 1 == planned.n_epochs;
+                if is_broken || is_last || (in_stage + 1).is_multiple_of(CHECKPOINT_EPOCHS) {
+                    file.write(&self.saved()?)?;
+                }
+                if is_broken {
+                    return Ok((self.network, self.history));
+                }
+            }
+        }
+        Ok((self.network, self.history))
+    }
+
+    fn saved(&self) -> Result<SavedTraining, ResponseError> {
+        let OptimizerState { step, moments } = self.optimizer.export()?;
+        let parameters = self.network.parameters().export()?;
+        Ok(SavedTraining { parameters, moments, step, history: self.history.clone() })
+    }
+
+    fn optimizer_config(&self, planned: Planned) -> AdamWConfig {
+        let ResponseConfig { pretraining, single_steps, rollouts, .. } = &self.settings.config;
+        let n_batches = self.batches_per_epoch(planned.stage);
+        let total_steps = (n_batches * planned.n_epochs) as u64;
+        let warmup = |share: f64| (total_steps as f64 * share) as u64;
+        let (learning_rate, warmup_steps) = match planned.stage {
+            ResponseStage::Pretraining => (pretraining.learning_rate, warmup(WARMUP_SHARE)),
+            ResponseStage::SingleSteps => (single_steps.learning_rate, warmup(WARMUP_SHARE)),
+            ResponseStage::Rollouts { .. } => (rollouts.learning_rate, 0),
+        };
+        AdamWConfig {
+            learning_rate,
+            weight_decay: single_steps.weight_decay,
+            max_gradient_norm: Some(single_steps.max_gradient_norm),
+            schedule: Schedule::WarmupCosine { warmup_steps, total_steps, final_share: 0.01 },
+            ..AdamWConfig::default()
+        }
+    }
+
+    fn batches_per_epoch(&self, stage: ResponseStage) -> usize {
+        let config = &self.settings.config;
+        match stage {
+            ResponseStage::Pretraining | ResponseStage::SingleSteps => {
+                self.data.instants.rows().len().div_ceil(config.single_steps.batch_instants)
+            }
+            ResponseStage::Rollouts { .. } => {
+                self.data.rollouts.len().div_ceil(config.rollouts.batch_windows)
+            }
+        }
+    }
+
+    fn epoch(&mut self, stage: ResponseStage) -> Result<(), ResponseError> {
+        let started = Instant::now();
+        let config = &self.settings.config;
+        let epoch = self.history.len() + 1;
+        let balance = self.history.last().map_or(1.0, |record| record.balance);
+        let in_training = epoch - self.n_before;
+        let physics_weight = match stage {
+            ResponseStage::Pretraining => 0.0,
+            _ => config.physics.weight(in_training, balance),
+        };
+        let (mut terms, mut gradient_norm, mut learning_rate) = (Vec::new(), 0.0_f64, 0.0);
+        let mut take = |loss: Loss, network: &ResponseNetwork, optimizer: &mut AdamW| {
+            let (total, values) = loss.total(&config.loss, physics_weight)?;
+            if !values.total.is_finite() {
+                return Err(ResponseError::Diverged { loss: values.total, epoch });
+            }
+            let gradients = total.backward()?;
+            let step: StepReport = optimizer.step(network.parameters(), &gradients)?;
+            gradient_norm = gradient_norm.max(step.gradient_norm);
+            learning_rate = step.learning_rate;
+            terms.push(values);
+            Ok(())
+        };
+        let mut rng =
+            random_stream(self.settings.seed, "epochs of the response network", epoch as u64);
+        match stage {
+            ResponseStage::Pretraining | ResponseStage::SingleSteps => {
+                let mut order: Vec<usize> = (0..self.data.instants.rows().len()).collect();
+                order.shuffle(&mut rng);
+                for batch in order.chunks(config.single_steps.batch_instants) {
+                    let loss = self.single_step_loss(batch, stage, &mut rng)?;
+                    take(loss, &self.network, &mut self.optimizer)?;
+                }
+            }
+            ResponseStage::Rollouts { length } => {
+                let mut order: Vec<usize> = (0..self.data.rollouts.len()).collect();
+                order.shuffle(&mut rng);
+                for batch in order.chunks(config.rollouts.batch_windows) {
+                    let n_steps = |case_idx: usize| self.data.rollouts[case_idx].case.inputs.len();
+                    // No further than the shortest record of the batch.
+                    let shortest = batch.iter().map(|&case_idx| n_steps(case_idx)).min();
+                    let length = length.min(shortest.unwrap_or(length));
+                    let window = |&case_idx: &usize| {
+                        let last = n_steps(case_idx).saturating_sub(length);
+                        let is_first = rng.random_bool(IMPACT_SHARE);
+                        let start = if is_first { 0 } else { rng.random_range(0..=last) };
+                        Window { case_idx, start }
+                    };
+                    let windows: Vec<Window> = batch.iter().map(window).collect();
+                    let lengths = [length, config.rollouts.truncation];
+                    let loss = rollout_loss(&self.network, &self.data.rollouts, &windows, lengths)?;
+                    take(loss, &self.network, &mut self.optimizer)?;
+                }
+            }
+        }
+        let loss = ResponseLossTerms::mean(&terms);
+        let of_physics = config.loss.physics * physics_weight * loss.physics;
+        let balance = if of_physics > 0.0 { loss.data / (loss.data + of_physics) } else { 1.0 };
+        let seconds = started.elapsed().as_secs_f64();
+        self.history.push(ResponseEpoch {
+            epoch,
+            stage,
+            loss,
+            physics_weight,
+            balance,
+            learning_rate,
+            gradient_norm,
+            seconds,
+        });
+        Ok(())
+    }
+
+    fn single_step_loss(
+        &self,
+        batch: &[usize],
+        stage: ResponseStage,
+        rng: &mut ChaCha8Rng,
+    ) -> Result<Loss, ResponseError> {
+        let config = &self.settings.config;
+        let gradients = match stage {
+            ResponseStage::Pretraining => Gradients::All,
+            _ => Gradients::FineTuned,
+        };
+        let batch = self.data.instants.select(batch)?;
+        let noise = config.single_steps.feature_noise;
+        let noise: Vec<f64> = (0..batch.features.elem_count())
+            .map(|_| noise * rng.sample::<f64, _>(StandardNormal))
+            .collect();
+        let noise = Tensor::from_vec(noise, batch.features.shape(), batch.features.device())?;
+        let features = (&batch.features + noise)?;
+        // Single steps leave the strengths as least squares found them.
+        let effects = batch.correction(&self.network.strengths().detach())?;
+        let output = self.network.forward(gradients, [&features, &batch.tokens, &effects])?;
+        let network = &config.network;
+        let change = network.correction.change_per_unit();
+        let scales = (network.unit, change, network.min_std);
+        let [data, likelihood] = single_step_terms(&output, &batch.targets, scales)?;
+        let factor = config.physics.quality_factor(1.0);
+        let mut physics = (output.remainder.sqr()?.mean_all()? * factor)?;
+        if let Some(points) =
+            self.data.physics_points.as_ref().filter(|_| stage != ResponseStage::Pretraining)
+        {
+            let far = points.draw(config.physics.batch_instants, rng)?;
+            let none = Tensor::zeros_like(&effects.narrow(0, 0, 1)?.narrow(2, 0, 1)?)?;
+            let output = self.network.forward(gradients, [&far.features, &far.tokens, &none])?;
+            let squares = output.remainder.sqr()?.mean((1, 2, 3))?;
+            physics = (physics + (squares * &far.factors)?.mean_all()?)?;
+        }
+        let unit = Tensor::new(&network.unit, output.residual.device())?;
+        let standardised = output.residual.broadcast_div(&unit)?.squeeze(1)?;
+        let zero = Tensor::zeros((), DType::F64, output.residual.device())?;
+        Ok(Loss {
+            data,
+            likelihood,
+            physics,
+            diversity: diversity(&standardised)?,
+            trajectory: zero.clone(),
+            smoothness: zero,
+            boundary: boundary(&batch.states, &self.network.boundary_scale()?)?,
+        })
+    }
+}
