@@ -5,6 +5,8 @@
 //! them, equally likely, make up the answer. So the impulse is uncertain as a whole, and not instant
 //! by instant.
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -16,7 +18,7 @@ use crate::nn::random_stream;
 use crate::response::{
     MotionDistribution, Predictor, ResponseError, ResponseModel, STEP_S, weighted_mean,
 };
-use crate::uncertainty::{ForceCurve, PlanarMixture};
+use crate::uncertainty::{ForceCurve, NormalMixture, PlanarMixture};
 use crate::vehicle::frames::body_from_world;
 use crate::vehicle::{
     ContactLoad, ContactPoint, Manoeuvre, VehicleInput, VehicleParameters, VehicleState,
@@ -249,10 +251,6 @@ fn outcome(
     let draws = position.sample(N_END_DRAWS, seed);
     let of = |axis: usize| Spread::of_draws(draws.iter().map(|point| point[axis]).collect());
     let heading = distribution.heading(at)?;
-    let beyond = |angle_rad: f64| {
-        let (left, right) = (start.yaw_rad + angle_rad, start.yaw_rad - angle_rad);
-        1.0 - heading.cdf(left) + heading.cdf(right)
-    };
     let turned = |spread: Spread| Spread {
         median: spread.median - start.yaw_rad,
         half: spread.half.map(|value| value - start.yaw_rad),
@@ -266,9 +264,18 @@ fn outcome(
         heading_change_rad: turned(Spread::of(&heading)),
         speed_m_s: speed(state),
         region_90_m2: region_m2(&position, 0.9),
-        p_quarter_turn: beyond(std::f64::consts::FRAC_PI_2),
-        p_half_turn: beyond(std::f64::consts::PI),
+        p_quarter_turn: p_turn(&heading, start.yaw_rad, FRAC_PI_2),
+        p_half_turn: p_turn(&heading, start.yaw_rad, PI),
     })
+}
+
+/// Probability that the heading has changed by an angle or more, to either side, 0 to 1.
+///
+/// The cumulative probability of a mixture may exceed 1 by rounding, which must not make this one
+/// negative.
+fn p_turn(heading: &NormalMixture, start_rad: f64, angle_rad: f64) -> f64 {
+    let (left, right) = (start_rad + angle_rad, start_rad - angle_rad);
+    (1.0 - heading.cdf(left) + heading.cdf(right)).clamp(0.0, 1.0)
 }
 
 /// Area of the smallest region that holds the position with a probability, m².
@@ -284,7 +291,22 @@ fn region_m2(position: &PlanarMixture, level: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::uncertainty::PlanarPart;
+    use crate::uncertainty::{NormalPart, PlanarPart};
+
+    #[test]
+    fn the_probability_of_a_turn_that_cannot_be_is_not_below_zero() {
+        // The weights sum to a little more than one.
+        let weights = (1..60).map(|i| f64::from(i) / 1770.0);
+        for n_parts in 2..60 {
+            let parts = weights.clone().take(n_parts);
+            let parts = parts.map(|weight| NormalPart { weight, mean: 0.1, std: 1e-3 }).collect();
+            let heading = NormalMixture::new(parts).unwrap();
+            let p = p_turn(&heading, 0.0, FRAC_PI_2);
+            assert!(p.is_sign_positive() && p < 1e-12, "{n_parts} parts: {p:e}");
+            let p = p_turn(&heading, PI, FRAC_PI_2);
+            assert!((1.0 - 1e-12..=1.0).contains(&p), "{n_parts} parts: {p}");
+        }
+    }
 
     #[test]
     fn the_region_of_a_normal_distribution_is_an_ellipse() {

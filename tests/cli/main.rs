@@ -2,6 +2,7 @@
 //!
 //! One program: each test program of its own would link everything anew.
 
+mod closed_pipe;
 mod commands;
 mod force;
 mod log;

@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
 
+use std::io::{self, PipeWriter};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::thread;
@@ -42,6 +43,11 @@ pub fn ok(output: Output) -> String {
 
 pub fn json(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
+}
+
+/// A pipe from which nobody reads any more, as after `| head -1`.
+pub fn closed_pipe() -> PipeWriter {
+    io::pipe().unwrap().1
 }
 
 /// Kills a training for good (no signal that could be caught) as soon as there is a checkpoint.
