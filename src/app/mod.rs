@@ -45,6 +45,9 @@ pub use response::{
 pub use source::{Content, Source};
 pub use state::{Project, ReplayStatus, State, Subject, VehicleChoice, View};
 
+/// The icon of the window, which the desktop entry shows too.
+const ICON: &[u8] = include_bytes!("../../assets/desktop/impactlab.png");
+
 /// The program's name in folders of the user.
 const APP_ID: &str = "impactlab";
 /// The file that keeps the state.
@@ -66,12 +69,14 @@ pub struct App {
     store: Option<Store>,
 }
 
-/// Opens the window on these paths, or on what was open last, or on the shipped data.
+/// Opens the window on these paths, or on what was open last, or on the shipped data sets, or, where
+/// there are none, on the example scenario.
 ///
 /// # Errors
 /// [`WindowError`] without a display or a graphics driver.
 pub fn run(paths: Vec<PathBuf>) -> Result<(), WindowError> {
     let viewport = egui::ViewportBuilder::default()
+        .with_icon(icon())
         .with_title("impactlab")
         .with_app_id("impactlab")
         .with_inner_size([1440.0, 900.0])
@@ -84,6 +89,13 @@ pub fn run(paths: Vec<PathBuf>) -> Result<(), WindowError> {
     };
     eframe::run_native(APP_ID, options, Box::new(create))
         .map_err(|error| WindowError(error.to_string()))
+}
+
+fn icon() -> egui::IconData {
+    match eframe::icon_data::from_png_bytes(ICON) {
+        Ok(icon) => icon,
+        Err(error) => unreachable!("the icon is bad (a test reads it): {error}"),
+    }
 }
 
 impl App {
@@ -105,6 +117,9 @@ impl App {
         state.session.force.checkpoint = force;
         state.session.response.checkpoint = response;
         state.session.response.gpu = graphics_processor(cc);
+        if to_open.is_empty() && state.project.subject.is_none() {
+            state.project.subject = Some(Subject::Scenario);
+        }
         state.apply(Command::Open(to_open), &cc.egui_ctx);
         if state.project.subject.is_some() {
             state.session.look_at = None; // the last run's subject stays
@@ -229,4 +244,13 @@ fn shipped_datasets() -> Option<PathBuf> {
         .chain([PathBuf::from(env!("CARGO_MANIFEST_DIR"))]);
     let folders = roots.map(|root| root.join("datasets"));
     folders.into_iter().find(|folder| folder.join("fea").exists())
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_icon_is_a_picture() {
+        let icon = super::icon();
+        assert_eq!((icon.width, icon.height, icon.rgba.len()), (256, 256, 4 * 256 * 256));
+    }
 }
