@@ -1,7 +1,7 @@
 //! How long the window takes to draw a frame on its own cores, at rest and while a network is
 //! trained behind it: logic, layout, prediction and tessellation, without the GPU's part.
 //!
-//! `cargo bench --features test-gui --bench window`
+//! `cargo bench --bench window`
 
 #![allow(clippy::print_stdout)]
 
