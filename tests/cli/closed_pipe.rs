@@ -1,7 +1,5 @@
 //! What becomes of a command when nobody reads its output any more, as after `| head -1`.
 
-#![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
-
 use std::io::{BufRead, BufReader};
 use std::process::Stdio;
 
