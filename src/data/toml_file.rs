@@ -45,11 +45,11 @@ pub enum TomlError {
         /// Column of the value.
         column: usize,
         /// The key with its table.
-        key: String,
+        key: Box<str>,
         /// The value as written.
-        value: String,
+        value: Box<str>,
         /// The range, in the key's own unit, or the kind.
-        expected: String,
+        expected: Box<str>,
     },
     /// A key that this table does not have, most likely misspelt or in an unknown unit.
     #[error("{}:{line}:{column}: {key} is not known here", path.display())]
@@ -61,7 +61,7 @@ pub enum TomlError {
         /// Column of the key.
         column: usize,
         /// The key with its table.
-        key: String,
+        key: Box<str>,
     },
     /// A required key that is not there.
     #[error("{}:{line}:{column}: {key} is missing", path.display())]
@@ -73,7 +73,7 @@ pub enum TomlError {
         /// Column of the table.
         column: usize,
         /// The key with its table, and the keys that may be given instead.
-        key: String,
+        key: Box<str>,
     },
     /// Two keys that say the same thing.
     #[error("{}:{line}:{column}: {key} and {other} say the same thing, expected one", path.display())]
@@ -85,9 +85,9 @@ pub enum TomlError {
         /// Column of the second key.
         column: usize,
         /// The second key with its table.
-        key: String,
+        key: Box<str>,
         /// The first key.
-        other: String,
+        other: Box<str>,
     },
 }
 
@@ -141,9 +141,9 @@ impl<'a> TomlFile<'a> {
             path: self.path.to_owned(),
             line,
             column,
-            key: key.to_owned(),
-            value: written.unwrap_or_else(|| value.to_string()),
-            expected: format!("{low} to {high}"),
+            key: key.into(),
+            value: written.unwrap_or_else(|| value.to_string()).into(),
+            expected: format!("{low} to {high}").into(),
         }
     }
 

@@ -156,7 +156,7 @@ impl<'a> TomlTable<'a> {
             line,
             column,
             key: self.full(&self.last_key),
-            other: other.to_owned(),
+            other: other.into(),
         }
     }
 
@@ -200,13 +200,13 @@ impl<'a> TomlTable<'a> {
             line,
             column,
             key: self.full(key),
-            value: text.lines().next().unwrap_or_default().to_owned(),
-            expected,
+            value: text.lines().next().unwrap_or_default().into(),
+            expected: expected.into(),
         }
     }
 
-    fn full(&self, key: &str) -> String {
-        if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
+    fn full(&self, key: &str) -> Box<str> {
+        if self.name.is_empty() { key.into() } else { format!("{}.{key}", self.name).into() }
     }
 }
 
