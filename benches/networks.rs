@@ -8,6 +8,7 @@ use std::path::Path;
 use candle_core::{DType, Device, Tensor};
 use divan::Bencher;
 use impactlab::force::{ForceModel, ForceScenario};
+use impactlab::learning::ModelFile;
 use impactlab::nn::{
     Activation, AdamW, AdamWConfig, Attention, AttentionConfig, Mlp, Parameters, random_stream,
 };

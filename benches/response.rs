@@ -10,6 +10,7 @@ use std::path::Path;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use impactlab::data::Outcome;
+use impactlab::learning::ModelFile;
 use impactlab::response::{Predictor, ResponseCase, ResponseModel};
 use impactlab::vehicle::VehicleInput;
 

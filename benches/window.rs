@@ -9,7 +9,8 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use egui_kittest::Harness;
-use impactlab::app::{App, Command, Network, Pane, Phase, Source, State, TrainingCommand};
+use impactlab::app::{App, Command, Network, Pane, Source, State, TrainingCommand};
+use impactlab::learning::TrainingReport;
 
 /// The display's pace.
 const FRAME: Duration = Duration::from_micros(16_667);
@@ -119,7 +120,9 @@ fn main() {
     form.epochs = 100_000;
     form.config = "assets/models/force.toml".to_owned();
     window.apply(Command::Train(Network::Force, TrainingCommand::Start));
-    let is_fitting = |state: &State| matches!(state.session.force.training.phase, Phase::Centre(_));
+    let is_fitting = |state: &State| {
+        matches!(state.session.force.training.latest, Some(TrainingReport::Fit { .. }))
+    };
     window.step_until(is_fitting);
     window.measure_all("while the crush model is fitted");
     window.step_until(|state| !state.session.force.training.history.is_empty());

@@ -10,14 +10,15 @@ use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use impactlab::data::{Dataset, Outcome, folds, split};
+use impactlab::data::{Dataset, Outcome};
 use impactlab::force::metrics::{
     BAND_LEVELS, Figures, PointErrors, ProbabilisticScores, ProbabilisticSettings,
 };
 use impactlab::force::{
     Centre, CrushConfig, ForceCase, ForceConfig, ForceModel, ForceScenario, NetworkConfig,
-    Prediction, TrainSettings, TrainingConfig, TrainingSet, fit_physics, train_around,
+    Prediction, TrainingConfig, fit_physics, train_around,
 };
+use impactlab::learning::{TrainSettings, TrainingSet, folds, split};
 
 type Answer<T> = Result<T, Box<dyn Error>>;
 
@@ -101,12 +102,7 @@ fn add_fold(
     (train, test): (Vec<ForceCase>, &[&ForceCase]),
 ) -> Answer<()> {
     let set = TrainingSet { name: "fold".to_owned(), train, test: Vec::new() };
-    let settings = |config: &ForceConfig| TrainSettings {
-        config: config.clone(),
-        seed: SEED,
-        checkpoint: None,
-        resume: false,
-    };
+    let settings = |config: &ForceConfig| TrainSettings::unsaved(config.clone(), SEED);
     let mut fitted: Vec<((Centre, CrushConfig), _)> = Vec::new();
     for variant in variants {
         let key = (variant.config.network.centre, variant.config.crush);

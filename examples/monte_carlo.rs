@@ -10,7 +10,8 @@ use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use impactlab::data::{Outcome, TEST_SHARE, split};
+use impactlab::data::Outcome;
+use impactlab::learning::{ModelFile, TEST_SHARE, split};
 use impactlab::response::{Predictor, ResponseCase, ResponseModel, STEP_S};
 
 /// Seed of the split that the commands have by default, and of the draws.

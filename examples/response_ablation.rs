@@ -16,11 +16,11 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Parser;
-use impactlab::data::{Outcome, TEST_SHARE, folds, split};
+use impactlab::data::Outcome;
+use impactlab::learning::{TEST_SHARE, TrainSettings, TrainingReport, TrainingSet, folds, split};
 use impactlab::response::{
     Correction, ImpactRecord, N_RESIDUAL, PhysicsTrend, ResponseCase, ResponseConfig,
-    ResponseModel, ResponseReport, ResponseTrainSettings, ResponseTrainingSet, STEP_S,
-    average_error_m, fine_tune, pretrain, rollout,
+    ResponseModel, ResponseTrainSettings, STEP_S, average_error_m, fine_tune, pretrain, rollout,
 };
 
 type Answer<T> = Result<T, Box<dyn Error>>;
@@ -184,10 +184,10 @@ fn pretraining_part(config: &ResponseConfig) -> ResponseConfig {
 }
 
 fn settings(config: &ResponseConfig, seed: u64) -> ResponseTrainSettings {
-    ResponseTrainSettings { config: config.clone(), seed, checkpoint: None, resume: false }
+    TrainSettings::unsaved(config.clone(), seed)
 }
 
-fn go_on(_: ResponseReport<'_>) -> ControlFlow<()> {
+fn go_on(_: &TrainingReport) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
@@ -239,7 +239,7 @@ fn cross_validate(
             let seen: Vec<ResponseCase> =
                 fold.train.iter().map(|&idx| cases[idx].clone()).collect();
             let n = Some(arguments.trajectories);
-            let set = ResponseTrainingSet::choose("fold", &seen, n, (SPLIT_SEED, 0.0, seed))?;
+            let set = TrainingSet::of_split("fold", &seen, SPLIT_SEED, 0.0).choose(n, seed)?;
             let started = Instant::now();
             let model = fine_tune(
                 start.map(|(model, _)| model),

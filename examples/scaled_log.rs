@@ -16,10 +16,10 @@ use std::path::{Path, PathBuf};
 use clap::Parser;
 use impactlab::collision::{Pulse, PulseShape};
 use impactlab::data::{Channel, ForceAxes, TimeSeries, write_series_csv};
+use impactlab::learning::{ModelFile, TrainSettings, TrainingSet};
 use impactlab::response::{
     LogSettings, LoggedImpact, MotionLog, N_RESIDUAL, ResponseCase, ResponseConfig, ResponseModel,
-    ResponseTrainSettings, ResponseTrainingSet, STEP_S, Tuning, average_error_m, fine_tune,
-    rollout,
+    STEP_S, Tuning, average_error_m, fine_tune, rollout,
 };
 use impactlab::vehicle::{
     ContactLoad, ContactPoint, Integrator, Manoeuvre, Preset, VehicleParameters, VehicleState,
@@ -180,9 +180,8 @@ fn add_log(
     let tuning = Tuning::fit(&[&found.case], config.tuning, seed, go_on);
     add(rows, format!("4DOF tuned: {name}"), errors_of_tuning(&tuning, next));
     let train = vec![found.case];
-    let set = ResponseTrainingSet { name: name.to_owned(), train, test: Vec::new() };
-    let config = config.clone();
-    let settings = ResponseTrainSettings { config, seed, checkpoint: None, resume: false };
+    let set = TrainingSet { name: name.to_owned(), train, test: Vec::new() };
+    let settings = TrainSettings::unsaved(config.clone(), seed);
     let model = fine_tune(Some(start), &set, &settings, &mut |_| ControlFlow::Continue(()))?;
     add(rows, format!("fine-tuned: {name}"), errors_of_model(&model, next)?);
     Ok(())

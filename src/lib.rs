@@ -9,9 +9,9 @@
 //! 5. [`collision`]: the impact itself: impulse, contact geometry, scenarios, pulses, filter;
 //! 6. [`nn`]: layers, parameters, optimiser and files of the networks;
 //! 7. [`uncertainty`]: distributions of whole force curves;
-//! 8. [`force`]: the force network, its baselines and how well they do;
-//! 9. [`compare`]: simulation against reference;
-//! 10. [`response`]: the response network: the motion after the impact;
+//! 8. [`compare`]: simulation against reference;
+//! 9. [`learning`]: what the trainings of both networks share;
+//! 10. [`force`], [`response`]: the force network and its baselines; the response network;
 //! 11. [`shipped`]: the trained networks that are part of the program;
 //! 12. [`analysis`]: one case, from its file to a motion;
 //! 13. [`figure`]: what a plot shows, as plain data;
@@ -44,6 +44,7 @@ mod error_chain;
 pub mod figure;
 pub mod force;
 pub mod jobs;
+pub mod learning;
 pub mod nn;
 pub mod numerics;
 #[cfg(feature = "gui")]

@@ -13,7 +13,8 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::force::{ForceError, ForceModel};
-use crate::response::{ResponseError, ResponseModel};
+use crate::learning::{LearningError, ModelFile};
+use crate::response::ResponseModel;
 
 /// The word for the model that comes with the program.
 const SHIPPED: &str = "shipped";
@@ -56,8 +57,8 @@ impl ModelSource {
     /// Loads the response network.
     ///
     /// # Errors
-    /// [`ResponseError`] if the file cannot be read or holds something else.
-    pub fn response_model(&self) -> Result<ResponseModel, ResponseError> {
+    /// [`LearningError`] if the file cannot be read or holds something else.
+    pub fn response_model(&self) -> Result<ResponseModel, LearningError> {
         match self {
             Self::Shipped => ResponseModel::from_bytes(RESPONSE_MODEL),
             Self::ShippedPretrained => ResponseModel::from_bytes(PRETRAINED_RESPONSE_MODEL),

@@ -14,10 +14,9 @@ use crate::analysis::Spread;
 use crate::collision::{Scenario, ScenarioError};
 use crate::data::{ForceAxes, ForceHistory};
 use crate::force::{ForceError, ForceModel, ForcePrediction, ForceScenario};
+use crate::learning::LearningError;
 use crate::nn::random_stream;
-use crate::response::{
-    MotionDistribution, Predictor, ResponseError, ResponseModel, STEP_S, weighted_mean,
-};
+use crate::response::{MotionDistribution, Predictor, ResponseModel, STEP_S, weighted_mean};
 use crate::uncertainty::{ForceCurve, NormalMixture, PlanarMixture};
 use crate::vehicle::frames::body_from_world;
 use crate::vehicle::{
@@ -108,7 +107,7 @@ pub enum MotionForecastError {
     Force(#[from] ForceError),
     /// The response network refuses.
     #[error(transparent)]
-    Response(#[from] ResponseError),
+    Response(#[from] LearningError),
     /// A duration that is none.
     #[error("the duration is {duration_s} s, expected 0.1 to 60 s")]
     Duration {

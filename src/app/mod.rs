@@ -19,6 +19,7 @@ mod source;
 mod state;
 mod store;
 mod training;
+mod training_status;
 mod update;
 mod widgets;
 
@@ -36,12 +37,10 @@ use crate::data::Severity;
 use crate::render::{DensityGpu, theme};
 
 pub use command::{Command, ComparisonCommand, TrainingCommand};
-pub use force::{ForceSession, Forecast, Phase};
+pub use force::{ForceSession, Forecast};
 pub use network::Network;
 pub use panes::Pane;
-pub use response::{
-    Course, DensityChoice, ForceChoice, MotionAnswer, ResponsePhase, ResponseSession,
-};
+pub use response::{DensityChoice, ForceChoice, MotionAnswer, ResponseSession, TrainingMode};
 pub use source::{Content, Source};
 pub use state::{Project, ReplayStatus, State, Subject, VehicleChoice, View};
 

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error_chain;
 use crate::force::ForceModel;
+use crate::learning::{EpochRecord, EpochSummary, ModelFile};
 use crate::response::ResponseModel;
 use crate::shipped::ModelSource;
 
@@ -62,6 +63,15 @@ pub trait TrainedModel: Sized + Send + Sync + 'static {
     /// # Errors
     /// A message for the user.
     fn write(&self, path: &Path) -> Result<(), String>;
+
+    /// What the data that it learned from were called.
+    fn data(&self) -> &str;
+
+    /// Every epoch of its training.
+    fn history(&self) -> Vec<EpochSummary>;
+
+    /// The epoch whose weights it has, where that is not the last one.
+    fn best_epoch(&self) -> Option<usize>;
 }
 
 impl TrainedModel for ForceModel {
@@ -74,6 +84,18 @@ impl TrainedModel for ForceModel {
     fn write(&self, path: &Path) -> Result<(), String> {
         self.save(path).map_err(|error| error_chain(&error))
     }
+
+    fn data(&self) -> &str {
+        &self.record().data
+    }
+
+    fn history(&self) -> Vec<EpochSummary> {
+        self.record().history.iter().map(EpochRecord::summary).collect()
+    }
+
+    fn best_epoch(&self) -> Option<usize> {
+        Some(self.record().detail.best_epoch)
+    }
 }
 
 impl TrainedModel for ResponseModel {
@@ -85,5 +107,17 @@ impl TrainedModel for ResponseModel {
 
     fn write(&self, path: &Path) -> Result<(), String> {
         self.save(path).map_err(|error| error_chain(&error))
+    }
+
+    fn data(&self) -> &str {
+        &self.record().data
+    }
+
+    fn history(&self) -> Vec<EpochSummary> {
+        self.record().history.iter().map(EpochRecord::summary).collect()
+    }
+
+    fn best_epoch(&self) -> Option<usize> {
+        None
     }
 }

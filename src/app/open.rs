@@ -13,6 +13,7 @@ use crate::app::state::{State, Subject, VehicleChoice};
 use crate::collision::Scenario;
 use crate::data::Severity;
 use crate::error_chain;
+use crate::learning::ModelFile;
 use crate::nn::kind_of_file;
 use crate::response::ResponseModel;
 use crate::vehicle::VehicleParameters;
@@ -42,7 +43,9 @@ impl State {
     /// Takes a model file for the network that it says it is of.
     fn open_trained(&mut self, path: PathBuf) {
         match kind_of_file(&path).as_deref() {
-            Ok(ResponseModel::KIND_NAME) => self.use_model(Network::Response, Some(path)),
+            Ok(kind) if kind == ResponseModel::KIND.name => {
+                self.use_model(Network::Response, Some(path))
+            }
             // Says what is wrong with it, if something is.
             Ok(_) => self.use_model(Network::Force, Some(path)),
             Err(error) => self.say(Severity::Error, error_chain(error)),

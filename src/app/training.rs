@@ -9,19 +9,29 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use crate::jobs::{Job, Progress, Report};
+use crate::learning::TrainingReport;
 
 /// Latest epochs by whose pace the time left is estimated.
 const PACE_EPOCHS: usize = 10;
 
-/// A training under way: it gives a model of type `M` in the end, and news of type `N` before.
-pub struct Training<M, N> {
+/// What a training tells the window.
+#[derive(Debug, Clone, PartialEq)]
+pub enum TrainingNews {
+    /// A case that cannot be learned from, and why.
+    LeftOut(String),
+    /// How far the training has come.
+    Report(TrainingReport),
+}
+
+/// A training under way: it gives a model of type `M` in the end.
+pub struct Training<M> {
     job: Job<Result<M, String>>,
-    news: Receiver<N>,
+    news: Receiver<TrainingNews>,
     gate: Arc<Gate>,
 }
 
-/// Sends news to the window, with how far the training is, and says whether to go on.
-pub type Tell<'a, N> = dyn FnMut(N, Progress) -> ControlFlow<()> + 'a;
+/// Sends news to the window and says whether to go on.
+pub type Tell<'a> = dyn FnMut(TrainingNews) -> ControlFlow<()> + 'a;
 
 /// Holds a thread up while it is closed.
 #[derive(Default)]
@@ -65,54 +75,54 @@ impl Gate {
     }
 }
 
-impl<M, N> Drop for Training<M, N> {
+impl<M> Drop for Training<M> {
     fn drop(&mut self) {
         self.job.cancel();
         self.gate.set_closed(false);
     }
 }
 
-impl<M: Send + 'static, N: Send + 'static> Training<M, N> {
+impl<M: Send + 'static> Training<M> {
     /// Starts one.
     ///
     /// # Errors
     /// The operating system's, if no thread can be started.
     pub fn start(
         wake: impl Fn() + Send + 'static,
-        work: impl FnOnce(&mut Tell<'_, N>) -> Result<M, String> + Send + 'static,
+        work: impl FnOnce(&mut Tell<'_>) -> Result<M, String> + Send + 'static,
     ) -> std::io::Result<Self> {
         let (sender, news) = channel();
         let gate = Arc::new(Gate::default());
         let own_gate = Arc::clone(&gate);
         let job = Job::spawn_in_background("train", wake, move |report| {
-            work(&mut |news, progress| tell((news, progress), (&sender, &own_gate), report))
+            work(&mut |news| tell(news, (&sender, &own_gate), report))
         })?;
         Ok(Self { job, news, gate })
     }
 
     /// What was told since the last time, and the end, if it has come.
-    fn poll(&mut self) -> (Vec<N>, Option<Result<M, String>>) {
+    fn poll(&mut self) -> (Vec<TrainingNews>, Option<Result<M, String>>) {
         let update = self.job.poll(); // before the news: what it ends with comes after them
         (self.news.try_iter().collect(), update.into_result("the training"))
     }
 }
 
 /// A training, if one is under way.
-pub struct TrainingSlot<M, N>(Option<Training<M, N>>);
+pub struct TrainingSlot<M>(Option<Training<M>>);
 
-impl<M, N> Default for TrainingSlot<M, N> {
+impl<M> Default for TrainingSlot<M> {
     fn default() -> Self {
         Self(None)
     }
 }
 
-impl<M, N> From<Training<M, N>> for TrainingSlot<M, N> {
-    fn from(training: Training<M, N>) -> Self {
+impl<M> From<Training<M>> for TrainingSlot<M> {
+    fn from(training: Training<M>) -> Self {
         Self(Some(training))
     }
 }
 
-impl<M, N> TrainingSlot<M, N> {
+impl<M> TrainingSlot<M> {
     /// Whether a training is under way, paused or not.
     pub fn is_running(&self) -> bool {
         self.0.is_some()
@@ -149,9 +159,9 @@ impl<M, N> TrainingSlot<M, N> {
     }
 }
 
-impl<M: Send + 'static, N: Send + 'static> TrainingSlot<M, N> {
+impl<M: Send + 'static> TrainingSlot<M> {
     /// What was told since the last time; with the end, if it has come, after which the slot is empty.
-    pub fn poll(&mut self) -> (Vec<N>, Option<Result<M, String>>) {
+    pub fn poll(&mut self) -> (Vec<TrainingNews>, Option<Result<M, String>>) {
         let Some(training) = &mut self.0 else { return (Vec::new(), None) };
         let (news, result) = training.poll();
         if result.is_some() {
@@ -162,18 +172,18 @@ impl<M: Send + 'static, N: Send + 'static> TrainingSlot<M, N> {
 }
 
 /// Sends news to the window, waits while paused, and asks whether to go on.
-fn tell<N>(
-    (news, progress): (N, Progress),
-    (sender, gate): (&Sender<N>, &Gate),
+fn tell(
+    news: TrainingNews,
+    (sender, gate): (&Sender<TrainingNews>, &Gate),
     report: &mut Report<'_>,
 ) -> ControlFlow<()> {
     // A receiver that is gone means a dropped training, which is cancelled.
     let _ = sender.send(news);
-    if report(progress.clone()).is_break() {
+    if report(Progress::default()).is_break() {
         return ControlFlow::Break(());
     }
     gate.pass();
-    report(progress)
+    report(Progress::default())
 }
 
 /// The time left at the pace of the latest epochs.

@@ -7,8 +7,9 @@ use crate::analysis::{AnalysisError, MotionForecastError};
 use crate::collision::{FilterError, ScenarioError};
 use crate::compare::ReplayError;
 use crate::data::{DataError, SeriesError, TomlError};
-use crate::force::{EvaluateError, ForceError, LoadError};
-use crate::response::{LogError, ResponseError, ResponseLoadError};
+use crate::force::{EvaluateError, ForceError};
+use crate::learning::{LearningError, LoadError};
+use crate::response::LogError;
 use crate::vehicle::SimulationError;
 
 /// A command that could not do its work.
@@ -20,15 +21,12 @@ pub enum CliError {
     /// A file of data.
     #[error(transparent)]
     Data(#[from] DataError),
-    /// A force data set.
+    /// A data set whose cases a network cannot learn from.
     #[error(transparent)]
-    ForceData(Box<LoadError>),
+    Cases(Box<LoadError>),
     /// Training, opening or asking a force network.
     #[error(transparent)]
     Force(Box<ForceError>),
-    /// A trajectory data set.
-    #[error(transparent)]
-    ResponseData(Box<ResponseLoadError>),
     /// A log of an impact.
     #[error(transparent)]
     Log(Box<LogError>),
@@ -46,9 +44,9 @@ pub enum CliError {
         /// The folder.
         path: PathBuf,
     },
-    /// Training, opening or asking a response network.
+    /// Training, opening or asking a response network, or a training set of either network.
     #[error(transparent)]
-    Response(Box<ResponseError>),
+    Learning(Box<LearningError>),
     /// A motion that cannot be predicted.
     #[error("{}: the motion cannot be predicted", path.display())]
     Forecast {
@@ -259,13 +257,7 @@ pub enum CliError {
 
 impl From<LoadError> for CliError {
     fn from(error: LoadError) -> Self {
-        Self::ForceData(Box::new(error))
-    }
-}
-
-impl From<ResponseLoadError> for CliError {
-    fn from(error: ResponseLoadError) -> Self {
-        Self::ResponseData(Box::new(error))
+        Self::Cases(Box::new(error))
     }
 }
 
@@ -275,9 +267,9 @@ impl From<LogError> for CliError {
     }
 }
 
-impl From<ResponseError> for CliError {
-    fn from(error: ResponseError) -> Self {
-        Self::Response(Box::new(error))
+impl From<LearningError> for CliError {
+    fn from(error: LearningError) -> Self {
+        Self::Learning(Box::new(error))
     }
 }
 

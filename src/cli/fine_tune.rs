@@ -11,7 +11,7 @@ use crate::cli::response_training::{
     checkpoint_of, config, data_name, load_cases, print_config, print_model, under_bar,
 };
 use crate::cli::run::{Console, Verdict};
-use crate::data::TEST_SHARE;
+use crate::learning::{ModelFile, TEST_SHARE};
 use crate::response::{ResponseCase, ResponseTrainSettings, ResponseTrainingSet, fine_tune};
 use crate::shipped::ModelSource;
 
@@ -137,9 +137,9 @@ fn training_set(
     if !args.data.is_empty() {
         let chosen = |data: &PathBuf| -> Result<ResponseTrainingSet, CliError> {
             let cases = load_cases(data, name)?;
-            let split = (args.seed, args.test_share, choice);
-            let name = data_name(data);
-            Ok(ResponseTrainingSet::choose(name, &cases, args.trajectories, split)?)
+            let (name, share) = (data_name(data), args.test_share);
+            let set = ResponseTrainingSet::of_split(name, &cases, args.seed, share);
+            Ok(set.choose(args.trajectories, choice)?)
         };
         let sets = args.data.iter().map(chosen).collect::<Result<Vec<_>, _>>()?;
         return Ok((ResponseTrainingSet::joined(sets), Vec::new()));

@@ -13,9 +13,8 @@ use crate::cli::output::{print_facts, print_json};
 use crate::cli::progress::{complete, with_progress};
 use crate::cli::run::{Console, Verdict};
 use crate::cli::vehicle_choice::vehicle;
-use crate::response::{
-    ResponseCase, ResponseConfig, ResponseError, ResponseLossTerms, ResponseModel, ResponseReport,
-};
+use crate::learning::{TrainingProgress, TrainingReport};
+use crate::response::{ResponseCase, ResponseConfig, ResponseLossTerms, ResponseModel};
 
 /// Epochs between two lines where nobody looks at a bar.
 const EPOCHS_PER_LINE: usize = 10;
@@ -58,43 +57,38 @@ pub(super) fn checkpoint_of(model: &Path) -> PathBuf {
 }
 
 /// Trains under a progress bar; without a terminal, prints a line every ten epochs.
-pub(super) fn under_bar<T>(
-    train: impl FnOnce(
-        &mut dyn FnMut(ResponseReport<'_>) -> ControlFlow<()>,
-    ) -> Result<T, ResponseError>,
+pub(super) fn under_bar<T, E: Into<CliError>>(
+    train: impl FnOnce(&mut TrainingProgress<'_>) -> Result<T, E>,
 ) -> Result<T, CliError> {
     let is_seen = stderr().is_terminal();
     let bar = if is_seen { ProgressBar::new(0) } else { ProgressBar::hidden() };
     if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {eta}") {
         bar.set_style(style);
     }
-    let model = train(&mut |told| {
-        let record = told.record;
-        bar.set_length((told.n_epochs * told.n_trainings) as u64);
-        bar.set_position((told.training_idx * told.n_epochs + record.epoch) as u64);
-        let part = match told.training_idx {
-            0 => String::new(),
-            idx => format!("calibration {idx} of {}: ", told.n_trainings - 1),
+    let model = train(&mut |told: &TrainingReport| {
+        let (done, total, line) = match told {
+            TrainingReport::Fit { what, done, n_fits } => (*done, *n_fits, what.clone()),
+            TrainingReport::Epoch(epoch) => {
+                let (done, total) = epoch.progress();
+                (done, total, epoch.to_string())
+            }
         };
-        let line = format!(
-            "{part}{}, loss {:.4}, balance {:.2}",
-            record.stage, record.loss.total, record.balance
-        );
-        let is_due = record.epoch.is_multiple_of(EPOCHS_PER_LINE) || record.epoch == 1;
-        if !is_seen && is_due {
-            let _ = writeln!(
-                stderr(),
-                "epoch {} of {}: {line} ({:.2} s)",
-                record.epoch,
-                told.n_epochs,
-                record.seconds
-            );
+        bar.set_length(total as u64);
+        bar.set_position(done as u64);
+        if let TrainingReport::Epoch(told) = told
+            && !is_seen
+        {
+            let epoch = told.summary.epoch;
+            if epoch.is_multiple_of(EPOCHS_PER_LINE) || epoch == 1 {
+                let (n, seconds) = (told.n_epochs, told.summary.seconds);
+                let _ = writeln!(stderr(), "epoch {epoch} of {n}: {line} ({seconds:.2} s)");
+            }
         }
         bar.set_message(line);
         ControlFlow::Continue(())
     });
     bar.finish_and_clear();
-    Ok(model?)
+    model.map_err(Into::into)
 }
 
 #[derive(Debug, Serialize)]
@@ -130,16 +124,16 @@ pub(super) fn print_model(
         data: &record.data,
         data_digest: &record.data_digest,
         seed: record.seed,
-        n_simulated: record.n_simulated,
+        n_simulated: record.detail.n_simulated,
         train: record.train.iter().map(|case| case.name.as_str()).collect(),
         n_test: record.test.len(),
         n_parameters: model.n_parameters(),
         seconds,
         epochs: record.history.len(),
-        loss: last.map(|epoch| epoch.loss),
-        balance: last.map(|epoch| epoch.balance),
+        loss: last.map(|epoch| epoch.detail.loss),
+        balance: last.map(|epoch| epoch.detail.balance),
         latents: model.latents(),
-        keeps_latents: record.keeps_latents,
+        keeps_latents: record.detail.keeps_latents,
         logs,
     };
     if console.json {
@@ -148,7 +142,7 @@ pub(super) fn print_model(
     }
     let loss = last.map_or(String::new(), |epoch| {
         let shown = |(name, value): (&str, f64)| format!("{name} {value:.4}");
-        epoch.loss.named().map(shown).join(", ")
+        epoch.detail.loss.named().map(shown).join(", ")
     });
     let scales = crate::response::LATENT_NAMES
         .iter()
@@ -157,7 +151,9 @@ pub(super) fn print_model(
         .collect::<Vec<_>>()
         .join(", ");
     let calibrated = match answer.latents.n_calibrated {
-        0 if record.keeps_latents => "a guess: the model before, at least the usual".to_owned(),
+        0 if record.detail.keeps_latents => {
+            "a guess: the model before, at least the usual".to_owned()
+        }
         0 => "usual values".to_owned(),
         n => format!("from {n} trajectories, each unseen"),
     };

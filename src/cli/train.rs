@@ -1,23 +1,22 @@
 //! `impactlab train force`: trains the force network.
 
-use std::io::{IsTerminal, Write, stderr};
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::{Args, Subcommand};
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::output::{print_facts, print_json};
 use crate::cli::progress::{complete, with_progress};
+use crate::cli::response_training::under_bar;
 use crate::cli::run::{Console, Verdict};
 use crate::cli::train_response::{self, TrainResponseArgs};
 use crate::force::{
-    ForceCase, ForceConfig, ForceModel, TrainSettings, TrainingRecord, TrainingReport, TrainingSet,
+    ForceCase, ForceConfig, ForceModel, ForceRecord, ForceTrainSettings, ForceTrainingSet,
     VarianceFactors, train,
 };
+use crate::learning::ModelFile;
 
 /// Train a network
 #[derive(Debug, Args)]
@@ -123,60 +122,21 @@ fn train_force(args: &TrainForceArgs, console: &mut Console<'_>) -> Result<Verdi
         .chain(&args.extra)
         .map(|path| path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned())
         .collect();
-    let split = (args.seed, config.training.test_share);
-    let set = TrainingSet::new(names.join(" + "), &cases, &extra, split)?;
+    let share = config.training.test_share;
+    let set = ForceTrainingSet::of_split(names.join(" + "), &cases, args.seed, share);
+    let set = set.with_extra(&extra);
     let mut checkpoint = args.out.clone().into_os_string();
     checkpoint.push(".training");
-    let settings = TrainSettings {
+    let settings = ForceTrainSettings {
         config,
         seed: args.seed,
         checkpoint: Some(checkpoint.into()),
         resume: args.resume,
     };
     let started = Instant::now();
-    let model = train_under_bar(&set, &settings)?;
+    let model = under_bar(|report| train(&set, &settings, report))?;
     model.save(&args.out)?;
     print(args, &model, started.elapsed().as_secs_f64(), console)
-}
-
-/// Trains under a progress bar; without a terminal, prints a line every ten epochs.
-fn train_under_bar(set: &TrainingSet, settings: &TrainSettings) -> Result<ForceModel, CliError> {
-    let is_seen = stderr().is_terminal();
-    let bar = if is_seen { ProgressBar::new(0) } else { ProgressBar::hidden() };
-    if let Ok(style) = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len} {eta}") {
-        bar.set_style(style);
-    }
-    let model = train(set, settings, &mut |told| {
-        match told {
-            TrainingReport::Centre(fit) => {
-                let (done, n_fits) = fit.progress();
-                bar.set_length(n_fits as u64);
-                bar.set_position(done as u64);
-                bar.set_message(fit.to_string());
-            }
-            TrainingReport::Epoch { record, n_epochs, is_best } => {
-                bar.set_length(n_epochs as u64);
-                bar.set_position(record.epoch as u64);
-                let mark = if is_best { "best" } else { "" };
-                let line = format!(
-                    "loss {:.4}, validation {:.4} {mark}",
-                    record.train.total, record.validation.total
-                );
-                if !is_seen && (record.epoch % 10 == 0 || record.epoch == 1) {
-                    let _ = writeln!(
-                        stderr(),
-                        "epoch {} of {n_epochs}: {line} ({:.2} s)",
-                        record.epoch,
-                        record.seconds
-                    );
-                }
-                bar.set_message(line);
-            }
-        }
-        ControlFlow::Continue(())
-    });
-    bar.finish_and_clear();
-    Ok(model?)
 }
 
 fn print(
@@ -185,22 +145,22 @@ fn print(
     seconds: f64,
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
-    let record: &TrainingRecord = model.record();
-    let best = record.best_epoch.checked_sub(1).and_then(|idx| record.history.get(idx));
+    let record: &ForceRecord = model.record();
+    let best = record.detail.best_epoch.checked_sub(1).and_then(|idx| record.history.get(idx));
     let answer = Answer {
         model: &args.out,
         data: &record.data,
         data_digest: &record.data_digest,
         n_train: record.train.len(),
-        n_validation: record.validation.len(),
+        n_validation: record.detail.validation.len(),
         n_test: record.test.len(),
         n_parameters: model.n_parameters(),
         seconds,
-        best_epoch: record.best_epoch,
+        best_epoch: record.detail.best_epoch,
         epochs: record.history.len(),
-        variance_factors: record.variance_factors,
-        train: best.map(|record| record.train),
-        validation: best.map(|record| record.validation),
+        variance_factors: record.detail.variance_factors,
+        train: best.map(|record| record.detail.train),
+        validation: best.map(|record| record.detail.validation),
     };
     if console.json {
         print_json(console.out, &answer)?;

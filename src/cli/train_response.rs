@@ -12,10 +12,11 @@ use crate::cli::response_training::{
 };
 use crate::cli::run::{Console, Verdict};
 use crate::cli::vehicle_choice::vehicle;
-use crate::data::{DatasetKind, split};
+use crate::data::DatasetKind;
 use crate::force::ForceCase;
+use crate::learning::{ModelFile, TEST_SHARE, split};
 use crate::response::{ImpactRecord, ResponseCase, ResponseTrainSettings, pretrain};
-use crate::vehicle::Preset;
+use crate::vehicle::{Preset, VehicleParameters};
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -87,7 +88,7 @@ pub(super) fn run(
 
 /// Forces of the cases that are not kept for a test.
 fn records(args: &TrainResponseArgs) -> Result<Vec<ImpactRecord>, CliError> {
-    let share = crate::data::TEST_SHARE;
+    let share = TEST_SHARE;
     if DatasetKind::of_folder(&args.data) == Some(DatasetKind::Trajectory) {
         let cases = load_cases(&args.data, args.vehicle.as_deref())?;
         let train = split(&cases, args.seed, share).train;
@@ -101,5 +102,14 @@ fn records(args: &TrainResponseArgs) -> Result<Vec<ImpactRecord>, CliError> {
     let cases = complete(with_progress(|report| ForceCase::load_all(&args.data, report))?)?;
     let train = split(&cases, args.seed, share).train;
     let kept = train.into_iter().filter_map(|idx| cases.get(idx));
-    Ok(kept.filter_map(|case| ImpactRecord::of_force_case(case, &struck)).collect())
+    Ok(kept.filter_map(|case| impact_record(case, &struck)).collect())
+}
+
+/// The impact of a case of a force data set; `None` where it does not say where the contact was.
+fn impact_record(case: &ForceCase, vehicle: &VehicleParameters) -> Option<ImpactRecord> {
+    let scenario = &case.scenario;
+    let contact_m = scenario.contact_m?;
+    let vehicle = vehicle.clone().with_mass(scenario.mass_kg[0], scenario.yaw_inertia_kg_m2[0]);
+    let force = case.curve.to_history();
+    Some(ImpactRecord::under_force(vehicle, scenario.target_velocity_m_s, contact_m, force))
 }

@@ -1,5 +1,5 @@
-//! Two vehicles meet: momentum-conservation impact, contact geometry, scenarios, classic pulses and
-//! the crash-test filter.
+//! Two vehicles meet: momentum-conservation impact, contact geometry, scenarios, classic pulses, the
+//! crash-test filter, and clusters of collisions by their impulse.
 //!
 //! ```
 //! use impactlab::collision::{Pulse, PulseShape, Scenario};
@@ -33,6 +33,8 @@ mod pulse;
 
 mod channel_filter;
 
+mod impulse_clusters;
+
 pub use channel_filter::{
     ChannelClass, ChannelFilter, FilterError, filter_channel, filter_history,
 };
@@ -45,6 +47,7 @@ pub use impact::{
     BodyAfter, ContactSurface, FrictionModel, Impact, ImpactBody, ImpactError, ImpactSolution,
     ImpliedContact, Regime, contact_work_j,
 };
+pub use impulse_clusters::{ImpulseClusters, ImpulseFeatures};
 pub use pdof::PrincipalDirectionOfForce;
 pub use pulse::{Pulse, PulseError, PulseShape};
 pub use scenario::{

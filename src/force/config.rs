@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::force::ForceError;
+use crate::learning::{LearningError, Setting, TEST_SHARE, check_settings};
 
 /// All settings. Read from TOML: what a file leaves out keeps its default.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -181,7 +181,7 @@ impl Default for TrainingConfig {
             max_gradient_norm: 1.0,
             validation_share: 0.2,
             patience: 40,
-            test_share: crate::data::TEST_SHARE,
+            test_share: TEST_SHARE,
             checkpoint_epochs: 10,
         }
     }
@@ -203,8 +203,8 @@ impl ForceConfig {
     /// Reads a TOML file.
     ///
     /// # Errors
-    /// [`ForceError::ConfigFile`], [`ForceError::Setting`].
-    pub fn load(path: &Path) -> Result<Self, ForceError> {
+    /// [`LearningError::Toml`], [`LearningError::Setting`].
+    pub fn load(path: &Path) -> Result<Self, LearningError> {
         let config: Self = crate::data::read_settings(path)?;
         config.check()?;
         Ok(config)
@@ -213,59 +213,46 @@ impl ForceConfig {
     /// Checks every range.
     ///
     /// # Errors
-    /// [`ForceError::Setting`] with the first setting out of range.
-    pub fn check(&self) -> Result<(), ForceError> {
+    /// [`LearningError::Setting`] with the first setting out of range.
+    pub fn check(&self) -> Result<(), LearningError> {
         let (network, training, crush) = (&self.network, &self.training, &self.crush);
-        let count = |name, value: usize, least: usize, expected| {
-            (name, value.to_string(), value >= least, expected)
-        };
-        let share = |name, value: f64, most: f64, expected| {
-            (name, value.to_string(), (0.0..=most).contains(&value), expected)
-        };
-        let positive = |name, value: f64| {
-            (name, value.to_string(), value > 0.0 && value.is_finite(), "a number above 0")
-        };
         let even = network.position_channels.is_multiple_of(2) && network.position_channels > 0;
         let loss = self.loss;
-        let settings = [
-            count("network.components", network.components, 1, "1 or more"),
-            count("network.attention_stride", network.attention_stride, 1, "1 or more"),
-            count("network.trunk (layers)", network.trunk.len(), 1, "1 or more"),
-            count("network.encoder_branches", network.encoder_branches.len(), 1, "1 or more"),
-            (
+        check_settings([
+            Setting::count("network.components", network.components),
+            Setting::count("network.attention_stride", network.attention_stride),
+            Setting::count("network.trunk (layers)", network.trunk.len()),
+            Setting::count("network.encoder_branches", network.encoder_branches.len()),
+            Setting::new(
                 "network.position_channels",
-                network.position_channels.to_string(),
+                network.position_channels,
                 even,
                 "an even number above 0",
             ),
-            share("network.shape_correction", network.shape_correction, 0.99, "0 to 0.99"),
-            share("network.impulse_correction", network.impulse_correction, 2.0, "0 to 2"),
-            share("network.force_correction", network.force_correction, 10.0, "0 to 10"),
-            share("network.component_shift", network.component_shift, 10.0, "0 to 10"),
-            share("network.hooking_shift", network.hooking_shift, 10.0, "0 to 10"),
-            positive("network.duration_max_s", network.duration_max_s),
-            positive("network.min_std", network.min_std),
-            share("loss.likelihood", loss.likelihood, 1e6, "0 to 1e6"),
-            share("loss.data", loss.data, 1e6, "0 to 1e6"),
-            share("loss.impulse", loss.impulse, 1e6, "0 to 1e6"),
-            share("loss.energy", loss.energy, 1e6, "0 to 1e6"),
-            share("loss.duration", loss.duration, 1e6, "0 to 1e6"),
-            share("loss.hooking", loss.hooking, 1e6, "0 to 1e6"),
-            count("training.epochs", training.epochs, 1, "1 or more"),
-            count("training.batch_cases", training.batch_cases, 1, "1 or more"),
-            positive("training.learning_rate", training.learning_rate),
-            positive("training.max_gradient_norm", training.max_gradient_norm),
-            share("training.validation_share", training.validation_share, 0.5, "0 to 0.5"),
-            share("training.test_share", training.test_share, 0.9, "0 to 0.9"),
-            count("training.checkpoint_epochs", training.checkpoint_epochs, 1, "1 or more"),
-            count("crush.folds", crush.folds, 2, "2 or more"),
-            positive("crush.prior_weight", crush.prior_weight),
-            share("crush.hooked_weight", crush.hooked_weight, 1.0, "0 to 1"),
-        ];
-        match settings.into_iter().find(|(_, _, is_good, _)| !is_good) {
-            None => Ok(()),
-            Some((name, value, _, expected)) => Err(ForceError::Setting { name, value, expected }),
-        }
+            Setting::up_to("network.shape_correction", network.shape_correction, 0.99, "0 to 0.99"),
+            Setting::up_to("network.impulse_correction", network.impulse_correction, 2.0, "0 to 2"),
+            Setting::up_to("network.force_correction", network.force_correction, 10.0, "0 to 10"),
+            Setting::up_to("network.component_shift", network.component_shift, 10.0, "0 to 10"),
+            Setting::up_to("network.hooking_shift", network.hooking_shift, 10.0, "0 to 10"),
+            Setting::positive("network.duration_max_s", network.duration_max_s),
+            Setting::positive("network.min_std", network.min_std),
+            Setting::up_to("loss.likelihood", loss.likelihood, 1e6, "0 to 1e6"),
+            Setting::up_to("loss.data", loss.data, 1e6, "0 to 1e6"),
+            Setting::up_to("loss.impulse", loss.impulse, 1e6, "0 to 1e6"),
+            Setting::up_to("loss.energy", loss.energy, 1e6, "0 to 1e6"),
+            Setting::up_to("loss.duration", loss.duration, 1e6, "0 to 1e6"),
+            Setting::up_to("loss.hooking", loss.hooking, 1e6, "0 to 1e6"),
+            Setting::count("training.epochs", training.epochs),
+            Setting::count("training.batch_cases", training.batch_cases),
+            Setting::positive("training.learning_rate", training.learning_rate),
+            Setting::positive("training.max_gradient_norm", training.max_gradient_norm),
+            Setting::up_to("training.validation_share", training.validation_share, 0.5, "0 to 0.5"),
+            Setting::up_to("training.test_share", training.test_share, 0.9, "0 to 0.9"),
+            Setting::count("training.checkpoint_epochs", training.checkpoint_epochs),
+            Setting::new("crush.folds", crush.folds, crush.folds >= 2, "2 or more"),
+            Setting::positive("crush.prior_weight", crush.prior_weight),
+            Setting::up_to("crush.hooked_weight", crush.hooked_weight, 1.0, "0 to 1"),
+        ])
     }
 }
 

@@ -1,37 +1,14 @@
 //! What can go wrong between a data set and a prediction.
 
-use std::path::PathBuf;
-
 use crate::collision::ImpactError;
-use crate::data::TomlError;
 use crate::force::regression::BaselineError;
+use crate::learning::LearningError;
 use crate::nn::NnError;
 use crate::uncertainty::MixtureError;
 
 /// A force model cannot be trained, opened or asked.
 #[derive(Debug, thiserror::Error)]
 pub enum ForceError {
-    /// Too few cases to learn from.
-    #[error("{n_cases} cases to train on, expected at least {least}")]
-    TooFewCases {
-        /// How many there are.
-        n_cases: usize,
-        /// How many it takes.
-        least: usize,
-    },
-    /// A setting outside its range.
-    #[error("{name} is {value}, expected {expected}")]
-    Setting {
-        /// Section and name, as in the file.
-        name: &'static str,
-        /// Its value.
-        value: String,
-        /// The range, in words.
-        expected: &'static str,
-    },
-    /// A configuration file cannot be read.
-    #[error(transparent)]
-    ConfigFile(#[from] TomlError),
     /// The law of the crush model cannot be fitted.
     #[error("the crush model cannot be fitted: none of the {n_cases} cases has a force")]
     NoCrushFit {
@@ -56,22 +33,6 @@ pub enum ForceError {
         /// The range, in words.
         expected: &'static str,
     },
-    /// A checkpoint was written by another training.
-    #[error("{}: the training to resume had another {what}", path.display())]
-    OtherTraining {
-        /// The checkpoint.
-        path: PathBuf,
-        /// What differs: configuration, seed, cases.
-        what: &'static str,
-    },
-    /// The loss is not a number any more.
-    #[error("the loss is {loss} in epoch {epoch}: lower the learning rate")]
-    Diverged {
-        /// The loss.
-        loss: f64,
-        /// In which epoch, from 1.
-        epoch: usize,
-    },
     /// The regressions beside the crush model cannot be fitted or asked.
     #[error("the regressions beside the crush model fail")]
     Regression(#[from] BaselineError),
@@ -81,13 +42,19 @@ pub enum ForceError {
     /// The distribution makes no sense.
     #[error(transparent)]
     Mixture(#[from] MixtureError),
-    /// Network or model file.
+    /// Settings, training, network or model file.
     #[error(transparent)]
-    Network(#[from] NnError),
+    Learning(#[from] LearningError),
+}
+
+impl From<NnError> for ForceError {
+    fn from(error: NnError) -> Self {
+        Self::Learning(error.into())
+    }
 }
 
 impl From<candle_core::Error> for ForceError {
     fn from(error: candle_core::Error) -> Self {
-        Self::Network(error.into())
+        Self::Learning(error.into())
     }
 }

@@ -1,7 +1,7 @@
 //! The contact force before it happens: cases to learn from, the force network, its baselines, and
 //! how well they do.
 //!
-//! Cases: [`ForceCase`], [`split`](crate::data::split). Network: [`ForceConfig`], [`train`], [`ForceModel::predict`].
+//! Cases: [`ForceCase`], [`split`](crate::learning::split()). Network: [`ForceConfig`], [`train`], [`ForceModel::predict`].
 //! Figures: [`metrics`].
 
 mod error;
@@ -26,16 +26,16 @@ pub use config::{Centre, CrushConfig, ForceConfig, LossWeights, NetworkConfig, T
 pub use error::ForceError;
 pub use evaluate::{
     BaselineFigures, CaseErrors, ClusterFigures, Compared, CrossValidation, EvaluateError,
-    Evaluation, EvaluationError, EvaluationSettings, FittedBaselines, ImpulseClusters,
-    ImpulseFeatures, ModelFigures, baselines, cross_validate, evaluate, evaluate_model,
+    Evaluation, EvaluationError, EvaluationSettings, FittedBaselines, ModelFigures, baselines,
+    cross_validate, evaluate, evaluate_model,
 };
-pub use input::{ForceCase, ForceCaseError, ForceScenario, LoadError, curve_on_grid};
+pub use input::{ForceCase, ForceCaseError, ForceScenario, curve_on_grid};
 pub use metrics::Prediction;
 pub use network::{OpenFeatures, OutsideTraining, Standardisation};
 pub use physics::{CentreCurve, CentreFit, CentreModel, MomentumModel, regression};
 pub use predict::ForcePrediction;
 pub use regression::ColumnSet;
 pub use train::{
-    CaseId, EpochRecord, ForceModel, LossTerms, TrainSettings, TrainingProgress, TrainingRecord,
-    TrainingReport, TrainingSet, VarianceFactors, fit_physics, train, train_around,
+    ForceEpoch, ForceModel, ForceRecord, ForceTrainSettings, ForceTraining, ForceTrainingSet,
+    LossTerms, VarianceFactors, fit_physics, train, train_around,
 };

@@ -87,7 +87,7 @@ impl ForceModel {
         let likely = likely.filter(|(idx, _)| is_hooking(*idx) == (k > 1 && hooking > 0.5));
         let likely = CurveMixture::new(likely.map(|(_, component)| component.clone()).collect())?;
         let [likely, mixture] = [likely, CurveMixture::new(components)?]
-            .map(|mixture| self.record.variance_factors.apply(mixture));
+            .map(|mixture| self.record.detail.variance_factors.apply(mixture));
         Ok(ForcePrediction {
             mixture: if mirrored { mixture.mirrored() } else { mixture },
             likely: if mirrored { likely.mirrored() } else { likely },

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::response::{Correction, EffectsConfig, ResponseError, TuningConfig};
+use crate::learning::{LearningError, Setting, check_settings};
+use crate::response::{Correction, EffectsConfig, TuningConfig};
 
 /// All settings. Read from TOML: what a file leaves out keeps its default.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -277,8 +278,8 @@ impl ResponseConfig {
     /// Reads settings.
     ///
     /// # Errors
-    /// [`ResponseError::ConfigFile`], [`ResponseError::Setting`].
-    pub fn load(path: &Path) -> Result<Self, ResponseError> {
+    /// [`LearningError::Toml`] with the line, [`LearningError::Setting`].
+    pub fn load(path: &Path) -> Result<Self, LearningError> {
         let config: Self = crate::data::read_settings(path)?;
         config.check()?;
         Ok(config)
@@ -287,65 +288,52 @@ impl ResponseConfig {
     /// Checks every range.
     ///
     /// # Errors
-    /// [`ResponseError::Setting`] with the first setting out of range.
-    pub fn check(&self) -> Result<(), ResponseError> {
+    /// [`LearningError::Setting`] with the first setting out of range.
+    pub fn check(&self) -> Result<(), LearningError> {
         let Self { network, single_steps, rollouts, physics, effects, .. } = self;
-        let count = |name, value: usize| (name, value.to_string(), value > 0, "1 or more");
-        let positive = |name, value: f64| {
-            let is_right = value > 0.0 && value.is_finite();
-            (name, value.to_string(), is_right, "a number above 0")
-        };
         let all_positive = |name, values: &[f64]| {
-            let is_right = values.iter().all(|value| *value > 0.0 && value.is_finite());
-            (name, format!("{values:?}"), is_right, "numbers above 0")
+            let is_valid = values.iter().all(|value| *value > 0.0 && value.is_finite());
+            Setting::new(name, format!("{values:?}"), is_valid, "numbers above 0")
         };
-        let share =
-            |name, value: f64| (name, value.to_string(), (0.0..=1.0).contains(&value), "0 to 1");
         let shortest = rollouts.lengths.iter().copied().min().unwrap_or(1);
         let heads = network.attention_heads;
         let hidden = network.encoder.last().copied().unwrap_or(0);
-        let settings = [
-            count("network.components", network.components),
-            count("network.encoder (layers)", network.encoder.len()),
-            count("network.trunk (layers)", network.trunk.len()),
-            (
+        check_settings([
+            Setting::count("network.components", network.components),
+            Setting::count("network.encoder (layers)", network.encoder.len()),
+            Setting::count("network.trunk (layers)", network.trunk.len()),
+            Setting::new(
                 "network.attention_heads",
-                heads.to_string(),
+                heads,
                 heads > 0 && hidden.is_multiple_of(heads),
                 "a divisor of the encoder's last width",
             ),
-            (
+            Setting::new(
                 "network.effects",
-                network.effects.to_string(),
+                network.effects,
                 !network.effects || network.correction == Correction::Acceleration,
                 "false where the correction is no acceleration",
             ),
-            positive("network.min_std", network.min_std),
+            Setting::positive("network.min_std", network.min_std),
             all_positive("network.bound", network.bound.as_ref().map_or(&[], |bound| bound)),
             all_positive("network.unit", &network.unit),
-            count("single_steps.batch_instants", single_steps.batch_instants),
-            positive("single_steps.learning_rate", single_steps.learning_rate),
-            share("single_steps.frozen_share", single_steps.frozen_share),
-            count("rollouts.lengths", shortest),
-            count("rollouts.batch_windows", rollouts.batch_windows),
-            count("rollouts.truncation", rollouts.truncation),
-            positive("rollouts.learning_rate", rollouts.learning_rate),
-            positive("physics.epoch_scale", physics.epoch_scale),
-            positive("physics.quality_distance", physics.quality_distance),
-            positive("effects.ridge", effects.ridge),
-            (
+            Setting::count("single_steps.batch_instants", single_steps.batch_instants),
+            Setting::positive("single_steps.learning_rate", single_steps.learning_rate),
+            Setting::up_to("single_steps.frozen_share", single_steps.frozen_share, 1.0, "0 to 1"),
+            Setting::count("rollouts.lengths", shortest),
+            Setting::count("rollouts.batch_windows", rollouts.batch_windows),
+            Setting::count("rollouts.truncation", rollouts.truncation),
+            Setting::positive("rollouts.learning_rate", rollouts.learning_rate),
+            Setting::positive("physics.epoch_scale", physics.epoch_scale),
+            Setting::positive("physics.quality_distance", physics.quality_distance),
+            Setting::positive("effects.ridge", effects.ridge),
+            Setting::new(
                 "effects.common",
-                effects.common.to_string(),
+                effects.common,
                 (0.0..1.0).contains(&effects.common),
                 "0 to below 1",
             ),
-            positive("effects.huber", effects.huber),
-        ];
-        match settings.into_iter().find(|(_, _, is_right, _)| !is_right) {
-            None => Ok(()),
-            Some((name, value, _, expected)) => {
-                Err(ResponseError::Setting { name, value, expected })
-            }
-        }
+            Setting::positive("effects.huber", effects.huber),
+        ])
     }
 }

@@ -2,7 +2,6 @@
 //! vehicle model.
 
 mod config;
-mod error;
 
 mod physics;
 
@@ -20,7 +19,6 @@ pub use config::{
     CalibrationConfig, PhysicsSchedule, PhysicsTrend, PretrainingConfig, ResponseConfig,
     ResponseLossWeights, ResponseNetworkConfig, RolloutConfig, SingleStepConfig,
 };
-pub use error::ResponseError;
 pub use evaluate as comparison;
 pub use motion_log::{ForceOrigin, LogError, LogNoise, LogSettings, LoggedImpact, MotionLog};
 pub use network::ResponseLossTerms;
@@ -35,7 +33,6 @@ pub use predict::{
     Predictor, ResponseModel, StateDistribution,
 };
 pub use train::{
-    ImpactRecord, ResponseCase, ResponseCaseError, ResponseEpoch, ResponseLoadError,
-    ResponseProgress, ResponseRecord, ResponseReport, ResponseStage, ResponseTrainSettings,
-    ResponseTrainingSet, fine_tune, pretrain,
+    ImpactRecord, ResponseCase, ResponseCaseError, ResponseEpoch, ResponseRecord, ResponseStage,
+    ResponseTrainSettings, ResponseTraining, ResponseTrainingSet, fine_tune, pretrain,
 };

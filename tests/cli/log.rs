@@ -8,6 +8,7 @@ use std::process::Command;
 
 use impactlab::collision::{Pulse, PulseShape};
 use impactlab::data::{Channel, TimeSeries, write_series_csv};
+use impactlab::learning::ModelFile;
 use impactlab::response::{N_RESIDUAL, ResponseModel, STEP_S, average_error_m, rollout};
 use impactlab::vehicle::{
     ContactLoad, ContactPoint, Integrator, Manoeuvre, Preset, VehicleParameters, VehicleState,

@@ -6,11 +6,10 @@ use std::sync::OnceLock;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{
-    App, Command, Forecast, Network, Pane, Phase, State, Subject, TrainingCommand,
-};
+use impactlab::app::{App, Command, Forecast, Network, Pane, State, Subject, TrainingCommand};
 use impactlab::data::{Dataset, Severity};
-use impactlab::force::{ForceCase, ForceConfig, TrainSettings, TrainingSet, train};
+use impactlab::force::{ForceCase, ForceConfig, train};
+use impactlab::learning::{ModelFile, TrainSettings, TrainingSet};
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
 use crate::pictures::save;
@@ -55,9 +54,9 @@ fn small() -> &'static Small {
         let mut go_on = |_| ControlFlow::Continue(());
         let dataset = Dataset::load(Path::new("datasets/fea"), &mut go_on).expect("shipped data");
         let (cases, _) = ForceCase::of_dataset(&dataset.complete().expect("nothing cancels"));
-        let set = TrainingSet::new("fea", &cases, &[], (0, 0.25)).expect("enough cases");
+        let set = TrainingSet::of_split("fea", &cases, 0, 0.25);
         let config = ForceConfig::load(&small.config()).expect("a good file");
-        let settings = TrainSettings { config, seed: 0, checkpoint: None, resume: false };
+        let settings = TrainSettings::unsaved(config, 0);
         let model = train(&set, &settings, &mut |_| ControlFlow::Continue(())).expect("a model");
         model.save(&small.model()).expect("it is written");
         small
@@ -197,7 +196,7 @@ fn a_model_is_trained_paused_cancelled_saved_and_there_after_a_restart() {
     save(&mut harness, "training.png");
     harness.get_by_label("Cancel").click();
     step_until(&mut harness, "the end", |state| !state.session.force.training.run.is_running());
-    assert_eq!(state(&harness).session.force.training.phase, Phase::Ended);
+    assert!(state(&harness).session.force.training.is_over);
     let current = state(&harness).session.force.model.current.as_ref().expect("the best so far");
     assert!(!current.is_saved && current.name.starts_with("trained on fea"), "{}", current.name);
 

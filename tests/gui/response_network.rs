@@ -4,8 +4,8 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{
-    App, Command, ComparisonCommand, Course, DensityChoice, ForceChoice, Network, Pane,
-    ResponsePhase, State, Subject,
+    App, Command, ComparisonCommand, DensityChoice, ForceChoice, Network, Pane, State, Subject,
+    TrainingMode,
 };
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
@@ -147,7 +147,7 @@ fn a_response_model_is_trained_paused_cancelled_and_saved() {
     apply(&mut harness, Command::ShowTraining(Network::Response));
     {
         let form = &mut harness.state_mut().state_mut().project.response.training;
-        (form.course, form.n_trajectories) = (Course::FromScratch, 3);
+        (form.mode, form.n_trajectories) = (TrainingMode::FromScratch, 3);
         form.config = config.display().to_string();
     }
     harness.run_steps(2);
@@ -171,7 +171,7 @@ fn a_response_model_is_trained_paused_cancelled_and_saved() {
     harness.get_by_label("Cancel").click();
     let is_over = |state: &State| !state.session.response.training.run.is_running();
     step_until(&mut harness, "the end", is_over);
-    assert_eq!(state(&harness).session.response.training.phase, ResponsePhase::Ended);
+    assert!(state(&harness).session.response.training.is_over);
     let current = state(&harness).session.response.model.current.as_ref().expect("a model");
     assert!(!current.is_saved && current.name == "trained on 3 trajectories of trajectories-fea");
     let path = folder.path().join("mine.safetensors");

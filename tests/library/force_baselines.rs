@@ -3,10 +3,11 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use impactlab::data::{Dataset, Outcome, TEST_SHARE, split};
+use impactlab::data::{Dataset, Outcome};
 use impactlab::force::{
     ColumnSet, Evaluation, EvaluationError, EvaluationSettings, ForceCase, Prediction, evaluate,
 };
+use impactlab::learning::{TEST_SHARE, split};
 
 fn shipped_cases() -> Vec<ForceCase> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/fea");

@@ -7,19 +7,20 @@ use std::sync::OnceLock;
 
 use impactlab::error_chain;
 use impactlab::force::{
-    Centre, ForceCase, ForceConfig, ForceError, ForceModel, ForceScenario, TrainSettings,
-    TrainingReport, TrainingSet, train,
+    Centre, ForceCase, ForceConfig, ForceError, ForceModel, ForceScenario, ForceTrainSettings,
+    ForceTrainingSet, train,
 };
+use impactlab::learning::{ModelFile, TrainingReport};
 
 const N_CASES: usize = 16;
 const EPOCHS: usize = 6;
 
-fn set() -> &'static TrainingSet {
-    static SET: OnceLock<TrainingSet> = OnceLock::new();
+fn set() -> &'static ForceTrainingSet {
+    static SET: OnceLock<ForceTrainingSet> = OnceLock::new();
     SET.get_or_init(|| {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/fea");
         let cases = ForceCase::load_quietly(&root).expect("the shipped data can be read");
-        TrainingSet::new("fea", &cases[..N_CASES], &[], (3, 0.25)).expect("enough cases")
+        ForceTrainingSet::of_split("fea", &cases[..N_CASES], 3, 0.25)
     })
 }
 
@@ -40,14 +41,14 @@ fn config() -> ForceConfig {
     config
 }
 
-fn settings(checkpoint: Option<PathBuf>) -> TrainSettings {
-    TrainSettings { config: config(), seed: 5, checkpoint, resume: true }
+fn settings(checkpoint: Option<PathBuf>) -> ForceTrainSettings {
+    ForceTrainSettings { config: config(), seed: 5, checkpoint, resume: true }
 }
 
 /// Trains until an epoch is over, as if killed then.
-fn train_until(epoch: usize, settings: &TrainSettings) -> ForceModel {
+fn train_until(epoch: usize, settings: &ForceTrainSettings) -> ForceModel {
     let model = train(set(), settings, &mut |told| match told {
-        TrainingReport::Epoch { record, .. } if record.epoch == epoch => ControlFlow::Break(()),
+        TrainingReport::Epoch(told) if told.summary.epoch == epoch => ControlFlow::Break(()),
         _ => ControlFlow::Continue(()),
     });
     model.expect("the training works")
@@ -67,7 +68,9 @@ fn model() -> &'static ForceModel {
 fn losses(model: &ForceModel) -> Vec<String> {
     let history = model.record().history.iter();
     history
-        .map(|record| format!("{} {:?} {:?}", record.epoch, record.train, record.validation))
+        .map(|record| {
+            format!("{} {:?} {:?}", record.epoch, record.detail.train, record.detail.validation)
+        })
         .collect()
 }
 
@@ -106,14 +109,14 @@ fn a_training_cut_short_in_its_physics_leaves_nothing_to_go_on_from() {
 fn the_same_seed_gives_the_same_weights_and_another_one_others() {
     let again = train_until(EPOCHS, &settings(None));
     assert_eq!(losses(&again), losses(model()));
-    let other = train_until(EPOCHS, &TrainSettings { seed: 6, ..settings(None) });
+    let other = train_until(EPOCHS, &ForceTrainSettings { seed: 6, ..settings(None) });
     assert_ne!(losses(&other), losses(model()));
 }
 
 #[test]
 fn training_lowers_the_loss() {
     let history = &model().record().history;
-    let [first, last] = [&history[0], &history[EPOCHS - 1]].map(|record| record.train.total);
+    let [first, last] = [&history[0], &history[EPOCHS - 1]].map(|record| record.detail.train.total);
     assert!(last < first, "{first} {last}");
 }
 
@@ -122,7 +125,7 @@ fn a_checkpoint_of_another_training_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let checkpoint = folder.path().join("model.training");
     train_until(1, &settings(Some(checkpoint.clone())));
-    let other = TrainSettings { seed: 6, ..settings(Some(checkpoint.clone())) };
+    let other = ForceTrainSettings { seed: 6, ..settings(Some(checkpoint.clone())) };
     let error = train(set(), &other, &mut |_| ControlFlow::Continue(())).unwrap_err();
     assert_eq!(
         error.to_string(),
@@ -133,7 +136,7 @@ fn a_checkpoint_of_another_training_is_refused() {
 #[test]
 fn test_cases_never_reach_the_model() {
     let record = model().record();
-    assert_eq!(record.train.len() + record.validation.len() + record.test.len(), N_CASES);
+    assert_eq!(record.train.len() + record.detail.validation.len() + record.test.len(), N_CASES);
     let learned = model().training_cases();
     assert!(record.test.iter().all(|id| learned.iter().all(|case| case.digest != id.digest)));
 }

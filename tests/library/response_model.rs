@@ -3,11 +3,11 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use impactlab::learning::{LearningError, ModelFile, TrainSettings, TrainingReport};
 use impactlab::response::comparison::{Rival, evaluate_rival};
 use impactlab::response::{
-    Correction, ImpactRecord, ResponseCase, ResponseConfig, ResponseError, ResponseModel,
-    ResponseReport, ResponseStage, ResponseTrainSettings, ResponseTrainingSet, average_error_m,
-    fine_tune, pretrain, rollout,
+    Correction, ImpactRecord, ResponseCase, ResponseConfig, ResponseModel, ResponseStage,
+    ResponseTrainSettings, ResponseTrainingSet, average_error_m, fine_tune, pretrain, rollout,
 };
 use impactlab::vehicle::{Preset, VehicleInput, VehicleState};
 
@@ -43,10 +43,10 @@ fn small() -> ResponseConfig {
 }
 
 fn settings(config: ResponseConfig) -> ResponseTrainSettings {
-    ResponseTrainSettings { config, seed: 3, checkpoint: None, resume: false }
+    TrainSettings::unsaved(config, 3)
 }
 
-fn go_on(_: ResponseReport<'_>) -> ControlFlow<()> {
+fn go_on(_: &TrainingReport) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
@@ -73,7 +73,7 @@ fn what_the_data_sheet_lacks_is_learned() {
     let [before, after] = errors_m(&model);
     assert!(after < 0.2 * before, "{before} m before, {after} m after");
     let stages: Vec<ResponseStage> =
-        model.record().history.iter().map(|epoch| epoch.stage).collect();
+        model.record().history.iter().map(|epoch| epoch.detail.stage).collect();
     assert_eq!(stages.len(), 12 + 2 * 3);
     assert_eq!(stages[11], ResponseStage::SingleSteps);
     assert_eq!(stages[17], ResponseStage::Rollouts { length: 8 });
@@ -96,7 +96,7 @@ fn a_saved_model_predicts_the_same_bits() {
     let mut bytes = std::fs::read(&path).expect("read");
     let middle = bytes.len() / 2;
     bytes[middle] ^= 1;
-    assert!(matches!(ResponseModel::from_bytes(&bytes), Err(ResponseError::Network(_))));
+    assert!(matches!(ResponseModel::from_bytes(&bytes), Err(LearningError::Network(_))));
     assert!(ResponseModel::from_bytes(&bytes[..100]).is_err());
 }
 
@@ -108,8 +108,8 @@ fn a_training_that_was_cut_goes_on_to_the_same_weights() {
         let checkpoint = scratch(&format!("cut_{cut_at}.training"));
         let mut settings = settings(small());
         settings.checkpoint = Some(checkpoint);
-        let mut cut = |told: ResponseReport<'_>| match told.record.epoch {
-            epoch if epoch == cut_at => ControlFlow::Break(()),
+        let mut cut = |told: &TrainingReport| match told {
+            TrainingReport::Epoch(epoch) if epoch.summary.epoch == cut_at => ControlFlow::Break(()),
             _ => ControlFlow::Continue(()),
         };
         let part = fine_tune(None, &set(), &settings, &mut cut).expect("a model");
@@ -118,7 +118,7 @@ fn a_training_that_was_cut_goes_on_to_the_same_weights() {
         let resumed = fine_tune(None, &set(), &settings, &mut go_on).expect("a model");
         assert_eq!(errors_m(&resumed), errors_m(&whole), "cut after epoch {cut_at}");
         let losses = |model: &ResponseModel| -> Vec<_> {
-            model.record().history.iter().map(|epoch| (epoch.loss, epoch.physics_weight)).collect()
+            model.record().history.iter().map(|epoch| epoch.detail).collect()
         };
         assert_eq!(losses(&resumed), losses(&whole));
         settings.seed = 4;
@@ -134,10 +134,10 @@ fn pre_training_comes_before_and_the_plain_network_learns_without_the_4dof_model
     for config in [small(), small().plain()] {
         let settings = settings(config);
         let pretrained = pretrain(("made", &records), &settings, &mut go_on).expect("a model");
-        assert_eq!(pretrained.record().n_simulated, 6);
+        assert_eq!(pretrained.record().detail.n_simulated, 6);
         assert!(pretrained.record().train.is_empty());
         let model = fine_tune(Some(&pretrained), &train, &settings, &mut go_on).expect("a model");
-        assert_eq!(model.record().n_simulated, 6);
+        assert_eq!(model.record().detail.n_simulated, 6);
         assert_eq!(model.record().history.len(), 2 + 12 + 2 * 3);
         let [before, after] = errors_m(&model);
         match settings.config.network.correction {
@@ -151,9 +151,9 @@ fn pre_training_comes_before_and_the_plain_network_learns_without_the_4dof_model
 fn nothing_is_learned_from_nothing() {
     let nothing = ResponseTrainingSet::default();
     let fitted = fine_tune(None, &nothing, &settings(small()), &mut go_on);
-    assert!(matches!(fitted, Err(ResponseError::NoCases)));
+    assert!(matches!(fitted, Err(LearningError::TooFewCases { .. })));
     let fitted = pretrain(("none", &[]), &settings(small()), &mut go_on);
-    assert!(matches!(fitted, Err(ResponseError::NoCases)));
+    assert!(matches!(fitted, Err(LearningError::TooFewCases { .. })));
 }
 
 /// What ships does on its test trajectories what docs/VALIDATION.md says.

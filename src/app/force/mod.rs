@@ -14,13 +14,14 @@ pub use edit::{
 pub use evaluation::{EvaluatedCase, EvaluationStatus, FinishedEvaluation};
 pub use question::{ForceQuestion, Forecast};
 pub use settings::{ForceProject, ForceView, Statistic, TrainingForm};
-pub use training::{Phase, TrainingStatus};
+pub use training::{ForceTrainingData, run_force_training};
 pub use update::RecordedCase;
 
 use std::path::PathBuf;
 
 use crate::app::latest::Latest;
 use crate::app::model::ModelStatus;
+use crate::app::training_status::TrainingStatus;
 use crate::force::ForceModel;
 
 /// What is loaded, computed and under way about the force network.
@@ -33,7 +34,7 @@ pub struct ForceSession {
     /// The selected case, if it has a force to compare with.
     pub recorded: Option<RecordedCase>,
     /// A training, under way or over.
-    pub training: TrainingStatus,
+    pub training: TrainingStatus<ForceModel>,
     /// An evaluation, under way or over.
     pub evaluation: EvaluationStatus,
     /// Where a training is kept while it runs, so that it can go on after a crash.

@@ -8,10 +8,10 @@ use egui::Context;
 use crate::analysis::ForecastSettings;
 use crate::app::command::{TrainingCommand, wake};
 use crate::app::force::evaluation::EvaluationRequest;
-use crate::app::force::training::TrainingData;
-use crate::app::force::{ForceQuestion, Forecast};
+use crate::app::force::{ForceQuestion, ForceTrainingData, Forecast, run_force_training};
 use crate::app::source::{OpenDataset, Source, chosen_dataset, open_datasets};
 use crate::app::state::{State, Subject};
+use crate::app::training::Tell;
 use crate::data::{DatasetKind, Severity};
 use crate::error_chain;
 use crate::force::{ForceCase, ForceScenario};
@@ -53,7 +53,8 @@ impl State {
             None => {}
             Some(Ok(model)) => {
                 let record = model.record();
-                let name = format!("trained on {}, epoch {}", record.data, record.best_epoch);
+                let name =
+                    format!("trained on {}, epoch {}", record.data, record.detail.best_epoch);
                 let text = format!("training over: {name} of {}", record.history.len());
                 force.model.take_trained(model, name);
                 self.say(Severity::Info, text);
@@ -133,13 +134,15 @@ impl State {
         let is_extra = |of: &OpenDataset<'_>| form.use_others && of.path != chosen.path;
         let extra: Vec<_> = datasets.iter().copied().filter(is_extra).collect();
         let names = std::iter::once(&chosen).chain(&extra).map(OpenDataset::name);
-        let data = TrainingData {
+        let data = ForceTrainingData {
             name: names.collect::<Vec<_>>().join(" and "),
             dataset: Arc::clone(chosen.checked),
             extra: extra.iter().map(|of| Arc::clone(of.checked)).collect(),
         };
-        let settings = (form, self.session.force.checkpoint.clone());
-        if let Err(error) = self.session.force.training.start(data, settings, wake(context)) {
+        let (form, name) = (form.clone(), data.name.clone());
+        let checkpoint = self.session.force.checkpoint.clone();
+        let work = move |tell: &mut Tell<'_>| run_force_training(data, (&form, checkpoint), tell);
+        if let Err(error) = self.session.force.training.start(name, wake(context), work) {
             self.say(Severity::Error, error.to_string());
         }
     }

@@ -20,6 +20,7 @@ mod scenario;
 mod scene;
 mod training;
 mod training_force;
+mod training_losses;
 mod training_parts;
 mod training_response;
 mod vehicle;

@@ -95,7 +95,7 @@ fn model_ui(ui: &mut Ui, response: &ResponseSession, commands: &mut Vec<Command>
         record.train.len(),
         record.data,
         record.test.len(),
-        record.n_simulated,
+        record.detail.n_simulated,
         record.history.len(),
         record.seed,
         current.model.n_parameters(),

@@ -3,9 +3,13 @@
 use egui::{ScrollArea, Ui};
 
 use crate::app::network::Network;
-use crate::app::panels::training_force::force_training_ui;
-use crate::app::panels::training_response::response_training_ui;
+use crate::app::panels::training_force::force_form_ui;
+use crate::app::panels::training_losses::LossView;
+use crate::app::panels::training_parts::network_training_ui;
+use crate::app::panels::training_response::response_form_ui;
 use crate::app::panes::PaneContext;
+use crate::app::widgets::no_dataset_ui;
+use crate::data::DatasetKind;
 
 /// Draws the training of one of the networks.
 pub fn training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
@@ -21,4 +25,29 @@ pub fn training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             Network::Response => response_training_ui(ui, pane),
         }
     });
+}
+
+fn force_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
+    let PaneContext { project, view, session, commands } = pane;
+    let has_data = force_form_ui(ui, &mut project.force.training, &session.sources);
+    if !has_data {
+        no_dataset_ui(ui, DatasetKind::Force);
+    }
+    let reset = session.fit_plots;
+    let view =
+        LossView { terms: &mut view.force.loss_terms, log: &mut view.force.log_losses, reset };
+    let force = &mut session.force;
+    network_training_ui(ui, has_data, (&force.training, &mut force.model), (view, commands));
+}
+
+fn response_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
+    let PaneContext { project, view, session, commands } = pane;
+    let has_data = response_form_ui(ui, &mut project.response.training, &session.sources);
+    if !has_data {
+        no_dataset_ui(ui, DatasetKind::Trajectory);
+    }
+    let (reset, view) = (session.fit_plots, &mut view.response);
+    let view = LossView { terms: &mut view.loss_terms, log: &mut view.log_losses, reset };
+    let response = &mut session.response;
+    network_training_ui(ui, has_data, (&response.training, &mut response.model), (view, commands));
 }

@@ -5,24 +5,49 @@ use std::time::Duration;
 use egui::{ProgressBar, Ui};
 
 use crate::app::command::{Command, TrainingCommand};
-use crate::app::network::Network;
+use crate::app::model::ModelStatus;
+use crate::app::network::TrainedModel;
+use crate::app::panels::model_row::save_model_ui;
+use crate::app::panels::training_losses::{LossView, losses_ui};
+use crate::app::training_status::TrainingStatus;
 use crate::app::widgets::duration_text;
 use crate::data::Severity;
 use crate::render::theme;
 
-/// What a training is doing, for its buttons.
-#[derive(Debug, Clone, Copy)]
-pub struct RunState {
-    /// Of which network.
-    pub network: Network,
-    /// Whether there is something to train on.
-    pub can_start: bool,
-    /// Whether it is under way, paused or not.
-    pub is_running: bool,
-    /// Whether it waits.
-    pub is_paused: bool,
-    /// Whether it was told to stop.
-    pub is_cancelled: bool,
+/// Draws the buttons and the progress of a training, the model, and the losses: of the training under
+/// way, else of the model's own training.
+///
+/// - `can_start`: whether there is something to train on.
+pub fn network_training_ui<M: TrainedModel>(
+    ui: &mut Ui,
+    can_start: bool,
+    (status, model): (&TrainingStatus<M>, &mut ModelStatus<M>),
+    (view, commands): (LossView<'_>, &mut Vec<Command>),
+) {
+    run_buttons_ui(ui, can_start, status, commands);
+    if status.run.is_running() {
+        run_progress_ui(ui, &status.doing(), status.progress());
+    }
+    run_problems_ui(ui, status.problem.as_deref(), &status.left_out);
+    save_model_ui(ui, model, commands);
+    ui.separator();
+    match &model.current {
+        _ if !status.history.is_empty() => {
+            let title = format!("Losses while training on {}", status.data);
+            losses_ui(
+                ui,
+                M::NETWORK,
+                (&title, &status.history, status.best_epoch),
+                (view, commands),
+            );
+        }
+        Some(current) => {
+            let (of, data) = (&current.model, current.model.data());
+            let title = format!("Losses while training on {data} (model {})", current.name);
+            losses_ui(ui, M::NETWORK, (&title, &of.history(), of.best_epoch()), (view, commands));
+        }
+        None => drop(ui.weak("The losses of every epoch are drawn here.")),
+    }
 }
 
 /// Rows of a two-column grid: a file with settings, and whether to go on from a checkpoint.
@@ -40,17 +65,23 @@ pub fn settings_rows_ui(ui: &mut Ui, parts: &str, (config, resume): (&mut String
 }
 
 /// Train, pause, cancel.
-pub fn run_buttons_ui(ui: &mut Ui, run: RunState, commands: &mut Vec<Command>) {
-    let RunState { network, can_start, is_running, is_paused, is_cancelled } = run;
+fn run_buttons_ui<M: TrainedModel>(
+    ui: &mut Ui,
+    can_start: bool,
+    status: &TrainingStatus<M>,
+    commands: &mut Vec<Command>,
+) {
+    let (network, run) = (M::NETWORK, &status.run);
+    let is_running = run.is_running();
     ui.horizontal(|ui| {
         if ui.add_enabled(can_start && !is_running, egui::Button::new("Train")).clicked() {
             commands.push(Command::Train(network, TrainingCommand::Start));
         }
-        let label = if is_paused { "Resume" } else { "Pause" };
+        let label = if run.is_paused() { "Resume" } else { "Pause" };
         if ui.add_enabled(is_running, egui::Button::new(label)).clicked() {
-            commands.push(Command::Train(network, TrainingCommand::Pause(!is_paused)));
+            commands.push(Command::Train(network, TrainingCommand::Pause(!run.is_paused())));
         }
-        let cancel = ui.add_enabled(is_running && !is_cancelled, egui::Button::new("Cancel"));
+        let cancel = ui.add_enabled(is_running && !run.is_cancelled(), egui::Button::new("Cancel"));
         if cancel.on_hover_text("Ends the training; the weights so far are kept").clicked() {
             commands.push(Command::Train(network, TrainingCommand::Cancel));
         }
@@ -58,7 +89,7 @@ pub fn run_buttons_ui(ui: &mut Ui, run: RunState, commands: &mut Vec<Command>) {
 }
 
 /// How far it is, with the time left.
-pub fn run_progress_ui(ui: &mut Ui, what: &str, (fraction, left): (Option<f32>, Option<Duration>)) {
+fn run_progress_ui(ui: &mut Ui, what: &str, (fraction, left): (Option<f32>, Option<Duration>)) {
     let left = left.map_or(String::new(), |left| format!(", {} left", duration_text(left)));
     match fraction {
         Some(fraction) => {
@@ -70,7 +101,7 @@ pub fn run_progress_ui(ui: &mut Ui, what: &str, (fraction, left): (Option<f32>, 
 }
 
 /// Why there is no model, and which cases it has not seen.
-pub fn run_problems_ui(ui: &mut Ui, problem: Option<&str>, left_out: &[String]) {
+fn run_problems_ui(ui: &mut Ui, problem: Option<&str>, left_out: &[String]) {
     let dark = ui.visuals().dark_mode;
     if let Some(problem) = problem {
         let color = theme::severity_color(Severity::Error, dark);
@@ -80,28 +111,4 @@ pub fn run_problems_ui(ui: &mut Ui, problem: Option<&str>, left_out: &[String]) 
         let color = theme::severity_color(Severity::Warning, dark);
         ui.colored_label(color, format!("Left out: {why}"));
     }
-}
-
-/// Which losses are drawn, and whether their axis is logarithmic.
-pub fn loss_choice_ui(
-    ui: &mut Ui,
-    names: &[&'static str],
-    (selected, log): (&mut Vec<String>, &mut bool),
-) {
-    ui.horizontal_wrapped(|ui| {
-        ui.label("Losses");
-        for name in names {
-            let position = selected.iter().position(|other| other == name);
-            let mut is_selected = position.is_some();
-            if ui.checkbox(&mut is_selected, *name).changed() {
-                match position {
-                    Some(position) => drop(selected.remove(position)),
-                    None => selected.push((*name).to_owned()),
-                }
-            }
-        }
-        ui.separator();
-        ui.checkbox(log, "logarithmic")
-            .on_hover_text("Where no shown loss is zero or less, as a likelihood may be");
-    });
 }

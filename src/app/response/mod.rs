@@ -10,16 +10,17 @@ mod update;
 pub use comparison::{ComparisonRequest, ComparisonStatus};
 pub use question::{DensityQuestion, MotionAnswer, MotionQuestion};
 pub use settings::{
-    ComparisonForm, Course, DensityChoice, ForceChoice, ResponseProject, ResponseTrainingForm,
-    ResponseView,
+    ComparisonForm, DensityChoice, ForceChoice, ResponseProject, ResponseTrainingForm,
+    ResponseView, TrainingMode,
 };
-pub use training::{ResponsePhase, ResponseTrainingData, ResponseTrainingStatus};
+pub use training::{ResponseTrainingData, run_response_training};
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::app::latest::Latest;
 use crate::app::model::ModelStatus;
+use crate::app::training_status::TrainingStatus;
 use crate::render::DensityGpu;
 use crate::response::ResponseModel;
 
@@ -35,7 +36,7 @@ pub struct ResponseSession {
     /// What computes densities; the CPU without.
     pub gpu: Option<Arc<DensityGpu>>,
     /// A training, under way or over.
-    pub training: ResponseTrainingStatus,
+    pub training: TrainingStatus<ResponseModel>,
     /// A comparison, under way or over.
     pub comparison: ComparisonStatus,
     /// Where a training is kept while it runs, so that it can go on after a crash.

@@ -48,7 +48,7 @@ impl Default for ForecastForm {
 
 /// What a training starts from, and on what it goes on.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Course {
+pub enum TrainingMode {
     /// Fine-tunes the shipped pre-trained network on trajectories.
     #[default]
     FineTuneShipped,
@@ -60,7 +60,7 @@ pub enum Course {
     Pretrain,
 }
 
-impl Course {
+impl TrainingMode {
     /// All of them.
     pub const ALL: [Self; 4] =
         [Self::FineTuneShipped, Self::FineTuneCurrent, Self::FromScratch, Self::Pretrain];
@@ -80,8 +80,9 @@ impl Course {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ResponseTrainingForm {
-    /// From what to what.
-    pub course: Course,
+    /// What the training starts from, and on what it goes on.
+    #[serde(alias = "course")]
+    pub mode: TrainingMode,
     /// Folder of the trajectory data set; the first that is open without.
     pub dataset: Option<PathBuf>,
     /// Trajectories to learn from; 0 for all that are not kept for the test.
@@ -99,7 +100,7 @@ pub struct ResponseTrainingForm {
 impl Default for ResponseTrainingForm {
     fn default() -> Self {
         Self {
-            course: Course::default(),
+            mode: TrainingMode::default(),
             dataset: None,
             n_trajectories: 20,
             seed: 0,

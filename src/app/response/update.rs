@@ -9,10 +9,11 @@ use crate::analysis::{Analysis, MotionForecastSettings};
 use crate::app::command::{ComparisonCommand, TrainingCommand, wake};
 use crate::app::response::{
     ComparisonRequest, DensityChoice, DensityQuestion, ForceChoice, MotionAnswer, MotionQuestion,
-    ResponseTrainingData,
+    ResponseTrainingData, run_response_training,
 };
 use crate::app::source::{CheckedDataset, chosen_dataset, open_datasets};
 use crate::app::state::{State, Subject};
+use crate::app::training::Tell;
 use crate::app::update::target_vehicle;
 use crate::data::{DatasetKind, Severity};
 use crate::force::{ForceModel, ForceScenario};
@@ -44,7 +45,7 @@ impl State {
             Some(Ok(model)) => {
                 let record = model.record();
                 let name = match record.train.len() {
-                    0 => format!("pre-trained on {} simulations", record.n_simulated),
+                    0 => format!("pre-trained on {} simulations", record.detail.n_simulated),
                     n => format!("trained on {n} trajectories of {}", record.data),
                 };
                 let text = format!("training over: {name}");
@@ -128,8 +129,10 @@ impl State {
         let response = &mut self.session.response;
         let current = response.model.current.as_ref().map(|current| Arc::clone(&current.model));
         let data = ResponseTrainingData { name, dataset, vehicle, current };
-        let settings = (&form, response.checkpoint.clone());
-        if let Err(error) = response.training.start(data, settings, wake(context)) {
+        let (checkpoint, name) = (response.checkpoint.clone(), data.name.clone());
+        let work =
+            move |tell: &mut Tell<'_>| run_response_training(&data, (&form, checkpoint), tell);
+        if let Err(error) = response.training.start(name, wake(context), work) {
             self.say(Severity::Error, error.to_string());
         }
     }

@@ -4,6 +4,7 @@
 
 use rayon::prelude::*;
 
+use crate::collision::{ImpulseClusters, ImpulseFeatures};
 use crate::data::Outcome;
 use crate::force::evaluate::baselines::{NearestBaseline, PulseBaseline};
 use crate::force::evaluate::scored::Scored;
@@ -12,7 +13,7 @@ use crate::force::evaluate::{
 };
 use crate::force::metrics::ProbabilisticSettings;
 use crate::force::regression::{BaselineError, ColumnSet, StatisticalBaseline};
-use crate::force::{ForceCase, ForceScenario, ImpulseClusters, ImpulseFeatures, Prediction};
+use crate::force::{ForceCase, ForceScenario, Prediction};
 use crate::jobs::{Progress, Report};
 use crate::numerics::ClusterError;
 use crate::uncertainty::ForceCurve;

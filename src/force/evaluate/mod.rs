@@ -2,8 +2,6 @@
 
 mod error;
 
-mod clusters;
-
 pub mod baselines;
 
 mod report;
@@ -14,7 +12,6 @@ mod table;
 
 mod model_evaluation;
 
-pub use clusters::{ImpulseClusters, ImpulseFeatures};
 pub use error::EvaluationError;
 pub use evaluation::{EvaluationSettings, FittedBaselines, evaluate};
 pub use model_evaluation::{

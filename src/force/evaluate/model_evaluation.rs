@@ -3,15 +3,14 @@
 use serde::Serialize;
 
 use crate::data::Outcome;
-use crate::data::folds;
 use crate::force::metrics::{Figures, PointErrors};
 use crate::force::regression::ColumnSet;
 use crate::force::{
     CaseErrors, Evaluation, EvaluationError, EvaluationSettings, ForceCase, ForceConfig,
-    ForceError, ForceModel, ForceScenario, Prediction, TrainSettings, TrainingReport, TrainingSet,
-    evaluate, train,
+    ForceError, ForceModel, ForceScenario, Prediction, evaluate, train,
 };
 use crate::jobs::{Progress, Report};
+use crate::learning::{TrainSettings, TrainingReport, TrainingSet, folds};
 
 /// A model that cannot be evaluated.
 #[derive(Debug, thiserror::Error)]
@@ -142,18 +141,14 @@ pub fn cross_validate(
         };
         let name = format!("fold {}", i + 1);
         let set = TrainingSet { name, train: of(&fold.train), test: Vec::new() };
-        let train_settings = TrainSettings {
-            config: config.clone(),
-            seed: settings.seed,
-            checkpoint: None,
-            resume: false,
-        };
+        let train_settings = TrainSettings::unsaved(config.clone(), settings.seed);
         let (mut is_cancelled, first) = (false, (i * config.training.epochs) as u64);
         let model = train(&set, &train_settings, &mut |told| {
             let (done, what) = match told {
-                TrainingReport::Centre(fit) => (0, format!("{}: {fit}", set.name)),
-                TrainingReport::Epoch { record, .. } => {
-                    (record.epoch as u64, format!("{}: epoch {}", set.name, record.epoch))
+                TrainingReport::Fit { what, .. } => (0, format!("{}: {what}", set.name)),
+                TrainingReport::Epoch(told) => {
+                    let epoch = told.summary.epoch;
+                    (epoch as u64, format!("{}: epoch {epoch}", set.name))
                 }
             };
             let told = report(Progress::new(first + done, n_steps, what));

@@ -1,11 +1,17 @@
 //! Cases of a force data set as the force models learn from them: canonical, over the time grid.
 
-use sha2::{Digest, Sha256};
+use std::ops::ControlFlow;
+use std::path::Path;
 
 use crate::data::{
-    Case, DataError, Dataset, ForceAxes, ForceHistory, SeriesError, Stratified, contact_interval,
+    Case, DataError, Dataset, DatasetKind, ForceAxes, ForceHistory, Outcome, SeriesError,
+    contact_interval,
 };
 use crate::force::ForceScenario;
+use crate::jobs::Report;
+use crate::learning::{
+    LoadError, TrainingCase, cases_and_problems, content_digest, load_cases, load_dataset, n_steps,
+};
 use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
 
 /// Steps to which numbers are rounded before they are hashed, so that a file written again with
@@ -122,16 +128,29 @@ impl ForceCase {
         })
     }
 
-    /// All cases of a force data set, and what is wrong with the rest.
+    /// The cases of a force data set that can be learned from, and what is wrong with the rest.
     pub fn of_dataset(dataset: &Dataset) -> (Vec<Self>, Vec<ForceCaseError>) {
-        let (mut cases, mut problems) = (Vec::new(), Vec::new());
-        for case in &dataset.cases {
-            match Self::from_case(case) {
-                Ok(case) => cases.push(case),
-                Err(problem) => problems.push(problem),
-            }
-        }
-        (cases, problems)
+        cases_and_problems(dataset, Self::from_case)
+    }
+
+    /// All cases of a folder with a force data set.
+    ///
+    /// # Errors
+    /// [`LoadError`] with the first thing that is wrong.
+    pub fn load_all(root: &Path, report: &mut Report<'_>) -> Result<Outcome<Vec<Self>>, LoadError> {
+        Ok(match load_dataset(root, DatasetKind::Force, report)? {
+            Outcome::Complete(dataset) => Outcome::Complete(load_cases(&dataset, Self::from_case)?),
+            Outcome::Cancelled => Outcome::Cancelled,
+        })
+    }
+
+    /// [`ForceCase::load_all`] that nobody watches.
+    ///
+    /// # Errors
+    /// As for [`ForceCase::load_all`].
+    pub fn load_quietly(root: &Path) -> Result<Vec<Self>, LoadError> {
+        let outcome = Self::load_all(root, &mut |_| ControlFlow::Continue(()))?;
+        Ok(outcome.complete().unwrap_or_default())
     }
 
     /// Whether the vehicles part for good: not hooked, and separated.
@@ -165,29 +184,21 @@ fn record_start_s(history: &ForceHistory) -> f64 {
 }
 
 fn digest(scenario: &ForceScenario, curve: &ForceCurve) -> String {
-    let mut hasher = Sha256::new();
-    let mut add = |value: f64, step: f64| {
-        hasher.update(((value / step).round() as i64).to_le_bytes());
-    };
     let [vx, vy] = scenario.relative_velocity_m_s();
     let [m_t, m_b] = scenario.mass_kg;
-    for value in [m_t, m_b, vx, vy, scenario.theta_b_rad] {
-        add(value, DIGEST_STEP);
-    }
-    for force in curve.fx_n.iter().chain(&curve.fy_n) {
-        add(*force, DIGEST_STEP_N);
-    }
-    add(curve.duration_s, DIGEST_STEP);
-    hex(&hasher.finalize())
+    let known = [m_t, m_b, vx, vy, scenario.theta_b_rad].map(|value| n_steps(value, DIGEST_STEP));
+    let forces = curve.fx_n.iter().chain(&curve.fy_n).map(|force| n_steps(*force, DIGEST_STEP_N));
+    let duration = n_steps(curve.duration_s, DIGEST_STEP);
+    content_digest(known.into_iter().chain(forces).chain([duration]))
 }
 
-pub(crate) fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
-impl Stratified for ForceCase {
+impl TrainingCase for ForceCase {
     fn name(&self) -> &str {
         &self.name
+    }
+
+    fn digest(&self) -> &str {
+        &self.digest
     }
 
     fn is_ordinary(&self) -> bool {
@@ -197,10 +208,9 @@ impl Stratified for ForceCase {
 
 #[cfg(test)]
 pub(crate) mod tests {
-    use std::ops::ControlFlow;
-    use std::path::Path;
-
     use super::*;
+    use crate::collision::ImpulseFeatures;
+    use crate::learning::{TEST_SHARE, split};
 
     /// The cases of a shipped data set.
     pub(crate) fn shipped(name: &str) -> Vec<ForceCase> {
@@ -245,7 +255,7 @@ pub(crate) mod tests {
     #[test]
     fn the_shipped_cases_split_as_in_the_first_trials() {
         let cases = shipped("fea");
-        let split = crate::data::split(&cases, 0, crate::data::TEST_SHARE);
+        let split = split(&cases, 0, TEST_SHARE);
         let count = |of: &dyn Fn(&ForceCase) -> bool| {
             split.test.iter().filter(|idx| of(&cases[**idx])).count()
         };
@@ -274,9 +284,11 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn curves_turn_back_to_the_recorded_axes() {
-        for case in shipped("fea").iter().take(10) {
+    fn curves_turn_back_to_the_recorded_axes_and_keep_their_peak() {
+        for case in &shipped("fea") {
             let recorded = case.as_recorded(&case.curve);
+            let features = ImpulseFeatures::of(&case.curve.to_history()).unwrap();
+            assert!((features.peak_n - case.peak_n).abs() < 1e-9, "{}", case.name);
             assert_eq!(
                 recorded.fy_n[30],
                 case.curve.fy_n[30] * if case.mirrored { -1.0 } else { 1.0 }

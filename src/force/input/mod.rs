@@ -4,13 +4,10 @@
 mod scenario;
 
 mod case;
-mod load;
 
-pub(crate) use case::hex;
 #[cfg(test)]
 pub(crate) use case::tests::shipped;
 pub use case::{ForceCase, ForceCaseError, curve_on_grid};
-pub use load::LoadError;
 pub use scenario::ForceScenario;
 #[cfg(test)]
 pub(crate) use scenario::tests::example;

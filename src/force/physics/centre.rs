@@ -10,9 +10,9 @@ use crate::collision::crush::{
     BodyCrush, CrushFit, CrushHistory, CrushLaw, CrushSample, CrushScenario, Nose,
 };
 use crate::collision::{Impact, PulseShape};
-use crate::data::{Split, folds};
 use crate::force::physics::committee::Committee;
 use crate::force::{Centre, CrushConfig, ForceCase, ForceError, ForceScenario, MomentumModel};
+use crate::learning::{LearningError, Split, folds};
 use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
 
 /// Yaw inertia over mass where none is known, m²: a uniform body of 4.5 m × 1.8 m has 1.96, cars
@@ -146,7 +146,8 @@ impl CentreModel {
     ) -> Result<(Self, Vec<CentreCurve>), ForceError> {
         let n = cases.len();
         if n < config.folds {
-            return Err(ForceError::TooFewCases { n_cases: n, least: config.folds });
+            let least = config.folds;
+            return Err(LearningError::TooFewCases { n_cases: n, least }.into());
         }
         let plain: Vec<&ForceCase> = cases.iter().filter(|case| case.is_clean()).collect();
         let plain = if plain.is_empty() { cases.iter().collect() } else { plain };

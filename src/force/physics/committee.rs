@@ -14,10 +14,10 @@ use std::ops::ControlFlow;
 
 use serde::{Deserialize, Serialize};
 
-use crate::data::Split;
 use crate::force::metrics::PointErrors;
 use crate::force::regression::{BaselineError, ColumnSet, StatisticalBaseline};
 use crate::force::{ForceCase, ForceError, ForceScenario, Prediction};
+use crate::learning::Split;
 use crate::uncertainty::ForceCurve;
 
 /// Shares tried: steps from none to all.

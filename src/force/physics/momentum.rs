@@ -164,8 +164,8 @@ fn bullet_arm_m(scenario: &ForceScenario) -> Option<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{TEST_SHARE, split};
     use crate::force::input::shipped;
+    use crate::learning::{TEST_SHARE, split};
 
     #[test]
     fn fitted_on_training_cases_it_meets_their_impulses_better() {

@@ -10,13 +10,10 @@ mod record;
 mod model;
 
 mod training;
-mod training_file;
 
 pub(crate) use batch::network_input;
 pub use calibration::VarianceFactors;
 pub use loss::LossTerms;
 pub use model::ForceModel;
-pub use record::{CaseId, EpochRecord, TrainingRecord, TrainingSet};
-pub use training::{
-    TrainSettings, TrainingProgress, TrainingReport, fit_physics, train, train_around,
-};
+pub use record::{ForceEpoch, ForceRecord, ForceTraining};
+pub use training::{ForceTrainSettings, ForceTrainingSet, fit_physics, train, train_around};

@@ -1,18 +1,17 @@
 //! A trained force network and its file.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use candle_core::{DType, Device, Tensor};
 use serde::{Deserialize, Serialize};
 
 use crate::force::network::{ForceNetwork, OpenFeatures, Standardisation};
 use crate::force::physics::{CentreModel, ResidualModel};
-use crate::force::{ForceCase, ForceConfig, ForceError, ForceScenario, TrainingRecord};
+use crate::force::{ForceCase, ForceConfig, ForceError, ForceRecord, ForceScenario};
+use crate::learning::ModelFile;
 use crate::nn::{Checkpoint, ModelKind, NnError, random_stream};
 use crate::uncertainty::{CURVE_N_INSTANTS, ForceCurve};
 
-const KIND: ModelKind = ModelKind { name: "force network", version: 4 };
 const CURVES: &str = "curves";
 
 /// A trained force network with all it takes to predict, and the cases it was trained on, with
@@ -25,7 +24,7 @@ pub struct ForceModel {
     pub(crate) standardisation: Standardisation,
     pub(crate) open: OpenFeatures,
     pub(crate) network: ForceNetwork,
-    pub(crate) record: TrainingRecord,
+    pub(crate) record: ForceRecord,
     pub(crate) cases: Vec<ForceCase>,
 }
 
@@ -49,7 +48,7 @@ impl ForceModel {
     }
 
     /// How it came to be.
-    pub fn record(&self) -> &TrainingRecord {
+    pub fn record(&self) -> &ForceRecord {
         &self.record
     }
 
@@ -77,13 +76,14 @@ impl ForceModel {
     pub fn is_trained_on(&self, case: &ForceCase) -> bool {
         self.cases.iter().any(|known| known.digest == case.digest)
     }
+}
 
-    /// Writes the model, whole or not at all.
-    ///
-    /// # Errors
-    /// [`ForceError::Network`].
-    pub fn save(&self, path: &Path) -> Result<(), ForceError> {
-        let mut file = Checkpoint::new(KIND);
+impl ModelFile for ForceModel {
+    const KIND: ModelKind = ModelKind { name: "force network", version: 4 };
+
+    type Error = ForceError;
+
+    fn put(&self, file: &mut Checkpoint) -> Result<(), ForceError> {
         file.put("config", &self.config)?;
         file.put("centre", &self.centre)?;
         file.put("residuals", &self.residuals)?;
@@ -102,26 +102,10 @@ impl ForceModel {
         let shape = (self.cases.len(), 2 * CURVE_N_INSTANTS + 1);
         let curves = Tensor::from_vec(values, shape, &Device::Cpu)?;
         file.put_group("cases", BTreeMap::from([(CURVES.to_owned(), curves)]));
-        Ok(file.write(path)?)
+        Ok(())
     }
 
-    /// Reads a model.
-    ///
-    /// # Errors
-    /// [`ForceError::Network`] that says what is wrong with the file.
-    pub fn load(path: &Path) -> Result<Self, ForceError> {
-        Self::from_checkpoint(Checkpoint::read(path, KIND)?)
-    }
-
-    /// Takes a model that is part of the program.
-    ///
-    /// # Errors
-    /// As for [`ForceModel::load`].
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self, ForceError> {
-        Self::from_checkpoint(Checkpoint::from_bytes(bytes, KIND)?)
-    }
-
-    fn from_checkpoint(mut file: Checkpoint) -> Result<Self, ForceError> {
+    fn take(file: &mut Checkpoint) -> Result<Self, ForceError> {
         let config: ForceConfig = file.get("config")?;
         config.check()?;
         let centre: CentreModel = file.get("centre")?;
@@ -134,10 +118,9 @@ impl ForceModel {
         network.parameters().import(&file.take_group("network"))?;
         let missing = || NnError::MissingTensor { name: format!("cases.{CURVES}") };
         let curves = file.take_group("cases").remove(CURVES).ok_or_else(missing)?;
-        file.check_all_taken()?;
         let expected = [stored.len(), 2 * CURVE_N_INSTANTS + 1];
         if curves.dims() != expected {
-            return Err(ForceError::Network(NnError::WrongShape {
+            return Err(ForceError::from(NnError::WrongShape {
                 name: format!("cases.{CURVES}"),
                 expected: expected.to_vec(),
                 got: curves.dims().to_vec(),

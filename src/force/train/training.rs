@@ -1,61 +1,41 @@
 //! Trains the force network: physics first, then the network around it.
 
-use std::ops::ControlFlow;
-use std::path::PathBuf;
 use std::time::Instant;
 
 use candle_core::DType;
 use rand::seq::SliceRandom;
 
-use crate::data::split;
 use crate::force::network::{ForceNetwork, OpenFeatures, Standardisation, features};
 use crate::force::physics::{CentreCurve, CentreModel, ResidualModel};
 use crate::force::train::batch::CaseTensors;
 use crate::force::train::loss::{Loss, LossTerms};
-use crate::force::train::training_file::TrainingFile;
 use crate::force::train::{ForceModel, VarianceFactors};
 use crate::force::{
-    CaseId, CentreFit, EpochRecord, ForceCase, ForceConfig, ForceError, TrainingRecord, TrainingSet,
+    CentreFit, ForceCase, ForceConfig, ForceEpoch, ForceError, ForceRecord, ForceTraining,
 };
-use crate::nn::{AdamW, AdamWConfig, NamedTensors, Schedule, random_stream};
+use crate::learning::{
+    CaseId, EpochLoop, EpochRecord, EpochReport, LearningError, SavedTraining, TrainSettings,
+    TrainingFile, TrainingProgress, TrainingReport, TrainingSet, run_epochs, split,
+};
+use crate::nn::{
+    AdamW, AdamWConfig, Checkpoint, ModelKind, NamedTensors, NnError, Schedule, random_stream,
+};
 use crate::uncertainty::{CurveComponent, CurveMixture};
 
+/// Checkpoints of a training.
+const CHECKPOINT_KIND: ModelKind = ModelKind { name: "training of a force network", version: 1 };
+/// Fewest cases to learn from: below, a fold of the crush model has no case of each kind.
+const LEAST_CASES: usize = 8;
 /// Contact points that stand for their distribution where a scenario leaves it open.
 const N_OPEN_CONTACTS: usize = 8;
 /// Fewest validation cases on which the spread is calibrated.
 const LEAST_CALIBRATION_CASES: usize = 30;
 
-/// What to train and how.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TrainSettings {
-    /// Sizes, weights and rates.
-    pub config: ForceConfig,
-    /// All draws come from it.
-    pub seed: u64,
-    /// Where the training is saved every few epochs.
-    pub checkpoint: Option<PathBuf>,
-    /// Whether to go on from that file, if it is there.
-    pub resume: bool,
-}
+/// Cases to train a force network on.
+pub type ForceTrainingSet = TrainingSet<ForceCase>;
 
-/// How far a training has come.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum TrainingReport<'a> {
-    /// The physics in the centre is being fitted.
-    Centre(CentreFit),
-    /// An epoch is over.
-    Epoch {
-        /// Its losses.
-        record: &'a EpochRecord,
-        /// Epochs at most.
-        n_epochs: usize,
-        /// Whether its weights are the best so far.
-        is_best: bool,
-    },
-}
-
-/// The callback of a training: breaking ends it, and the best weights so far are kept.
-pub type TrainingProgress<'a> = dyn FnMut(TrainingReport<'_>) -> ControlFlow<()> + 'a;
+/// How to train a force network.
+pub type ForceTrainSettings = TrainSettings<ForceConfig>;
 
 /// Trains a model on the cases to learn from.
 ///
@@ -64,17 +44,18 @@ pub type TrainingProgress<'a> = dyn FnMut(TrainingReport<'_>) -> ControlFlow<()>
 /// # Errors
 /// [`ForceError`].
 pub fn train(
-    set: &TrainingSet,
-    settings: &TrainSettings,
+    set: &ForceTrainingSet,
+    settings: &ForceTrainSettings,
     report: &mut TrainingProgress<'_>,
 ) -> Result<ForceModel, ForceError> {
     settings.config.check()?;
-    let mut file = TrainingFile::new(set, settings);
-    let training = match file.read()? {
+    set.check_size(LEAST_CASES)?;
+    let mut file = training_file(set, settings);
+    let training = match file.read(SavedForceTraining::take)? {
         Some(saved) => Training::resumed(set, settings, saved)?,
         None => {
             let mut is_cut = false;
-            let mut told = |fit: TrainingReport<'_>| {
+            let mut told = |fit: &TrainingReport| {
                 let flow = report(fit);
                 is_cut |= flow.is_break();
                 flow
@@ -82,12 +63,12 @@ pub fn train(
             let physics = fit_physics(set, settings, &mut told)?;
             if is_cut {
                 // Nothing that a later training should go on from.
-                file.forget();
+                file.disable();
             }
             Training::around(set, settings, physics)?
         }
     };
-    search(training, set, (settings, &file), report)
+    search(training, set, &file, report)
 }
 
 /// [`train`] around a physics that was fitted before, by [`fit_physics`] on the same set.
@@ -96,13 +77,13 @@ pub fn train(
 /// [`ForceError`].
 pub fn train_around(
     physics: (CentreModel, Vec<CentreCurve>),
-    set: &TrainingSet,
-    settings: &TrainSettings,
+    set: &ForceTrainingSet,
+    settings: &ForceTrainSettings,
     report: &mut TrainingProgress<'_>,
 ) -> Result<ForceModel, ForceError> {
     settings.config.check()?;
     let training = Training::around(set, settings, physics)?;
-    search(training, set, (settings, &TrainingFile::new(set, settings)), report)
+    search(training, set, &training_file(set, settings), report)
 }
 
 /// Fits the physics in the centre: the model, and for each training case the curve of a part of it
@@ -111,51 +92,63 @@ pub fn train_around(
 /// # Errors
 /// [`ForceError`].
 pub fn fit_physics(
-    set: &TrainingSet,
-    settings: &TrainSettings,
+    set: &ForceTrainingSet,
+    settings: &ForceTrainSettings,
     report: &mut TrainingProgress<'_>,
 ) -> Result<(CentreModel, Vec<CentreCurve>), ForceError> {
     let (kind, crush) = (settings.config.network.centre, settings.config.crush);
-    let mut told = |fit| report(TrainingReport::Centre(fit));
+    let mut told = |fit: CentreFit| {
+        let (done, n_fits) = fit.progress();
+        report(&TrainingReport::Fit { what: fit.to_string(), done, n_fits })
+    };
     CentreModel::fit(&set.train, (kind, crush), settings.seed, &mut told)
 }
 
 fn search(
     mut training: Training<'_>,
-    set: &TrainingSet,
-    (settings, file): (&TrainSettings, &TrainingFile),
+    set: &ForceTrainingSet,
+    file: &TrainingFile<ForceConfig>,
     report: &mut TrainingProgress<'_>,
 ) -> Result<ForceModel, ForceError> {
-    let every = settings.config.training.checkpoint_epochs;
-    while !training.is_over() {
-        let is_best = training.epoch()?;
-        let Some(record) = training.history.last() else { break };
-        let n_epochs = settings.config.training.epochs;
-        let told = report(TrainingReport::Epoch { record, n_epochs, is_best });
-        if told.is_break() || record.epoch.is_multiple_of(every) || training.is_over() {
-            file.write(&training.saved()?)?;
-        }
-        if told.is_break() {
-            break;
-        }
-    }
+    run_epochs(&mut training, file, report)?;
     training.finish(set)
 }
 
+/// The checkpoint of a training. More epochs or more patience do not change the epochs that were.
+fn training_file(
+    set: &ForceTrainingSet,
+    settings: &ForceTrainSettings,
+) -> TrainingFile<ForceConfig> {
+    let mut config = settings.config.clone();
+    config.training.epochs = 0;
+    config.training.patience = 0;
+    config.training.checkpoint_epochs = 0;
+    TrainingFile::new(CHECKPOINT_KIND, settings, config, set.digest())
+}
+
 /// What a checkpoint holds.
-pub(crate) struct SavedTraining {
-    pub centre: CentreModel,
-    pub centres: Vec<CentreCurve>,
-    pub parameters: NamedTensors,
-    pub best_parameters: NamedTensors,
-    pub moments: NamedTensors,
-    pub step: u64,
-    pub best_epoch: usize,
-    pub history: Vec<EpochRecord>,
+struct SavedForceTraining {
+    common: SavedTraining<ForceEpoch>,
+    centre: CentreModel,
+    centres: Vec<CentreCurve>,
+    best_parameters: NamedTensors,
+    best_epoch: usize,
+}
+
+impl SavedForceTraining {
+    fn take(file: &mut Checkpoint) -> Result<Self, NnError> {
+        Ok(Self {
+            common: SavedTraining::take(file)?,
+            centre: file.get("centre")?,
+            centres: file.get("centres")?,
+            best_parameters: file.take_group("best"),
+            best_epoch: file.get("best_epoch")?,
+        })
+    }
 }
 
 struct Training<'a> {
-    settings: &'a TrainSettings,
+    settings: &'a ForceTrainSettings,
     centre: CentreModel,
     centres: Vec<CentreCurve>,
     residuals: ResidualModel,
@@ -168,13 +161,13 @@ struct Training<'a> {
     validation: Vec<usize>,
     best_parameters: NamedTensors,
     best_epoch: usize,
-    history: Vec<EpochRecord>,
+    history: Vec<EpochRecord<ForceEpoch>>,
 }
 
 impl<'a> Training<'a> {
     fn around(
-        set: &TrainingSet,
-        settings: &'a TrainSettings,
+        set: &ForceTrainingSet,
+        settings: &'a ForceTrainSettings,
         (centre, centres): (CentreModel, Vec<CentreCurve>),
     ) -> Result<Self, ForceError> {
         let config = &settings.config;
@@ -215,32 +208,17 @@ impl<'a> Training<'a> {
     }
 
     fn resumed(
-        set: &TrainingSet,
-        settings: &'a TrainSettings,
-        saved: SavedTraining,
+        set: &ForceTrainingSet,
+        settings: &'a ForceTrainSettings,
+        saved: SavedForceTraining,
     ) -> Result<Self, ForceError> {
         let mut training = Self::around(set, settings, (saved.centre, saved.centres))?;
-        training.network.parameters().import(&saved.parameters)?;
-        let state = crate::nn::OptimizerState { step: saved.step, moments: saved.moments };
-        training.optimizer.import(&state)?;
+        training.network.parameters().import(&saved.common.parameters)?;
+        training.optimizer.import(&saved.common.optimizer)?;
         training.best_parameters = saved.best_parameters;
         training.best_epoch = saved.best_epoch;
-        training.history = saved.history;
+        training.history = saved.common.history;
         Ok(training)
-    }
-
-    fn saved(&self) -> Result<SavedTraining, ForceError> {
-        let state = self.optimizer.export()?;
-        Ok(SavedTraining {
-            centre: self.centre.clone(),
-            centres: self.centres.clone(),
-            parameters: self.network.parameters().export()?,
-            best_parameters: self.best_parameters.clone(),
-            moments: state.moments,
-            step: state.step,
-            best_epoch: self.best_epoch,
-            history: self.history.clone(),
-        })
     }
 
     fn is_over(&self) -> bool {
@@ -250,8 +228,8 @@ impl<'a> Training<'a> {
         done >= limits.epochs || is_stuck
     }
 
-    /// One pass over the cases; whether it gave the best weights so far.
-    fn epoch(&mut self) -> Result<bool, ForceError> {
+    /// One pass over the cases.
+    fn pass(&mut self) -> Result<EpochRecord<ForceEpoch>, ForceError> {
         let started = Instant::now();
         let config = &self.settings.config;
         let epoch = self.history.len() + 1;
@@ -264,7 +242,7 @@ impl<'a> Training<'a> {
             let loss = Loss::of(&output, &targets, &config.loss)?;
             let values = loss.values()?;
             if !values.total.is_finite() {
-                return Err(ForceError::Diverged { loss: values.total, epoch });
+                return Err(LearningError::Diverged { loss: values.total, epoch }.into());
             }
             let gradients = loss.total.backward()?;
             let step = self.optimizer.step(self.network.parameters(), &gradients)?;
@@ -274,21 +252,24 @@ impl<'a> Training<'a> {
         }
         let train = LossTerms::mean(&batches);
         let validation = self.validate()?;
-        let score = |record: &EpochRecord| match self.validation.is_empty() {
-            true => record.train.total,
-            false => record.validation.total,
-        };
         let seconds = started.elapsed().as_secs_f64();
-        let record =
-            EpochRecord { epoch, train, validation, learning_rate, gradient_norm, seconds };
+        let detail = ForceEpoch { train, validation };
+        Ok(EpochRecord { epoch, detail, learning_rate, gradient_norm, seconds })
+    }
+
+    /// Keeps an epoch, and its weights if they are the best so far.
+    fn keep(&mut self, record: EpochRecord<ForceEpoch>) -> Result<(), ForceError> {
+        let score = |record: &EpochRecord<ForceEpoch>| match self.validation.is_empty() {
+            true => record.detail.train.total,
+            false => record.detail.validation.total,
+        };
         let best = self.best_epoch.checked_sub(1).and_then(|idx| self.history.get(idx));
-        let is_best = best.is_none_or(|best| score(&record) < score(best));
-        self.history.push(record);
-        if is_best {
-            self.best_epoch = epoch;
+        if best.is_none_or(|best| score(&record) < score(best)) {
+            self.best_epoch = record.epoch;
             self.best_parameters = self.network.parameters().export()?;
         }
-        Ok(is_best)
+        self.history.push(record);
+        Ok(())
     }
 
     fn validate(&self) -> Result<LossTerms, ForceError> {
@@ -300,23 +281,20 @@ impl<'a> Training<'a> {
         Loss::of(&output, &targets, &self.settings.config.loss)?.values()
     }
 
-    fn finish(self, set: &TrainingSet) -> Result<ForceModel, ForceError> {
+    fn finish(self, set: &ForceTrainingSet) -> Result<ForceModel, ForceError> {
         self.network.parameters().import(&self.best_parameters)?;
         let variance_factors = self.variance_factors(set)?;
-        let ids = |indices: &[usize]| {
+        let ids = |indices: &[usize]| -> Vec<CaseId> {
             indices.iter().filter_map(|&idx| set.train.get(idx)).map(CaseId::of).collect()
         };
-        let record = TrainingRecord {
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            data: set.name.clone(),
-            data_digest: set.digest(),
-            seed: self.settings.seed,
-            train: ids(&self.learned),
+        let detail = ForceTraining {
             validation: ids(&self.validation),
-            test: set.test.clone(),
             best_epoch: self.best_epoch,
             variance_factors,
-            history: self.history,
+        };
+        let record = ForceRecord {
+            train: ids(&self.learned),
+            ..ForceRecord::of(set, self.settings, detail, self.history)
         };
         let open = OpenFeatures::of(&set.train, &self.centre.bodies(), N_OPEN_CONTACTS);
         Ok(ForceModel {
@@ -334,7 +312,7 @@ impl<'a> Training<'a> {
     /// Calibrated on the validation cases, which the network has not been fitted to, if there are
     /// enough of them, else on all: of the training cases the physics at least has not seen the one
     /// through whose curve it is judged. Test cases are not touched.
-    fn variance_factors(&self, set: &TrainingSet) -> Result<VarianceFactors, ForceError> {
+    fn variance_factors(&self, set: &ForceTrainingSet) -> Result<VarianceFactors, ForceError> {
         let all: Vec<usize> = (0..self.centres.len()).collect();
         let is_enough = self.validation.len() >= LEAST_CALIBRATION_CASES;
         let chosen = if is_enough { &self.validation } else { &all };
@@ -348,6 +326,44 @@ impl<'a> Training<'a> {
         let cases: Vec<(&ForceCase, CurveMixture)> =
             chosen.iter().zip(components).map(pair).collect::<Result<_, ForceError>>()?;
         Ok(VarianceFactors::calibrated(&cases, self.settings.seed))
+    }
+}
+
+impl EpochLoop for Training<'_> {
+    type Error = ForceError;
+
+    fn epoch(&mut self) -> Result<Option<EpochReport>, ForceError> {
+        if self.is_over() {
+            return Ok(None);
+        }
+        let record = self.pass()?;
+        self.keep(record)?;
+        Ok(Some(EpochReport {
+            summary: record.summary(),
+            n_before: 0,
+            n_epochs: self.settings.config.training.epochs,
+            best_epoch: Some(self.best_epoch),
+            training_idx: 0,
+            n_trainings: 1,
+        }))
+    }
+
+    fn is_checkpoint_due(&self) -> bool {
+        let every = self.settings.config.training.checkpoint_epochs;
+        self.history.len().is_multiple_of(every) || self.is_over()
+    }
+
+    fn put(&self, file: &mut Checkpoint) -> Result<(), NnError> {
+        file.put("centre", &self.centre)?;
+        file.put("centres", &self.centres)?;
+        file.put("best_epoch", &self.best_epoch)?;
+        file.put_group("best", self.best_parameters.clone());
+        let common = SavedTraining {
+            parameters: self.network.parameters().export()?,
+            optimizer: self.optimizer.export()?,
+            history: self.history.clone(),
+        };
+        common.put(file)
     }
 }
 

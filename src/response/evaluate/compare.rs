@@ -3,13 +3,13 @@
 use std::cell::Cell;
 use std::ops::ControlFlow;
 
-use crate::data::TEST_SHARE;
-use crate::force::{ImpulseClusters, ImpulseFeatures};
+use crate::collision::{ImpulseClusters, ImpulseFeatures};
 use crate::jobs::{Progress, Report};
+use crate::learning::{LearningError, TEST_SHARE, TrainSettings, TrainingReport, TrainingSet};
 use crate::response::evaluate::{CaseFigures, ComparedCase, Comparison, Rival, path_of};
 use crate::response::{
-    ImpactRecord, ResponseCase, ResponseConfig, ResponseError, ResponseModel,
-    ResponseTrainSettings, ResponseTrainingSet, Tuning, fine_tune, pretrain,
+    ImpactRecord, ResponseCase, ResponseConfig, ResponseModel, ResponseTrainingSet, Tuning,
+    fine_tune, pretrain,
 };
 use rayon::prelude::*;
 
@@ -32,14 +32,15 @@ pub struct ComparisonSettings {
 /// - `start`: a pre-trained response network; `None` to pre-train one here.
 ///
 /// # Errors
-/// [`ResponseError`].
+/// [`LearningError`].
 pub fn compare_models(
     (name, cases): (&str, &[ResponseCase]),
     start: Option<&ResponseModel>,
     settings: &ComparisonSettings,
     report: &mut Report<'_>,
-) -> Result<Option<Comparison>, ResponseError> {
-    let all = ResponseTrainingSet::choose(name, cases, None, (settings.seed, TEST_SHARE, 0))?;
+) -> Result<Option<Comparison>, LearningError> {
+    let all = TrainingSet::of_split(name, cases, settings.seed, TEST_SHARE);
+    all.check_size(1)?;
     let test: Vec<&ResponseCase> =
         cases.iter().filter(|case| all.test.iter().any(|id| id.digest == case.digest)).collect();
     let clusters = clusters(&test, settings.seed);
@@ -49,8 +50,7 @@ pub fn compare_models(
     let mut times = Vec::new();
     for &n in &settings.trajectories {
         for choice in settings.seed..settings.seed + settings.n_choices {
-            let split = (settings.seed, TEST_SHARE, choice);
-            let set = ResponseTrainingSet::choose(name, cases, Some(n), split)?;
+            let set = all.clone().choose(Some(n), choice)?;
             let Some(rivals) = work.trained(&set, &starts, choice)? else { return Ok(None) };
             for (rival, seconds) in rivals {
                 times.push((rival.kind(), n, seconds));
@@ -64,12 +64,12 @@ pub fn compare_models(
 /// One model on trajectories, as a comparison of one.
 ///
 /// # Errors
-/// [`ResponseError`].
+/// [`LearningError`].
 pub fn evaluate_rival(
     (name, cases): (&str, &[&ResponseCase]),
     rival: &Rival,
     (trajectories, seed): (usize, u64),
-) -> Result<Comparison, ResponseError> {
+) -> Result<Comparison, LearningError> {
     let clusters = clusters(cases, seed);
     let rows = answers((rival, trajectories, seed), cases, &clusters)?;
     let settings = ComparisonSettings {
@@ -104,7 +104,7 @@ fn answers(
     (rival, trajectories, choice): (&Rival, usize, u64),
     cases: &[&ResponseCase],
     clusters: &CaseClusters,
-) -> Result<Vec<ComparedCase>, ResponseError> {
+) -> Result<Vec<ComparedCase>, LearningError> {
     let kind = rival.kind();
     let answer = |(case, cluster): (&&ResponseCase, &usize)| {
         let (figures, states) = CaseFigures::of(rival, case)?;
@@ -155,7 +155,7 @@ impl<'a, 'b> Work<'a, 'b> {
         &mut self,
         set: &ResponseTrainingSet,
         start: Option<&ResponseModel>,
-    ) -> Result<Option<[ResponseModel; 2]>, ResponseError> {
+    ) -> Result<Option<[ResponseModel; 2]>, LearningError> {
         let records: Vec<ImpactRecord> =
             set.train.iter().filter_map(ResponseCase::impact).collect();
         let mut models = Vec::new();
@@ -167,10 +167,9 @@ impl<'a, 'b> Work<'a, 'b> {
             let model = match start.filter(|_| is_given) {
                 Some(start) => start.copied()?,
                 None => {
-                    let settings = training_settings(config, self.settings.seed);
+                    let settings = TrainSettings::unsaved(config, self.settings.seed);
                     pretrain((&set.name, &records), &settings, &mut |told| {
-                        let share = told.record.epoch as f64 / told.n_epochs.max(1) as f64;
-                        self.tell(share, message)
+                        self.tell(share_done(told), message)
                     })?
                 }
             };
@@ -188,7 +187,7 @@ impl<'a, 'b> Work<'a, 'b> {
         set: &ResponseTrainingSet,
         [start, plain_start]: &[ResponseModel; 2],
         choice: u64,
-    ) -> Result<Option<Vec<(Rival, f64)>>, ResponseError> {
+    ) -> Result<Option<Vec<(Rival, f64)>>, LearningError> {
         let n = set.train.len();
         let mut rivals = Vec::new();
         let config = self.settings.config.clone();
@@ -205,11 +204,13 @@ impl<'a, 'b> Work<'a, 'b> {
         let of = [(config.clone(), start, "PINN"), (config.plain(), plain_start, "NN-only")];
         for (idx, (config, start, label)) in of.into_iter().enumerate() {
             let started = std::time::Instant::now();
-            let settings = training_settings(config, choice);
+            let settings = TrainSettings::unsaved(config, choice);
             let model = fine_tune(Some(start), set, &settings, &mut |told| {
-                let in_training = told.record.epoch as f64 / told.n_epochs.max(1) as f64;
-                let share = (told.training_idx as f64 + in_training) / told.n_trainings as f64;
-                self.tell(share, &format!("{label} on {n} trajectories, {}", told.record.stage))
+                let part = match told {
+                    TrainingReport::Epoch(epoch) => epoch.part().unwrap_or_default(),
+                    TrainingReport::Fit { what, .. } => what.clone(),
+                };
+                self.tell(share_done(told), &format!("{label} on {n} trajectories, {part}"))
             })?;
             let model = Box::new(model);
             let rival = if idx == 0 { Rival::Network(model) } else { Rival::Plain(model) };
@@ -222,6 +223,10 @@ impl<'a, 'b> Work<'a, 'b> {
     }
 }
 
-fn training_settings(config: ResponseConfig, seed: u64) -> ResponseTrainSettings {
-    ResponseTrainSettings { config, seed, checkpoint: None, resume: false }
+/// Share that is done of a training, 0 to 1.
+fn share_done(told: &TrainingReport) -> f64 {
+    match told {
+        TrainingReport::Fit { .. } => 0.0,
+        TrainingReport::Epoch(epoch) => epoch.share_done(),
+    }
 }

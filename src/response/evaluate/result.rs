@@ -5,10 +5,11 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::collision::Footprint;
-use crate::force::ImpulseClusters;
+use crate::collision::ImpulseClusters;
+use crate::learning::LearningError;
 use crate::response::evaluate::compare::CaseClusters;
 use crate::response::evaluate::{CaseFigures, ComparisonSettings, ModelFigures, RivalKind};
-use crate::response::{ResponseCase, ResponseError, STEP_S};
+use crate::response::{ResponseCase, STEP_S};
 use crate::vehicle::VehicleState;
 
 /// Between the points of the paths of a comparison, s.
@@ -188,9 +189,9 @@ impl Comparison {
     /// Reads a `comparison.json`.
     ///
     /// # Errors
-    /// [`ResponseError::ComparisonFile`] with line and column.
-    pub fn load(path: &Path) -> Result<Self, ResponseError> {
-        let wrong = |reason| ResponseError::ComparisonFile { path: path.to_owned(), reason };
+    /// [`LearningError::File`] with line and column.
+    pub fn load(path: &Path) -> Result<Self, LearningError> {
+        let wrong = |reason| LearningError::File { path: path.to_owned(), reason };
         let bytes = std::fs::read(path).map_err(|error| wrong(error.to_string()))?;
         serde_json::from_slice(&bytes).map_err(|error| wrong(error.to_string()))
     }

@@ -1,16 +1,11 @@
 //! A trained response network and its file.
 
-use std::path::Path;
-
+use crate::learning::{LearningError, ModelFile};
 use crate::nn::{Checkpoint, ModelKind, random_stream};
 use crate::response::network::response_network::ResponseNetwork;
 use crate::response::network::vehicle_network::VehicleNetwork;
-use crate::response::{
-    LatentScales, Predictor, ResponseCase, ResponseConfig, ResponseError, ResponseRecord,
-};
+use crate::response::{LatentScales, Predictor, ResponseCase, ResponseConfig, ResponseRecord};
 use crate::vehicle::VehicleParameters;
-
-const KIND: ModelKind = ModelKind { name: ResponseModel::KIND_NAME, version: 1 };
 
 /// A trained response network with all it takes to predict.
 #[derive(Debug)]
@@ -22,9 +17,6 @@ pub struct ResponseModel {
 }
 
 impl ResponseModel {
-    /// What its files say they hold, see [`kind_of_file`](crate::nn::kind_of_file).
-    pub const KIND_NAME: &'static str = "response network";
-
     pub(crate) fn new(
         config: ResponseConfig,
         network: ResponseNetwork,
@@ -56,8 +48,8 @@ impl ResponseModel {
     /// The same model once more.
     ///
     /// # Errors
-    /// [`ResponseError::Network`].
-    pub fn copied(&self) -> Result<Self, ResponseError> {
+    /// [`LearningError::Network`].
+    pub fn copied(&self) -> Result<Self, LearningError> {
         let mut rng = random_stream(0, "response network", 0);
         let network = ResponseNetwork::new(&self.config.network, &mut rng)?;
         network.parameters().import(&self.network.parameters().export()?)?;
@@ -67,47 +59,6 @@ impl ResponseModel {
 
     pub(crate) fn network(&self) -> &ResponseNetwork {
         &self.network
-    }
-
-    /// Writes the model, whole or not at all.
-    ///
-    /// # Errors
-    /// [`ResponseError::Network`].
-    pub fn save(&self, path: &Path) -> Result<(), ResponseError> {
-        let mut file = Checkpoint::new(KIND);
-        file.put("config", &self.config)?;
-        file.put("latents", &self.latents)?;
-        file.put("record", &self.record)?;
-        file.put_group("network", self.network.parameters().export()?);
-        Ok(file.write(path)?)
-    }
-
-    /// Reads a model.
-    ///
-    /// # Errors
-    /// [`ResponseError::Network`] that says what is wrong with the file.
-    pub fn load(path: &Path) -> Result<Self, ResponseError> {
-        Self::from_checkpoint(Checkpoint::read(path, KIND)?)
-    }
-
-    /// Takes a model that is part of the program.
-    ///
-    /// # Errors
-    /// As for [`ResponseModel::load`].
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self, ResponseError> {
-        Self::from_checkpoint(Checkpoint::from_bytes(bytes, KIND)?)
-    }
-
-    fn from_checkpoint(mut file: Checkpoint) -> Result<Self, ResponseError> {
-        let config: ResponseConfig = file.get("config")?;
-        config.check()?;
-        let latents = file.get("latents")?;
-        let record = file.get("record")?;
-        let mut rng = random_stream(0, "response network", 0);
-        let network = ResponseNetwork::new(&config.network, &mut rng)?;
-        network.parameters().import(&file.take_group("network"))?;
-        file.check_all_taken()?;
-        Ok(Self { config, network, latents, record })
     }
 
     /// How uncertain it is along a motion.
@@ -124,15 +75,38 @@ impl ResponseModel {
     /// one: it was calibrated on other motions.
     pub(crate) fn keep_latents(&mut self, of_start: &LatentScales) {
         self.latents = of_start.at_least_usual();
-        self.record.keeps_latents = true;
+        self.record.detail.keeps_latents = true;
     }
 
     /// The model for one vehicle.
     ///
     /// # Errors
-    /// [`ResponseError::Network`].
-    pub fn predictor(&self, vehicle: &VehicleParameters) -> Result<Predictor, ResponseError> {
+    /// [`LearningError::Network`].
+    pub fn predictor(&self, vehicle: &VehicleParameters) -> Result<Predictor, LearningError> {
         let network = VehicleNetwork::new(&self.network, vehicle)?;
         Ok(Predictor::new(vehicle.clone(), network, self.latents))
+    }
+}
+
+impl ModelFile for ResponseModel {
+    const KIND: ModelKind = ModelKind { name: "response network", version: 1 };
+
+    type Error = LearningError;
+
+    fn put(&self, file: &mut Checkpoint) -> Result<(), LearningError> {
+        file.put("config", &self.config)?;
+        file.put("latents", &self.latents)?;
+        file.put("record", &self.record)?;
+        file.put_group("network", self.network.parameters().export()?);
+        Ok(())
+    }
+
+    fn take(file: &mut Checkpoint) -> Result<Self, LearningError> {
+        let config: ResponseConfig = file.get("config")?;
+        config.check()?;
+        let mut rng = random_stream(0, "response network", 0);
+        let network = ResponseNetwork::new(&config.network, &mut rng)?;
+        network.parameters().import(&file.take_group("network"))?;
+        Ok(Self { config, network, latents: file.get("latents")?, record: file.get("record")? })
     }
 }

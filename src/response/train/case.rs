@@ -1,13 +1,18 @@
 //! Trajectories as the response models learn from them: states and inputs at 100 Hz.
 
+use std::path::Path;
+
 use crate::compare::{
     ReplayError, SPIN_YAW_CHANGE_RAD, largest_yaw_change_rad, recorded_manoeuvre,
 };
 use crate::data::{
-    Case, Channel, Dataset, ForceAxes, ForceHistory, Sampling, SeriesError, Stratified, TimeSeries,
-    TrajectoryAttributes,
+    Case, Channel, Dataset, DatasetKind, ForceAxes, ForceHistory, Outcome, Sampling, SeriesError,
+    TimeSeries, TrajectoryAttributes,
 };
-use crate::nn::sha256_hex;
+use crate::jobs::Report;
+use crate::learning::{
+    LoadError, TrainingCase, cases_and_problems, content_digest, load_cases, load_dataset, n_steps,
+};
 use crate::numerics::interpolate;
 use crate::response::{ImpactRecord, STEP_S};
 use crate::vehicle::{VehicleInput, VehicleParameters, VehicleState};
@@ -125,25 +130,46 @@ impl ResponseCase {
         }
     }
 
-    /// All cases of a trajectory data set, and what is wrong with the rest.
+    /// The cases of a trajectory data set that can be learned from, and what is wrong with the rest.
     pub fn of_dataset(
         dataset: &Dataset,
         vehicle: &VehicleParameters,
     ) -> (Vec<Self>, Vec<ResponseCaseError>) {
-        let (mut cases, mut problems) = (Vec::new(), Vec::new());
-        for case in &dataset.cases {
-            match Self::from_case(case, vehicle) {
-                Ok(case) => cases.push(case),
-                Err(problem) => problems.push(problem),
-            }
-        }
-        (cases, problems)
+        cases_and_problems(dataset, |case| Self::from_case(case, vehicle))
+    }
+
+    /// All cases of a folder with a trajectory data set.
+    ///
+    /// - `vehicle`: the struck vehicle; `None` for the data set's own.
+    ///
+    /// # Errors
+    /// [`LoadError`] with the first thing that is wrong.
+    pub fn load_all(
+        root: &Path,
+        vehicle: Option<&VehicleParameters>,
+        report: &mut Report<'_>,
+    ) -> Result<Outcome<Vec<Self>>, LoadError> {
+        let Outcome::Complete(dataset) = load_dataset(root, DatasetKind::Trajectory, report)?
+        else {
+            return Ok(Outcome::Cancelled);
+        };
+        let vehicle = match (vehicle, &dataset.vehicle_file) {
+            (Some(vehicle), _) => vehicle.clone(),
+            (None, Some(file)) => VehicleParameters::load(file)?,
+            (None, None) => return Err(LoadError::NoVehicle { path: root.to_owned() }),
+        };
+        let cases = load_cases(&dataset, |case| Self::from_case(case, &vehicle))?;
+        Ok(Outcome::Complete(cases))
     }
 }
 
-impl Stratified for ResponseCase {
+impl TrainingCase for ResponseCase {
     fn name(&self) -> &str {
         &self.name
+    }
+
+    fn digest(&self) -> &str {
+        &self.digest
     }
 
     fn is_ordinary(&self) -> bool {
@@ -185,17 +211,12 @@ fn digest(states: &[VehicleState<f64>], inputs: &[VehicleInput<f64>]) -> String 
     let states = states.iter().flat_map(|state| state.to_array());
     let forces = inputs.iter().filter_map(|input| input.collision);
     let forces = forces.flat_map(|collision| collision.force_n).map(|force| force * DIGEST_STEP);
-    let bytes = |value: f64| ((value / DIGEST_STEP).round() as i64).to_le_bytes();
-    let bytes: Vec<u8> = states.chain(forces).flat_map(bytes).collect();
-    sha256_hex([bytes.as_slice()])
+    content_digest(states.chain(forces).map(|value| n_steps(value, DIGEST_STEP)))
 }
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use super::*;
-    use crate::data::Outcome;
     use crate::vehicle::Preset;
 
     #[test]

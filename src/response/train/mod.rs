@@ -2,7 +2,6 @@
 //! epochs, and what a training leaves behind besides weights.
 
 pub(super) mod case;
-mod load;
 
 pub(super) mod simulated;
 
@@ -12,13 +11,11 @@ mod physics_weight;
 
 mod record;
 
-mod training_file;
 mod training_run;
 
 mod stages;
 
 pub use case::{ResponseCase, ResponseCaseError};
-pub use load::ResponseLoadError;
-pub use record::{ResponseEpoch, ResponseRecord, ResponseStage, ResponseTrainingSet};
+pub use record::{ResponseEpoch, ResponseRecord, ResponseStage, ResponseTraining};
 pub use simulated::ImpactRecord;
-pub use stages::{ResponseProgress, ResponseReport, ResponseTrainSettings, fine_tune, pretrain};
+pub use stages::{ResponseTrainSettings, ResponseTrainingSet, fine_tune, pretrain};

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 use rayon::prelude::*;
 
-use crate::force::ForceCase;
+use crate::data::ForceHistory;
 use crate::nn::random_stream;
 use crate::response::network::one_step::MotionView;
 use crate::response::{N_RESIDUAL, STEP_S, rollout};
@@ -27,22 +27,26 @@ pub struct ImpactRecord {
 }
 
 impl ImpactRecord {
-    /// Of a case of a force data set, 4 s from the start of the impact.
+    /// A vehicle that drives straight on until a force strikes it, for 4 s from the start of the
+    /// impact.
     ///
-    /// - `vehicle`: the kind of the struck vehicle, whose mass is replaced by the case's.
-    ///
-    /// `None` where the case does not say where the contact was.
-    pub fn of_force_case(case: &ForceCase, vehicle: &VehicleParameters) -> Option<Self> {
-        let scenario = &case.scenario;
-        let [x_m, y_m] = scenario.contact_m?;
-        let vehicle = vehicle.clone().with_mass(scenario.mass_kg[0], scenario.yaw_inertia_kg_m2[0]);
-        let [vx_m_s, vy_m_s] = scenario.target_velocity_m_s;
+    /// - `velocity_m_s`: forward and to the left, before the impact;
+    /// - `contact_m`: where the force acts, x forward and y to the left of the centre of gravity.
+    pub fn under_force(
+        vehicle: VehicleParameters,
+        velocity_m_s: [f64; 2],
+        contact_m: [f64; 2],
+        force: ForceHistory,
+    ) -> Self {
+        let [vx_m_s, vy_m_s] = velocity_m_s;
+        let [x_m, y_m] = contact_m;
         let initial = VehicleState { vx_m_s, vy_m_s, ..VehicleState::default() };
         let contact = ContactPoint { x_m, y_m, height_m: vehicle.geometry.cg_height_m };
-        let load = ContactLoad { force: case.curve.to_history(), contact, recorded_moment: false };
+        let load = ContactLoad { force, contact, recorded_moment: false };
         let duration_s = N_STEPS as f64 * STEP_S;
         let manoeuvre = Manoeuvre { initial, contact_load: Some(load), steer: None, duration_s };
-        Some(Self { vehicle, initial, inputs: manoeuvre.inputs(STEP_S, N_STEPS) })
+        let inputs = manoeuvre.inputs(STEP_S, N_STEPS);
+        Self { vehicle, initial, inputs }
     }
 }
 

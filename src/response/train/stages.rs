@@ -2,71 +2,44 @@
 //! rollouts of growing length.
 
 use std::cell::Cell;
-use std::ops::ControlFlow;
-use std::path::PathBuf;
 
-use crate::data::{Split, folds};
-use crate::force::CaseId;
+use crate::learning::{
+    EpochRecord, EpochReport, LearningError, SavedTraining, Split, TrainSettings, TrainingFile,
+    TrainingProgress, TrainingReport, TrainingSet, folds, run_epochs,
+};
 use crate::nn::{random_stream, sha256_hex};
 use crate::response::network::response_network::ResponseNetwork;
 use crate::response::physics::effects_fit::fit_strengths;
 use crate::response::predict::calibration::{Unseen, calibrate};
-use crate::response::train::record::case_id;
 use crate::response::train::simulated::{ImpactRecord, SimulatedMotion, simulate};
-use crate::response::train::training_file::TrainingFile;
-use crate::response::train::training_run::{Planned, TrainingData, TrainingRun};
+use crate::response::train::training_run::{CHECKPOINT_KIND, Planned, TrainingData, TrainingRun};
 use crate::response::{
-    Correction, ResponseConfig, ResponseEpoch, ResponseError, ResponseModel, ResponseRecord,
-    ResponseStage, ResponseTrainingSet,
+    Correction, ResponseCase, ResponseConfig, ResponseEpoch, ResponseModel, ResponseRecord,
+    ResponseStage, ResponseTraining,
 };
 
-/// What to train and how.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ResponseTrainSettings {
-    /// Sizes, weights and rates.
-    pub config: ResponseConfig,
-    /// All draws come from it.
-    pub seed: u64,
-    /// Where the training is saved every few epochs.
-    pub checkpoint: Option<PathBuf>,
-    /// Whether to go on from that file, if it is there.
-    pub resume: bool,
-}
+/// Trajectories to fine-tune on.
+pub type ResponseTrainingSet = TrainingSet<ResponseCase>;
 
-/// How far a training has come: an epoch is over.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ResponseReport<'a> {
-    /// Its losses.
-    pub record: &'a ResponseEpoch,
-    /// Epochs in all, with those before.
-    pub n_epochs: usize,
-    /// Of these, epochs of the pre-training that it starts from.
-    pub n_before: usize,
-    /// Which training of several it is: 0 for the model itself, then those for the calibration.
-    pub training_idx: usize,
-    /// How many trainings there are.
-    pub n_trainings: usize,
-}
-
-/// The callback of a training: breaking ends it with the weights as they are.
-pub type ResponseProgress<'a> = dyn FnMut(ResponseReport<'_>) -> ControlFlow<()> + 'a;
+/// How to train a response network.
+pub type ResponseTrainSettings = TrainSettings<ResponseConfig>;
 
 /// Pre-trains a network on simulations of the 4DOF model under recorded forces.
 ///
 /// - `records`: vehicles, driving states and forces; no motion after the impact is looked at.
 ///
 /// # Errors
-/// [`ResponseError`].
+/// [`LearningError`].
 pub fn pretrain(
     (name, records): (&str, &[ImpactRecord]),
     settings: &ResponseTrainSettings,
-    report: &mut ResponseProgress<'_>,
-) -> Result<ResponseModel, ResponseError> {
+    report: &mut TrainingProgress<'_>,
+) -> Result<ResponseModel, LearningError> {
     settings.config.check()?;
     let config = &settings.config;
     let motions = simulate(records, config.pretraining.motions, (true, settings.seed));
     if motions.is_empty() {
-        return Err(ResponseError::NoCases);
+        return Err(LearningError::TooFewCases { n_cases: 0, least: 1 });
     }
     let network = fresh_network(settings)?;
     // The last state: the whole motion led there.
@@ -76,10 +49,13 @@ pub fn pretrain(
     let set = ResponseTrainingSet { name: name.to_owned(), ..ResponseTrainingSet::default() };
     let plan =
         vec![Planned { stage: ResponseStage::Pretraining, n_epochs: config.pretraining.epochs }];
-    let file = TrainingFile::new(settings, identity.clone());
     let training = TrainingRun::new(settings, (network, data, plan), Vec::new())?;
-    let (network, history) = training.run(&file, report)?;
-    let record = record((&set, identity), settings, (motions.len(), history));
+    let (network, history) = run(training, settings, identity.clone(), report)?;
+    let detail = ResponseTraining { n_simulated: motions.len(), keeps_latents: false };
+    let record = ResponseRecord {
+        data_digest: identity,
+        ..ResponseRecord::of(&set, settings, detail, history)
+    };
     Ok(ResponseModel::new(config.clone(), network, record))
 }
 
@@ -94,19 +70,26 @@ pub fn pretrain(
 /// started from, nowhere below the usual one; the record says so.
 ///
 /// # Errors
-/// [`ResponseError`].
+/// [`LearningError`].
 pub fn fine_tune(
     start: Option<&ResponseModel>,
     set: &ResponseTrainingSet,
     settings: &ResponseTrainSettings,
-    report: &mut ResponseProgress<'_>,
-) -> Result<ResponseModel, ResponseError> {
+    report: &mut TrainingProgress<'_>,
+) -> Result<ResponseModel, LearningError> {
     settings.config.check()?;
     let folds = calibration_folds(set, settings);
     let n_trainings = folds.len() + 1;
     let (training_idx, is_cut) = (Cell::new(0), Cell::new(false));
-    let mut told = |told: ResponseReport<'_>| {
-        let flow = report(ResponseReport { training_idx: training_idx.get(), n_trainings, ..told });
+    let mut told = |told: &TrainingReport| {
+        let flow = match told {
+            TrainingReport::Epoch(epoch) => {
+                let training_idx = training_idx.get();
+                let epoch = EpochReport { training_idx, n_trainings, ..epoch.clone() };
+                report(&TrainingReport::Epoch(epoch))
+            }
+            fit => report(fit),
+        };
         is_cut.set(is_cut.get() || flow.is_break());
         flow
     };
@@ -117,7 +100,7 @@ pub fn fine_tune(
             return Ok(model);
         }
         training_idx.set(training_idx.get() + 1);
-        let part = part_of(set, &fold.train);
+        let part = set.part(&fold.train);
         let quiet = ResponseTrainSettings { checkpoint: None, ..settings.clone() };
         let member = fine_tune_once(start, &part, &quiet, &mut told)?;
         for case in fold.test.iter().filter_map(|&idx| set.train.get(idx)) {
@@ -143,20 +126,15 @@ fn calibration_folds(set: &ResponseTrainingSet, settings: &ResponseTrainSettings
     }
 }
 
-fn part_of(set: &ResponseTrainingSet, indices: &[usize]) -> ResponseTrainingSet {
-    let train = indices.iter().filter_map(|&idx| set.train.get(idx).cloned()).collect();
-    ResponseTrainingSet { train, ..set.clone() }
-}
-
 fn fine_tune_once(
     start: Option<&ResponseModel>,
     set: &ResponseTrainingSet,
     settings: &ResponseTrainSettings,
-    report: &mut ResponseProgress<'_>,
-) -> Result<ResponseModel, ResponseError> {
+    report: &mut TrainingProgress<'_>,
+) -> Result<ResponseModel, LearningError> {
     let config = &settings.config;
     if !set.train.iter().any(|case| case.states.len() > 1 && !case.inputs.is_empty()) {
-        return Err(ResponseError::NoCases);
+        return Err(LearningError::TooFewCases { n_cases: 0, least: 1 });
     }
     let mut network = fresh_network(settings)?;
     let (mut n_simulated, mut history) = (0, Vec::new());
@@ -166,7 +144,7 @@ fn fine_tune_once(
             network.silence()?;
         }
         network.freeze(config.single_steps.frozen_share);
-        n_simulated = start.record().n_simulated;
+        n_simulated = start.record().detail.n_simulated;
         history.clone_from(&start.record().history);
     } else {
         network.freeze(0.0);
@@ -185,14 +163,29 @@ fn fine_tune_once(
     }));
     let start_digest = start.map_or(String::new(), |start| start.record().data_digest.clone());
     let identity = sha256_hex([set.digest().as_bytes(), start_digest.as_bytes()]);
-    let file = TrainingFile::new(settings, identity);
     let training = TrainingRun::new(settings, (network, data, plan), history)?;
-    let (network, history) = training.run(&file, report)?;
-    let record = record((set, set.digest()), settings, (n_simulated, history));
+    let (network, history) = run(training, settings, identity, report)?;
+    let detail = ResponseTraining { n_simulated, keeps_latents: false };
+    let record = ResponseRecord::of(set, settings, detail, history);
     Ok(ResponseModel::new(config.clone(), network, record))
 }
 
-fn fresh_network(settings: &ResponseTrainSettings) -> Result<ResponseNetwork, ResponseError> {
+/// Runs the epochs of a training, from its checkpoint on if there is one.
+fn run(
+    mut training: TrainingRun<'_>,
+    settings: &ResponseTrainSettings,
+    data_digest: String,
+    report: &mut TrainingProgress<'_>,
+) -> Result<(ResponseNetwork, Vec<EpochRecord<ResponseEpoch>>), LearningError> {
+    let file = TrainingFile::new(CHECKPOINT_KIND, settings, settings.config.clone(), data_digest);
+    if let Some(saved) = file.read(SavedTraining::take)? {
+        training = training.resumed(saved)?;
+    }
+    run_epochs(&mut training, &file, report)?;
+    Ok(training.finish())
+}
+
+fn fresh_network(settings: &ResponseTrainSettings) -> Result<ResponseNetwork, LearningError> {
     let mut rng = random_stream(settings.seed, "response network", 0);
     Ok(ResponseNetwork::new(&settings.config.network, &mut rng)?)
 }
@@ -200,23 +193,4 @@ fn fresh_network(settings: &ResponseTrainSettings) -> Result<ResponseNetwork, Re
 fn bytes_of_last(motion: &SimulatedMotion) -> Vec<u8> {
     let last = motion.states.last().copied().unwrap_or_default().to_array();
     last.iter().flat_map(|value| value.to_le_bytes()).collect()
-}
-
-fn record(
-    (set, data_digest): (&ResponseTrainingSet, String),
-    settings: &ResponseTrainSettings,
-    (n_simulated, history): (usize, Vec<ResponseEpoch>),
-) -> ResponseRecord {
-    let train: Vec<CaseId> = set.train.iter().map(case_id).collect();
-    ResponseRecord {
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        data: set.name.clone(),
-        data_digest,
-        seed: settings.seed,
-        n_simulated,
-        train,
-        test: set.test.clone(),
-        history,
-        keeps_latents: false,
-    }
 }

@@ -1,4 +1,4 @@
-//! The epochs of a training, one stage after the other, with its checkpoints.
+//! The epochs of a training of the response network, one stage after the other.
 
 use std::time::Instant;
 
@@ -8,8 +8,9 @@ use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
+use crate::learning::{EpochLoop, EpochRecord, EpochReport, LearningError, SavedTraining};
 use crate::nn::{
-    AdamW, AdamWConfig, NamedTensors, OptimizerState, Schedule, StepReport, random_stream,
+    AdamW, AdamWConfig, Checkpoint, ModelKind, NnError, Schedule, StepReport, random_stream,
 };
 use crate::response::network::loss::{Loss, boundary, diversity, single_step_terms};
 use crate::response::network::one_step::{MotionView, OneStepData};
@@ -17,11 +18,14 @@ use crate::response::network::response_network::{Gradients, ResponseNetwork};
 use crate::response::network::rollout_loss::{RolloutCase, Window, rollout_loss};
 use crate::response::train::physics_points::PhysicsPoints;
 use crate::response::train::simulated::{ImpactRecord, SimulatedMotion};
-use crate::response::train::stages::{ResponseProgress, ResponseReport, ResponseTrainSettings};
-use crate::response::train::training_file::TrainingFile;
 use crate::response::{
-    ResponseCase, ResponseConfig, ResponseEpoch, ResponseError, ResponseLossTerms, ResponseStage,
+    ResponseCase, ResponseConfig, ResponseEpoch, ResponseLossTerms, ResponseStage,
+    ResponseTrainSettings,
 };
+
+/// The checkpoints of a training.
+pub(super) const CHECKPOINT_KIND: ModelKind =
+    ModelKind { name: "training of a response network", version: 1 };
 
 /// Share of the optimiser's steps over which the learning rate of single steps rises.
 const WARMUP_SHARE: f64 = 0.1;
@@ -76,91 +80,64 @@ impl<'a> TrainingData<'a> {
     }
 }
 
-/// What a checkpoint holds.
-pub(super) struct SavedTraining {
-    pub parameters: NamedTensors,
-    pub moments: NamedTensors,
-    pub step: u64,
-    pub history: Vec<ResponseEpoch>,
-}
-
 /// A training under way.
 pub(super) struct TrainingRun<'a> {
     settings: &'a ResponseTrainSettings,
     network: ResponseNetwork,
     data: TrainingData<'a>,
     plan: Vec<Planned>,
-    /// Of the stage under way.
+    /// Optimiser of the stage under way.
     optimizer: AdamW,
-    /// Of this training and those before.
-    history: Vec<ResponseEpoch>,
-    /// Epochs of those before.
+    /// Epochs of this training and of those before it.
+    history: Vec<EpochRecord<ResponseEpoch>>,
+    /// Number of epochs of the trainings before it.
     n_before: usize,
 }
 
 impl<'a> TrainingRun<'a> {
+    /// A training that starts.
+    ///
+    /// - `history`: epochs of the training from which this one starts.
     pub(super) fn new(
         settings: &'a ResponseTrainSettings,
         (network, data, plan): (ResponseNetwork, TrainingData<'a>, Vec<Planned>),
-        history: Vec<ResponseEpoch>,
-    ) -> Result<Self, ResponseError> {
+        history: Vec<EpochRecord<ResponseEpoch>>,
+    ) -> Result<Self, LearningError> {
         let optimizer = AdamW::new(AdamWConfig::default(), network.parameters())?;
         let n_before = history.len();
         Ok(Self { settings, network, data, plan, optimizer, history, n_before })
     }
 
-    /// All epochs that are left.
-    pub(super) fn run(
+    /// The same training where a checkpoint left it.
+    pub(super) fn resumed(
         mut self,
-        file: &TrainingFile,
-        report: &mut ResponseProgress<'_>,
-    ) -> Result<(ResponseNetwork, Vec<ResponseEpoch>), ResponseError> {
-        let n_epochs: usize = self.plan.iter().map(|planned| planned.n_epochs).sum();
-        let saved = file.read()?;
-        let mut skip =
-            saved.as_ref().map_or(0, |saved| saved.history.len().saturating_sub(self.n_before));
-        let mut moments = None;
-        if let Some(saved) = saved {
-            self.network.parameters().import(&saved.parameters)?;
-            moments = Some(OptimizerState { step: saved.step, moments: saved.moments });
-            self.history = saved.history;
-        }
-        for planned in self.plan.clone() {
-            if skip >= planned.n_epochs {
-                skip -= planned.n_epochs;
-                continue;
-            }
+        saved: SavedTraining<ResponseEpoch>,
+    ) -> Result<Self, LearningError> {
+        self.network.parameters().import(&saved.parameters)?;
+        self.history = saved.history;
+        // Every stage starts with an optimiser of its own.
+        if let Some((planned, 1..)) = self.stage_under_way() {
             self.optimizer = AdamW::new(self.optimizer_config(planned), self.network.parameters())?;
-            if let Some(moments) = moments.take().filter(|_| skip > 0) {
-                self.optimizer.import(&moments)?;
-            }
-            for in_stage in std::mem::take(&mut skip)..planned.n_epochs {
-                self.epoch(planned.stage)?;
-                let Some(record) = self.history.last() else { continue };
-                let is_broken = report(ResponseReport {
-                    record,
-                    n_epochs: self.n_before + n_epochs,
-                    n_before: self.n_before,
-                    training_idx: 0,
-                    n_trainings: 1,
-                })
-                .is_break();
-                let is_last = in_stage + 1 == planned.n_epochs;
-                if is_broken || is_last || (in_stage + 1).is_multiple_of(CHECKPOINT_EPOCHS) {
-                    file.write(&self.saved()?)?;
-                }
-                if is_broken {
-                    return Ok((self.network, self.history));
-                }
-            }
+            self.optimizer.import(&saved.optimizer)?;
         }
-        Ok((self.network, self.history))
+        Ok(self)
     }
 
-    fn saved(&self) -> Result<SavedTraining, ResponseError> {
-        let OptimizerState { step, moments } = self.optimizer.export()?;
-        let parameters = self.network.parameters().export()?;
-        Ok(SavedTraining { parameters, moments, step, history: self.history.clone() })
+    /// The network as it is, and every epoch.
+    pub(super) fn finish(self) -> (ResponseNetwork, Vec<EpochRecord<ResponseEpoch>>) {
+        (self.network, self.history)
+    }
+
+    /// The stage of the next epoch, and how many of its epochs are over; `None` after the last.
+    fn stage_under_way(&self) -> Option<(Planned, usize)> {
+        let mut n_done = self.history.len().saturating_sub(self.n_before);
+        for planned in &self.plan {
+            if n_done < planned.n_epochs {
+                return Some((*planned, n_done));
+            }
+            n_done -= planned.n_epochs;
+        }
+        None
     }
 
     fn optimizer_config(&self, planned: Planned) -> AdamWConfig {
@@ -194,11 +171,11 @@ impl<'a> TrainingRun<'a> {
         }
     }
 
-    fn epoch(&mut self, stage: ResponseStage) -> Result<(), ResponseError> {
+    fn pass(&mut self, stage: ResponseStage) -> Result<EpochReport, LearningError> {
         let started = Instant::now();
         let config = &self.settings.config;
         let epoch = self.history.len() + 1;
-        let balance = self.history.last().map_or(1.0, |record| record.balance);
+        let balance = self.history.last().map_or(1.0, |record| record.detail.balance);
         let in_training = epoch - self.n_before;
         let physics_weight = match stage {
             ResponseStage::Pretraining => 0.0,
@@ -208,7 +185,7 @@ impl<'a> TrainingRun<'a> {
         let mut take = |loss: Loss, network: &ResponseNetwork, optimizer: &mut AdamW| {
             let (total, values) = loss.total(&config.loss, physics_weight)?;
             if !values.total.is_finite() {
-                return Err(ResponseError::Diverged { loss: values.total, epoch });
+                return Err(LearningError::Diverged { loss: values.total, epoch });
             }
             let gradients = total.backward()?;
             let step: StepReport = optimizer.step(network.parameters(), &gradients)?;
@@ -253,17 +230,19 @@ impl<'a> TrainingRun<'a> {
         let of_physics = config.loss.physics * physics_weight * loss.physics;
         let balance = if of_physics > 0.0 { loss.data / (loss.data + of_physics) } else { 1.0 };
         let seconds = started.elapsed().as_secs_f64();
-        self.history.push(ResponseEpoch {
-            epoch,
-            stage,
-            loss,
-            physics_weight,
-            balance,
-            learning_rate,
-            gradient_norm,
-            seconds,
-        });
-        Ok(())
+        let detail = ResponseEpoch { stage, loss, physics_weight, balance };
+        let record = EpochRecord { epoch, detail, learning_rate, gradient_norm, seconds };
+        let summary = record.summary();
+        self.history.push(record);
+        let n_planned: usize = self.plan.iter().map(|planned| planned.n_epochs).sum();
+        Ok(EpochReport {
+            summary,
+            n_before: self.n_before,
+            n_epochs: self.n_before + n_planned,
+            best_epoch: None,
+            training_idx: 0,
+            n_trainings: 1,
+        })
     }
 
     fn single_step_loss(
@@ -271,7 +250,7 @@ impl<'a> TrainingRun<'a> {
         batch: &[usize],
         stage: ResponseStage,
         rng: &mut ChaCha8Rng,
-    ) -> Result<Loss, ResponseError> {
+    ) -> Result<Loss, LearningError> {
         let config = &self.settings.config;
         let gradients = match stage {
             ResponseStage::Pretraining => Gradients::All,
@@ -314,5 +293,31 @@ impl<'a> TrainingRun<'a> {
             smoothness: zero,
             boundary: boundary(&batch.states, &self.network.boundary_scale()?)?,
         })
+    }
+}
+
+impl EpochLoop for TrainingRun<'_> {
+    type Error = LearningError;
+
+    fn epoch(&mut self) -> Result<Option<EpochReport>, LearningError> {
+        let Some((planned, n_done)) = self.stage_under_way() else { return Ok(None) };
+        if n_done == 0 {
+            self.optimizer = AdamW::new(self.optimizer_config(planned), self.network.parameters())?;
+        }
+        self.pass(planned.stage).map(Some)
+    }
+
+    /// At the end of each stage, and every few epochs in it.
+    fn is_checkpoint_due(&self) -> bool {
+        self.stage_under_way().is_none_or(|(_, n_done)| n_done.is_multiple_of(CHECKPOINT_EPOCHS))
+    }
+
+    fn put(&self, file: &mut Checkpoint) -> Result<(), NnError> {
+        let saved = SavedTraining {
+            parameters: self.network.parameters().export()?,
+            optimizer: self.optimizer.export()?,
+            history: self.history.clone(),
+        };
+        saved.put(file)
     }
 }

@@ -230,9 +230,9 @@ impl StatisticalBaseline {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{TEST_SHARE, split};
     use crate::force::input::shipped;
     use crate::force::metrics::PointErrors;
+    use crate::learning::{TEST_SHARE, split};
     use crate::numerics::Summary;
 
     const OPTIONS: StatisticalOptions = StatisticalOptions {

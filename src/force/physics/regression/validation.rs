@@ -1,9 +1,9 @@
 //! Cross-validation on training cases, by which baselines choose their options.
 
-use crate::data::{Split, folds};
 use crate::force::metrics::PointErrors;
 use crate::force::regression::BaselineError;
 use crate::force::{ForceCase, Prediction};
+use crate::learning::{Split, folds};
 
 /// Folds of the cross-validations by which options are chosen.
 pub const N_FOLDS: usize = 5;

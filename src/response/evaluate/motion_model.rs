@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::learning::LearningError;
 use crate::response::{
-    MotionDistribution, N_RESIDUAL, ResponseCase, ResponseError, ResponseModel, Tuning, rollout,
+    MotionDistribution, N_RESIDUAL, ResponseCase, ResponseModel, Tuning, rollout,
 };
 use crate::vehicle::VehicleState;
 
@@ -71,8 +72,8 @@ impl Rival {
     /// What it says of the motion after the impact of a case.
     ///
     /// # Errors
-    /// [`ResponseError::Network`].
-    pub(crate) fn answer(&self, case: &ResponseCase) -> Result<Answer, ResponseError> {
+    /// [`LearningError::Network`].
+    pub(crate) fn answer(&self, case: &ResponseCase) -> Result<Answer, LearningError> {
         let initial = case.states.first().copied().unwrap_or_default();
         let four_dof = |vehicle| {
             let states = rollout(vehicle, initial, &case.inputs, |_, _| [0.0; N_RESIDUAL]);

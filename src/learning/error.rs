@@ -1,23 +1,20 @@
-//! What can go wrong between a trajectory and a prediction.
+//! What can go wrong while a network learns, or while its files are read and written.
 
 use std::path::PathBuf;
 
 use crate::data::TomlError;
 use crate::nn::NnError;
 
-/// A response model cannot be trained, opened or asked.
+/// A network cannot be trained, opened or asked.
 #[derive(Debug, thiserror::Error)]
-pub enum ResponseError {
-    /// Nothing to learn from.
-    #[error("no trajectory to learn from")]
-    NoCases,
-    /// Fewer trajectories than asked for.
-    #[error("{n_cases} trajectories to learn from, expected {wanted}")]
+pub enum LearningError {
+    /// Fewer cases than the training needs or was asked to learn from.
+    #[error("{n_cases} cases to learn from, expected {least} or more")]
     TooFewCases {
-        /// How many there are.
+        /// How many cases there are.
         n_cases: usize,
-        /// How many were asked for.
-        wanted: usize,
+        /// How many it takes.
+        least: usize,
     },
     /// A setting outside its range.
     #[error("{name} is {value}, expected {expected}")]
@@ -29,15 +26,15 @@ pub enum ResponseError {
         /// The range, in words.
         expected: &'static str,
     },
-    /// A configuration file cannot be read.
+    /// A file of settings cannot be read.
     #[error(transparent)]
-    ConfigFile(#[from] TomlError),
-    /// A comparison cannot be read.
+    Toml(#[from] TomlError),
+    /// A file of results cannot be read.
     #[error("{}: {reason}", path.display())]
-    ComparisonFile {
+    File {
         /// The file.
         path: PathBuf,
-        /// Why, with line and column.
+        /// The reason, with the line.
         reason: String,
     },
     /// A checkpoint was written by another training.
@@ -45,23 +42,23 @@ pub enum ResponseError {
     OtherTraining {
         /// The checkpoint.
         path: PathBuf,
-        /// What differs: configuration, seed, trajectories.
+        /// What differs: configuration, seed or cases.
         what: &'static str,
     },
-    /// The loss is not a number any more.
+    /// The loss is no longer a finite number.
     #[error("the loss is {loss} in epoch {epoch}: lower the learning rate")]
     Diverged {
         /// The loss.
         loss: f64,
-        /// In which epoch, from 1.
+        /// The epoch, counted from 1.
         epoch: usize,
     },
-    /// Network or model file.
+    /// The network itself or a model file failed.
     #[error(transparent)]
     Network(#[from] NnError),
 }
 
-impl From<candle_core::Error> for ResponseError {
+impl From<candle_core::Error> for LearningError {
     fn from(error: candle_core::Error) -> Self {
         Self::Network(error.into())
     }

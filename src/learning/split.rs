@@ -3,26 +3,8 @@
 //! Ordinary cases and the others (impacts that hook, motions that spin) are split apart, so that each
 //! part has its share of both.
 
-use sha2::{Digest, Sha256};
-
-/// What a split asks of a case.
-pub trait Stratified {
-    /// Its name in its data set.
-    fn name(&self) -> &str;
-
-    /// Whether it belongs to the ordinary cases; the others are split by themselves.
-    fn is_ordinary(&self) -> bool;
-}
-
-impl<T: Stratified> Stratified for &T {
-    fn name(&self) -> &str {
-        T::name(self)
-    }
-
-    fn is_ordinary(&self) -> bool {
-        T::is_ordinary(self)
-    }
-}
+use crate::learning::TrainingCase;
+use crate::nn::sha256_hex;
 
 /// Share of the cases that test: train to test 3 : 1, as in the paper
 /// ([`PitPinnPaper`](crate::bibliography::PitPinnPaper)).
@@ -41,7 +23,7 @@ pub struct Split {
 /// `round(n · test_share)` test (halves to even).
 ///
 /// - `test_share`: 0 to 1, see [`TEST_SHARE`].
-pub fn split<C: Stratified>(cases: &[C], seed: u64, test_share: f64) -> Split {
+pub fn split<C: TrainingCase>(cases: &[C], seed: u64, test_share: f64) -> Split {
     let mut split = Split::default();
     for stratum in strata(cases, seed) {
         let n_test = (stratum.len() as f64 * test_share).round_ties_even() as usize;
@@ -58,7 +40,7 @@ pub fn split<C: Stratified>(cases: &[C], seed: u64, test_share: f64) -> Split {
 /// cases are dealt round. In fold `i` the test part is what was dealt to it.
 ///
 /// - `n_folds`: 2 or more; folds that get no case are left out.
-pub fn folds<C: Stratified>(cases: &[C], n_folds: usize, seed: u64) -> Vec<Split> {
+pub fn folds<C: TrainingCase>(cases: &[C], n_folds: usize, seed: u64) -> Vec<Split> {
     let order: Vec<usize> = strata(cases, seed).concat();
     let fold = |of: usize| {
         let dealt = order.iter().enumerate().map(|(rank, &idx)| (rank % n_folds.max(1), idx));
@@ -74,7 +56,7 @@ pub fn folds<C: Stratified>(cases: &[C], n_folds: usize, seed: u64) -> Vec<Split
 }
 
 /// Ordinary cases, then the others, each ordered by hash.
-fn strata<C: Stratified>(cases: &[C], seed: u64) -> [Vec<usize>; 2] {
+fn strata<C: TrainingCase>(cases: &[C], seed: u64) -> [Vec<usize>; 2] {
     let mut keyed: Vec<(String, usize)> =
         cases.iter().enumerate().map(|(idx, case)| (hash(seed, case.name()), idx)).collect();
     keyed.sort();
@@ -86,8 +68,7 @@ fn strata<C: Stratified>(cases: &[C], seed: u64) -> [Vec<usize>; 2] {
 }
 
 fn hash(seed: u64, name: &str) -> String {
-    let bytes = Sha256::digest(format!("{seed}:{name}"));
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+    sha256_hex([format!("{seed}:{name}").as_bytes()])
 }
 
 #[cfg(test)]
@@ -96,8 +77,12 @@ mod tests {
 
     struct Labelled(String, bool);
 
-    impl Stratified for Labelled {
+    impl TrainingCase for Labelled {
         fn name(&self) -> &str {
+            &self.0
+        }
+
+        fn digest(&self) -> &str {
             &self.0
         }
 

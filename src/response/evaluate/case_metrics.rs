@@ -6,9 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::compare::{MotionError, physical_violations};
 use crate::data::null_as_nan;
+use crate::learning::LearningError;
 use crate::response::evaluate::Rival;
 use crate::response::evaluate::rival::Answer;
-use crate::response::{MotionDistribution, ResponseCase, ResponseError, motion_series};
+use crate::response::{MotionDistribution, ResponseCase, motion_series};
 use crate::vehicle::VehicleState;
 
 /// Every how many steps the regions are looked at: 0.1 s.
@@ -61,11 +62,11 @@ impl CaseFigures {
     /// Asks a model about a trajectory and compares, with what it said.
     ///
     /// # Errors
-    /// [`ResponseError::Network`].
+    /// [`LearningError::Network`].
     pub(crate) fn of(
         rival: &Rival,
         case: &ResponseCase,
-    ) -> Result<(Self, Vec<VehicleState<f64>>), ResponseError> {
+    ) -> Result<(Self, Vec<VehicleState<f64>>), LearningError> {
         let started = Instant::now();
         let answer = rival.answer(case)?;
         let seconds = started.elapsed().as_secs_f64();

@@ -1,0 +1,141 @@
+//! The losses of a training of either network, epoch by epoch.
+
+use egui::{Grid, Ui};
+
+use crate::app::command::Command;
+use crate::app::network::Network;
+use crate::app::widgets::{figure_frame, value_row};
+use crate::figure::{Figure, LossCurve, balance_figure, loss_figure};
+use crate::learning::{EpochSummary, PhysicsBalance};
+use crate::render::FigureOptions;
+use crate::units::significant;
+
+/// Smallest height of a plot, points.
+const MIN_PLOT_HEIGHT: f32 = 200.0;
+/// Height of what stands below the plots and of their titles, points.
+const BELOW_PLOT: f32 = 190.0;
+
+/// How losses are shown.
+pub struct LossView<'a> {
+    /// Names of the loss terms that are drawn.
+    pub terms: &'a mut Vec<String>,
+    /// Whether the axis of the losses is logarithmic.
+    pub log: &'a mut bool,
+    /// Whether the plots are to show everything again.
+    pub reset: bool,
+}
+
+/// Draws the losses, the balance of data and physics if there is one, and the last epoch in numbers.
+pub fn losses_ui(
+    ui: &mut Ui,
+    network: Network,
+    (title, history, best_epoch): (&str, &[EpochSummary], Option<usize>),
+    (view, commands): (LossView<'_>, &mut Vec<Command>),
+) {
+    let Some(first) = history.first() else { return };
+    let names: Vec<&'static str> = first.losses.iter().map(|loss| loss.name).collect();
+    loss_choice_ui(ui, &names, (view.terms, view.log));
+    let losses = loss_figure(
+        title,
+        &curves(history, &names, view.terms),
+        (first.epoch, best_epoch),
+        *view.log,
+    );
+    if *view.log && !losses.log_y {
+        ui.weak("A shown loss is zero or less, as a likelihood may be: the axis is linear.");
+    }
+    let height = (ui.available_height() - BELOW_PLOT).max(MIN_PLOT_HEIGHT);
+    let mut plot = |ui: &mut Ui, figure: &Figure, name: &str| {
+        let options = FigureOptions {
+            id: format!("{name} of the {}", network.model()),
+            link: Some(egui::Id::unique("epochs")),
+            height: Some(height),
+            reset: view.reset,
+            ..FigureOptions::default()
+        };
+        figure_frame(ui, (&figure.title, figure), &options, commands);
+    };
+    match balance(history) {
+        None => plot(ui, &losses, "losses"),
+        Some(balance) => ui.columns(2, |columns| {
+            plot(&mut columns[0], &losses, "losses");
+            plot(&mut columns[1], &balance, "balance");
+        }),
+    }
+    if let Some(last) = history.last() {
+        Grid::new(("last epoch", network.model()))
+            .num_columns(2)
+            .show(ui, |ui| last_epoch_ui(ui, last, best_epoch));
+    }
+}
+
+/// The chosen loss terms over the epochs.
+fn curves(history: &[EpochSummary], names: &[&'static str], chosen: &[String]) -> Vec<LossCurve> {
+    let of_term = |idx: usize| history.iter().filter_map(move |epoch| epoch.losses.get(idx));
+    let is_chosen = |name: &str| chosen.iter().any(|chosen| chosen == name);
+    let names = names.iter().enumerate().filter(|(_, name)| is_chosen(name));
+    names
+        .map(|(idx, name)| LossCurve {
+            name: (*name).to_owned(),
+            train: of_term(idx).map(|loss| loss.train).collect(),
+            validation: of_term(idx).filter_map(|loss| loss.validation).collect(),
+        })
+        .collect()
+}
+
+/// How data and physics balance over the epochs, where physics has a weight that changes.
+fn balance(history: &[EpochSummary]) -> Option<Figure> {
+    let over_epochs = |value: fn(PhysicsBalance) -> f64| -> Vec<[f64; 2]> {
+        let point = |epoch: &EpochSummary| Some([epoch.epoch as f64, value(epoch.physics?)]);
+        history.iter().filter_map(point).collect()
+    };
+    let shares = over_epochs(|physics| physics.data_share);
+    let weights = over_epochs(|physics| physics.weight);
+    (!shares.is_empty()).then(|| balance_figure(shares, weights))
+}
+
+fn last_epoch_ui(ui: &mut Ui, last: &EpochSummary, best_epoch: Option<usize>) {
+    let stage = last.stage.as_ref().map_or(String::new(), |stage| format!(", {stage}"));
+    match best_epoch {
+        Some(best) => value_row(ui, "Best epoch, last epoch", &format!("{best}, {}", last.epoch)),
+        None => value_row(ui, "Last epoch", &format!("{}{stage}", last.epoch)),
+    }
+    match last.total() {
+        (train, Some(validation)) => {
+            let losses = [train, validation].map(significant).join(", ");
+            value_row(ui, "Loss, train and validation", &losses);
+        }
+        (train, None) => value_row(ui, "Loss", &significant(train)),
+    }
+    if let Some(physics) = last.physics {
+        let balance = format!("{:.2}, {}", physics.data_share, significant(physics.weight));
+        value_row(ui, "Balance, weight of physics", &balance);
+    }
+    value_row(ui, "Learning rate", &format!("{:.2e}", last.learning_rate));
+    value_row(ui, "Longest gradient", &significant(last.gradient_norm));
+    value_row(ui, "Time per epoch", &format!("{:.2} s", last.seconds));
+}
+
+/// Which losses are drawn, and whether their axis is logarithmic.
+fn loss_choice_ui(
+    ui: &mut Ui,
+    names: &[&'static str],
+    (selected, log): (&mut Vec<String>, &mut bool),
+) {
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Losses");
+        for name in names {
+            let position = selected.iter().position(|other| other == name);
+            let mut is_selected = position.is_some();
+            if ui.checkbox(&mut is_selected, *name).changed() {
+                match position {
+                    Some(position) => drop(selected.remove(position)),
+                    None => selected.push((*name).to_owned()),
+                }
+            }
+        }
+        ui.separator();
+        ui.checkbox(log, "logarithmic")
+            .on_hover_text("Where no shown loss is zero or less, as a likelihood may be");
+    });
+}

@@ -1,0 +1,179 @@
+//! What a training reports while it runs: the same for every kind of network, so that one progress
+//! bar and one plot serve them all.
+
+use std::fmt;
+use std::ops::ControlFlow;
+
+use serde::Serialize;
+
+/// The callback of a training. Breaking ends the training, and the weights so far are kept.
+pub type TrainingProgress<'a> = dyn FnMut(&TrainingReport) -> ControlFlow<()> + 'a;
+
+/// How far a training has come.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TrainingReport {
+    /// Something is fitted before the first epoch.
+    Fit {
+        /// What is being fitted, for a person.
+        what: String,
+        /// Fits that are over.
+        done: usize,
+        /// Fits in all.
+        n_fits: usize,
+    },
+    /// An epoch is over.
+    Epoch(EpochReport),
+}
+
+/// An epoch that is over, and where in its training it stands.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EpochReport {
+    /// What happened in the epoch.
+    pub summary: EpochSummary,
+    /// Epochs of an earlier training from which this one started; they count as epochs too.
+    pub n_before: usize,
+    /// Epochs at most, with those before.
+    pub n_epochs: usize,
+    /// The epoch with the best weights so far, where the best are kept and not the last.
+    pub best_epoch: Option<usize>,
+    /// Which of several trainings it is: 0 for the model itself, then those for the calibration.
+    pub training_idx: usize,
+    /// Number of trainings.
+    pub n_trainings: usize,
+}
+
+/// What a progress bar or a plot shows of an epoch.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EpochSummary {
+    /// Number of the epoch over all stages, counted from 1.
+    pub epoch: usize,
+    /// The part of the training to which the epoch belongs, if there are several.
+    pub stage: Option<String>,
+    /// Every loss term; the first is the one that is minimised.
+    pub losses: Vec<NamedLoss>,
+    /// How data and physics balance in the loss, where physics has a weight that changes.
+    pub physics: Option<PhysicsBalance>,
+    /// Learning rate η of the optimiser at the end of the epoch.
+    pub learning_rate: f64,
+    /// Norm of the longest gradient before clipping.
+    pub gradient_norm: f64,
+    /// Duration of the epoch, s.
+    pub seconds: f64,
+}
+
+/// A term of the loss.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct NamedLoss {
+    /// Its name.
+    pub name: &'static str,
+    /// Mean over the cases learned from, while the weights changed.
+    pub train: f64,
+    /// Mean over the validation cases at the end of the epoch, where there are any.
+    pub validation: Option<f64>,
+}
+
+/// How data and physics balance in the loss.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct PhysicsBalance {
+    /// Weight λ of the physics.
+    pub weight: f64,
+    /// Share of the data: `L_data/(L_data + λ L_physics)`.
+    pub data_share: f64,
+}
+
+impl EpochReport {
+    /// Number of the epoch in this training, counted from 1.
+    pub fn epoch_in_training(&self) -> usize {
+        self.summary.epoch.saturating_sub(self.n_before)
+    }
+
+    /// Epochs of this training at most.
+    pub fn n_in_training(&self) -> usize {
+        self.n_epochs.saturating_sub(self.n_before)
+    }
+
+    /// Epochs that are over and epochs at most, over all trainings.
+    pub fn progress(&self) -> (usize, usize) {
+        let n = self.n_in_training();
+        (self.training_idx * n + self.epoch_in_training(), self.n_trainings * n)
+    }
+
+    /// Share that is done of all trainings, 0 to 1.
+    pub fn share_done(&self) -> f64 {
+        let (done, total) = self.progress();
+        done as f64 / total.max(1) as f64
+    }
+
+    /// Where it stands: the calibration's training or the stage, if there are several.
+    pub fn part(&self) -> Option<String> {
+        match self.training_idx {
+            0 => self.summary.stage.clone(),
+            idx => Some(format!("calibration {idx} of {}", self.n_trainings - 1)),
+        }
+    }
+}
+
+impl EpochSummary {
+    /// The loss that is minimised, over the cases learned from and over the validation cases.
+    pub fn total(&self) -> (f64, Option<f64>) {
+        self.losses.first().map_or((f64::NAN, None), |loss| (loss.train, loss.validation))
+    }
+}
+
+/// One line: losses, balance, and whether the weights are the best so far.
+impl fmt::Display for EpochReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(part) = self.part() {
+            write!(f, "{part}, ")?;
+        }
+        let (train, validation) = self.summary.total();
+        write!(f, "loss {train:.4}")?;
+        if let Some(validation) = validation {
+            write!(f, ", validation {validation:.4}")?;
+        }
+        if let Some(physics) = self.summary.physics {
+            write!(f, ", balance {:.2}", physics.data_share)?;
+        }
+        match self.best_epoch == Some(self.summary.epoch) {
+            true => write!(f, " best"),
+            false => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn report() -> EpochReport {
+        let summary = EpochSummary {
+            epoch: 7,
+            stage: Some("single steps".to_owned()),
+            losses: vec![NamedLoss { name: "total", train: 0.25, validation: Some(0.5) }],
+            physics: Some(PhysicsBalance { weight: 2.0, data_share: 0.75 }),
+            learning_rate: 1e-3,
+            gradient_norm: 1.0,
+            seconds: 0.1,
+        };
+        let (best_epoch, training_idx, n_trainings) = (Some(7), 0, 3);
+        EpochReport { summary, n_before: 5, n_epochs: 15, best_epoch, training_idx, n_trainings }
+    }
+
+    #[test]
+    fn epochs_before_the_training_do_not_count_as_progress() {
+        assert_eq!(report().progress(), (2, 30));
+        let calibration = EpochReport { training_idx: 2, ..report() };
+        assert_eq!(calibration.progress(), (22, 30));
+        assert!((calibration.share_done() - 22.0 / 30.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_line_says_where_the_training_is() {
+        let line = "single steps, loss 0.2500, validation 0.5000, balance 0.75 best";
+        assert_eq!(report().to_string(), line);
+        let calibration = EpochReport { training_idx: 2, best_epoch: None, ..report() };
+        assert!(calibration.to_string().starts_with("calibration 2 of 2, loss 0.2500"));
+        assert!(calibration.to_string().ends_with("balance 0.75"));
+    }
+}

@@ -1,0 +1,138 @@
+//! A training on disk, so that it survives being killed.
+
+use std::path::PathBuf;
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use crate::learning::{EpochRecord, LearningError, TrainSettings};
+use crate::nn::{Checkpoint, ModelKind, NamedTensors, NnError, OptimizerState};
+
+/// What must be the same for a training to go on from a checkpoint.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Identity<C> {
+    config: C,
+    seed: u64,
+    data_digest: String,
+}
+
+/// The file in which a training is saved, if it is saved at all.
+///
+/// - `C`: sizes, weights and rates of the network and its training.
+pub struct TrainingFile<C> {
+    kind: ModelKind,
+    path: Option<PathBuf>,
+    resume: bool,
+    identity: Identity<C>,
+}
+
+/// What a checkpoint holds of every kind of network.
+///
+/// - `E`: what only this kind of network records of an epoch.
+pub struct SavedTraining<E> {
+    /// Weights at the end of the last epoch.
+    pub parameters: NamedTensors,
+    /// State of the optimiser.
+    pub optimizer: OptimizerState,
+    /// Every epoch, with those of an earlier training from which this one started.
+    pub history: Vec<EpochRecord<E>>,
+}
+
+impl<C: PartialEq + Serialize + DeserializeOwned> TrainingFile<C> {
+    /// The file that the settings name.
+    ///
+    /// - `config`: the part of the configuration that must be the same for a training to go on;
+    /// - `data_digest`: the digest of what is learned from.
+    pub fn new(
+        kind: ModelKind,
+        settings: &TrainSettings<C>,
+        config: C,
+        data_digest: String,
+    ) -> Self {
+        Self {
+            kind,
+            path: settings.checkpoint.clone(),
+            resume: settings.resume,
+            identity: Identity { config, seed: settings.seed, data_digest },
+        }
+    }
+
+    /// Saves nothing from now on.
+    pub fn disable(&mut self) {
+        self.path = None;
+    }
+
+    /// The saved training, if it is to be resumed and there is one.
+    ///
+    /// - `take`: takes the training out of the checkpoint.
+    ///
+    /// # Errors
+    /// [`LearningError::OtherTraining`], [`LearningError::Network`] if the file is damaged.
+    pub fn read<T>(
+        &self,
+        take: impl FnOnce(&mut Checkpoint) -> Result<T, NnError>,
+    ) -> Result<Option<T>, LearningError> {
+        let Some(path) = self.path.as_ref().filter(|path| self.resume && path.exists()) else {
+            return Ok(None);
+        };
+        let mut file = Checkpoint::read(path, self.kind)?;
+        let saved: Identity<C> = file.get("identity")?;
+        let differs = [
+            ("configuration", saved.config != self.identity.config),
+            ("seed", saved.seed != self.identity.seed),
+            ("set of cases", saved.data_digest != self.identity.data_digest),
+        ];
+        if let Some((what, _)) = differs.into_iter().find(|(_, differs)| *differs) {
+            return Err(LearningError::OtherTraining { path: path.clone(), what });
+        }
+        let training = take(&mut file)?;
+        file.check_all_taken()?;
+        Ok(Some(training))
+    }
+
+    /// Saves a training, whole or not at all.
+    ///
+    /// - `put`: puts the training into the checkpoint.
+    ///
+    /// # Errors
+    /// [`LearningError::Network`].
+    pub fn write(
+        &self,
+        put: impl FnOnce(&mut Checkpoint) -> Result<(), NnError>,
+    ) -> Result<(), LearningError> {
+        let Some(path) = &self.path else { return Ok(()) };
+        let mut file = Checkpoint::new(self.kind);
+        file.put("identity", &self.identity)?;
+        put(&mut file)?;
+        Ok(file.write(path)?)
+    }
+}
+
+impl<E: Serialize + DeserializeOwned> SavedTraining<E> {
+    /// Takes it out of a checkpoint.
+    ///
+    /// # Errors
+    /// [`NnError`] if something is missing or has another form.
+    pub fn take(file: &mut Checkpoint) -> Result<Self, NnError> {
+        Ok(Self {
+            optimizer: OptimizerState {
+                step: file.get("step")?,
+                moments: file.take_group("moments"),
+            },
+            history: file.get("history")?,
+            parameters: file.take_group("parameters"),
+        })
+    }
+
+    /// Puts it into a checkpoint.
+    ///
+    /// # Errors
+    /// [`NnError::Metadata`].
+    pub fn put(self, file: &mut Checkpoint) -> Result<(), NnError> {
+        file.put("step", &self.optimizer.step)?;
+        file.put("history", &self.history)?;
+        file.put_group("parameters", self.parameters);
+        file.put_group("moments", self.optimizer.moments);
+        Ok(())
+    }
+}
