@@ -10,7 +10,7 @@ use crate::cli::evaluate::SplitArg;
 use crate::cli::output::print_json;
 use crate::cli::response_training::{data_name, load_cases};
 use crate::cli::run::{Console, Verdict};
-use crate::response::comparison::{Rival, evaluate_rival, write_comparison};
+use crate::response::comparison::{MotionModel, evaluate_motion_model, write_comparison};
 use crate::response::{Correction, ResponseCase, ResponseModel};
 use crate::shipped::ModelSource;
 
@@ -62,11 +62,11 @@ pub(super) fn run(
     }
     let trajectories = model.record().train.len();
     let rival = match model.config().network.correction {
-        Correction::Whole => Rival::Plain(Box::new(model)),
-        _ => Rival::Network(Box::new(model)),
+        Correction::Whole => MotionModel::Plain(Box::new(model)),
+        _ => MotionModel::Network(Box::new(model)),
     };
     let name = data_name(&args.data);
-    let comparison = evaluate_rival((&name, &chosen), &rival, (trajectories, args.seed))?;
+    let comparison = evaluate_motion_model((&name, &chosen), &rival, (trajectories, args.seed))?;
     if let Some(folder) = &args.out {
         write_comparison(folder, &comparison)?;
     }

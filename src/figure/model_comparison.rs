@@ -5,7 +5,7 @@ use crate::compare::HORIZONS_S;
 use crate::figure::scene::vehicle_outline;
 use crate::figure::{Axis, Element, Figure, LineStyle, Role, Series};
 use crate::numerics::quantile_of_sorted;
-use crate::response::comparison::{ComparedModel, Comparison, MeanStd, RivalKind};
+use crate::response::comparison::{ComparedModel, Comparison, MeanStd, MotionModelKind};
 use crate::units::{Quantity, Unit, UnitSystem};
 
 /// Half the height of a box, of a tick, as shares of a row.
@@ -18,12 +18,12 @@ pub fn model_name(name: &str, trajectories: usize) -> String {
 }
 
 /// The colour of a model.
-fn role(kind: RivalKind) -> Role {
+fn role(kind: MotionModelKind) -> Role {
     match kind {
-        RivalKind::Untuned => Role::Pulse,
-        RivalKind::Tuned => Role::Target,
-        RivalKind::Plain => Role::Validation,
-        RivalKind::Network => Role::Model,
+        MotionModelKind::Untuned => Role::Pulse,
+        MotionModelKind::Tuned => Role::Target,
+        MotionModelKind::Plain => Role::Validation,
+        MotionModelKind::Network => Role::Model,
     }
 }
 
@@ -86,7 +86,7 @@ pub fn cluster_figure(comparison: &Comparison, cluster: usize, units: UnitSystem
                 && case.trajectories == model.trajectories
         });
         let mut errors: Vec<f64> =
-            of_model.map(|case| unit.from_si(case.figures.error.average_error_m)).collect();
+            of_model.map(|case| unit.from_si(case.metrics.error.average_error_m)).collect();
         errors.sort_by(f64::total_cmp);
         let quantile = |share| quantile_of_sorted(&errors, share).filter(|value| value.is_finite());
         let quantiles = [0.0, 0.25, 0.5, 0.75, 1.0].map(quantile);
@@ -121,7 +121,7 @@ pub fn horizon_figure(comparison: &Comparison, units: UnitSystem) -> Figure {
     let x = Axis::shown("Time since the impact", Quantity::Time, units);
     let y = Axis::shown("Distance, mean", Quantity::Length, units);
     let line = |model: &ComparedModel| {
-        let points = HORIZONS_S.iter().zip(&model.figures.horizon_error_m);
+        let points = HORIZONS_S.iter().zip(&model.metrics.horizon_error_m);
         let points: Vec<[f64; 2]> = points
             .filter(|(_, error)| error.mean.is_finite())
             .map(|(time_s, error)| [*time_s, y.unit.from_si(error.mean)])

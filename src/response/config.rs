@@ -7,11 +7,12 @@ use serde::{Deserialize, Serialize};
 use crate::learning::{LearningError, Setting, check_settings};
 use crate::response::{Correction, EffectsConfig, TuningConfig};
 
-/// All settings. Read from TOML: what a file leaves out keeps its default.
+/// All settings of the response network and its training. Read from TOML: what a file leaves out keeps
+/// its default.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ResponseConfig {
-    /// The layers.
+    /// Sizes of the layers, and the bounds of the correction.
     pub network: ResponseNetworkConfig,
     /// Training on simulations, before any trajectory is seen.
     pub pretraining: PretrainingConfig,
@@ -21,7 +22,7 @@ pub struct ResponseConfig {
     pub rollouts: RolloutConfig,
     /// Weights of the loss terms.
     pub loss: ResponseLossWeights,
-    /// How strongly physics holds the network, epoch by epoch.
+    /// How strongly the physics loss weighs, epoch by epoch.
     pub physics: PhysicsSchedule,
     /// The fit of the effects' strengths.
     pub effects: EffectsConfig,
@@ -31,7 +32,7 @@ pub struct ResponseConfig {
     pub tuning: TuningConfig,
 }
 
-/// The layers.
+/// Sizes of the layers, and the bounds of the correction.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ResponseNetworkConfig {
@@ -45,16 +46,16 @@ pub struct ResponseNetworkConfig {
     pub trunk: Vec<usize>,
     /// Components J of the mixture, 1 or more.
     pub components: usize,
-    /// What is corrected.
+    /// The quantity that the network corrects.
     pub correction: Correction,
-    /// Whether what the 4DOF model is known to leave out is part of the network.
+    /// Whether the effects of known form that the 4DOF model leaves out are part of the network.
     pub effects: bool,
-    /// a_bound: v̇_x, v̇_y, m/s², ṙ, φ̈, rad/s²; none, no bound. For offsets of the state their
-    /// bounds, m/s and rad/s.
+    /// Bound a_bound of the correction: of v̇_x, v̇_y, m/s², ṙ, φ̈, rad/s²; without one, the correction
+    /// is not bounded. Where offsets of the state are corrected: their bounds, m/s and rad/s.
     pub bound: Option<[f64; 4]>,
-    /// What an output of one means, in the units of the bound.
+    /// The correction at a network output of one, in the units of the bound.
     pub unit: [f64; 4],
-    /// σ_min of a step's velocities and rates, m/s and rad/s.
+    /// Smallest standard deviation σ_min of the velocities and rates after a step, m/s and rad/s.
     pub min_std: f64,
 }
 
@@ -63,11 +64,11 @@ pub struct ResponseNetworkConfig {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PretrainingConfig {
-    /// Simulated motions.
+    /// Number of simulated motions.
     pub motions: usize,
-    /// Passes over them; 0 for none.
+    /// Passes over the simulated motions; 0 leaves the pre-training out.
     pub epochs: usize,
-    /// AdamW's learning rate η at its highest.
+    /// Highest learning rate η of AdamW.
     pub learning_rate: f64,
 }
 
@@ -75,19 +76,19 @@ pub struct PretrainingConfig {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct SingleStepConfig {
-    /// Passes over the instants.
+    /// Passes over the instants of the trajectories.
     pub epochs: usize,
     /// Instants per step of the optimiser.
     pub batch_instants: usize,
-    /// AdamW's learning rate η at its highest.
+    /// Highest learning rate η of AdamW.
     pub learning_rate: f64,
-    /// AdamW's weight decay λ.
+    /// Weight decay λ of AdamW.
     pub weight_decay: f64,
-    /// Longest gradient.
+    /// Norm to which a longer gradient is shortened.
     pub max_gradient_norm: f64,
-    /// Standard deviation of the noise on features, whose unit is of the order of one.
+    /// Standard deviation of the noise that is added to the features, whose unit is of the order of one.
     pub feature_noise: f64,
-    /// Share of the layers, from the input on, that fine-tuning leaves as pre-training made them.
+    /// Share of the layers, counted from the input, that fine-tuning does not change.
     pub frozen_share: f64,
 }
 
@@ -95,15 +96,15 @@ pub struct SingleStepConfig {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RolloutConfig {
-    /// Steps of each rollout, one stage after the other; none for single steps alone.
+    /// Steps of each rollout, one stage after the other; an empty list leaves the rollouts out.
     pub lengths: Vec<usize>,
-    /// Passes over the trajectories in each stage, a window of each in a pass.
+    /// Passes over the trajectories in each stage; a pass takes one window of each trajectory.
     pub epochs: usize,
     /// Rollouts per step of the optimiser.
     pub batch_windows: usize,
-    /// AdamW's learning rate η at the beginning.
+    /// Learning rate η of AdamW at the beginning of a stage.
     pub learning_rate: f64,
-    /// Steps after which the gradient is cut.
+    /// Steps after which the gradient is no longer propagated back.
     pub truncation: usize,
 }
 
@@ -111,9 +112,10 @@ pub struct RolloutConfig {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct CalibrationConfig {
-    /// Trainings that each leave out a part of the trajectories; below 2 the usual scales are taken.
+    /// Number of trainings that each leave out a part of the trajectories; below 2 nothing is calibrated
+    /// and the usual scales are taken.
     pub folds: usize,
-    /// Expected deviation of a scale from the usual one, as a logarithm.
+    /// Standard deviation of the logarithm of a scale about the usual one, before any trajectory.
     pub prior_std: f64,
 }
 
@@ -121,17 +123,17 @@ pub struct CalibrationConfig {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct ResponseLossWeights {
-    /// Of the negative log-likelihood.
+    /// Weight of the negative log-likelihood.
     pub likelihood: f64,
-    /// Of the physics, times the scheduled λ.
+    /// Weight of the physics, times the scheduled λ.
     pub physics: f64,
-    /// λ_cons: of components that coincide.
+    /// Weight λ_cons of the penalty on components that coincide.
     pub diversity: f64,
-    /// λ_traj: of the position error of rollouts.
+    /// Weight λ_traj of the position error of rollouts.
     pub trajectory: f64,
-    /// λ_smooth: of the second derivative of rollouts.
+    /// Weight λ_smooth of the second derivative of rollouts.
     pub smoothness: f64,
-    /// λ_bound: of states near or beyond what is physical.
+    /// Weight λ_bound of states near or beyond what is physical.
     pub boundary: f64,
 }
 
@@ -152,21 +154,21 @@ pub enum PhysicsTrend {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PhysicsSchedule {
-    /// How it changes.
+    /// How the weight changes with the epochs.
     pub trend: PhysicsTrend,
-    /// λ_min.
+    /// Smallest weight λ_min.
     pub min: f64,
-    /// λ_max.
+    /// Largest weight λ_max.
     pub max: f64,
-    /// t₀, epochs.
+    /// Epoch t₀ at the middle of the change.
     pub midpoint_epoch: f64,
-    /// τ, epochs.
+    /// Width τ of the change, epochs.
     pub epoch_scale: f64,
-    /// h of DataQuality = exp(−d/h), d the distance to the nearest instant of the data: root of the
-    /// mean square over the standardised features.
+    /// Distance h in DataQuality = exp(−d/h), where d is the distance to the nearest instant of the
+    /// data: the root mean square over the standardised features.
     pub quality_distance: f64,
-    /// Instants of simulated motions, away from the data, on which physics is asked for at each step
-    /// of the optimiser.
+    /// Instants of simulated motions, away from the data, at which the physics loss is evaluated in each
+    /// step of the optimiser.
     pub batch_instants: usize,
 }
 

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use impactlab::learning::{LearningError, ModelFile, TrainSettings, TrainingReport};
-use impactlab::response::comparison::{Rival, evaluate_rival};
+use impactlab::response::comparison::{MotionModel, evaluate_motion_model};
 use impactlab::response::{
     Correction, ImpactRecord, ResponseCase, ResponseConfig, ResponseModel, ResponseStage,
     ResponseTrainSettings, ResponseTrainingSet, average_error_m, fine_tune, pretrain, rollout,
@@ -170,11 +170,12 @@ fn the_shipped_model_keeps_its_word() {
         assert_eq!(test.len(), 25, "{data}");
         assert!(test.iter().all(|case| !model.is_trained_on(case)));
         let copy = Box::new(model.copied().unwrap());
-        let compared = evaluate_rival((data, &test), &Rival::Network(copy), (150, 0)).unwrap();
-        let figures = &compared.models[0].figures;
-        assert!(figures.average_error_m.mean < most_m, "{data}: {:?}", figures.average_error_m);
-        assert_eq!(figures.violations, 0);
-        let coverage = figures.coverage.as_ref().unwrap();
+        let compared =
+            evaluate_motion_model((data, &test), &MotionModel::Network(copy), (150, 0)).unwrap();
+        let metrics = &compared.models[0].metrics;
+        assert!(metrics.average_error_m.mean < most_m, "{data}: {:?}", metrics.average_error_m);
+        assert_eq!(metrics.violations, 0);
+        let coverage = metrics.coverage.as_ref().unwrap();
         for share in [coverage.path_90, coverage.end_90] {
             assert!((0.85..=0.99).contains(&share), "{data}: {coverage:?}");
         }

@@ -12,7 +12,9 @@ use crate::app::widgets::{dataset_choice, duration_text, no_dataset_ui};
 use crate::data::{DatasetKind, Severity};
 use crate::figure::model_name;
 use crate::render::theme;
-use crate::response::comparison::{Comparison, Table, all_tables, paper_figure, to_markdown};
+use crate::response::comparison::{
+    Comparison, ComparisonTable, all_tables, paper_metrics, to_markdown,
+};
 
 /// Draws the form, the figures, the case browser and the tables.
 pub fn model_comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
@@ -131,7 +133,7 @@ fn heading_ui(ui: &mut Ui, comparison: &Comparison) {
         }
     });
     let of_paper = comparison.models.iter().filter_map(|model| {
-        let paper = paper_figure(model.kind, model.trajectories)?;
+        let paper = paper_metrics(model.kind, model.trajectories)?;
         let name = model_name(&model.name, paper.trajectories.unwrap_or(0));
         Some(format!("{name}: {:.2} m", paper.average_error_m))
     });
@@ -153,7 +155,7 @@ fn tables_ui(ui: &mut Ui, comparison: &Comparison) {
     }
 }
 
-fn table_ui(ui: &mut Ui, id: &str, table: &Table) {
+fn table_ui(ui: &mut Ui, id: &str, table: &ComparisonTable) {
     if ui.small_button("Copy table").on_hover_text("As CSV").clicked() {
         ui.ctx().copy_text(table.to_csv());
     }

@@ -11,7 +11,7 @@ use crate::figure::{
 };
 use crate::render::FigureOptions;
 use crate::response::comparison::{
-    ComparedModel, Comparison, CoverageFigures, MeanStd, RivalKind, TestCase,
+    ComparedModel, Comparison, CoverageMetrics, MeanStd, MotionModelKind, TestCase,
 };
 use crate::units::{Quantity, UnitSystem, significant};
 
@@ -68,19 +68,19 @@ fn row_ui(ui: &mut Ui, (id, figures): (&str, &[Figure]), reset: bool, commands: 
 
 fn ranking(comparison: &Comparison, units: UnitSystem) -> Figure {
     let unit = Quantity::Length.display_unit(units);
-    let of = |model: &ComparedModel| model.figures.average_error_m.times(unit.from_si(1.0));
+    let of = |model: &ComparedModel| model.metrics.average_error_m.times(unit.from_si(1.0));
     ranking_figure(comparison, ("Average error", "Average error", unit), of)
 }
 
 fn variables(comparison: &Comparison, units: UnitSystem) -> Vec<Figure> {
     type Of = fn(&ComparedModel) -> MeanStd;
     let rows: [(&str, Quantity, f64, Of); 5] = [
-        ("X", Quantity::Length, 1.0, |of| of.figures.rmse.x_m),
-        ("Y", Quantity::Length, 1.0, |of| of.figures.rmse.y_m),
-        ("v_x", Quantity::Speed, 1.0 / KM_H_PER_M_S, |of| of.figures.rmse.vx_km_h),
-        ("v_y", Quantity::Speed, 1.0 / KM_H_PER_M_S, |of| of.figures.rmse.vy_km_h),
+        ("X", Quantity::Length, 1.0, |of| of.metrics.rmse.x_m),
+        ("Y", Quantity::Length, 1.0, |of| of.metrics.rmse.y_m),
+        ("v_x", Quantity::Speed, 1.0 / KM_H_PER_M_S, |of| of.metrics.rmse.vx_km_h),
+        ("v_y", Quantity::Speed, 1.0 / KM_H_PER_M_S, |of| of.metrics.rmse.vy_km_h),
         ("yaw rate", Quantity::AngularVelocity, 1.0_f64.to_radians(), |of| {
-            of.figures.rmse.yaw_rate_deg_s
+            of.metrics.rmse.yaw_rate_deg_s
         }),
     ];
     let figure = |(name, quantity, si, of): (&str, Quantity, f64, Of)| {
@@ -95,11 +95,11 @@ fn variables(comparison: &Comparison, units: UnitSystem) -> Vec<Figure> {
 
 /// Coverage along the path and at the end, and at which level of its region each end lies.
 fn calibration(comparison: &Comparison) -> Vec<Figure> {
-    let networks = comparison.models.iter().filter(|model| model.kind == RivalKind::Network);
-    let points = |model: &ComparedModel, of: &CoverageFigures, is_end: bool| {
+    let networks = comparison.models.iter().filter(|model| model.kind == MotionModelKind::Network);
+    let points = |model: &ComparedModel, of: &CoverageMetrics, is_end: bool| {
         let shares = if is_end { [of.end_50, of.end_90] } else { [of.path_50, of.path_90] };
         // Instants of one trajectory are no independent observations.
-        let n = model.figures.n.max(1) as f64;
+        let n = model.metrics.n.max(1) as f64;
         let point = |(level, share): (f64, f64)| CoveragePoint {
             level,
             share,
@@ -109,7 +109,7 @@ fn calibration(comparison: &Comparison) -> Vec<Figure> {
     };
     let mut figures = Vec::new();
     for model in networks {
-        let Some(of) = &model.figures.coverage else { continue };
+        let Some(of) = &model.metrics.coverage else { continue };
         let name = model_name(&model.name, model.trajectories);
         let rows = [
             ("along the path", Role::Model, points(model, of, false)),
@@ -121,7 +121,7 @@ fn calibration(comparison: &Comparison) -> Vec<Figure> {
             .cases
             .iter()
             .filter(|case| case.kind == model.kind && case.trajectories == model.trajectories);
-        for level in of_model.filter_map(|case| Some(case.figures.coverage?.end_level)) {
+        for level in of_model.filter_map(|case| Some(case.metrics.coverage?.end_level)) {
             let bin = (level * N_BINS as f64) as usize;
             counts[bin.min(N_BINS - 1)] += 1;
         }
@@ -203,7 +203,7 @@ fn cases_ui(
                                 == (model.kind, model.trajectories)
                             && (answer.trajectories == 0 || answer.choice == choice)
                     });
-                    let error = answer.map(|of| of.figures.error.average_error_m);
+                    let error = answer.map(|of| of.metrics.error.average_error_m);
                     ui.monospace(error.map_or(String::new(), |m| significant(unit.from_si(m))));
                 }
                 ui.end_row();

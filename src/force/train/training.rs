@@ -52,7 +52,7 @@ pub fn train(
     set.check_size(LEAST_CASES)?;
     let mut file = training_file(set, settings);
     let training = match file.read(SavedForceTraining::take)? {
-        Some(saved) => Training::resumed(set, settings, saved)?,
+        Some(saved) => ForceTrainingRun::resumed(set, settings, saved)?,
         None => {
             let mut is_cut = false;
             let mut told = |fit: &TrainingReport| {
@@ -65,7 +65,7 @@ pub fn train(
                 // Nothing that a later training should go on from.
                 file.disable();
             }
-            Training::around(set, settings, physics)?
+            ForceTrainingRun::around(set, settings, physics)?
         }
     };
     search(training, set, &file, report)
@@ -82,7 +82,7 @@ pub fn train_around(
     report: &mut TrainingProgress<'_>,
 ) -> Result<ForceModel, ForceError> {
     settings.config.check()?;
-    let training = Training::around(set, settings, physics)?;
+    let training = ForceTrainingRun::around(set, settings, physics)?;
     search(training, set, &training_file(set, settings), report)
 }
 
@@ -105,7 +105,7 @@ pub fn fit_physics(
 }
 
 fn search(
-    mut training: Training<'_>,
+    mut training: ForceTrainingRun<'_>,
     set: &ForceTrainingSet,
     file: &TrainingFile<ForceConfig>,
     report: &mut TrainingProgress<'_>,
@@ -147,7 +147,7 @@ impl SavedForceTraining {
     }
 }
 
-struct Training<'a> {
+struct ForceTrainingRun<'a> {
     settings: &'a ForceTrainSettings,
     centre: CentreModel,
     centres: Vec<CentreCurve>,
@@ -164,7 +164,7 @@ struct Training<'a> {
     history: Vec<EpochRecord<ForceEpoch>>,
 }
 
-impl<'a> Training<'a> {
+impl<'a> ForceTrainingRun<'a> {
     fn around(
         set: &ForceTrainingSet,
         settings: &'a ForceTrainSettings,
@@ -329,7 +329,7 @@ impl<'a> Training<'a> {
     }
 }
 
-impl EpochLoop for Training<'_> {
+impl EpochLoop for ForceTrainingRun<'_> {
     type Error = ForceError;
 
     fn epoch(&mut self) -> Result<Option<EpochReport>, ForceError> {

@@ -1,4 +1,4 @@
-//! Error figures of one model on one trajectory.
+//! Error metrics of one model on one trajectory.
 
 use std::time::Instant;
 
@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use crate::compare::{MotionError, physical_violations};
 use crate::data::null_as_nan;
 use crate::learning::LearningError;
-use crate::response::evaluate::Rival;
-use crate::response::evaluate::rival::Answer;
+use crate::response::evaluate::MotionModel;
+use crate::response::evaluate::motion_model::PredictedMotion;
 use crate::response::{MotionDistribution, ResponseCase, motion_series};
 use crate::vehicle::VehicleState;
 
@@ -19,7 +19,7 @@ const N_DRAWS: usize = 200;
 
 /// How many positions lie in the regions of 50 and 90 %.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Coverage {
+pub struct MotionCoverage {
     /// Share of the instants inside the 50 % region.
     pub path_50: f64,
     /// Share of the instants inside the 90 % region.
@@ -46,7 +46,7 @@ pub struct Coverage {
 
 /// One model on one trajectory.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct CaseFigures {
+pub struct MotionCaseMetrics {
     /// Errors of the mean path; infinite where it is not finite.
     #[serde(flatten)]
     pub error: MotionError,
@@ -55,35 +55,35 @@ pub struct CaseFigures {
     /// Time for a step of the whole answer, µs.
     pub time_per_step_us: f64,
     /// Of a model with a distribution.
-    pub coverage: Option<Coverage>,
+    pub coverage: Option<MotionCoverage>,
 }
 
-impl CaseFigures {
+impl MotionCaseMetrics {
     /// Asks a model about a trajectory and compares, with what it said.
     ///
     /// # Errors
     /// [`LearningError::Network`].
     pub(crate) fn of(
-        rival: &Rival,
+        model: &MotionModel,
         case: &ResponseCase,
     ) -> Result<(Self, Vec<VehicleState<f64>>), LearningError> {
         let started = Instant::now();
-        let answer = rival.answer(case)?;
+        let answer = model.answer(case)?;
         let seconds = started.elapsed().as_secs_f64();
-        let Answer { states, paths, distribution } = answer;
+        let PredictedMotion { states, paths, distribution } = answer;
         let error = motion_series(&states, &case.inputs)
             .and_then(|predicted| {
                 MotionError::between(&predicted, &motion_series(&case.states, &case.inputs)?)
             })
             .unwrap_or_else(|_| infinite());
         let violations = paths.iter().map(|path| violations(path, case)).sum();
-        let figures = Self {
+        let metrics = Self {
             error,
             violations,
             time_per_step_us: seconds * 1e6 / case.inputs.len().max(1) as f64,
             coverage: distribution.map(|distribution| coverage(&distribution, case)),
         };
-        Ok((figures, states))
+        Ok((metrics, states))
     }
 }
 
@@ -109,9 +109,9 @@ fn infinite() -> MotionError {
     }
 }
 
-fn coverage(distribution: &MotionDistribution, case: &ResponseCase) -> Coverage {
+fn coverage(distribution: &MotionDistribution, case: &ResponseCase) -> MotionCoverage {
     let last = case.states.len().saturating_sub(1);
-    let mut sum = Coverage::default();
+    let mut sum = MotionCoverage::default();
     let mut n = 0.0;
     for (at, state) in case.states.iter().enumerate().skip(STRIDE).step_by(STRIDE) {
         let point = [state.x_m, state.y_m];
@@ -132,7 +132,7 @@ fn coverage(distribution: &MotionDistribution, case: &ResponseCase) -> Coverage 
     let end = case.states.last().copied().unwrap_or_default();
     let end_level = distribution.position(last).level_of([end.x_m, end.y_m]);
     let n = f64::max(n, 1.0);
-    Coverage {
+    MotionCoverage {
         path_50: sum.path_50 / n,
         path_90: sum.path_90 / n,
         end_50: f64::from(u8::from(end_level <= 0.5)),

@@ -6,7 +6,9 @@ use std::ops::ControlFlow;
 use crate::collision::{ImpulseClusters, ImpulseFeatures};
 use crate::jobs::{Progress, Report};
 use crate::learning::{LearningError, TEST_SHARE, TrainSettings, TrainingReport, TrainingSet};
-use crate::response::evaluate::{CaseFigures, ComparedCase, Comparison, Rival, path_of};
+use crate::response::evaluate::{
+    ComparedCase, Comparison, MotionCaseMetrics, MotionModel, path_of,
+};
 use crate::response::{
     ImpactRecord, ResponseCase, ResponseConfig, ResponseModel, ResponseTrainingSet, Tuning,
     fine_tune, pretrain,
@@ -46,15 +48,15 @@ pub fn compare_models(
     let clusters = clusters(&test, settings.seed);
     let mut work = Work::new(settings, report);
     let Some(starts) = work.pretrained(&all, start)? else { return Ok(None) };
-    let mut rows = answers((&Rival::Untuned, 0, settings.seed), &test, &clusters)?;
+    let mut rows = answers((&MotionModel::Untuned, 0, settings.seed), &test, &clusters)?;
     let mut times = Vec::new();
     for &n in &settings.trajectories {
         for choice in settings.seed..settings.seed + settings.n_choices {
             let set = all.clone().choose(Some(n), choice)?;
-            let Some(rivals) = work.trained(&set, &starts, choice)? else { return Ok(None) };
-            for (rival, seconds) in rivals {
-                times.push((rival.kind(), n, seconds));
-                rows.extend(answers((&rival, n, choice), &test, &clusters)?);
+            let Some(models) = work.trained(&set, &starts, choice)? else { return Ok(None) };
+            for (model, seconds) in models {
+                times.push((model.kind(), n, seconds));
+                rows.extend(answers((&model, n, choice), &test, &clusters)?);
             }
         }
     }
@@ -65,13 +67,13 @@ pub fn compare_models(
 ///
 /// # Errors
 /// [`LearningError`].
-pub fn evaluate_rival(
+pub fn evaluate_motion_model(
     (name, cases): (&str, &[&ResponseCase]),
-    rival: &Rival,
+    model: &MotionModel,
     (trajectories, seed): (usize, u64),
 ) -> Result<Comparison, LearningError> {
     let clusters = clusters(cases, seed);
-    let rows = answers((rival, trajectories, seed), cases, &clusters)?;
+    let rows = answers((model, trajectories, seed), cases, &clusters)?;
     let settings = ComparisonSettings {
         config: ResponseConfig::default(),
         trajectories: vec![trajectories],
@@ -101,13 +103,13 @@ fn clusters(cases: &[&ResponseCase], seed: u64) -> CaseClusters {
 }
 
 fn answers(
-    (rival, trajectories, choice): (&Rival, usize, u64),
+    (model, trajectories, choice): (&MotionModel, usize, u64),
     cases: &[&ResponseCase],
     clusters: &CaseClusters,
 ) -> Result<Vec<ComparedCase>, LearningError> {
-    let kind = rival.kind();
+    let kind = model.kind();
     let answer = |(case, cluster): (&&ResponseCase, &usize)| {
-        let (figures, states) = CaseFigures::of(rival, case)?;
+        let (metrics, states) = MotionCaseMetrics::of(model, case)?;
         Ok(ComparedCase {
             case: case.name.clone(),
             cluster: *cluster,
@@ -115,7 +117,7 @@ fn answers(
             kind,
             trajectories,
             choice,
-            figures,
+            metrics,
             path: path_of(&states),
         })
     };
@@ -187,9 +189,9 @@ impl<'a, 'b> Work<'a, 'b> {
         set: &ResponseTrainingSet,
         [start, plain_start]: &[ResponseModel; 2],
         choice: u64,
-    ) -> Result<Option<Vec<(Rival, f64)>>, LearningError> {
+    ) -> Result<Option<Vec<(MotionModel, f64)>>, LearningError> {
         let n = set.train.len();
-        let mut rivals = Vec::new();
+        let mut models = Vec::new();
         let config = self.settings.config.clone();
         let started = std::time::Instant::now();
         let cases: Vec<&ResponseCase> = set.train.iter().collect();
@@ -197,7 +199,7 @@ impl<'a, 'b> Work<'a, 'b> {
             let share = done as f64 / config.tuning.iterations.max(1) as f64;
             self.tell(share.min(1.0), &format!("4DOF tuned on {n} trajectories"))
         });
-        rivals.push((Rival::Tuned(tuning), started.elapsed().as_secs_f64()));
+        models.push((MotionModel::Tuned(tuning), started.elapsed().as_secs_f64()));
         if self.is_broken() {
             return Ok(None);
         }
@@ -213,13 +215,14 @@ impl<'a, 'b> Work<'a, 'b> {
                 self.tell(share_done(told), &format!("{label} on {n} trajectories, {part}"))
             })?;
             let model = Box::new(model);
-            let rival = if idx == 0 { Rival::Network(model) } else { Rival::Plain(model) };
-            rivals.push((rival, started.elapsed().as_secs_f64()));
+            let model =
+                if idx == 0 { MotionModel::Network(model) } else { MotionModel::Plain(model) };
+            models.push((model, started.elapsed().as_secs_f64()));
             if self.is_broken() {
                 return Ok(None);
             }
         }
-        Ok(Some(rivals))
+        Ok(Some(models))
     }
 }
 

@@ -1,10 +1,10 @@
-//! Figures of a model over trajectories.
+//! Error metrics of a model over trajectories.
 
 use serde::{Deserialize, Serialize};
 
 use crate::data::null_as_nan;
 use crate::numerics::quantile_of_sorted;
-use crate::response::evaluate::CaseFigures;
+use crate::response::evaluate::{MotionCaseMetrics, MotionCoverage};
 
 /// Mean, standard deviation and median.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -22,7 +22,7 @@ pub struct MeanStd {
 
 /// A model over trajectories.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ModelFigures {
+pub struct MotionMetrics {
     /// Trajectories asked about, counted once for each choice of the fine-tune trajectories.
     pub n: usize,
     /// Average error, m.
@@ -41,7 +41,7 @@ pub struct ModelFigures {
     /// Time for a step, µs: the median.
     pub time_per_step_us: f64,
     /// Of a model with a distribution.
-    pub coverage: Option<CoverageFigures>,
+    pub coverage: Option<CoverageMetrics>,
 }
 
 /// Root mean square errors over a trajectory.
@@ -60,7 +60,7 @@ pub struct RootMeanSquares {
 }
 
 impl RootMeanSquares {
-    /// What tables call them, with their units, and the figures.
+    /// What tables call them, with their units, and the metrics.
     pub fn named(&self) -> [(&'static str, MeanStd); 5] {
         [
             ("X, m", self.x_m),
@@ -74,7 +74,7 @@ impl RootMeanSquares {
 
 /// How well a model knows what it does not know.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct CoverageFigures {
+pub struct CoverageMetrics {
     /// Positions along the path in the 50 % regions, share.
     #[serde(rename = "50")]
     pub path_50: f64,
@@ -121,11 +121,12 @@ impl MeanStd {
 
 const KM_H_PER_M_S: f64 = 3.6;
 
-impl ModelFigures {
+impl MotionMetrics {
     /// Over trajectories.
-    pub fn of(cases: &[&CaseFigures]) -> Self {
-        let over =
-            |value: &dyn Fn(&CaseFigures) -> f64| MeanStd::of(cases.iter().map(|case| value(case)));
+    pub fn of(cases: &[&MotionCaseMetrics]) -> Self {
+        let over = |value: &dyn Fn(&MotionCaseMetrics) -> f64| {
+            MeanStd::of(cases.iter().map(|case| value(case)))
+        };
         let known = |value: Option<f64>| value.unwrap_or(f64::NAN);
         let average_error_m = over(&|case| case.error.average_error_m);
         Self {
@@ -145,16 +146,16 @@ impl ModelFigures {
             horizon_error_m: std::array::from_fn(|i| over(&|case| case.error.horizon_error_m[i])),
             violations: cases.iter().map(|case| case.violations).sum(),
             time_per_step_us: over(&|case| case.time_per_step_us).median,
-            coverage: CoverageFigures::of(cases),
+            coverage: CoverageMetrics::of(cases),
         }
     }
 }
 
-impl CoverageFigures {
-    fn of(cases: &[&CaseFigures]) -> Option<Self> {
+impl CoverageMetrics {
+    fn of(cases: &[&MotionCaseMetrics]) -> Option<Self> {
         let all: Option<Vec<_>> = cases.iter().map(|case| case.coverage).collect();
         let all = all.filter(|all| !all.is_empty())?;
-        let mean = |value: fn(&crate::response::evaluate::Coverage) -> f64| {
+        let mean = |value: fn(&MotionCoverage) -> f64| {
             all.iter().map(value).sum::<f64>() / all.len() as f64
         };
         Some(Self {

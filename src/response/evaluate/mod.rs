@@ -1,23 +1,28 @@
 //! The response network beside a tuned 4DOF model, the data sheet and a plain network, on
 //! trajectories that none of them has seen: METHOD of this project, section 7.
 
-mod case_figures;
+mod motion_model;
+
+mod case_metrics;
+mod metrics;
+
 mod compare;
-mod figures;
-mod paper;
 mod result;
-mod rival;
+
+mod paper;
 mod tables;
 mod write;
 
-pub use case_figures::{CaseFigures, Coverage};
-pub use compare::{ComparisonSettings, compare_models, evaluate_rival};
-pub use figures::{CoverageFigures, MeanStd, ModelFigures, RootMeanSquares};
-pub use paper::{PaperFigure, paper_figure};
+pub use case_metrics::{MotionCaseMetrics, MotionCoverage};
+pub use compare::{ComparisonSettings, compare_models, evaluate_motion_model};
+pub use metrics::{CoverageMetrics, MeanStd, MotionMetrics, RootMeanSquares};
+pub use motion_model::{MotionModel, MotionModelKind};
+pub use paper::{PaperMetrics, paper_metrics};
 use result::path_of;
 pub use result::{
     ClusterModel, ClusterRow, ComparedCase, ComparedModel, Comparison, PATH_STEP_S, TestCase,
 };
-pub use rival::{Rival, RivalKind};
-pub use tables::{Table, all_tables, cluster_table, horizon_table, model_table, uncertainty_table};
+pub use tables::{
+    ComparisonTable, all_tables, cluster_table, horizon_table, model_table, uncertainty_table,
+};
 pub use write::{to_markdown, write_comparison};

@@ -11,7 +11,7 @@ use crate::vehicle::VehicleState;
 /// What kind of model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum RivalKind {
+pub enum MotionModelKind {
     /// The 4DOF model by the vehicle's data sheet.
     Untuned,
     /// The 4DOF model with tyre and roll parameters from the fine-tune trajectories.
@@ -24,20 +24,20 @@ pub enum RivalKind {
 
 /// A model to be compared.
 #[derive(Debug)]
-pub enum Rival {
-    /// See [`RivalKind::Untuned`].
+pub enum MotionModel {
+    /// See [`MotionModelKind::Untuned`].
     Untuned,
-    /// See [`RivalKind::Tuned`].
+    /// See [`MotionModelKind::Tuned`].
     Tuned(Tuning),
-    /// See [`RivalKind::Plain`].
+    /// See [`MotionModelKind::Plain`].
     Plain(Box<ResponseModel>),
-    /// See [`RivalKind::Network`].
+    /// See [`MotionModelKind::Network`].
     Network(Box<ResponseModel>),
 }
 
 /// What a model says of a trajectory.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Answer {
+pub(crate) struct PredictedMotion {
     /// Mean path.
     pub states: Vec<VehicleState<f64>>,
     /// Paths whose mean it is: those in which mechanics must hold.
@@ -46,7 +46,7 @@ pub(crate) struct Answer {
     pub distribution: Option<MotionDistribution>,
 }
 
-impl RivalKind {
+impl MotionModelKind {
     /// What a table calls it.
     pub fn label(self) -> &'static str {
         match self {
@@ -58,14 +58,14 @@ impl RivalKind {
     }
 }
 
-impl Rival {
+impl MotionModel {
     /// Its kind.
-    pub fn kind(&self) -> RivalKind {
+    pub fn kind(&self) -> MotionModelKind {
         match self {
-            Self::Untuned => RivalKind::Untuned,
-            Self::Tuned(_) => RivalKind::Tuned,
-            Self::Plain(_) => RivalKind::Plain,
-            Self::Network(_) => RivalKind::Network,
+            Self::Untuned => MotionModelKind::Untuned,
+            Self::Tuned(_) => MotionModelKind::Tuned,
+            Self::Plain(_) => MotionModelKind::Plain,
+            Self::Network(_) => MotionModelKind::Network,
         }
     }
 
@@ -73,11 +73,11 @@ impl Rival {
     ///
     /// # Errors
     /// [`LearningError::Network`].
-    pub(crate) fn answer(&self, case: &ResponseCase) -> Result<Answer, LearningError> {
+    pub(crate) fn answer(&self, case: &ResponseCase) -> Result<PredictedMotion, LearningError> {
         let initial = case.states.first().copied().unwrap_or_default();
         let four_dof = |vehicle| {
             let states = rollout(vehicle, initial, &case.inputs, |_, _| [0.0; N_RESIDUAL]);
-            Answer { paths: vec![states.clone()], states, distribution: None }
+            PredictedMotion { paths: vec![states.clone()], states, distribution: None }
         };
         Ok(match self {
             Self::Untuned => four_dof(&case.vehicle),
@@ -86,7 +86,7 @@ impl Rival {
                 let predictor = model.predictor(&case.vehicle)?;
                 let distribution = predictor.motion(&initial, &case.inputs);
                 let of = |component: crate::response::ComponentPath| component.states;
-                Answer {
+                PredictedMotion {
                     states: predictor.central_path(&initial, &case.inputs),
                     paths: predictor.paths(&initial, &case.inputs).into_iter().map(of).collect(),
                     distribution: Some(distribution),

@@ -1,12 +1,12 @@
 //! What the paper printed, for a column of its own: measured on other data.
 
-use crate::response::evaluate::RivalKind;
+use crate::response::evaluate::MotionModelKind;
 
-/// A figure of the paper.
+/// The metrics that the paper gives of a model.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PaperFigure {
+pub struct PaperMetrics {
     /// The model.
-    pub kind: RivalKind,
+    pub kind: MotionModelKind,
     /// Trajectories it was fine-tuned on, where the paper has several of a kind.
     pub trajectories: Option<usize>,
     /// Average error, m.
@@ -17,28 +17,28 @@ pub struct PaperFigure {
 
 /// Average errors and times per step of [`PitPinnPaper`](crate::bibliography::PitPinnPaper). They were
 /// measured on other data, on another machine, against a 4DOF model with errors: to be shown beside
-/// figures of this program, never as such.
-const PAPER_FIGURES: [PaperFigure; 4] = [
-    PaperFigure {
-        kind: RivalKind::Untuned,
+/// metrics of this program, never as such.
+const PAPER_METRICS: [PaperMetrics; 4] = [
+    PaperMetrics {
+        kind: MotionModelKind::Untuned,
         trajectories: None,
         average_error_m: 35.20,
         time_per_step_ms: 3.21,
     },
-    PaperFigure {
-        kind: RivalKind::Network,
+    PaperMetrics {
+        kind: MotionModelKind::Network,
         trajectories: Some(5),
         average_error_m: 14.13,
         time_per_step_ms: 10.75,
     },
-    PaperFigure {
-        kind: RivalKind::Network,
+    PaperMetrics {
+        kind: MotionModelKind::Network,
         trajectories: Some(20),
         average_error_m: 10.47,
         time_per_step_ms: 10.78,
     },
-    PaperFigure {
-        kind: RivalKind::Plain,
+    PaperMetrics {
+        kind: MotionModelKind::Plain,
         trajectories: None,
         average_error_m: 8.25,
         time_per_step_ms: 7.45,
@@ -46,8 +46,8 @@ const PAPER_FIGURES: [PaperFigure; 4] = [
 ];
 
 /// What the paper printed for such a model, if it had one.
-pub fn paper_figure(kind: RivalKind, trajectories: usize) -> Option<PaperFigure> {
-    PAPER_FIGURES
+pub fn paper_metrics(kind: MotionModelKind, trajectories: usize) -> Option<PaperMetrics> {
+    PAPER_METRICS
         .into_iter()
         .find(|figure| figure.kind == kind && figure.trajectories.is_none_or(|n| n == trajectories))
 }

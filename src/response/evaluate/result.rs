@@ -8,7 +8,9 @@ use crate::collision::Footprint;
 use crate::collision::ImpulseClusters;
 use crate::learning::LearningError;
 use crate::response::evaluate::compare::CaseClusters;
-use crate::response::evaluate::{CaseFigures, ComparisonSettings, ModelFigures, RivalKind};
+use crate::response::evaluate::{
+    ComparisonSettings, MotionCaseMetrics, MotionMetrics, MotionModelKind,
+};
 use crate::response::{ResponseCase, STEP_S};
 use crate::vehicle::VehicleState;
 
@@ -17,18 +19,18 @@ pub const PATH_STEP_S: f64 = 0.1;
 /// Decimals that are kept of them: tenths of a millimetre.
 const PATH_UNIT: f64 = 1e4;
 
-/// A model with its figures.
+/// A model with its metrics.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ComparedModel {
     /// Such as `PINN`.
     pub name: String,
     /// Its kind.
-    pub kind: RivalKind,
+    pub kind: MotionModelKind,
     /// Trajectories it was fine-tuned on; 0 for none.
     pub trajectories: usize,
     /// Over all trajectories asked about.
     #[serde(flatten)]
-    pub figures: ModelFigures,
+    pub metrics: MotionMetrics,
     /// Mean average error of each choice of the fine-tune trajectories, m.
     pub average_error_by_choice_m: Vec<f64>,
     /// Seconds that a training took, mean over the choices.
@@ -45,14 +47,14 @@ pub struct ComparedCase {
     /// The model.
     pub model: String,
     /// Its kind.
-    pub kind: RivalKind,
+    pub kind: MotionModelKind,
     /// Trajectories it was fine-tuned on.
     pub trajectories: usize,
     /// Which choice of them.
     pub choice: u64,
-    /// Its figures.
+    /// Its metrics.
     #[serde(flatten)]
-    pub figures: CaseFigures,
+    pub metrics: MotionCaseMetrics,
     /// Where it says the vehicle goes: [X, Y, ψ] every [`PATH_STEP_S`], m and rad.
     pub path: Vec<[f64; 3]>,
 }
@@ -79,7 +81,7 @@ pub struct ClusterModel {
     pub trajectories: usize,
     /// Over the trajectories of the cluster.
     #[serde(flatten)]
-    pub figures: ModelFigures,
+    pub metrics: MotionMetrics,
 }
 
 /// A trajectory asked about.
@@ -122,24 +124,24 @@ impl Comparison {
         test: &[&ResponseCase],
         clusters: &CaseClusters,
         cases: Vec<ComparedCase>,
-        times: &[(RivalKind, usize, f64)],
+        times: &[(MotionModelKind, usize, f64)],
     ) -> Self {
-        let mut kinds: Vec<(RivalKind, usize)> =
+        let mut kinds: Vec<(MotionModelKind, usize)> =
             cases.iter().map(|row| (row.kind, row.trajectories)).collect();
         kinds.sort_by_key(|(kind, n)| (*n, *kind));
         kinds.dedup();
-        let of_kind = |(kind, n): (RivalKind, usize)| -> Vec<&ComparedCase> {
+        let of_kind = |(kind, n): (MotionModelKind, usize)| -> Vec<&ComparedCase> {
             cases.iter().filter(|row| row.kind == kind && row.trajectories == n).collect()
         };
-        let model = |&(kind, n): &(RivalKind, usize)| {
+        let model = |&(kind, n): &(MotionModelKind, usize)| {
             let rows = of_kind((kind, n));
-            let figures: Vec<&CaseFigures> = rows.iter().map(|row| &row.figures).collect();
+            let metrics: Vec<&MotionCaseMetrics> = rows.iter().map(|row| &row.metrics).collect();
             let mut choices: Vec<u64> = rows.iter().map(|row| row.choice).collect();
             choices.sort_unstable();
             choices.dedup();
             let mean = |choice: &u64| {
                 let of = rows.iter().filter(|row| row.choice == *choice);
-                let errors: Vec<f64> = of.map(|row| row.figures.error.average_error_m).collect();
+                let errors: Vec<f64> = of.map(|row| row.metrics.error.average_error_m).collect();
                 errors.iter().sum::<f64>() / errors.len().max(1) as f64
             };
             let of_times = times.iter().filter(|(k, m, _)| (*k, *m) == (kind, n));
@@ -148,7 +150,7 @@ impl Comparison {
                 name: kind.label().to_owned(),
                 kind,
                 trajectories: n,
-                figures: ModelFigures::of(&figures),
+                metrics: MotionMetrics::of(&metrics),
                 average_error_by_choice_m: choices.iter().map(mean).collect(),
                 training_s: seconds.iter().sum::<f64>() / seconds.len().max(1) as f64,
             }
@@ -156,15 +158,15 @@ impl Comparison {
         let models: Vec<ComparedModel> = kinds.iter().map(model).collect();
         let n_clusters = clusters.clusters.as_ref().map_or(1, ImpulseClusters::n_clusters);
         let cluster = |cluster: usize| {
-            let of_model = |&(kind, n): &(RivalKind, usize)| {
+            let of_model = |&(kind, n): &(MotionModelKind, usize)| {
                 let rows = of_kind((kind, n));
-                let figures: Vec<&CaseFigures> = rows
+                let metrics: Vec<&MotionCaseMetrics> = rows
                     .iter()
                     .filter(|row| row.cluster == cluster)
-                    .map(|row| &row.figures)
+                    .map(|row| &row.metrics)
                     .collect();
-                let figures = ModelFigures::of(&figures);
-                ClusterModel { name: kind.label().to_owned(), trajectories: n, figures }
+                let metrics = MotionMetrics::of(&metrics);
+                ClusterModel { name: kind.label().to_owned(), trajectories: n, metrics }
             };
             ClusterRow {
                 name: ImpulseClusters::label(cluster),

@@ -3,19 +3,19 @@
 use std::fmt::Write;
 
 use crate::response::evaluate::{
-    ClusterModel, ComparedModel, Comparison, MeanStd, RootMeanSquares, paper_figure,
+    ClusterModel, ComparedModel, Comparison, MeanStd, RootMeanSquares, paper_metrics,
 };
 
 /// A table of words and numbers.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Table {
+pub struct ComparisonTable {
     /// Names of the columns, with units.
     pub header: Vec<String>,
     /// Cells, row by row.
     pub rows: Vec<Vec<String>>,
 }
 
-impl Table {
+impl ComparisonTable {
     /// As a table in Markdown.
     pub fn to_markdown(&self) -> String {
         let mut text = String::new();
@@ -46,7 +46,7 @@ impl Table {
 }
 
 /// Titles, file names and tables of a comparison.
-pub fn all_tables(comparison: &Comparison) -> [(&'static str, &'static str, Table); 4] {
+pub fn all_tables(comparison: &Comparison) -> [(&'static str, &'static str, ComparisonTable); 4] {
     [
         ("Models", "models.csv", model_table(comparison)),
         ("Distance by horizon", "horizons.csv", horizon_table(comparison)),
@@ -57,7 +57,7 @@ pub fn all_tables(comparison: &Comparison) -> [(&'static str, &'static str, Tabl
 
 /// Average error, score, time per step and root mean square errors of each model; what the paper
 /// printed in a column of its own.
-pub fn model_table(comparison: &Comparison) -> Table {
+pub fn model_table(comparison: &Comparison) -> ComparisonTable {
     let mut header = words(&[
         "model",
         "trajectories",
@@ -75,44 +75,44 @@ pub fn model_table(comparison: &Comparison) -> Table {
         "paper's average error, m (other data)",
     ]));
     let row = |model: &ComparedModel| {
-        let figures = &model.figures;
+        let metrics = &model.metrics;
         let by_choice = &model.average_error_by_choice_m;
         let choices = MeanStd::of(by_choice.iter().copied());
         let mut row = vec![
             model.name.clone(),
             count(model.trajectories),
-            mean_std(figures.average_error_m),
-            number(figures.average_error_m.median),
+            mean_std(metrics.average_error_m),
+            number(metrics.average_error_m.median),
             if by_choice.len() > 1 { mean_std(choices) } else { String::new() },
-            number(figures.score),
+            number(metrics.score),
         ];
-        row.extend(figures.rmse.named().map(|(_, value)| mean_std(value)));
-        let paper = paper_figure(model.kind, model.trajectories);
+        row.extend(metrics.rmse.named().map(|(_, value)| mean_std(value)));
+        let paper = paper_metrics(model.kind, model.trajectories);
         row.extend([
-            mean_std(figures.final_heading_error_deg),
-            figures.violations.to_string(),
-            format!("{:.1}", figures.time_per_step_us),
+            mean_std(metrics.final_heading_error_deg),
+            metrics.violations.to_string(),
+            format!("{:.1}", metrics.time_per_step_us),
             if model.training_s > 0.0 { format!("{:.1}", model.training_s) } else { String::new() },
             paper.map_or(String::new(), |paper| format!("{:.2}", paper.average_error_m)),
         ]);
         row
     };
-    Table { header, rows: comparison.models.iter().map(row).collect() }
+    ComparisonTable { header, rows: comparison.models.iter().map(row).collect() }
 }
 
 /// Distance after 0.5, 1, 2 and 4 s.
-pub fn horizon_table(comparison: &Comparison) -> Table {
+pub fn horizon_table(comparison: &Comparison) -> ComparisonTable {
     let header = words(&["model", "trajectories", "0.5 s, m", "1 s, m", "2 s, m", "4 s, m"]);
     let row = |model: &ComparedModel| {
         let mut row = vec![model.name.clone(), count(model.trajectories)];
-        row.extend(model.figures.horizon_error_m.map(mean_std));
+        row.extend(model.metrics.horizon_error_m.map(mean_std));
         row
     };
-    Table { header, rows: comparison.models.iter().map(row).collect() }
+    ComparisonTable { header, rows: comparison.models.iter().map(row).collect() }
 }
 
-/// Coverage and scores of the models that have a distribution.
-pub fn uncertainty_table(comparison: &Comparison) -> Table {
+/// MotionCoverage and scores of the models that have a distribution.
+pub fn uncertainty_table(comparison: &Comparison) -> ComparisonTable {
     let header = words(&[
         "model",
         "trajectories",
@@ -126,7 +126,7 @@ pub fn uncertainty_table(comparison: &Comparison) -> Table {
         "energy score, m",
     ]);
     let row = |model: &ComparedModel| {
-        let of = model.figures.coverage?;
+        let of = model.metrics.coverage?;
         let share = |value: f64| format!("{:.0} %", 100.0 * value);
         Some(vec![
             model.name.clone(),
@@ -141,11 +141,11 @@ pub fn uncertainty_table(comparison: &Comparison) -> Table {
             number(of.energy_score_m),
         ])
     };
-    Table { header, rows: comparison.models.iter().filter_map(row).collect() }
+    ComparisonTable { header, rows: comparison.models.iter().filter_map(row).collect() }
 }
 
 /// Average error and root mean square errors by cluster of impulse.
-pub fn cluster_table(comparison: &Comparison) -> Table {
+pub fn cluster_table(comparison: &Comparison) -> ComparisonTable {
     let mut header = words(&[
         "cluster",
         "cases",
@@ -158,21 +158,21 @@ pub fn cluster_table(comparison: &Comparison) -> Table {
     header.extend(rmse_names());
     let mut rows = Vec::new();
     for cluster in &comparison.clusters {
-        for ClusterModel { name, trajectories, figures } in &cluster.models {
+        for ClusterModel { name, trajectories, metrics } in &cluster.models {
             let mut row = vec![
                 cluster.name.clone(),
                 cluster.n.to_string(),
                 cluster.impulse_n_s.map_or(String::new(), |impulse| format!("{impulse:.0}")),
                 name.clone(),
                 count(*trajectories),
-                mean_std(figures.average_error_m),
-                number(figures.average_error_m.median),
+                mean_std(metrics.average_error_m),
+                number(metrics.average_error_m.median),
             ];
-            row.extend(figures.rmse.named().map(|(_, value)| mean_std(value)));
+            row.extend(metrics.rmse.named().map(|(_, value)| mean_std(value)));
             rows.push(row);
         }
     }
-    Table { header, rows }
+    ComparisonTable { header, rows }
 }
 
 fn rmse_names() -> Vec<String> {

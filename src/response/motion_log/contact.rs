@@ -4,7 +4,7 @@
 //! gain(w) = ln p(samples | lively within w) − ln p(samples | quiet)      w* = argmax gain
 //! ```
 
-use crate::response::motion_log::tracks::{Scales, Tracks, Window};
+use crate::response::motion_log::tracks::{LogWindow, TrackScales, Tracks};
 
 /// Contact times that are tried, s: what the shipped finite-element runs last, and shorter.
 const DURATIONS_S: [f64; 4] = [0.05, 0.1, 0.15, 0.2];
@@ -23,13 +23,13 @@ const LEAST_GAIN: f64 = 10.0;
 /// - `[from_s, to_s]`: the log's first and last instant;
 /// - `known_s`: first contact, s, where it is known: the window starts there.
 pub(super) fn find_contact(
-    groups: &[(&Tracks, Scales)],
+    groups: &[(&Tracks, TrackScales)],
     [from_s, to_s]: [f64; 2],
     known_s: Option<f64>,
-) -> Window {
+) -> LogWindow {
     let gain = |window: [f64; 2]| {
         let within = [window[0] - ABOUT_S, window[1] + ABOUT_S];
-        let of = |(tracks, scales): &(&Tracks, Scales)| {
+        let of = |(tracks, scales): &(&Tracks, TrackScales)| {
             let likelihood = |window| tracks.log_likelihood(scales, window, within);
             likelihood(Some(window)) - likelihood(None)
         };

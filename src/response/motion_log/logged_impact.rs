@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::data::{Channel, TimeSeries, contact_interval};
 use crate::response::motion_log::impulse::estimated_load;
-use crate::response::motion_log::tracks::Window;
+use crate::response::motion_log::tracks::LogWindow;
 use crate::response::train::case::MIN_SAMPLES;
 use crate::response::{LogError, LogNoise, MotionLog, N_RESIDUAL, ResponseCase, STEP_S, step};
 use crate::vehicle::{
@@ -68,7 +68,7 @@ impl LoggedImpact {
         load: Option<ContactLoad>,
         settings: &LogSettings,
     ) -> Result<Self, LogError> {
-        let window: Window = match &load {
+        let window: LogWindow = match &load {
             Some(load) => contact_interval(&load.force).map(|(start, end)| [start, end]),
             None => log.contact(settings.impact_s)?,
         };

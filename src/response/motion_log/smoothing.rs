@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::data::{Channel, SeriesError};
 use crate::numerics::TrackPoint;
 use crate::response::motion_log::contact::find_contact;
-use crate::response::motion_log::tracks::{Scales, Tracks, Window};
+use crate::response::motion_log::tracks::{LogWindow, TrackScales, Tracks};
 use crate::response::{LogError, MotionLog};
 use crate::vehicle::VehicleState;
 use crate::vehicle::frames::{body_from_world, world_from_body};
@@ -36,7 +36,7 @@ impl MotionLog {
     /// When the vehicle was struck, from its motion alone; `None` where it was not.
     ///
     /// - `impact_s`: first contact, s, where it is known.
-    pub(super) fn contact(&self, impact_s: Option<f64>) -> Result<Window, LogError> {
+    pub(super) fn contact(&self, impact_s: Option<f64>) -> Result<LogWindow, LogError> {
         let yaw = self.yaw().map_err(|source| self.lacks(source))?;
         let raw: Vec<f64> =
             yaw.samples.iter().flatten().filter(|s| s.order == 0).map(|s| s.value).collect();
@@ -49,11 +49,11 @@ impl MotionLog {
     pub(super) fn states_at(
         &self,
         times_s: &[f64],
-        window: Window,
+        window: LogWindow,
     ) -> Result<(Vec<VehicleState<f64>>, LogNoise), LogError> {
         let lacks = |source| self.lacks(source);
         let from_s = times_s.first().map_or(f64::NEG_INFINITY, |first_s| first_s - RUN_IN_S);
-        let smoothed = |tracks: &Tracks, scales: &Scales, at_s: &[f64]| {
+        let smoothed = |tracks: &Tracks, scales: &TrackScales, at_s: &[f64]| {
             let points = tracks.smooth(scales, window, at_s);
             points.ok_or_else(|| LogError::NoMotion { path: self.path.clone() })
         };

@@ -20,7 +20,7 @@ const MAX_ITERATIONS: u64 = 150;
 
 /// Noise and liveliness of coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Scales {
+pub(super) struct TrackScales {
     /// Standard deviation of the samples of the coordinates and of their velocities.
     pub sample_std: [f64; 2],
     /// Spectral density away from contact and during it.
@@ -37,7 +37,7 @@ pub(super) struct Tracks {
 }
 
 /// Start and end of the contact, s.
-pub(super) type Window = Option<[f64; 2]>;
+pub(super) type LogWindow = Option<[f64; 2]>;
 
 impl Tracks {
     /// One coordinate of values and, where they are there, velocities at the same instants.
@@ -62,8 +62,8 @@ impl Tracks {
         self
     }
 
-    /// Scales to start with: noise from third differences, which a smooth motion hardly has.
-    pub(super) fn start(&self) -> Scales {
+    /// TrackScales to start with: noise from third differences, which a smooth motion hardly has.
+    pub(super) fn start(&self) -> TrackScales {
         let std = |order: usize| {
             let mut sizes: Vec<f64> = Vec::new();
             for samples in &self.samples {
@@ -76,11 +76,11 @@ impl Tracks {
             let median = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
             (median / NORMAL_MEDIAN / THIRD_DIFFERENCE.sqrt()).max(LEAST_STD)
         };
-        Scales { sample_std: [std(0), std(1)], density: START_DENSITY }
+        TrackScales { sample_std: [std(0), std(1)], density: START_DENSITY }
     }
 
-    /// Scales with which the samples are most likely, held near those to start with.
-    pub(super) fn fit(&self, window: Window) -> Scales {
+    /// TrackScales with which the samples are most likely, held near those to start with.
+    pub(super) fn fit(&self, window: LogWindow) -> TrackScales {
         let problem = Problem { tracks: self, start: self.start(), window };
         let start = problem.start;
         let mut simplex = vec![vec![0.0; 4]; 5];
@@ -96,7 +96,12 @@ impl Tracks {
     }
 
     /// Logarithm of the density of the samples between two instants.
-    pub(super) fn log_likelihood(&self, scales: &Scales, window: Window, within: [f64; 2]) -> f64 {
+    pub(super) fn log_likelihood(
+        &self,
+        scales: &TrackScales,
+        window: LogWindow,
+        within: [f64; 2],
+    ) -> f64 {
         let of = |samples: &Vec<TrackSample>| {
             let from = samples.partition_point(|sample| sample.time_s < within[0]);
             let to = samples.partition_point(|sample| sample.time_s <= within[1]);
@@ -111,8 +116,8 @@ impl Tracks {
     /// Each coordinate at some instants, rising; `None` where a number is not finite.
     pub(super) fn smooth(
         &self,
-        scales: &Scales,
-        window: Window,
+        scales: &TrackScales,
+        window: LogWindow,
         at_s: &[f64],
     ) -> Option<Vec<Vec<TrackPoint>>> {
         let of = |samples: &Vec<TrackSample>| {
@@ -124,7 +129,7 @@ impl Tracks {
     }
 }
 
-impl Scales {
+impl TrackScales {
     fn times_exp(&self, logs: &[f64]) -> Self {
         let factor = |i: usize| logs.get(i).copied().unwrap_or(0.0).clamp(-8.0, 8.0).exp();
         Self {
@@ -134,7 +139,7 @@ impl Scales {
     }
 
     /// Mean over an interval that may lie in the window in part.
-    fn density_between(&self, window: Window, [from_s, to_s]: [f64; 2]) -> f64 {
+    fn density_between(&self, window: LogWindow, [from_s, to_s]: [f64; 2]) -> f64 {
         let [quiet, lively] = self.density;
         let Some([start_s, end_s]) = window else { return quiet };
         let overlap = (to_s.min(end_s) - from_s.max(start_s)).max(0.0);
@@ -143,7 +148,7 @@ impl Scales {
     }
 }
 
-fn scaled(samples: &[TrackSample], scales: &Scales) -> Vec<TrackSample> {
+fn scaled(samples: &[TrackSample], scales: &TrackScales) -> Vec<TrackSample> {
     let of = |sample: &TrackSample| TrackSample {
         std: scales.sample_std[sample.order.min(1)],
         ..*sample
@@ -153,8 +158,8 @@ fn scaled(samples: &[TrackSample], scales: &Scales) -> Vec<TrackSample> {
 
 struct Problem<'a> {
     tracks: &'a Tracks,
-    start: Scales,
-    window: Window,
+    start: TrackScales,
+    window: LogWindow,
 }
 
 impl CostFunction for Problem<'_> {

@@ -14,7 +14,7 @@ const TOKEN_NAMES: [&str; N_TOKENS] = ["mass", "geometry", "tires", "suspension"
 
 /// The layers, in the order in which fine-tuning leaves them alone.
 #[derive(Debug, Clone)]
-pub(crate) struct Layers {
+pub(crate) struct ResponseLayers {
     pub encoder: Mlp,
     pub token_encoders: Vec<Mlp>,
     pub attention: Attention,
@@ -22,7 +22,7 @@ pub(crate) struct Layers {
     pub head: Linear,
 }
 
-impl Layers {
+impl ResponseLayers {
     /// Adds them to the parameters; the head starts at zero.
     ///
     /// # Errors

@@ -84,7 +84,7 @@ impl ResponseLossTerms {
 }
 
 /// The terms as tensors.
-pub(crate) struct Loss {
+pub(crate) struct ResponseLoss {
     pub data: Tensor,
     pub likelihood: Tensor,
     pub physics: Tensor,
@@ -94,7 +94,7 @@ pub(crate) struct Loss {
     pub boundary: Tensor,
 }
 
-impl Loss {
+impl ResponseLoss {
     /// The weighted sum, and the values of all terms.
     ///
     /// - `physics_weight`: λ(epoch).

@@ -23,7 +23,7 @@ use candle_core::{D, DType, Device, Tensor};
 use rand_chacha::ChaCha8Rng;
 
 use crate::nn::{Init, NnError, Parameters};
-use crate::response::network::layers::Layers;
+use crate::response::network::layers::ResponseLayers;
 use crate::response::{
     Correction, FEATURE_MIRROR, IS_OF_MODEL, N_EFFECTS, N_FEATURES, N_RESIDUAL, RESIDUAL_MIRROR,
     ResponseNetworkConfig,
@@ -45,9 +45,9 @@ const FIRST_BOUNDARY_SCALE: f64 = 0.05;
 pub(crate) struct ResponseNetwork {
     config: ResponseNetworkConfig,
     parameters: Parameters,
-    layers: Layers,
+    layers: ResponseLayers,
     /// The same, without gradients of the first ones.
-    fine_tuned: Layers,
+    fine_tuned: ResponseLayers,
     /// c, `[J, N_EFFECTS]`.
     strengths: Tensor,
     /// ln s of the soft boundaries, `[5]`.
@@ -91,7 +91,7 @@ impl ResponseNetwork {
     ) -> Result<Self, NnError> {
         let mut parameters = Parameters::new(DType::F64);
         let mut root = parameters.builder(rng);
-        let layers = Layers::new(&mut root, config)?;
+        let layers = ResponseLayers::new(&mut root, config)?;
         let effects = [config.components, N_EFFECTS];
         let strengths = root.at("effects").add("strengths", &effects, Init::Zero)?;
         let boundary_log_scale =
@@ -169,7 +169,7 @@ impl ResponseNetwork {
     }
 
     /// The layers, all with gradients.
-    pub(crate) fn layers(&self) -> &Layers {
+    pub(crate) fn layers(&self) -> &ResponseLayers {
         &self.layers
     }
 

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use candle_core::{D, DType, Device, Tensor};
 
 use crate::nn::{NnError, softmax};
-use crate::response::network::loss::{Loss, boundary, diversity, huber_of_squares};
+use crate::response::network::loss::{ResponseLoss, boundary, diversity, huber_of_squares};
 use crate::response::network::response_network::{Gradients, ResponseNetwork};
 use crate::response::physics::effect_operation::effect_rows;
-use crate::response::physics::step_operations::{Row, feature_rows, step_rows};
+use crate::response::physics::step_operations::{StepRow, feature_rows, step_rows};
 use crate::response::{
     N_EFFECTS, N_FEATURES, N_RESIDUAL, N_TOKEN_NUMBERS, N_TOKENS, ResponseCase, STEP_S,
     vehicle_tokens,
@@ -34,7 +34,7 @@ pub(crate) struct RolloutCase<'a> {
 
 /// A stretch of a trajectory.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Window {
+pub(crate) struct RolloutWindow {
     pub case_idx: usize,
     /// Its first step.
     pub start: usize,
@@ -46,9 +46,9 @@ pub(crate) struct Window {
 pub(crate) fn rollout_loss(
     network: &ResponseNetwork,
     cases: &[RolloutCase<'_>],
-    windows: &[Window],
+    windows: &[RolloutWindow],
     [length, truncation]: [usize; 2],
-) -> Result<Loss, NnError> {
+) -> Result<ResponseLoss, NnError> {
     let (n, device) = (windows.len(), &Device::Cpu);
     let n_components = network.n_components();
     let n_rows = n * n_components;
@@ -108,7 +108,7 @@ pub(crate) fn rollout_loss(
     let joint = ((path_weights + 1e-12)?.log()? - (distance * (N_INDEPENDENT / steps))?)?;
     let likelihood = (joint.log_sum_exp(D::Minus1)?.mean_all()? * (-1.0 / N_INDEPENDENT))?;
     let per_window = steps * n.max(1) as f64;
-    Ok(Loss {
+    Ok(ResponseLoss {
         data: (data / per_window)?,
         likelihood,
         physics: (physics / steps)?,
@@ -120,7 +120,11 @@ pub(crate) fn rollout_loss(
 }
 
 /// States `t` steps after the start of each window, `[windows, 1, 8]`.
-fn recorded(cases: &[RolloutCase<'_>], windows: &[Window], t: usize) -> Result<Tensor, NnError> {
+fn recorded(
+    cases: &[RolloutCase<'_>],
+    windows: &[RolloutWindow],
+    t: usize,
+) -> Result<Tensor, NnError> {
     let states = windows.iter().map(|window| {
         let states = &cases[window.case_idx].case.states;
         states.get(window.start + t).or(states.last()).copied().unwrap_or_default().to_array()
@@ -130,12 +134,17 @@ fn recorded(cases: &[RolloutCase<'_>], windows: &[Window], t: usize) -> Result<T
 }
 
 /// What each row knows: windows one after the other, the components of each together.
-fn rows(cases: &[RolloutCase<'_>], windows: &[Window], t: usize, n_components: usize) -> Vec<Row> {
-    let of = |window: &Window| {
+fn rows(
+    cases: &[RolloutCase<'_>],
+    windows: &[RolloutWindow],
+    t: usize,
+    n_components: usize,
+) -> Vec<StepRow> {
+    let of = |window: &RolloutWindow| {
         let at = window.start + t;
         let case = &cases[window.case_idx];
         let input = case.case.inputs.get(at).copied().unwrap_or(VehicleInput::released());
-        let row = Row { vehicle: case.vehicle.clone(), input, time_s: at as f64 * STEP_S };
+        let row = StepRow { vehicle: case.vehicle.clone(), input, time_s: at as f64 * STEP_S };
         vec![row; n_components]
     };
     windows.iter().flat_map(of).collect()

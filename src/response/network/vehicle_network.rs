@@ -111,7 +111,7 @@ impl VehicleNetwork {
         }
     }
 
-    /// Looks at instants; what the network says of them is left in `work`.
+    /// Evaluates the network at instants; its outputs are left in `work`.
     pub(crate) fn forward(&self, features: &[[f64; N_FEATURES]], work: &mut Workspace) {
         work.n_instants = features.len();
         self.fill(features, &mut work.hidden);

@@ -24,6 +24,9 @@ const RELAXATION_LIMIT: f64 = 0.5;
 pub(super) const N_SLIP_KNOTS: usize = SLIP_KNOTS_RAD.len();
 /// Effects of an axle: characteristic, drag, spin lag, relaxation, load transfer.
 pub(super) const N_PER_AXLE: usize = N_SLIP_KNOTS + 4 + 2 * WHEEL_MASS_SHARES.len() + 2;
+/// Share of the friction at a strength of one of the characteristic.
+pub(super) const CHARACTERISTIC_SCALE: f64 = 0.125;
+
 /// One axle.
 pub(super) struct Axle<'a, T> {
     vehicle: &'a VehicleParameters,
@@ -68,7 +71,7 @@ impl<'a, T: Scalar> Axle<'a, T> {
         let slip_rad = -slope.atan();
         let grip_n = load_n * friction;
         let (characteristic, others) = out.split_at_mut(N_SLIP_KNOTS);
-        let hat_force_n = grip_n * (0.125 * sign(slip_rad));
+        let hat_force_n = grip_n * (CHARACTERISTIC_SCALE * sign(slip_rad));
         for (knot_idx, height) in hats(slip_rad.abs() * (KNOT_FRICTION / friction)) {
             if let Some(slot) = characteristic.get_mut(knot_idx) {
                 *slot = self.side_force(height * hat_force_n);

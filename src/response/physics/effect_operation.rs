@@ -8,7 +8,7 @@ use num_dual::DualSVec64;
 
 use crate::nn::NnError;
 use crate::nn::storage::{contiguous, cpu_storage};
-use crate::response::physics::step_operations::{Row, array, check, map_rows};
+use crate::response::physics::step_operations::{StepRow, array, check, map_rows};
 use crate::response::{Effects, N_EFFECTS, N_RESIDUAL, combined, effects};
 use crate::vehicle::{N_STATE, VehicleState};
 
@@ -22,7 +22,7 @@ use crate::vehicle::{N_STATE, VehicleState};
 pub(crate) fn effect_rows(
     x: &Tensor,
     strengths: &Tensor,
-    rows: &Arc<Vec<Row>>,
+    rows: &Arc<Vec<StepRow>>,
 ) -> Result<Tensor, NnError> {
     check(x, N_STATE, rows)?;
     check(strengths, N_EFFECTS, rows)?;
@@ -30,11 +30,11 @@ pub(crate) fn effect_rows(
     Ok(x.contiguous()?.apply_op2(&strengths, EffectOperation(rows.clone()))?)
 }
 
-struct EffectOperation(Arc<Vec<Row>>);
+struct EffectOperation(Arc<Vec<StepRow>>);
 
 impl EffectOperation {
     fn jacobian(
-        row: &Row,
+        row: &StepRow,
         x: SVector<f64, N_STATE>,
         strengths: &[f64],
     ) -> SMatrix<f64, N_RESIDUAL, N_STATE> {
@@ -48,7 +48,7 @@ impl EffectOperation {
         num_dual::jacobian(f, &x).1
     }
 
-    fn at(row: &Row, x: [f64; N_STATE]) -> Effects<f64> {
+    fn at(row: &StepRow, x: [f64; N_STATE]) -> Effects<f64> {
         let state = VehicleState::from_array(x);
         effects(&row.vehicle, &state, &row.vehicle.evaluate(&state, &row.input))
     }

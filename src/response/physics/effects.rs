@@ -32,16 +32,79 @@
 //! Vehicle Dynamics, 3rd ed., 2012, chapters 1, 4 and 7. The set was chosen by cross-validation on
 //! training trajectories.
 
+use std::ops::Range;
+
 use crate::numerics::Scalar;
 use crate::response::N_RESIDUAL;
-use crate::response::physics::axle_effects::{Axle, N_PER_AXLE, N_SLIP_KNOTS};
+use crate::response::physics::axle_effects::{
+    Axle, CHARACTERISTIC_SCALE, N_PER_AXLE, N_SLIP_KNOTS,
+};
 use crate::vehicle::{Evaluation, VehicleParameters, VehicleState};
 
-/// Effects of the body.
-const N_OF_BODY: usize = 11;
+/// An effect of the body, named by its cause and by the acceleration that it adds to. The effects of the
+/// front axle and of the rear axle come before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum BodyEffect {
+    /// Wheels that are spun up with the car: in v̇_x.
+    WheelInertia,
+    /// Roll angle φ: in φ̈.
+    RollAngle,
+    /// Roll rate φ̇: in φ̈.
+    RollRate,
+    /// Lateral acceleration: in φ̈.
+    LateralAccelerationRoll,
+    /// Lateral force of the collision: in φ̈.
+    CollisionRoll,
+    /// Share of the longitudinal force of the collision: in v̇_x.
+    CollisionLongitudinal,
+    /// Share of the lateral force of the collision: in v̇_y.
+    CollisionLateral,
+    /// Share of the yaw moment of the collision: in ṙ.
+    CollisionYaw,
+    /// Roll rate φ̇, by compliance and steer: in v̇_y.
+    RollRateLateral,
+    /// Roll rate φ̇, by compliance and steer: in ṙ.
+    RollRateYaw,
+    /// Roll acceleration φ̈: in ṙ.
+    RollAccelerationYaw,
+}
 
-/// How many effects there are.
-pub const N_EFFECTS: usize = 2 * N_PER_AXLE + N_OF_BODY;
+impl BodyEffect {
+    /// Number of effects of the body.
+    const COUNT: usize = Self::RollAccelerationYaw as usize + 1;
+
+    /// Index among all effects.
+    const fn index(self) -> usize {
+        2 * N_PER_AXLE + self as usize
+    }
+}
+
+/// Which of the axles, in the order of their effects.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum AxlePosition {
+    Front,
+    Rear,
+}
+
+impl AxlePosition {
+    /// Indices among all effects of those that correct the characteristic of the axle.
+    const fn characteristic(self) -> Range<usize> {
+        let first = self as usize * N_PER_AXLE;
+        first..first + N_SLIP_KNOTS
+    }
+}
+
+/// Number of effects.
+pub const N_EFFECTS: usize = 2 * N_PER_AXLE + BodyEffect::COUNT;
+
+/// Places of v̇_x, v̇_y, ṙ and φ̈ in a residual acceleration.
+const VX: usize = 0;
+const VY: usize = 1;
+const YAW: usize = 2;
+const ROLL: usize = 3;
+
+/// Share of the collision's force or moment at a strength of one.
+const COLLISION_SCALE: f64 = 0.1;
 
 /// Residual acceleration of each effect at strength one: v̇_x, v̇_y, m/s², ṙ, φ̈, rad/s².
 pub type Effects<T> = [[T; N_RESIDUAL]; N_EFFECTS];
@@ -77,37 +140,34 @@ fn fill<T: Scalar>(
     for ((arm_m, cornering_coefficient, loads_n), out) in axles.into_iter().zip(of_axles) {
         Axle::new(vehicle, arm_m, cornering_coefficient, loads_n).effects(x, now, out);
     }
-    body_effects(vehicle, x, now, of_body);
+    if let Some(of_body) = of_body.first_chunk_mut() {
+        body_effects(vehicle, x, now, of_body);
+    }
 }
 
+/// - `out`: all zero.
 fn body_effects<T: Scalar>(
     vehicle: &VehicleParameters,
     x: &VehicleState<T>,
     now: &Evaluation<T>,
-    out: &mut [[T; N_RESIDUAL]],
+    out: &mut [[T; N_RESIDUAL]; BodyEffect::COUNT],
 ) {
-    let zero = T::from(0.0);
     let mass = &vehicle.mass;
     let [fx, fy] = now.collision_force_n.map(|force| force / mass.mass_kg);
     let struck_yaw = now.collision_yaw_moment_n_m / mass.yaw_inertia_kg_m2;
     let rate = &now.derivative;
     let [_, ay] = now.acceleration_m_s2;
-    let effects: [[T; N_RESIDUAL]; N_OF_BODY] = [
-        [-rate.vx_m_s * 0.05, zero, zero, zero],
-        [zero, zero, zero, x.roll_rad * 100.0],
-        [zero, zero, zero, x.roll_rate_rad_s * 10.0],
-        [zero, zero, zero, ay],
-        [zero, zero, zero, fy],
-        [fx * 0.1, zero, zero, zero],
-        [zero, fy * 0.1, zero, zero],
-        [zero, zero, struck_yaw * 0.1, zero],
-        [zero, x.roll_rate_rad_s, zero, zero],
-        [zero, zero, x.roll_rate_rad_s, zero],
-        [zero, zero, rate.roll_rate_rad_s * 0.05, zero],
-    ];
-    for (slot, effect) in out.iter_mut().zip(effects) {
-        *slot = effect;
-    }
+    out[BodyEffect::WheelInertia as usize][VX] = -rate.vx_m_s * 0.05;
+    out[BodyEffect::RollAngle as usize][ROLL] = x.roll_rad * 100.0;
+    out[BodyEffect::RollRate as usize][ROLL] = x.roll_rate_rad_s * 10.0;
+    out[BodyEffect::LateralAccelerationRoll as usize][ROLL] = ay;
+    out[BodyEffect::CollisionRoll as usize][ROLL] = fy;
+    out[BodyEffect::CollisionLongitudinal as usize][VX] = fx * COLLISION_SCALE;
+    out[BodyEffect::CollisionLateral as usize][VY] = fy * COLLISION_SCALE;
+    out[BodyEffect::CollisionYaw as usize][YAW] = struck_yaw * COLLISION_SCALE;
+    out[BodyEffect::RollRateLateral as usize][VY] = x.roll_rate_rad_s;
+    out[BodyEffect::RollRateYaw as usize][YAW] = x.roll_rate_rad_s;
+    out[BodyEffect::RollAccelerationYaw as usize][YAW] = rate.roll_rate_rad_s * 0.05;
 }
 
 /// A change of several strengths together that has a name.
@@ -126,21 +186,24 @@ pub(crate) enum Direction {
 /// Strengths at which the change is a whole: side force of all the friction, the whole collision force.
 pub(crate) fn direction(direction: Direction) -> [f64; N_EFFECTS] {
     let mut strengths = [0.0; N_EFFECTS];
-    let (front, rear) = (0, N_PER_AXLE);
-    let mut side_force = |axle: usize, sign: f64| {
-        strengths.iter_mut().skip(axle).take(N_SLIP_KNOTS).for_each(|value| *value = sign / 0.125);
+    let mut side_force = |axle: AxlePosition, sign: f64| {
+        strengths[axle.characteristic()].fill(sign / CHARACTERISTIC_SCALE);
     };
     match direction {
         Direction::Grip => {
-            side_force(front, 1.0);
-            side_force(rear, 1.0);
+            side_force(AxlePosition::Front, 1.0);
+            side_force(AxlePosition::Rear, 1.0);
         }
         Direction::Balance => {
-            side_force(front, 1.0);
-            side_force(rear, -1.0);
+            side_force(AxlePosition::Front, 1.0);
+            side_force(AxlePosition::Rear, -1.0);
         }
-        Direction::YawImpulse => strengths[2 * N_PER_AXLE + 7] = 10.0,
-        Direction::LateralImpulse => strengths[2 * N_PER_AXLE + 6] = 10.0,
+        Direction::YawImpulse => {
+            strengths[BodyEffect::CollisionYaw.index()] = 1.0 / COLLISION_SCALE
+        }
+        Direction::LateralImpulse => {
+            strengths[BodyEffect::CollisionLateral.index()] = 1.0 / COLLISION_SCALE;
+        }
     }
     strengths
 }

@@ -1,4 +1,4 @@
-//! A motion as the time series that files, figures and error figures are made of.
+//! A motion as the time series that files, plots and error metrics are made of.
 
 use crate::data::{Channel, SeriesError, TimeSeries};
 use crate::response::STEP_S;

@@ -23,7 +23,7 @@ const N_BOTH: usize = N_STATE + N_RESIDUAL;
 
 /// What a row of a batch knows besides its state.
 #[derive(Debug, Clone)]
-pub(crate) struct Row {
+pub(crate) struct StepRow {
     pub vehicle: Arc<VehicleParameters>,
     /// Input over the coming step.
     pub input: VehicleInput<f64>,
@@ -38,7 +38,7 @@ pub(crate) struct Row {
 ///
 /// # Errors
 /// [`NnError::Tensor`] for another shape or type.
-pub(crate) fn feature_rows(x: &Tensor, rows: &Arc<Vec<Row>>) -> Result<Tensor, NnError> {
+pub(crate) fn feature_rows(x: &Tensor, rows: &Arc<Vec<StepRow>>) -> Result<Tensor, NnError> {
     check(x, N_STATE, rows)?;
     Ok(x.contiguous()?.apply_op1(FeatureOperation(rows.clone()))?)
 }
@@ -53,7 +53,7 @@ pub(crate) fn feature_rows(x: &Tensor, rows: &Arc<Vec<Row>>) -> Result<Tensor, N
 pub(crate) fn step_rows(
     correction: Correction,
     [x, value]: [&Tensor; 2],
-    rows: &Arc<Vec<Row>>,
+    rows: &Arc<Vec<StepRow>>,
 ) -> Result<Tensor, NnError> {
     check(x, N_STATE, rows)?;
     check(value, N_RESIDUAL, rows)?;
@@ -64,7 +64,7 @@ pub(crate) fn step_rows(
 pub(in crate::response) fn check(
     tensor: &Tensor,
     width: usize,
-    rows: &[Row],
+    rows: &[StepRow],
 ) -> Result<(), NnError> {
     let expected = [rows.len(), width];
     if tensor.dims() != expected || tensor.dtype() != DType::F64 {
@@ -78,16 +78,16 @@ pub(in crate::response) fn check(
     Ok(())
 }
 
-struct FeatureOperation(Arc<Vec<Row>>);
+struct FeatureOperation(Arc<Vec<StepRow>>);
 
 struct StepOperation {
     correction: Correction,
-    rows: Arc<Vec<Row>>,
+    rows: Arc<Vec<StepRow>>,
 }
 
 impl FeatureOperation {
     fn jacobian(
-        row: &Row,
+        row: &StepRow,
         x: SVector<f64, N_STATE>,
     ) -> (SVector<f64, N_FEATURES>, SMatrix<f64, N_FEATURES, N_STATE>) {
         let input = row.input.map(DualSVec64::<N_STATE>::from);
@@ -102,7 +102,7 @@ impl FeatureOperation {
 impl StepOperation {
     fn jacobian(
         correction: Correction,
-        row: &Row,
+        row: &StepRow,
         both: SVector<f64, N_BOTH>,
     ) -> (SVector<f64, N_STATE>, SMatrix<f64, N_STATE, N_BOTH>) {
         let input = row.input.map(DualSVec64::<N_BOTH>::from);
@@ -118,8 +118,8 @@ impl StepOperation {
 
 /// `f` of each row, one after the other; the result of a row does not depend on the others.
 pub(in crate::response) fn map_rows<const N: usize>(
-    rows: &[Row],
-    f: impl Fn(usize, &Row) -> [f64; N] + Sync,
+    rows: &[StepRow],
+    f: impl Fn(usize, &StepRow) -> [f64; N] + Sync,
 ) -> Vec<f64> {
     let values: Vec<[f64; N]> = rows
         .par_iter()
@@ -219,7 +219,7 @@ pub(in crate::response) mod tests {
     use crate::vehicle::{CollisionForce, ContactPoint, Preset};
     use candle_core::Var;
 
-    pub(in crate::response) fn rows() -> Arc<Vec<Row>> {
+    pub(in crate::response) fn rows() -> Arc<Vec<StepRow>> {
         let vehicle = Arc::new(Preset::Reference.parameters());
         let contact = ContactPoint { x_m: -1.5, y_m: -0.9, height_m: 0.5 };
         let collision = CollisionForce {
@@ -229,7 +229,7 @@ pub(in crate::response) mod tests {
             contact,
         };
         let struck = VehicleInput { collision: Some(collision), ..VehicleInput::released() };
-        let row = |input, time_s| Row { vehicle: vehicle.clone(), input, time_s };
+        let row = |input, time_s| StepRow { vehicle: vehicle.clone(), input, time_s };
         Arc::new(vec![row(struck, 0.05), row(VehicleInput::released(), 1.0)])
     }
 

@@ -1,5 +1,5 @@
-//! A step of a component: what is seen of a state, and where it goes from there at given latent
-//! factors.
+//! One step of a component of the mixture: the correction terms at a state, and the state that follows
+//! at given latent factors.
 
 use crate::numerics::Lanes;
 use crate::response::network::vehicle_network::{VehicleNetwork, Workspace};
@@ -17,23 +17,23 @@ pub(crate) struct Dynamics<'a> {
     directions: [Vec<(usize, f64)>; N_LATENTS],
 }
 
-/// What the network is asked about the states of a step, and its answers.
+/// The states of a step at which the network is evaluated, as features, and the results.
 #[derive(Default)]
-pub(crate) struct Questions {
+pub(crate) struct NetworkBatch {
     work: Workspace,
     features: Vec<[f64; N_FEATURES]>,
 }
 
-/// The correction at a state before the bound.
+/// The terms of the correction at a state, before it is bounded.
 #[derive(Clone, Copy)]
-pub(super) struct Correcting {
-    /// Effects and remainder of the component with all latents none.
+pub(super) struct CorrectionTerms {
+    /// Effects and remainder of the component with every latent factor at zero.
     value: [f64; N_RESIDUAL],
-    /// What a latent of one adds to that.
+    /// What a latent factor of one adds to that.
     by_latents: [[f64; N_RESIDUAL]; N_LATENTS],
 }
 
-impl Questions {
+impl NetworkBatch {
     pub(super) fn clear(&mut self) {
         self.features.clear();
     }
@@ -60,15 +60,15 @@ impl<'a> Dynamics<'a> {
         &self,
         (component, latents): (usize, &[f64; N_LATENTS]),
         (x, u, time_s): (&VehicleState<f64>, &VehicleInput<f64>, f64),
-        questions: &mut Questions,
+        batch: &mut NetworkBatch,
     ) -> VehicleState<f64> {
         let now = self.vehicle.evaluate(x, u);
-        questions.clear();
-        questions.push(features_of(self.vehicle, x, &now, time_s));
-        let mut correcting = self.effects_at(component, x, &now);
-        self.ask(questions);
-        self.add_remainder(&mut correcting, questions, [0, component]);
-        self.advance((x, &now), self.correction(&correcting, latents), u)
+        batch.clear();
+        batch.push(features_of(self.vehicle, x, &now, time_s));
+        let mut terms = self.effects_at(component, x, &now);
+        self.evaluate_network(batch);
+        self.add_remainder(&mut terms, batch, [0, component]);
+        self.advance((x, &now), self.correction(&terms, latents), u)
     }
 
     /// The known effects of a component.
@@ -77,7 +77,7 @@ impl<'a> Dynamics<'a> {
         component: usize,
         x: &VehicleState<f64>,
         now: &Evaluation<f64>,
-    ) -> Correcting {
+    ) -> CorrectionTerms {
         let effects = effects(self.vehicle, x, now);
         let known = self.network.strengths(component).map(|known| combined(&effects, known));
         let by_latents = self.directions.each_ref().map(|direction| {
@@ -87,34 +87,34 @@ impl<'a> Dynamics<'a> {
             }
             sum
         });
-        Correcting { value: known.unwrap_or_default(), by_latents }
+        CorrectionTerms { value: known.unwrap_or_default(), by_latents }
     }
 
-    /// Has all questions answered.
-    pub(super) fn ask(&self, questions: &mut Questions) {
-        self.network.forward(&questions.features, &mut questions.work);
+    /// Evaluates the network at every state of the batch.
+    pub(super) fn evaluate_network(&self, batch: &mut NetworkBatch) {
+        self.network.forward(&batch.features, &mut batch.work);
     }
 
-    /// Adds what the network says.
+    /// Adds the network's remainder.
     ///
-    /// - `at`: question and component.
+    /// - `at`: indices of the state in the batch and of the component.
     pub(super) fn add_remainder(
         &self,
-        correcting: &mut Correcting,
-        questions: &Questions,
+        terms: &mut CorrectionTerms,
+        batch: &NetworkBatch,
         at: [usize; 2],
     ) {
-        add(&mut correcting.value, 1.0, &self.network.remainder(&questions.work, at));
+        add(&mut terms.value, 1.0, &self.network.remainder(&batch.work, at));
     }
 
     /// The correction at given latent factors.
     pub(super) fn correction(
         &self,
-        correcting: &Correcting,
+        terms: &CorrectionTerms,
         latents: &[f64; N_LATENTS],
     ) -> [f64; N_RESIDUAL] {
-        let mut value = correcting.value;
-        for (z, by_latent) in latents.iter().zip(&correcting.by_latents) {
+        let mut value = terms.value;
+        for (z, by_latent) in latents.iter().zip(&terms.by_latents) {
             add(&mut value, *z, by_latent);
         }
         self.network.bounded(value)
@@ -132,14 +132,14 @@ impl<'a> Dynamics<'a> {
         self.network.correction().step_from(self.vehicle, (x, u, now), correction)
     }
 
-    /// Probability of a component at the first question.
-    pub(crate) fn weight(&self, component: usize, questions: &Questions) -> f64 {
-        self.network.weight(&questions.work, [0, component])
+    /// Probability of a component at the first state of the batch.
+    pub(crate) fn weight(&self, component: usize, batch: &NetworkBatch) -> f64 {
+        self.network.weight(&batch.work, [0, component])
     }
 
-    /// Deviation of the noise of a step from the state of the first question.
-    pub(crate) fn noise(&self, component: usize, questions: &Questions) -> [f64; N_RESIDUAL] {
-        let variance = self.network.variance(&questions.work, [0, component]);
+    /// Standard deviation of the noise of a step from the first state of the batch.
+    pub(crate) fn noise(&self, component: usize, batch: &NetworkBatch) -> [f64; N_RESIDUAL] {
+        let variance = self.network.variance(&batch.work, [0, component]);
         variance.map(|variance| self.scales.step_noise * variance.sqrt())
     }
 }

@@ -11,29 +11,34 @@ use crate::response::N_RESIDUAL;
 use crate::response::predict::latents::N_LATENTS;
 use crate::vehicle::VehicleState;
 
-/// Numbers of ξ.
+/// Number of components of ξ.
 pub(crate) const N_JOINT: usize = 8 + N_LATENTS;
-/// Those that the network sees: velocities and roll.
+/// The first components of ξ, on which the features of the network depend: velocities and roll.
 pub(super) const N_SEEN: usize = 5;
-/// Those that the step depends on: these and the latents.
+/// The first components of ξ, on which the step depends: these and the latent factors.
 pub(super) const N_DYNAMIC: usize = N_SEEN + N_LATENTS;
+/// Place of the heading in ξ.
 pub(super) const PSI: usize = N_DYNAMIC;
+/// Place of X in ξ.
 pub(super) const X: usize = N_DYNAMIC + 1;
+/// Place of Y in ξ.
 pub(super) const Y: usize = N_DYNAMIC + 2;
-/// Of velocities and rates in ξ: v_x, v_y, r, φ̇.
+/// Places in ξ of the components to which each step adds noise: v_x, v_y, r, φ̇.
 pub(super) const NOISY: [usize; N_RESIDUAL] = [0, 1, 2, 4];
-/// Latent factors of the collision in ξ: they matter as long as a force acts.
+/// Places in ξ of the latent factors of the collision, which matter as long as a force acts.
 pub(super) const OF_COLLISION: [usize; 2] = [N_SEEN + 2, N_SEEN + 3];
-/// Variance that is added to every number of ξ so that no covariance is singular.
+/// Variance that is added to every component of ξ so that no covariance is singular.
 pub(super) const LEAST_VARIANCE: f64 = 1e-12;
 
 pub(super) type Mean = SVector<f64, N_JOINT>;
 pub(super) type Covariance = SMatrix<f64, N_JOINT, N_JOINT>;
 
-/// A point against the centre, stepped from another pose.
+/// The offset of a sigma point from the centre after a step, where the step was taken from the mean's
+/// pose and the point has another.
 ///
-/// - `offset`, `way`: of its step from the mean's pose, against the centre's and in m; `pose`: how far
-///   off its own pose was, with sine and cosine of its turn.
+/// - `offset`: offset from the centre of the step from the mean's pose;
+/// - `[dx, dy]`: displacement in that step, m;
+/// - `pose`: offset of the point's pose from the mean's, with sine and cosine of its heading.
 #[inline]
 pub(super) fn turned(
     offset: &Mean,
@@ -46,7 +51,7 @@ pub(super) fn turned(
     offset
 }
 
-/// The point of a state with latents.
+/// The vector ξ of a state with latent factors.
 #[inline]
 pub(super) fn mean_of(x: &VehicleState<f64>, latents: &[f64; N_LATENTS]) -> Mean {
     let mut mean = Mean::zeros();
@@ -60,7 +65,7 @@ pub(super) fn mean_of(x: &VehicleState<f64>, latents: &[f64; N_LATENTS]) -> Mean
     mean
 }
 
-/// The state of a point.
+/// The state in a vector ξ.
 #[inline]
 pub(super) fn state_of(point: &Mean) -> VehicleState<f64> {
     VehicleState {
@@ -75,14 +80,13 @@ pub(super) fn state_of(point: &Mean) -> VehicleState<f64> {
     }
 }
 
-/// The latents of a point.
+/// The latent factors in a vector ξ.
 #[inline]
 pub(super) fn latents_of(point: &Mean) -> [f64; N_LATENTS] {
     std::array::from_fn(|m| point[N_SEEN + m])
 }
 
-/// What is uncertain about a collision that is over: its latent factors are no longer part of the
-/// distribution.
+/// Takes the latent factors of the collision out of the distribution once the collision is over.
 pub(super) fn forget(covariance: &mut Covariance) {
     for i in OF_COLLISION {
         covariance.fill_row(i, 0.0);

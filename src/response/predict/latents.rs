@@ -20,7 +20,7 @@ use crate::numerics::{normal_density, normal_quantile};
 use crate::response::N_EFFECTS;
 use crate::response::physics::effects::{Direction, direction};
 
-/// How many latent factors there are.
+/// Number of latent factors.
 pub const N_LATENTS: usize = 4;
 
 /// Their names, in order.
@@ -33,9 +33,9 @@ pub struct LatentScales {
     /// s: standard deviation of the grip, of the balance between the axles (shares of the friction),
     /// of the yaw moment and of the lateral force of the collision (shares of either).
     pub scales: [f64; N_LATENTS],
-    /// Which of them the components share out.
+    /// The latent factor that the components of the mixture share out.
     pub shared_out: usize,
-    /// Factor on the deviation of each step's noise.
+    /// Factor on the standard deviation of each step's noise.
     pub step_noise: f64,
     /// Trajectories that the scales were calibrated on; 0 for a guess.
     pub n_calibrated: usize,
@@ -49,7 +49,7 @@ impl Default for LatentScales {
     }
 }
 
-/// Mean and variance of a latent within a component.
+/// Mean and variance of a latent factor within a component.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LatentShare {
     pub mean: f64,

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::nn::random_stream;
 use crate::response::network::vehicle_network::VehicleNetwork;
-use crate::response::predict::dynamics::{Dynamics, Questions};
+use crate::response::predict::dynamics::{Dynamics, NetworkBatch};
 use crate::response::predict::joint_state::N_JOINT;
 use crate::response::{ComponentMotion, LatentScales, N_LATENTS, N_RESIDUAL, STEP_S};
 use crate::uncertainty::{NormalMixture, NormalPart, PlanarMixture, PlanarPart, Unscented};
@@ -19,7 +19,7 @@ use crate::vehicle::{N_STATE, VehicleInput, VehicleParameters, VehicleState};
 /// positive whatever the step does.
 const POINTS: Unscented = Unscented { alpha: 1.0, beta: 2.0, kappa: 4.0 - N_JOINT as f64 };
 
-/// Variance that a number of a state has at least, as at the start, where all are known.
+/// Smallest variance of a component of the state, as at the start, where every component is known.
 const LEAST_VARIANCE: f64 = 1e-12;
 
 /// A model for one vehicle.
@@ -31,7 +31,7 @@ pub struct Predictor {
     unscented: Unscented,
 }
 
-/// Where the vehicle goes by one component of the mixture.
+/// The motion that one component of the mixture predicts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ComponentPath {
     /// Mean probability of the component along the path.
@@ -56,7 +56,7 @@ impl Predictor {
         Self { vehicle, network, latents, unscented: POINTS }
     }
 
-    /// The same with another uncertainty.
+    /// The same predictor with another uncertainty.
     #[must_use]
     pub fn with_latents(mut self, latents: LatentScales) -> Self {
         self.latents = latents;
@@ -68,7 +68,7 @@ impl Predictor {
         &self.vehicle
     }
 
-    /// J.
+    /// Number J of components of the mixture.
     pub fn n_components(&self) -> usize {
         self.network.n_components()
     }
@@ -79,7 +79,7 @@ impl Predictor {
 
     /// The path of each component with its latent factors at their means.
     ///
-    /// - `inputs`: over each step.
+    /// - `inputs`: the input over each step.
     pub fn paths(
         &self,
         initial: &VehicleState<f64>,
@@ -96,18 +96,17 @@ impl Predictor {
         inputs: &[VehicleInput<f64>],
         latents: impl Fn(usize) -> [f64; N_LATENTS],
     ) -> Vec<ComponentPath> {
-        let (dynamics, mut questions) = (self.dynamics(), Questions::default());
+        let (dynamics, mut batch) = (self.dynamics(), NetworkBatch::default());
         let mut none = |std: &mut [f64; N_RESIDUAL]| *std = [0.0; N_RESIDUAL];
-        let of = |j: usize| {
-            path(&dynamics, (j, &latents(j), &mut none), (initial, inputs), &mut questions)
-        };
+        let of =
+            |j: usize| path(&dynamics, (j, &latents(j), &mut none), (initial, inputs), &mut batch);
         let mut paths: Vec<ComponentPath> = (0..self.n_components()).map(of).collect();
         let sum: f64 = paths.iter().map(|path| path.weight).sum();
         paths.iter_mut().for_each(|path| path.weight /= sum);
         paths
     }
 
-    /// Mean over the components of the paths on which one latent factor is one and the others none.
+    /// Mean over the components of the paths on which one latent factor is one and the others are zero.
     pub(crate) fn path_at(
         &self,
         initial: &VehicleState<f64>,
@@ -118,10 +117,10 @@ impl Predictor {
         mean_of(&self.paths_at(initial, inputs, |_| latents), inputs.len())
     }
 
-    /// The path without what is uncertain: all latent factors none, the mean over the components.
+    /// The path with every latent factor at zero: the mean over the components.
     ///
-    /// It stands for the prediction where one path is asked for. The mean of the distribution is none
-    /// of the ways in which a car can go where some of them spin and others do not, and it moves with
+    /// It stands for the prediction where one path is asked for. The mean of the distribution would be
+    /// none of the possible motions where some of them spin and others do not, and it would depend on
     /// how uncertain the model is.
     pub fn central_path(
         &self,
@@ -134,7 +133,7 @@ impl Predictor {
 
     /// The distribution of the motion.
     ///
-    /// - `inputs`: over each step.
+    /// - `inputs`: the input over each step.
     pub fn motion(
         &self,
         initial: &VehicleState<f64>,
@@ -167,8 +166,8 @@ impl Predictor {
             let mut noise = |std: &mut [f64; N_RESIDUAL]| {
                 std.iter_mut().for_each(|std| *std *= normal(&mut rng));
             };
-            let mut questions = Questions::default();
-            path(&dynamics, (j, &latents, &mut noise), (initial, inputs), &mut questions).states
+            let mut batch = NetworkBatch::default();
+            path(&dynamics, (j, &latents, &mut noise), (initial, inputs), &mut batch).states
         };
         (0..n).into_par_iter().map(draw).collect()
     }
@@ -196,7 +195,7 @@ fn drawn(weights: &[f64], share: f64) -> usize {
     found.unwrap_or(weights.len().saturating_sub(1))
 }
 
-/// Turns the deviations of the velocities after a step into draws.
+/// Turns the standard deviations of the velocities after a step into draws.
 type Noise<'a> = dyn FnMut(&mut [f64; N_RESIDUAL]) + 'a;
 
 /// One path.
@@ -204,7 +203,7 @@ fn path(
     dynamics: &Dynamics<'_>,
     (component, latents, noise): (usize, &[f64; N_LATENTS], &mut Noise<'_>),
     (initial, inputs): (&VehicleState<f64>, &[VehicleInput<f64>]),
-    questions: &mut Questions,
+    batch: &mut NetworkBatch,
 ) -> ComponentPath {
     let mut states = Vec::with_capacity(inputs.len() + 1);
     let mut state = *initial;
@@ -212,10 +211,10 @@ fn path(
     let mut weight = 0.0;
     for (i, u) in inputs.iter().enumerate() {
         let at = (&state, u, i as f64 * STEP_S);
-        let next = dynamics.step((component, latents), at, questions);
-        weight += dynamics.weight(component, questions) / inputs.len() as f64;
+        let next = dynamics.step((component, latents), at, batch);
+        weight += dynamics.weight(component, batch) / inputs.len() as f64;
         state = next;
-        let mut off = dynamics.noise(component, questions);
+        let mut off = dynamics.noise(component, batch);
         noise(&mut off);
         let [vx, vy, yaw, roll] = off;
         state.vx_m_s += vx;
@@ -241,19 +240,20 @@ pub(crate) fn weighted_mean<'a>(
 }
 
 impl MotionDistribution {
-    /// Of components, whose weights are scaled to sum to one.
+    /// The mixture of components, whose weights are scaled to sum to one.
     pub fn new(mut components: Vec<ComponentMotion>) -> Self {
         let sum: f64 = components.iter().map(|component| component.weight).sum();
         components.iter_mut().for_each(|component| component.weight /= sum);
         Self { components }
     }
 
-    /// Of several distributions that are equally likely, such as one for each drawn force curve.
+    /// The mixture of several distributions that are equally likely, such as one for each drawn force
+    /// curve.
     pub fn mixed(parts: Vec<Self>) -> Self {
         Self::new(parts.into_iter().flat_map(|part| part.components).collect())
     }
 
-    /// Instants.
+    /// Number of instants.
     pub fn n_instants(&self) -> usize {
         self.components.first().map_or(0, |component| component.states.len())
     }

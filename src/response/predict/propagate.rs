@@ -21,7 +21,7 @@ use wide::f64x2;
 
 use crate::response::STEP_S;
 use crate::response::physics::features::features_of;
-use crate::response::predict::dynamics::{Correcting, Dynamics, Questions};
+use crate::response::predict::dynamics::{CorrectionTerms, Dynamics, NetworkBatch};
 use crate::response::predict::joint_state::{
     Covariance, LEAST_VARIANCE, Mean, N_DYNAMIC, N_JOINT, N_SEEN, NOISY, OF_COLLISION, PSI, X, Y,
     forget, latents_of, mean_of, state_of, turned,
@@ -54,57 +54,65 @@ pub struct ComponentMotion {
     pub states: Vec<StateDistribution>,
 }
 
-/// Buffers of a motion.
+/// Buffers that the steps of a motion share.
 #[derive(Default)]
-struct Buffers {
-    questions: Questions,
-    looks: Vec<Look>,
+struct StepBuffers {
+    batch: NetworkBatch,
+    evaluations: Vec<PairEvaluation>,
 }
 
-/// The two points at a column of the root, side by side, and what is seen of them.
-struct Look {
+/// The two sigma points of a column of the root, side by side, with vehicle model and correction terms
+/// evaluated there.
+struct PairEvaluation {
     x: VehicleState<f64x2>,
     now: Evaluation<f64x2>,
-    correcting: [Correcting; 2],
+    terms: [CorrectionTerms; 2],
 }
 
-/// What has to be done for a point that differs from the mean in one number of ξ and those after it.
+/// Which results of the mean point can be reused for a sigma point, by the first component of ξ in
+/// which the two differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Anew {
-    /// All.
-    Look,
-    /// A step from what is seen at the mean.
+enum PointReuse {
+    /// Nothing: vehicle model, effects and network are evaluated at the point.
+    None,
+    /// The evaluation: only the step is taken again, with other latent factors.
+    Evaluation,
+    /// The whole step, which is turned and shifted to the pose of the point.
     Step,
-    /// The mean's step in its place.
-    Place,
 }
 
-/// What the points of a step differ in.
+/// What decides on the reuse of results in a step.
 #[derive(Clone, Copy)]
-struct Plan {
+struct ReusePlan {
     /// No force will act any more: what is uncertain about the collision has had its effect.
     is_free: bool,
-    /// A force in world axes pushes a car that is turned otherwise from another side.
+    /// A force in world axes acts on a car that is turned otherwise from another side.
     depends_on_pose: bool,
 }
 
-impl Plan {
+impl ReusePlan {
     fn new(u: &VehicleInput<f64>, is_free: bool) -> Self {
         let in_world = u.collision.is_some_and(|collision| collision.in_world_axes);
         Self { is_free, depends_on_pose: !is_free && in_world }
     }
 
-    /// - `i`: number of ξ.
-    fn anew(self, i: usize) -> Anew {
+    /// What can be reused for the points of a column of the root.
+    ///
+    /// - `i`: index of the column, and of the first component of ξ in which the points differ from the
+    ///   mean.
+    fn reuse(self, i: usize) -> PointReuse {
         match i {
-            _ if self.depends_on_pose => Anew::Look,
-            i if i < N_SEEN => Anew::Look,
-            i if i < N_DYNAMIC && !(self.is_free && OF_COLLISION.contains(&i)) => Anew::Step,
-            _ => Anew::Place,
+            _ if self.depends_on_pose => PointReuse::None,
+            i if i < N_SEEN => PointReuse::None,
+            i if i < N_DYNAMIC && !(self.is_free && OF_COLLISION.contains(&i)) => {
+                PointReuse::Evaluation
+            }
+            _ => PointReuse::Step,
         }
     }
 
-    /// Where a point starts: where the pose does not matter, at the mean's, and is turned afterwards.
+    /// The state from which the step of a point is taken: where the pose does not matter, it is the mean's
+    /// pose, and the result is turned afterwards.
     fn start(self, offset: &Mean) -> Mean {
         let mut start = *offset;
         if !self.depends_on_pose {
@@ -122,7 +130,7 @@ impl Dynamics<'_> {
         initial: &VehicleState<f64>,
         inputs: &[VehicleInput<f64>],
     ) -> ComponentMotion {
-        let mut buffers = Buffers::default();
+        let mut buffers = StepBuffers::default();
         let n_components = self.network.n_components();
         let mut mean = mean_of(initial, &[0.0; N_LATENTS]);
         let mut covariance = Covariance::identity() * LEAST_VARIANCE;
@@ -144,7 +152,7 @@ impl Dynamics<'_> {
             let at = (u, i as f64 * STEP_S, i >= n_struck);
             (mean, covariance) =
                 self.propagate((component, &weights), (&mean, &covariance), at, &mut buffers);
-            weight += self.weight(component, &buffers.questions) / inputs.len() as f64;
+            weight += self.weight(component, &buffers.batch) / inputs.len() as f64;
             states.push(StateDistribution::of(&mean, &covariance));
         }
         ComponentMotion { weight, states }
@@ -158,48 +166,50 @@ impl Dynamics<'_> {
         (component, weights): (usize, &UnscentedWeights),
         (mean, covariance): (&Mean, &Covariance),
         (u, time_s, is_free): (&VehicleInput<f64>, f64, bool),
-        buffers: &mut Buffers,
+        buffers: &mut StepBuffers,
     ) -> (Mean, Covariance) {
-        let Buffers { questions, looks } = buffers;
-        let plan = Plan::new(u, is_free);
+        let StepBuffers { batch, evaluations } = buffers;
+        let plan = ReusePlan::new(u, is_free);
         let root = root_of(covariance) * weights.reach;
         let columns: [Mean; N] = std::array::from_fn(|i| root.column(i).into_owned());
         let x = state_of(mean);
         let now = self.vehicle.evaluate(&x, u);
-        let mut correcting = self.effects_at(component, &x, &now);
-        questions.clear();
-        questions.push(features_of(self.vehicle, &x, &now, time_s));
+        let mut terms = self.effects_at(component, &x, &now);
+        batch.clear();
+        batch.push(features_of(self.vehicle, &x, &now, time_s));
         let u_pair = u.map(f64x2::from);
-        looks.clear();
-        for (_, column) in columns.iter().enumerate().filter(|(i, _)| plan.anew(*i) == Anew::Look) {
+        evaluations.clear();
+        for (_, column) in
+            columns.iter().enumerate().filter(|(i, _)| plan.reuse(*i) == PointReuse::None)
+        {
             let offset = plan.start(column);
             let x = pair(SIDES.map(|side| state_of(&(mean + offset * side))));
-            looks.push(self.look(component, (x, &u_pair, time_s), questions));
+            evaluations.push(self.evaluate_pair(component, (x, &u_pair, time_s), batch));
         }
-        self.ask(questions);
-        self.add_remainder(&mut correcting, questions, [0, component]);
-        for (i, look) in looks.iter_mut().enumerate() {
-            for (lane, correcting) in look.correcting.iter_mut().enumerate() {
-                self.add_remainder(correcting, questions, [1 + 2 * i + lane, component]);
+        self.evaluate_network(batch);
+        self.add_remainder(&mut terms, batch, [0, component]);
+        for (i, evaluation) in evaluations.iter_mut().enumerate() {
+            for (lane, terms) in evaluation.terms.iter_mut().enumerate() {
+                self.add_remainder(terms, batch, [1 + 2 * i + lane, component]);
             }
         }
 
-        let of_mean = self.correction(&correcting, &latents_of(mean));
+        let of_mean = self.correction(&terms, &latents_of(mean));
         let of_mean = self.advance((&x, &now), of_mean, u);
         let centre = mean_of(&of_mean, &latents_of(mean));
         let at_mean =
-            Look { x: x.map(f64x2::from), now: now.map(f64x2::from), correcting: [correcting; 2] };
-        let mut seen = looks.iter();
+            PairEvaluation { x: x.map(f64x2::from), now: now.map(f64x2::from), terms: [terms; 2] };
+        let mut evaluated = evaluations.iter();
         let mut offsets = [Mean::zeros(); N_POINTS];
         for (i, (column, offsets)) in columns.iter().zip(offsets.as_chunks_mut::<2>().0).enumerate()
         {
             let latents = SIDES.map(|side| latents_of(&(mean + column * side)));
-            let from = match plan.anew(i) {
-                Anew::Look => seen.next(),
-                Anew::Step => Some(&at_mean),
-                Anew::Place => None,
+            let from = match plan.reuse(i) {
+                PointReuse::None => evaluated.next(),
+                PointReuse::Evaluation => Some(&at_mean),
+                PointReuse::Step => None,
             };
-            let ends = from.map_or([of_mean; 2], |look| self.advance_pair(look, &latents, &u_pair));
+            let ends = from.map_or([of_mean; 2], |from| self.advance_pair(from, &latents, &u_pair));
             let pose = column - plan.start(column);
             let (sin, cos) = pose[PSI].sin_cos();
             for (lane, (offset, side)) in offsets.iter_mut().zip(SIDES).enumerate() {
@@ -209,7 +219,7 @@ impl Dynamics<'_> {
             }
         }
         let (shift, mut covariance) = moments(offsets, weights);
-        for (idx, std) in NOISY.into_iter().zip(self.noise(component, questions)) {
+        for (idx, std) in NOISY.into_iter().zip(self.noise(component, batch)) {
             covariance[(idx, idx)] += std * std;
         }
         for i in 0..N {
@@ -218,33 +228,34 @@ impl Dynamics<'_> {
         (centre + shift, covariance)
     }
 
-    /// Looks at two states side by side.
-    fn look(
+    /// Evaluates vehicle model and effects at two states side by side, and adds both to the batch of the
+    /// network.
+    fn evaluate_pair(
         &self,
         component: usize,
         (x, u, time_s): (VehicleState<f64x2>, &VehicleInput<f64x2>, f64),
-        questions: &mut Questions,
-    ) -> Look {
+        batch: &mut NetworkBatch,
+    ) -> PairEvaluation {
         let now = self.vehicle.evaluate(&x, u);
         let features = features_of(self.vehicle, &x, &now, time_s).map(f64x2::to_array);
-        let correcting = [0, 1].map(|lane| {
-            questions.push(features.map(|pair| pair[lane]));
+        let terms = [0, 1].map(|lane| {
+            batch.push(features.map(|pair| pair[lane]));
             let of_lane = |pair: f64x2| pair.to_array()[lane];
             self.effects_at(component, &x.map(of_lane), &now.map(of_lane))
         });
-        Look { x, now, correcting }
+        PairEvaluation { x, now, terms }
     }
 
     /// The states after a step from two side by side.
     fn advance_pair(
         &self,
-        look: &Look,
+        from: &PairEvaluation,
         latents: &[[f64; N_LATENTS]; 2],
         u: &VehicleInput<f64x2>,
     ) -> [VehicleState<f64>; 2] {
-        let [first, second] = [0, 1].map(|i| self.correction(&look.correcting[i], &latents[i]));
+        let [first, second] = [0, 1].map(|i| self.correction(&from.terms[i], &latents[i]));
         let correction = std::array::from_fn(|i| f64x2::new([first[i], second[i]]));
-        let next = self.advance((&look.x, &look.now), correction, u);
+        let next = self.advance((&from.x, &from.now), correction, u);
         [0, 1].map(|lane| next.map(|pair| pair.to_array()[lane]))
     }
 }

@@ -23,7 +23,7 @@ const DIGEST_STEP: f64 = 1e-3;
 /// A recorded motion after an impact.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResponseCase {
-    /// Its name in the data set.
+    /// The name of the case in its data set.
     pub name: String,
     /// The struck vehicle, on the case's friction.
     pub vehicle: VehicleParameters,
@@ -31,35 +31,35 @@ pub struct ResponseCase {
     pub states: Vec<VehicleState<f64>>,
     /// Input over each step: one fewer than states.
     pub inputs: Vec<VehicleInput<f64>>,
-    /// Whether it turns by more than 90°.
+    /// Whether the vehicle turns by more than 90°.
     pub spins: bool,
     /// SHA-256 in hex of states and forces: the same for the same content under another name.
     pub digest: String,
 }
 
-/// A case from which nothing can be learned.
+/// A case that cannot be learned from.
 #[derive(Debug, thiserror::Error)]
 pub enum ResponseCaseError {
-    /// Its row or its file lacks something.
+    /// The row or the file of the case lacks something.
     #[error(transparent)]
     Replay(#[from] ReplayError),
-    /// It ends at once.
+    /// The motion is too short.
     #[error("case {case}: {n_samples} samples, expected {least} or more")]
     TooShort {
         /// Name of the case.
         case: String,
-        /// How many there are on the grid of 10 ms.
+        /// Number of samples on the grid of 10 ms.
         n_samples: usize,
-        /// How many it takes.
+        /// Smallest number of samples.
         least: usize,
     },
 }
 
-/// Fewest samples of a case.
+/// Smallest number of samples of a case.
 pub(crate) const MIN_SAMPLES: usize = 10;
 
 impl ResponseCase {
-    /// Of a case of a trajectory data set.
+    /// The trajectory of a case of a trajectory data set.
     ///
     /// - `vehicle`: the struck vehicle; its friction is replaced by the case's.
     ///
@@ -81,7 +81,7 @@ impl ResponseCase {
         Ok(Self { spins, ..Self::of_motion(case.name.clone(), vehicle, states, inputs) })
     }
 
-    /// Of a motion on the grid.
+    /// The trajectory of a motion on the grid of [`STEP_S`].
     ///
     /// - `states`: every [`STEP_S`] from the start of the impact;
     /// - `inputs`: over each step, one fewer than states.

@@ -43,7 +43,7 @@ impl PhysicsPoints {
         records: &[ImpactRecord],
         (config, seed): (&ResponseConfig, u64),
     ) -> Self {
-        let motions = simulate(records, N_MOTIONS, (false, seed));
+        let motions = simulate(records, N_MOTIONS, false, seed);
         let (mut at, mut motion_idx) = (Vec::new(), Vec::new());
         for (idx, motion) in motions.iter().enumerate() {
             let steps = motion.states.iter().zip(&motion.inputs).enumerate().step_by(STRIDE);

@@ -89,7 +89,8 @@ impl SimulatedMotion {
 pub(crate) fn simulate(
     records: &[ImpactRecord],
     n: usize,
-    (varies, seed): (bool, u64),
+    varies: bool,
+    seed: u64,
 ) -> Vec<SimulatedMotion> {
     let one = |idx: usize| {
         let mut rng = random_stream(seed, "simulated motions", idx as u64);
@@ -144,8 +145,8 @@ mod tests {
         let initial = VehicleState { yaw_rate_rad_s: 0.5, ..VehicleState::driving_straight(20.0) };
         let inputs = vec![VehicleInput::released(); 100];
         let record = ImpactRecord { vehicle: vehicle.clone(), initial, inputs };
-        let motions = simulate(std::slice::from_ref(&record), 20, (true, 3));
-        let again = simulate(std::slice::from_ref(&record), 20, (true, 3));
+        let motions = simulate(std::slice::from_ref(&record), 20, true, 3);
+        let again = simulate(std::slice::from_ref(&record), 20, true, 3);
         assert_eq!(motions.len(), 20);
         for (a, b) in motions.iter().zip(&again) {
             assert_eq!((a.states.last(), &a.vehicle), (b.states.last(), &b.vehicle));
@@ -153,7 +154,7 @@ mod tests {
         }
         let frictions: Vec<f64> = motions.iter().map(|m| m.vehicle.tires.friction).collect();
         assert!(frictions.iter().any(|f| *f < 0.6) && frictions.iter().any(|f| *f > 0.8));
-        assert!(simulate(&[], 5, (true, 3)).is_empty());
-        assert_eq!(simulate(&[record], 1, (false, 3))[0].vehicle, vehicle);
+        assert!(simulate(&[], 5, true, 3).is_empty());
+        assert_eq!(simulate(&[record], 1, false, 3)[0].vehicle, vehicle);
     }
 }

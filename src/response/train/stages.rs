@@ -37,7 +37,7 @@ pub fn pretrain(
 ) -> Result<ResponseModel, LearningError> {
     settings.config.check()?;
     let config = &settings.config;
-    let motions = simulate(records, config.pretraining.motions, (true, settings.seed));
+    let motions = simulate(records, config.pretraining.motions, true, settings.seed);
     if motions.is_empty() {
         return Err(LearningError::TooFewCases { n_cases: 0, least: 1 });
     }

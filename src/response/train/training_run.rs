@@ -12,10 +12,10 @@ use crate::learning::{EpochLoop, EpochRecord, EpochReport, LearningError, SavedT
 use crate::nn::{
     AdamW, AdamWConfig, Checkpoint, ModelKind, NnError, Schedule, StepReport, random_stream,
 };
-use crate::response::network::loss::{Loss, boundary, diversity, single_step_terms};
+use crate::response::network::loss::{ResponseLoss, boundary, diversity, single_step_terms};
 use crate::response::network::one_step::{MotionView, OneStepData};
 use crate::response::network::response_network::{Gradients, ResponseNetwork};
-use crate::response::network::rollout_loss::{RolloutCase, Window, rollout_loss};
+use crate::response::network::rollout_loss::{RolloutCase, RolloutWindow, rollout_loss};
 use crate::response::train::physics_points::PhysicsPoints;
 use crate::response::train::simulated::{ImpactRecord, SimulatedMotion};
 use crate::response::{
@@ -34,17 +34,17 @@ const CHECKPOINT_EPOCHS: usize = 5;
 /// Share of the windows of a rollout that start with the impact.
 const IMPACT_SHARE: f64 = 0.5;
 
-/// Some epochs of one kind.
+/// A stage of a training and its number of epochs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Planned {
     pub stage: ResponseStage,
     pub n_epochs: usize,
 }
 
-/// What is learned from.
+/// The data of a training.
 pub(super) struct TrainingData<'a> {
     pub instants: OneStepData,
-    /// Away from the data; none for pre-training.
+    /// Instants away from the data; none for pre-training.
     physics_points: Option<PhysicsPoints>,
     rollouts: Vec<RolloutCase<'a>>,
 }
@@ -182,7 +182,7 @@ impl<'a> TrainingRun<'a> {
             _ => config.physics.weight(in_training, balance),
         };
         let (mut terms, mut gradient_norm, mut learning_rate) = (Vec::new(), 0.0_f64, 0.0);
-        let mut take = |loss: Loss, network: &ResponseNetwork, optimizer: &mut AdamW| {
+        let mut take = |loss: ResponseLoss, network: &ResponseNetwork, optimizer: &mut AdamW| {
             let (total, values) = loss.total(&config.loss, physics_weight)?;
             if !values.total.is_finite() {
                 return Err(LearningError::Diverged { loss: values.total, epoch });
@@ -217,9 +217,9 @@ impl<'a> TrainingRun<'a> {
                         let last = n_steps(case_idx).saturating_sub(length);
                         let is_first = rng.random_bool(IMPACT_SHARE);
                         let start = if is_first { 0 } else { rng.random_range(0..=last) };
-                        Window { case_idx, start }
+                        RolloutWindow { case_idx, start }
                     };
-                    let windows: Vec<Window> = batch.iter().map(window).collect();
+                    let windows: Vec<RolloutWindow> = batch.iter().map(window).collect();
                     let lengths = [length, config.rollouts.truncation];
                     let loss = rollout_loss(&self.network, &self.data.rollouts, &windows, lengths)?;
                     take(loss, &self.network, &mut self.optimizer)?;
@@ -250,7 +250,7 @@ impl<'a> TrainingRun<'a> {
         batch: &[usize],
         stage: ResponseStage,
         rng: &mut ChaCha8Rng,
-    ) -> Result<Loss, LearningError> {
+    ) -> Result<ResponseLoss, LearningError> {
         let config = &self.settings.config;
         let gradients = match stage {
             ResponseStage::Pretraining => Gradients::All,
@@ -284,7 +284,7 @@ impl<'a> TrainingRun<'a> {
         let unit = Tensor::new(&network.unit, output.residual.device())?;
         let standardised = output.residual.broadcast_div(&unit)?.squeeze(1)?;
         let zero = Tensor::zeros((), DType::F64, output.residual.device())?;
-        Ok(Loss {
+        Ok(ResponseLoss {
             data,
             likelihood,
             physics,
