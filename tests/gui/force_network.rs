@@ -229,7 +229,7 @@ fn a_bad_model_and_bad_settings_say_what_is_wrong() {
     apply(&mut harness, Command::Train(Network::Force, TrainingCommand::Start));
     step_until(&mut harness, "the problem", |state| !state.session.force.training.run.is_running());
     let problem = state(&harness).session.force.training.problem.clone().expect("a problem");
-    assert!(problem.contains("Cargo.toml: line "), "{problem}");
+    assert!(problem.contains("Cargo.toml:") && problem.contains("unknown field"), "{problem}");
 }
 
 #[test]
