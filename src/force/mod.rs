@@ -1,7 +1,7 @@
 //! The contact force before it happens: cases to learn from, the force network, its baselines, and
 //! how well they do.
 //!
-//! Cases: [`ForceCase`], [`split`](crate::learning::split()). Network: [`ForceConfig`], [`train`], [`ForceModel::predict`].
+//! Cases: [`ForceCase`], [`split`](crate::learning::split()). Network: [`ForceConfig`], [`train()`], [`ForceModel::predict`].
 //! Figures: [`metrics`].
 
 mod error;

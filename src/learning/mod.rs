@@ -1,6 +1,6 @@
 //! What the trainings of the force network and of the response network have in common.
 //!
-//! Cases: [`TrainingCase`], [`split`], [`TrainingSet`]. Settings: [`TrainSettings`], [`Setting`].
+//! Cases: [`TrainingCase`], [`split()`], [`TrainingSet`]. Settings: [`TrainSettings`], [`Setting`].
 //! A training under way: [`EpochLoop`], [`TrainingReport`], [`TrainingFile`]. What it leaves behind:
 //! [`TrainingRecord`], [`ModelFile`].
 

@@ -21,7 +21,7 @@ impl<C> Default for TrainingSet<C> {
 }
 
 impl<C: TrainingCase + Clone> TrainingSet<C> {
-    /// Splits cases by seed, see [`split`].
+    /// Splits cases by seed, see [`split()`].
     ///
     /// - `test_share`: share of the cases that is kept apart for the test, 0 to 1.
     pub fn of_split(name: impl Into<String>, cases: &[C], seed: u64, test_share: f64) -> Self {

@@ -136,7 +136,7 @@ impl CentreModel {
     ///   the case.
     ///
     /// # Errors
-    /// [`ForceError::TooFewCases`], [`ForceError::NoCrushFit`], [`ForceError::Regression`],
+    /// [`ForceError::Learning`] for too few cases, [`ForceError::NoCrushFit`], [`ForceError::Regression`],
     /// [`ForceError::Impact`].
     pub fn fit(
         cases: &[ForceCase],
