@@ -5,6 +5,7 @@
 mod closed_pipe;
 mod commands;
 mod force;
+mod guide;
 mod log;
 mod program;
 mod response;
