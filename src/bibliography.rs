@@ -41,9 +41,29 @@ sources! {
     /// M. Okabe, K. Ito, *Color universal design: how to make figures and presentations that are
     /// friendly to colorblind people*, 2008.
     OkabeIto2008;
-    /// The paper whose two physics-informed networks this program implements: post-impact motion
-    /// from impact forces, 4DOF vehicle model (`eq:4dof`), momentum-conservation collision
-    /// (`eq:collision_model1`). Equation labels are those of its LaTeX source.
+    /// Y. Jiang, J. Wang, D. Li, *Physics-Informed Neural Network Modeling of Vehicle Collision
+    /// Dynamics in Precision Immobilization Technique Maneuvers*, Zhejiang University. “The paper”
+    /// in doc comments: its two physics-informed networks, from the scenario of a collision to the
+    /// impact force and from the force to the motion after the impact, are what this program
+    /// follows.
+    ///
+    /// Doc comments name its equations by the labels of its LaTeX source:
+    ///
+    /// | label | equation |
+    /// | --- | --- |
+    /// | `eq:state_vector` | state of the 4DOF vehicle: v_x, v_y, yaw, yaw rate, roll, roll rate, X, Y |
+    /// | `eq:4dof`, `eq:4dof2` | equations of motion of the 4DOF vehicle; sums of the tyre forces and moments |
+    /// | `eq:tire_model` to `eq:tire_model4` | lateral force of a tyre; slip angles; rolling resistance; vertical loads |
+    /// | `eq:collision_model1`, `eq:collision_model2` | conservation of momentum and of angular momentum in a planar impact |
+    /// | `eq:restitution_coefficient` to `eq:friction_coefficient2` | restitution; ratio of tangential to normal impulse |
+    /// | `eq:pinn-gmmframework` | the force network: scenario and time to the impact force |
+    /// | `eq:physic_cons1` to `eq:physic_cons3` | conservation of the impulse as a loss; loss of the dissipated energy |
+    /// | `eq:gmmfunction` | mixture of normal distributions of the force at an instant |
+    /// | `eq:Adaptive_pinn` to `eq:VSD_PINN_swish` | the response network: force, vehicle and time to the next state; its vehicle encoder |
+    /// | `eq:adaptive_weights` | weight of the physics over the epochs and by the distance to the data |
+    /// | `eq:consistency_loss`, `eq:all_loss` | loss that keeps the components apart; the whole loss of the response network |
+    /// | `eq:sigma_points_gmm` to `eq:complete_trajectory_gmm` | unscented transform of the state to the position; mixture of the position |
+    /// | `eq:baseline:4dof` | the 4DOF model by explicit Euler steps of 10 ms, a baseline |
     PitPinnPaper;
     /// C. E. Rasmussen, C. K. I. Williams, *Gaussian Processes for Machine Learning*, MIT Press,
     /// 2006. Regression, marginal likelihood and its gradient.

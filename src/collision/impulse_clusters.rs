@@ -1,4 +1,5 @@
-//! Clusters of collisions by their impulse: METHOD of this project, section 7.
+//! Clusters of collisions by their impulse and the level of their force, for tables of errors by kind
+//! of collision.
 
 use serde::Serialize;
 

@@ -1,4 +1,4 @@
-//! Error figures of a predicted motion against a reference (METHOD of this project, section 7).
+//! Errors of a predicted motion against a reference.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,6 @@
 //! k-means clusters of standardised rows, their number by the silhouette.
 //!
-//! Source of the silhouette: [`Rousseeuw1987`](crate::bibliography::Rousseeuw1987). Settings: METHOD
-//! of this project, section 7.
+//! Source of the silhouette: [`Rousseeuw1987`](crate::bibliography::Rousseeuw1987).
 
 use linfa::DatasetBase;
 use linfa::metrics::SilhouetteScore;

@@ -10,7 +10,7 @@
 //! the spread of a curve does not average out in its impulse as independent draws at each instant
 //! would. What is left to single instants has a memory of a few of them (φ, a first-order autoregressive
 //! process: φ = 0 is a diagonal): ripple of a structure is no white noise, and white noise of the
-//! same size makes drawn peaks too high. METHOD of this project, section 4; the paper's mixture
+//! same size makes drawn peaks too high. The paper's mixture
 //! ([`PitPinnPaper`](crate::bibliography::PitPinnPaper), `eq:gmmfunction`) has its deviations on
 //! the diagonal of each covariance.
 //!

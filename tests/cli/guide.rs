@@ -102,7 +102,8 @@ fn tokens(line: &str) -> Vec<Token> {
     let chars: Vec<char> = line.split_whitespace().collect::<Vec<_>>().join(" ").chars().collect();
     let (mut tokens, mut at) = (Vec::new(), 0);
     while let Some(&c) = chars.get(at) {
-        let n_digits = |from: usize| chars[from..].iter().take_while(|c| c.is_ascii_digit()).count();
+        let n_digits =
+            |from: usize| chars[from..].iter().take_while(|c| c.is_ascii_digit()).count();
         let n_whole = n_digits(at);
         if n_whole == 0 {
             tokens.push(Token::Other(c));

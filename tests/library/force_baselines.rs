@@ -32,9 +32,8 @@ fn evaluation(columns: ColumnSet) -> Evaluation {
 }
 
 /// Median (mean) history error in %: 40.7 (37.9) for the pulse, 55.3 (51.5) for the nearest case,
-/// 28.3 (30.6) for the Gaussian processes; 28.2 (28.9) without hooked and unseparated cases. METHOD of
-/// this project has 42 for its Gaussian process on other cases. The bounds leave a tenth for other
-/// mathematical libraries.
+/// 28.3 (30.6) for the Gaussian processes; 28.2 (28.9) without hooked and unseparated cases. The
+/// bounds leave a tenth for other mathematical libraries.
 #[test]
 fn baselines_on_the_test_part_of_the_shipped_runs() {
     let evaluation = evaluation(ColumnSet::Theta);

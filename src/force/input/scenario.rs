@@ -1,8 +1,7 @@
 //! What a force model knows of a collision before it happens, θ, and its canonical form.
 //!
 //! Two symmetries hold: a mirrored scenario has the mirrored force, and a common velocity of both
-//! vehicles changes nothing (the tyres play no part during contact). METHOD of this project,
-//! section 4.
+//! vehicles changes nothing (the tyres play no part during contact).
 
 use serde::{Deserialize, Serialize};
 

@@ -1,5 +1,4 @@
-//! How far a predicted force lies from the recorded one, and how honest its spread is: METHOD of
-//! this project, section 4.
+//! How far a predicted force lies from the recorded one, and how honest its spread is.
 
 mod prediction;
 

@@ -14,8 +14,7 @@ pub struct PointErrors {
     /// √(mean over all instants of the grid and both axes of (F̂ − F)²) / max |F|
     /// ```
     ///
-    /// The mean is over the whole grid of 250 ms, not over the contact: so the figures in METHOD of
-    /// this project are meant.
+    /// The mean is over the whole grid of 250 ms, not over the contact.
     pub rmse_over_peak: f64,
     /// Root mean square error of F_x over the grid, N.
     pub rmse_x_n: f64,

@@ -1,6 +1,6 @@
 //! The force network: scenario and physics in, the distribution of the whole force history out.
 //!
-//! Source: METHOD of this project, section 4, after `eq:pinn-gmmframework` to `eq:gmmfunction` of
+//! Source: after `eq:pinn-gmmframework` to `eq:gmmfunction` of
 //! [`PitPinnPaper`](crate::bibliography::PitPinnPaper).
 //!
 //! ```text

@@ -1,6 +1,6 @@
 //! The loss of the force network, term by term.
 //!
-//! Source: METHOD of this project, section 4, after `eq:physic_cons2` of
+//! Source: after `eq:physic_cons2` of
 //! [`PitPinnPaper`](crate::bibliography::PitPinnPaper), which has no likelihood.
 
 use std::f64::consts::TAU;

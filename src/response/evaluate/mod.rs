@@ -1,5 +1,5 @@
 //! The response network beside a tuned 4DOF model, the data sheet and a plain network, on
-//! trajectories that none of them has seen: METHOD of this project, section 7.
+//! trajectories that none of them has seen.
 
 mod motion_model;
 

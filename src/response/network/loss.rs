@@ -15,7 +15,7 @@
 //! - *smoothness*: mean square of the second difference of the velocities along a rollout;
 //! - *boundary*: `Σ softplus((|x̂_i| − b_i)/s_i)²`, s_i learned.
 //!
-//! Source: section 5 of this project's method, after `eq:total_loss` to `eq:consistency_loss` of
+//! Source: after `eq:consistency_loss` and `eq:all_loss` of
 //! [`PitPinnPaper`](crate::bibliography::PitPinnPaper), which mixes units in the diversity and has no
 //! likelihood.
 

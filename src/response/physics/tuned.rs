@@ -6,7 +6,7 @@
 //! ```
 //!
 //! ē is the average error of a case, m. Without the prior the fit on 5 trajectories came out worse
-//! than no fit (METHOD of this project, section 5).
+//! than no fit.
 //!
 //! Particle swarm: Zambrano-Bigiarini et al., "Standard Particle Swarm Optimisation 2011 at
 //! CEC-2013", IEEE Congress on Evolutionary Computation 2013.

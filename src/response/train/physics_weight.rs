@@ -7,7 +7,7 @@
 //! balance = L_data/(L_data + λ L_physics)      where it is below ½: λ ← λ max(0.1, balance)
 //! ```
 //!
-//! Source: `eq:adaptive_weight` and what follows in [`PitPinnPaper`](crate::bibliography::PitPinnPaper).
+//! Source: `eq:adaptive_weights` and what follows in [`PitPinnPaper`](crate::bibliography::PitPinnPaper).
 //!
 //! Departures from the paper:
 //! - Its words say that the weight falls with the epochs, its formula that it grows, and its

@@ -1,5 +1,5 @@
 //! What a force model must beat besides the regressions in its own centre, each made as strong as it
-//! honestly can be: METHOD of this project, section 4. All are fitted to training cases and choose
+//! honestly can be. All are fitted to training cases and choose
 //! their own options by cross-validation on them; all take canonical scenarios.
 
 mod nearest;

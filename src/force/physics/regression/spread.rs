@@ -8,7 +8,7 @@ use crate::uncertainty::{CurveComponent, ForceCurve};
 const N_FACTORS: usize = 8;
 
 /// Deviation that every force has of itself, as a share of the peak: what runs repeated with hardly
-/// other speed or offset differ by (METHOD of this project, section 4: 2 % of the peak and more).
+/// other speed or offset differ by, which is 2 % of the peak and more.
 pub(super) const FLOOR_SHARE_OF_PEAK: f64 = 0.01;
 
 /// Deviation that every duration has of itself, s: a step of the time grid.
