@@ -1,4 +1,4 @@
-//! The commands of the force network: train, kill, resume, predict, evaluate's errors.
+//! The commands of the force network: train, kill, resume, predict, evaluate.
 
 #![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
 
@@ -70,6 +70,13 @@ fn train_kill_resume_predict() {
     assert_eq!(answer(&killed), answer(&whole), "bit for bit");
 
     files_of_a_prediction(&whole, folder.path());
+    let evaluate = ["evaluate", "force", "--data", DATA, "--json", "--model"];
+    let measured = json(&ok(program().args(evaluate).arg(&whole).output().unwrap()));
+    assert_eq!((&measured["n_test"], &measured["n_trained_on"]), (&25.into(), &0.into()));
+    for who in [&measured, &measured["baselines"]["pulse"], &measured["baselines"]["nearest"]] {
+        let error = who["overall"]["rmse_over_peak"]["mean"].as_f64().unwrap();
+        assert!((0.0..1.0).contains(&error), "{error}");
+    }
     let unknown = predict(&whole, &["--body", "Z"]);
     let error = String::from_utf8(unknown.stderr).unwrap();
     assert_eq!(error, "error: bullet body \"Z\" is unknown to the model, expected one of A, B\n");
