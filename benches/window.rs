@@ -76,9 +76,11 @@ impl Window {
             .map(|i| {
                 let started = Instant::now();
                 move_slider(self.0.state_mut().state_mut(), f64::from(i) / f64::from(N_ANSWERS));
-                while !self.state().forecast().is_some_and(|forecast| {
-                    forecast.scenario == self.state().project.force.scenario
-                }) {
+                while !self
+                    .state()
+                    .force_forecast()
+                    .is_some_and(|answer| answer.collision == self.state().project.force.scenario)
+                {
                     self.frame();
                 }
                 started.elapsed()
@@ -112,12 +114,12 @@ fn main() {
     window.step_until(|state| state.session.sources.iter().all(Source::is_settled));
     window.apply(Command::Show(Pane::ForcePrediction));
     window.apply(Command::PredictCase);
-    window.step_until(|state| state.forecast().is_some());
+    window.step_until(|state| state.force_forecast().is_some());
     println!("| frame | median, ms | 90 % | 99 % | over 20 ms |\n| --- | --- | --- | --- | --- |");
     window.measure_all("at rest");
 
     let form = &mut window.0.state_mut().state_mut().project.force.training;
-    form.epochs = 100_000;
+    form.epochs = Some(100_000);
     form.config = "assets/models/force.toml".to_owned();
     window.apply(Command::Train(Network::Force, TrainingCommand::Start));
     let is_fitting = |state: &State| {

@@ -51,6 +51,7 @@ pub mod numerics;
 pub mod render;
 pub mod response;
 pub mod shipped;
+pub mod study;
 pub mod uncertainty;
 pub mod units;
 pub mod vehicle;

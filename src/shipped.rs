@@ -28,7 +28,7 @@ const PRETRAINED_RESPONSE_MODEL: &[u8] =
     include_bytes!("../assets/models/response_pretrained.safetensors");
 
 /// Where a model comes from. Written as its word or as the path of its file.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(from = "PathBuf", into = "PathBuf")]
 pub enum ModelSource {
     /// The model that comes with the program, `shipped`.

@@ -193,6 +193,12 @@ pub fn significant(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
+/// A share of 1 as percent with one decimal: `12.3 %`. Rounding leaves no negative zero.
+pub fn percent(share: f64) -> String {
+    let tenths = (1000.0 * share).round() + 0.0;
+    format!("{:.1} %", tenths / 10.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -228,5 +234,14 @@ mod tests {
             assert_eq!(significant(value), expected);
         }
         assert_eq!(Quantity::Force.shown(12_345.0, UnitSystem::Si), "12.35 kN");
+    }
+
+    #[test]
+    fn a_share_has_one_decimal_and_no_negative_zero() {
+        assert_eq!(
+            [0.1234, 1.0, -1e-17, -0.0].map(percent),
+            ["12.3 %", "100.0 %", "0.0 %", "0.0 %"]
+        );
+        assert_eq!(percent(-0.05), "-5.0 %");
     }
 }

@@ -21,17 +21,18 @@ fn analyse_trajectory_case(case: &Case, settings: &Settings) -> Result<Analysis,
     let replay = replay_case(case, &settings.target, settings.integrator)?;
     let manoeuvre = recorded_manoeuvre(case)?;
     let friction = TrajectoryAttributes::read(&case.attributes)?.mu;
+    let vehicle = settings.target.clone().with_friction(friction);
     let struck = |load: &ContactLoad| StruckVehicle {
-        vehicle: settings.target.clone().with_friction(friction),
+        vehicle: vehicle.clone(),
         initial: manoeuvre.initial,
         contact: load.contact,
     };
     Ok(Analysis {
         name: case.name.clone(),
-        vehicle: settings.target.name.clone(),
         footprint: Footprint::from(&settings.target.geometry),
         struck: manoeuvre.contact_load.as_ref().map(struck),
         force: manoeuvre.contact_load.map(|load| load.force),
+        vehicle,
         simulation: Some(replay.motion),
         reference: Some(case.series.clone()),
         bullet: None,
@@ -67,7 +68,7 @@ fn analyse_force_case(case: &Case, settings: &Settings) -> Result<Analysis, Anal
         name: case.name.clone(),
         footprint: Footprint::from(&vehicle.geometry),
         simulation: Some(vehicle.simulate(&manoeuvre, settings.integrator)?),
-        vehicle: vehicle.name.clone(),
+        vehicle: vehicle.clone(),
         force: Some(force),
         struck: Some(StruckVehicle { vehicle, initial, contact }),
         reference: None,

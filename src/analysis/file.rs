@@ -1,114 +1,116 @@
-//! Single files.
-
-use serde::{Deserialize, Serialize};
+//! Single files: a recorded motion, or what drives a vehicle.
 
 use crate::analysis::{Analysis, AnalysisError, Settings, StruckVehicle};
 use crate::collision::Footprint;
 use crate::compare::{MotionError, initial_state};
-use crate::data::{Channel, FileKind, ForceHistory, Loaded, SeriesError};
-use crate::vehicle::{ContactLoad, ContactPoint, Manoeuvre, SteerHistory, VehicleState};
+use crate::data::{ForceHistory, Loaded, SeriesError};
+use crate::vehicle::{ContactLoad, ContactPoint, Manoeuvre, Motion, SteerHistory, VehicleState};
 
-/// What a single file does not say.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct FileSetup {
-    /// Speed of the struck vehicle before the impact, m/s.
-    pub speed_m_s: f64,
-    /// Where the force acts, body axes from the CG, m.
-    pub contact_m: [f64; 2],
-    /// Height above the ground at which it acts, m.
-    pub contact_height_m: f64,
+/// A force and the point where it acts; a yaw moment that it records overrules the point.
+pub type ActingForce = (ForceHistory, ContactPoint);
+
+/// What a vehicle does before it is pushed, and what pushes and steers it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DriveSetup {
+    /// State at the start.
+    pub initial: VehicleState<f64>,
+    /// The force on it.
+    pub load: Option<ActingForce>,
+    /// The road-wheel angle.
+    pub steer: Option<SteerHistory>,
+    /// What a person should know about the files.
+    pub notes: Vec<String>,
 }
 
-impl Default for FileSetup {
-    /// A PIT at 72 km/h against the right rear quarter.
-    fn default() -> Self {
-        Self { speed_m_s: 20.0, contact_m: [-1.5, -0.9], contact_height_m: 0.52 }
-    }
+/// Simulates a vehicle from a given start under a force and a steer angle.
+///
+/// # Errors
+/// [`AnalysisError::Simulation`] if the motion diverges.
+pub fn analyse_drive(
+    name: &str,
+    setup: DriveSetup,
+    settings: &Settings,
+) -> Result<Analysis, AnalysisError> {
+    let DriveSetup { initial, load, steer, notes } = setup;
+    let simulation = simulate((initial, settings.duration_s), load.as_ref(), steer, settings)?;
+    let simulation = Some(simulation);
+    Ok(Analysis { simulation, notes, ..of_load(name, Some(initial), load, settings) })
 }
 
-/// Analyses a single file: a force drives a vehicle straight ahead at the speed of `setup`; a
-/// trajectory is shown, and simulated if it records velocities and force; a steer file drives a
-/// vehicle without impact.
+/// Shows a recorded motion, and simulates it from its first sample if it records velocities and a
+/// force.
+///
+/// A trajectory's recorded toe changes are no steering.
 ///
 /// # Errors
 /// [`AnalysisError`] if the motion diverges.
-pub fn analyse_file(
+pub fn analyse_recording(
     name: &str,
     file: &Loaded,
-    setup: &FileSetup,
+    load: Option<ActingForce>,
     settings: &Settings,
 ) -> Result<Analysis, AnalysisError> {
-    let [x_m, y_m] = setup.contact_m;
-    let contact = ContactPoint { x_m, y_m, height_m: setup.contact_height_m };
-    let force = ForceHistory::from_series(&file.series, file.force_sampling()).ok();
-    let reference = (file.kind == FileKind::Trajectory).then(|| file.series.clone());
     let mut notes: Vec<String> = file.notes.iter().map(ToString::to_string).collect();
-    let initial = match file.kind {
-        FileKind::Trajectory => initial_state(&file.series),
-        FileKind::Force | FileKind::Steer => Ok(VehicleState::driving_straight(setup.speed_m_s)),
-    };
-    let last_s = file.series.time_s().last().copied().unwrap_or(0.0);
-    let duration_s = if reference.is_some() { last_s } else { settings.duration_s };
-    let struck = match (&initial, &force) {
-        (Ok(initial), Some(_)) => {
-            Some(StruckVehicle { vehicle: settings.target.clone(), initial: *initial, contact })
-        }
-        _ => None,
-    };
-    let simulation = match (initial, &force, file.kind) {
-        (Err(SeriesError::Missing { channel }), ..) => {
+    let duration_s = file.series.time_s().last().copied().unwrap_or(0.0);
+    let (initial, simulation) = match (initial_state(&file.series), &load) {
+        (Err(SeriesError::Missing { channel }), _) => {
             notes.push(format!("not simulated: column {} is missing", channel.header()));
-            None
+            (None, None)
         }
-        (Err(error), ..) => return Err(error.into()),
-        (Ok(_), None, FileKind::Trajectory) => {
+        (Err(error), _) => return Err(error.into()),
+        (Ok(initial), None) => {
             notes.push("not simulated: the file records no force".to_owned());
-            None
+            (Some(initial), None)
         }
-        (Ok(initial), _, _) => {
-            let manoeuvre = Manoeuvre {
-                initial,
-                contact_load: force.clone().map(|force| ContactLoad {
-                    recorded_moment: force.mz_n_m.is_some(),
-                    force,
-                    contact,
-                }),
-                steer: steer_history(file),
-                duration_s,
-            };
-            Some(settings.target.simulate(&manoeuvre, settings.integrator)?)
+        (Ok(initial), Some(_)) => {
+            let motion = simulate((initial, duration_s), load.as_ref(), None, settings)?;
+            (Some(initial), Some(motion))
         }
     };
-    let error = simulation.as_ref().zip(reference.as_ref()).and_then(|(simulation, reference)| {
-        MotionError::between(&simulation.series, reference).ok()
-    });
-    Ok(Analysis {
-        name: name.to_owned(),
-        vehicle: settings.target.name.clone(),
-        footprint: Footprint::from(&settings.target.geometry),
-        struck,
-        force,
-        simulation,
-        reference,
-        bullet: None,
-        error,
-        notes,
-    })
+    let between = |motion: &Motion| MotionError::between(&motion.series, &file.series).ok();
+    let error = simulation.as_ref().and_then(between);
+    let reference = Some(file.series.clone());
+    let analysis = of_load(name, initial, load, settings);
+    Ok(Analysis { simulation, reference, error, notes, ..analysis })
 }
 
-/// Steer of a steer file: the front axle's, or the mean of its wheels'. A trajectory's recorded
-/// toe changes are no steering.
-fn steer_history(file: &Loaded) -> Option<SteerHistory> {
-    if file.kind != FileKind::Steer {
-        return None;
+fn simulate(
+    (initial, duration_s): (VehicleState<f64>, f64),
+    load: Option<&ActingForce>,
+    steer: Option<SteerHistory>,
+    settings: &Settings,
+) -> Result<Motion, AnalysisError> {
+    let contact_load = load.map(|(force, contact)| ContactLoad {
+        recorded_moment: force.mz_n_m.is_some(),
+        force: force.clone(),
+        contact: *contact,
+    });
+    let manoeuvre = Manoeuvre { initial, contact_load, steer, duration_s };
+    Ok(settings.target.simulate(&manoeuvre, settings.integrator)?)
+}
+
+/// What is known before anything is simulated.
+fn of_load(
+    name: &str,
+    initial: Option<VehicleState<f64>>,
+    load: Option<ActingForce>,
+    settings: &Settings,
+) -> Analysis {
+    let struck = initial.zip(load.as_ref()).map(|(initial, (_, contact))| StruckVehicle {
+        vehicle: settings.target.clone(),
+        initial,
+        contact: *contact,
+    });
+    Analysis {
+        name: name.to_owned(),
+        footprint: Footprint::from(&settings.target.geometry),
+        vehicle: settings.target.clone(),
+        struck,
+        force: load.map(|(force, _)| force),
+        simulation: None,
+        reference: None,
+        bullet: None,
+        error: None,
+        notes: Vec::new(),
     }
-    let series = &file.series;
-    let steer_rad = match series.get(Channel::Steer) {
-        Some(steer) => steer.to_vec(),
-        None => {
-            let (left, right) = (series.get(Channel::SteerFl)?, series.get(Channel::SteerFr)?);
-            left.iter().zip(right).map(|(left, right)| (left + right) / 2.0).collect()
-        }
-    };
-    Some(SteerHistory { time_s: series.time_s().to_vec(), steer_rad })
 }

@@ -2,20 +2,19 @@
 
 use std::f64::consts::TAU;
 
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 
 use crate::collision::{PrincipalDirectionOfForce, Pulse, PulseError, PulseShape};
 use crate::force::metrics::BAND_LEVELS;
+use crate::nn::random_stream;
 use crate::numerics::{quantile_of_sorted, wrap_angle_rad};
 use crate::uncertainty::{
     CURVE_INTERVAL_S, CurveBands, CurveFigures, CurveMixture, ForceCurve, MixtureError,
     NormalMixture,
 };
 
-/// Curves drawn for the intervals that no formula gives: a 5 % tail then has 50 of them.
-const N_DRAWS: usize = 1000;
+/// Curves drawn for the intervals that no formula gives: a 5 % tail then has 100 of them.
+const N_DRAWS: usize = 2000;
 
 /// How many whole curves to show, and from which seed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,8 +36,28 @@ pub struct Spread {
     pub ninety: [f64; 2],
 }
 
+/// A central interval of a number.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Interval {
+    /// Probability that it holds the number, 0 to 1.
+    pub level: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// A number with its central intervals at [`BAND_LEVELS`], SI.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Estimate {
+    /// As likely exceeded as not.
+    pub median: f64,
+    /// From the narrowest to the widest.
+    pub intervals: Vec<Interval>,
+}
+
 /// One way in which a collision may go.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Mode {
     /// Its probability, 0 to 1.
     pub weight: f64,
@@ -60,18 +79,18 @@ pub struct ForceForecast {
     /// Whole curves, drawn.
     pub curves: Vec<ForceCurve>,
     /// Impulse along x and y, N s, exact.
-    pub impulse_n_s: [Spread; 2],
+    pub impulse_n_s: [Estimate; 2],
     /// Size of the impulse, N s, by draws.
-    pub impulse_magnitude_n_s: Spread,
+    pub impulse_magnitude_n_s: Estimate,
     /// Largest `|F|`, N, by draws.
-    pub peak_n: Spread,
+    pub peak_n: Estimate,
     /// When it is reached, s, by draws.
-    pub peak_time_s: Spread,
+    pub peak_time_s: Estimate,
     /// Duration, s, exact.
-    pub duration_s: Spread,
+    pub duration_s: Estimate,
     /// Principal direction of force of the target, rad clockwise from straight ahead, by draws: the
     /// median in `[0, 2π)`, the ends around it without a jump.
-    pub pdof_rad: Spread,
+    pub pdof_rad: Estimate,
     /// The components of the mixture, the likeliest first.
     pub modes: Vec<Mode>,
 }
@@ -92,15 +111,57 @@ impl Spread {
         let at = |probability| quantile_of_sorted(&draws, probability).unwrap_or(0.0);
         Self { median: at(0.5), half: [at(0.25), at(0.75)], ninety: [at(0.05), at(0.95)] }
     }
+}
 
-    /// All three moved by the same amount.
-    fn moved(self, by: f64) -> Self {
-        let move_ends = |[low, high]: [f64; 2]| [low + by, high + by];
-        Self {
-            median: self.median + by,
-            half: move_ends(self.half),
-            ninety: move_ends(self.ninety),
-        }
+impl Estimate {
+    /// Of the quantile function of a distribution.
+    fn of_quantiles(quantile: impl Fn(f64) -> f64) -> Self {
+        let interval = |level: f64| Interval {
+            level,
+            low: quantile((1.0 - level) / 2.0),
+            high: quantile((1.0 + level) / 2.0),
+        };
+        let intervals = BAND_LEVELS.into_iter().map(interval).collect();
+        Self { median: quantile(0.5), intervals }
+    }
+
+    /// Of a distribution that is known.
+    pub fn of(distribution: &NormalMixture) -> Self {
+        Self::of_quantiles(|probability| distribution.quantile(probability))
+    }
+
+    /// Of draws, one or more; zeros without any.
+    pub fn of_draws(mut draws: Vec<f64>) -> Self {
+        draws.sort_by(f64::total_cmp);
+        Self::of_quantiles(|probability| quantile_of_sorted(&draws, probability).unwrap_or(0.0))
+    }
+
+    /// The ends of the interval of this level, if there is one.
+    pub fn interval(&self, level: f64) -> Option<[f64; 2]> {
+        let of_level = self.intervals.iter().find(|interval| interval.level == level)?;
+        Some([of_level.low, of_level.high])
+    }
+
+    /// Median, 50 % and 90 % intervals alone.
+    pub fn spread(&self) -> Spread {
+        let ends = |level| self.interval(level).unwrap_or([self.median; 2]);
+        Spread { median: self.median, half: ends(0.5), ninety: ends(0.9) }
+    }
+
+    /// The same in another unit: every number multiplied by a positive factor.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        self.mapped(|value| value * factor)
+    }
+
+    fn mapped(&self, map: impl Fn(f64) -> f64) -> Self {
+        let intervals = self.intervals.iter();
+        let of = |Interval { level, low, high }: &Interval| Interval {
+            level: *level,
+            low: map(*low),
+            high: map(*high),
+        };
+        Self { median: map(self.median), intervals: intervals.map(of).collect() }
     }
 }
 
@@ -111,18 +172,18 @@ impl ForceForecast {
     /// # Errors
     /// [`MixtureError`], which a checked mixture does not give.
     pub fn of(mixture: &CurveMixture, settings: ForecastSettings) -> Result<Self, MixtureError> {
-        let mut rng = ChaCha8Rng::seed_from_u64(settings.seed);
+        let mut rng = random_stream(settings.seed, "draws", 0);
         let mut curves = mixture.sample(N_DRAWS.max(settings.n_curves), &mut rng);
         let draws = CurveFigures::of(&curves);
         curves.truncate(settings.n_curves);
-        let duration_s = Spread::of(&mixture.duration_s());
+        let duration_s = Estimate::of(&mixture.duration_s());
         let mean = ForceCurve { duration_s: duration_s.median, ..mixture.mean() };
         Ok(Self {
             bands: mixture.bands(&BAND_LEVELS)?,
-            impulse_n_s: [0, 1].map(|axis| Spread::of(&mixture.impulse(axis))),
-            impulse_magnitude_n_s: Spread::of_draws(draws.impulse_magnitude_n_s()),
-            peak_n: Spread::of_draws(draws.peak_n),
-            peak_time_s: Spread::of_draws(draws.peak_time_s),
+            impulse_n_s: [0, 1].map(|axis| Estimate::of(&mixture.impulse(axis))),
+            impulse_magnitude_n_s: Estimate::of_draws(draws.impulse_magnitude_n_s()),
+            peak_n: Estimate::of_draws(draws.peak_n),
+            peak_time_s: Estimate::of_draws(draws.peak_time_s),
             pdof_rad: pdof_rad(mean.impulse_n_s(), &draws.impulse_n_s),
             duration_s,
             mean,
@@ -133,13 +194,14 @@ impl ForceForecast {
 }
 
 /// Of impulses, around that of `mean`.
-fn pdof_rad(mean: [f64; 2], impulses: &[[f64; 2]]) -> Spread {
+fn pdof_rad(mean: [f64; 2], impulses: &[[f64; 2]]) -> Estimate {
     let angle = |impulse| PrincipalDirectionOfForce::from_impulse(impulse, 0.0);
     let centre_rad = angle(mean).map_or(0.0, |pdof| pdof.angle_rad);
     let off = |impulse: &[f64; 2]| Some(wrap_angle_rad(angle(*impulse)?.angle_rad - centre_rad));
-    let spread = Spread::of_draws(impulses.iter().filter_map(off).collect());
-    let median = spread.median + centre_rad;
-    spread.moved(centre_rad + median.rem_euclid(TAU) - median)
+    let around = Estimate::of_draws(impulses.iter().filter_map(off).collect());
+    let median = around.median + centre_rad;
+    let shift = centre_rad + median.rem_euclid(TAU) - median;
+    around.mapped(|angle| angle + shift)
 }
 
 fn modes(mixture: &CurveMixture) -> Vec<Mode> {
@@ -199,16 +261,17 @@ mod tests {
     fn numbers_lie_inside_their_intervals_and_the_intervals_in_each_other() {
         let settings = ForecastSettings { n_curves: 5, seed: 3 };
         let forecast = ForceForecast::of(&example(), settings).unwrap();
-        let [px, py] = forecast.impulse_n_s;
+        let [px, py] = &forecast.impulse_n_s;
         for (name, spread) in [
-            ("P_x", px),
-            ("P_y", py),
-            ("|P|", forecast.impulse_magnitude_n_s),
-            ("peak", forecast.peak_n),
-            ("its time", forecast.peak_time_s),
-            ("duration", forecast.duration_s),
-            ("PDOF", forecast.pdof_rad),
+            ("P_x", px.clone()),
+            ("P_y", py.clone()),
+            ("|P|", forecast.impulse_magnitude_n_s.clone()),
+            ("peak", forecast.peak_n.clone()),
+            ("its time", forecast.peak_time_s.clone()),
+            ("duration", forecast.duration_s.clone()),
+            ("PDOF", forecast.pdof_rad.clone()),
         ] {
+            let spread = spread.spread();
             let [low, high] = spread.half;
             assert!(low <= spread.median && spread.median <= high, "{name}: {spread:?}");
             assert!(spread.ninety[0] <= low && high <= spread.ninety[1], "{name}: {spread:?}");
@@ -222,7 +285,7 @@ mod tests {
     fn a_direction_from_straight_ahead_does_not_jump() {
         let impulses: Vec<[f64; 2]> = (-10..=10).map(|i| [-1000.0, 20.0 * f64::from(i)]).collect();
         for mean in [[-1000.0, 100.0], [-1000.0, -100.0]] {
-            let spread = pdof_rad(mean, &impulses);
+            let spread = pdof_rad(mean, &impulses).spread();
             let [low, high] = spread.ninety;
             assert!((0.0..TAU).contains(&spread.median), "{spread:?}");
             assert!((high - low - 0.358).abs() < 0.01, "{spread:?}");

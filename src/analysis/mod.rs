@@ -16,8 +16,10 @@ use crate::data::{DataError, ForceHistory, SeriesError, TimeSeries};
 use crate::vehicle::{Integrator, Motion, SimulationError, VehicleParameters};
 
 pub use case::analyse_case;
-pub use file::{FileSetup, analyse_file};
-pub use forecast::{ForceForecast, ForecastSettings, Mode, Spread, pulse_curves};
+pub use file::{DriveSetup, analyse_drive, analyse_recording};
+pub use forecast::{
+    Estimate, ForceForecast, ForecastSettings, Interval, Mode, Spread, pulse_curves,
+};
 pub use motion_bands::{MOTION_BAND_LEVELS, MotionBands};
 pub use motion_density::{DensityMap, DensityTask, Region};
 pub use motion_forecast::{
@@ -53,8 +55,8 @@ pub struct Track {
 pub struct Analysis {
     /// Name of the case.
     pub name: String,
-    /// Name of the struck vehicle that was simulated.
-    pub vehicle: String,
+    /// The struck vehicle that was simulated, with the mass and friction of the case.
+    pub vehicle: VehicleParameters,
     /// Its outline.
     pub footprint: Footprint,
     /// The force on the target.

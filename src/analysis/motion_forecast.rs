@@ -37,16 +37,8 @@ pub struct MotionForecastSettings {
     pub n_curves: usize,
     /// From the start of the impact, s.
     pub duration_s: f64,
-    /// Height above the ground at which the force acts, m.
-    pub contact_height_m: f64,
     /// Seed of all draws.
     pub seed: u64,
-}
-
-impl Default for MotionForecastSettings {
-    fn default() -> Self {
-        Self { n_curves: 30, duration_s: 4.0, contact_height_m: 0.52, seed: 0 }
-    }
 }
 
 /// What the struck car does before it is pushed, and by what.

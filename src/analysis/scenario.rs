@@ -56,16 +56,13 @@ pub fn analyse_scenario(
     };
     let target = run(&scenario.target, &settings.target, &geometry.target, force.clone())?;
     let bullet = run(&scenario.bullet, &settings.bullet, &geometry.bullet, history([-px, -py])?)?;
+    let struck = StruckVehicle::of_scenario(scenario, &settings.target, pulse.contact_height_m)?;
     Ok(Analysis {
         name: scenario.name.clone(),
-        vehicle: settings.target.name.clone(),
+        vehicle: struck.vehicle.clone(),
         footprint: scenario.target.footprint(),
         force: Some(force),
-        struck: Some(StruckVehicle::of_scenario(
-            scenario,
-            &settings.target,
-            pulse.contact_height_m,
-        )?),
+        struck: Some(struck),
         simulation: Some(target),
         reference: None,
         bullet: Some(Track { footprint: scenario.bullet.footprint(), motion: bullet.series }),

@@ -1,18 +1,18 @@
 //! The rows of the case table: filtered and sorted. Knows no egui.
 
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use crate::app::replay::{ReplayStatus, Replays};
 use crate::app::source::{CheckedDataset, Source};
-use crate::app::state::{ReplayStatus, Replays, View};
-use crate::compare::{DatasetReplay, MotionError};
+use crate::app::state::View;
+use crate::compare::MotionError;
 use crate::data::{Case, DatasetKind, Flag, Value};
 use crate::units::{Quantity, UnitSystem, significant};
 
 /// A column of the case table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CaseColumn {
-    /// Key of the attribute, or of a figure of the replay.
+    /// Key of the attribute, or of an error of the simulation.
     pub key: &'static str,
     /// Heading without unit.
     pub title: &'static str,
@@ -132,27 +132,6 @@ impl CaseRow<'_> {
     }
 }
 
-/// A finished replay with its cases by name.
-pub struct FinishedReplay {
-    /// The replay.
-    pub replay: DatasetReplay,
-    by_case: BTreeMap<String, usize>,
-}
-
-impl FinishedReplay {
-    /// Looks the cases up by name from now on.
-    pub fn new(replay: DatasetReplay) -> Self {
-        let names = replay.cases.iter().enumerate();
-        let by_case = names.map(|(index, replay)| (replay.case.clone(), index)).collect();
-        Self { replay, by_case }
-    }
-
-    fn error(&self, case: &str) -> Option<&MotionError> {
-        let index = self.by_case.get(case)?;
-        self.replay.cases.get(*index).map(|replay| &replay.error)
-    }
-}
-
 /// Which cases are listed, in which order. Kept between frames: filtering and sorting 10 000 cases
 /// takes longer than a frame may.
 #[derive(Default)]
@@ -176,22 +155,23 @@ struct ListKey {
 pub struct CaseTable<'a> {
     /// The data set.
     pub checked: &'a CheckedDataset,
-    errors: Option<&'a FinishedReplay>,
+    errors: Option<&'a ReplayStatus>,
     order: &'a [usize],
 }
 
 impl CaseList {
-    /// Makes the order anew if what it was made for has changed.
+    /// Sorts and filters again if what the order was made for has changed.
     pub fn update(&mut self, sources: &[Source], replays: &Replays, view: &View) {
         let (Some(path), Some(checked)) = (&view.listed, listed_in(sources, view)) else {
             *self = Self::default();
             return;
         };
-        let errors = finished(replays, path);
+        let errors = replays.get(path);
+        let report = errors.and_then(ReplayStatus::report);
         let key = ListKey {
             path: path.clone(),
             n_cases: checked.dataset.cases.len(),
-            n_errors: errors.map_or(0, |errors| errors.replay.cases.len()),
+            n_errors: report.map_or(0, |report| report.cases.len()),
             filter: view.filter.clone(),
             sort: view.sort_column.clone().map(|key| (key, view.sort_descending)),
         };
@@ -209,7 +189,7 @@ impl CaseList {
         view: &View,
     ) -> Option<CaseTable<'a>> {
         let checked = listed_in(sources, view)?;
-        let errors = finished(replays, view.listed.as_ref()?);
+        let errors = replays.get(view.listed.as_ref()?);
         Some(CaseTable { checked, errors, order: &self.order })
     }
 }
@@ -239,16 +219,9 @@ pub fn listed_in<'a>(sources: &'a [Source], view: &View) -> Option<&'a CheckedDa
     source.dataset().map(std::sync::Arc::as_ref)
 }
 
-fn finished<'a>(replays: &'a Replays, path: &PathBuf) -> Option<&'a FinishedReplay> {
-    match replays.get(path)? {
-        ReplayStatus::Done(finished) => Some(finished),
-        ReplayStatus::Running(_) => None,
-    }
-}
-
 fn row<'a>(
     checked: &'a CheckedDataset,
-    errors: Option<&'a FinishedReplay>,
+    errors: Option<&'a ReplayStatus>,
     index: usize,
 ) -> Option<CaseRow<'a>> {
     let (case, flags) = (checked.dataset.cases.get(index)?, checked.flags.get(index)?);
@@ -256,7 +229,7 @@ fn row<'a>(
     Some(CaseRow { name: &case.name, case, flags, error })
 }
 
-fn order(checked: &CheckedDataset, errors: Option<&FinishedReplay>, view: &View) -> Vec<usize> {
+fn order(checked: &CheckedDataset, errors: Option<&ReplayStatus>, view: &View) -> Vec<usize> {
     let all = 0..checked.dataset.cases.len();
     let mut rows: Vec<(usize, CaseRow<'_>)> = all
         .filter_map(|index| Some((index, row(checked, errors, index)?)))
@@ -290,6 +263,7 @@ fn sort(rows: &mut [(usize, CaseRow<'_>)], key: &str, descending: bool) {
 mod tests {
     use std::ops::ControlFlow;
     use std::path::Path;
+    use std::sync::Arc;
 
     use super::*;
     use crate::data::{Dataset, check_case};
@@ -297,7 +271,7 @@ mod tests {
     fn fea() -> CheckedDataset {
         let mut report = |_| ControlFlow::Continue(());
         let dataset = Dataset::load(Path::new("datasets/fea"), &mut report).unwrap();
-        let dataset = dataset.complete().unwrap();
+        let dataset = Arc::new(dataset.complete().unwrap());
         let flags = dataset.cases.iter().map(check_case).collect();
         CheckedDataset { dataset, flags, vehicle: None }
     }

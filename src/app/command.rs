@@ -8,14 +8,11 @@ use crate::app::dialogs::{FileDialog, MappingDialog, Purpose};
 use crate::app::export;
 use crate::app::network::Network;
 use crate::app::panes::{Pane, default_layout, show_pane};
-use crate::app::source::{Content, Source};
-use crate::app::state::{ReplayStatus, Session, State, Subject};
-use crate::app::update::target_vehicle;
-use crate::compare::replay_dataset;
-use crate::data::{ColumnMap, FileKind, Severity, write_atomically};
+use crate::app::state::{Session, State, Subject};
+use crate::data::{ColumnMap, Severity, write_atomically};
 use crate::error_chain;
 use crate::figure::Figure;
-use crate::jobs::Job;
+use crate::study::SimulateAnswer;
 
 /// Step of the arrow keys in the scene, s.
 const TIME_STEP_S: f64 = 0.05;
@@ -29,16 +26,16 @@ pub enum Command {
     Close(PathBuf),
     /// Ask for a path.
     Ask(Purpose),
-    /// Look at something.
+    /// Show and simulate something.
     Select(Subject),
-    /// Look at the next (1) or previous (−1) case of the list.
+    /// Select the next (1) or previous (−1) case of the list.
     SelectNeighbour(isize),
     /// List the cases of a dataset.
     List(PathBuf),
     /// Ask which column of a file is which.
     AskMapping(PathBuf),
     /// Read a file with the user's columns.
-    OpenMapped(PathBuf, FileKind, ColumnMap),
+    OpenMapped(PathBuf, ColumnMap),
     /// Close the mapping dialog.
     CancelMapping,
     /// Simulate every case of a dataset.
@@ -65,11 +62,13 @@ pub enum Command {
     PredictScenario,
     /// Answer by the model of this file; by the shipped one without.
     UseModel(Network, Option<PathBuf>),
+    /// Answer by the model that a cancelled training left.
+    UseTrained(Network),
     /// Write a model to a file.
     SaveModel(Network, PathBuf),
     /// Train a model.
     Train(Network, TrainingCommand),
-    /// Compare models.
+    /// Compare response models, or evaluate the current one.
     Compare(ComparisonCommand),
     /// Evaluate the force model on a data set.
     Evaluate,
@@ -87,7 +86,7 @@ pub enum Command {
     DismissMessages,
     /// Go back a step.
     Undo,
-    /// Go forth a step.
+    /// Repeat the step that was undone.
     Redo,
 }
 
@@ -107,6 +106,8 @@ pub enum TrainingCommand {
 pub enum ComparisonCommand {
     /// Train response models and compare them.
     Start,
+    /// Evaluate the current response model.
+    Evaluate,
     /// Stop.
     Cancel,
     /// Read one from a file.
@@ -130,18 +131,15 @@ impl State {
                 Ok(dialog) => self.session.mapping = Some(dialog),
                 Err(error) => self.say(Severity::Error, error_chain(&error)),
             },
-            Command::OpenMapped(path, kind, map) => {
+            Command::OpenMapped(path, map) => {
                 self.session.mapping = None;
-                self.session.sources.retain(|source| source.path != path);
-                self.session.look_at = Some(path.clone());
-                let source = Source::load_mapped(path, kind, map, wake(context));
-                self.session.sources.push(source);
+                self.load(path, Some(map), context);
             }
             Command::CancelMapping => self.session.mapping = None,
             Command::ReplayDataset(path) => self.replay(path, context),
             Command::CancelReplay(path) => {
-                if let Some(ReplayStatus::Running(job)) = self.session.replays.get(&path) {
-                    job.cancel();
+                if let Some(replay) = self.session.replays.get(&path) {
+                    replay.cancel();
                 }
             }
             Command::SetTime(time_s) => self.session.time_s = time_s,
@@ -169,16 +167,13 @@ impl State {
             Command::PredictCase => self.predict_case(),
             Command::PredictScenario => self.predict_scenario(),
             Command::UseModel(network, path) => self.use_model(network, path),
+            Command::UseTrained(network) => self.use_trained(network),
             Command::SaveModel(network, path) => self.save_model(network, path, context),
             Command::Train(Network::Force, command) => self.train_force(command, context),
             Command::Train(Network::Response, command) => self.train_response(command, context),
             Command::Compare(command) => self.compare(command, context),
             Command::Evaluate => self.evaluate(context),
-            Command::CancelEvaluation => {
-                if let Some(job) = &self.session.force.evaluation.job {
-                    job.cancel();
-                }
-            }
+            Command::CancelEvaluation => self.session.force.evaluation.cancel(),
             Command::ShowTraining(network) => {
                 self.view.trained = network;
                 show_pane(&mut self.view.layout, Pane::Training);
@@ -198,7 +193,7 @@ impl State {
         }
     }
 
-    /// Looks at something, from its beginning.
+    /// Shows something from its beginning.
     pub(super) fn select(&mut self, subject: Subject) {
         if let Subject::Case { dataset, .. } = &subject {
             self.view.listed = Some(dataset.clone());
@@ -232,20 +227,10 @@ impl State {
     }
 
     fn replay(&mut self, path: PathBuf, context: &Context) {
-        let source = self.session.sources.iter().find(|source| source.path == path);
-        let Some(checked) = source.and_then(Source::dataset).cloned() else {
-            return;
-        };
-        let project = self.project.clone();
-        let job = Job::spawn_in_background("simulate", wake(context), move |report| {
-            let vehicle = target_vehicle(&project, Some(&checked))?;
-            Ok(replay_dataset(&checked.dataset, &vehicle, project.integrator, report))
-        });
-        match job {
-            Ok(job) => {
-                self.session.replays.insert(path, ReplayStatus::Running(job));
-            }
-            Err(error) => self.say(Severity::Error, error.to_string()),
+        let question = self.replay_request(path.clone());
+        let replay = self.session.replays.entry(path).or_default();
+        if let Err(error) = replay.start(question, &self.session.library, wake(context)) {
+            self.say(Severity::Error, error.to_string());
         }
     }
 
@@ -263,21 +248,14 @@ impl State {
         }
     }
 
-    /// The last moment of what is looked at, s.
+    /// The last moment of what is shown, s.
     pub fn end_time_s(&self) -> f64 {
-        let last = |analysis: &crate::analysis::Analysis| {
+        let last = |SimulateAnswer { analysis, .. }: &SimulateAnswer| {
             let simulation = analysis.simulation.as_ref().map(|motion| &motion.series);
             let series = simulation.or(analysis.reference.as_ref())?;
             series.time_s().last().copied()
         };
         self.analysis().and_then(last).unwrap_or(0.0)
-    }
-}
-
-impl Source {
-    /// Whether it has been loaded, with whatever result.
-    pub fn is_settled(&self) -> bool {
-        !matches!(self.content, Content::Loading(_))
     }
 }
 

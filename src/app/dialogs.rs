@@ -9,7 +9,7 @@ use rfd::AsyncFileDialog;
 use crate::app::command::{Command, ComparisonCommand};
 use crate::app::network::Network;
 use crate::data::{
-    Channel, ColumnMap, ColumnProposal, ColumnRef, ColumnSource, DataError, FileKind, Severity,
+    Channel, ColumnMap, ColumnProposal, ColumnRef, ColumnSource, DataError, Severity,
     propose_columns,
 };
 use crate::figure::Figure;
@@ -143,7 +143,6 @@ pub struct MappingDialog {
     proposals: Vec<ColumnProposal>,
     choices: Vec<Option<Channel>>,
     units: Vec<usize>,
-    kind: FileKind,
 }
 
 /// What a loose file can hold, in the order of the dialog's lists.
@@ -165,7 +164,7 @@ const CHOICES: [Channel; 14] = [
 ];
 
 impl MappingDialog {
-    /// Looks into a file and proposes what it can.
+    /// Reads the header and the first rows of a file and proposes what each column is.
     ///
     /// # Errors
     /// [`DataError`] if the file is no table.
@@ -177,23 +176,14 @@ impl MappingDialog {
             channel.quantity().units().iter().position(|known| Some(*known) == unit)
         };
         let units = proposals.iter().map(|p| unit_index(p).unwrap_or(0)).collect();
-        Ok(Self { path, proposals, choices, units, kind: FileKind::Force })
+        Ok(Self { path, proposals, choices, units })
     }
 
     /// Draws the dialog.
     pub fn ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
         ui.heading("Which column is which?");
         ui.label(self.path.display().to_string());
-        ui.horizontal(|ui| {
-            ui.label("The file is a");
-            for (kind, label) in [
-                (FileKind::Force, "contact force"),
-                (FileKind::Trajectory, "trajectory"),
-                (FileKind::Steer, "steer history"),
-            ] {
-                ui.radio_value(&mut self.kind, kind, label);
-            }
-        });
+        ui.weak("Force columns make it a force file; X, Y and yaw a trajectory; a steer angle a steer file.");
         ui.separator();
         egui::ScrollArea::both().max_height(360.0).show(ui, |ui| {
             Grid::new("mapping").striped(true).show(ui, |ui| {
@@ -211,7 +201,7 @@ impl MappingDialog {
         ui.horizontal(|ui| {
             if ui.button("Open with these columns").clicked() {
                 let (path, map) = (self.path.clone(), self.map());
-                commands.push(Command::OpenMapped(path, self.kind, map));
+                commands.push(Command::OpenMapped(path, map));
             }
             if ui.button("Cancel").clicked() {
                 commands.push(Command::CancelMapping);

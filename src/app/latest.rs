@@ -1,73 +1,93 @@
 //! Answers questions on a thread of its own, so that the window keeps its pace: while a slider
 //! moves, only the latest question is answered, and the last answer stays until the next one comes.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
+use crate::data::Outcome;
+use crate::error_chain;
 use crate::jobs::{Job, Progress, Update};
+use crate::study::{Event, Library, Question};
 
-/// Something to compute.
-pub trait Question: Clone + Send + 'static {
-    /// What comes out.
-    type Answer: Send + 'static;
-    /// Name of the thread.
-    const NAME: &'static str;
-
-    /// Whether the answer would be the same.
-    fn is_same(&self, other: &Self) -> bool;
-
-    /// Computes.
-    ///
-    /// # Errors
-    /// A message for the user.
-    fn answer(&self) -> Result<Self::Answer, String>;
-}
+/// An answer, or a message that says why there is none.
+pub type AnswerResult<Q> = Result<Arc<<Q as Question>::Answer>, String>;
 
 /// The latest question and the latest answer.
 pub struct Latest<Q: Question> {
     thread: Option<Thread<Q>>,
-    /// What was asked last.
+    n_asked: u64,
+    n_answered: u64,
+    /// The question that was asked last.
     pub asked: Option<Q>,
-    /// The latest answer, or why there is none.
-    pub answer: Option<Result<Arc<Q::Answer>, String>>,
+    /// The latest answer, or why there is none. It belongs to `asked` unless
+    /// [`Latest::is_waiting`].
+    pub answer: Option<AnswerResult<Q>>,
 }
 
 struct Thread<Q: Question> {
     job: Job<()>,
-    questions: Sender<Q>,
-    answers: Receiver<Result<Q::Answer, String>>,
+    questions: Sender<(u64, Q)>,
+    answers: Receiver<(u64, AnswerResult<Q>)>,
 }
 
 impl<Q: Question> Default for Latest<Q> {
     fn default() -> Self {
-        Self { thread: None, asked: None, answer: None }
+        Self { thread: None, n_asked: 0, n_answered: 0, asked: None, answer: None }
     }
 }
 
 impl<Q: Question> Latest<Q> {
     /// Takes in what was answered.
     pub fn poll(&mut self) {
-        if let Some(answer) = self.thread.as_mut().and_then(Thread::answer) {
-            self.answer = Some(answer.map(Arc::new));
+        let Some(thread) = &mut self.thread else { return };
+        if let Some((number, answer)) = thread.answers.try_iter().last() {
+            (self.n_answered, self.answer) = (number, Some(answer));
+        }
+        if let Update::Panicked(text) = thread.job.poll() {
+            self.thread = None;
+            self.n_answered = self.n_asked;
+            self.answer = Some(Err(format!("internal error: {text}")));
         }
     }
 
     /// Asks, unless it was the last question. `wake` is called after every answer.
-    pub fn ask(&mut self, question: Q, wake: impl Fn() + Send + 'static) {
-        if self.asked.as_ref().is_some_and(|asked| asked.is_same(&question)) {
+    pub fn ask(&mut self, question: Q, library: &Arc<Library>, wake: impl Fn() + Send + 'static) {
+        if self.asked.as_ref() == Some(&question) {
             return;
         }
-        let is_asked = self.thread.as_ref().is_some_and(|thread| thread.ask(question.clone()));
-        if !is_asked {
-            match Thread::spawn(wake) {
-                Ok(thread) => {
-                    thread.ask(question.clone());
-                    self.thread = Some(thread);
-                }
-                Err(error) => self.answer = Some(Err(error.to_string())),
+        self.n_asked += 1;
+        let numbered = (self.n_asked, question.clone());
+        self.asked = Some(question);
+        let is_sent = self
+            .thread
+            .as_ref()
+            .is_some_and(|thread| thread.questions.send(numbered.clone()).is_ok());
+        if is_sent {
+            return;
+        }
+        match Thread::spawn(Arc::clone(library), wake) {
+            Ok(thread) => {
+                // The thread has just been started and waits for its first question.
+                let _ = thread.questions.send(numbered);
+                self.thread = Some(thread);
+            }
+            Err(error) => {
+                self.n_answered = self.n_asked;
+                self.answer = Some(Err(error.to_string()));
             }
         }
-        self.asked = Some(question);
+    }
+
+    /// Whether the answer to the latest question is still to come.
+    pub fn is_waiting(&self) -> bool {
+        self.n_asked != self.n_answered
+    }
+
+    /// Lets the same question be asked again, because the files or models that it refers to have
+    /// changed.
+    pub fn ask_again(&mut self) {
+        self.asked = None;
     }
 
     /// Forgets question and answer.
@@ -82,67 +102,68 @@ impl<Q: Question> Latest<Q> {
 }
 
 impl<Q: Question> Thread<Q> {
-    fn spawn(wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
-        let (questions, asked) = channel::<Q>();
+    fn spawn(library: Arc<Library>, wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+        let (questions, asked) = channel::<(u64, Q)>();
         let (answer, answers) = channel();
         let job = Job::spawn(Q::NAME, wake, move |report| {
-            let mut n_answers = 0;
-            while let Ok(mut question) = asked.recv() {
+            while let Ok(mut latest) = asked.recv() {
                 while let Ok(newer) = asked.try_recv() {
-                    question = newer;
+                    latest = newer;
                 }
-                n_answers += 1;
-                let progress = Progress::new(n_answers, 0, Q::NAME);
-                if answer.send(question.answer()).is_err() || report(progress).is_break() {
+                let (number, question) = latest;
+                let mut observer = |event: Event<'_>| match event {
+                    Event::Progress(progress) => report(progress),
+                    Event::Training(_) => ControlFlow::Continue(()),
+                };
+                let result = match question.answer(&library, &mut observer) {
+                    Ok(Outcome::Complete(found)) => Ok(Arc::new(found)),
+                    Ok(Outcome::Cancelled) => break,
+                    Err(error) => Err(error_chain(&error)),
+                };
+                if answer.send((number, result)).is_err() || report(Progress::default()).is_break()
+                {
                     break;
                 }
             }
         })?;
         Ok(Self { job, questions, answers })
     }
-
-    /// `false` if the thread is gone.
-    fn ask(&self, question: Q) -> bool {
-        self.questions.send(question).is_ok()
-    }
-
-    /// The latest answer since the last call. A panic comes as the inner error, after which the
-    /// thread is gone.
-    fn answer(&mut self) -> Option<Result<Q::Answer, String>> {
-        let latest = self.answers.try_iter().last();
-        match self.job.poll() {
-            Update::Panicked(text) => Some(Err(format!("internal error: {text}"))),
-            _ => latest,
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::{Observer, StudyError};
     use std::time::Duration;
 
-    #[derive(Clone)]
+    #[derive(Clone, PartialEq)]
     struct Halve(i32);
 
     impl Question for Halve {
         type Answer = i32;
         const NAME: &'static str = "halve";
 
-        fn is_same(&self, other: &Self) -> bool {
-            self.0 == other.0
-        }
-
-        fn answer(&self) -> Result<i32, String> {
+        fn answer(
+            &self,
+            _library: &Library,
+            _observer: &mut Observer<'_>,
+        ) -> Result<Outcome<i32>, StudyError> {
             assert!(self.0 >= 0, "negative");
-            if self.0 % 2 == 0 { Ok(self.0 / 2) } else { Err(format!("{} is odd", self.0)) }
+            match self.0 % 2 {
+                0 => Ok(Outcome::Complete(self.0 / 2)),
+                _ => Err(StudyError::NotHeld { name: self.0.to_string() }),
+            }
         }
+    }
+
+    fn ask(latest: &mut Latest<Halve>, number: i32) {
+        latest.ask(Halve(number), &Arc::default(), || {});
     }
 
     fn settled(latest: &mut Latest<Halve>) -> Option<Result<Arc<i32>, String>> {
         for _ in 0..1000 {
             latest.poll();
-            if latest.answer.is_some() {
+            if !latest.is_waiting() {
                 return latest.answer.take();
             }
             std::thread::sleep(Duration::from_millis(2));
@@ -153,17 +174,20 @@ mod tests {
     #[test]
     fn answers_problems_and_panics_come_back_and_questions_go_on() {
         let mut latest = Latest::default();
-        latest.ask(Halve(8), || {});
+        ask(&mut latest, 8);
         assert_eq!(settled(&mut latest), Some(Ok(Arc::new(4))));
-        latest.ask(Halve(8), || {});
-        latest.poll();
-        assert!(latest.answer.is_none(), "the same question is not asked again");
-        latest.ask(Halve(7), || {});
-        assert_eq!(settled(&mut latest), Some(Err("7 is odd".to_owned())));
-        latest.ask(Halve(-1), || {});
+        ask(&mut latest, 8);
+        assert!(!latest.is_waiting(), "the same question is not asked again");
+        latest.ask_again();
+        ask(&mut latest, 8);
+        assert!(latest.is_waiting(), "unless what it refers to has changed");
+        assert_eq!(settled(&mut latest), Some(Ok(Arc::new(4))));
+        ask(&mut latest, 7);
+        assert_eq!(settled(&mut latest), Some(Err("there is no model \"7\"".to_owned())));
+        ask(&mut latest, -1);
         let problem = settled(&mut latest).unwrap().unwrap_err();
         assert!(problem.contains("internal error"), "{problem}");
-        latest.ask(Halve(2), || {});
+        ask(&mut latest, 2);
         assert_eq!(settled(&mut latest), Some(Ok(Arc::new(1))));
     }
 }

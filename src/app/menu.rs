@@ -10,10 +10,10 @@ use crate::app::keyboard;
 use crate::app::network::Network;
 use crate::app::panes::Pane;
 use crate::app::source::{Content, Source};
-use crate::app::state::{ReplayStatus, Session, State};
+use crate::app::state::{Session, State};
 use crate::app::widgets::duration_text;
 use crate::data::Severity;
-use crate::jobs::Job;
+use crate::jobs::{Job, Progress};
 use crate::render::theme;
 use crate::units::UnitSystem;
 
@@ -76,7 +76,7 @@ fn file_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let session = &state.session;
     let has_force = session.force.model.current.is_some();
     let has_response = session.response.model.current.is_some();
-    let has_comparison = session.response.comparison.comparison().is_some();
+    let has_comparison = session.response.comparison.report().is_some();
     for (label, enabled, purpose) in [
         ("Save scenario…", true, Purpose::Scenario),
         ("Open model…", true, Purpose::OpenModel),
@@ -144,8 +144,8 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
                 job_ui(ui, &format!("Loading {}", source.name()), job, cancel, commands);
             }
         }
-        for (path, status) in &state.session.replays {
-            if let ReplayStatus::Running(job) = status {
+        for (path, replay) in &state.session.replays {
+            if let Some(job) = replay.question.job() {
                 let cancel = Command::CancelReplay(path.clone());
                 let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
                 job_ui(ui, &format!("Simulating {name}"), job, cancel, commands);
@@ -160,9 +160,10 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             let progress = response.training.progress();
             training_job_ui(ui, (Network::Response, paused.1), progress, commands);
         }
-        if let Some(job) = &response.comparison.job {
-            let what = format!("Comparing, {}", job.progress().message);
-            job_ui(ui, &what, job, Command::Compare(ComparisonCommand::Cancel), commands);
+        if let Some((what, progress, elapsed)) = response.comparison.progress() {
+            let what = format!("{what}, {}", progress.message);
+            let cancel = Command::Compare(ComparisonCommand::Cancel);
+            progress_ui(ui, &what, (progress, elapsed), cancel, commands);
         }
         let Some(latest) = state.session.messages.last() else {
             ui.weak("Ready. Drop a folder or a file here to open it.");
@@ -215,12 +216,21 @@ fn training_job_ui(
 
 /// A running job: progress, time left, cancel.
 fn job_ui<T>(ui: &mut Ui, what: &str, job: &Job<T>, cancel: Command, commands: &mut Vec<Command>) {
+    progress_ui(ui, what, (job.progress(), job.elapsed()), cancel, commands);
+}
+
+fn progress_ui(
+    ui: &mut Ui,
+    what: &str,
+    (progress, elapsed): (&Progress, Duration),
+    cancel: Command,
+    commands: &mut Vec<Command>,
+) {
     ui.horizontal(|ui| {
         if ui.small_button("Cancel").clicked() {
             commands.push(cancel);
         }
-        let progress = job.progress();
-        let left = progress.time_left(job.elapsed());
+        let left = progress.time_left(elapsed);
         let left = left.map_or(String::new(), |t| format!(", {} left", duration_text(t)));
         match progress.fraction() {
             Some(fraction) => {

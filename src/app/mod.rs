@@ -1,5 +1,5 @@
-//! The window. It loads, starts jobs, shows figures and edits settings; what is computed comes from
-//! the core, by way of [`jobs`](crate::jobs).
+//! The window. It edits settings, makes questions of them, and shows the answers, which come from the
+//! [`study`](crate::study) by way of [`jobs`](crate::jobs).
 
 mod case_table;
 mod command;
@@ -14,6 +14,9 @@ mod network;
 mod open;
 mod panels;
 mod panes;
+mod question_job;
+mod replay;
+mod requests;
 mod response;
 mod source;
 mod state;
@@ -37,12 +40,15 @@ use crate::data::Severity;
 use crate::render::{DensityGpu, theme};
 
 pub use command::{Command, ComparisonCommand, TrainingCommand};
-pub use force::{ForceSession, Forecast};
+pub use force::ForceSession;
+pub use latest::Latest;
 pub use network::Network;
 pub use panes::Pane;
+pub use question_job::{Answered, QuestionJob};
+pub use replay::ReplayStatus;
 pub use response::{DensityChoice, ForceChoice, MotionAnswer, ResponseSession, TrainingMode};
 pub use source::{Content, Source};
-pub use state::{Project, ReplayStatus, State, Subject, VehicleChoice, View};
+pub use state::{FileStart, Project, State, Subject, View};
 
 /// The icon of the window, which the desktop entry shows too.
 const ICON: &[u8] = include_bytes!("../../assets/desktop/impactlab.png");
@@ -121,7 +127,7 @@ impl App {
         }
         state.apply(Command::Open(to_open), &cc.egui_ctx);
         if state.project.subject.is_some() {
-            state.session.look_at = None; // the last run's subject stays
+            state.session.select_when_loaded = None; // the last run's subject stays
         }
         Self { state, undoer: Undoer::default(), store }
     }

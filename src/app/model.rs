@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::app::network::TrainedModel;
+use crate::error_chain;
 use crate::jobs::Job;
-use crate::shipped::ModelSource;
-
-/// What the shipped model is called.
-pub const SHIPPED_NAME: &str = "shipped";
+use crate::study::{Library, ModelChoice};
 
 /// A model and where it comes from.
 pub struct CurrentModel<M> {
+    /// What questions call it.
+    pub choice: ModelChoice,
     /// The model.
     pub model: Arc<M>,
     /// For a person: the file's name, or that it was trained here.
@@ -24,10 +24,13 @@ pub struct CurrentModel<M> {
 pub struct ModelStatus<M> {
     /// The file that was asked for last; the inner `None` is the shipped model.
     requested: Option<Option<PathBuf>>,
-    job: Option<Job<Result<(M, String), String>>>,
+    job: Option<Job<Result<CurrentModel<M>, String>>>,
     saving: Option<Job<Result<PathBuf, String>>>,
+    n_trained: usize,
     /// What answers.
     pub current: Option<CurrentModel<M>>,
+    /// What a cancelled training left: it answers only once the user says so.
+    pub set_aside: Option<CurrentModel<M>>,
     /// Why the wanted one does not.
     pub problem: Option<String>,
     /// A path to which it is to be saved, being typed.
@@ -36,39 +39,48 @@ pub struct ModelStatus<M> {
 
 impl<M> Default for ModelStatus<M> {
     fn default() -> Self {
-        let (requested, job, saving, current, problem) = (None, None, None, None, None);
-        Self { requested, job, saving, current, problem, typed_path: String::new() }
+        Self {
+            requested: None,
+            job: None,
+            saving: None,
+            n_trained: 0,
+            current: None,
+            set_aside: None,
+            problem: None,
+            typed_path: String::new(),
+        }
     }
 }
 
 impl<M: TrainedModel> ModelStatus<M> {
-    /// Starts loading if another model is wanted than the last time. A problem comes back.
+    /// Starts loading if another model is wanted than the last time. Once one has been loaded, or
+    /// could not be, it says so.
     pub fn update(
         &mut self,
         wanted: &Option<PathBuf>,
+        library: &Arc<Library>,
         wake: impl Fn() + Send + 'static,
-    ) -> Option<String> {
+    ) -> Option<Result<(), String>> {
         if self.requested.as_ref() != Some(wanted) {
             self.requested = Some(wanted.clone());
-            let path = wanted.clone();
-            match Job::spawn("load model", wake, move |_| load(path)) {
+            let (path, library) = (wanted.clone(), Arc::clone(library));
+            match Job::spawn("load model", wake, move |_| load(path, &library)) {
                 Ok(job) => self.job = Some(job),
-                Err(error) => return Some(error.to_string()),
+                Err(error) => return Some(Err(error.to_string())),
             }
         }
         let result = self.job.as_mut()?.poll().into_result("the loader")?;
         self.job = None;
-        match result {
-            Ok((model, name)) => {
-                self.current = Some(CurrentModel { model: Arc::new(model), name, is_saved: true });
-                self.problem = None;
-                None
+        Some(match result {
+            Ok(current) => {
+                (self.current, self.problem) = (Some(current), None);
+                Ok(())
             }
             Err(problem) => {
                 self.problem = Some(problem.clone());
-                Some(problem)
+                Err(problem)
             }
-        }
+        })
     }
 
     /// Whether a model is being loaded.
@@ -76,11 +88,32 @@ impl<M: TrainedModel> ModelStatus<M> {
         self.job.is_some()
     }
 
-    /// Takes a model that was just trained.
-    pub fn take_trained(&mut self, model: M, name: String) {
-        self.job = None;
-        self.problem = None;
-        self.current = Some(CurrentModel { model: Arc::new(model), name, is_saved: false });
+    /// Takes a model that was just trained and lets the library hold it.
+    ///
+    /// - `name`: how it came to be;
+    /// - `is_used`: whether it answers from now on; otherwise it is set aside.
+    pub fn take_trained(&mut self, model: M, name: String, (library, is_used): (&Library, bool)) {
+        self.n_trained += 1;
+        // A name stands for one model, so that an answer of another one is not taken for its own.
+        let name = match self.n_trained {
+            1 => name,
+            n => format!("{name} (training {n})"),
+        };
+        let (choice, model) = (ModelChoice::held(&name), Arc::new(model));
+        M::hold(library, choice.clone(), Arc::clone(&model));
+        self.set_aside = Some(CurrentModel { choice, model, name, is_saved: false });
+        if is_used {
+            self.use_trained();
+        }
+    }
+
+    /// Lets the model of a cancelled training answer.
+    pub fn use_trained(&mut self) {
+        if let Some(trained) = self.set_aside.take() {
+            self.job = None;
+            self.problem = None;
+            self.current = Some(trained);
+        }
     }
 
     /// Reads the file again, e.g. after the user asked for it once more.
@@ -108,12 +141,14 @@ impl<M: TrainedModel> ModelStatus<M> {
     }
 
     /// The file that was just written, which is the wanted one from now on.
-    pub fn poll_saving(&mut self) -> Option<Result<PathBuf, String>> {
+    pub fn poll_saving(&mut self, library: &Library) -> Option<Result<PathBuf, String>> {
         let result = self.saving.as_mut()?.poll().into_result("the writer")?;
         self.saving = None;
         if let Ok(path) = &result {
             self.requested = Some(Some(path.clone()));
             if let Some(current) = &mut self.current {
+                current.choice = ModelChoice::file(path);
+                M::hold(library, current.choice.clone(), Arc::clone(&current.model));
                 (current.name, current.is_saved) = (file_name(path), true);
             }
         }
@@ -121,14 +156,20 @@ impl<M: TrainedModel> ModelStatus<M> {
     }
 }
 
-fn load<M: TrainedModel>(path: Option<PathBuf>) -> Result<(M, String), String> {
-    let (source, name) = match path {
-        Some(path) => (ModelSource::File(path.clone()), file_name(&path)),
-        None => (ModelSource::Shipped, SHIPPED_NAME.to_owned()),
-    };
-    M::read(&source).map(|model| (model, name)).map_err(|problem| format!("{source}: {problem}"))
+fn load<M: TrainedModel>(
+    path: Option<PathBuf>,
+    library: &Library,
+) -> Result<CurrentModel<M>, String> {
+    let name = path.as_deref().map(file_name);
+    let choice = path.map_or_else(ModelChoice::default, ModelChoice::file);
+    let name = name.unwrap_or_else(|| choice.to_string());
+    match M::of_library(library, &choice) {
+        Ok(model) => Ok(CurrentModel { choice, model, name, is_saved: true }),
+        Err(error) => Err(format!("{choice}: {}", error_chain(&error))),
+    }
 }
 
-fn file_name(path: &Path) -> String {
+/// The last part of a path.
+pub fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }

@@ -1,6 +1,7 @@
 //! The two networks, where the app treats them alike.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +9,10 @@ use crate::error_chain;
 use crate::force::ForceModel;
 use crate::learning::{EpochRecord, EpochSummary, ModelFile};
 use crate::response::ResponseModel;
-use crate::shipped::ModelSource;
+use crate::study::{
+    Assumption, Library, ModelChoice, ResponseTrainingAnswer, ResponseTrainingReport, StudyError,
+    TrainForceAnswer, TrainForceReport,
+};
 
 /// One of the two.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -54,15 +58,32 @@ pub trait TrainedModel: Sized + Send + Sync + 'static {
     /// Of which network.
     const NETWORK: Network;
 
-    /// Reads the model of a file, or the one that comes with the program.
+    /// What a training answers.
+    type Answer: Send + 'static;
+
+    /// What is told of a training.
+    type Report;
+
+    /// The model that questions call so, read if it is not in memory.
+    ///
+    /// # Errors
+    /// [`StudyError`] if it cannot be read.
+    fn of_library(library: &Library, choice: &ModelChoice) -> Result<Arc<Self>, StudyError>;
+
+    /// Keeps the model under what questions call it.
+    fn hold(library: &Library, choice: ModelChoice, model: Arc<Self>);
+
+    /// Writes the model to a file.
     ///
     /// # Errors
     /// A message for the user.
-    fn read(source: &ModelSource) -> Result<Self, String>;
-
-    /// # Errors
-    /// A message for the user.
     fn write(&self, path: &Path) -> Result<(), String>;
+
+    /// The model that came out of a training, and what is told of it.
+    fn of_answer(answer: Self::Answer) -> (Self, Self::Report);
+
+    /// Cases that the training left out, and what it assumed.
+    fn notes(report: &Self::Report) -> (&[String], &[Assumption]);
 
     /// What the data that it learned from were called.
     fn data(&self) -> &str;
@@ -77,12 +98,27 @@ pub trait TrainedModel: Sized + Send + Sync + 'static {
 impl TrainedModel for ForceModel {
     const NETWORK: Network = Network::Force;
 
-    fn read(source: &ModelSource) -> Result<Self, String> {
-        source.force_model().map_err(|error| error_chain(&error))
+    type Answer = TrainForceAnswer;
+    type Report = TrainForceReport;
+
+    fn of_library(library: &Library, choice: &ModelChoice) -> Result<Arc<Self>, StudyError> {
+        library.force_model(choice)
+    }
+
+    fn hold(library: &Library, choice: ModelChoice, model: Arc<Self>) {
+        library.hold_force_model(choice, model);
     }
 
     fn write(&self, path: &Path) -> Result<(), String> {
         self.save(path).map_err(|error| error_chain(&error))
+    }
+
+    fn of_answer(answer: TrainForceAnswer) -> (Self, TrainForceReport) {
+        (answer.model, answer.report)
+    }
+
+    fn notes(report: &TrainForceReport) -> (&[String], &[Assumption]) {
+        (&report.left_out, &report.assumptions)
     }
 
     fn data(&self) -> &str {
@@ -101,12 +137,27 @@ impl TrainedModel for ForceModel {
 impl TrainedModel for ResponseModel {
     const NETWORK: Network = Network::Response;
 
-    fn read(source: &ModelSource) -> Result<Self, String> {
-        source.response_model().map_err(|error| error_chain(&error))
+    type Answer = ResponseTrainingAnswer;
+    type Report = ResponseTrainingReport;
+
+    fn of_library(library: &Library, choice: &ModelChoice) -> Result<Arc<Self>, StudyError> {
+        library.response_model(choice)
+    }
+
+    fn hold(library: &Library, choice: ModelChoice, model: Arc<Self>) {
+        library.hold_response_model(choice, model);
     }
 
     fn write(&self, path: &Path) -> Result<(), String> {
         self.save(path).map_err(|error| error_chain(&error))
+    }
+
+    fn of_answer(answer: ResponseTrainingAnswer) -> (Self, ResponseTrainingReport) {
+        (answer.model, answer.report)
+    }
+
+    fn notes(report: &ResponseTrainingReport) -> (&[String], &[Assumption]) {
+        (&report.left_out, &report.assumptions)
     }
 
     fn data(&self) -> &str {

@@ -1,6 +1,6 @@
 //! Opening and closing: data, models, vehicles, scenarios, comparisons.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use egui::Context;
 
@@ -9,13 +9,14 @@ use crate::app::dialogs::MODEL_ENDING;
 use crate::app::network::Network;
 use crate::app::panes::{Pane, show_pane};
 use crate::app::source::Source;
-use crate::app::state::{State, Subject, VehicleChoice};
+use crate::app::state::{State, Subject};
 use crate::collision::Scenario;
-use crate::data::Severity;
+use crate::data::{ColumnMap, Severity};
 use crate::error_chain;
 use crate::learning::ModelFile;
 use crate::nn::kind_of_file;
 use crate::response::ResponseModel;
+use crate::study::VehicleChoice;
 use crate::vehicle::VehicleParameters;
 
 impl State {
@@ -34,10 +35,41 @@ impl State {
                 show_pane(&mut self.view.layout, Pane::ModelComparison);
                 continue;
             }
-            self.session.sources.retain(|source| source.opened != path);
-            self.session.look_at = Some(path.clone());
-            self.session.sources.push(Source::load(path, wake(context)));
+            self.load(path, None, context);
         }
+    }
+
+    /// Starts to load a data set, a folder of data sets or a file; what was loaded from the path
+    /// before is forgotten.
+    ///
+    /// - `map`: the user's columns of a file, where its header does not say.
+    pub(super) fn load(&mut self, path: PathBuf, map: Option<ColumnMap>, context: &Context) {
+        self.forget_sources(|source| source.opened == path || source.path == path);
+        self.session.select_when_loaded = Some(path.clone());
+        let source = Source::load(path, map, &self.session.library, wake(context));
+        self.session.sources.push(source);
+    }
+
+    /// Closes sources, and lets the library read them again if they are asked about later.
+    fn forget_sources(&mut self, is_closed: impl Fn(&Source) -> bool) {
+        let session = &mut self.session;
+        session.sources.retain(|source| {
+            let is_kept = !is_closed(source);
+            if !is_kept {
+                session.library.forget(&source.path);
+                session.replays.remove(&source.path);
+            }
+            is_kept
+        });
+        session.force.recorded = None;
+    }
+
+    /// Lets every question be asked again, because what it refers to has changed.
+    pub(super) fn ask_again(&mut self) {
+        let session = &mut self.session;
+        session.analysis.ask_again();
+        session.force.forecast.ask_again();
+        session.response.forecast.ask_again();
     }
 
     /// Takes a model file for the network that it says it is of.
@@ -53,6 +85,9 @@ impl State {
     }
 
     pub(super) fn use_model(&mut self, network: Network, path: Option<PathBuf>) {
+        if let Some(path) = &path {
+            self.session.library.forget(path);
+        }
         match network {
             Network::Force => {
                 self.project.force.model = path;
@@ -62,6 +97,14 @@ impl State {
                 self.project.response.model = path;
                 self.session.response.model.reload();
             }
+        }
+    }
+
+    /// Lets the model that a cancelled training left answer.
+    pub(super) fn use_trained(&mut self, network: Network) {
+        match network {
+            Network::Force => self.session.force.model.use_trained(),
+            Network::Response => self.session.response.model.use_trained(),
         }
     }
 
@@ -75,16 +118,19 @@ impl State {
         }
     }
 
-    /// Tells the user what became of a model that was to be opened, and of one that was to be saved.
-    pub(super) fn say_of_model(
-        &mut self,
-        problem: Option<String>,
-        saved: Option<Result<PathBuf, String>>,
-    ) {
-        if let Some(problem) = problem {
-            self.say(Severity::Error, problem);
+    /// Tells the user why a model could not be opened. Once one has been read, questions are asked
+    /// again, as its file may have changed.
+    pub(super) fn take_loaded(&mut self, loaded: Option<Result<(), String>>) {
+        match loaded {
+            None => {}
+            Some(Ok(())) => self.ask_again(),
+            Some(Err(problem)) => self.say(Severity::Error, problem),
         }
-        match saved {
+    }
+
+    /// Tells the user what became of a file that was to be written.
+    pub(super) fn say_of_file(&mut self, written: Option<Result<PathBuf, String>>) {
+        match written {
             None => {}
             Some(Ok(path)) => self.say(Severity::Info, format!("{} written", path.display())),
             Some(Err(problem)) => self.say(Severity::Error, problem),
@@ -95,6 +141,7 @@ impl State {
     fn open_model(&mut self, path: PathBuf) {
         if let Ok(vehicle) = VehicleParameters::load(&path) {
             self.project.vehicle = VehicleChoice::File(path);
+            self.ask_again();
             self.say(Severity::Info, format!("struck vehicle: {}", vehicle.name));
             return;
         }
@@ -107,9 +154,9 @@ impl State {
         }
     }
 
-    pub(super) fn close(&mut self, path: &PathBuf) {
-        self.session.sources.retain(|source| source.opened != *path && source.path != *path);
-        let is_open = |open: &PathBuf| self.session.sources.iter().any(|s| s.path == *open);
+    pub(super) fn close(&mut self, path: &Path) {
+        self.forget_sources(|source| source.opened == path || source.path == path);
+        let is_open = |open: &Path| self.session.sources.iter().any(|s| s.path == *open);
         let closed = match &self.project.subject {
             Some(Subject::Case { dataset, .. }) => !is_open(dataset),
             Some(Subject::File(file)) => !is_open(file),

@@ -1,14 +1,17 @@
 //! What is open: loaded in the background, checked, and kept with its problems.
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::data::{
-    ColumnMap, DataError, Dataset, DatasetKind, FileKind, Flag, Loaded, Opened, Outcome,
-    check_case, check_series, open, read_series,
-};
+use crate::app::model::file_name;
+use crate::app::question_job::Answered;
+use crate::data::{ColumnMap, Dataset, DatasetKind, Flag, Loaded, Outcome};
 use crate::error_chain;
 use crate::jobs::Job;
+use crate::study::{
+    CheckAnswer, CheckRequest, CheckedContent, CheckedItem, Event, Library, PathProblem, Question,
+};
 use crate::vehicle::VehicleParameters;
 
 /// Something that was opened.
@@ -17,6 +20,10 @@ pub struct Source {
     pub opened: PathBuf,
     /// The path of the dataset or file itself.
     pub path: PathBuf,
+    /// The user's columns of a file whose header does not say which column is which.
+    pub map: Option<ColumnMap>,
+    /// What was found when it was opened; sources from one folder share it.
+    pub check: Option<Arc<Answered<CheckRequest>>>,
     /// What it holds.
     pub content: Content,
 }
@@ -24,7 +31,7 @@ pub struct Source {
 /// What a source holds.
 pub enum Content {
     /// Not known yet.
-    Loading(Job<Result<Vec<(PathBuf, Content)>, OpenError>>),
+    Loading(Job<Result<Outcome<OpenedPath>, String>>),
     /// A dataset.
     Dataset(Arc<CheckedDataset>),
     /// A single file.
@@ -36,11 +43,11 @@ pub enum Content {
 /// A dataset with its checks and its vehicle.
 pub struct CheckedDataset {
     /// The data.
-    pub dataset: Dataset,
+    pub dataset: Arc<Dataset>,
     /// Flags of each case.
     pub flags: Vec<Vec<Flag>>,
-    /// What its `vehicle.toml` says; `None` without one.
-    pub vehicle: Option<Result<VehicleParameters, String>>,
+    /// Name of the vehicle in its `vehicle.toml`; `None` without one.
+    pub vehicle: Option<Result<String, String>>,
 }
 
 /// A dataset that is open.
@@ -52,12 +59,16 @@ pub struct OpenDataset<'a> {
     pub checked: &'a Arc<CheckedDataset>,
 }
 
-/// The datasets of a kind that are open, in the order of the sources.
-pub fn open_datasets(sources: &[Source], kind: DatasetKind) -> Vec<OpenDataset<'_>> {
-    let datasets = sources
-        .iter()
-        .filter_map(|source| Some(OpenDataset { path: &source.path, checked: source.dataset()? }));
-    datasets.filter(|of| of.checked.dataset.kind == kind).collect()
+/// The datasets of these kinds that are open, kind by kind in the order of the sources.
+pub fn open_datasets<'a>(sources: &'a [Source], kinds: &[DatasetKind]) -> Vec<OpenDataset<'a>> {
+    let of_kind = |kind: &DatasetKind| {
+        let kind = *kind;
+        let datasets = sources.iter().filter_map(|source| {
+            Some(OpenDataset { path: &source.path, checked: source.dataset()? })
+        });
+        datasets.filter(move |of| of.checked.dataset.kind == kind)
+    };
+    kinds.iter().flat_map(of_kind).collect()
 }
 
 /// The wanted one of the datasets, or else the first.
@@ -72,62 +83,80 @@ pub fn chosen_dataset<'a>(
 /// A single file with its checks.
 pub struct CheckedFile {
     /// The data.
-    pub loaded: Loaded,
+    pub loaded: Arc<Loaded>,
     /// Its flags.
     pub flags: Vec<Flag>,
 }
 
-/// Why something could not be opened.
-pub struct OpenError {
-    /// For the user.
-    pub text: String,
-    /// Whether saying which column is which would help.
-    pub needs_mapping: bool,
+/// What became of a path that was opened.
+pub struct OpenedPath {
+    check: Answered<CheckRequest>,
+    contents: Vec<(PathBuf, Content)>,
+    /// What is wrong with the path as a whole, if nothing of it can be read.
+    pub failure: Option<PathProblem>,
 }
 
 impl Source {
-    /// Starts loading a path.
-    pub fn load(path: PathBuf, wake: impl Fn() + Send + 'static) -> Self {
-        let target = path.clone();
-        let job = Job::spawn("load", wake, move |report| {
-            let opened = open(&target, report).map_err(OpenError::from)?;
-            Ok(match opened {
-                Outcome::Cancelled => Vec::new(),
-                Outcome::Complete(opened) => contents(&target, opened),
-            })
-        });
-        match job {
-            Ok(job) => Self { opened: path.clone(), path, content: Content::Loading(job) },
-            Err(error) => Self::failed(path, error.to_string()),
-        }
-    }
-
-    /// Starts loading a file with the user's own columns.
-    pub fn load_mapped(
+    /// Starts to read and check a path.
+    ///
+    /// - `map`: the user's columns of a single file, where its header does not say.
+    pub fn load(
         path: PathBuf,
-        kind: FileKind,
-        map: ColumnMap,
+        map: Option<ColumnMap>,
+        library: &Arc<Library>,
         wake: impl Fn() + Send + 'static,
     ) -> Self {
-        let target = path.clone();
-        let job = Job::spawn("load", wake, move |_| {
-            let loaded = read_series(&target, Some(&map), kind).map_err(OpenError::from)?;
-            Ok(vec![(target.clone(), checked_file(loaded))])
+        let question = CheckRequest { paths: vec![path.clone()], all: false, map: map.clone() };
+        let library = Arc::clone(library);
+        let job = Job::spawn("load", wake, move |report| {
+            let mut observer = |event: Event<'_>| match event {
+                Event::Progress(progress) => report(progress),
+                Event::Training(_) => ControlFlow::Continue(()),
+            };
+            let answer = question.answer(&library, &mut observer);
+            let answer = answer.map_err(|error| error_chain(&error))?;
+            Ok(answer.map(|answer| OpenedPath::new(question, answer)))
         });
         match job {
-            Ok(job) => Self { opened: path.clone(), path, content: Content::Loading(job) },
+            Ok(job) => {
+                let content = Content::Loading(job);
+                Self { opened: path.clone(), path, map, check: None, content }
+            }
             Err(error) => Self::failed(path, error.to_string()),
         }
     }
 
     /// A source that could not be opened.
     pub fn failed(path: PathBuf, why: String) -> Self {
-        Self { opened: path.clone(), path, content: Content::Failed(why) }
+        let content = Content::Failed(why);
+        Self { opened: path.clone(), path, map: None, check: None, content }
+    }
+
+    /// The sources that a path turned out to hold; the library holds their data from now on.
+    pub fn opened(self, opened: OpenedPath, library: &Library) -> Vec<Self> {
+        let check = Some(Arc::new(opened.check));
+        let source = |(path, content): (PathBuf, Content)| {
+            match &content {
+                Content::Dataset(checked) => library.hold_dataset(Arc::clone(&checked.dataset)),
+                Content::File(file) if self.map.is_none() => {
+                    library.hold_series(path.clone(), Arc::clone(&file.loaded));
+                }
+                Content::File(_) | Content::Loading(_) | Content::Failed(_) => {}
+            }
+            let (opened, map) = (self.opened.clone(), self.map.clone());
+            Self { opened, path, map, check: check.clone(), content }
+        };
+        opened.contents.into_iter().map(source).collect()
     }
 
     /// The last part of its path.
     pub fn name(&self) -> String {
-        last_part(&self.path)
+        file_name(&self.path)
+    }
+
+    /// Whether it has been loaded, with whatever result.
+    pub fn is_settled(&self) -> bool {
+        !matches!(self.content, Content::Loading(_))
     }
 
     /// The dataset, if it is one.
@@ -142,42 +171,42 @@ impl Source {
 impl OpenDataset<'_> {
     /// The last part of its path.
     pub fn name(&self) -> String {
-        last_part(self.path)
+        file_name(self.path)
     }
 }
 
-fn last_part(path: &Path) -> String {
-    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+impl OpenedPath {
+    fn new(question: CheckRequest, answer: CheckAnswer) -> Self {
+        let problems = &answer.report.problems;
+        let failed = |problem: &PathProblem| {
+            (problem.path.clone(), Content::Failed(problem.message.clone()))
+        };
+        let contents = answer.items.iter().map(content).chain(problems.iter().map(failed));
+        let contents = contents.collect();
+        let failure = problems.first().filter(|_| answer.items.is_empty()).cloned();
+        let check = Answered { question, answer: Ok(Arc::new(answer)) };
+        Self { check, contents, failure }
+    }
 }
 
-fn contents(path: &Path, opened: Opened) -> Vec<(PathBuf, Content)> {
-    match opened {
-        Opened::Dataset(dataset) => vec![checked_dataset(dataset)],
-        Opened::File(loaded) => vec![(path.to_owned(), checked_file(loaded))],
-        Opened::Collection { datasets, problems } => {
-            let failed =
-                |problem: DataError| (path.to_owned(), Content::Failed(error_chain(&problem)));
-            let datasets = datasets.into_iter().map(checked_dataset);
-            datasets.chain(problems.into_iter().map(failed)).collect()
+/// Data with their checks, and of a dataset the name of its vehicle.
+fn content(item: &CheckedItem) -> (PathBuf, Content) {
+    let content = match &item.content {
+        CheckedContent::Dataset(dataset, flags) => {
+            let name = |path: &PathBuf| match VehicleParameters::load(path) {
+                Ok(vehicle) => Ok(vehicle.name),
+                Err(error) => Err(error_chain(&error)),
+            };
+            Content::Dataset(Arc::new(CheckedDataset {
+                dataset: Arc::clone(dataset),
+                flags: flags.clone(),
+                vehicle: dataset.vehicle_file.as_ref().map(name),
+            }))
         }
-    }
-}
-
-fn checked_dataset(dataset: Dataset) -> (PathBuf, Content) {
-    let flags = dataset.cases.iter().map(check_case).collect();
-    let load = |path: &PathBuf| VehicleParameters::load(path).map_err(|error| error_chain(&error));
-    let vehicle = dataset.vehicle_file.as_ref().map(load);
-    let path = dataset.root.clone();
-    (path, Content::Dataset(Arc::new(CheckedDataset { dataset, flags, vehicle })))
-}
-
-fn checked_file(loaded: Loaded) -> Content {
-    let flags = check_series(&loaded.series, loaded.force_sampling());
-    Content::File(Arc::new(CheckedFile { loaded, flags }))
-}
-
-impl From<DataError> for OpenError {
-    fn from(error: DataError) -> Self {
-        Self { needs_mapping: error.needs_mapping(), text: error_chain(&error) }
-    }
+        CheckedContent::File(loaded, flags) => Content::File(Arc::new(CheckedFile {
+            loaded: Arc::clone(loaded),
+            flags: flags.clone(),
+        })),
+    };
+    (item.path.clone(), content)
 }

@@ -1,25 +1,28 @@
 //! What the app knows: the project and the view are saved, the session is not.
 
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{Analysis, FileSetup, PulseSetup};
-use crate::app::case_table::{CaseList, FinishedReplay};
+use crate::analysis::PulseSetup;
+use crate::app::case_table::CaseList;
 use crate::app::dialogs::{FileDialog, MappingDialog};
 use crate::app::force::{ForceProject, ForceSession, ForceView};
+use crate::app::latest::Latest;
 use crate::app::network::Network;
 use crate::app::panes::{Layout, default_layout, is_complete};
+use crate::app::replay::Replays;
 use crate::app::response::{ResponseProject, ResponseSession, ResponseView};
 use crate::app::source::Source;
 use crate::collision::{ChannelClass, Scenario};
-use crate::compare::DatasetReplay;
-use crate::data::{Outcome, Severity};
+use crate::data::Severity;
 use crate::jobs::Job;
+use crate::study::{
+    DEFAULT_DURATION_S, ImpactRequest, Library, SimulateAnswer, SimulateRequest, VehicleChoice,
+};
 use crate::units::UnitSystem;
-use crate::vehicle::{Equations, Integrator};
+use crate::vehicle::{ContactPoint, Equations, Integrator};
 
 /// Version of the saved state; another one is not read.
 const SAVED_VERSION: u32 = 1;
@@ -35,8 +38,8 @@ pub struct State {
     pub session: Session,
 }
 
-/// What is looked at.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+/// What is shown and simulated.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Subject {
     /// A case of a dataset.
     Case {
@@ -51,30 +54,29 @@ pub enum Subject {
     Scenario,
 }
 
-/// Which vehicle is struck.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum VehicleChoice {
-    /// The dataset's own, else the target of the finite-element runs.
-    #[default]
-    Automatic,
-    /// A preset, by its id.
-    Preset(String),
-    /// A file.
-    File(PathBuf),
+/// What a single file does not say about the struck vehicle. What is left open is assumed by the
+/// [`study`](crate::study).
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct FileStart {
+    /// Speed before the impact, m/s.
+    pub speed_m_s: Option<f64>,
+    /// Where the force acts.
+    pub contact: Option<ContactPoint>,
 }
 
 /// What the user works on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Project {
-    /// What is looked at.
+    /// What is shown and simulated.
     pub subject: Option<Subject>,
     /// The struck vehicle.
     pub vehicle: VehicleChoice,
-    /// The striking vehicle, where it is simulated, by its preset's id.
-    pub bullet_preset: String,
-    /// Which equations of motion.
-    pub equations: Equations,
+    /// The striking vehicle, where it is simulated.
+    pub bullet: VehicleChoice,
+    /// Which equations of motion; those of the vehicle file if not given.
+    pub equations: Option<Equations>,
     /// How the equations of motion are integrated.
     pub integrator: Integrator,
     /// Duration of simulations without a recorded motion, s.
@@ -88,7 +90,7 @@ pub struct Project {
     /// How its impulse is spread over time.
     pub pulse: PulseSetup,
     /// What single files do not say.
-    pub file_setup: FileSetup,
+    pub file_start: FileStart,
     /// The force network: what it is asked and how it is trained.
     pub force: ForceProject,
     /// The response network: what it is asked, how it is trained and compared.
@@ -100,15 +102,15 @@ impl Default for Project {
         Self {
             subject: None,
             vehicle: VehicleChoice::default(),
-            bullet_preset: "bullet-2000".to_owned(),
-            equations: Equations::default(),
+            bullet: VehicleChoice::default(),
+            equations: None,
             integrator: Integrator::default(),
-            duration_s: 4.0,
+            duration_s: DEFAULT_DURATION_S,
             channel_class: None,
             show_pulses: false,
             scenario: Scenario::example(),
             pulse: PulseSetup::default(),
-            file_setup: FileSetup::default(),
+            file_start: FileStart::default(),
             force: ForceProject::default(),
             response: ResponseProject::default(),
         }
@@ -161,10 +163,14 @@ impl Default for View {
 /// What is loaded, computed and under way.
 #[derive(Default)]
 pub struct Session {
+    /// The data and models that questions refer to, as far as they are in memory.
+    pub library: Arc<Library>,
     /// What is open, in the order of opening.
     pub sources: Vec<Source>,
-    /// What was made of the subject.
-    pub analysis: AnalysisStatus,
+    /// The simulation of the subject.
+    pub analysis: Latest<SimulateRequest>,
+    /// The impulse solution of the scenario panel's scenario.
+    pub impact: Latest<ImpactRequest>,
     /// Whole datasets, simulated.
     pub replays: Replays,
     /// The force network.
@@ -185,37 +191,13 @@ pub struct Session {
     pub mapping: Option<MappingDialog>,
     /// Files being written.
     pub exports: Vec<Job<Result<PathBuf, String>>>,
-    /// What the user opened last, to be looked at once it is loaded.
-    pub look_at: Option<PathBuf>,
+    /// What the user opened last, to be selected once it is loaded.
+    pub select_when_loaded: Option<PathBuf>,
     /// A path that is being typed.
     pub typed_path: String,
-    /// Whether plots should fit their data again in this frame.
+    /// Whether plots should fit their data in this frame.
     pub fit_plots: bool,
 }
-
-/// The analysis of the subject.
-#[derive(Default)]
-pub struct AnalysisStatus {
-    /// What the latest request was made for; a change starts a new one.
-    pub requested: Option<Box<Project>>,
-    /// Number of finished sources at the latest request.
-    pub sources_seen: usize,
-    /// The computation under way.
-    pub job: Option<Job<Result<Analysis, String>>>,
-    /// The latest result, or why there is none.
-    pub result: Option<Result<Arc<Analysis>, String>>,
-}
-
-/// A dataset, simulated as a whole.
-pub enum ReplayStatus {
-    /// Under way.
-    Running(Job<Result<Outcome<DatasetReplay>, String>>),
-    /// Done.
-    Done(FinishedReplay),
-}
-
-/// The replays by data set.
-pub type Replays = BTreeMap<PathBuf, ReplayStatus>;
 
 /// Something the user should know.
 #[derive(Debug, Clone, PartialEq)]
@@ -248,7 +230,7 @@ impl State {
     }
 
     /// The saved state and the paths that were open. `None` if the text is from another version or
-    /// damaged: the app then starts afresh.
+    /// damaged: the app then starts without one.
     pub fn restore(text: &str) -> Option<(Self, Vec<PathBuf>)> {
         let mut saved: Saved = serde_json::from_str(text).ok()?;
         if !is_complete(&saved.view.layout) {
@@ -260,9 +242,9 @@ impl State {
         (saved.version == SAVED_VERSION).then_some((state, sources))
     }
 
-    /// The analysis to show.
-    pub fn analysis(&self) -> Option<&Analysis> {
-        self.session.analysis.result.as_ref()?.as_ref().ok().map(Arc::as_ref)
+    /// The simulation of the subject, to be shown.
+    pub fn analysis(&self) -> Option<&SimulateAnswer> {
+        self.session.analysis.ok().map(Arc::as_ref)
     }
 
     /// Tells the user something.

@@ -1,37 +1,38 @@
-//! A training in the background: news while it runs, pause, cancel.
+//! A training in the background: reports while it runs, pause, cancel.
 //!
-//! The core knows one callback. Here it sends the news to the window and blocks while the training
-//! is paused.
+//! A training question knows one observer. Here it sends the reports to the window and blocks while
+//! the training is paused.
 
 use std::ops::ControlFlow;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use crate::data::Outcome;
+use crate::error_chain;
 use crate::jobs::{Job, Progress, Report};
 use crate::learning::TrainingReport;
+use crate::study::{Event, Library, Question};
 
 /// Latest epochs by whose pace the time left is estimated.
 const PACE_EPOCHS: usize = 10;
 
-/// What a training tells the window.
-#[derive(Debug, Clone, PartialEq)]
-pub enum TrainingNews {
-    /// A case that cannot be learned from, and why.
-    LeftOut(String),
-    /// How far the training has come.
-    Report(TrainingReport),
-}
-
-/// A training under way: it gives a model of type `M` in the end.
-pub struct Training<M> {
-    job: Job<Result<M, String>>,
-    news: Receiver<TrainingNews>,
+/// A training under way: it gives an answer of type `A` in the end, and reports before.
+pub struct Training<A> {
+    job: Job<Result<Outcome<A>, String>>,
+    reports: Receiver<TrainingReport>,
     gate: Arc<Gate>,
 }
 
-/// Sends news to the window and says whether to go on.
-pub type Tell<'a> = dyn FnMut(TrainingNews) -> ControlFlow<()> + 'a;
+/// How a training ended.
+pub enum TrainingEnd<A> {
+    /// As it was asked for.
+    Complete(A),
+    /// Early, because the user cancelled it: with the weights so far, if there were any.
+    Cancelled(Option<A>),
+    /// With an error, for the user.
+    Failed(String),
+}
 
 /// Holds a thread up while it is closed.
 #[derive(Default)]
@@ -75,54 +76,54 @@ impl Gate {
     }
 }
 
-impl<M> Drop for Training<M> {
+impl<A> Drop for Training<A> {
     fn drop(&mut self) {
         self.job.cancel();
         self.gate.set_closed(false);
     }
 }
 
-impl<M: Send + 'static> Training<M> {
-    /// Starts one.
-    ///
-    /// # Errors
-    /// The operating system's, if no thread can be started.
-    pub fn start(
+impl<A: Send + 'static> Training<A> {
+    fn start<Q: Question<Answer = A>>(
+        question: Q,
+        library: Arc<Library>,
         wake: impl Fn() + Send + 'static,
-        work: impl FnOnce(&mut Tell<'_>) -> Result<M, String> + Send + 'static,
     ) -> std::io::Result<Self> {
-        let (sender, news) = channel();
+        let (sender, reports) = channel();
         let gate = Arc::new(Gate::default());
         let own_gate = Arc::clone(&gate);
-        let job = Job::spawn_in_background("train", wake, move |report| {
-            work(&mut |news| tell(news, (&sender, &own_gate), report))
+        let job = Job::spawn_in_background(Q::NAME, wake, move |report| {
+            let mut observer = |event: Event<'_>| tell(&event, (&sender, &own_gate), report);
+            question.answer(&library, &mut observer).map_err(|error| error_chain(&error))
         })?;
-        Ok(Self { job, news, gate })
+        Ok(Self { job, reports, gate })
     }
 
-    /// What was told since the last time, and the end, if it has come.
-    fn poll(&mut self) -> (Vec<TrainingNews>, Option<Result<M, String>>) {
-        let update = self.job.poll(); // before the news: what it ends with comes after them
-        (self.news.try_iter().collect(), update.into_result("the training"))
+    /// What was reported since the last time, and the end, if it has come.
+    fn poll(&mut self) -> (Vec<TrainingReport>, Option<TrainingEnd<A>>) {
+        let update = self.job.poll(); // before the reports: what it ends with comes after them
+        let end = update.into_result("the training").map(|result| match result {
+            Ok(Outcome::Complete(answer)) if self.job.is_cancelled() => {
+                TrainingEnd::Cancelled(Some(answer))
+            }
+            Ok(Outcome::Complete(answer)) => TrainingEnd::Complete(answer),
+            Ok(Outcome::Cancelled) => TrainingEnd::Cancelled(None),
+            Err(problem) => TrainingEnd::Failed(problem),
+        });
+        (self.reports.try_iter().collect(), end)
     }
 }
 
 /// A training, if one is under way.
-pub struct TrainingSlot<M>(Option<Training<M>>);
+pub struct TrainingSlot<A>(Option<Training<A>>);
 
-impl<M> Default for TrainingSlot<M> {
+impl<A> Default for TrainingSlot<A> {
     fn default() -> Self {
         Self(None)
     }
 }
 
-impl<M> From<Training<M>> for TrainingSlot<M> {
-    fn from(training: Training<M>) -> Self {
-        Self(Some(training))
-    }
-}
-
-impl<M> TrainingSlot<M> {
+impl<A> TrainingSlot<A> {
     /// Whether a training is under way, paused or not.
     pub fn is_running(&self) -> bool {
         self.0.is_some()
@@ -143,14 +144,14 @@ impl<M> TrainingSlot<M> {
         self.0.as_ref().is_some_and(|training| training.job.is_cancelled())
     }
 
-    /// Stops before the next news, or goes on.
+    /// Stops before the next report, or goes on.
     pub fn set_paused(&self, is_paused: bool) {
         if let Some(training) = &self.0 {
             training.gate.set_closed(is_paused);
         }
     }
 
-    /// Ends it at the next news, with the weights so far.
+    /// Ends it at the next report, with the weights so far.
     pub fn cancel(&self) {
         if let Some(training) = &self.0 {
             training.job.cancel();
@@ -159,31 +160,52 @@ impl<M> TrainingSlot<M> {
     }
 }
 
-impl<M: Send + 'static> TrainingSlot<M> {
-    /// What was told since the last time; with the end, if it has come, after which the slot is empty.
-    pub fn poll(&mut self) -> (Vec<TrainingNews>, Option<Result<M, String>>) {
+impl<A: Send + 'static> TrainingSlot<A> {
+    /// Starts a training; one that is under way is dropped.
+    ///
+    /// # Errors
+    /// The operating system's, if no thread can be started.
+    pub fn start<Q: Question<Answer = A>>(
+        &mut self,
+        question: Q,
+        library: &Arc<Library>,
+        wake: impl Fn() + Send + 'static,
+    ) -> std::io::Result<()> {
+        self.0 = Some(Training::start(question, Arc::clone(library), wake)?);
+        Ok(())
+    }
+
+    /// What was reported since the last time; with the end, if it has come, after which the slot is
+    /// empty.
+    pub fn poll(&mut self) -> (Vec<TrainingReport>, Option<TrainingEnd<A>>) {
         let Some(training) = &mut self.0 else { return (Vec::new(), None) };
-        let (news, result) = training.poll();
-        if result.is_some() {
+        let (reports, end) = training.poll();
+        if end.is_some() {
             self.0 = None;
         }
-        (news, result)
+        (reports, end)
     }
 }
 
-/// Sends news to the window, waits while paused, and asks whether to go on.
+/// Sends reports to the window, waits while paused, and asks whether to go on.
 fn tell(
-    news: TrainingNews,
-    (sender, gate): (&Sender<TrainingNews>, &Gate),
+    event: &Event<'_>,
+    (sender, gate): (&Sender<TrainingReport>, &Gate),
     report: &mut Report<'_>,
 ) -> ControlFlow<()> {
-    // A receiver that is gone means a dropped training, which is cancelled.
-    let _ = sender.send(news);
-    if report(Progress::default()).is_break() {
+    let progress = match event {
+        Event::Progress(progress) => progress.clone(),
+        Event::Training(told) => {
+            // A receiver that is gone means a dropped training, which is cancelled.
+            let _ = sender.send((*told).clone());
+            Progress::default()
+        }
+    };
+    if report(progress.clone()).is_break() {
         return ControlFlow::Break(());
     }
     gate.pass();
-    report(Progress::default())
+    report(progress)
 }
 
 /// The time left at the pace of the latest epochs.

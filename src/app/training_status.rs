@@ -1,15 +1,21 @@
 //! What the window knows of a training, under way or over, of either network.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use crate::app::network::TrainedModel;
-use crate::app::training::{Tell, Training, TrainingNews, TrainingSlot, time_left};
+use crate::app::training::{TrainingEnd, TrainingSlot, time_left};
 use crate::learning::{EpochSummary, TrainingReport};
+use crate::study::{Library, Question, Request};
 
 /// A training of a model of type `M`, under way or over.
-pub struct TrainingStatus<M> {
+pub struct TrainingStatus<M: TrainedModel> {
     /// The training under way.
-    pub run: TrainingSlot<M>,
+    pub run: TrainingSlot<M::Answer>,
+    /// What was asked for.
+    pub request: Option<Request>,
+    /// What is told of the training in the end.
+    pub report: Option<M::Report>,
     /// What was reported last; nothing before the first fit or epoch.
     pub latest: Option<TrainingReport>,
     /// Whether the training has come to its end.
@@ -24,14 +30,14 @@ pub struct TrainingStatus<M> {
     pub problem: Option<String>,
     /// What the data are called.
     pub data: String,
-    /// Cases that are left out, and why.
-    pub left_out: Vec<String>,
 }
 
-impl<M> Default for TrainingStatus<M> {
+impl<M: TrainedModel> Default for TrainingStatus<M> {
     fn default() -> Self {
         Self {
             run: TrainingSlot::default(),
+            request: None,
+            report: None,
             latest: None,
             is_over: false,
             history: Vec::new(),
@@ -39,7 +45,6 @@ impl<M> Default for TrainingStatus<M> {
             seconds: Vec::new(),
             problem: None,
             data: String::new(),
-            left_out: Vec::new(),
         }
     }
 }
@@ -51,35 +56,41 @@ impl<M: TrainedModel> TrainingStatus<M> {
     ///
     /// # Errors
     /// The operating system's, if no thread can be started.
-    pub fn start(
+    pub fn start<Q: Question<Answer = M::Answer> + Into<Request>>(
         &mut self,
-        data: String,
+        question: Q,
+        (data, library): (String, &Arc<Library>),
         wake: impl Fn() + Send + 'static,
-        work: impl FnOnce(&mut Tell<'_>) -> Result<M, String> + Send + 'static,
     ) -> std::io::Result<()> {
-        let run = Training::start(wake, work)?.into();
-        *self = Self { run, data, ..Self::default() };
-        Ok(())
+        *self = Self { data, request: Some(question.clone().into()), ..Self::default() };
+        self.run.start(question, library, wake)
     }
 
-    /// Takes in what was reported; the model in the end.
-    pub fn poll(&mut self) -> Option<Result<M, String>> {
-        let (news, result) = self.run.poll();
-        for news in news {
-            match news {
-                TrainingNews::LeftOut(why) => self.left_out.push(why),
-                TrainingNews::Report(report) => self.take(report),
+    /// Takes in what was reported; in the end the model, and whether the training was completed and
+    /// not cancelled.
+    pub fn poll(&mut self) -> Option<Result<(M, bool), String>> {
+        let (reports, end) = self.run.poll();
+        for report in reports {
+            self.take(report);
+        }
+        let end = end?;
+        self.is_over = true;
+        let is_complete = matches!(end, TrainingEnd::Complete(_));
+        match end {
+            TrainingEnd::Complete(answer) | TrainingEnd::Cancelled(Some(answer)) => {
+                let (model, report) = M::of_answer(answer);
+                // A resumed training has epochs from before it.
+                self.history = model.history();
+                self.best_epoch = model.best_epoch();
+                self.report = Some(report);
+                Some(Ok((model, is_complete)))
+            }
+            TrainingEnd::Cancelled(None) => None,
+            TrainingEnd::Failed(problem) => {
+                self.problem = Some(problem.clone());
+                Some(Err(problem))
             }
         }
-        let result = result?;
-        self.is_over = true;
-        self.problem = result.as_ref().err().cloned();
-        if let Ok(model) = &result {
-            // A resumed training has epochs from before it.
-            self.history = model.history();
-            self.best_epoch = model.best_epoch();
-        }
-        Some(result)
     }
 
     fn take(&mut self, report: TrainingReport) {

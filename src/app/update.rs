@@ -1,26 +1,14 @@
 //! What happens between frames: jobs report, time runs, a changed request starts a new analysis.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use egui::Context;
 
-use crate::analysis::{Analysis, Settings, analyse_case, analyse_file, analyse_scenario};
-use crate::app::case_table::FinishedReplay;
 use crate::app::command::{Command, wake};
-use crate::app::source::{CheckedDataset, CheckedFile, Content, OpenError, Source};
-use crate::app::state::{Project, ReplayStatus, Session, State, Subject, VehicleChoice};
+use crate::app::source::{Content, Source};
+use crate::app::state::{Session, State, Subject};
 use crate::data::{DatasetKind, Outcome, Severity};
-use crate::error_chain;
-use crate::jobs::{Job, Update};
-use crate::vehicle::{Equations, Preset, VehicleParameters};
-
-/// What an analysis is made from, ready to be sent to another thread.
-enum Material {
-    Case(Arc<CheckedDataset>, String),
-    File(Arc<CheckedFile>, PathBuf),
-    Scenario,
-}
+use crate::jobs::Update;
 
 impl State {
     /// Takes in what the jobs report and starts what is due.
@@ -28,7 +16,6 @@ impl State {
         self.poll_sources(commands);
         self.poll_replays();
         self.poll_exports();
-        self.poll_analysis();
         if let Some(answer) = self.session.file_dialog.as_mut().and_then(|dialog| dialog.poll()) {
             self.session.file_dialog = None;
             commands.extend(answer);
@@ -36,7 +23,7 @@ impl State {
         self.select_something();
         let Session { cases, sources, replays, .. } = &mut self.session;
         cases.update(sources, replays, &self.view);
-        self.request_analysis(context);
+        self.update_simulation(context);
         self.update_force(context);
         self.update_response(context);
         self.advance_time(context);
@@ -49,60 +36,40 @@ impl State {
                 self.session.sources.push(source);
                 continue;
             };
-            match job.poll() {
-                Update::Running => self.session.sources.push(source),
-                Update::Finished(Ok(contents)) => {
-                    for (path, content) in contents {
-                        let opened = source.opened.clone();
-                        self.session.sources.push(Source { opened, path, content });
-                    }
-                }
-                Update::Finished(Err(OpenError { text, needs_mapping })) => {
-                    if needs_mapping {
-                        commands.push(Command::AskMapping(source.path.clone()));
-                    }
-                    self.say(Severity::Error, text.clone());
-                    self.session.sources.push(Source::failed(source.opened, text));
-                }
-                Update::Panicked(text) => self.fail(source, format!("internal error: {text}")),
-                Update::Gone => self.fail(source, "the loader is gone".to_owned()),
-            }
-        }
-    }
-
-    fn fail(&mut self, source: Source, why: String) {
-        self.say(Severity::Error, format!("{}: {why}", source.opened.display()));
-        self.session.sources.push(Source::failed(source.opened, why));
-    }
-
-    fn poll_replays(&mut self) {
-        let mut news = Vec::new();
-        for (path, status) in &mut self.session.replays {
-            let ReplayStatus::Running(job) = status else {
+            let Some(result) = job.poll().into_result("the loader") else {
+                self.session.sources.push(source);
                 continue;
             };
-            match job.poll() {
-                Update::Running => {}
-                Update::Finished(Err(text)) => news.push((path.clone(), Some(text), true)),
-                Update::Finished(Ok(Outcome::Complete(replay))) => {
-                    let failures = replay.failures.iter().map(|failure| error_chain(failure));
-                    news.extend(failures.map(|text| (path.clone(), Some(text), false)));
-                    *status = ReplayStatus::Done(FinishedReplay::new(replay));
+            self.ask_again();
+            match result {
+                Ok(Outcome::Cancelled) => {}
+                Ok(Outcome::Complete(opened)) => {
+                    if let Some(failure) = &opened.failure {
+                        self.say(Severity::Error, failure.message.clone());
+                        if failure.columns.is_some() {
+                            commands.push(Command::AskMapping(failure.path.clone()));
+                        }
+                    }
+                    let library = Arc::clone(&self.session.library);
+                    self.session.sources.extend(source.opened(opened, &library));
                 }
-                Update::Finished(Ok(Outcome::Cancelled)) => news.push((path.clone(), None, true)),
-                Update::Panicked(text) => {
-                    news.push((path.clone(), Some(format!("internal error: {text}")), true));
+                Err(why) => {
+                    self.say(Severity::Error, format!("{}: {why}", source.opened.display()));
+                    self.session.sources.push(Source::failed(source.opened, why));
                 }
-                Update::Gone => news.push((path.clone(), None, true)),
             }
         }
-        for (path, text, forget) in news {
-            if forget {
-                self.session.replays.remove(&path);
-            }
-            if let Some(text) = text {
-                self.say(Severity::Error, text);
-            }
+    }
+
+    /// Takes in the data sets that have been simulated, and tells of cases that could not be.
+    fn poll_replays(&mut self) {
+        let mut problems = Vec::new();
+        for replay in self.session.replays.values_mut() {
+            problems.extend(replay.poll());
+        }
+        self.session.replays.retain(|_, replay| !replay.is_empty());
+        for problem in problems {
+            self.say(Severity::Error, problem);
         }
     }
 
@@ -123,28 +90,15 @@ impl State {
         self.session.exports.append(&mut jobs);
     }
 
-    fn poll_analysis(&mut self) {
-        let status = &mut self.session.analysis;
-        let Some(job) = &mut status.job else { return };
-        let result = match job.poll() {
-            Update::Running => return,
-            Update::Finished(result) => result.map(Arc::new),
-            Update::Panicked(text) => Err(format!("internal error: {text}")),
-            Update::Gone => Err("the analysis is gone".to_owned()),
-        };
-        status.result = Some(result);
-        status.job = None;
-    }
-
-    /// Looks at what the user has just opened, or at anything at all, so that a new user sees
+    /// Selects what the user has just opened, or anything at all, so that a new user sees
     /// something.
     fn select_something(&mut self) {
         let sources = &self.session.sources;
         if !sources.iter().all(Source::is_settled) {
             return;
         }
-        let look_at = self.session.look_at.take();
-        let opened = |source: &&Source| Some(&source.opened) == look_at.as_ref();
+        let wanted = self.session.select_when_loaded.take();
+        let opened = |source: &&Source| Some(&source.opened) == wanted.as_ref();
         let first = first_subject(sources.iter().filter(opened));
         if let Some(subject) = first {
             self.select(subject);
@@ -161,49 +115,16 @@ impl State {
         }
     }
 
-    /// Starts an analysis if the project has changed since the last one, and the data are there.
-    fn request_analysis(&mut self, context: &Context) {
-        let settled = self.session.sources.iter().filter(|source| source.is_settled()).count();
-        let status = &mut self.session.analysis;
-        if let Some(requested) = &mut status.requested {
-            // no part of an analysis
-            requested.force.clone_from(&self.project.force);
-            requested.response.clone_from(&self.project.response);
-        }
-        let is_current =
-            status.requested.as_deref() == Some(&self.project) && status.sources_seen == settled;
-        if is_current {
-            return;
-        }
-        let Some(material) = self.material() else {
-            let status = &mut self.session.analysis;
-            (status.result, status.job, status.requested) = (None, None, None);
-            return;
-        };
-        let project = self.project.clone();
-        let job = Job::spawn("analyse", wake(context), move |_| analyse(&material, &project));
-        let status = &mut self.session.analysis;
-        status.requested = Some(Box::new(self.project.clone()));
-        status.sources_seen = settled;
-        match job {
-            Ok(job) => status.job = Some(job),
-            Err(error) => (status.job, status.result) = (None, Some(Err(error.to_string()))),
-        }
-    }
-
-    fn material(&self) -> Option<Material> {
-        let find = |path: &PathBuf| self.session.sources.iter().find(|s| s.path == *path);
-        match self.project.subject.as_ref()? {
-            Subject::Case { dataset, case } => {
-                let checked = find(dataset)?.dataset()?;
-                checked.dataset.case(case)?;
-                Some(Material::Case(Arc::clone(checked), case.clone()))
-            }
-            Subject::File(path) => match &find(path)?.content {
-                Content::File(file) => Some(Material::File(Arc::clone(file), path.clone())),
-                _ => None,
-            },
-            Subject::Scenario => Some(Material::Scenario),
+    /// Asks about the subject and the scenario of the scenario panel, if they have changed.
+    fn update_simulation(&mut self, context: &Context) {
+        let (simulate, impact) = (self.simulate_request(), self.impact_request());
+        let Session { analysis, impact: solution, library, .. } = &mut self.session;
+        solution.poll();
+        solution.ask(impact, library, wake(context));
+        analysis.poll();
+        match simulate {
+            Some(question) => analysis.ask(question, library, wake(context)),
+            None => analysis.forget(),
         }
     }
 
@@ -233,65 +154,4 @@ fn first_subject<'a>(sources: impl Iterator<Item = &'a Source>) -> Option<Subjec
         Content::Loading(_) | Content::Failed(_) => None,
     };
     sources.filter_map(subject).min_by_key(|(rank, _)| *rank).map(|(_, subject)| subject)
-}
-
-fn analyse(material: &Material, project: &Project) -> Result<Analysis, String> {
-    let own = match material {
-        Material::Case(checked, _) => Some(checked.as_ref()),
-        Material::File(..) | Material::Scenario => None,
-    };
-    let bullet = Preset::from_id(&project.bullet_preset).unwrap_or(Preset::Bullet2000);
-    let settings = Settings {
-        target: target_vehicle(project, own)?,
-        bullet: bullet.parameters(),
-        integrator: project.integrator,
-        duration_s: project.duration_s,
-    };
-    let result = match material {
-        Material::Case(checked, name) => {
-            let Some(case) = checked.dataset.case(name) else {
-                return Err(format!("there is no case {name:?}"));
-            };
-            analyse_case(case, &settings)
-        }
-        Material::File(file, path) => {
-            let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-            analyse_file(&name, &file.loaded, &project.file_setup, &settings)
-        }
-        Material::Scenario => analyse_scenario(&project.scenario, &project.pulse, &settings),
-    };
-    result.map_err(|error| error_chain(&error))
-}
-
-/// The struck vehicle, as chosen. May read a file: for jobs only.
-///
-/// # Errors
-/// A message, if its file cannot be read.
-pub fn target_vehicle(
-    project: &Project,
-    own: Option<&CheckedDataset>,
-) -> Result<VehicleParameters, String> {
-    let vehicle = chosen_vehicle(&project.vehicle, own)?;
-    Ok(match project.equations {
-        Equations::Corrected => vehicle, // or as its file says
-        Equations::Paper => vehicle.with_equations(Equations::Paper),
-    })
-}
-
-fn chosen_vehicle(
-    choice: &VehicleChoice,
-    own: Option<&CheckedDataset>,
-) -> Result<VehicleParameters, String> {
-    match choice {
-        VehicleChoice::Automatic => match own.and_then(|checked| checked.vehicle.clone()) {
-            Some(vehicle) => vehicle,
-            None => Ok(Preset::Target.parameters()),
-        },
-        VehicleChoice::Preset(id) => Preset::from_id(id)
-            .map(Preset::parameters)
-            .ok_or_else(|| format!("there is no vehicle {id:?}")),
-        VehicleChoice::File(path) => {
-            VehicleParameters::load(path).map_err(|error| error_chain(&error))
-        }
-    }
 }

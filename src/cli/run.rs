@@ -5,11 +5,14 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::cli::{
-    CliError, app, check, compare, evaluate, fine_tune, impact, predict, render, simulate, train,
+use crate::cli::CliError;
+use crate::cli::commands::{
+    app, ask, check, compare, evaluate, fine_tune, impact, predict, render, simulate, train,
     vehicles,
 };
+use crate::cli::console::{Console, Verdict};
 use crate::error_chain;
+use crate::study::Library;
 
 /// What happens when one vehicle hits another, and in the second after
 #[derive(Debug, Parser)]
@@ -20,6 +23,9 @@ struct Cli {
     /// Print JSON (SI units, the unit in every key) instead of text
     #[arg(long, global = true)]
     json: bool,
+    /// Print the question as JSON instead of answering it: `impactlab ask` answers it later
+    #[arg(long, global = true)]
+    print_request: bool,
 }
 
 const EXAMPLES: &str = "\
@@ -38,6 +44,7 @@ Exit codes: 0 = ok, 1 = the work failed or found problems, 2 = wrong usage";
 enum Command {
     App(app::AppArgs),
     Check(check::CheckArgs),
+    Ask(ask::AskArgs),
     Impact(impact::ImpactArgs),
     Simulate(Box<simulate::SimulateArgs>),
     Train(train::TrainArgs),
@@ -47,30 +54,6 @@ enum Command {
     Compare(compare::CompareArgs),
     Render(render::RenderArgs),
     Vehicles(vehicles::VehiclesArgs),
-}
-
-/// How a command that did not fail ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Verdict {
-    /// All is well.
-    Clean,
-    /// The work was done and found problems, which were printed.
-    Problems,
-}
-
-impl Verdict {
-    /// The verdict on a list of problems.
-    pub(super) fn of(problems: bool) -> Self {
-        if problems { Self::Problems } else { Self::Clean }
-    }
-}
-
-/// Where a command prints, and how.
-pub(super) struct Console<'a> {
-    /// JSON instead of text.
-    pub(super) json: bool,
-    /// Standard output.
-    pub(super) out: &'a mut dyn Write,
 }
 
 /// Runs the command in the program's arguments.
@@ -86,7 +69,12 @@ pub fn run() -> ExitCode {
         }
     };
     let mut out = BufWriter::new(io::stdout().lock());
-    let mut console = Console { json: cli.json, out: &mut out };
+    let mut console = Console {
+        json: cli.json,
+        print_request: cli.print_request,
+        library: Library::default(),
+        out: &mut out,
+    };
     let verdict = dispatch(cli.command, &mut console);
     let flushed = out.flush().map_err(CliError::Output);
     match verdict.and_then(|verdict| flushed.map(|()| verdict)) {
@@ -108,6 +96,7 @@ fn dispatch(command: Option<Command>, console: &mut Console<'_>) -> Result<Verdi
         None => app::run(app::AppArgs::default()),
         Some(Command::App(args)) => app::run(args),
         Some(Command::Check(args)) => check::run(&args, console),
+        Some(Command::Ask(args)) => ask::run(&args, console),
         Some(Command::Impact(args)) => impact::run(&args, console),
         Some(Command::Simulate(args)) => simulate::run(&args, console),
         Some(Command::Train(args)) => train::run(&args, console),

@@ -8,7 +8,7 @@ use crate::compare::{
     MotionError, SPIN_YAW_CHANGE_RAD, largest_yaw_change_rad, physical_violations,
 };
 use crate::data::{
-    Case, Channel, DataError, Dataset, Outcome, SeriesError, TimeSeries, TrajectoryAttributes,
+    Case, Channel, DataError, Outcome, SeriesError, TimeSeries, TrajectoryAttributes,
 };
 use crate::jobs::{Progress, Report};
 use crate::numerics::Summary;
@@ -157,17 +157,17 @@ pub fn replay_case(
     Ok(Replay { case: case.name.clone(), motion, error, spin, violations })
 }
 
-/// Simulates and compares every case of a dataset in parallel. A case that fails does not stop
+/// Simulates and compares cases of a data set in parallel. A case that fails does not stop
 /// the others.
 pub fn replay_dataset(
-    dataset: &Dataset,
+    cases: &[Case],
     vehicle: &VehicleParameters,
     integrator: Integrator,
     report: &mut Report<'_>,
 ) -> Outcome<DatasetReplay> {
     let mut all = DatasetReplay::default();
-    let n_cases = dataset.cases.len() as u64;
-    for block in dataset.cases.chunks(BLOCK_CASES) {
+    let n_cases = cases.len() as u64;
+    for block in cases.chunks(BLOCK_CASES) {
         let results: Vec<_> =
             block.par_iter().map(|case| replay_case(case, vehicle, integrator)).collect();
         for result in results {

@@ -1,5 +1,7 @@
 //! The contact force on the target over time, as the physics wants it.
 
+use serde::{Deserialize, Serialize};
+
 use crate::data::{Channel, SeriesError, TimeSeries};
 use crate::numerics::interpolate;
 
@@ -13,7 +15,8 @@ pub enum ForceAxes {
 }
 
 /// What one sample of a force history stands for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Sampling {
     /// The value at the sample's instant; linear in between.
     Instant,

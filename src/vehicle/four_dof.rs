@@ -28,6 +28,8 @@
 use nalgebra::{SMatrix, SVector};
 use num_dual::DualSVec64;
 
+use serde::{Deserialize, Serialize};
+
 use crate::numerics::Lanes;
 use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::frames::body_from_world;
@@ -39,7 +41,7 @@ use crate::vehicle::{Equations, N_STATE, VehicleParameters, VehicleState};
 pub(super) const LOAD_PASSES: usize = 2;
 
 /// Where the collision force acts on the target.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ContactPoint {
     /// Forward of the CG, m.
     pub x_m: f64,

@@ -197,19 +197,20 @@ fn positive_steer_turns_left() {
 }
 
 #[test]
-fn a_force_needs_a_moment_or_a_contact_point() {
+fn a_force_without_moment_and_contact_point_is_assumed_to_act_somewhere() {
     let folder = TempDir::new().unwrap();
     let force =
         write(&folder, "f.csv", "time_s,fx_n,fy_n\n0,0,0\n0.05,0,40000\n0.1,0,0\n0.2,0,0\n");
     let args = ["simulate", "--vehicle", "target-2000", "--speed", "15", "--force"];
     let ran = impactlab(&[&args[..], &[text(&force)]].concat());
-    assert!(ran.error_line().contains("--contact x,y,z"), "{}", ran.err);
+    assert!(ran.out.contains("assumed contact point: x -1.5 m, y -0.9 m"), "{}", ran.out);
     let out = folder.path().join("t.csv");
     let contact = ["--contact", "-1.5,-0.9,0.5", "--out", text(&out), "--json"];
     let ran = impactlab(&[&args[..], &[text(&force)], &contact].concat());
     let answer = ran.json();
     assert_eq!(answer["force"]["sampling"], "instant");
     assert_eq!(answer["force"]["yaw_moment"], "contact_point");
+    assert_eq!(answer["assumptions"].as_array().map(Vec::len), Some(0), "{answer}");
     let impulse = answer["force"]["impulse_n_s"][1].as_f64().unwrap();
     assert!((impulse - 2000.0).abs() < 1e-9, "{impulse}");
     assert!(answer["end"]["yaw_rad"].as_f64().unwrap() < -0.1, "{answer}");
@@ -364,4 +365,45 @@ fn a_printed_vehicle_is_a_vehicle_file() {
     let file = write(&folder, "my-car.toml", &impactlab(&["vehicles", id]).out);
     let ran = impactlab(&["simulate", "--vehicle", text(&file), "--speed", "10", "--json"]);
     assert_eq!(ran.json(), simulate(&["--speed", "10"]));
+}
+
+#[test]
+fn what_nobody_said_is_listed_as_assumed() {
+    let assumed = |args: &[&str]| -> Vec<String> {
+        let ran = impactlab(&[args, &["--json"]].concat());
+        assert_eq!(ran.code, 0, "{args:?}: {}", ran.err);
+        let answer = ran.json();
+        let list = answer["assumptions"].as_array().unwrap().iter();
+        list.map(|of| format!("{}: {}", of["quantity"].as_str().unwrap(), of["value"])).collect()
+    };
+    let force = "datasets/fea/forces/c001.csv";
+    assert_eq!(
+        assumed(&["simulate", "--force", force]),
+        ["vehicle: \"reference-2000\"", "speed: \"20 m/s\""]
+    );
+    let all_said = ["simulate", "--force", force, "--vehicle", "target-2000", "--speed", "20"];
+    assert_eq!(assumed(&all_said), [] as [&str; 0]);
+    let scenario = assumed(&["simulate", "--scenario", SCENARIO]);
+    let quantities: Vec<&str> = scenario.iter().filter_map(|text| text.split(':').next()).collect();
+    assert_eq!(quantities, ["pulse", "contact_height", "vehicle", "bullet"]);
+    assert_eq!(
+        assumed(&["simulate", "--dataset", TRAJECTORIES, "--case", "FE_c001"]),
+        [] as [&str; 0]
+    );
+}
+
+#[test]
+fn a_question_that_is_printed_has_the_same_answer_when_it_is_asked() {
+    let folder = TempDir::new().unwrap();
+    let args = ["simulate", "--dataset", "datasets/fea", "--case", "c001", "--json"];
+    let answer = impactlab(&args).json();
+    let request = impactlab(&[&args[..], &["--print-request"]].concat());
+    assert_eq!(request.json()["question"], "simulate");
+    let path = write(&folder, "request.json", &request.out);
+    let mut asked = impactlab(&["ask", text(&path)]).json();
+    asked["out"] = Value::Null;
+    assert_eq!(asked, answer);
+    let wrong = write(&folder, "wrong.json", "{\"question\": \"simulate\"}");
+    let ran = impactlab(&["ask", text(&wrong)]);
+    assert!(ran.error_line().contains("is no request"), "{}", ran.err);
 }

@@ -6,10 +6,11 @@ use std::sync::OnceLock;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, Forecast, Network, Pane, State, Subject, TrainingCommand};
+use impactlab::app::{App, Command, Network, Pane, State, Subject, TrainingCommand};
 use impactlab::data::{Dataset, Severity};
 use impactlab::force::{ForceCase, ForceConfig, train};
 use impactlab::learning::{ModelFile, TrainSettings, TrainingSet};
+use impactlab::study::ForceEvaluation;
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
 use crate::pictures::save;
@@ -56,7 +57,7 @@ fn small() -> &'static Small {
         let (cases, _) = ForceCase::of_dataset(&dataset.complete().expect("nothing cancels"));
         let set = TrainingSet::of_split("fea", &cases, 0, 0.25);
         let config = ForceConfig::load(&small.config()).expect("a good file");
-        let settings = TrainSettings::unsaved(config, 0);
+        let settings = TrainSettings { config, seed: 0, checkpoint: None, resume: false };
         let model = train(&set, &settings, &mut |_| ControlFlow::Continue(())).expect("a model");
         model.save(&small.model()).expect("it is written");
         small
@@ -81,11 +82,9 @@ fn open_on(case: &str) -> Harness<'static, App> {
 
 /// Whether what is shown answers what is asked.
 fn is_forecast_current(state: &State) -> bool {
-    let is_answer = |forecast: &Forecast| {
-        forecast.scenario == state.project.force.scenario
-            && forecast.settings.n_curves == state.view.force.n_curves
-    };
-    state.forecast().is_some_and(is_answer) && is_idle(state)
+    let forecast = &state.session.force.forecast;
+    let is_asked = forecast.asked.as_ref() == state.force_request().as_ref();
+    is_asked && !forecast.is_waiting() && forecast.ok().is_some() && is_idle(state)
 }
 
 #[test]
@@ -108,7 +107,8 @@ fn a_case_is_predicted_edited_and_left_open() {
     let sizes = [1600.0, 2400.0].map(|mass_kg| {
         harness.state_mut().state_mut().project.force.scenario.mass_kg[1] = mass_kg;
         step_until(&mut harness, "another forecast", is_forecast_current);
-        state(&harness).forecast().expect("a forecast").force.impulse_magnitude_n_s.median
+        let answer = state(&harness).force_forecast().expect("a forecast");
+        answer.report.impulse_n_s.magnitude.median
     });
     assert!(sizes[1] > sizes[0], "{sizes:?}");
     assert!(harness.query_by_label_contains("Outside the training: bullet mass").is_none());
@@ -122,8 +122,9 @@ fn a_case_is_predicted_edited_and_left_open() {
     harness.get_by_label("Draw").click();
     harness.run_steps(2);
     step_until(&mut harness, "an open contact", is_forecast_current);
-    let forecast = state(&harness).forecast().expect("a forecast");
-    assert_eq!((forecast.open.len(), forecast.force.curves.len()), (1, 10));
+    let answer = state(&harness).force_forecast().expect("a forecast");
+    assert!(answer.report.is_contact_open && !answer.report.is_body_open);
+    assert_eq!(answer.forecast.curves.len(), 10);
     {
         let state = harness.state_mut().state_mut();
         (state.view.dark, state.view.force.pulses, state.view.force.physics) = (true, true, true);
@@ -142,7 +143,7 @@ fn the_forecast_stays_while_the_scenario_changes() {
         let scenario = &mut harness.state_mut().state_mut().project.force.scenario;
         scenario.bullet_velocity_m_s[1] = 3.0 + 0.02 * f64::from(i);
         harness.step();
-        let curves = state(&harness).forecast().map(|forecast| forecast.force.curves.len());
+        let curves = state(&harness).force_forecast().map(|answer| answer.forecast.curves.len());
         assert_eq!(curves, Some(20), "frame {i}");
     }
     step_until(&mut harness, "the last forecast", is_forecast_current);
@@ -173,7 +174,7 @@ fn a_model_is_trained_paused_cancelled_saved_and_there_after_a_restart() {
     apply(&mut harness, Command::Show(Pane::Training));
     {
         let form = &mut harness.state_mut().state_mut().project.force.training;
-        (form.epochs, form.config) = (100_000, small().config().display().to_string());
+        (form.epochs, form.config) = (Some(100_000), small().config().display().to_string());
     }
     harness.run_steps(2);
     harness.get_by_label("Train").click();
@@ -197,8 +198,17 @@ fn a_model_is_trained_paused_cancelled_saved_and_there_after_a_restart() {
     harness.get_by_label("Cancel").click();
     step_until(&mut harness, "the end", |state| !state.session.force.training.run.is_running());
     assert!(state(&harness).session.force.training.is_over);
-    let current = state(&harness).session.force.model.current.as_ref().expect("the best so far");
-    assert!(!current.is_saved && current.name.starts_with("trained on fea"), "{}", current.name);
+    let current = |harness: &Harness<'_, App>| {
+        let current = state(harness).session.force.model.current.as_ref().expect("a model");
+        (current.name.clone(), current.is_saved)
+    };
+    // A cancelled training puts nothing into use unless the user says so.
+    assert_eq!(current(&harness), ("shipped".to_owned(), true));
+    harness.get_by_label("Use it").click();
+    harness.run_steps(2);
+    let (name, is_saved) = current(&harness);
+    assert!(!is_saved && name.starts_with("trained on fea"), "{name}");
+    assert!(harness.query_by_label("Use it").is_none());
 
     let path = folder.path().join("mine.safetensors");
     apply(&mut harness, Command::SaveModel(Network::Force, path.clone()));
@@ -239,13 +249,15 @@ fn a_model_is_evaluated_beside_the_baselines() {
     harness.run_steps(2);
     harness.get_by_label("Evaluate").click();
     harness.run_steps(2);
-    assert!(state(&harness).session.force.evaluation.job.is_some());
+    assert!(state(&harness).session.force.evaluation.is_running());
     step_until(&mut harness, "the evaluation", |state| {
-        state.session.force.evaluation.job.is_none()
+        !state.session.force.evaluation.is_running()
     });
-    let result = state(&harness).session.force.evaluation.result.as_ref().expect("a result");
-    let finished = result.as_ref().expect("an evaluation");
-    assert_eq!((finished.cases.len(), finished.n_known, finished.samples.len()), (25, 0, 6));
+    let answer = state(&harness).session.force.evaluation.ok().expect("an evaluation");
+    let ForceEvaluation::Cases(report) = &answer.report else { panic!("folds") };
+    let cases = answer.cases.as_ref().expect("single cases");
+    assert_eq!((report.n_test, report.n_trained_on), (25, 0));
+    assert_eq!((cases.all.len(), cases.samples.len()), (25, 6));
     harness.get_by_label_contains("on 25 cases of fea");
     assert!(harness.query_all_by_label("Gaussian processes").count() >= 2);
     harness.run_steps(4);

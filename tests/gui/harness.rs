@@ -62,8 +62,8 @@ pub fn step_until(harness: &mut Harness<'_, App>, what: &str, wanted: impl Fn(&S
 /// Whether nothing is under way.
 pub fn is_idle(state: &State) -> bool {
     state.session.sources.iter().all(impactlab::app::Source::is_settled)
-        && state.session.analysis.job.is_none()
-        && state.session.analysis.requested.is_some()
+        && state.session.analysis.asked.is_some()
+        && !state.session.analysis.is_waiting()
 }
 
 /// Does something as if the user had asked for it.

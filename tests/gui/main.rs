@@ -1,5 +1,6 @@
 //! The app, driven without a display and drawn on the CPU.
 
+mod both_faces;
 mod density_gpu;
 mod force_network;
 mod harness;

@@ -25,20 +25,20 @@ fn the_window_on_the_shipped_data() {
         Subject::Case { dataset: "datasets/trajectories-fea".into(), case: "FE_c002".into() };
     apply(&mut harness, Command::Select(case));
     step_until(&mut harness, "a trajectory case", |state| {
-        state.analysis().is_some_and(|analysis| analysis.name == "FE_c002") && is_idle(state)
+        state.analysis().is_some_and(|answer| answer.report.name == "FE_c002") && is_idle(state)
     });
     apply(&mut harness, Command::SetTime(2.0));
     harness.step();
     save(&mut harness, "window.png");
     apply(&mut harness, Command::ReplayDataset("datasets/trajectories-fea".into()));
     step_until(&mut harness, "the replay", |state| {
-        state.session.replays.values().all(|s| matches!(s, impactlab::app::ReplayStatus::Done(_)))
+        state.session.replays.values().all(|replay| replay.report().is_some())
     });
     harness.state_mut().state_mut().view.dark = true;
     let fea = Subject::Case { dataset: "datasets/fea".into(), case: "c002".into() };
     apply(&mut harness, Command::Select(fea));
     step_until(&mut harness, "a force case", |state| {
-        state.analysis().is_some_and(|analysis| analysis.name == "c002") && is_idle(state)
+        state.analysis().is_some_and(|answer| answer.report.name == "c002") && is_idle(state)
     });
     save(&mut harness, "window-dark.png");
     harness.state_mut().state_mut().view.dark = false;
@@ -68,8 +68,14 @@ fn the_mapping_dialog_and_the_vehicle_pane() {
     save(&mut harness, "mapping.png");
     apply(&mut harness, Command::CancelMapping);
     harness.state_mut().state_mut().project.vehicle =
-        impactlab::app::VehicleChoice::Preset("scaled-target-100".to_owned());
+        impactlab::study::VehicleChoice::Preset("scaled-target-100".to_owned());
     apply(&mut harness, Command::Show(Pane::Vehicle));
     harness.run_steps(4);
     save(&mut harness, "vehicle.png");
+    let state = harness.state_mut().state_mut();
+    state.view.dark = true;
+    state.project.file_start.speed_m_s = Some(15.0);
+    state.project.file_start.contact = Some(impactlab::study::ASSUMED_CONTACT);
+    harness.run_steps(4);
+    save(&mut harness, "vehicle-dark.png");
 }

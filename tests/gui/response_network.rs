@@ -44,7 +44,8 @@ fn select(harness: &mut Harness<'_, App>, dataset: &str, case: &str) {
     let subject = Subject::Case { dataset: dataset.into(), case: case.to_owned() };
     apply(harness, Command::Select(subject));
     step_until(harness, "the forecast of the case", |state| {
-        is_idle(state) && state.motion_forecast().is_some_and(|of| of.analysis.name == case)
+        let forecast = state.motion_forecast();
+        is_idle(state) && forecast.is_some_and(|of| of.answer.report.scenario == case)
     });
 }
 
@@ -92,12 +93,14 @@ fn a_predicted_force_spreads_the_forecast_and_playing_moves_it() {
     step_until(&mut harness, "the data", is_idle);
     apply(&mut harness, Command::Show(Pane::MotionForecast));
     select(&mut harness, "datasets/fea", "c002");
-    let area = |state: &State| state.motion_forecast().unwrap().forecast.outcome.region_90_m2;
+    let area = |state: &State| {
+        state.motion_forecast().expect("a forecast").answer.report.outcome.region_90_m2
+    };
     let given = area(state(&harness));
     harness.get_by_label("as predicted").click();
     harness.run_steps(2);
     step_until(&mut harness, "the predicted force", |state| {
-        state.motion_forecast().is_some_and(|of| of.is_predicted)
+        state.motion_forecast().is_some_and(|of| of.is_predicted())
     });
     assert!(area(state(&harness)) > 1.5 * given, "{} {given}", area(state(&harness)));
     apply(&mut harness, Command::SetTime(1.0));
@@ -147,7 +150,7 @@ fn a_response_model_is_trained_paused_cancelled_and_saved() {
     apply(&mut harness, Command::ShowTraining(Network::Response));
     {
         let form = &mut harness.state_mut().state_mut().project.response.training;
-        (form.mode, form.n_trajectories) = (TrainingMode::FromScratch, 3);
+        (form.mode, form.n_trajectories) = (TrainingMode::FromScratch, Some(3));
         form.config = config.display().to_string();
     }
     harness.run_steps(2);
@@ -172,8 +175,14 @@ fn a_response_model_is_trained_paused_cancelled_and_saved() {
     let is_over = |state: &State| !state.session.response.training.run.is_running();
     step_until(&mut harness, "the end", is_over);
     assert!(state(&harness).session.response.training.is_over);
-    let current = state(&harness).session.response.model.current.as_ref().expect("a model");
-    assert!(!current.is_saved && current.name == "trained on 3 trajectories of trajectories-fea");
+    let name = |harness: &Harness<'_, App>| {
+        state(harness).session.response.model.current.as_ref().expect("a model").name.clone()
+    };
+    // A cancelled training puts nothing into use unless the user says so.
+    assert_eq!(name(&harness), "shipped");
+    harness.get_by_label("Use it").click();
+    harness.run_steps(2);
+    assert_eq!(name(&harness), "trained on 3 trajectories of trajectories-fea");
     let path = folder.path().join("mine.safetensors");
     apply(&mut harness, Command::SaveModel(Network::Response, path.clone()));
     step_until(&mut harness, "the file", |state| !state.session.response.model.is_saving());
@@ -199,7 +208,7 @@ fn models_are_compared_saved_and_opened_again() {
         (form.trajectories, form.n_choices) = ("three".to_owned(), 1);
     }
     harness.run_steps(2);
-    let is_over = |state: &State| state.session.response.comparison.job.is_none();
+    let is_over = |state: &State| !state.session.response.comparison.is_running();
     harness.get_by_label("Compare").click();
     harness.run_steps(2);
     step_until(&mut harness, "the refusal", is_over);
@@ -208,8 +217,8 @@ fn models_are_compared_saved_and_opened_again() {
     harness.get_by_label("Compare").click();
     harness.run_steps(2);
     step_until(&mut harness, "the comparison", is_over);
-    let comparison = state(&harness).session.response.comparison.comparison().expect("a result");
-    assert_eq!((comparison.models.len(), comparison.test.len()), (7, 25));
+    let report = state(&harness).session.response.comparison.report().expect("a result");
+    assert_eq!((report.comparison.models.len(), report.comparison.test.len()), (7, 25));
     harness.get_by_label_contains("25 trajectories that no model has seen");
     harness.run_steps(4);
     save(&mut harness, "compare.png");
@@ -225,6 +234,27 @@ fn models_are_compared_saved_and_opened_again() {
     save(&mut harness, "compare-dark.png");
     apply(&mut harness, Command::Open(vec!["Cargo.json".into()]));
     step_until(&mut harness, "the error", is_over);
-    let result = state(&harness).session.response.comparison.result.as_ref();
+    let result = state(&harness).session.response.comparison.shown.as_ref();
     assert!(result.is_some_and(|result| result.as_ref().is_err_and(|e| e.contains("Cargo.json"))));
+}
+
+#[test]
+fn the_current_model_is_evaluated_alone() {
+    let mut harness = open(&[DATA]);
+    step_until(&mut harness, "the data", is_idle);
+    step_until(&mut harness, "the shipped model", |state| {
+        state.session.response.model.current.is_some()
+    });
+    apply(&mut harness, Command::Show(Pane::ModelComparison));
+    harness.run_steps(2);
+    harness.get_by_label("Evaluate current model").click();
+    harness.run_steps(2);
+    step_until(&mut harness, "the evaluation", |state| {
+        !state.session.response.comparison.is_running()
+    });
+    let report = state(&harness).session.response.comparison.report().expect("an evaluation");
+    assert_eq!((report.comparison.models.len(), report.comparison.test.len()), (1, 25));
+    harness.get_by_label_contains("one model on 25 trajectories");
+    harness.run_steps(4);
+    save(&mut harness, "evaluate-response.png");
 }

@@ -30,7 +30,7 @@ fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
 }
 
 fn shows(name: &'static str) -> impl Fn(&State) -> bool {
-    move |state| state.analysis().is_some_and(|a| a.name == name) && is_idle(state)
+    move |state| state.analysis().is_some_and(|a| a.report.name == name) && is_idle(state)
 }
 
 #[test]
@@ -41,18 +41,15 @@ fn open_pick_simulate_scrub() {
     // Pick a case by its name in the table.
     harness.get_by_label("FE_c003").click();
     step_until(&mut harness, "the case that was clicked", shows("FE_c003"));
-    let analysis = state(&harness).analysis().unwrap();
-    assert!(analysis.simulation.is_some() && analysis.reference.is_some());
-    assert!(analysis.error.as_ref().unwrap().average_error_m < 3.0);
+    let answer = state(&harness).analysis().unwrap();
+    assert!(answer.analysis.simulation.is_some() && answer.analysis.reference.is_some());
+    assert!(answer.report.error.as_ref().unwrap().average_error_m < 3.0);
 
     // Simulate the whole data set.
     harness.get_by_label("Simulate all 100 cases").click();
     step_until(&mut harness, "all cases", |state| {
-        state
-            .session
-            .replays
-            .values()
-            .any(|s| matches!(s, ReplayStatus::Done(r) if r.replay.cases.len() == 100))
+        let mut reports = state.session.replays.values().filter_map(ReplayStatus::report);
+        reports.any(|report| report.cases.len() == 100)
     });
     harness.get_by_label("All 100 cases, average position error");
 
@@ -113,11 +110,26 @@ fn a_bad_file_says_where_and_offers_the_mapping() {
     assert!(message.text.contains("export.csv:1: no column for"), "{}", message.text);
 
     let map = "time=1:ms,fx=2:kN,fy=3:kN".parse().unwrap();
-    let kind = impactlab::data::FileKind::Force;
-    apply(&mut harness, Command::OpenMapped(path, kind, map));
-    step_until(&mut harness, "the mapped file", shows("export.csv"));
-    let force = state(&harness).analysis().unwrap().force.as_ref().unwrap();
-    assert!((force.peak().unwrap().0 - 2500.0_f64.hypot(40_000.0)).abs() < 1e-6);
+    apply(&mut harness, Command::OpenMapped(path, map));
+    step_until(&mut harness, "the mapped file", shows("export"));
+    let report = &state(&harness).analysis().unwrap().report;
+    let force = report.force.as_ref().unwrap();
+    assert!((force.peak_n - 2500.0_f64.hypot(40_000.0)).abs() < 1e-6);
+    // A file says neither how fast the vehicle was nor where the force acts.
+    let assumed: Vec<&str> = report.assumptions.iter().map(|of| of.quantity.label()).collect();
+    assert_eq!(assumed, ["struck vehicle", "speed before the impact", "contact point"]);
+    harness.run_steps(2);
+    assert!(harness.query_all_by_label_contains("assumed: contact point: x -1.5 m").count() > 0);
+    // It is said instead in the vehicle pane.
+    apply(&mut harness, Command::Show(impactlab::app::Pane::Vehicle));
+    harness.run_steps(2);
+    assert_eq!(harness.query_all_by_label("Set").count(), 2);
+    harness.state_mut().state_mut().project.file_start.speed_m_s = Some(15.0);
+    step_until(&mut harness, "the file at another speed", |state| {
+        let answer = state.analysis().filter(|_| is_idle(state));
+        answer.is_some_and(|answer| answer.report.assumptions.len() == 2)
+    });
+    harness.get_by_label("Speed not known");
 }
 
 #[test]
@@ -129,9 +141,9 @@ fn a_dropped_file_opens_and_a_figure_is_exported() {
     step_until(&mut harness, "the drop", |state| {
         state.session.sources.len() == 2 && is_idle(state)
     });
-    step_until(&mut harness, "the file, which is looked at by itself", shows("c002.csv"));
+    step_until(&mut harness, "the file, which is selected by itself", shows("c002"));
     harness.get_by_label_contains("c002.csv · force");
-    let analysis = state(&harness).analysis().unwrap().clone();
+    let analysis = state(&harness).analysis().unwrap().analysis.clone();
     let figure = impactlab::figure::analysis_scene_figure(&analysis, 1.0, UnitSystem::Si);
     let folder = tempfile::tempdir().unwrap();
     for name in ["scene.png", "scene.csv"] {
@@ -156,11 +168,11 @@ fn a_scenario_is_solved_simulated_and_survives_a_kill() {
     let mut harness = open_with(&["datasets/fea"], Some(state_file.clone()));
     step_until(&mut harness, "the first case", shows("c001"));
     apply(&mut harness, Command::Show(impactlab::app::Pane::Scenario));
-    harness.run_steps(3);
+    step_until(&mut harness, "the solution", |state| state.session.impact.ok().is_some());
     harness.get_by_label("Momentum solution");
     harness.get_by_label("Simulate in the scene").click();
     step_until(&mut harness, "the scenario", shows("PIT, right rear quarter"));
-    let analysis = state(&harness).analysis().unwrap();
+    let analysis = &state(&harness).analysis().unwrap().analysis;
     assert!(analysis.bullet.is_some() && analysis.simulation.is_some());
 
     // A second is enough to have it on disk; the app is not closed but dropped, as by a kill.
@@ -182,7 +194,8 @@ fn a_vehicle_file_becomes_the_struck_vehicle_and_a_scenario_file_the_scenario() 
     step_until(&mut harness, "the first case", shows("c001"));
     apply(&mut harness, Command::Open(vec!["assets/vehicles/scaled-target-100.toml".into()]));
     step_until(&mut harness, "the case with the other vehicle", |state| {
-        is_idle(state) && state.analysis().is_some_and(|a| a.vehicle.starts_with("Scaled target"))
+        let answer = state.analysis().filter(|_| is_idle(state));
+        answer.is_some_and(|answer| answer.report.vehicle.starts_with("Scaled target"))
     });
     apply(&mut harness, Command::Open(vec!["assets/scenarios/pit_right_rear.toml".into()]));
     step_until(&mut harness, "the scenario", shows("PIT, right rear quarter"));

@@ -18,6 +18,7 @@ const LAYERS: &[&[&str]] = &[
     &["force", "response"],
     &["shipped"],
     &["analysis"],
+    &["study"],
     &["figure"],
     &["render"],
     &["cli", "app"],

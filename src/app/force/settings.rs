@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 use crate::collision::Scenario;
 use crate::data::Side;
 use crate::figure::ForceComponent;
-use crate::force::{ForceConfig, ForceScenario};
+use crate::force::ForceScenario;
+use crate::study::{BadCases, EvaluatedCases};
 
 /// What the user works on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -20,24 +21,26 @@ pub struct ForceProject {
     /// File of the model; the shipped one without.
     pub model: Option<PathBuf>,
     /// How a model is trained.
-    pub training: TrainingForm,
+    pub training: ForceTrainingForm,
 }
 
 /// How a model is trained.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct TrainingForm {
+pub struct ForceTrainingForm {
     /// Folder of the force data set, of which some cases are kept for the test; the first that is
     /// open without.
     pub dataset: Option<PathBuf>,
     /// Whether the cases of all other open force data sets are learned from too.
     pub use_others: bool,
-    /// Epochs at most.
-    pub epochs: usize,
+    /// Epochs at most, instead of the configured number.
+    pub epochs: Option<usize>,
     /// Seed of split and training.
     pub seed: u64,
     /// A file with further settings; the defaults if empty.
     pub config: String,
+    /// What happens to cases that cannot be used.
+    pub bad_cases: BadCases,
     /// Whether to go on from where a training of the same settings was interrupted.
     pub resume: bool,
 }
@@ -69,9 +72,11 @@ pub struct ForceView {
     pub log_losses: bool,
     /// Folder of the data set on which the model is evaluated; the first that is open without.
     pub evaluated: Option<PathBuf>,
-    /// Whether the evaluation takes all cases, not only those that the model has not seen.
-    pub evaluate_all: bool,
-    /// Which figure of the errors the tables show.
+    /// On which of its cases.
+    pub evaluated_cases: EvaluatedCases,
+    /// What happens to cases that cannot be used.
+    pub bad_cases: BadCases,
+    /// Which statistic of the errors the tables show.
     pub statistic: Statistic,
     /// What is drawn of the sample cases.
     pub sample_component: ForceComponent,
@@ -118,15 +123,7 @@ impl Default for ForceProject {
             bullet_body: None,
             yaw_inertia_kg_m2: [None; 2],
         });
-        Self { scenario, name: example.name, model: None, training: TrainingForm::default() }
-    }
-}
-
-impl Default for TrainingForm {
-    fn default() -> Self {
-        let epochs = ForceConfig::default().training.epochs;
-        let (dataset, config) = (None, String::new());
-        Self { dataset, use_others: false, epochs, seed: 0, config, resume: false }
+        Self { scenario, name: example.name, model: None, training: ForceTrainingForm::default() }
     }
 }
 
@@ -140,11 +137,12 @@ impl Default for ForceView {
             pulses: false,
             follow_case: true,
             n_curves: 0,
-            seed: 1,
+            seed: 0,
             loss_terms: vec!["total".to_owned()],
             log_losses: true,
             evaluated: None,
-            evaluate_all: false,
+            evaluated_cases: EvaluatedCases::default(),
+            bad_cases: BadCases::default(),
             statistic: Statistic::default(),
             sample_component: ForceComponent::Magnitude,
         }

@@ -5,16 +5,13 @@ use std::sync::Arc;
 
 use egui::Context;
 
-use crate::analysis::ForecastSettings;
 use crate::app::command::{TrainingCommand, wake};
-use crate::app::force::evaluation::EvaluationRequest;
-use crate::app::force::{ForceQuestion, ForceTrainingData, Forecast, run_force_training};
 use crate::app::source::{OpenDataset, Source, chosen_dataset, open_datasets};
 use crate::app::state::{State, Subject};
-use crate::app::training::Tell;
 use crate::data::{DatasetKind, Severity};
 use crate::error_chain;
 use crate::force::{ForceCase, ForceScenario};
+use crate::study::PredictForceAnswer;
 use crate::uncertainty::ForceCurve;
 
 /// The force that was recorded in the selected case, in the case's own axes.
@@ -33,13 +30,14 @@ pub struct RecordedCase {
 impl State {
     /// Takes in what loader, predictor and training report, and asks for what is due.
     pub(in crate::app) fn update_force(&mut self, context: &Context) {
-        let force = &mut self.session.force;
-        let problem = force.model.update(&self.project.force.model, wake(context));
-        let saved = force.model.poll_saving();
+        let (force, library) = (&mut self.session.force, &self.session.library);
+        let loaded = force.model.update(&self.project.force.model, library, wake(context));
+        let saved = force.model.poll_saving(library);
         if let Some(Ok(path)) = &saved {
             self.project.force.model = Some(path.clone());
         }
-        self.say_of_model(problem, saved);
+        self.take_loaded(loaded);
+        self.say_of_file(saved);
         self.find_recorded_case();
         self.poll_training();
         self.session.force.evaluation.poll();
@@ -48,34 +46,39 @@ impl State {
     }
 
     fn poll_training(&mut self) {
-        let force = &mut self.session.force;
+        let (force, library) = (&mut self.session.force, &self.session.library);
         match force.training.poll() {
             None => {}
-            Some(Ok(model)) => {
+            Some(Ok((model, is_complete))) => {
                 let record = model.record();
                 let name =
                     format!("trained on {}, epoch {}", record.data, record.detail.best_epoch);
-                let text = format!("training over: {name} of {}", record.history.len());
-                force.model.take_trained(model, name);
-                self.say(Severity::Info, text);
+                let of = format!("{name} of {}", record.history.len());
+                force.model.take_trained(model, name, (library, is_complete));
+                self.say_of_training(&of, is_complete);
             }
             Some(Err(problem)) => self.say(Severity::Error, format!("training: {problem}")),
         }
     }
 
+    /// Tells the user that a training is over.
+    ///
+    /// - `name`: of its model.
+    pub(in crate::app) fn say_of_training(&mut self, name: &str, is_complete: bool) {
+        self.say(
+            Severity::Info,
+            match is_complete {
+                true => format!("training over: {name}"),
+                false => format!("training cancelled: {name}, which is not in use"),
+            },
+        );
+    }
+
     /// Asks if anything has changed since the last question.
     fn ask_for_force(&mut self, context: &Context) {
-        let force = &mut self.session.force;
-        let Some(current) = &force.model.current else { return };
-        let question = ForceQuestion {
-            model: Arc::clone(&current.model),
-            scenario: self.project.force.scenario.clone(),
-            settings: ForecastSettings {
-                n_curves: self.view.force.n_curves,
-                seed: self.view.force.seed,
-            },
-        };
-        force.forecast.ask(question, wake(context));
+        let Some(question) = self.force_request() else { return };
+        let (force, library) = (&mut self.session.force, &self.session.library);
+        force.forecast.ask(question, library, wake(context));
     }
 
     /// Looks up the force of the selected case once it is selected.
@@ -126,7 +129,7 @@ impl State {
     /// Starts a training on the chosen data.
     fn start_force_training(&mut self, context: &Context) {
         let form = &self.project.force.training;
-        let datasets = open_datasets(&self.session.sources, DatasetKind::Force);
+        let datasets = open_datasets(&self.session.sources, &[DatasetKind::Force]);
         let Some(chosen) = chosen_dataset(&datasets, form.dataset.as_deref()) else {
             self.say(Severity::Warning, "open a force data set to train on first");
             return;
@@ -134,41 +137,31 @@ impl State {
         let is_extra = |of: &OpenDataset<'_>| form.use_others && of.path != chosen.path;
         let extra: Vec<_> = datasets.iter().copied().filter(is_extra).collect();
         let names = std::iter::once(&chosen).chain(&extra).map(OpenDataset::name);
-        let data = ForceTrainingData {
-            name: names.collect::<Vec<_>>().join(" and "),
-            dataset: Arc::clone(chosen.checked),
-            extra: extra.iter().map(|of| Arc::clone(of.checked)).collect(),
-        };
-        let (form, name) = (form.clone(), data.name.clone());
-        let checkpoint = self.session.force.checkpoint.clone();
-        let work = move |tell: &mut Tell<'_>| run_force_training(data, (&form, checkpoint), tell);
-        if let Err(error) = self.session.force.training.start(name, wake(context), work) {
+        let data = names.collect::<Vec<_>>().join(" + ");
+        let request = self.train_force_request((&chosen, &extra));
+        let (force, library) = (&mut self.session.force, &self.session.library);
+        if let Err(error) = force.training.start(request, (data, library), wake(context)) {
             self.say(Severity::Error, error.to_string());
         }
     }
 
     /// Evaluates the current model on the chosen data.
     pub(in crate::app) fn evaluate(&mut self, context: &Context) {
-        let datasets = open_datasets(&self.session.sources, DatasetKind::Force);
+        let datasets = open_datasets(&self.session.sources, &[DatasetKind::Force]);
         let chosen = chosen_dataset(&datasets, self.view.force.evaluated.as_deref());
-        let (Some(chosen), Some(current)) = (chosen, &self.session.force.model.current) else {
+        let request = chosen.and_then(|of| self.evaluate_force_request(of.path.to_owned()));
+        let Some(request) = request else {
             self.say(Severity::Warning, "an evaluation needs a force model and a force data set");
             return;
         };
-        let request = EvaluationRequest {
-            model: Arc::clone(&current.model),
-            name: current.name.clone(),
-            data: chosen.name(),
-            dataset: Arc::clone(chosen.checked),
-            all: self.view.force.evaluate_all,
-        };
-        if let Err(error) = self.session.force.evaluation.start(request, wake(context)) {
+        let (force, library) = (&mut self.session.force, &self.session.library);
+        if let Err(error) = force.evaluation.start(request, library, wake(context)) {
             self.say(Severity::Error, error.to_string());
         }
     }
 
     /// What the network says of the collision, as far as it has answered.
-    pub fn forecast(&self) -> Option<&Forecast> {
+    pub fn force_forecast(&self) -> Option<&PredictForceAnswer> {
         self.session.force.forecast.ok().map(Arc::as_ref)
     }
 }

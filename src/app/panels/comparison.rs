@@ -1,26 +1,25 @@
-//! Simulation against reference: one case and the whole data set.
+//! The simulation of the 4DOF model against recorded motions: one case and the whole data set.
 
 use egui::{Grid, ScrollArea, Ui};
 
-use crate::analysis::Analysis;
 use crate::app::case_table::listed_in;
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
-use crate::app::state::ReplayStatus;
-use crate::app::widgets::value_row;
-use crate::compare::{DatasetReplay, ErrorSummary, HORIZONS_S, MotionError, Replay};
+use crate::app::widgets::{assumptions_ui, value_row};
+use crate::compare::{ErrorSummary, HORIZONS_S, MotionError};
 use crate::data::{DatasetKind, Severity};
 use crate::numerics::Summary;
 use crate::render::theme;
+use crate::study::{SimulateDatasetReport, SimulateReport};
 use crate::units::{Quantity, UnitSystem, significant};
 
-/// Draws the error figures.
+/// Draws the errors.
 pub fn comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { view, session, commands, .. } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        if let Some(analysis) = analysis_or_hint(ui, session) {
-            case_ui(ui, analysis, view.units);
+        if let Some(answer) = analysis_or_hint(ui, session) {
+            case_ui(ui, &answer.report, view.units);
         }
         ui.separator();
         let (Some(path), Some(checked)) = (&view.listed, listed_in(&session.sources, view)) else {
@@ -30,38 +29,36 @@ pub fn comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             ui.weak("The listed data set has no recorded motions to compare with.");
             return;
         }
-        match session.replays.get(path) {
-            None => {
-                let label = format!("Simulate all {} cases", checked.dataset.cases.len());
-                if ui.button(label).on_hover_text("4DOF against every recorded motion").clicked() {
-                    commands.push(Command::ReplayDataset(path.clone()));
-                }
-            }
-            Some(ReplayStatus::Running(_)) => {
-                ui.horizontal(|ui| (ui.spinner(), ui.label("Simulating…")));
-            }
-            Some(ReplayStatus::Done(replay)) => {
-                dataset_ui(ui, &replay.replay, view.units);
-                if ui.button("Simulate again").clicked() {
-                    commands.push(Command::ReplayDataset(path.clone()));
-                }
-            }
+        let replay = session.replays.get(path);
+        let report = replay.and_then(|replay| replay.report());
+        if let Some(report) = report {
+            dataset_ui(ui, report, view.units);
+        }
+        if replay.is_some_and(|replay| replay.question.is_running()) {
+            ui.horizontal(|ui| (ui.spinner(), ui.label("Simulating…")));
+            return;
+        }
+        let label = match report {
+            Some(_) => "Simulate again".to_owned(),
+            None => format!("Simulate all {} cases", checked.dataset.cases.len()),
+        };
+        if ui.button(label).on_hover_text("4DOF against every recorded motion").clicked() {
+            commands.push(Command::ReplayDataset(path.clone()));
         }
     });
 }
 
-fn case_ui(ui: &mut Ui, analysis: &Analysis, units: UnitSystem) {
-    ui.strong(format!("{} with {}", analysis.name, analysis.vehicle));
-    for note in &analysis.notes {
+fn case_ui(ui: &mut Ui, report: &SimulateReport, units: UnitSystem) {
+    ui.strong(format!("{} with {}", report.name, report.vehicle));
+    assumptions_ui(ui, &report.assumptions);
+    for note in &report.notes {
         ui.weak(note);
     }
-    if let Some(motion) = &analysis.simulation {
-        for flag in &motion.flags {
-            let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-            ui.colored_label(color, flag.to_string());
-        }
+    for flag in &report.flags {
+        let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+        ui.colored_label(color, &flag.message);
     }
-    match &analysis.error {
+    match &report.error {
         Some(error) => drop(Grid::new("case error").striped(true).show(ui, |ui| {
             for (label, text) in error_rows(error, units) {
                 value_row(ui, &label, &text);
@@ -96,9 +93,10 @@ fn error_rows(error: &MotionError, units: UnitSystem) -> Vec<(String, String)> {
     rows
 }
 
-fn dataset_ui(ui: &mut Ui, replay: &DatasetReplay, units: UnitSystem) {
-    let violations: usize = replay.cases.iter().map(|case| case.violations).sum();
-    ui.strong(format!("All {} cases, average position error", replay.cases.len()));
+fn dataset_ui(ui: &mut Ui, report: &SimulateDatasetReport, units: UnitSystem) {
+    let violations: usize = report.cases.iter().map(|case| case.violations).sum();
+    ui.strong(format!("All {} cases, average position error", report.cases.len()));
+    assumptions_ui(ui, &report.assumptions);
     let unit = Quantity::Length.display_unit(units);
     Grid::new("dataset error").striped(true).show(ui, |ui| {
         for title in ["", "n", "mean", "std", "median", "p90"] {
@@ -109,25 +107,23 @@ fn dataset_ui(ui: &mut Ui, replay: &DatasetReplay, units: UnitSystem) {
             });
         }
         ui.end_row();
-        let groups: [(&str, Choice); 3] = [
-            ("all", |_| true),
-            ("spinning", |replay| replay.spin),
-            ("not spinning", |replay| !replay.spin),
+        let groups: [(&str, &Option<ErrorSummary>); 3] = [
+            ("all", &report.overall),
+            ("spinning", &report.spinning),
+            ("not spinning", &report.not_spinning),
         ];
-        for (name, choose) in groups {
-            if let Some(summary) = ErrorSummary::of(&replay.cases, choose) {
+        for (name, summary) in groups {
+            if let Some(summary) = summary {
                 summary_row(ui, name, &summary.average_error_m, |v| significant(unit.from_si(v)));
             }
         }
     });
     ui.label(format!("Steps in which energy grows without a force: {violations}"));
-    if !replay.failures.is_empty() {
-        ui.label(format!("{} cases could not be simulated", replay.failures.len()));
+    if !report.failures.is_empty() {
+        let text = format!("{} cases cannot be simulated", report.failures.len());
+        ui.label(text).on_hover_text(report.failures.join("\n"));
     }
 }
-
-/// Whether a case belongs to a group.
-type Choice = fn(&Replay) -> bool;
 
 fn summary_row(ui: &mut Ui, name: &str, summary: &Summary, text: impl Fn(f64) -> String) {
     ui.label(name);

@@ -118,7 +118,7 @@ fn dataset_ui(
             ui.weak(format!("{flagged} cases with flags"));
         }
         match &checked.vehicle {
-            Some(Ok(vehicle)) => drop(ui.weak(format!("vehicle: {}", vehicle.name))),
+            Some(Ok(vehicle)) => drop(ui.weak(format!("vehicle: {vehicle}"))),
             Some(Err(error)) => problem_ui(ui, error),
             None => {}
         }

@@ -3,14 +3,16 @@
 use egui::{ProgressBar, ScrollArea, Ui};
 
 use crate::app::command::Command;
-use crate::app::force::{FinishedEvaluation, ForceSession, ForceView};
+use crate::app::force::{ForceSession, ForceView};
+use crate::app::model::file_name;
 use crate::app::panels::evaluation_plots::plots_ui;
 use crate::app::panels::evaluation_tables::tables_ui;
 use crate::app::panes::PaneContext;
 use crate::app::source::{Source, open_datasets};
-use crate::app::widgets::{dataset_choice, no_dataset_ui};
+use crate::app::widgets::{bad_cases_ui, dataset_choice, no_dataset_ui};
 use crate::data::{DatasetKind, Severity};
 use crate::render::theme;
+use crate::study::{EvaluateForceReport, EvaluatedCases, ForceEvaluation};
 
 /// Draws the choice of data, the tables and the plots.
 pub fn evaluation_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
@@ -18,23 +20,23 @@ pub fn evaluation_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let force = &session.force;
         start_ui(ui, (&mut view.force, force), &session.sources, commands);
-        let finished = match &force.evaluation.result {
-            None => {
-                ui.weak("Errors of the model on cases that it has not seen, beside a classic pulse, the nearest training case and Gaussian processes; how honest its bands are.");
-                return;
-            }
-            Some(Err(problem)) => {
-                let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-                ui.colored_label(color, format!("Not evaluated: {problem}"));
-                return;
-            }
-            Some(Ok(finished)) => finished,
+        if let Some(problem) = force.evaluation.problem() {
+            let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
+            ui.colored_label(color, format!("Not evaluated: {problem}"));
+            return;
+        }
+        let Some(answer) = force.evaluation.ok() else {
+            ui.weak("Errors of the model on cases that it has not seen, beside a classic pulse, the nearest training case and Gaussian processes; how honest its bands are.");
+            return;
         };
+        let ForceEvaluation::Cases(report) = &answer.report else { return };
         ui.separator();
-        heading_ui(ui, finished);
-        tables_ui(ui, finished, (&mut view.force, view.units));
-        ui.separator();
-        plots_ui(ui, finished, (view, session.fit_plots), commands);
+        heading_ui(ui, report);
+        tables_ui(ui, &report.evaluation, (&mut view.force, view.units));
+        if let Some(cases) = &answer.cases {
+            ui.separator();
+            plots_ui(ui, (report, cases), (view, session.fit_plots), commands);
+        }
     });
 }
 
@@ -44,7 +46,7 @@ fn start_ui(
     sources: &[Source],
     commands: &mut Vec<Command>,
 ) {
-    let datasets = open_datasets(sources, DatasetKind::Force);
+    let datasets = open_datasets(sources, &[DatasetKind::Force]);
     let Some(current) = &force.model.current else {
         ui.label("There is no force model to evaluate: open or train one in the Training pane.");
         return;
@@ -58,16 +60,18 @@ fn start_ui(
         ui.label(&current.name);
         let name = ui.label("on");
         dataset_choice(ui, "evaluated data", &datasets, &mut view.evaluated).labelled_by(name.id);
-        ui.radio_value(&mut view.evaluate_all, false, "cases it has not seen")
+        let cases = &mut view.evaluated_cases;
+        ui.radio_value(cases, EvaluatedCases::Test, "cases it has not seen")
             .on_hover_text("By content: a training case under another name is recognised");
-        ui.radio_value(&mut view.evaluate_all, true, "all cases")
+        ui.radio_value(cases, EvaluatedCases::All, "all cases")
             .on_hover_text("Those that it has learned from too: flatters the model");
-        let idle = force.evaluation.job.is_none();
-        if ui.add_enabled(idle, egui::Button::new("Evaluate")).clicked() {
+        bad_cases_ui(ui, &mut view.bad_cases);
+        let is_idle = !force.evaluation.is_running();
+        if ui.add_enabled(is_idle, egui::Button::new("Evaluate")).clicked() {
             commands.push(Command::Evaluate);
         }
     });
-    if let Some(job) = &force.evaluation.job {
+    if let Some(job) = force.evaluation.job() {
         ui.horizontal(|ui| {
             if ui.button("Cancel").clicked() {
                 commands.push(Command::CancelEvaluation);
@@ -85,12 +89,11 @@ fn start_ui(
     }
 }
 
-fn heading_ui(ui: &mut Ui, finished: &FinishedEvaluation) {
-    let [model, data] = &finished.names;
-    let evaluation = &finished.evaluation;
+fn heading_ui(ui: &mut Ui, report: &EvaluateForceReport) {
+    let model = file_name(report.model_file.as_ref());
+    let (data, evaluation) = (file_name(&report.data), &report.evaluation);
     ui.horizontal_wrapped(|ui| {
-        let n_cases = evaluation.figures.overall.n_cases;
-        ui.strong(format!("{model} on {n_cases} cases of {data}"));
+        ui.strong(format!("{model} on {} cases of {data}", report.n_test));
         ui.weak(format!("baselines fitted to its {} training cases", evaluation.n_train));
         if ui.button("Copy as text").clicked() {
             ui.ctx().copy_text(evaluation.to_text());
@@ -100,11 +103,14 @@ fn heading_ui(ui: &mut Ui, finished: &FinishedEvaluation) {
         }
     });
     let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-    if finished.n_known > 0 {
-        let text = format!("{} of these cases were learned from", finished.n_known);
+    if report.n_trained_on > 0 {
+        let text = format!("{} of these cases were learned from", report.n_trained_on);
         ui.colored_label(color, text);
     }
-    for problem in evaluation.problems.iter().chain(&finished.left_out) {
+    for problem in &evaluation.problems {
         ui.colored_label(color, problem);
+    }
+    for why in &report.left_out {
+        ui.colored_label(color, format!("Left out: {why}"));
     }
 }

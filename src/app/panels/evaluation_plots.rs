@@ -2,17 +2,18 @@
 
 use egui::{Id, Ui};
 
-use crate::analysis::Spread;
+use crate::analysis::Estimate;
 use crate::app::command::Command;
-use crate::app::force::{EvaluatedCase, FinishedEvaluation};
 use crate::app::state::View;
 use crate::app::widgets::figure_frame;
 use crate::figure::{
     CoveragePoint, Figure, ForceComponent, ForecastFigure, ParityPoint, Role, coverage_figure,
     forecast_figure, parity_figure, pit_figure,
 };
+use crate::force::ForceCase;
 use crate::force::metrics::{BAND_LEVELS, Coverage};
 use crate::render::FigureOptions;
+use crate::study::{EvaluateForceReport, EvaluatedForceCases};
 use crate::units::Quantity;
 
 /// Height of a plot, points.
@@ -23,15 +24,15 @@ const N_COLUMNS: usize = 3;
 /// Draws all plots.
 pub fn plots_ui(
     ui: &mut Ui,
-    finished: &FinishedEvaluation,
+    (report, cases): (&EvaluateForceReport, &EvaluatedForceCases),
     (view, reset): (&mut View, bool),
     commands: &mut Vec<Command>,
 ) {
     let mut figures = vec![
-        parity(finished, ("Impulse", "|P|", Quantity::Impulse), view),
-        parity(finished, ("Peak force", "Peak |F|", Quantity::Force), view),
+        parity(cases, ("Impulse", "|P|", Quantity::Impulse), view),
+        parity(cases, ("Peak force", "Peak |F|", Quantity::Force), view),
     ];
-    figures.extend(calibration(finished));
+    figures.extend(calibration(report));
     rows_ui(ui, &figures, (None, reset), commands);
     ui.horizontal(|ui| {
         ui.strong("Sample cases, from the smallest to the largest impulse");
@@ -39,7 +40,7 @@ pub fn plots_ui(
             ui.radio_value(&mut view.force.sample_component, component, component.label());
         }
     });
-    let samples: Vec<Figure> = finished
+    let samples: Vec<Figure> = cases
         .samples
         .iter()
         .map(|(case, forecast)| {
@@ -85,33 +86,29 @@ fn rows_ui(
 }
 
 fn parity(
-    finished: &FinishedEvaluation,
+    cases: &EvaluatedForceCases,
     (title, label, quantity): (&str, &str, Quantity),
     view: &View,
 ) -> Figure {
-    let of = |evaluated: &EvaluatedCase| -> (f64, Spread) {
-        let [px, py] = evaluated.case.impulse_n_s;
-        if quantity == Quantity::Impulse {
-            (px.hypot(py), evaluated.impulse_n_s)
-        } else {
-            (evaluated.case.peak_n, evaluated.peak_n)
-        }
-    };
-    let point = |evaluated: &EvaluatedCase| {
-        let (observed, spread) = of(evaluated);
+    let point = |(case, impulse_n_s, peak_n): &(ForceCase, Estimate, Estimate)| {
+        let [px, py] = case.impulse_n_s;
+        let (observed, estimate) = match quantity {
+            Quantity::Impulse => (px.hypot(py), impulse_n_s),
+            _ => (case.peak_n, peak_n),
+        };
         ParityPoint {
             observed,
-            predicted: spread.median,
-            interval: Some(spread.ninety),
-            is_clean: evaluated.case.is_clean(),
+            predicted: estimate.median,
+            interval: estimate.interval(0.9),
+            is_clean: case.is_clean(),
         }
     };
-    let points: Vec<ParityPoint> = finished.cases.iter().map(point).collect();
+    let points: Vec<ParityPoint> = cases.all.iter().map(point).collect();
     parity_figure((title, label, "90 % interval"), &points, (quantity, view.units))
 }
 
-fn calibration(finished: &FinishedEvaluation) -> Vec<Figure> {
-    let Some(spread) = &finished.evaluation.figures.overall.probabilistic else {
+fn calibration(report: &EvaluateForceReport) -> Vec<Figure> {
+    let Some(spread) = &report.evaluation.figures.overall.probabilistic else {
         return Vec::new();
     };
     let points = |coverage: &[Coverage]| -> Vec<CoveragePoint> {

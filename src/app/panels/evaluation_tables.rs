@@ -2,19 +2,18 @@
 
 use egui::{Grid, Ui};
 
-use crate::app::force::{FinishedEvaluation, ForceView, Statistic};
+use crate::app::force::{ForceView, Statistic};
 use crate::force::metrics::{BAND_LEVELS, Coverage, Figures, ProbabilisticFigures};
 use crate::force::{Evaluation, ModelFigures};
 use crate::numerics::Summary;
-use crate::units::{Quantity, UnitSystem};
+use crate::units::{Quantity, UnitSystem, percent};
 
 /// Draws errors, coverage and errors by cluster.
 pub fn tables_ui(
     ui: &mut Ui,
-    finished: &FinishedEvaluation,
+    evaluation: &Evaluation,
     (view, units): (&mut ForceView, UnitSystem),
 ) {
-    let evaluation = &finished.evaluation;
     ui.horizontal(|ui| {
         ui.label("Errors, over cases");
         for statistic in Statistic::ALL {
@@ -159,10 +158,6 @@ fn coverage_rows_ui(ui: &mut Ui, name: &str, spread: &ProbabilisticFigures) {
         }
         ui.end_row();
     }
-}
-
-fn percent(share: f64) -> String {
-    format!("{:.1} %", share * 100.0)
 }
 
 impl Statistic {

@@ -5,10 +5,11 @@ use egui::{ComboBox, Grid, Id, Ui};
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
 use crate::app::widgets::{figure_frame, value_row};
-use crate::collision::{ChannelClass, PrincipalDirectionOfForce, Pulse, PulseShape};
+use crate::collision::{ChannelClass, Pulse, PulseShape};
 use crate::data::{ForceHistory, contact_interval};
 use crate::figure::analysis_force_figure;
 use crate::render::FigureOptions;
+use crate::study::{ForceReport, SimulateAnswer};
 use crate::units::{Quantity, UnitSystem};
 
 /// Interval at which pulses are drawn, s.
@@ -17,10 +18,10 @@ const PULSE_INTERVAL_S: f64 = 5e-4;
 /// Draws the force plot with its readouts.
 pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands } = pane;
-    let Some(analysis) = analysis_or_hint(ui, session) else {
+    let Some(SimulateAnswer { report, analysis }) = analysis_or_hint(ui, session) else {
         return;
     };
-    let Some(force) = &analysis.force else {
+    let (Some(force), Some(numbers)) = (&analysis.force, &report.force) else {
         ui.label("This file holds no contact force.");
         return;
     };
@@ -42,7 +43,7 @@ pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             "Half-sine, haversine, triangle and square of the same impulse and duration",
         );
     });
-    readouts_ui(ui, force, view.units);
+    readouts_ui(ui, numbers, view.units);
     let pulses = if project.show_pulses { pulses(force) } else { Vec::new() };
     let figure = analysis_force_figure(analysis, project.channel_class, &pulses, view.units);
     match figure {
@@ -62,15 +63,16 @@ pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     }
 }
 
-fn readouts_ui(ui: &mut Ui, force: &ForceHistory, units: UnitSystem) {
-    let [px, py] = force.impulse_n_s();
+fn readouts_ui(ui: &mut Ui, force: &ForceReport, units: UnitSystem) {
+    let [px, py] = force.impulse_n_s;
+    let peak = Quantity::Force.shown(force.peak_n, units);
     Grid::new("force readouts").num_columns(4).striped(true).show(ui, |ui| {
         let half_rows = [
             ("Impulse", Quantity::Impulse.shown_vector([px, py], units)),
             ("|Impulse|", Quantity::Impulse.shown(px.hypot(py), units)),
-            ("Peak |F|", peak_text(force, units)),
+            ("Peak |F|", format!("{peak} at {:.1} ms", force.peak_time_s * 1e3)),
             ("Contact", contact_text(force)),
-            ("PDOF", pdof_text([px, py])),
+            ("PDOF", pdof_text(force)),
         ];
         for (label, text) in half_rows {
             value_row(ui, label, &text);
@@ -78,23 +80,19 @@ fn readouts_ui(ui: &mut Ui, force: &ForceHistory, units: UnitSystem) {
     });
 }
 
-fn peak_text(force: &ForceHistory, units: UnitSystem) -> String {
-    force.peak().map_or("none".to_owned(), |(peak, at)| {
-        format!("{} at {:.1} ms", Quantity::Force.shown(peak, units), at * 1e3)
-    })
-}
-
-fn contact_text(force: &ForceHistory) -> String {
-    contact_interval(force).map_or("none".to_owned(), |(start, end)| {
-        format!("{:.1} ms, from {:.1} to {:.1} ms", (end - start) * 1e3, start * 1e3, end * 1e3)
-    })
+fn contact_text(force: &ForceReport) -> String {
+    let (Some(start), Some(end)) = (force.contact_start_s, force.contact_end_s) else {
+        return "none".to_owned();
+    };
+    format!("{:.1} ms, from {:.1} to {:.1} ms", (end - start) * 1e3, start * 1e3, end * 1e3)
 }
 
 /// Against the heading before the impact, along X.
-fn pdof_text(impulse_n_s: [f64; 2]) -> String {
-    PrincipalDirectionOfForce::from_impulse(impulse_n_s, 0.0).map_or("none".to_owned(), |pdof| {
-        format!("{:.0} deg, {} o'clock", pdof.angle_deg(), pdof.clock())
-    })
+fn pdof_text(force: &ForceReport) -> String {
+    match (force.pdof_deg, force.pdof_clock) {
+        (Some(angle_deg), Some(clock)) => format!("{angle_deg:.0} deg, {clock} o'clock"),
+        _ => "none".to_owned(),
+    }
 }
 
 /// The classic pulses of the same impulse over the same contact.

@@ -41,20 +41,20 @@ pub use vehicle::vehicle_ui;
 
 use egui::{RichText, Ui};
 
-use crate::analysis::Analysis;
 use crate::app::state::Session;
 use crate::render::theme;
+use crate::study::SimulateAnswer;
 
-/// The analysis, or a word on why there is none.
-fn analysis_or_hint<'a>(ui: &mut Ui, session: &'a Session) -> Option<&'a Analysis> {
-    match &session.analysis.result {
-        Some(Ok(analysis)) => return Some(analysis),
+/// The simulation of the subject, or a word on why there is none.
+fn analysis_or_hint<'a>(ui: &mut Ui, session: &'a Session) -> Option<&'a SimulateAnswer> {
+    match &session.analysis.answer {
+        Some(Ok(answer)) => return Some(answer),
         Some(Err(error)) => {
             let dark = ui.visuals().dark_mode;
             let color = theme::severity_color(crate::data::Severity::Error, dark);
             ui.colored_label(color, format!("Not computed: {error}"));
         }
-        None if session.analysis.job.is_some()
+        None if session.analysis.is_waiting()
             || session.sources.iter().any(|s| !s.is_settled()) =>
         {
             ui.horizontal(|ui| (ui.spinner(), ui.label("Working…")));

@@ -1,4 +1,4 @@
-//! The response network beside other models, on trajectories that none has seen.
+//! The response network beside other models, on trajectories that none has seen, or alone.
 
 use egui::{DragValue, Grid, ProgressBar, ScrollArea, Ui};
 
@@ -8,22 +8,26 @@ use crate::app::panels::model_comparison_plots::{browser_ui, overview_ui};
 use crate::app::panes::PaneContext;
 use crate::app::response::{ComparisonForm, ComparisonStatus};
 use crate::app::source::{Source, open_datasets};
-use crate::app::widgets::{dataset_choice, duration_text, no_dataset_ui};
+use crate::app::widgets::{
+    assumptions_ui, bad_cases_ui, dataset_choice, duration_text, no_dataset_ui,
+};
 use crate::data::{DatasetKind, Severity};
 use crate::figure::model_name;
 use crate::render::theme;
 use crate::response::comparison::{
     Comparison, ComparisonTable, all_tables, paper_metrics, to_markdown,
 };
+use crate::study::{CompareReport, EvaluatedCases};
 
 /// Draws the form, the figures, the case browser and the tables.
 pub fn model_comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let has_data = form_ui(ui, &mut project.response.comparison, &session.sources);
-        let status = &mut session.response.comparison;
-        buttons_ui(ui, status, has_data, commands);
-        match &status.result {
+        let response = &mut session.response;
+        let can_start = [has_data, has_data && response.model.current.is_some()];
+        buttons_ui(ui, &mut response.comparison, can_start, commands);
+        match &response.comparison.shown {
             None => {
                 ui.weak("The 4DOF model by the data sheet and tuned by particle swarm, a plain network, and the response network: fitted to the same trajectories, asked about the same others. Takes some minutes a choice; or open a comparison.json that `impactlab compare --out` has written.");
             }
@@ -31,9 +35,10 @@ pub fn model_comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
                 ui.colored_label(color, format!("Not compared: {problem}"));
             }
-            Some(Ok(comparison)) => {
+            Some(Ok(answer)) => {
+                let comparison = &answer.report.comparison;
                 ui.separator();
-                heading_ui(ui, comparison);
+                heading_ui(ui, &answer.report);
                 overview_ui(ui, comparison, (view.units, session.fit_plots), commands);
                 ui.separator();
                 browser_ui(ui, comparison, (view, session.fit_plots), commands);
@@ -46,7 +51,7 @@ pub fn model_comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 
 /// Whether there is something to compare on.
 fn form_ui(ui: &mut Ui, form: &mut ComparisonForm, sources: &[Source]) -> bool {
-    let datasets = open_datasets(sources, DatasetKind::Trajectory);
+    let datasets = open_datasets(sources, &[DatasetKind::Trajectory]);
     if datasets.is_empty() {
         no_dataset_ui(ui, DatasetKind::Trajectory);
     }
@@ -68,6 +73,16 @@ fn form_ui(ui: &mut Ui, form: &mut ComparisonForm, sources: &[Source]) -> bool {
         let name = ui.label("settings");
         let field = egui::TextEdit::singleline(&mut form.config).desired_width(160.0);
         ui.add(field.hint_text("TOML, optional")).labelled_by(name.id);
+        bad_cases_ui(ui, &mut form.bad_cases);
+    });
+    ui.horizontal_wrapped(|ui| {
+        ui.label("The current model alone is evaluated on");
+        let cases = &mut form.evaluated_cases;
+        ui.radio_value(cases, EvaluatedCases::Test, "cases it has not seen").on_hover_text(
+            "Those that were kept for its test; of other data, all that it was not trained on",
+        );
+        ui.radio_value(cases, EvaluatedCases::All, "all cases")
+            .on_hover_text("Those that it has learned from too: flatters the model");
     });
     !datasets.is_empty()
 }
@@ -75,18 +90,23 @@ fn form_ui(ui: &mut Ui, form: &mut ComparisonForm, sources: &[Source]) -> bool {
 fn buttons_ui(
     ui: &mut Ui,
     status: &mut ComparisonStatus,
-    has_data: bool,
+    [can_compare, can_evaluate]: [bool; 2],
     commands: &mut Vec<Command>,
 ) {
+    let is_idle = !status.is_running();
     ui.horizontal_wrapped(|ui| {
-        let can_start = has_data && status.job.is_none();
-        if ui.add_enabled(can_start, egui::Button::new("Compare")).clicked() {
+        if ui.add_enabled(is_idle && can_compare, egui::Button::new("Compare")).clicked() {
             commands.push(Command::Compare(ComparisonCommand::Start));
+        }
+        let evaluate =
+            ui.add_enabled(is_idle && can_evaluate, egui::Button::new("Evaluate current model"));
+        if evaluate.on_hover_text("Without training any model").clicked() {
+            commands.push(Command::Compare(ComparisonCommand::Evaluate));
         }
         if ui.button("Open…").on_hover_text("A comparison.json").clicked() {
             commands.push(Command::Ask(Purpose::OpenComparison));
         }
-        let has_result = status.comparison().is_some();
+        let has_result = status.report().is_some();
         ui.add_enabled_ui(has_result, |ui| {
             let hint = "JSON, Markdown and tables into a folder";
             if ui.button("Save…").on_hover_text(hint).clicked() {
@@ -102,36 +122,43 @@ fn buttons_ui(
             }
         });
     });
-    let Some(job) = &status.job else { return };
+    let Some((what, progress, elapsed)) = status.progress() else { return };
     ui.horizontal(|ui| {
         if ui.button("Cancel").clicked() {
             commands.push(Command::Compare(ComparisonCommand::Cancel));
         }
-        let progress = job.progress();
-        let left = progress.time_left(job.elapsed());
+        let left = progress.time_left(elapsed);
         let left = left.map_or(String::new(), |t| format!(", {} left", duration_text(t)));
         match progress.fraction() {
             Some(fraction) => {
                 let text = format!("{}{left}", progress.message);
                 ui.add(ProgressBar::new(fraction).desired_width(520.0).text(text));
             }
-            None => drop((ui.spinner(), ui.label("preparing"))),
+            None => drop((ui.spinner(), ui.label(what))),
         }
     });
 }
 
-fn heading_ui(ui: &mut Ui, comparison: &Comparison) {
+fn heading_ui(ui: &mut Ui, report: &CompareReport) {
+    let comparison = &report.comparison;
     ui.horizontal_wrapped(|ui| {
-        ui.strong(format!(
-            "{}: {} trajectories that no model has seen; choices of those to learn from: {}",
-            comparison.data,
-            comparison.test.len(),
-            comparison.n_choices
-        ));
+        let n_test = comparison.test.len();
+        ui.strong(match comparison.models.len() {
+            1 => format!("{}: one model on {n_test} trajectories", comparison.data),
+            _ => format!(
+                "{}: {n_test} trajectories that no model has seen; choices of those to learn from: {}",
+                comparison.data, comparison.n_choices
+            ),
+        });
         if ui.button("Copy as Markdown").clicked() {
             ui.ctx().copy_text(to_markdown(comparison));
         }
     });
+    assumptions_ui(ui, &report.assumptions);
+    let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+    for why in &report.left_out {
+        ui.colored_label(color, format!("Left out: {why}"));
+    }
     let of_paper = comparison.models.iter().filter_map(|model| {
         let paper = paper_metrics(model.kind, model.trajectories)?;
         let name = model_name(&model.name, paper.trajectories.unwrap_or(0));

@@ -4,10 +4,11 @@ use egui::{RichText, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialogs::{MODEL_ENDING, Purpose};
-use crate::app::model::{ModelStatus, SHIPPED_NAME};
+use crate::app::model::ModelStatus;
 use crate::app::network::TrainedModel;
 use crate::data::Severity;
 use crate::render::theme;
+use crate::study::ModelChoice;
 
 /// What to do while there is no model.
 ///
@@ -66,7 +67,7 @@ pub fn model_row_ui<M: TrainedModel>(
         if ui.small_button("Save…").clicked() {
             commands.push(Command::Ask(Purpose::SaveModel(M::NETWORK)));
         }
-        if current.name != SHIPPED_NAME && ui.small_button("Shipped").clicked() {
+        if current.choice != ModelChoice::default() && ui.small_button("Shipped").clicked() {
             commands.push(Command::UseModel(M::NETWORK, None));
         }
     });
@@ -76,13 +77,22 @@ pub fn model_row_ui<M: TrainedModel>(
     }
 }
 
-/// The same where a model has just been trained: a field for the path, too, for systems without file
-/// dialogs.
+/// The same where models are trained: a field for the path, too, for systems without file dialogs,
+/// and what a cancelled training has left.
 pub fn save_model_ui<M: TrainedModel>(
     ui: &mut Ui,
     model: &mut ModelStatus<M>,
     commands: &mut Vec<Command>,
 ) {
+    if let Some(set_aside) = &model.set_aside {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(format!("The cancelled training left a model: {}", set_aside.name));
+            let hint = "Answer by it from now on; otherwise the model before stays in use";
+            if ui.button("Use it").on_hover_text(hint).clicked() {
+                commands.push(Command::UseTrained(M::NETWORK));
+            }
+        });
+    }
     let Some(current) = &model.current else { return };
     ui.horizontal_wrapped(|ui| {
         ui.strong("Model");

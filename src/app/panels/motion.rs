@@ -5,9 +5,10 @@ use egui::{Id, Ui};
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
-use crate::app::widgets::figure_frame;
+use crate::app::widgets::{assumptions_ui, figure_frame};
 use crate::figure::{MOTION_CHANNELS, analysis_motion_figure, analysis_readout};
 use crate::render::FigureOptions;
+use crate::study::SimulateAnswer;
 
 /// Smallest height of one plot, points.
 const MIN_PLOT_HEIGHT: f32 = 110.0;
@@ -17,9 +18,10 @@ const TITLE_HEIGHT: f32 = 30.0;
 /// Draws v_x, v_y, yaw rate and roll over time, with a common cursor at the scene's time.
 pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { view, session, commands, .. } = pane;
-    let Some(analysis) = analysis_or_hint(ui, session) else {
+    let Some(SimulateAnswer { report, analysis }) = analysis_or_hint(ui, session) else {
         return;
     };
+    assumptions_ui(ui, &report.assumptions);
     let two_columns = ui.available_width() > 560.0;
     let rows = if two_columns { 2.0 } else { 4.0 };
     let height = (ui.available_height() / rows - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT);

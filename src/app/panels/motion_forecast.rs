@@ -24,6 +24,7 @@ use crate::figure::{
 };
 use crate::render::{FigureOptions, theme};
 use crate::response::STEP_S;
+use crate::study::PredictMotionAnswer;
 
 /// Width of the form at first, points.
 const FORM_WIDTH: f32 = 330.0;
@@ -72,7 +73,7 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                     let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
                     ui.colored_label(color, format!("No forecast: {problem}"));
                 }
-                None if session.response.forecast.asked.is_some() => {
+                None if session.response.forecast.is_waiting() => {
                     drop(ui.horizontal(|ui| (ui.spinner(), ui.label("Forecasting…"))));
                 }
                 None => {
@@ -137,7 +138,7 @@ fn force_ui(
         ui.add(DragValue::new(&mut form.seed).speed(0.2)).labelled_by(name.id);
     });
     let answer = session.response.forecast.ok();
-    if answer.is_some_and(|answer| !answer.is_predicted) {
+    if answer.is_some_and(|answer| !answer.is_predicted()) {
         let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
         if session.force.model.current.is_none() {
             ui.colored_label(color, "There is no force model: the given force is shown.");
@@ -149,8 +150,7 @@ fn force_ui(
             ui.colored_label(color, text);
         }
     }
-    for outside in answer.iter().filter_map(|a| a.forecast.force.as_ref()).flat_map(|f| &f.outside)
-    {
+    for outside in answer.iter().flat_map(|answer| &answer.answer.report.outside_training) {
         let [low, high] = outside.range;
         let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
         let text = format!(
@@ -201,7 +201,7 @@ fn shown_ui(ui: &mut Ui, view: &mut ResponseView, session: &Session, commands: &
 }
 
 fn end_s(answer: &MotionAnswer) -> f64 {
-    answer.forecast.distribution.n_instants().saturating_sub(1) as f64 * STEP_S
+    answer.answer.forecast.distribution.n_instants().saturating_sub(1) as f64 * STEP_S
 }
 
 fn figures_ui(
@@ -211,7 +211,7 @@ fn figures_ui(
     commands: &mut Vec<Command>,
 ) {
     let choice = &view.response;
-    let analysis = &answer.analysis;
+    let PredictMotionAnswer { analysis, forecast, .. } = &answer.answer;
     let time_s = session.time_s.min(end_s(answer));
     let is_shown = |map: &&Arc<DensityMap>| match choice.density {
         DensityChoice::Hidden => false,
@@ -222,8 +222,8 @@ fn figures_ui(
     let simulation = analysis.simulation.as_ref().map(|motion| &motion.series);
     let input = MotionForecastFigure {
         title: &analysis.name,
-        distribution: &answer.forecast.distribution,
-        central: &answer.forecast.central,
+        distribution: &forecast.distribution,
+        central: &forecast.central,
         bands: &answer.bands,
         density: density.map(|map| &**map),
         components: choice.components,

@@ -3,12 +3,13 @@
 use egui::{Grid, Ui};
 
 use crate::app::response::MotionAnswer;
-use crate::app::widgets::{SpreadRow, spread_table_ui, value_row};
-use crate::units::{Quantity, UnitSystem};
+use crate::app::widgets::{SpreadRow, assumptions_ui, spread_table_ui, value_row};
+use crate::units::{Quantity, UnitSystem, percent};
 
 /// Draws the outcome.
 pub fn outcome_ui(ui: &mut Ui, answer: &MotionAnswer, units: UnitSystem) {
-    let outcome = &answer.forecast.outcome;
+    let report = &answer.answer.report;
+    let outcome = &report.outcome;
     let when = match outcome.is_at_rest {
         true => format!("At rest after {:.2} s", outcome.time_s),
         false => format!("After {:.2} s, still moving", outcome.time_s),
@@ -27,16 +28,17 @@ pub fn outcome_ui(ui: &mut Ui, answer: &MotionAnswer, units: UnitSystem) {
             "Change since the impact, to the left; goes on beyond a turn",
         ),
     ];
-    spread_table_ui(ui, &answer.analysis.name, &rows);
-    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    assumptions_ui(ui, &report.assumptions);
+    spread_table_ui(ui, &report.scenario, &rows);
     Grid::new("motion outcome").num_columns(2).show(ui, |ui| {
         value_row(ui, "Speed", &Quantity::Speed.shown(outcome.speed_m_s, units));
         value_row(ui, "90 % region of the CG", &format!("{:.1} m²", outcome.region_90_m2));
         value_row(ui, "P(quarter turn or more)", &percent(outcome.p_quarter_turn));
         value_row(ui, "P(half turn or more)", &percent(outcome.p_half_turn));
-        let forces = answer.forecast.forces.len();
-        let driven =
-            if answer.is_predicted { format!("{forces} drawn") } else { "given".to_owned() };
+        let driven = match answer.is_predicted() {
+            true => format!("{} drawn", report.n_forces),
+            false => "given".to_owned(),
+        };
         value_row(ui, "Force", &driven);
     });
 }

@@ -2,18 +2,20 @@
 
 use egui::{Id, Panel, ScrollArea, Ui};
 
+use crate::analysis::pulse_curves;
 use crate::app::command::Command;
-use crate::app::force::{ForceSession, Forecast};
+use crate::app::force::ForceSession;
 use crate::app::panels::model_row::{model_row_ui, no_model_ui};
 use crate::app::panels::prediction_form::form_ui;
 use crate::app::panels::prediction_numbers::numbers_ui;
 use crate::app::panes::PaneContext;
-use crate::app::state::{Project, View};
+use crate::app::state::View;
 use crate::app::widgets::figure_frame;
 use crate::data::Severity;
 use crate::figure::{ForceComponent, ForecastFigure, forecast_figure};
 use crate::force::metrics::BAND_LEVELS;
 use crate::render::{FigureOptions, theme};
+use crate::study::PredictForceAnswer;
 
 /// Width of the form at first, points.
 const FORM_WIDTH: f32 = 340.0;
@@ -36,9 +38,9 @@ pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             model_ui(ui, &session.force, commands);
             form_ui(ui, (project, view), &session.force, commands);
-            if let Some(Ok(forecast)) = &session.force.forecast.answer {
+            if let Some(answer) = session.force.forecast.ok() {
                 ui.separator();
-                numbers_ui(ui, forecast, (&project.force.name, view.units));
+                numbers_ui(ui, &answer.report, view.units);
             }
         });
     });
@@ -50,10 +52,10 @@ pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
                 ui.colored_label(color, format!("Not predicted: {problem}"));
             }
-            Some(Ok(forecast)) => {
+            Some(Ok(answer)) => {
                 choices_ui(ui, view);
-                let shown = Shown { forecast, session: &session.force, reset: session.fit_plots };
-                plots_ui(ui, shown, (project, view), commands);
+                let shown = Shown { answer, session: &session.force, reset: session.fit_plots };
+                plots_ui(ui, shown, view, commands);
             }
         },
     );
@@ -119,17 +121,12 @@ fn choices_ui(ui: &mut Ui, view: &mut View) {
 
 #[derive(Clone, Copy)]
 struct Shown<'a> {
-    forecast: &'a Forecast,
+    answer: &'a PredictForceAnswer,
     session: &'a ForceSession,
     reset: bool,
 }
 
-fn plots_ui(
-    ui: &mut Ui,
-    shown: Shown<'_>,
-    (project, view): (&Project, &View),
-    commands: &mut Vec<Command>,
-) {
+fn plots_ui(ui: &mut Ui, shown: Shown<'_>, view: &View, commands: &mut Vec<Command>) {
     let levels: Vec<f64> = BAND_LEVELS
         .iter()
         .zip(view.force.bands)
@@ -137,14 +134,20 @@ fn plots_ui(
         .collect();
     let recorded = shown.session.recorded.as_ref().filter(|_| view.force.recorded);
     let recorded_name = recorded.map(|recorded| format!("{}, recorded", recorded.case));
-    let forecast = shown.forecast;
+    let PredictForceAnswer { report, forecast, prediction, .. } = shown.answer;
+    let pulses = if view.force.pulses {
+        let impulse_n_s = report.momentum_impulse_n_s;
+        pulse_curves(impulse_n_s, report.duration_s.median).unwrap_or_default()
+    } else {
+        Vec::new()
+    };
     let input = ForecastFigure {
-        name: &project.force.name,
-        forecast: &forecast.force,
+        name: &report.scenario,
+        forecast,
         levels: &levels,
         recorded: recorded_name.as_deref().zip(recorded.map(|recorded| &recorded.curve)),
-        pulses: if view.force.pulses { &forecast.pulses } else { &[] },
-        physics: view.force.physics.then_some(&forecast.physics),
+        pulses: &pulses,
+        physics: view.force.physics.then_some(&prediction.centre),
         units: view.units,
     };
     let components: Vec<ForceComponent> = ForceComponent::ALL

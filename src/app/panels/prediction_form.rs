@@ -36,9 +36,10 @@ pub fn form_ui(
         contact_ui(ui, scenario, view.units);
         body_ui(ui, scenario, &bodies.unwrap_or_default());
     });
-    if let Some(Ok(forecast)) = &force.forecast.answer {
+    if let Some(answer) = force.forecast.ok() {
+        let report = &answer.report;
         let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-        for outside in &forecast.outside {
+        for outside in &report.outside_training {
             let [low, high] = outside.range.map(significant);
             let text = format!(
                 "Outside the training: {} is {}, trained on {low} to {high} ({} standard deviations off)",
@@ -50,8 +51,14 @@ pub fn form_ui(
                 "The model has never seen such a collision: its bands do not hold there. Seen with the bullet on the right and the target at rest",
             );
         }
-        if !forecast.open.is_empty() {
-            ui.weak(format!("Averaged over {}, which is unknown.", forecast.open.join(" and ")));
+        let open = [
+            (report.is_contact_open, "the contact point"),
+            (report.is_body_open, "the bullet's body"),
+        ];
+        let open: Vec<&str> =
+            open.into_iter().filter_map(|(is_open, what)| is_open.then_some(what)).collect();
+        if !open.is_empty() {
+            ui.weak(format!("Averaged over {}, which is unknown.", open.join(" and ")));
         }
     }
 }

@@ -7,13 +7,11 @@ use crate::app::dialogs::Purpose;
 use crate::app::panes::PaneContext;
 use crate::app::state::{Project, Subject};
 use crate::app::widgets::{figure_frame, quantity_field, value_row};
-use crate::collision::{
-    BodyAfter, ContactLocation, ImpactSolution, PrincipalDirectionOfForce, PulseShape, Scenario,
-    ScenarioVehicle, Side,
-};
+use crate::collision::{ContactLocation, PulseShape, Scenario, ScenarioVehicle, Side};
 use crate::data::Severity;
 use crate::figure::impact_figure;
 use crate::render::{FigureOptions, theme};
+use crate::study::{BodyReport, ImpactAnswer, ImpactReport};
 use crate::units::{Quantity, UnitSystem};
 
 /// Height of the plan, points.
@@ -37,9 +35,9 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 commands.push(Command::Select(Subject::Scenario));
             }
         });
-        let solution = project.scenario.solve();
-        if let Ok(solution) = &solution
-            && let Ok(figure) = impact_figure(&project.scenario, solution, view.units)
+        let answer = session.impact.answer.as_ref();
+        if let Some(Ok(ImpactAnswer { scenario, solution, .. })) = answer.map(|a| a.as_deref())
+            && let Ok(figure) = impact_figure(scenario, solution, view.units)
         {
             let options = FigureOptions {
                 id: "impact".to_owned(),
@@ -50,12 +48,13 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             };
             figure_frame(ui, (&figure.title, &figure), &options, commands);
         }
-        match &solution {
-            Ok(solution) => solution_ui(ui, solution, view.units),
-            Err(error) => {
+        match answer {
+            Some(Ok(answer)) => solution_ui(ui, &answer.report, view.units),
+            Some(Err(problem)) => {
                 let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
-                ui.colored_label(color, crate::error_chain(error));
+                ui.colored_label(color, problem);
             }
+            None => drop(ui.spinner()),
         }
         ui.separator();
         contact_form(ui, project, view.units);
@@ -169,19 +168,19 @@ fn location_form(ui: &mut Ui, location: &mut ContactLocation, units: UnitSystem)
     }
 }
 
-fn solution_ui(ui: &mut Ui, solution: &ImpactSolution, units: UnitSystem) {
+fn solution_ui(ui: &mut Ui, report: &ImpactReport, units: UnitSystem) {
     let impulse = |vector| Quantity::Impulse.shown_vector(vector, units);
     ui.strong("Momentum solution");
     Grid::new("solution").striped(true).num_columns(2).show(ui, |ui| {
-        value_row(ui, "Impulse on target", &impulse(solution.impulse_n_s));
-        let parts = [solution.impulse_normal_n_s, solution.impulse_tangential_n_s];
+        value_row(ui, "Impulse on target", &impulse(report.impulse_n_s));
+        let parts = [report.impulse_normal_n_s, report.impulse_tangential_n_s];
         value_row(ui, "normal, tangential", &impulse(parts));
-        value_row(ui, "Regime", solution.regime.label());
-        let closing = Quantity::Speed.shown(solution.closing_velocity_m_s[0].abs(), units);
+        value_row(ui, "Regime", report.regime.label());
+        let closing = Quantity::Speed.shown(report.closing_velocity_m_s[0].abs(), units);
         value_row(ui, "Closing speed", &closing);
-        let energy = Quantity::Energy.shown(solution.dissipated_energy_j, units);
+        let energy = Quantity::Energy.shown(report.dissipated_energy_j, units);
         value_row(ui, "Dissipated energy", &energy);
-        for (name, after) in [("target", &solution.target), ("bullet", &solution.bullet)] {
+        for (name, after) in [("target", &report.target), ("bullet", &report.bullet)] {
             for (label, text) in body_rows(after, units) {
                 value_row(ui, &format!("{label}, {name}"), &text);
             }
@@ -189,18 +188,16 @@ fn solution_ui(ui: &mut Ui, solution: &ImpactSolution, units: UnitSystem) {
     });
 }
 
-fn body_rows(after: &BodyAfter, units: UnitSystem) -> Vec<(&'static str, String)> {
-    let [dx, dy] = after.delta_v_m_s;
+fn body_rows(after: &BodyReport, units: UnitSystem) -> Vec<(&'static str, String)> {
     let vector = |value| Quantity::Speed.shown_vector(value, units);
     let mut rows = vec![
-        ("Δv", Quantity::Speed.shown(dx.hypot(dy), units)),
+        ("Δv", Quantity::Speed.shown(after.delta_v_magnitude_m_s, units)),
         ("Δv (X, Y)", vector(after.delta_v_m_s)),
         ("Velocity after", vector(after.velocity_m_s)),
         ("Yaw rate after", Quantity::AngularVelocity.shown(after.yaw_rate_rad_s, units)),
     ];
-    let pdof = |pdof: PrincipalDirectionOfForce| {
-        ("PDOF", format!("{:.0} deg, {} o'clock", pdof.angle_deg(), pdof.clock()))
-    };
-    rows.extend(after.pdof.map(pdof));
+    if let (Some(angle_deg), Some(clock)) = (after.pdof_deg, after.pdof_clock) {
+        rows.push(("PDOF", format!("{angle_deg:.0} deg, {clock} o'clock")));
+    }
     rows
 }

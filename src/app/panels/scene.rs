@@ -8,11 +8,12 @@ use crate::app::panes::PaneContext;
 use crate::app::widgets::figure_frame;
 use crate::figure::analysis_scene_figure;
 use crate::render::FigureOptions;
+use crate::study::SimulateAnswer;
 
 /// Draws the scene and the time slider.
 pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { view, session, commands, .. } = pane;
-    let Some(analysis) = analysis_or_hint(ui, session) else {
+    let Some(SimulateAnswer { analysis, .. }) = analysis_or_hint(ui, session) else {
         return;
     };
     let series = analysis.simulation.as_ref().map(|motion| &motion.series);

@@ -2,15 +2,15 @@
 
 use egui::{Grid, Ui};
 
-use crate::app::force::TrainingForm;
-use crate::app::panels::training_parts::settings_rows_ui;
+use crate::app::force::ForceTrainingForm;
+use crate::app::panels::training_parts::{optional_number_ui, settings_rows_ui};
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::dataset_choice;
 use crate::data::DatasetKind;
 
 /// Draws the form; whether there is something to train on.
-pub fn force_form_ui(ui: &mut Ui, form: &mut TrainingForm, sources: &[Source]) -> bool {
-    let datasets = open_datasets(sources, DatasetKind::Force);
+pub fn force_form_ui(ui: &mut Ui, form: &mut ForceTrainingForm, sources: &[Source]) -> bool {
+    let datasets = open_datasets(sources, &[DatasetKind::Force]);
     Grid::new("training form").num_columns(2).show(ui, |ui| {
         let hint = "Some of its cases are kept for the test, chosen by the seed";
         let name = ui.label("Force data set").on_hover_text(hint);
@@ -25,9 +25,9 @@ pub fn force_form_ui(ui: &mut Ui, form: &mut TrainingForm, sources: &[Source]) -
         });
         ui.end_row();
         let name = ui.label("Epochs");
-        ui.add(egui::DragValue::new(&mut form.epochs).range(1..=100_000).speed(1.0))
+        optional_number_ui(ui, &mut form.epochs, "as configured")
             .labelled_by(name.id)
-            .on_hover_text("At most; training stops before when the validation loss stops falling");
+            .on_hover_text("At most; 0 for what the settings say. Training stops before when the validation loss stops falling");
         ui.end_row();
         let name = ui.label("Seed");
         ui.add(egui::DragValue::new(&mut form.seed).speed(0.2))
@@ -37,7 +37,7 @@ pub fn force_form_ui(ui: &mut Ui, form: &mut TrainingForm, sources: &[Source]) -
         settings_rows_ui(
             ui,
             "network, loss, training, crush",
-            (&mut form.config, &mut form.resume),
+            (&mut form.config, &mut form.bad_cases, &mut form.resume),
         );
     });
     !datasets.is_empty()

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use egui::{ProgressBar, Ui};
+use egui::{DragValue, ProgressBar, Response, Ui};
 
 use crate::app::command::{Command, TrainingCommand};
 use crate::app::model::ModelStatus;
@@ -10,9 +10,10 @@ use crate::app::network::TrainedModel;
 use crate::app::panels::model_row::save_model_ui;
 use crate::app::panels::training_losses::{LossView, losses_ui};
 use crate::app::training_status::TrainingStatus;
-use crate::app::widgets::duration_text;
+use crate::app::widgets::{assumptions_ui, bad_cases_ui, duration_text};
 use crate::data::Severity;
 use crate::render::theme;
+use crate::study::{Assumption, BadCases};
 
 /// Draws the buttons and the progress of a training, the model, and the losses: of the training under
 /// way, else of the model's own training.
@@ -28,7 +29,8 @@ pub fn network_training_ui<M: TrainedModel>(
     if status.run.is_running() {
         run_progress_ui(ui, &status.doing(), status.progress());
     }
-    run_problems_ui(ui, status.problem.as_deref(), &status.left_out);
+    let notes = status.report.as_ref().map(M::notes).unwrap_or_default();
+    run_record_ui(ui, status.problem.as_deref(), notes);
     save_model_ui(ui, model, commands);
     ui.separator();
     match &model.current {
@@ -50,8 +52,13 @@ pub fn network_training_ui<M: TrainedModel>(
     }
 }
 
-/// Rows of a two-column grid: a file with settings, and whether to go on from a checkpoint.
-pub fn settings_rows_ui(ui: &mut Ui, parts: &str, (config, resume): (&mut String, &mut bool)) {
+/// Rows of a two-column grid: a file with settings, whether bad cases are left out, and whether to go
+/// on from a checkpoint.
+pub fn settings_rows_ui(
+    ui: &mut Ui,
+    parts: &str,
+    (config, bad_cases, resume): (&mut String, &mut BadCases, &mut bool),
+) {
     let name = ui.label("Settings file");
     let field = egui::TextEdit::singleline(config).desired_width(320.0);
     ui.add(field.hint_text(format!("TOML, optional: {parts}")))
@@ -59,9 +66,26 @@ pub fn settings_rows_ui(ui: &mut Ui, parts: &str, (config, resume): (&mut String
         .on_hover_text("What it leaves out keeps its default; `--print-config` prints them all");
     ui.end_row();
     ui.label("");
-    ui.checkbox(resume, "go on where a training of these settings was interrupted")
-        .on_hover_text("To the same weights as if it had not been");
+    bad_cases_ui(ui, bad_cases);
     ui.end_row();
+    ui.label("");
+    ui.checkbox(resume, "go on where a training of these settings was interrupted")
+        .on_hover_text("To the same weights as without the interruption");
+    ui.end_row();
+}
+
+/// A number that may be left open.
+///
+/// - `open`: what stands for it then; 0 leaves it open.
+pub fn optional_number_ui(ui: &mut Ui, value: &mut Option<usize>, open: &str) -> Response {
+    let mut number = value.unwrap_or(0);
+    let text = |n: f64, _| if n < 1.0 { open.to_owned() } else { format!("{n:.0}") };
+    let field = DragValue::new(&mut number).range(0..=100_000).speed(0.2).custom_formatter(text);
+    let response = ui.add(field);
+    if response.changed() {
+        *value = (number > 0).then_some(number);
+    }
+    response
 }
 
 /// Train, pause, cancel.
@@ -82,7 +106,7 @@ fn run_buttons_ui<M: TrainedModel>(
             commands.push(Command::Train(network, TrainingCommand::Pause(!run.is_paused())));
         }
         let cancel = ui.add_enabled(is_running && !run.is_cancelled(), egui::Button::new("Cancel"));
-        if cancel.on_hover_text("Ends the training; the weights so far are kept").clicked() {
+        if cancel.on_hover_text("Ends the training; the weights so far are set aside").clicked() {
             commands.push(Command::Train(network, TrainingCommand::Cancel));
         }
     });
@@ -100,8 +124,12 @@ fn run_progress_ui(ui: &mut Ui, what: &str, (fraction, left): (Option<f32>, Opti
     }
 }
 
-/// Why there is no model, and which cases it has not seen.
-fn run_problems_ui(ui: &mut Ui, problem: Option<&str>, left_out: &[String]) {
+/// Why there is no model, which cases were left out, and what was assumed.
+fn run_record_ui(
+    ui: &mut Ui,
+    problem: Option<&str>,
+    (left_out, assumptions): (&[String], &[Assumption]),
+) {
     let dark = ui.visuals().dark_mode;
     if let Some(problem) = problem {
         let color = theme::severity_color(Severity::Error, dark);
@@ -111,4 +139,5 @@ fn run_problems_ui(ui: &mut Ui, problem: Option<&str>, left_out: &[String]) {
         let color = theme::severity_color(Severity::Warning, dark);
         ui.colored_label(color, format!("Left out: {why}"));
     }
+    assumptions_ui(ui, assumptions);
 }

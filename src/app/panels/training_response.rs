@@ -1,16 +1,15 @@
 //! What the response network learns from, and how.
 
-use egui::{ComboBox, Grid, Ui};
+use egui::{ComboBox, DragValue, Grid, Ui};
 
-use crate::app::panels::training_parts::settings_rows_ui;
+use crate::app::panels::training_parts::{optional_number_ui, settings_rows_ui};
 use crate::app::response::{ResponseTrainingForm, TrainingMode};
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::dataset_choice;
-use crate::data::DatasetKind;
 
 /// Draws the form; whether there is something to train on.
 pub fn response_form_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, sources: &[Source]) -> bool {
-    let datasets = open_datasets(sources, DatasetKind::Trajectory);
+    let datasets = open_datasets(sources, form.mode.data_kinds());
     Grid::new("response training form").num_columns(2).show(ui, |ui| {
         let name = ui.label("Training mode");
         ComboBox::from_id_salt("training mode")
@@ -26,7 +25,7 @@ pub fn response_form_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, sources: &
             .on_hover_text("A pre-trained network keeps its first layers");
         ui.end_row();
         let hint = "A quarter of its cases is kept for the test, chosen by the seed of the split";
-        let name = ui.label("Trajectory data set").on_hover_text(hint);
+        let name = ui.label("Data set").on_hover_text(hint);
         dataset_choice(ui, "trajectories", &datasets, &mut form.dataset)
             .labelled_by(name.id)
             .on_hover_text(hint);
@@ -39,25 +38,31 @@ pub fn response_form_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, sources: &
 fn numbers_ui(ui: &mut Ui, form: &mut ResponseTrainingForm) {
     let is_fine_tuning = form.mode != TrainingMode::Pretrain;
     let name = ui.label("Trajectories");
-    let of_all = |n: f64, _| if n < 1.0 { "all".to_owned() } else { format!("{n:.0}") };
-    let n = egui::DragValue::new(&mut form.n_trajectories).range(0..=10_000).speed(0.1);
-    ui.add_enabled(is_fine_tuning, n.custom_formatter(of_all))
-        .labelled_by(name.id)
-        .on_hover_text("To learn from, spinning and others as they occur; 0 for all");
+    let hint = "To learn from, spinning and others as they occur; 0 for all that are not kept for the test";
+    ui.add_enabled_ui(is_fine_tuning, |ui| {
+        optional_number_ui(ui, &mut form.n_trajectories, "all")
+            .labelled_by(name.id)
+            .on_hover_text(hint);
+    });
     ui.end_row();
     let name = ui.label("Seed of the split");
-    ui.add(egui::DragValue::new(&mut form.seed).speed(0.2))
-        .labelled_by(name.id)
-        .on_hover_text("Which cases are kept for the test");
+    let hint = match is_fine_tuning {
+        true => "Which cases are kept for the test",
+        false => "Which cases are kept for the test, and every other random number",
+    };
+    ui.add(DragValue::new(&mut form.seed).speed(0.2)).labelled_by(name.id).on_hover_text(hint);
     ui.end_row();
     let name = ui.label("Seed of the choice");
-    ui.add(egui::DragValue::new(&mut form.choice).speed(0.2))
-        .labelled_by(name.id)
-        .on_hover_text("Which trajectories are learned from, and every other random number");
+    let mut choice = form.choice.unwrap_or(form.seed);
+    let field = ui.add_enabled(is_fine_tuning, DragValue::new(&mut choice).speed(0.2));
+    let hint = "Which trajectories are learned from, and every other random number; the seed of the split unless it is changed";
+    if field.labelled_by(name.id).on_hover_text(hint).changed() {
+        form.choice = Some(choice);
+    }
     ui.end_row();
     settings_rows_ui(
         ui,
         "network, single_steps, rollouts, physics, …",
-        (&mut form.config, &mut form.resume),
+        (&mut form.config, &mut form.bad_cases, &mut form.resume),
     );
 }

@@ -2,11 +2,15 @@
 
 use egui::{ComboBox, Grid, ScrollArea, Ui};
 
+use crate::app::model::file_name;
 use crate::app::panes::PaneContext;
-use crate::app::state::{Project, VehicleChoice};
+use crate::app::state::{FileStart, Project};
 use crate::app::widgets::{quantity_field, value_row};
+use crate::study::{
+    ASSUMED_CONTACT, ASSUMED_SPEED_M_S, DEFAULT_BULLET, DEFAULT_VEHICLE, VehicleChoice,
+};
 use crate::units::{Quantity, UnitSystem};
-use crate::vehicle::{Equations, Integrator, Preset, VehicleParameters};
+use crate::vehicle::{ContactPoint, Equations, Integrator, Preset, VehicleParameters};
 
 /// Draws the choice of vehicle and integrator, and the parameters.
 pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
@@ -14,7 +18,7 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         Grid::new("vehicle choice").num_columns(2).show(ui, |ui| {
             choice_ui(ui, project);
-            let equations = [Equations::Corrected, Equations::Paper];
+            let equations = [None, Some(Equations::Corrected), Some(Equations::Paper)];
             list_ui(ui, "Equations", &mut project.equations, (&equations, equations_label));
             let integrators = [Integrator::Rk4, Integrator::Euler];
             list_ui(ui, "Integration", &mut project.integrator, (&integrators, integrator_label));
@@ -23,7 +27,10 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         });
         ui.separator();
         ui.strong("For single force files");
-        Grid::new("file setup").num_columns(2).show(ui, |ui| setup_ui(ui, project, view.units));
+        Grid::new("file start").num_columns(2).show(ui, |ui| {
+            speed_ui(ui, &mut project.file_start, view.units);
+            contact_ui(ui, &mut project.file_start, view.units);
+        });
         if let VehicleChoice::Preset(id) = &project.vehicle
             && let Some(preset) = Preset::from_id(id)
         {
@@ -34,19 +41,32 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 }
 
 fn choice_ui(ui: &mut Ui, project: &mut Project) {
-    let name = ui.label("Struck vehicle");
-    let label = match &project.vehicle {
-        VehicleChoice::Automatic => "as the data set says".to_owned(),
+    let open = format!("as the data set says, else {}", DEFAULT_VEHICLE.id());
+    let hint = "A vehicle file of your own: open it, or drop it here";
+    vehicle_choice_ui(ui, ("Struck vehicle", hint), (&mut project.vehicle, &open));
+    let open = format!("not known, assumed to be {}", DEFAULT_BULLET.id());
+    let hint = "With the mass and yaw inertia of the case or the scenario";
+    vehicle_choice_ui(ui, ("Striking vehicle", hint), (&mut project.bullet, &open));
+}
+
+/// Chooses a vehicle in a two-column grid.
+///
+/// - `open`: what happens if none is chosen.
+fn vehicle_choice_ui(
+    ui: &mut Ui,
+    (title, hint): (&str, &str),
+    (choice, open): (&mut VehicleChoice, &str),
+) {
+    let name = ui.label(title);
+    let label = match choice {
+        VehicleChoice::Automatic => open.to_owned(),
         VehicleChoice::Preset(id) => id.clone(),
-        VehicleChoice::File(path) => {
-            path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
-        }
+        VehicleChoice::File(path) => file_name(path),
     };
-    ComboBox::from_id_salt("vehicle")
+    ComboBox::from_id_salt(title)
         .selected_text(label)
         .show_ui(ui, |ui| {
-            let choice = &mut project.vehicle;
-            ui.selectable_value(choice, VehicleChoice::Automatic, "as the data set says");
+            ui.selectable_value(choice, VehicleChoice::Automatic, open);
             for preset in Preset::ALL {
                 let value = VehicleChoice::Preset(preset.id().to_owned());
                 ui.selectable_value(choice, value, preset.id());
@@ -54,20 +74,7 @@ fn choice_ui(ui: &mut Ui, project: &mut Project) {
         })
         .response
         .labelled_by(name.id)
-        .on_hover_text("A vehicle file of your own: open it, or drop it here");
-    ui.end_row();
-    let name = ui.label("Striking vehicle");
-    ComboBox::from_id_salt("bullet")
-        .selected_text(&project.bullet_preset)
-        .show_ui(ui, |ui| {
-            for preset in Preset::ALL {
-                let id = preset.id().to_owned();
-                ui.selectable_value(&mut project.bullet_preset, id, preset.id());
-            }
-        })
-        .response
-        .labelled_by(name.id)
-        .on_hover_text("With the mass and yaw inertia of the case or the scenario");
+        .on_hover_text(hint);
     ui.end_row();
 }
 
@@ -91,10 +98,11 @@ fn list_ui<T: Copy + PartialEq>(
     ui.end_row();
 }
 
-fn equations_label(equations: Equations) -> &'static str {
+fn equations_label(equations: Option<Equations>) -> &'static str {
     match equations {
-        Equations::Corrected => "4DOF, corrected",
-        Equations::Paper => "4DOF as the paper prints it (diverges)",
+        None => "as the vehicle says",
+        Some(Equations::Corrected) => "4DOF, corrected",
+        Some(Equations::Paper) => "4DOF as the paper prints it (diverges)",
     }
 }
 
@@ -105,18 +113,66 @@ fn integrator_label(integrator: Integrator) -> &'static str {
     }
 }
 
-fn setup_ui(ui: &mut Ui, project: &mut Project, units: UnitSystem) {
-    let setup = &mut project.file_setup;
-    let [x_m, y_m] = &mut setup.contact_m;
-    let fields = [
-        ("Speed before impact", &mut setup.speed_m_s, Quantity::Speed, 0.0..=80.0),
-        ("Contact ahead of CG", x_m, Quantity::Length, -10.0..=10.0),
-        ("Contact left of CG", y_m, Quantity::Length, -3.0..=3.0),
-        ("Contact above ground", &mut setup.contact_height_m, Quantity::Length, 0.0..=3.0),
-    ];
-    for (label, value, quantity, range) in fields {
-        quantity_field(ui, label, value, quantity, (range, units));
+/// The speed before the impact, or what is assumed for it.
+fn speed_ui(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
+    let label = "Speed before impact";
+    let Some(speed_m_s) = &mut start.speed_m_s else {
+        let assumed = Quantity::Speed.shown(ASSUMED_SPEED_M_S, units);
+        if assumed_ui(ui, label, &assumed) {
+            start.speed_m_s = Some(ASSUMED_SPEED_M_S);
+        }
+        return;
+    };
+    quantity_field(ui, label, speed_m_s, Quantity::Speed, (0.0..=80.0, units));
+    if leave_open_ui(ui, "Speed not known") {
+        start.speed_m_s = None;
     }
+}
+
+/// Where the force acts, or what is assumed for it.
+fn contact_ui(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
+    let Some(ContactPoint { x_m, y_m, height_m }) = &mut start.contact else {
+        let ContactPoint { x_m, y_m, height_m } = ASSUMED_CONTACT;
+        let [x, y, z] = [x_m, y_m, height_m].map(|m| Quantity::Length.shown(m, units));
+        let assumed =
+            format!("{x} ahead, {y} left, {z} high; a yaw moment in the file counts first");
+        if assumed_ui(ui, "Contact point", &assumed) {
+            start.contact = Some(ASSUMED_CONTACT);
+        }
+        return;
+    };
+    for (label, value, range) in [
+        ("Contact ahead of CG", x_m, -10.0..=10.0),
+        ("Contact left of CG", y_m, -3.0..=3.0),
+        ("Contact above ground", height_m, 0.0..=3.0),
+    ] {
+        quantity_field(ui, label, value, Quantity::Length, (range, units));
+    }
+    if leave_open_ui(ui, "Contact point not known") {
+        start.contact = None;
+    }
+}
+
+/// A row that says what is assumed; whether the user wants to say it.
+fn assumed_ui(ui: &mut Ui, label: &str, assumed: &str) -> bool {
+    ui.label(label);
+    let is_clicked = ui
+        .horizontal_wrapped(|ui| {
+            let button = ui.small_button("Set").on_hover_text("Say it instead of assuming it");
+            ui.weak(format!("assumed: {assumed}"));
+            button.clicked()
+        })
+        .inner;
+    ui.end_row();
+    is_clicked
+}
+
+/// A row with a button; whether the user wants the value to be assumed.
+fn leave_open_ui(ui: &mut Ui, label: &str) -> bool {
+    ui.label("");
+    let is_clicked = ui.small_button(label).on_hover_text("Assume a value").clicked();
+    ui.end_row();
+    is_clicked
 }
 
 /// The parameters as the file has them, and by which rule the estimates came about.

@@ -1,62 +1,78 @@
-//! A comparison of models: made in the background, or read from a file.
+//! A comparison of response models, or the evaluation of one: made in the background, or read from a
+//! file.
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
 
-use crate::app::response::ComparisonForm;
-use crate::app::source::CheckedDataset;
+use crate::app::question_job::QuestionJob;
 use crate::error_chain;
-use crate::jobs::{Job, Report};
-use crate::response::comparison::{
-    Comparison, ComparisonSettings, compare_models, write_comparison,
+use crate::jobs::{Job, Progress};
+use crate::response::comparison::{Comparison, write_comparison};
+use crate::study::{
+    CompareAnswer, CompareReport, CompareRequest, EvaluateResponseRequest, Library,
 };
-use crate::response::{ResponseCase, ResponseConfig};
-use crate::vehicle::VehicleParameters;
 
-/// What is compared on what.
-pub struct ComparisonRequest {
-    /// What the data are called.
-    pub name: String,
-    /// The trajectories.
-    pub dataset: Arc<CheckedDataset>,
-    /// The struck vehicle.
-    pub vehicle: VehicleParameters,
-    /// Numbers, choices, seed, settings.
-    pub form: ComparisonForm,
-}
-
-/// A comparison, under way or over.
+/// A comparison or an evaluation, under way or over.
 #[derive(Default)]
 pub struct ComparisonStatus {
-    /// Under way; `None` in the end if it was cancelled.
-    pub job: Option<Job<Result<Option<Comparison>, String>>>,
+    /// Models that are trained and compared.
+    pub compare: QuestionJob<CompareRequest>,
+    /// The current model alone.
+    pub evaluate: QuestionJob<EvaluateResponseRequest>,
+    opening: Option<Job<Result<Comparison, String>>>,
     saving: Option<Job<Result<PathBuf, String>>>,
     /// The latest that is over, or why there is none.
-    pub result: Option<Result<Arc<Comparison>, String>>,
+    pub shown: Option<Result<Arc<CompareAnswer>, String>>,
     /// A folder to which it is to be saved, being typed.
     pub typed_path: String,
 }
 
 impl ComparisonStatus {
-    /// Trains and compares; what is under way is dropped.
+    /// Trains and compares; what is under way is cancelled.
     ///
     /// # Errors
     /// The operating system's, if no thread can be started.
     pub fn start(
         &mut self,
-        request: ComparisonRequest,
+        request: CompareRequest,
+        library: &Arc<Library>,
         wake: impl Fn() + Send + 'static,
     ) -> std::io::Result<()> {
-        let job = Job::spawn_in_background("compare", wake, move |report| run(&request, report))?;
-        self.job = Some(job);
-        Ok(())
+        self.cancel();
+        self.compare.start(request, library, wake)
+    }
+
+    /// Evaluates the current model; what is under way is cancelled.
+    ///
+    /// # Errors
+    /// The operating system's, if no thread can be started.
+    pub fn evaluate(
+        &mut self,
+        request: EvaluateResponseRequest,
+        library: &Arc<Library>,
+        wake: impl Fn() + Send + 'static,
+    ) -> std::io::Result<()> {
+        self.cancel();
+        self.evaluate.start(request, library, wake)
     }
 
     /// Stops what is under way.
     pub fn cancel(&self) {
-        if let Some(job) = &self.job {
-            job.cancel();
-        }
+        self.compare.cancel();
+        self.evaluate.cancel();
+    }
+
+    /// Whether something is under way.
+    pub fn is_running(&self) -> bool {
+        self.compare.is_running() || self.evaluate.is_running() || self.opening.is_some()
+    }
+
+    /// What is under way, how far it is, and since when.
+    pub fn progress(&self) -> Option<(&'static str, &Progress, Duration)> {
+        let compare = self.compare.job().map(|job| ("Comparing", job.progress(), job.elapsed()));
+        let evaluate = self.evaluate.job();
+        compare.or_else(|| evaluate.map(|job| ("Evaluating", job.progress(), job.elapsed())))
     }
 
     /// Reads a `comparison.json`.
@@ -65,9 +81,9 @@ impl ComparisonStatus {
     /// The operating system's, if no thread can be started.
     pub fn open(&mut self, path: PathBuf, wake: impl Fn() + Send + 'static) -> std::io::Result<()> {
         let job = Job::spawn("open comparison", wake, move |_| {
-            Comparison::load(&path).map(Some).map_err(|error| error_chain(&error))
+            Comparison::load(&path).map_err(|error| error_chain(&error))
         })?;
-        self.job = Some(job);
+        self.opening = Some(job);
         Ok(())
     }
 
@@ -80,12 +96,12 @@ impl ComparisonStatus {
         folder: PathBuf,
         wake: impl Fn() + Send + 'static,
     ) -> Result<(), String> {
-        let Some(Ok(comparison)) = &self.result else {
+        let Some(Ok(answer)) = &self.shown else {
             return Err("there is no comparison to save".to_owned());
         };
-        let comparison = Arc::clone(comparison);
+        let answer = Arc::clone(answer);
         let job = Job::spawn("save comparison", wake, move |_| {
-            let written = write_comparison(&folder, &comparison);
+            let written = write_comparison(&folder, &answer.report.comparison);
             written.map(|()| folder).map_err(|error| error_chain(&error))
         });
         self.saving = Some(job.map_err(|error| error.to_string())?);
@@ -94,67 +110,28 @@ impl ComparisonStatus {
 
     /// Takes in what has come to an end: the folder that was written.
     pub fn poll(&mut self) -> Option<Result<PathBuf, String>> {
-        let ended = self.job.as_mut().and_then(|job| job.poll().into_result("the comparison"));
-        if let Some(result) = ended {
-            self.job = None;
-            match result {
-                Ok(None) => {} // cancelled: the last one stays
-                Ok(Some(comparison)) => self.result = Some(Ok(Arc::new(comparison))),
-                Err(problem) => self.result = Some(Err(problem)),
-            }
+        if self.compare.poll() {
+            self.shown = self.compare.latest.as_ref().map(|latest| latest.answer.clone());
+        }
+        if self.evaluate.poll() {
+            self.shown = self.evaluate.latest.as_ref().map(|latest| latest.answer.clone());
+        }
+        let opened = self.opening.as_mut().and_then(|job| job.poll().into_result("the reader"));
+        if let Some(opened) = opened {
+            self.opening = None;
+            self.shown = Some(opened.map(|comparison| {
+                let (left_out, assumptions) = (Vec::new(), Vec::new());
+                let report = CompareReport { comparison, left_out, assumptions };
+                Arc::new(CompareAnswer { report })
+            }));
         }
         let saved = self.saving.as_mut()?.poll().into_result("the writer")?;
         self.saving = None;
         Some(saved)
     }
 
-    /// The comparison, if there is one.
-    pub fn comparison(&self) -> Option<&Arc<Comparison>> {
-        self.result.as_ref()?.as_ref().ok()
-    }
-}
-
-/// # Errors
-/// A message for the user.
-fn run(request: &ComparisonRequest, report: &mut Report<'_>) -> Result<Option<Comparison>, String> {
-    let form = &request.form;
-    let config = match form.config.trim() {
-        "" => ResponseConfig::default(),
-        path => ResponseConfig::load(path.as_ref()).map_err(|error| error_chain(&error))?,
-    };
-    let settings = ComparisonSettings {
-        config,
-        trajectories: trajectories(&form.trajectories)?,
-        n_choices: form.n_choices.max(1),
-        seed: form.seed,
-    };
-    let (cases, mut problems) =
-        ResponseCase::of_dataset(&request.dataset.dataset, &request.vehicle);
-    // Two runs on one data set shall have the same cases.
-    if !problems.is_empty() {
-        return Err(error_chain(&problems.swap_remove(0)));
-    }
-    compare_models((&request.name, &cases), None, &settings, report)
-        .map_err(|error| error_chain(&error))
-}
-
-/// `5, 20` as numbers.
-fn trajectories(text: &str) -> Result<Vec<usize>, String> {
-    let number = |part: &str| match part.trim().parse::<usize>() {
-        Ok(n) if n > 0 => Ok(n),
-        _ => Err(format!("{part:?} is no number of trajectories, expected such as 5, 20")),
-    };
-    text.split(',').map(number).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_of_trajectories_are_read_or_refused() {
-        assert_eq!(trajectories("5, 20"), Ok(vec![5, 20]));
-        assert!(trajectories("5, x").unwrap_err().contains("\" x\""));
-        assert!(trajectories("0").is_err() && trajectories("").is_err());
+    /// What is told of the comparison, if there is one.
+    pub fn report(&self) -> Option<&CompareReport> {
+        self.shown.as_ref()?.as_ref().ok().map(|answer| &answer.report)
     }
 }

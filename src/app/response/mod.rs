@@ -2,18 +2,16 @@
 //! compares. The panels of the same names show it.
 
 mod comparison;
-mod question;
+mod motion;
 mod settings;
-mod training;
 mod update;
 
-pub use comparison::{ComparisonRequest, ComparisonStatus};
-pub use question::{DensityQuestion, MotionAnswer, MotionQuestion};
+pub use comparison::ComparisonStatus;
+pub use motion::{DensityQuestion, MotionAnswer, MotionQuestion};
 pub use settings::{
     ComparisonForm, DensityChoice, ForceChoice, ResponseProject, ResponseTrainingForm,
     ResponseView, TrainingMode,
 };
-pub use training::{ResponseTrainingData, run_response_training};
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -37,7 +35,7 @@ pub struct ResponseSession {
     pub gpu: Option<Arc<DensityGpu>>,
     /// A training, under way or over.
     pub training: TrainingStatus<ResponseModel>,
-    /// A comparison, under way or over.
+    /// A comparison or an evaluation, under way or over.
     pub comparison: ComparisonStatus,
     /// Where a training is kept while it runs, so that it can go on after a crash.
     pub checkpoint: Option<PathBuf>,

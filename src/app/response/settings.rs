@@ -4,6 +4,9 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+use crate::data::DatasetKind;
+use crate::study::{BadCases, CompareRequest, DEFAULT_DRAWS, EvaluatedCases};
+
 /// What the user works on.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -42,11 +45,11 @@ pub struct ForecastForm {
 
 impl Default for ForecastForm {
     fn default() -> Self {
-        Self { force: ForceChoice::default(), n_curves: 30, seed: 0 }
+        Self { force: ForceChoice::default(), n_curves: DEFAULT_DRAWS, seed: 0 }
     }
 }
 
-/// What a training starts from, and on what it goes on.
+/// What a training of the response network starts from and learns from.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TrainingMode {
     /// Fine-tunes the shipped pre-trained network on trajectories.
@@ -74,41 +77,39 @@ impl TrainingMode {
             Self::Pretrain => "pre-train a new network on simulations",
         }
     }
+
+    /// The kinds of data sets from which it can learn.
+    pub fn data_kinds(self) -> &'static [DatasetKind] {
+        match self {
+            Self::FineTuneShipped | Self::FineTuneCurrent | Self::FromScratch => {
+                &[DatasetKind::Trajectory]
+            }
+            Self::Pretrain => &[DatasetKind::Trajectory, DatasetKind::Force],
+        }
+    }
 }
 
 /// How a model is trained.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ResponseTrainingForm {
-    /// What the training starts from, and on what it goes on.
+    /// What it starts from and learns from.
     #[serde(alias = "course")]
     pub mode: TrainingMode,
-    /// Folder of the trajectory data set; the first that is open without.
+    /// Folder of the data set; the first that is open without.
     pub dataset: Option<PathBuf>,
-    /// Trajectories to learn from; 0 for all that are not kept for the test.
-    pub n_trajectories: usize,
+    /// Trajectories to learn from; all that are not kept for the test if not given.
+    pub n_trajectories: Option<usize>,
     /// Seed of the split into training and test.
     pub seed: u64,
-    /// Seed of the choice of trajectories and of all other draws.
-    pub choice: u64,
+    /// Seed of the choice of trajectories and of all other draws; the split's if not given.
+    pub choice: Option<u64>,
     /// A file with further settings; the model's own or the defaults if empty.
     pub config: String,
+    /// What happens to cases that cannot be used.
+    pub bad_cases: BadCases,
     /// Whether to go on from where a training of the same settings was interrupted.
     pub resume: bool,
-}
-
-impl Default for ResponseTrainingForm {
-    fn default() -> Self {
-        Self {
-            mode: TrainingMode::default(),
-            dataset: None,
-            n_trajectories: 20,
-            seed: 0,
-            choice: 0,
-            config: String::new(),
-            resume: false,
-        }
-    }
 }
 
 /// How models are compared.
@@ -125,12 +126,25 @@ pub struct ComparisonForm {
     pub seed: u64,
     /// A file with settings; the defaults if empty.
     pub config: String,
+    /// What happens to cases that cannot be used.
+    pub bad_cases: BadCases,
+    /// On which cases the current model is evaluated.
+    pub evaluated_cases: EvaluatedCases,
 }
 
 impl Default for ComparisonForm {
     fn default() -> Self {
-        let (dataset, config) = (None, String::new());
-        Self { dataset, trajectories: "5, 20".to_owned(), n_choices: 3, seed: 0, config }
+        let usual = CompareRequest::new("");
+        let numbers: Vec<String> = usual.trajectories.iter().map(usize::to_string).collect();
+        Self {
+            dataset: None,
+            trajectories: numbers.join(", "),
+            n_choices: usual.choices,
+            seed: usual.seed,
+            config: String::new(),
+            bad_cases: usual.bad_cases,
+            evaluated_cases: EvaluatedCases::default(),
+        }
     }
 }
 
@@ -166,7 +180,7 @@ pub struct ResponseView {
     pub loss_terms: Vec<String>,
     /// Whether the axis of the losses is logarithmic.
     pub log_losses: bool,
-    /// The case of a comparison that is looked at.
+    /// The case of a comparison whose paths are drawn.
     pub compared_case: Option<String>,
     /// The choice of the trajectories whose models are drawn in it, from 0.
     pub compared_choice: u64,

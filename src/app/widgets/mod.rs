@@ -1,10 +1,14 @@
 //! Parts that several panels use.
 
+mod assumptions;
+mod bad_cases;
 mod dataset_choice;
 mod figure_frame;
 mod quantity;
 mod spread_table;
 
+pub use assumptions::assumptions_ui;
+pub use bad_cases::bad_cases_ui;
 pub use dataset_choice::{dataset_choice, no_dataset_ui};
 pub use figure_frame::figure_frame;
 pub use quantity::{SliderRange, duration_text, quantity_field, quantity_slider, value_row};

@@ -1,0 +1,261 @@
+//! The questions that the project asks. What the project leaves open is left open here, so that the
+//! [`study`](crate::study) decides it, as it does for the command line.
+
+use std::path::{Path, PathBuf};
+
+use crate::app::force::ForceTrainingForm;
+use crate::app::model::CurrentModel;
+use crate::app::response::{ComparisonForm, ForceChoice, ResponseTrainingForm, TrainingMode};
+use crate::app::source::{Content, OpenDataset, Source};
+use crate::app::state::{FileStart, State, Subject};
+use crate::shipped::ModelSource;
+use crate::study::{
+    CompareRequest, ConfigChoice, Drive, EvaluateForceRequest, EvaluateResponseRequest,
+    FineTuneRequest, ForceQuestion, ForceSource, ImpactRequest, ModelChoice, MotionSource,
+    PredictForceRequest, PredictMotionRequest, ScenarioChoice, SeriesFile, SimulateDatasetRequest,
+    SimulateRequest, TrainForceRequest, TrainResponseRequest,
+};
+
+impl State {
+    /// The impulse solution of the scenario panel's scenario.
+    pub fn impact_request(&self) -> ImpactRequest {
+        ImpactRequest { scenario: self.scenario(), paper: false }
+    }
+
+    /// The simulation of the subject; `None` if there is none, or if its data are not open.
+    pub fn simulate_request(&self) -> Option<SimulateRequest> {
+        let project = &self.project;
+        Some(SimulateRequest {
+            vehicle: project.vehicle.clone(),
+            bullet: project.bullet.clone(),
+            equations: project.equations,
+            integrator: project.integrator,
+            duration_s: project.duration_s,
+            ..SimulateRequest::new(self.motion_source()?)
+        })
+    }
+
+    /// The simulation of a whole data set.
+    pub(in crate::app) fn replay_request(&self, dataset: PathBuf) -> SimulateDatasetRequest {
+        SimulateDatasetRequest {
+            dataset,
+            case: None,
+            vehicle: self.project.vehicle.clone(),
+            equations: self.project.equations,
+            integrator: self.project.integrator,
+        }
+    }
+
+    /// The force of the collision that the force prediction is about; `None` without a model.
+    pub fn force_request(&self) -> Option<PredictForceRequest> {
+        let (project, view) = (&self.project.force, &self.view.force);
+        Some(PredictForceRequest {
+            collision: ForceQuestion::Numbers {
+                name: project.name.clone(),
+                numbers: Box::new(project.scenario.clone()),
+            },
+            model: choice(self.session.force.model.current.as_ref())?,
+            body: None,
+            open_contact: false,
+            samples: view.n_curves,
+            seed: view.seed,
+        })
+    }
+
+    /// The motion of the struck vehicle after the force; `None` without a model or a subject.
+    ///
+    /// The force is the given one where the collision is not known, so that it cannot be predicted.
+    pub fn motion_request(&self) -> Option<PredictMotionRequest> {
+        let form = &self.project.response.forecast;
+        let force_model = choice(self.session.force.model.current.as_ref());
+        let force = match (form.force, force_model) {
+            (ForceChoice::Predicted, Some(model)) if self.is_collision_known() => {
+                ForceSource::Predicted(model)
+            }
+            _ => ForceSource::Given,
+        };
+        Some(PredictMotionRequest {
+            motion: self.simulate_request()?,
+            force,
+            response_model: choice(self.session.response.model.current.as_ref())?,
+            draws: form.n_curves,
+            seed: form.seed,
+        })
+    }
+
+    /// Whether the subject says how the vehicles met.
+    fn is_collision_known(&self) -> bool {
+        match &self.project.subject {
+            Some(Subject::Case { .. }) => self.session.force.recorded.is_some(),
+            Some(Subject::Scenario) => true,
+            Some(Subject::File(_)) | None => false,
+        }
+    }
+
+    /// A training of the force network on data sets that are open.
+    pub(in crate::app) fn train_force_request(
+        &self,
+        (chosen, extra): (&OpenDataset<'_>, &[OpenDataset<'_>]),
+    ) -> TrainForceRequest {
+        let form: &ForceTrainingForm = &self.project.force.training;
+        TrainForceRequest {
+            data: chosen.path.to_owned(),
+            extra: extra.iter().map(|of| of.path.to_owned()).collect(),
+            config: config(&form.config),
+            epochs: form.epochs,
+            seed: form.seed,
+            bad_cases: form.bad_cases,
+            checkpoint: self.session.force.checkpoint.clone(),
+            resume: form.resume,
+        }
+    }
+
+    /// A pre-training of the response network on a data set.
+    pub(in crate::app) fn train_response_request(&self, data: PathBuf) -> TrainResponseRequest {
+        let form: &ResponseTrainingForm = &self.project.response.training;
+        TrainResponseRequest {
+            data,
+            vehicle: self.project.vehicle.clone(),
+            config: config(&form.config),
+            plain: false,
+            seed: form.seed,
+            bad_cases: form.bad_cases,
+            checkpoint: self.session.response.checkpoint.clone(),
+            resume: form.resume,
+        }
+    }
+
+    /// A fine-tuning of the response network on a data set; `None` if the current model is to be
+    /// fine-tuned and there is none.
+    pub(in crate::app) fn fine_tune_request(&self, data: PathBuf) -> Option<FineTuneRequest> {
+        let form: &ResponseTrainingForm = &self.project.response.training;
+        let model = match form.mode {
+            TrainingMode::FineTuneShipped => Some(ModelSource::ShippedPretrained.into()),
+            TrainingMode::FineTuneCurrent => {
+                Some(choice(self.session.response.model.current.as_ref())?)
+            }
+            TrainingMode::FromScratch | TrainingMode::Pretrain => None,
+        };
+        Some(FineTuneRequest {
+            model,
+            data: vec![data],
+            trajectories: form.n_trajectories,
+            vehicle: self.project.vehicle.clone(),
+            config: config(&form.config),
+            seed: form.seed,
+            choice: form.choice,
+            bad_cases: form.bad_cases,
+            checkpoint: self.session.response.checkpoint.clone(),
+            resume: form.resume,
+            ..FineTuneRequest::default()
+        })
+    }
+
+    /// An evaluation of the current force model on a data set; `None` without a model.
+    pub(in crate::app) fn evaluate_force_request(
+        &self,
+        data: PathBuf,
+    ) -> Option<EvaluateForceRequest> {
+        let view = &self.view.force;
+        let model = choice(self.session.force.model.current.as_ref())?;
+        Some(EvaluateForceRequest {
+            split: view.evaluated_cases,
+            bad_cases: view.bad_cases,
+            for_figures: true,
+            ..EvaluateForceRequest::new(model, data)
+        })
+    }
+
+    /// An evaluation of the current response model on a data set; `None` without a model.
+    pub(in crate::app) fn evaluate_response_request(
+        &self,
+        data: PathBuf,
+    ) -> Option<EvaluateResponseRequest> {
+        let form: &ComparisonForm = &self.project.response.comparison;
+        Some(EvaluateResponseRequest {
+            model: choice(self.session.response.model.current.as_ref())?,
+            data,
+            split: form.evaluated_cases,
+            vehicle: self.project.vehicle.clone(),
+            seed: form.seed,
+            bad_cases: form.bad_cases,
+        })
+    }
+
+    /// A comparison of response models on a data set.
+    ///
+    /// # Errors
+    /// A message, if the numbers of trajectories are none.
+    pub(in crate::app) fn compare_request(&self, data: PathBuf) -> Result<CompareRequest, String> {
+        let form: &ComparisonForm = &self.project.response.comparison;
+        Ok(CompareRequest {
+            trajectories: trajectories(&form.trajectories)?,
+            choices: form.n_choices,
+            seed: form.seed,
+            vehicle: self.project.vehicle.clone(),
+            config: config(&form.config),
+            bad_cases: form.bad_cases,
+            ..CompareRequest::new(data)
+        })
+    }
+
+    fn scenario(&self) -> ScenarioChoice {
+        ScenarioChoice::Inline(Box::new(self.project.scenario.clone()))
+    }
+
+    /// What drives the motion of the subject.
+    fn motion_source(&self) -> Option<MotionSource> {
+        let find = |path: &Path| self.session.sources.iter().find(|source| source.path == path);
+        match self.project.subject.as_ref()? {
+            Subject::Case { dataset, case } => {
+                find(dataset)?.dataset()?.dataset.case(case)?;
+                Some(MotionSource::Case { dataset: dataset.clone(), case: case.clone() })
+            }
+            Subject::File(path) => {
+                let Source { content: Content::File(file), map, .. } = find(path)? else {
+                    return None;
+                };
+                let series = SeriesFile { path: path.clone(), map: map.clone() };
+                let FileStart { speed_m_s, contact } = self.project.file_start;
+                let start = Drive { speed_m_s, contact, ..Drive::default() };
+                Some(MotionSource::of_file(series, file.loaded.kind, start))
+            }
+            Subject::Scenario => {
+                let pulse = self.project.pulse;
+                Some(MotionSource::Scenario { scenario: self.scenario(), pulse })
+            }
+        }
+    }
+}
+
+/// What questions call the current model.
+fn choice<M>(current: Option<&CurrentModel<M>>) -> Option<ModelChoice> {
+    current.map(|current| current.choice.clone())
+}
+
+/// The settings file whose path was typed; none if nothing was.
+fn config(typed: &str) -> ConfigChoice {
+    let path = typed.trim();
+    (!path.is_empty()).then(|| PathBuf::from(path)).into()
+}
+
+/// `5, 20` as numbers.
+fn trajectories(text: &str) -> Result<Vec<usize>, String> {
+    let number = |part: &str| match part.trim().parse::<usize>() {
+        Ok(n) if n > 0 => Ok(n),
+        _ => Err(format!("{part:?} is no number of trajectories, expected such as 5, 20")),
+    };
+    text.split(',').map(number).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_trajectories_are_read_or_refused() {
+        assert_eq!(trajectories("5, 20"), Ok(vec![5, 20]));
+        assert!(trajectories("5, x").unwrap_err().contains("\" x\""));
+        assert!(trajectories("0").is_err() && trajectories("").is_err());
+    }
+}

@@ -1,0 +1,59 @@
+//! `impactlab app`: opens the window.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::cli::CliError;
+use crate::cli::console::Verdict;
+
+/// Open the window (the same as no command at all)
+#[derive(Debug, Default, Args)]
+#[command(after_help = "Example:\n  impactlab app datasets/trajectories-fea")]
+pub(in crate::cli) struct AppArgs {
+    /// Data sets, files and scenarios to open
+    #[arg(value_name = "PATH")]
+    paths: Vec<PathBuf>,
+}
+
+/// Opens the window and waits until it is closed.
+///
+/// # Errors
+/// [`CliError::NoWindow`]: this build has none.
+#[cfg(not(feature = "gui"))]
+pub(in crate::cli) fn run(_args: AppArgs) -> Result<Verdict, CliError> {
+    Err(CliError::NoWindow)
+}
+
+/// Opens the window and waits until it is closed.
+///
+/// # Errors
+/// [`CliError::NoDisplay`], or [`CliError::Window`] with the system's reason.
+#[cfg(feature = "gui")]
+pub(in crate::cli) fn run(args: AppArgs) -> Result<Verdict, CliError> {
+    if !has_display(|name| std::env::var_os(name)) {
+        return Err(CliError::NoDisplay);
+    }
+    crate::app::run(args.paths)?;
+    Ok(Verdict::Clean)
+}
+
+/// Whether a window can be shown: on Linux, whether a display server is named.
+#[cfg(any(feature = "gui", test))]
+fn has_display(variable: impl Fn(&str) -> Option<std::ffi::OsString>) -> bool {
+    let is_set = |name| variable(name).is_some_and(|value| !value.is_empty());
+    !cfg!(target_os = "linux") || is_set("DISPLAY") || is_set("WAYLAND_DISPLAY")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn an_empty_variable_names_no_display() {
+        assert!(!has_display(|_| None));
+        assert!(!has_display(|_| Some("".into())));
+        assert!(has_display(|name| (name == "WAYLAND_DISPLAY").then(|| "wayland-0".into())));
+    }
+}

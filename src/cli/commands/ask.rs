@@ -1,0 +1,43 @@
+//! `impactlab ask`: answers a question that stands in a file.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::cli::CliError;
+use crate::cli::console::{Console, Verdict, print_json, under_bar};
+use crate::study::Request;
+
+/// Answer a question that stands in a JSON file, as --print-request writes it
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(in crate::cli) struct AskArgs {
+    /// The question
+    #[arg(value_name = "REQUEST.json")]
+    request: PathBuf,
+}
+
+const EXAMPLES: &str = "\
+Example:
+  impactlab impact assets/scenarios/pit_right_rear.toml --print-request > request.json
+  impactlab ask request.json
+
+The answer is JSON: the same as the command of the question prints with --json. A training writes
+its model only through its own command.";
+
+/// Answers the question and prints the report.
+pub(in crate::cli) fn run(args: &AskArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
+    let path = || args.request.clone();
+    let unreadable = |source| CliError::RequestFile { path: path(), source };
+    let text = std::fs::read_to_string(&args.request).map_err(unreadable)?;
+    let request: Request =
+        serde_json::from_str(&text).map_err(|source| CliError::Request { path: path(), source })?;
+    if console.print_request {
+        print_json(console.out, &request)?;
+        return Ok(Verdict::Clean);
+    }
+    let report = under_bar(|observer| request.run(&console.library, observer))?;
+    let report = report.complete().ok_or(CliError::Cancelled)?;
+    print_json(console.out, &report)?;
+    Ok(Verdict::Clean)
+}

@@ -1,0 +1,85 @@
+//! `impactlab compare`: the response network beside tuned and untuned 4DOF model and a plain network.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::cli::CliError;
+use crate::cli::console::{Console, Verdict};
+use crate::cli::options::{BadCasesArg, VehicleArg};
+use crate::cli::text::print_comparison;
+use crate::response::comparison::write_comparison;
+use crate::shipped::ModelSource;
+use crate::study::{CompareRequest, DEFAULT_CHOICES, ModelChoice};
+
+/// Compare response models on trajectories that none has seen
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(in crate::cli) struct CompareArgs {
+    /// A trajectory data set; a quarter of its cases is kept apart for the test
+    #[arg(long, value_name = "DIR")]
+    data: PathBuf,
+    /// Numbers of trajectories to fine-tune on; 5,20 if not given
+    #[arg(long, value_delimiter = ',', value_name = "N,N")]
+    trajectories: Vec<usize>,
+    /// Choices of the trajectories for each number
+    #[arg(long, default_value_t = DEFAULT_CHOICES, value_name = "K")]
+    choices: u64,
+    /// Seed of the split and of the first choice
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// A pre-trained response network: `shipped-pretrained` or a file; pre-trained here if not given
+    #[arg(long, value_name = "MODEL")]
+    model: Option<ModelSource>,
+    /// The struck vehicle: a preset or a file, instead of the data set's own
+    #[arg(long, value_name = "NAME|FILE")]
+    vehicle: Option<VehicleArg>,
+    /// Settings of the networks (TOML)
+    #[arg(long, value_name = "CONFIG.toml")]
+    config: Option<PathBuf>,
+    #[command(flatten)]
+    bad_cases: BadCasesArg,
+    /// Folder for comparison.json, comparison.md and the tables as CSV
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  impactlab compare --data datasets/trajectories-fea --out comparison
+  impactlab compare --data datasets/trajectories-pulse --trajectories 20 --choices 1 --json
+
+Every model is fitted to the same trajectories and asked about the same others. The column of the
+paper holds what it printed, measured on other data.
+
+JSON: data, seed, n_choices, test [name, cluster, spins, path [X, Y, yaw] every 0.1 s], models [name, trajectories, average_error_m {mean, std, median},
+  rmse {x_m, y_m, vx_km_h, vy_km_h, yaw_rate_deg_s}, horizon_error_m, time_per_step_us, violations,
+  coverage {50, 90, end_50, end_90, …}], clusters [name, n, impulse_n_s, models],
+  cases [case, model, trajectories, choice, average_error_m, …, path], left_out, assumptions";
+
+/// Compares.
+pub(in crate::cli) fn run(
+    args: &CompareArgs,
+    console: &mut Console<'_>,
+) -> Result<Verdict, CliError> {
+    let unsaid = CompareRequest::new(&args.data);
+    let request = CompareRequest {
+        trajectories: match args.trajectories.as_slice() {
+            [] => unsaid.trajectories.clone(),
+            numbers => numbers.to_vec(),
+        },
+        choices: args.choices,
+        seed: args.seed,
+        model: args.model.clone().map(ModelChoice::from),
+        vehicle: VehicleArg::choice(&args.vehicle),
+        config: args.config.clone().into(),
+        bad_cases: args.bad_cases.into(),
+        ..unsaid
+    };
+    let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
+    if let Some(folder) = &args.out {
+        write_comparison(folder, &answer.report.comparison)?;
+    }
+    console.print(&answer.report, |out| print_comparison(out, &answer.report))?;
+    Ok(Verdict::Clean)
+}

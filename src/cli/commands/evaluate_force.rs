@@ -1,0 +1,94 @@
+//! `impactlab evaluate force`: how well a force network does, beside its baselines.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use crate::cli::CliError;
+use crate::cli::console::{Console, Verdict};
+use crate::cli::files::write_force_evaluation;
+use crate::cli::options::{BadCasesArg, SplitArg};
+use crate::cli::text::print_force_evaluation;
+use crate::force::ColumnSet;
+use crate::shipped::ModelSource;
+use crate::study::{EvaluateForceRequest, ForceEvaluation};
+
+/// What is known of a scenario.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum ColumnsArg {
+    /// Masses, velocities, angle, contact point, bullet body
+    Full,
+    /// Masses, velocities, angle: the rest is left open
+    Theta,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(in crate::cli) struct EvaluateForceArgs {
+    /// A trained force network: `shipped` or a file
+    #[arg(long, value_name = "MODEL")]
+    model: ModelSource,
+    /// A force data set
+    #[arg(long, value_name = "DIR")]
+    data: PathBuf,
+    /// Which of its cases
+    #[arg(long, value_enum, default_value_t = SplitArg::Test)]
+    split: SplitArg,
+    /// What is known of each scenario
+    #[arg(long, value_enum, default_value_t = ColumnsArg::Full)]
+    columns: ColumnsArg,
+    /// Instead: train anew with the model's settings in K folds of its training cases, so that no
+    /// test case is looked at
+    #[arg(long, value_name = "K")]
+    cross_validate: Option<usize>,
+    /// Seed of folds, clusters and draws
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    #[command(flatten)]
+    bad_cases: BadCasesArg,
+    /// Folder for evaluation.json and evaluation.md
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  impactlab evaluate force --model shipped --data datasets/fea --json
+  impactlab evaluate force --model shipped --data datasets/fea \\
+      --columns theta --out evaluation
+
+The baselines are fitted here, to the cases that the model was trained on, which it carries.
+
+JSON: overall and separated (without hooked and unseparated cases), each with rmse_over_peak,
+  history_error, impulse_error, peak_error, duration_error {mean, median, p90}, coverage {50, 80,
+  90, 95} and more; baselines {pulse, nearest, statistical}, each with overall and separated;
+  clusters, cases, n_train, columns, split, problems, left_out, assumptions";
+
+/// Evaluates.
+pub(in crate::cli) fn run(
+    args: &EvaluateForceArgs,
+    console: &mut Console<'_>,
+) -> Result<Verdict, CliError> {
+    let request = EvaluateForceRequest {
+        model: args.model.clone().into(),
+        data: args.data.clone(),
+        split: args.split.into(),
+        columns: match args.columns {
+            ColumnsArg::Full => ColumnSet::ThetaContactAndBody,
+            ColumnsArg::Theta => ColumnSet::Theta,
+        },
+        cross_validate: args.cross_validate,
+        seed: args.seed,
+        bad_cases: args.bad_cases.into(),
+        for_figures: false,
+    };
+    let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
+    if let Some(folder) = &args.out {
+        write_force_evaluation(folder, &answer.report)?;
+    }
+    console.print(&answer.report, |out| print_force_evaluation(out, &answer.report))?;
+    Ok(match &answer.report {
+        ForceEvaluation::Cases(report) => Verdict::of(!report.evaluation.problems.is_empty()),
+        ForceEvaluation::Folds(_) => Verdict::Clean,
+    })
+}

@@ -1,0 +1,68 @@
+//! `impactlab evaluate response`: how well a response network does on a data set.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::cli::CliError;
+use crate::cli::console::{Console, Verdict};
+use crate::cli::options::{BadCasesArg, SplitArg, VehicleArg};
+use crate::cli::text::print_comparison;
+use crate::response::comparison::write_comparison;
+use crate::shipped::ModelSource;
+use crate::study::EvaluateResponseRequest;
+
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(in crate::cli) struct EvaluateResponseArgs {
+    /// A fine-tuned response network: `shipped` or a file
+    #[arg(long, value_name = "MODEL")]
+    model: ModelSource,
+    /// A trajectory data set
+    #[arg(long, value_name = "DIR")]
+    data: PathBuf,
+    /// Which of its cases
+    #[arg(long, value_enum, default_value_t = SplitArg::Test)]
+    split: SplitArg,
+    /// The struck vehicle: a preset or a file, instead of the data set's own
+    #[arg(long, value_name = "NAME|FILE")]
+    vehicle: Option<VehicleArg>,
+    /// Seed of the clusters
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    #[command(flatten)]
+    bad_cases: BadCasesArg,
+    /// Folder for comparison.json, comparison.md and the tables as CSV
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+const EXAMPLES: &str = "\
+Example:
+  impactlab evaluate response --model shipped --data datasets/trajectories-fea --json
+
+--split test: the trajectories that the model was not trained on, recognised by their content; if the
+model knows which were kept for its test, those of them that are there.
+
+JSON: as of impactlab compare, with one model";
+
+/// Evaluates.
+pub(in crate::cli) fn run(
+    args: &EvaluateResponseArgs,
+    console: &mut Console<'_>,
+) -> Result<Verdict, CliError> {
+    let request = EvaluateResponseRequest {
+        model: args.model.clone().into(),
+        data: args.data.clone(),
+        split: args.split.into(),
+        vehicle: VehicleArg::choice(&args.vehicle),
+        seed: args.seed,
+        bad_cases: args.bad_cases.into(),
+    };
+    let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
+    if let Some(folder) = &args.out {
+        write_comparison(folder, &answer.report.comparison)?;
+    }
+    console.print(&answer.report, |out| print_comparison(out, &answer.report))?;
+    Ok(Verdict::Clean)
+}

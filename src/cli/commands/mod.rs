@@ -1,0 +1,22 @@
+//! The commands: each parses its options into a request, asks it, writes files and prints.
+
+pub(super) mod app;
+pub(super) mod ask;
+pub(super) mod check;
+pub(super) mod compare;
+pub(super) mod evaluate;
+mod evaluate_force;
+mod evaluate_response;
+pub(super) mod fine_tune;
+pub(super) mod impact;
+pub(super) mod predict;
+mod predict_force;
+mod predict_motion;
+pub(super) mod render;
+mod render_figure;
+mod render_forecast;
+pub(super) mod simulate;
+pub(super) mod train;
+mod train_force;
+mod train_response;
+pub(super) mod vehicles;

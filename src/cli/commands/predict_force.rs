@@ -1,0 +1,102 @@
+//! `impactlab predict force`: the distribution of an impact force history.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde::Serialize;
+
+use crate::cli::CliError;
+use crate::cli::console::{Console, Verdict};
+use crate::cli::files::write_force_prediction;
+use crate::cli::options::UnitsArg;
+use crate::cli::text::print_force_prediction;
+use crate::shipped::ModelSource;
+use crate::study::{ForceQuestion, PredictForceReport, PredictForceRequest, ScenarioChoice};
+
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(in crate::cli) struct PredictForceArgs {
+    /// The force network: `shipped` or a file
+    #[arg(long, default_value_t, value_name = "MODEL")]
+    model: ModelSource,
+    /// The scenario: a file, or `pit-right-rear`
+    #[arg(long, value_name = "NAME|FILE", required_unless_present = "dataset")]
+    scenario: Option<PathBuf>,
+    /// Instead: a force data set, of which --case says the collision
+    #[arg(long, value_name = "DIR", requires = "case", conflicts_with = "scenario")]
+    dataset: Option<PathBuf>,
+    /// The case of the data set
+    #[arg(long, value_name = "NAME", requires = "dataset")]
+    case: Option<String>,
+    /// Kind of bullet body, as the training data name it; left open if not given
+    #[arg(long, value_name = "NAME")]
+    body: Option<String>,
+    /// Leave the contact point open: it is drawn from that of the training cases
+    #[arg(long)]
+    open_contact: bool,
+    /// Whole curves to draw
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    samples: usize,
+    /// Seed of the draws
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Folder for bands.csv, mean.csv, prediction.json and the samples
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Units of the text (JSON is always SI)
+    #[arg(long, value_enum, default_value_t)]
+    units: UnitsArg,
+}
+
+const EXAMPLES: &str = "\
+Example:
+  impactlab predict force --scenario pit-right-rear --samples 5 --out prediction
+
+bands.csv: time, mean and the edges of the 50, 80, 90 and 95 % bands of F_x, F_y and |F|, N.
+mean.csv and sample_001.csv, …: force histories that every other command reads.
+
+JSON: impulse_n_s {mean [x, y], x, y, magnitude}, peak_n, peak_time_s, duration_s, pdof_interval_deg
+  (each median and intervals at 50, 80, 90, 95 %), pdof_deg, pdof_clock, momentum_impulse_n_s,
+  hooking_probability, modes, outside_training [feature, value, range, deviations], is_contact_open,
+  is_body_open, assumptions";
+
+/// The report, and where its files are.
+#[derive(Debug, Serialize)]
+struct Printed<'a> {
+    #[serde(flatten)]
+    report: &'a PredictForceReport,
+    out: Option<&'a Path>,
+}
+
+/// Predicts a force.
+pub(in crate::cli) fn run(
+    args: &PredictForceArgs,
+    console: &mut Console<'_>,
+) -> Result<Verdict, CliError> {
+    let request = PredictForceRequest {
+        collision: collision(args)?,
+        model: args.model.clone().into(),
+        body: args.body.clone(),
+        open_contact: args.open_contact,
+        samples: args.samples,
+        seed: args.seed,
+    };
+    let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
+    let printed = Printed { report: &answer.report, out: args.out.as_deref() };
+    if let Some(folder) = &args.out {
+        write_force_prediction(folder, &answer, &printed)?;
+    }
+    let report = &answer.report;
+    console.print(&printed, |out| print_force_prediction(out, report, args.units.into()))?;
+    Ok(Verdict::Clean)
+}
+
+fn collision(args: &PredictForceArgs) -> Result<ForceQuestion, CliError> {
+    if let Some(path) = args.scenario.clone() {
+        return Ok(ForceQuestion::Scenario(ScenarioChoice::File(path)));
+    }
+    match (args.dataset.clone(), args.case.clone()) {
+        (Some(dataset), Some(case)) => Ok(ForceQuestion::Case { dataset, case }),
+        _ => Err(CliError::NothingToPredict),
+    }
+}

@@ -1,0 +1,145 @@
+//! `impactlab predict`: the distribution of the motion after an impact.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde::Serialize;
+
+use crate::analysis::PulseSetup;
+use crate::cli::CliError;
+use crate::cli::console::{Console, Verdict};
+use crate::cli::files::{MotionFiles, write_motion_prediction};
+use crate::cli::options::{UnitsArg, VehicleArg, window_s};
+use crate::cli::text::print_motion_prediction;
+use crate::data::write_atomically;
+use crate::shipped::ModelSource;
+use crate::study::{
+    DEFAULT_DRAWS, DEFAULT_DURATION_S, ForceSource, MotionSource, PredictMotionReport,
+    PredictMotionRequest, ScenarioChoice, SeriesFile, SimulateRequest,
+};
+
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(in crate::cli) struct PredictMotionArgs {
+    /// The scenario, both vehicles and where they meet: a file, or `pit-right-rear`
+    #[arg(long, value_name = "NAME|FILE", required_unless_present_any = ["dataset", "trajectory"])]
+    scenario: Option<PathBuf>,
+    /// Instead: a data set, of which --case says the impact
+    #[arg(long, value_name = "DIR", requires = "case", conflicts_with = "scenario")]
+    dataset: Option<PathBuf>,
+    /// The case of the data set
+    #[arg(long, value_name = "NAME", requires = "dataset")]
+    case: Option<String>,
+    /// Instead: a recorded motion, whose own force is taken
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["scenario", "dataset"])]
+    trajectory: Option<PathBuf>,
+    /// The struck vehicle: a preset or a file; a data set has its own, else reference-2000
+    #[arg(long, value_name = "NAME|FILE")]
+    vehicle: Option<VehicleArg>,
+    /// A force history instead of the predicted one
+    #[arg(long, value_name = "FORCE.csv")]
+    force: Option<PathBuf>,
+    /// Instead of the predicted force, that of the case, or a classic pulse that carries the impulse
+    /// of the scenario
+    #[arg(long, conflicts_with = "force")]
+    given_force: bool,
+    /// The force network: `shipped` or a file
+    #[arg(long, default_value_t, value_name = "MODEL")]
+    force_model: ModelSource,
+    /// The response network: `shipped`, `shipped-pretrained` or a file
+    #[arg(long, default_value_t, value_name = "MODEL")]
+    response_model: ModelSource,
+    /// Friction of the road, instead of the vehicle's
+    #[arg(long, value_name = "MU")]
+    friction: Option<f64>,
+    /// Force histories to draw
+    #[arg(long, default_value_t = DEFAULT_DRAWS, value_name = "N")]
+    draws: usize,
+    /// How long, s; a recorded motion has its own duration
+    #[arg(long, default_value_t = DEFAULT_DURATION_S, value_name = "S")]
+    duration: f64,
+    /// Seed of the draws
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Window of time of the density map, s, instead of the end
+    #[arg(long, value_parser = window_s, value_name = "FROM,TO")]
+    window: Option<[f64; 2]>,
+    /// Folder for trajectory.csv, density.csv, outcome.json, pictures and their numbers
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Units of text and pictures (JSON and tables are always SI)
+    #[arg(long, value_enum, default_value_t)]
+    units: UnitsArg,
+}
+
+const EXAMPLES: &str = "\
+Example:
+  impactlab predict --scenario pit-right-rear --out prediction
+
+trajectory.csv: time, central path (nothing uncertain), mean, standard deviation and edges of the 50
+  and 90 % bands of X, Y, yaw, v_x, v_y and yaw rate. density.csv: probability density of the position of the CG at the end, or its
+  mean over the window, on a grid.
+scene.png and one picture per quantity, each with its numbers as CSV beside it (pictures need the
+  build with the window).
+
+JSON: scenario, vehicle, force_model, response_model, n_forces, outcome {time_s, is_at_rest, x_m, y_m,
+  heading_change_rad (median, half, ninety), speed_m_s, region_90_m2, p_quarter_turn, p_half_turn},
+  hooking_probability, outside_training, assumptions [{quantity, value, reason}], files";
+
+/// The report, and which files were written.
+#[derive(Debug, Serialize)]
+struct Printed<'a> {
+    #[serde(flatten)]
+    report: &'a PredictMotionReport,
+    files: Vec<PathBuf>,
+}
+
+/// Predicts a motion.
+pub(in crate::cli) fn run(
+    args: &PredictMotionArgs,
+    console: &mut Console<'_>,
+) -> Result<Verdict, CliError> {
+    let request = PredictMotionRequest {
+        motion: SimulateRequest {
+            vehicle: VehicleArg::choice(&args.vehicle),
+            friction: args.friction,
+            duration_s: args.duration,
+            ..SimulateRequest::new(source(args)?)
+        },
+        force: force_source(args),
+        response_model: args.response_model.clone().into(),
+        draws: args.draws,
+        seed: args.seed,
+    };
+    let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
+    let wanted = MotionFiles { folder: &args.out, window_s: args.window, units: args.units.into() };
+    let files = write_motion_prediction(&wanted, &answer)?;
+    let printed = Printed { report: &answer.report, files };
+    let json = serde_json::to_vec_pretty(&printed).map_err(std::io::Error::from)?;
+    write_atomically(&args.out.join("outcome.json"), |out| out.write_all(&json))?;
+    let report = &answer.report;
+    console.print(&printed, |out| print_motion_prediction(out, report, args.units.into()))?;
+    Ok(Verdict::Clean)
+}
+
+fn source(args: &PredictMotionArgs) -> Result<MotionSource, CliError> {
+    if let Some(path) = args.scenario.clone() {
+        let scenario = ScenarioChoice::File(path);
+        return Ok(MotionSource::Scenario { scenario, pulse: PulseSetup::default() });
+    }
+    if let Some(path) = &args.trajectory {
+        return Ok(MotionSource::Trajectory { file: SeriesFile::new(path), contact: None });
+    }
+    match (args.dataset.clone(), args.case.clone()) {
+        (Some(dataset), Some(case)) => Ok(MotionSource::Case { dataset, case }),
+        _ => Err(CliError::NothingToPredict),
+    }
+}
+
+fn force_source(args: &PredictMotionArgs) -> ForceSource {
+    match &args.force {
+        Some(path) => ForceSource::File(path.clone()),
+        None if args.given_force || args.trajectory.is_some() => ForceSource::Given,
+        None => ForceSource::Predicted(args.force_model.clone().into()),
+    }
+}

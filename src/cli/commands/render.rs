@@ -1,0 +1,313 @@
+//! `impactlab render`: a figure as a picture or as numbers, without a window.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Subcommand, ValueEnum};
+use serde::Serialize;
+
+use crate::cli::CliError;
+use crate::cli::commands::render_figure;
+use crate::cli::commands::render_forecast::{self, ForecastArgs};
+use crate::cli::console::{Console, Verdict, print_json};
+use crate::cli::options::{
+    SourceArgs, UnitsArg, VehicleArg, contact_point, size_px, speed_m_s, time_s,
+};
+use crate::collision::ChannelClass;
+use crate::data::{Channel, write_atomically};
+use crate::figure::{Figure, write_figure_csv};
+use crate::study::{Drive, ImpactRequest, Library, ScenarioChoice, SimulateRequest};
+use crate::vehicle::ContactPoint;
+
+/// Draw a figure into a PNG, or write its numbers as CSV
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(in crate::cli) struct RenderArgs {
+    #[command(subcommand)]
+    figure: FigureArgs,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  impactlab render force datasets/fea --case c001 --cfc 60 --out force.png
+  impactlab render scene datasets/trajectories-fea --case FE_c002 --time 1.5 --out scene.png
+  impactlab render impact pit-right-rear --out impact.csv
+
+JSON: out, title, x_axis, y_axis, notes";
+
+#[derive(Debug, Subcommand)]
+enum FigureArgs {
+    /// The contact force over time
+    #[command(after_help = "\
+Example:\n  impactlab render force datasets/fea --case c001 --cfc 60 --out force.png")]
+    Force(ForceArgs),
+    /// The motion over time: simulation and reference
+    #[command(after_help = "\
+Example:\n  impactlab render motion datasets/trajectories-fea --case FE_c002 --channel yaw-rate \
+--out motion.png")]
+    Motion(MotionArgs),
+    /// The scene from above at a moment: simulation and reference
+    #[command(after_help = "\
+Example:\n  impactlab render scene datasets/trajectories-fea --case FE_c002 --time 1.5 \
+--out scene.png --dark")]
+    Scene(SceneArgs),
+    /// Where the response network says the struck vehicle goes under the recorded force, beside the
+    /// record
+    #[command(after_help = "\
+Example:\n  impactlab render forecast datasets/trajectories-fea --case FE_c002 --time 2 --out forecast.png\n  \
+impactlab render forecast datasets/trajectories-fea --case FE_c002 --channel yaw --out yaw.png")]
+    Forecast(ForecastArgs),
+    /// The impact of a scenario from above: impulse and delta-v
+    #[command(after_help = "\
+Example:\n  impactlab render impact pit-right-rear --out impact.png")]
+    Impact(ImpactArgs),
+}
+
+/// Where the figure goes, and how it looks.
+#[derive(Debug, Args)]
+pub(super) struct OutputArgs {
+    /// The file: .png for a picture, .csv for the figure's numbers
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// Units of the figure
+    #[arg(long, value_enum, default_value_t)]
+    pub(super) units: UnitsArg,
+    /// Dark ground
+    #[arg(long)]
+    dark: bool,
+    /// Width x height, pixels
+    #[arg(long, value_parser = size_px, default_value = "1600x1000")]
+    size: [u32; 2],
+    /// Pixels per point: 2 for print and slides
+    #[arg(long, value_parser = scale, default_value = "2")]
+    scale: f32,
+}
+
+/// With what a case is simulated.
+#[derive(Debug, Args)]
+pub(super) struct VehicleArgs {
+    /// The struck vehicle: a file, or a name from `impactlab vehicles`; a trajectory data set has
+    /// its own, else reference-2000
+    #[arg(long, value_name = "V.toml|PRESET")]
+    vehicle: Option<VehicleArg>,
+    /// The striking vehicle, where a force data set records it; mass and inertia are the case's
+    #[arg(long, value_name = "V.toml|PRESET")]
+    bullet: Option<VehicleArg>,
+    /// For a single force file: forward speed at the start, as in simulate
+    #[arg(long, value_parser = speed_m_s, allow_hyphen_values = true)]
+    speed: Option<f64>,
+    /// For a single file with a force but no mz: where the force acts, as in simulate
+    #[arg(long, value_name = "X,Y,Z", value_parser = contact_point, allow_hyphen_values = true)]
+    contact: Option<ContactPoint>,
+}
+
+impl VehicleArgs {
+    /// The simulation of what a path and `--case` choose.
+    pub(super) fn request(
+        &self,
+        source: &SourceArgs,
+        library: &Library,
+    ) -> Result<SimulateRequest, CliError> {
+        let start = Drive { speed_m_s: self.speed, contact: self.contact, ..Drive::default() };
+        Ok(SimulateRequest {
+            vehicle: VehicleArg::choice(&self.vehicle),
+            bullet: VehicleArg::choice(&self.bullet),
+            ..SimulateRequest::new(source.motion_source(library, start)?)
+        })
+    }
+}
+
+#[derive(Debug, Args)]
+struct ForceArgs {
+    #[command(flatten)]
+    source: SourceArgs,
+    /// Filter with this channel frequency class (SAE J211), the unfiltered force behind
+    #[arg(long, value_enum)]
+    cfc: Option<ClassArg>,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+struct MotionArgs {
+    #[command(flatten)]
+    source: SourceArgs,
+    /// What is shown
+    #[arg(long, value_enum)]
+    channel: ChannelArg,
+    #[command(flatten)]
+    vehicle: VehicleArgs,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+struct SceneArgs {
+    #[command(flatten)]
+    source: SourceArgs,
+    /// The moment at which the vehicles are drawn, s
+    #[arg(long, value_parser = time_s)]
+    time: f64,
+    #[command(flatten)]
+    vehicle: VehicleArgs,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+#[derive(Debug, Args)]
+struct ImpactArgs {
+    /// The scenario: a file, or `pit-right-rear`
+    #[arg(value_name = "NAME|FILE")]
+    scenario: PathBuf,
+    /// Friction as in the paper: always sliding
+    #[arg(long)]
+    paper: bool,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+/// A channel frequency class.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum ClassArg {
+    #[value(name = "60")]
+    Cfc60,
+    #[value(name = "180")]
+    Cfc180,
+    #[value(name = "600")]
+    Cfc600,
+    #[value(name = "1000")]
+    Cfc1000,
+}
+
+impl From<ClassArg> for ChannelClass {
+    fn from(class: ClassArg) -> Self {
+        match class {
+            ClassArg::Cfc60 => Self::Cfc60,
+            ClassArg::Cfc180 => Self::Cfc180,
+            ClassArg::Cfc600 => Self::Cfc600,
+            ClassArg::Cfc1000 => Self::Cfc1000,
+        }
+    }
+}
+
+/// A channel of the motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum ChannelArg {
+    Vx,
+    Vy,
+    YawRate,
+    Roll,
+}
+
+impl From<ChannelArg> for Channel {
+    fn from(channel: ChannelArg) -> Self {
+        match channel {
+            ChannelArg::Vx => Self::Vx,
+            ChannelArg::Vy => Self::Vy,
+            ChannelArg::YawRate => Self::YawRate,
+            ChannelArg::Roll => Self::Roll,
+        }
+    }
+}
+
+/// A scale that can be drawn.
+fn scale(text: &str) -> Result<f32, String> {
+    let scale = text.parse::<f32>().ok();
+    scale
+        .filter(|scale| (0.25..=8.0).contains(scale))
+        .ok_or_else(|| "expected a number from 0.25 to 8".to_owned())
+}
+
+#[derive(Debug, Serialize)]
+struct Answer<'a> {
+    out: &'a Path,
+    title: &'a str,
+    x_axis: String,
+    y_axis: String,
+    notes: &'a [String],
+}
+
+/// Makes the figure, writes it and says so.
+pub(in crate::cli) fn run(
+    args: &RenderArgs,
+    console: &mut Console<'_>,
+) -> Result<Verdict, CliError> {
+    let output = match &args.figure {
+        FigureArgs::Force(args) => &args.output,
+        FigureArgs::Motion(args) => &args.output,
+        FigureArgs::Scene(args) => &args.output,
+        FigureArgs::Forecast(args) => &args.output,
+        FigureArgs::Impact(args) => &args.output,
+    };
+    let ending = output.out.extension().map(|end| end.to_ascii_lowercase());
+    let draw = match ending.as_deref().and_then(|end| end.to_str()) {
+        Some("csv") => write_csv,
+        Some("png") if cfg!(feature = "gui") => write_png,
+        Some("png") => return Err(CliError::NoDrawing),
+        _ => {
+            let path = output.out.clone();
+            return Err(CliError::OutputKind { path });
+        }
+    };
+    let units = output.units.into();
+    let (figure, notes) = match &args.figure {
+        FigureArgs::Force(args) => {
+            let class = args.cfc.map(ChannelClass::from);
+            render_figure::force(&args.source, class, units, console)?
+        }
+        FigureArgs::Motion(args) => {
+            let channel = args.channel.into();
+            let request = args.vehicle.request(&args.source, &console.library)?;
+            render_figure::motion(&request, channel, units, console)?
+        }
+        FigureArgs::Scene(args) => {
+            let request = args.vehicle.request(&args.source, &console.library)?;
+            render_figure::scene(&request, args.time, units, console)?
+        }
+        FigureArgs::Forecast(args) => render_forecast::figure(args, units, console)?,
+        FigureArgs::Impact(args) => {
+            let scenario = ScenarioChoice::File(args.scenario.clone());
+            let request = ImpactRequest { scenario, paper: args.paper };
+            render_figure::impact(&request, units, console)?
+        }
+    };
+    draw(&figure, output)?;
+    if console.json {
+        let answer = Answer {
+            out: &output.out,
+            title: &figure.title,
+            x_axis: figure.x.text(),
+            y_axis: figure.y.text(),
+            notes: &notes,
+        };
+        print_json(console.out, &answer)?;
+    } else {
+        writeln!(console.out, "{}: {}", output.out.display(), figure.title)?;
+        for note in &notes {
+            writeln!(console.out, "note: {note}")?;
+        }
+    }
+    Ok(Verdict::Clean)
+}
+
+fn write_csv(figure: &Figure, output: &OutputArgs) -> Result<(), CliError> {
+    write_atomically(&output.out, |file| {
+        write_figure_csv(figure, file).map_err(std::io::Error::other)
+    })?;
+    Ok(())
+}
+
+#[cfg(feature = "gui")]
+fn write_png(figure: &Figure, output: &OutputArgs) -> Result<(), CliError> {
+    let canvas =
+        crate::render::Canvas { size_px: output.size, scale: output.scale, dark: output.dark };
+    let image = crate::render::figure_image(figure, canvas)?;
+    crate::render::save_png(&image, &output.out)?;
+    Ok(())
+}
+
+#[cfg(not(feature = "gui"))]
+fn write_png(_figure: &Figure, output: &OutputArgs) -> Result<(), CliError> {
+    // Read so that the options are the same in every build.
+    let _ = (output.size, output.scale, output.dark);
+    Err(CliError::NoDrawing)
+}

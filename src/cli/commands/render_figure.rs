@@ -1,0 +1,100 @@
+//! The figures that `impactlab render` makes, each with notes on how it was made.
+
+use crate::cli::CliError;
+use crate::cli::console::Console;
+use crate::cli::options::SourceArgs;
+use crate::collision::{ChannelClass, filter_history};
+use crate::data::{Channel, contact_interval};
+use crate::figure::{
+    Figure, ForceFigure, analysis_motion_figure, analysis_scene_figure, force_figure, impact_figure,
+};
+use crate::study::{
+    Assumption, Drive, ImpactRequest, RecordedForceRequest, SimulateAnswer, SimulateRequest,
+    StudyError,
+};
+use crate::units::UnitSystem;
+
+/// A figure and what should be said with it.
+pub(super) type Noted = (Figure, Vec<String>);
+
+/// Notes and assumptions as lines.
+pub(super) fn noted(notes: &[String], assumptions: &[Assumption]) -> Vec<String> {
+    let assumed = assumptions.iter().map(|assumption| format!("assumed {assumption}"));
+    notes.iter().cloned().chain(assumed).collect()
+}
+
+/// The force of a case or a file, filtered if a class is given.
+pub(super) fn force(
+    source: &SourceArgs,
+    class: Option<ChannelClass>,
+    units: UnitSystem,
+    console: &mut Console<'_>,
+) -> Result<Noted, CliError> {
+    let source = source.motion_source(&console.library, Drive::default())?;
+    let recorded = console.answer(&RecordedForceRequest { source })?;
+    let (name, raw) = (recorded.name, recorded.force);
+    let filtered = class.map(|class| filter_history(class, &raw)).transpose();
+    let filtered = filtered.map_err(|source| CliError::Filter { name: name.clone(), source })?;
+    let title = match class {
+        Some(class) => format!("{name}, {}", class.label()),
+        None => name,
+    };
+    let figure = force_figure(&ForceFigure {
+        name: &title,
+        force: filtered.as_ref().unwrap_or(&raw),
+        raw: filtered.as_ref().map(|_| &raw),
+        contact_s: contact_interval(&raw),
+        pulses: &[],
+        units,
+    });
+    Ok((figure, recorded.notes))
+}
+
+/// One channel of the motion of a case or a file.
+pub(super) fn motion(
+    request: &SimulateRequest,
+    channel: Channel,
+    units: UnitSystem,
+    console: &mut Console<'_>,
+) -> Result<Noted, CliError> {
+    let SimulateAnswer { report, analysis } = console.answer(request)?;
+    let figure = analysis_motion_figure(&analysis, channel, units);
+    if figure.elements.is_empty() {
+        let (name, channel) = (request.source.name(), channel.header());
+        return Err(CliError::NothingToShow { name, channel });
+    }
+    Ok((figure, noted(&report.notes, &report.assumptions)))
+}
+
+/// The scene of a case or a file at a moment.
+pub(super) fn scene(
+    request: &SimulateRequest,
+    time_s: f64,
+    units: UnitSystem,
+    console: &mut Console<'_>,
+) -> Result<Noted, CliError> {
+    let SimulateAnswer { report, analysis } = console.answer(request)?;
+    let simulation = analysis.simulation.as_ref().map(|motion| &motion.series);
+    if let Some(shown) = analysis.reference.as_ref().or(simulation) {
+        let [start_s, end_s] = [shown.time_s().first(), shown.time_s().last()]
+            .map(|time| time.copied().unwrap_or_default());
+        if !(start_s..=end_s).contains(&time_s) {
+            return Err(CliError::TimeOutside { time_s, start_s, end_s });
+        }
+    }
+    let figure = analysis_scene_figure(&analysis, time_s, units);
+    Ok((figure, noted(&report.notes, &report.assumptions)))
+}
+
+/// The impact of a scenario.
+pub(super) fn impact(
+    request: &ImpactRequest,
+    units: UnitSystem,
+    console: &mut Console<'_>,
+) -> Result<Noted, CliError> {
+    let answer = console.answer(request)?;
+    let name = answer.report.name.clone();
+    let figure = impact_figure(&answer.scenario, &answer.solution, units)
+        .map_err(|source| StudyError::Scenario { name, source })?;
+    Ok((figure, noted(&[], &answer.report.assumptions)))
+}

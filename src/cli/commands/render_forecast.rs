@@ -1,0 +1,111 @@
+//! `impactlab render forecast`: what the response network says of a recorded case.
+
+use clap::{Args, ValueEnum};
+
+use crate::analysis::{DensityTask, MotionBands};
+use crate::cli::CliError;
+use crate::cli::commands::render::{OutputArgs, VehicleArgs};
+use crate::cli::commands::render_figure::{Noted, noted};
+use crate::cli::console::Console;
+use crate::cli::options::{SourceArgs, time_s, window_s};
+use crate::data::Channel;
+use crate::figure::{
+    FORECAST_CHANNELS, MotionForecastFigure, forecast_channel_figure, forecast_scene_figure,
+};
+use crate::response::STEP_S;
+use crate::shipped::ModelSource;
+use crate::study::{ForceSource, PredictMotionRequest};
+use crate::units::UnitSystem;
+
+/// Every how many steps the bands over time have an edge.
+const BAND_STRIDE: usize = 5;
+
+/// What is drawn of which forecast.
+#[derive(Debug, Args)]
+pub(in crate::cli) struct ForecastArgs {
+    #[command(flatten)]
+    source: SourceArgs,
+    /// This quantity over time instead of the scene
+    #[arg(long, value_enum)]
+    channel: Option<ForecastChannelArg>,
+    /// The moment of outlines and density, s; the end if not given
+    #[arg(long, value_parser = time_s)]
+    time: Option<f64>,
+    /// Density over a window of time, s, instead of the moment
+    #[arg(long, value_parser = window_s, value_name = "FROM,TO")]
+    window: Option<[f64; 2]>,
+    /// The response network: `shipped`, `shipped-pretrained` or a file
+    #[arg(long, default_value_t, value_name = "MODEL")]
+    response_model: ModelSource,
+    #[command(flatten)]
+    vehicle: VehicleArgs,
+    #[command(flatten)]
+    pub(super) output: OutputArgs,
+}
+
+/// A quantity with bands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum ForecastChannelArg {
+    X,
+    Y,
+    Yaw,
+    Vx,
+    Vy,
+    YawRate,
+}
+
+impl From<ForecastChannelArg> for Channel {
+    fn from(channel: ForecastChannelArg) -> Self {
+        match channel {
+            ForecastChannelArg::X => Self::X,
+            ForecastChannelArg::Y => Self::Y,
+            ForecastChannelArg::Yaw => Self::Yaw,
+            ForecastChannelArg::Vx => Self::Vx,
+            ForecastChannelArg::Vy => Self::Vy,
+            ForecastChannelArg::YawRate => Self::YawRate,
+        }
+    }
+}
+
+/// The scene or a quantity over time, with what was recorded and what the 4DOF model says.
+pub(super) fn figure(
+    args: &ForecastArgs,
+    units: UnitSystem,
+    console: &mut Console<'_>,
+) -> Result<Noted, CliError> {
+    let motion = args.vehicle.request(&args.source, &console.library)?;
+    let request = PredictMotionRequest {
+        response_model: args.response_model.clone().into(),
+        motion: motion.clone(),
+        ..PredictMotionRequest::new(motion.source, ForceSource::Given)
+    };
+    let answer = console.answer(&request)?;
+    let (forecast, analysis) = (&answer.forecast, &answer.analysis);
+    let duration_s = forecast.central.len().saturating_sub(1) as f64 * STEP_S;
+    let at_s = args.time.unwrap_or(duration_s);
+    if !(0.0..=duration_s).contains(&at_s) {
+        return Err(CliError::TimeOutside { time_s: at_s, start_s: 0.0, end_s: duration_s });
+    }
+    let density = DensityTask::new(&forecast.distribution, args.window.unwrap_or([at_s; 2]));
+    let (density, bands) = (density.on_cpu(), MotionBands::of(&forecast.distribution, BAND_STRIDE));
+    let input = MotionForecastFigure {
+        title: &analysis.name,
+        distribution: &forecast.distribution,
+        central: &forecast.central,
+        bands: &bands,
+        density: Some(&density),
+        components: true,
+        reference: analysis.reference.as_ref(),
+        simulation: analysis.simulation.as_ref().map(|motion| &motion.series),
+        footprint: analysis.footprint,
+        time_s: at_s,
+        units,
+    };
+    let wanted = args.channel.map(Channel::from);
+    let channel = FORECAST_CHANNELS.into_iter().find(|of| Some(of.channel) == wanted);
+    let figure = match channel {
+        Some(channel) => forecast_channel_figure(&input, channel),
+        None => forecast_scene_figure(&input),
+    };
+    Ok((figure, noted(&analysis.notes, &answer.report.assumptions)))
+}

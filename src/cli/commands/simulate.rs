@@ -1,0 +1,260 @@
+//! `impactlab simulate`: the motion after an impact or a steer manoeuvre, of one vehicle or of
+//! every case of a data set.
+
+use std::path::{Path, PathBuf};
+
+use clap::{ArgGroup, Args};
+use serde::Serialize;
+
+use crate::analysis::PulseSetup;
+use crate::cli::CliError;
+use crate::cli::console::{Console, Verdict, folder};
+use crate::cli::options::{
+    EquationsArg, IntegratorArg, SamplingArg, UnitsArg, VehicleArg, contact_point, friction,
+    speed_m_s, time_s, yaw_rate_rad_s,
+};
+use crate::cli::text::{print_dataset_simulation, print_simulation};
+use crate::data::{ColumnMap, DatasetKind, write_series_csv};
+use crate::study::{
+    DEFAULT_DURATION_S, Drive, MotionSource, ScenarioChoice, SeriesFile, SimulateDatasetRequest,
+    SimulateRequest,
+};
+use crate::vehicle::{ContactPoint, Equations};
+
+/// Simulate the motion after an impact, or compare a whole data set with the simulation
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+#[command(group(ArgGroup::new("source").required(true).multiple(true)
+    .args(["dataset", "scenario", "trajectory", "force", "steer", "speed"])))]
+pub(in crate::cli) struct SimulateArgs {
+    /// Simulate every case of this trajectory data set from its recorded start and force, and
+    /// compare; of a force data set the one of --case
+    #[arg(long, value_name = "DIR", conflicts_with_all = SINGLE_ONLY)]
+    dataset: Option<PathBuf>,
+    /// With --dataset: only this case
+    #[arg(long, value_name = "NAME", requires = "dataset")]
+    case: Option<String>,
+    /// Simulate both vehicles of this scenario, with the impulse spread over a classic pulse
+    #[arg(long, value_name = "NAME|FILE", conflicts_with_all = NOT_WITH_SCENARIO)]
+    scenario: Option<PathBuf>,
+    /// Simulate a recorded motion from its first sample and its own force, and compare
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = NOT_WITH_TRAJECTORY)]
+    trajectory: Option<PathBuf>,
+    /// The struck vehicle: a file, or a name from `impactlab vehicles`; a data set has its own, else
+    /// reference-2000
+    #[arg(long, value_name = "V.toml|PRESET")]
+    vehicle: Option<VehicleArg>,
+    /// The striking vehicle, where it is simulated; mass and inertia are those of the case
+    #[arg(long, value_name = "V.toml|PRESET")]
+    bullet: Option<VehicleArg>,
+    /// How the equations of motion are integrated
+    #[arg(long, value_enum, default_value_t)]
+    integrator: IntegratorArg,
+    /// Which equations of motion
+    #[arg(long, value_enum)]
+    equations: Option<EquationsArg>,
+    /// Write the trajectory as CSV, 100 Hz (with --dataset: every trajectory, into this folder)
+    #[arg(long, value_name = "PATH")]
+    out: Option<PathBuf>,
+    /// Units of the text (JSON is always SI)
+    #[arg(long, value_enum, default_value_t)]
+    units: UnitsArg,
+    #[command(flatten)]
+    single: SingleArgs,
+}
+
+/// What a recorded motion or a case says itself.
+const NOT_WITH_SCENARIO: [&str; 11] = [
+    "dataset",
+    "trajectory",
+    "speed",
+    "vy",
+    "yaw_rate",
+    "steer",
+    "steer_map",
+    "force",
+    "map",
+    "sampling",
+    "contact",
+];
+
+const NOT_WITH_TRAJECTORY: [&str; 9] =
+    ["dataset", "scenario", "speed", "vy", "yaw_rate", "steer", "steer_map", "force", "duration"];
+
+/// What a data set says itself.
+const SINGLE_ONLY: [&str; 11] = [
+    "speed",
+    "vy",
+    "yaw_rate",
+    "steer",
+    "steer_map",
+    "force",
+    "map",
+    "sampling",
+    "contact",
+    "friction",
+    "duration",
+];
+
+const EXAMPLES: &str = "\
+Examples:
+  impactlab simulate --vehicle reference-2000 --speed 72km/h --force datasets/fea/forces/c001.csv \\
+      --out motion.csv
+  impactlab simulate --vehicle my-car.toml --speed 20 --steer steer.csv
+  impactlab simulate --dataset datasets/trajectories-fea --json
+
+A force sample stands for: the mean around its instant in finite-element files (with target_vx
+columns, as in forces/ of the data sets); the mean over the coming interval in trajectories (with
+fx_body); else the value at its instant. --sampling overrules it.
+
+JSON, one vehicle: vehicle, equations, integrator, friction, duration_s, force {path, sampling, axes,
+  impulse_n_s [x, y], contact_start_s, contact_end_s, yaw_moment}, delta_v_m_s [x, y] and
+  delta_v_magnitude_m_s over the contact (null without), end {x_m, y_m, yaw_rad, roll_rad,
+  vx_m_s, vy_m_s, yaw_rate_rad_s, speed_m_s}, distance_m, largest_yaw_change_rad,
+  flags [{kind, time_s, wheel, roll_rad, message}], error (against a record), notes, assumptions
+  [{quantity, value, reason}], out
+
+JSON, data set: dataset, vehicle, equations, integrator, cases [{case, spin, average_error_m, final_error_m,
+  final_heading_error_rad, horizon_error_m (at 0.5, 1, 2, 4 s), rmse_*, flags}], overall, spinning
+  and not_spinning {average_error_m, final_error_m, final_heading_error_rad,
+  rmse_yaw_rate_rad_s: each {n, mean, std, median, p90, min, max}}, failures [text], assumptions,
+  out
+
+Exit code 1 if any case failed.";
+
+/// What one vehicle does.
+#[derive(Debug, Args)]
+struct SingleArgs {
+    /// Forward speed at the start, m/s, or with a unit: 72km/h, 45mph; 20 m/s if not given
+    #[arg(long, value_parser = speed_m_s, allow_hyphen_values = true)]
+    speed: Option<f64>,
+    /// Leftward speed at the start, as --speed
+    #[arg(long, value_parser = speed_m_s, allow_hyphen_values = true, default_value = "0")]
+    vy: f64,
+    /// Yaw rate at the start, rad/s to the left, or with a unit: 30deg/s
+    #[arg(long, value_parser = yaw_rate_rad_s, allow_hyphen_values = true, default_value = "0")]
+    yaw_rate: f64,
+    /// Road-wheel angle over time: CSV with time and steer, positive to the left
+    #[arg(long, value_name = "FILE")]
+    steer: Option<PathBuf>,
+    /// Which column of the steer file is what: time=1:s,steer=2:deg
+    #[arg(long, value_name = "MAP", requires = "steer")]
+    steer_map: Option<ColumnMap>,
+    /// Contact force ON the vehicle over time: CSV with time and fx, fy (world axes) or fx_body,
+    /// fy_body (heading axes)
+    #[arg(long, value_name = "F.csv")]
+    force: Option<PathBuf>,
+    /// Which column of the force file or the recorded motion is what: time=1:ms,fx=Kraft X:kN
+    #[arg(long)]
+    map: Option<ColumnMap>,
+    /// What a force sample stands for; without it, as the columns suggest
+    #[arg(long, value_enum, requires = "force")]
+    sampling: Option<SamplingArg>,
+    /// Where the force acts: x, y from the CG in body axes (x forward, y left), z above the
+    /// ground, m. The yaw moment follows from it; without it, the file's own mz at CG height, or, if
+    /// there is none, the right rear quarter
+    #[arg(long, value_name = "X,Y,Z", value_parser = contact_point, allow_hyphen_values = true)]
+    contact: Option<ContactPoint>,
+    /// Peak friction of the road instead of the vehicle file's
+    #[arg(long, value_parser = friction)]
+    friction: Option<f64>,
+    /// Duration, s
+    #[arg(long, value_parser = time_s, default_value_t = DEFAULT_DURATION_S)]
+    duration: f64,
+}
+
+/// A report, and where the motions were written.
+#[derive(Debug, Serialize)]
+struct Printed<'a, R: Serialize> {
+    #[serde(flatten)]
+    report: &'a R,
+    out: Option<&'a Path>,
+}
+
+/// Simulates one vehicle or a data set.
+pub(in crate::cli) fn run(
+    args: &SimulateArgs,
+    console: &mut Console<'_>,
+) -> Result<Verdict, CliError> {
+    match (&args.dataset, &args.case) {
+        (Some(root), Some(case)) if DatasetKind::of_folder(root) == Some(DatasetKind::Force) => {
+            let source = MotionSource::Case { dataset: root.clone(), case: case.clone() };
+            simulate_one(args, source, console)
+        }
+        (Some(root), _) => simulate_dataset(args, root, console),
+        (None, _) => simulate_one(args, source(args), console),
+    }
+}
+
+fn simulate_one(
+    args: &SimulateArgs,
+    source: MotionSource,
+    console: &mut Console<'_>,
+) -> Result<Verdict, CliError> {
+    let request = SimulateRequest {
+        source,
+        vehicle: VehicleArg::choice(&args.vehicle),
+        bullet: VehicleArg::choice(&args.bullet),
+        equations: args.equations.map(Equations::from),
+        integrator: args.integrator.into(),
+        friction: args.single.friction,
+        duration_s: args.single.duration,
+    };
+    let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
+    let (report, out) = (&answer.report, args.out.as_deref());
+    if let (Some(path), Some(motion)) = (out, &answer.analysis.simulation) {
+        write_series_csv(path, &motion.series)?;
+    }
+    let printed = Printed { report, out };
+    console.print(&printed, |text| print_simulation(text, (report, out), args.units.into()))?;
+    Ok(Verdict::Clean)
+}
+
+fn simulate_dataset(
+    args: &SimulateArgs,
+    root: &Path,
+    console: &mut Console<'_>,
+) -> Result<Verdict, CliError> {
+    let request = SimulateDatasetRequest {
+        dataset: root.to_owned(),
+        case: args.case.clone(),
+        vehicle: VehicleArg::choice(&args.vehicle),
+        equations: args.equations.map(Equations::from),
+        integrator: args.integrator.into(),
+    };
+    let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
+    let (report, out) = (&answer.report, args.out.as_deref());
+    if let Some(path) = out {
+        folder(path)?;
+        for case in &answer.replay.cases {
+            write_series_csv(&path.join(format!("{}.csv", case.case)), &case.motion.series)?;
+        }
+    }
+    let printed = Printed { report, out };
+    console
+        .print(&printed, |text| print_dataset_simulation(text, (report, out), args.units.into()))?;
+    Ok(Verdict::of(!report.failures.is_empty()))
+}
+
+/// What drives the motion of a single vehicle.
+fn source(args: &SimulateArgs) -> MotionSource {
+    let single = &args.single;
+    if let Some(path) = args.scenario.clone() {
+        let scenario = ScenarioChoice::File(path);
+        return MotionSource::Scenario { scenario, pulse: PulseSetup::default() };
+    }
+    let file = |path: PathBuf, map: &Option<ColumnMap>| SeriesFile { path, map: map.clone() };
+    if let Some(path) = args.trajectory.clone() {
+        let contact = single.contact;
+        return MotionSource::Trajectory { file: file(path, &single.map), contact };
+    }
+    MotionSource::Drive(Drive {
+        speed_m_s: single.speed,
+        vy_m_s: single.vy,
+        yaw_rate_rad_s: single.yaw_rate,
+        force: single.force.clone().map(|path| file(path, &single.map)),
+        sampling: single.sampling.map(Into::into),
+        contact: single.contact,
+        steer: single.steer.clone().map(|path| file(path, &single.steer_map)),
+    })
+}

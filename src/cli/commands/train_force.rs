@@ -1,0 +1,80 @@
+//! `impactlab train force`: trains the force network.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::cli::CliError;
+use crate::cli::console::{Console, Verdict, print_settings};
+use crate::cli::options::BadCasesArg;
+use crate::cli::text::{Trained, print_force_training};
+use crate::learning::ModelFile;
+use crate::study::{TrainForceRequest, checkpoint_beside};
+
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(in crate::cli) struct TrainForceArgs {
+    /// A force data set; a quarter of its cases is kept apart for the test
+    #[arg(long, value_name = "DIR")]
+    data: PathBuf,
+    /// Another force data set, all of it to learn from; may be repeated
+    #[arg(long, value_name = "DIR")]
+    extra: Vec<PathBuf>,
+    /// Where the model goes; the training is kept beside it in MODEL.training
+    #[arg(long, value_name = "MODEL")]
+    out: PathBuf,
+    /// Settings (TOML); what it leaves out keeps its default, see --print-config
+    #[arg(long, value_name = "CONFIG.toml")]
+    config: Option<PathBuf>,
+    /// Epochs at most, instead of the configured number
+    #[arg(long)]
+    epochs: Option<usize>,
+    /// Seed of the split and of all draws
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    #[command(flatten)]
+    bad_cases: BadCasesArg,
+    /// Go on from MODEL.training, if it is there
+    #[arg(long)]
+    resume: bool,
+    /// Print the settings as TOML and stop
+    #[arg(long)]
+    print_config: bool,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  impactlab train force --data datasets/fea --out force.safetensors
+  impactlab train force --data datasets/fea --out force.safetensors --resume --epochs 800
+  impactlab train force --data datasets/fea --out x --print-config > config.toml
+
+A training that was killed goes on with --resume to the same weights as if it had not been. The same
+seed gives the same weights on the same machine.
+
+JSON: model, data, n_train, n_validation, n_test, n_parameters, seconds, best_epoch, epochs,
+  variance_factors, train and validation (losses of the best epoch), left_out, assumptions";
+
+/// Trains and saves the model.
+pub(in crate::cli) fn run(
+    args: &TrainForceArgs,
+    console: &mut Console<'_>,
+) -> Result<Verdict, CliError> {
+    let request = TrainForceRequest {
+        data: args.data.clone(),
+        extra: args.extra.clone(),
+        config: args.config.clone().into(),
+        epochs: args.epochs,
+        seed: args.seed,
+        bad_cases: args.bad_cases.into(),
+        checkpoint: Some(checkpoint_beside(&args.out)),
+        resume: args.resume,
+    };
+    if args.print_config {
+        return print_settings(&request.settings()?, console);
+    }
+    let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
+    answer.model.save(&args.out)?;
+    let trained = Trained { model: &args.out, report: &answer.report };
+    console.print(&trained, |out| print_force_training(out, &trained))?;
+    Ok(Verdict::Clean)
+}

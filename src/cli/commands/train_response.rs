@@ -1,0 +1,81 @@
+//! `impactlab train response`: pre-trains the response network.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::cli::CliError;
+use crate::cli::console::{Console, Verdict, print_settings};
+use crate::cli::options::{BadCasesArg, VehicleArg};
+use crate::cli::text::{Trained, print_response_training};
+use crate::learning::ModelFile;
+use crate::study::{TrainResponseRequest, checkpoint_beside};
+
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(in crate::cli) struct TrainResponseArgs {
+    /// A force or trajectory data set: its forces drive the simulations; a quarter of its cases is
+    /// left out
+    #[arg(long, value_name = "DIR")]
+    data: PathBuf,
+    /// The struck vehicle: a preset or a file; the data set's own, or the reference car
+    #[arg(long, value_name = "NAME|FILE")]
+    vehicle: Option<VehicleArg>,
+    /// Where the model goes; the training is kept beside it in MODEL.training
+    #[arg(long, value_name = "MODEL")]
+    out: PathBuf,
+    /// Settings (TOML); what it leaves out keeps its default, see --print-config
+    #[arg(long, value_name = "CONFIG.toml")]
+    config: Option<PathBuf>,
+    /// The plain network of the comparison instead: no 4DOF model, no guard, no physics
+    #[arg(long)]
+    plain: bool,
+    /// Seed of the split and of all draws
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    #[command(flatten)]
+    bad_cases: BadCasesArg,
+    /// Go on from MODEL.training, if it is there
+    #[arg(long)]
+    resume: bool,
+    /// Print the settings as TOML and stop
+    #[arg(long)]
+    print_config: bool,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  impactlab train response --data datasets/fea --out pretrained.safetensors
+  impactlab fine-tune response --model pretrained.safetensors \\
+      --data datasets/trajectories-fea --trajectories 20 --out response.safetensors
+
+The network learns on simulations of the 4DOF model, under the forces of the data set, what another
+vehicle, another road and another speed change. No recorded motion is looked at.
+
+JSON: model, data, data_digest, seed, n_simulated, train, n_test, n_parameters, seconds, epochs, loss,
+  balance, latents, keeps_latents, left_out, assumptions";
+
+/// Pre-trains and saves the model.
+pub(in crate::cli) fn run(
+    args: &TrainResponseArgs,
+    console: &mut Console<'_>,
+) -> Result<Verdict, CliError> {
+    let request = TrainResponseRequest {
+        data: args.data.clone(),
+        vehicle: VehicleArg::choice(&args.vehicle),
+        config: args.config.clone().into(),
+        plain: args.plain,
+        seed: args.seed,
+        bad_cases: args.bad_cases.into(),
+        checkpoint: Some(checkpoint_beside(&args.out)),
+        resume: args.resume,
+    };
+    if args.print_config {
+        return print_settings(&request.settings()?, console);
+    }
+    let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
+    answer.model.save(&args.out)?;
+    let trained = Trained { model: &args.out, report: &answer.report };
+    console.print(&trained, |out| print_response_training(out, &trained))?;
+    Ok(Verdict::Clean)
+}

@@ -1,0 +1,9 @@
+//! How commands speak: results on standard output, progress on standard error.
+
+mod command_line;
+mod output;
+mod progress;
+
+pub(super) use command_line::{Console, Verdict, folder, print_assumptions, print_settings};
+pub(super) use output::{print_facts, print_json, print_table, shown, shown_vector};
+pub(super) use progress::under_bar;

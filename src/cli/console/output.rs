@@ -1,0 +1,101 @@
+//! Text tables and JSON.
+
+use std::io::{self, Write};
+
+use serde::Serialize;
+
+use crate::cli::CliError;
+use crate::units::{Quantity, UnitSystem};
+
+/// Prints a value as indented JSON and a line end.
+pub(in crate::cli) fn print_json(
+    out: &mut dyn Write,
+    value: &impl Serialize,
+) -> Result<(), CliError> {
+    serde_json::to_writer_pretty(&mut *out, value).map_err(io::Error::from)?;
+    writeln!(out)?;
+    Ok(())
+}
+
+/// Prints rows as aligned columns, two blanks apart; a column of numbers only is set to the right.
+pub(in crate::cli) fn print_table(
+    out: &mut dyn Write,
+    header: &[&str],
+    rows: &[Vec<String>],
+) -> io::Result<()> {
+    let header: Vec<String> = header.iter().map(|&name| name.to_owned()).collect();
+    let columns: Vec<Column> =
+        (0..header.len()).map(|idx| Column::of(&header, rows, idx)).collect();
+    let titled = header.iter().any(|name| !name.is_empty());
+    for row in titled.then_some(&header).into_iter().chain(rows) {
+        let cells = row.iter().zip(&columns);
+        let line: Vec<String> = cells.map(|(cell, column)| column.pad(cell)).collect();
+        writeln!(out, "{}", line.join("  ").trim_end())?;
+    }
+    Ok(())
+}
+
+/// Prints names and values below each other.
+pub(in crate::cli) fn print_facts(out: &mut dyn Write, facts: &[(&str, String)]) -> io::Result<()> {
+    let width = facts.iter().map(|(name, _)| name.chars().count()).max();
+    for (name, value) in facts {
+        writeln!(out, "{name:<width$}  {value}", width = width.unwrap_or(0))?;
+    }
+    Ok(())
+}
+
+struct Column {
+    width: usize,
+    is_numeric: bool,
+}
+
+impl Column {
+    fn of(header: &[String], rows: &[Vec<String>], idx: usize) -> Self {
+        let cells = || rows.iter().filter_map(|row| row.get(idx));
+        let is_number = |cell: &String| cell.is_empty() || cell.parse::<f64>().is_ok();
+        let widths = cells().chain(header.get(idx)).map(|c| c.chars().count());
+        Self { width: widths.max().unwrap_or(0), is_numeric: cells().all(is_number) }
+    }
+
+    fn pad(&self, cell: &str) -> String {
+        let width = self.width;
+        if self.is_numeric { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
+    }
+}
+
+/// A number of a quantity in the shown unit, with the unit: `54.0 km/h`.
+pub(in crate::cli) fn shown(quantity: Quantity, value_si: f64, units: UnitSystem) -> String {
+    let unit = quantity.display_unit(units);
+    let value = unit.from_si(value_si);
+    match unit.symbol {
+        "" => format!("{value:.3}"),
+        symbol => format!("{value:.3} {symbol}"),
+    }
+}
+
+/// Two components and their size: `12.00 (x 10.00, y 6.63) km/h`.
+pub(in crate::cli) fn shown_vector(
+    quantity: Quantity,
+    [x, y]: [f64; 2],
+    names: [&str; 2],
+    units: UnitSystem,
+) -> String {
+    let unit = quantity.display_unit(units);
+    let [size, x, y] = [x.hypot(y), x, y].map(|value| unit.from_si(value));
+    let [first, second] = names;
+    format!("{size:.3} {} ({first} {x:.3}, {second} {y:.3})", unit.symbol)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_stand_right_and_text_left() {
+        let rows = [["a", "1.5"], ["bcd", "-10"]].map(|row| row.map(str::to_owned).to_vec());
+        let mut text = Vec::new();
+        print_table(&mut text, &["name", "m"], &rows).unwrap();
+        let expected = "name    m\na     1.5\nbcd   -10\n";
+        assert_eq!(String::from_utf8(text).unwrap(), expected);
+    }
+}

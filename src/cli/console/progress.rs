@@ -1,0 +1,61 @@
+//! A progress bar on standard error, if somebody looks at it.
+
+use std::io::{IsTerminal, Write, stderr};
+use std::ops::ControlFlow;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::jobs::Progress;
+use crate::learning::TrainingReport;
+use crate::study::{Event, Observer};
+
+const TEMPLATE: &str = "{msg} {wide_bar} {pos}/{len} {eta}";
+
+/// Epochs between two lines where nobody looks at a bar.
+const EPOCHS_PER_LINE: usize = 10;
+
+/// Does the work under a progress bar, which is gone afterwards. Without a terminal, a training
+/// prints a line every ten epochs and other work prints nothing.
+pub(in crate::cli) fn under_bar<T>(work: impl FnOnce(&mut Observer<'_>) -> T) -> T {
+    let is_seen = stderr().is_terminal();
+    let bar = if is_seen { ProgressBar::new(0) } else { ProgressBar::hidden() };
+    if let Ok(style) = ProgressStyle::with_template(TEMPLATE) {
+        bar.set_style(style);
+    }
+    let result = work(&mut |event| {
+        let (progress, line) = match event {
+            Event::Progress(progress) => (progress, None),
+            Event::Training(told) => training(told),
+        };
+        if let (false, Some(line)) = (is_seen, line) {
+            // Nobody is left to tell if standard error is closed.
+            let _ = writeln!(stderr(), "{line}");
+        }
+        bar.set_length(progress.total);
+        bar.set_position(progress.done);
+        bar.set_message(progress.message);
+        ControlFlow::Continue(())
+    });
+    bar.finish_and_clear();
+    result
+}
+
+/// How far a training is, and the line that is due, if any.
+fn training(told: &TrainingReport) -> (Progress, Option<String>) {
+    let (done, total, message) = match told {
+        TrainingReport::Fit { what, done, n_fits } => (*done, *n_fits, what.clone()),
+        TrainingReport::Epoch(epoch) => {
+            let (done, total) = epoch.progress();
+            (done, total, epoch.to_string())
+        }
+    };
+    let line = match told {
+        TrainingReport::Fit { .. } => None,
+        TrainingReport::Epoch(told) => {
+            let (epoch, n, seconds) = (told.summary.epoch, told.n_epochs, told.summary.seconds);
+            let is_due = epoch.is_multiple_of(EPOCHS_PER_LINE) || epoch == 1;
+            is_due.then(|| format!("epoch {epoch} of {n}: {message} ({seconds:.2} s)"))
+        }
+    };
+    (Progress::new(done as u64, total as u64, message), line)
+}

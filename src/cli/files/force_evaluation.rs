@@ -1,0 +1,37 @@
+//! The files of `impactlab evaluate force`.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::cli::CliError;
+use crate::cli::console::folder;
+use crate::data::write_atomically;
+use crate::study::ForceEvaluation;
+
+/// Writes an evaluation as JSON and Markdown, or a cross-validation as JSON.
+pub(in crate::cli) fn write_force_evaluation(
+    path: &Path,
+    report: &ForceEvaluation,
+) -> Result<(), CliError> {
+    folder(path)?;
+    match report {
+        ForceEvaluation::Cases(report) => {
+            write_json(&path.join("evaluation.json"), report)?;
+            let text = report.evaluation.to_markdown();
+            write_atomically(&path.join("evaluation.md"), |out| out.write_all(text.as_bytes()))?;
+        }
+        ForceEvaluation::Folds(report) => {
+            write_json(&path.join("cross_validation.json"), report)?;
+        }
+    }
+    Ok(())
+}
+
+fn write_json(path: &Path, value: &impl Serialize) -> Result<(), CliError> {
+    write_atomically(path, |out| {
+        serde_json::to_writer_pretty(&mut *out, value)?;
+        writeln!(out)
+    })?;
+    Ok(())
+}

@@ -1,0 +1,9 @@
+//! Folders of files that commands write.
+
+mod force_evaluation;
+mod force_prediction;
+mod motion_prediction;
+
+pub(super) use force_evaluation::write_force_evaluation;
+pub(super) use force_prediction::write_force_prediction;
+pub(super) use motion_prediction::{MotionFiles, write_motion_prediction};

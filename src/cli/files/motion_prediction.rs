@@ -1,0 +1,136 @@
+//! The files of `impactlab predict`: tables, density map, pictures with their numbers.
+
+use std::path::{Path, PathBuf};
+
+use crate::analysis::{DensityMap, DensityTask, MOTION_BAND_LEVELS, MotionBands, MotionForecast};
+use crate::cli::CliError;
+use crate::cli::console::folder;
+use crate::data::write_atomically;
+use crate::figure::{
+    FORECAST_CHANNELS, Figure, MotionForecastFigure, forecast_channel_figure,
+    forecast_scene_figure, write_figure_csv,
+};
+use crate::response::STEP_S;
+use crate::study::PredictMotionAnswer;
+use crate::units::UnitSystem;
+
+/// Where the files go, and what they show.
+pub(in crate::cli) struct MotionFiles<'a> {
+    /// The folder.
+    pub(in crate::cli) folder: &'a Path,
+    /// Window of time of the density map, s; the end without.
+    pub(in crate::cli) window_s: Option<[f64; 2]>,
+    /// Units of the pictures.
+    pub(in crate::cli) units: UnitSystem,
+}
+
+/// Writes tables, density map and pictures, and gives their paths.
+pub(in crate::cli) fn write_motion_prediction(
+    wanted: &MotionFiles<'_>,
+    answer: &PredictMotionAnswer,
+) -> Result<Vec<PathBuf>, CliError> {
+    let forecast = &answer.forecast;
+    folder(wanted.folder)?;
+    let path = |name: &str| wanted.folder.join(name);
+    let (trajectory, map) = (path("trajectory.csv"), path("density.csv"));
+    let bands = MotionBands::of(&forecast.distribution, 1);
+    write_trajectory(&trajectory, forecast, &bands)?;
+    let window_s = wanted.window_s.unwrap_or([forecast.outcome.time_s; 2]);
+    let density = DensityTask::new(&forecast.distribution, window_s).on_cpu();
+    write_density(&map, &density)?;
+    let mut files = vec![trajectory, map];
+    let input = MotionForecastFigure {
+        title: &answer.report.scenario,
+        distribution: &forecast.distribution,
+        central: &forecast.central,
+        bands: &bands,
+        density: Some(&density),
+        components: true,
+        reference: answer.analysis.reference.as_ref(),
+        simulation: None,
+        footprint: answer.analysis.footprint,
+        time_s: forecast.outcome.time_s,
+        units: wanted.units,
+    };
+    let mut figures = vec![("scene".to_owned(), forecast_scene_figure(&input))];
+    for channel in FORECAST_CHANNELS {
+        let name = channel.channel.header().to_owned();
+        figures.push((name, forecast_channel_figure(&input, channel)));
+    }
+    for (name, figure) in &figures {
+        let csv = path(&format!("{name}.csv"));
+        write_atomically(&csv, |file| {
+            write_figure_csv(figure, file).map_err(std::io::Error::other)
+        })?;
+        files.push(csv);
+        let png = path(&format!("{name}.png"));
+        if write_png(figure, &png)? {
+            files.push(png);
+        }
+    }
+    Ok(files)
+}
+
+/// Whether this build draws.
+#[cfg(feature = "gui")]
+fn write_png(figure: &Figure, path: &Path) -> Result<bool, CliError> {
+    let image = crate::render::figure_image(figure, crate::render::Canvas::default())?;
+    crate::render::save_png(&image, path)?;
+    Ok(true)
+}
+
+#[cfg(not(feature = "gui"))]
+#[allow(clippy::unnecessary_wraps, reason = "the build with a window can fail here")]
+fn write_png(_figure: &Figure, _path: &Path) -> Result<bool, CliError> {
+    Ok(false)
+}
+
+fn write_trajectory(
+    path: &Path,
+    forecast: &MotionForecast,
+    bands: &MotionBands,
+) -> Result<(), CliError> {
+    let mut csv = csv::Writer::from_writer(Vec::new());
+    let mut header = vec!["time_s".to_owned()];
+    for channel in FORECAST_CHANNELS {
+        let name = channel.channel.header();
+        header.extend(["central", "mean", "std"].map(|kind| format!("{name}_{kind}")));
+        for level in MOTION_BAND_LEVELS {
+            let percent = (100.0 * level) as u32;
+            header.extend([format!("{name}_low_{percent}"), format!("{name}_high_{percent}")]);
+        }
+    }
+    let failed = |error: csv::Error| CliError::Output(std::io::Error::other(error));
+    csv.write_record(&header).map_err(failed)?;
+    let distribution = &forecast.distribution;
+    for (at, central) in forecast.central.iter().enumerate() {
+        let covariance = distribution.covariance(at);
+        let (central, mean) = (central.planar(), distribution.mean(at).planar());
+        let mut row = vec![format!("{:.2}", at as f64 * STEP_S)];
+        for (axis, (central, mean)) in central.into_iter().zip(mean).enumerate() {
+            let std = covariance[(axis, axis)].max(0.0).sqrt();
+            row.extend([central, mean, std].map(|value| format!("{value:.6}")));
+            for edges in bands.intervals.get(at).map(|of| of[axis]).into_iter().flatten() {
+                row.extend(edges.map(|edge| format!("{edge:.6}")));
+            }
+        }
+        csv.write_record(&row).map_err(failed)?;
+    }
+    let bytes = csv.into_inner().map_err(|error| std::io::Error::other(error.to_string()))?;
+    write_atomically(path, |out| out.write_all(&bytes))?;
+    Ok(())
+}
+
+fn write_density(path: &Path, map: &DensityMap) -> Result<(), CliError> {
+    let [width, _] = map.grid.size;
+    write_atomically(path, |out| {
+        writeln!(out, "x_m,y_m,density_1_m2")?;
+        for (i, value) in map.values.iter().enumerate() {
+            let x = map.grid.low_m[0] + (i % width) as f64 * map.grid.step_m[0];
+            let y = map.grid.low_m[1] + (i / width) as f64 * map.grid.step_m[1];
+            writeln!(out, "{x:.4},{y:.4},{value:.6e}")?;
+        }
+        Ok(())
+    })?;
+    Ok(())
+}

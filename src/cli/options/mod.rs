@@ -1,0 +1,13 @@
+//! What several commands take as options.
+
+mod choices;
+mod quantity;
+mod source;
+
+pub(super) use choices::{
+    BadCasesArg, EquationsArg, IntegratorArg, SamplingArg, SplitArg, UnitsArg, VehicleArg,
+};
+pub(super) use quantity::{
+    contact_point, friction, size_px, speed_m_s, time_s, window_s, yaw_rate_rad_s,
+};
+pub(super) use source::SourceArgs;

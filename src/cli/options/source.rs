@@ -1,0 +1,51 @@
+//! What a path and `--case` choose: a case of a data set, or a single file.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::cli::CliError;
+use crate::data::{ColumnMap, DataError, DatasetKind, FileKind};
+use crate::study::{Drive, Library, MotionSource, SeriesFile, StudyError};
+
+/// What is shown: a case or a file.
+#[derive(Debug, Args)]
+pub(in crate::cli) struct SourceArgs {
+    /// A data set (with --case) or a single file
+    pub(in crate::cli) path: PathBuf,
+    /// The case of the data set
+    #[arg(long, value_name = "NAME")]
+    case: Option<String>,
+    /// For a single file, which column is what: time=1:ms,fx=Kraft X:kN
+    #[arg(long)]
+    map: Option<ColumnMap>,
+}
+
+impl SourceArgs {
+    /// What drives the motion: the case, the recorded motion, or the force or steer angle of a file.
+    ///
+    /// - `start`: what a single file does not say.
+    pub(in crate::cli) fn motion_source(
+        &self,
+        library: &Library,
+        start: Drive,
+    ) -> Result<MotionSource, CliError> {
+        let path = self.path.clone();
+        if !path.is_dir() {
+            if let Some(case) = self.case.clone() {
+                return Err(CliError::CaseOfFile { path, case });
+            }
+            let file = SeriesFile { path, map: self.map.clone() };
+            let kind: FileKind = library.series(&file)?.kind;
+            return Ok(MotionSource::of_file(file, kind, start));
+        }
+        if self.map.is_some() {
+            return Err(StudyError::MapOfFolder { path }.into());
+        }
+        match &self.case {
+            Some(case) => Ok(MotionSource::Case { dataset: path, case: case.clone() }),
+            None if DatasetKind::of_folder(&path).is_some() => Err(CliError::CaseNeeded { path }),
+            None => Err(DataError::NotRecognised { path }.into()),
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! A comparison of response models, table by table.
+
+use std::io::{self, Write};
+
+use crate::cli::console::{print_assumptions, print_table};
+use crate::response::comparison::all_tables;
+use crate::study::CompareReport;
+
+/// Prints the tables below each other.
+pub(in crate::cli) fn print_comparison(
+    out: &mut dyn Write,
+    report: &CompareReport,
+) -> io::Result<()> {
+    let comparison = &report.comparison;
+    writeln!(
+        out,
+        "{}: {} trajectories that no model has seen, seed {}",
+        comparison.data,
+        comparison.test.len(),
+        comparison.seed
+    )?;
+    for (title, _, table) in all_tables(comparison) {
+        if table.rows.is_empty() {
+            continue;
+        }
+        writeln!(out, "\n{title}")?;
+        let header: Vec<&str> = table.header.iter().map(String::as_str).collect();
+        print_table(out, &header, &table.rows)?;
+    }
+    for case in &report.left_out {
+        writeln!(out, "left out: {case}")?;
+    }
+    print_assumptions(out, &report.assumptions)
+}

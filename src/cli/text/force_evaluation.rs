@@ -1,0 +1,62 @@
+//! How well a force network does, table by table.
+
+use std::io::{self, Write};
+
+use crate::cli::console::print_table;
+use crate::force::CrossValidation;
+use crate::force::metrics::Figures;
+use crate::study::{EvaluateForceReport, ForceEvaluation};
+
+/// Prints the tables below each other.
+pub(in crate::cli) fn print_force_evaluation(
+    out: &mut dyn Write,
+    report: &ForceEvaluation,
+) -> io::Result<()> {
+    match report {
+        ForceEvaluation::Cases(report) => print_cases(out, report),
+        ForceEvaluation::Folds(report) => print_folds(out, &report.validation),
+    }
+}
+
+fn print_cases(out: &mut dyn Write, report: &EvaluateForceReport) -> io::Result<()> {
+    writeln!(out, "{}", report.evaluation.to_text())?;
+    for case in &report.left_out {
+        writeln!(out, "left out: {case}")?;
+    }
+    if report.n_trained_on > 0 {
+        let (n_known, n_test) = (report.n_trained_on, report.n_test);
+        writeln!(out, "warning: the model was trained on {n_known} of these {n_test} cases")?;
+    }
+    Ok(())
+}
+
+fn print_folds(out: &mut dyn Write, validation: &CrossValidation) -> io::Result<()> {
+    let parts = [("all cases", &validation.overall), ("clean cases", &validation.separated)];
+    for (title, compared) in parts {
+        let Some(compared) = compared else { continue };
+        writeln!(out, "{title}, {} folds", validation.folds.len())?;
+        let row = |(name, figures): (&str, &Figures)| {
+            let percent = |x: f64| format!("{:.1}", 100.0 * x);
+            vec![
+                name.to_owned(),
+                percent(figures.rmse_over_peak.mean),
+                format!("{:.3}", figures.history_error.mean),
+                percent(figures.impulse_error.median),
+                percent(figures.peak_error.median),
+                percent(figures.duration_error.median),
+            ]
+        };
+        let rows: Vec<Vec<String>> = compared.named().into_iter().map(row).collect();
+        let header = [
+            "model",
+            "RMSE/peak, mean [%]",
+            "history, mean",
+            "impulse, median [%]",
+            "peak, median [%]",
+            "duration, median [%]",
+        ];
+        print_table(out, &header, &rows)?;
+        writeln!(out)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,57 @@
+//! A predicted motion, as a person reads it.
+
+use std::io::{self, Write};
+
+use crate::analysis::Spread;
+use crate::cli::console::{print_assumptions, print_facts, shown};
+use crate::study::PredictMotionReport;
+use crate::units::{Quantity, UnitSystem};
+
+/// Prints how the motion ends.
+pub(in crate::cli) fn print_motion_prediction(
+    out: &mut dyn Write,
+    report: &PredictMotionReport,
+    units: UnitSystem,
+) -> io::Result<()> {
+    let outcome = &report.outcome;
+    let spread = |quantity: Quantity, of: &Spread| {
+        let [low, high] = of.ninety;
+        format!(
+            "{} (90 %: {} to {})",
+            shown(quantity, of.median, units),
+            shown(quantity, low, units),
+            shown(quantity, high, units)
+        )
+    };
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    let when = match outcome.is_at_rest {
+        true => format!("at rest after {:.2} s", outcome.time_s),
+        false => format!("after {:.2} s", outcome.time_s),
+    };
+    let mut facts = vec![
+        ("scenario", report.scenario.clone()),
+        ("vehicle", report.vehicle.clone()),
+        ("forces", format!("{}, each as likely", report.n_forces)),
+        ("end", when),
+        ("speed", shown(Quantity::Speed, outcome.speed_m_s, units)),
+        ("X", spread(Quantity::Length, &outcome.x_m)),
+        ("Y", spread(Quantity::Length, &outcome.y_m)),
+        ("heading change", spread(Quantity::Angle, &outcome.heading_change_rad)),
+        ("90 % region", format!("{:.1} m²", outcome.region_90_m2)),
+        ("P(quarter turn or more)", percent(outcome.p_quarter_turn)),
+        ("P(half turn or more)", percent(outcome.p_half_turn)),
+    ];
+    if let Some(probability) = report.hooking_probability {
+        facts.push(("P(hooking)", percent(probability)));
+    }
+    for outside in &report.outside_training {
+        let [low, high] = outside.range;
+        let value = format!(
+            "{} is {:.3}, trained on {low:.3} to {high:.3}",
+            outside.feature, outside.value
+        );
+        facts.push(("outside training", value));
+    }
+    print_facts(out, &facts)?;
+    print_assumptions(out, &report.assumptions)
+}

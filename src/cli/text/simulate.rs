@@ -1,0 +1,64 @@
+//! The simulation of one vehicle, as a person reads it.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use crate::cli::console::{print_assumptions, print_facts, shown, shown_vector};
+use crate::study::{ForceReport, SimulateReport};
+use crate::units::{Quantity, UnitSystem};
+
+/// A name and a value.
+type Fact = (&'static str, String);
+
+/// Prints what came out.
+///
+/// - `out`: where the motion was written.
+pub(in crate::cli) fn print_simulation(
+    text: &mut dyn Write,
+    (report, out): (&SimulateReport, Option<&Path>),
+    units: UnitSystem,
+) -> io::Result<()> {
+    let number = |quantity, value| shown(quantity, value, units);
+    let vector = |quantity, value| shown_vector(quantity, value, ["x", "y"], units);
+    let simulation = format!(
+        "{} s, {} equations, {}, friction {}",
+        report.duration_s, report.equations, report.integrator, report.friction
+    );
+    let mut facts: Vec<Fact> =
+        vec![("vehicle", report.vehicle.clone()), ("simulation", simulation)];
+    facts.extend(report.force.iter().flat_map(|force| force_facts(force, &report.name, units)));
+    if let Some(delta_v) = report.delta_v_m_s {
+        facts.push(("Δv over contact", vector(Quantity::Speed, delta_v)));
+    }
+    if let Some(end) = &report.end {
+        facts.push(("end position", vector(Quantity::Length, [end.x_m, end.y_m])));
+        facts.extend(report.distance_m.map(|m| ("distance", number(Quantity::Length, m))));
+        facts.push(("final heading", number(Quantity::Angle, end.yaw_rad)));
+        let change = report.largest_yaw_change_rad;
+        facts.extend(change.map(|rad| ("largest yaw change", number(Quantity::Angle, rad))));
+        facts.push(("final speed", number(Quantity::Speed, end.speed_m_s)));
+    }
+    if let Some(error) = &report.error {
+        facts.push(("average error", number(Quantity::Length, error.average_error_m)));
+        facts.push(("final error", number(Quantity::Length, error.final_error_m)));
+    }
+    facts.extend(report.flags.iter().map(|flag| ("flag", flag.message.clone())));
+    facts.extend(report.notes.iter().map(|note| ("note", note.clone())));
+    facts.extend(out.map(|path| ("written", path.display().to_string())));
+    print_facts(text, &facts)?;
+    print_assumptions(text, &report.assumptions)
+}
+
+fn force_facts(force: &ForceReport, name: &str, units: UnitSystem) -> Vec<Fact> {
+    let source = force.path.as_ref().map_or(name.to_owned(), |path| path.display().to_string());
+    let (sampling, axes) = (force.sampling.replace('_', " "), &force.axes);
+    let impulse = shown_vector(Quantity::Impulse, force.impulse_n_s, ["x", "y"], units);
+    let contact = force.contact_start_s.zip(force.contact_end_s);
+    let mut facts = vec![
+        ("force", format!("{source} ({axes} axes, {sampling})")),
+        ("yaw moment", format!("from the {}", force.yaw_moment.replace('_', " "))),
+        ("impulse", impulse),
+    ];
+    facts.extend(contact.map(|(start, end)| ("contact", format!("{start:.4} s to {end:.4} s"))));
+    facts
+}

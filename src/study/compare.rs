@@ -1,0 +1,138 @@
+//! The response network beside the tuned and the untuned 4DOF model and a plain network: `compare`.
+
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use crate::data::Outcome;
+use crate::response::ResponseConfig;
+use crate::response::comparison::{Comparison, ComparisonSettings, compare_models};
+use crate::study::inputs::{data_name, response_cases};
+use crate::study::question::progress_of;
+use crate::study::{
+    Assumption, BadCases, ConfigChoice, Library, ModelChoice, Observer, Question, StudyError,
+    VehicleChoice,
+};
+
+/// Numbers of trajectories to fine-tune on where nobody says them.
+const DEFAULT_TRAJECTORIES: [usize; 2] = [5, 20];
+/// Choices of the trajectories for each number where nobody says how many.
+pub const DEFAULT_CHOICES: u64 = 3;
+
+/// Asks which response model does best on motions that none has seen.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CompareRequest {
+    /// A trajectory data set; a share of its cases is kept apart for the test.
+    pub data: PathBuf,
+    /// Numbers of trajectories to fine-tune on.
+    #[serde(default = "default_trajectories")]
+    pub trajectories: Vec<usize>,
+    /// Choices of the trajectories for each number.
+    #[serde(default = "default_choices")]
+    pub choices: u64,
+    /// Seed of the split and of the first choice.
+    #[serde(default)]
+    pub seed: u64,
+    /// A pre-trained response network; pre-trained here if not given.
+    #[serde(default)]
+    pub model: Option<ModelChoice>,
+    /// The struck vehicle.
+    #[serde(default)]
+    pub vehicle: VehicleChoice,
+    /// Settings of the networks.
+    #[serde(default)]
+    pub config: ConfigChoice,
+    /// What happens to cases that cannot be used.
+    #[serde(default)]
+    pub bad_cases: BadCases,
+}
+
+fn default_trajectories() -> Vec<usize> {
+    DEFAULT_TRAJECTORIES.to_vec()
+}
+
+fn default_choices() -> u64 {
+    DEFAULT_CHOICES
+}
+
+impl CompareRequest {
+    /// A comparison on a data set in which nothing else is said.
+    pub fn new(data: impl Into<PathBuf>) -> Self {
+        Self {
+            data: data.into(),
+            trajectories: default_trajectories(),
+            choices: DEFAULT_CHOICES,
+            seed: 0,
+            model: None,
+            vehicle: VehicleChoice::default(),
+            config: ConfigChoice::default(),
+            bad_cases: BadCases::default(),
+        }
+    }
+}
+
+/// A finished comparison, or the evaluation of one model.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CompareReport {
+    /// The models, their metrics and the cases.
+    #[serde(flatten)]
+    pub comparison: Comparison,
+    /// Cases that were left out, and why.
+    pub left_out: Vec<String>,
+    /// What was assumed.
+    pub assumptions: Vec<Assumption>,
+}
+
+/// A finished comparison, or the evaluation of one model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CompareAnswer {
+    /// What is told.
+    pub report: CompareReport,
+}
+
+impl CompareAnswer {
+    pub(super) fn new(
+        comparison: Comparison,
+        left_out: Vec<String>,
+        assumptions: Vec<Assumption>,
+    ) -> Self {
+        Self { report: CompareReport { comparison, left_out, assumptions } }
+    }
+}
+
+impl Question for CompareRequest {
+    type Answer = CompareAnswer;
+    const NAME: &'static str = "compare";
+
+    fn answer(
+        &self,
+        library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<CompareAnswer>, StudyError> {
+        let start = self.model.as_ref().map(|model| library.response_model(model)).transpose()?;
+        let config = match (self.config.file(), &start) {
+            (Some(path), _) => ResponseConfig::load(path)?,
+            (None, Some(start)) => start.config().clone(),
+            (None, None) => ResponseConfig::default(),
+        };
+        let mut assumptions = Vec::new();
+        let chosen = (self.data.as_path(), &self.vehicle);
+        let cases = response_cases(chosen, self.bad_cases, &mut assumptions, (library, observer))?;
+        let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
+        let settings = ComparisonSettings {
+            config,
+            trajectories: self.trajectories.clone(),
+            n_choices: self.choices,
+            seed: self.seed,
+        };
+        let data = (&*data_name(&self.data), &*usable.cases);
+        let mut report = progress_of(observer);
+        let compared = compare_models(data, start.as_deref(), &settings, &mut report)?;
+        Ok(match compared {
+            None => Outcome::Cancelled,
+            Some(comparison) => {
+                Outcome::Complete(CompareAnswer::new(comparison, usable.left_out, assumptions))
+            }
+        })
+    }
+}

@@ -1,0 +1,234 @@
+//! Why a question has no answer.
+
+use std::path::PathBuf;
+
+use crate::analysis::{AnalysisError, MotionForecastError};
+use crate::collision::ScenarioError;
+use crate::compare::ReplayError;
+use crate::data::{DataError, SeriesError, TomlError};
+use crate::force::{EvaluateError, ForceError};
+use crate::learning::{LearningError, LoadError};
+use crate::response::LogError;
+use crate::vehicle::{Preset, SimulationError};
+
+/// A question that cannot be answered.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// A file or data set cannot be read.
+    #[error(transparent)]
+    Data(#[from] DataError),
+    /// A data set is not what is needed.
+    #[error(transparent)]
+    Cases(Box<LoadError>),
+    /// A data set has a case that cannot be read.
+    #[error(
+        "{problem} (in {}; leave out cases that cannot be used with --bad-cases leave-out)",
+        path.display()
+    )]
+    BadCase {
+        /// The data set.
+        path: PathBuf,
+        /// What is wrong with the first such case.
+        problem: String,
+    },
+    /// The case that is asked about cannot be read.
+    #[error("{problem}")]
+    CaseUnreadable {
+        /// The data set.
+        path: PathBuf,
+        /// What is wrong with the case.
+        problem: String,
+    },
+    /// A force network cannot be trained, opened or asked.
+    #[error(transparent)]
+    Force(Box<ForceError>),
+    /// A response network, or a training set of either network, cannot be used.
+    #[error(transparent)]
+    Learning(Box<LearningError>),
+    /// A model is not in memory.
+    #[error("there is no model {name:?}")]
+    NotHeld {
+        /// What it was called.
+        name: String,
+    },
+    /// The log of an impact cannot be used.
+    #[error(transparent)]
+    Log(Box<LogError>),
+    /// There is not a force for every log.
+    #[error("{n_forces} force files for {n_logs} logs, expected one for each or none")]
+    ForcesOfLogs {
+        /// Number of force files.
+        n_forces: usize,
+        /// Number of logs.
+        n_logs: usize,
+    },
+    /// A folder holds no logs.
+    #[error("{}: holds no file that ends in .csv", path.display())]
+    NoLogs {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A motion cannot be predicted.
+    #[error("{name}: the motion cannot be predicted")]
+    Forecast {
+        /// The scenario or case.
+        name: String,
+        /// Why.
+        source: Box<MotionForecastError>,
+    },
+    /// A model has been trained on every case that it should be evaluated on.
+    #[error(
+        "{}: the model was trained on every case; --split all evaluates them all the same",
+        path.display()
+    )]
+    NoTestCase {
+        /// The data set.
+        path: PathBuf,
+    },
+    /// An evaluation failed.
+    #[error("the evaluation failed")]
+    Evaluation(#[source] Box<EvaluateError>),
+    /// A vehicle or scenario file cannot be read.
+    #[error(transparent)]
+    TomlFile(#[from] TomlError),
+    /// A vehicle is neither a preset nor a file.
+    #[error("{name:?} is no vehicle; expected a vehicle file or one of {}", presets.join(", "))]
+    UnknownVehicle {
+        /// As given.
+        name: String,
+        /// The presets.
+        presets: Vec<&'static str>,
+    },
+    /// A scenario has no solution.
+    #[error("{name}: cannot be solved")]
+    Scenario {
+        /// The scenario.
+        name: String,
+        /// Why.
+        source: ScenarioError,
+    },
+    /// A file lacks a column.
+    #[error("{}: does not have what this needs", path.display())]
+    Series {
+        /// The file or data set.
+        path: PathBuf,
+        /// What it lacks.
+        source: SeriesError,
+    },
+    /// A simulation did not come to its end.
+    #[error("the simulation failed")]
+    Simulation(#[from] SimulationError),
+    /// A case cannot be simulated.
+    #[error(transparent)]
+    Replay(#[from] ReplayError),
+    /// A case or file cannot be analysed.
+    #[error("{name}: cannot be analysed")]
+    Analysis {
+        /// The file, case or scenario.
+        name: String,
+        /// Why.
+        source: Box<AnalysisError>,
+    },
+    /// A data set does not have the case.
+    #[error("{}: has no case {case:?}; its {n_cases} cases start with {first:?}", path.display())]
+    NoSuchCase {
+        /// The data set.
+        path: PathBuf,
+        /// The name asked for.
+        case: String,
+        /// How many cases there are.
+        n_cases: usize,
+        /// A name that would do.
+        first: String,
+    },
+    /// Forces are given where motions are needed, or the other way round.
+    #[error("{}: holds {got}, expected {expected}", path.display())]
+    WrongKind {
+        /// The file or data set.
+        path: PathBuf,
+        /// What it is.
+        got: String,
+        /// What is needed.
+        expected: &'static str,
+    },
+    /// A column map is given for a folder.
+    #[error("{}: is a folder; --map is for single files", path.display())]
+    MapOfFolder {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A force that is to be learned from does not say where it acts.
+    #[error(
+        "{}: has no yaw moment (mz); say where the force acts with --contact x,y,z",
+        path.display()
+    )]
+    NoYawMoment {
+        /// The force file.
+        path: PathBuf,
+    },
+    /// The contact lies outside the simulated time.
+    #[error(
+        "{name}: contact from {start_s} s to {end_s} s, expected between 0 s and the end at \
+         {duration_s} s; shift the time column or change --duration"
+    )]
+    ContactOutside {
+        /// The force file, case or scenario.
+        name: String,
+        /// First touch, s.
+        start_s: f64,
+        /// Last separation, s.
+        end_s: f64,
+        /// Duration of the simulation, s.
+        duration_s: f64,
+    },
+    /// A recorded motion has the friction of its own case.
+    #[error(
+        "case {case}: its friction is recorded; another friction would compare the motion with \
+         another road"
+    )]
+    FrictionOfCase {
+        /// Name of the case.
+        case: String,
+    },
+    /// There is no force, so that nothing can be forecast.
+    #[error("{name}: has no force on a vehicle to forecast a motion from")]
+    NoForce {
+        /// The file or case.
+        name: String,
+    },
+    /// It is not known how the vehicles met, so that the force cannot be predicted.
+    #[error("{name}: does not say how the vehicles met, so its force cannot be predicted")]
+    NoCollision {
+        /// The file or case.
+        name: String,
+    },
+    /// Nothing says what should be learned from.
+    #[error("nothing to learn from: say which data set with --data, or which log with --log")]
+    NothingToLearnFrom,
+}
+
+impl StudyError {
+    /// The error for a name that is no vehicle.
+    pub(crate) fn unknown_vehicle(name: &str) -> Self {
+        let presets = Preset::ALL.iter().map(|preset| preset.id()).collect();
+        Self::UnknownVehicle { name: name.to_owned(), presets }
+    }
+}
+
+macro_rules! boxed {
+    ($($error:ty => $variant:ident,)+) => {
+        $(impl From<$error> for StudyError {
+            fn from(error: $error) -> Self {
+                Self::$variant(Box::new(error))
+            }
+        })+
+    };
+}
+
+boxed! {
+    LoadError => Cases,
+    LogError => Log,
+    LearningError => Learning,
+    ForceError => Force,
+    EvaluateError => Evaluation,
+}

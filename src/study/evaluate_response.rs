@@ -1,0 +1,85 @@
+//! How well a response network does on recorded motions: `evaluate response`.
+
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use crate::data::Outcome;
+use crate::response::comparison::{MotionModel, evaluate_motion_model};
+use crate::response::{Correction, ResponseCase, ResponseModel};
+use crate::study::inputs::{data_name, response_cases};
+use crate::study::{
+    BadCases, CompareAnswer, EvaluatedCases, Library, ModelChoice, Observer, Question, StudyError,
+    VehicleChoice,
+};
+
+/// Asks how well a response network predicts the motions of a data set.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EvaluateResponseRequest {
+    /// The response network.
+    #[serde(default)]
+    pub model: ModelChoice,
+    /// The trajectory data set.
+    pub data: PathBuf,
+    /// Which of its cases.
+    #[serde(default)]
+    pub split: EvaluatedCases,
+    /// The struck vehicle.
+    #[serde(default)]
+    pub vehicle: VehicleChoice,
+    /// Seed of the clusters.
+    #[serde(default)]
+    pub seed: u64,
+    /// What happens to cases that cannot be used.
+    #[serde(default)]
+    pub bad_cases: BadCases,
+}
+
+/// A finished evaluation: a comparison with one model.
+pub type EvaluateResponseAnswer = CompareAnswer;
+
+impl Question for EvaluateResponseRequest {
+    type Answer = EvaluateResponseAnswer;
+    const NAME: &'static str = "evaluate";
+
+    fn answer(
+        &self,
+        library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<EvaluateResponseAnswer>, StudyError> {
+        let model = library.response_model(&self.model)?;
+        let mut assumptions = Vec::new();
+        let chosen = (self.data.as_path(), &self.vehicle);
+        let cases = response_cases(chosen, self.bad_cases, &mut assumptions, (library, observer))?;
+        let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
+        let chosen: Vec<&ResponseCase> = match self.split {
+            EvaluatedCases::All => usable.cases.iter().collect(),
+            EvaluatedCases::Test => test_cases(&model, &usable.cases),
+        };
+        if chosen.is_empty() {
+            return Err(StudyError::NoTestCase { path: self.data.clone() });
+        }
+        let trajectories = model.record().train.len();
+        let own = Box::new(model.copied()?);
+        let compared = match model.config().network.correction {
+            Correction::Whole => MotionModel::Plain(own),
+            _ => MotionModel::Network(own),
+        };
+        let name = data_name(&self.data);
+        let comparison =
+            evaluate_motion_model((&name, &chosen), &compared, (trajectories, self.seed))?;
+        let answer = CompareAnswer::new(comparison, usable.left_out, assumptions);
+        Ok(Outcome::Complete(answer))
+    }
+}
+
+/// Those kept for the test of the model, or, of other data, all that it was not trained on.
+fn test_cases<'a>(model: &ResponseModel, cases: &'a [ResponseCase]) -> Vec<&'a ResponseCase> {
+    let test = &model.record().test;
+    let kept: Vec<&ResponseCase> =
+        cases.iter().filter(|case| test.iter().any(|id| id.digest == case.digest)).collect();
+    if !kept.is_empty() {
+        return kept;
+    }
+    cases.iter().filter(|case| !model.is_trained_on(case)).collect()
+}

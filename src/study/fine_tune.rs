@@ -1,0 +1,169 @@
+//! The fine-tuning of the response network: `fine-tune response`.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
+
+use crate::data::Outcome;
+use crate::learning::TEST_SHARE;
+use crate::response::{
+    ResponseConfig, ResponseModel, ResponseTrainSettings, ResponseTrainingSet, fine_tune,
+};
+use crate::study::inputs::{OpenVehicle, data_name, response_cases, struck_vehicle};
+use crate::study::train_response::TrainingNotes;
+use crate::study::{
+    BadCases, ConfigChoice, Event, Library, ModelChoice, MotionLogs, Observer, Question,
+    ResponseTrainingAnswer, StudyError, VehicleChoice,
+};
+
+/// Asks for a response network that has learned from recorded motions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FineTuneRequest {
+    /// The network to start from; without one all layers are trained, from random weights.
+    #[serde(default)]
+    pub model: Option<ModelChoice>,
+    /// Trajectory data sets, of each of which a share of the cases is kept apart for the test.
+    #[serde(default)]
+    pub data: Vec<PathBuf>,
+    /// Logs of single impacts instead of data sets.
+    #[serde(default)]
+    pub logs: Option<MotionLogs>,
+    /// How many trajectories of each data set to learn from; all that are not kept for the test if
+    /// not given.
+    #[serde(default)]
+    pub trajectories: Option<usize>,
+    /// The struck vehicle.
+    #[serde(default)]
+    pub vehicle: VehicleChoice,
+    /// Settings instead of the model's own; layers must be the same.
+    #[serde(default)]
+    pub config: ConfigChoice,
+    /// Share of the cases that is kept for the test.
+    #[serde(default = "default_test_share")]
+    pub test_share: f64,
+    /// Seed of the split.
+    #[serde(default)]
+    pub seed: u64,
+    /// Seed of the choice of the trajectories and of all other draws; the split's if not given.
+    #[serde(default)]
+    pub choice: Option<u64>,
+    /// What happens to cases that cannot be used.
+    #[serde(default)]
+    pub bad_cases: BadCases,
+    /// Where the state of the training is kept.
+    #[serde(default)]
+    pub checkpoint: Option<PathBuf>,
+    /// Whether to go on from that state, if it is there.
+    #[serde(default)]
+    pub resume: bool,
+}
+
+fn default_test_share() -> f64 {
+    TEST_SHARE
+}
+
+impl Default for FineTuneRequest {
+    fn default() -> Self {
+        Self {
+            model: None,
+            data: Vec::new(),
+            logs: None,
+            trajectories: None,
+            vehicle: VehicleChoice::default(),
+            config: ConfigChoice::default(),
+            test_share: TEST_SHARE,
+            seed: 0,
+            choice: None,
+            bad_cases: BadCases::default(),
+            checkpoint: None,
+            resume: false,
+        }
+    }
+}
+
+impl FineTuneRequest {
+    /// The settings that it trains with, and the network that it starts from.
+    ///
+    /// # Errors
+    /// [`StudyError::Learning`] with what is wrong with a file.
+    pub fn settings(
+        &self,
+        library: &Library,
+    ) -> Result<(ResponseConfig, Option<Arc<ResponseModel>>), StudyError> {
+        let start = self.model.as_ref().map(|model| library.response_model(model)).transpose()?;
+        let mut config = match (self.config.file(), &start) {
+            (Some(path), _) => ResponseConfig::load(path)?,
+            (None, Some(start)) => start.config().clone(),
+            (None, None) => ResponseConfig::default(),
+        };
+        if self.config == ConfigChoice::Default && self.logs.is_some() {
+            config.effects = config.effects.few_samples();
+        }
+        Ok((config, start))
+    }
+
+    fn training_set(
+        &self,
+        notes: &mut TrainingNotes,
+        (library, observer): (&Library, &mut Observer<'_>),
+    ) -> Result<Outcome<ResponseTrainingSet>, StudyError> {
+        if let Some(logs) = &self.logs {
+            let vehicle =
+                struck_vehicle(&self.vehicle, &OpenVehicle::Unknown, &mut notes.assumptions)?;
+            let (train, reports) = logs.read(vehicle)?;
+            notes.logs = reports;
+            let names: Vec<&str> = train.iter().map(|case| case.name.as_str()).collect();
+            let set = ResponseTrainingSet { name: names.join(", "), train, test: Vec::new() };
+            return Ok(Outcome::Complete(set));
+        }
+        let mut sets = Vec::new();
+        for root in &self.data {
+            let chosen = (root.as_path(), &self.vehicle);
+            let assumptions = &mut notes.assumptions;
+            let cases = response_cases(chosen, self.bad_cases, assumptions, (library, observer))?;
+            let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
+            notes.left_out.extend(usable.left_out);
+            let (name, share) = (data_name(root), self.test_share);
+            let set = ResponseTrainingSet::of_split(name, &usable.cases, self.seed, share);
+            sets.push(set.choose(self.trajectories, self.choice_seed())?);
+        }
+        if sets.is_empty() {
+            return Err(StudyError::NothingToLearnFrom);
+        }
+        Ok(Outcome::Complete(ResponseTrainingSet::joined(sets)))
+    }
+
+    fn choice_seed(&self) -> u64 {
+        self.choice.unwrap_or(self.seed)
+    }
+}
+
+impl Question for FineTuneRequest {
+    type Answer = ResponseTrainingAnswer;
+    const NAME: &'static str = "fine-tune";
+
+    fn answer(
+        &self,
+        library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<ResponseTrainingAnswer>, StudyError> {
+        let (config, start) = self.settings(library)?;
+        let mut notes = TrainingNotes::default();
+        let set = self.training_set(&mut notes, (library, observer))?;
+        let Outcome::Complete(set) = set else { return Ok(Outcome::Cancelled) };
+        let settings = ResponseTrainSettings {
+            config,
+            seed: self.choice_seed(),
+            checkpoint: self.checkpoint.clone(),
+            resume: self.resume,
+        };
+        let started = Instant::now();
+        let model = fine_tune(start.as_deref(), &set, &settings, &mut |told| {
+            observer(Event::Training(told))
+        })?;
+        let answer = ResponseTrainingAnswer::of(model, started.elapsed().as_secs_f64(), notes);
+        Ok(Outcome::Complete(answer))
+    }
+}

@@ -1,0 +1,119 @@
+//! The cases that a training, an evaluation or a comparison is made with.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::data::{Case, Dataset, DatasetKind, Outcome};
+use crate::error_chain;
+use crate::force::ForceCase;
+use crate::learning::LoadError;
+use crate::response::ResponseCase;
+use crate::study::inputs::{OpenVehicle, struck_vehicle};
+use crate::study::{Assumption, Library, Observer, StudyError, VehicleChoice};
+
+/// What happens to cases of a data set that cannot be used.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum BadCases {
+    /// The first one is an error, so that two runs on one data set have the same cases.
+    #[default]
+    Refuse,
+    /// They are left out and listed in the report.
+    LeaveOut,
+}
+
+/// Which cases of a data set a model is evaluated on.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EvaluatedCases {
+    /// Those that the model was not trained on, recognised by their content.
+    #[default]
+    Test,
+    /// All, also those that it was trained on.
+    All,
+}
+
+/// What a data set is called.
+pub(in crate::study) fn data_name(root: &Path) -> String {
+    root.file_name().unwrap_or(root.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// What several data sets are called together.
+pub(in crate::study) fn data_names<'a>(roots: impl IntoIterator<Item = &'a PathBuf>) -> String {
+    let names: Vec<String> = roots.into_iter().map(|root| data_name(root)).collect();
+    names.join(" + ")
+}
+
+/// Cases as a network learns from them, and why others are left out.
+pub(in crate::study) struct UsableCases<T> {
+    pub(in crate::study) cases: Vec<T>,
+    pub(in crate::study) left_out: Vec<String>,
+}
+
+/// The cases of a force data set.
+pub(in crate::study) fn force_cases(
+    root: &Path,
+    bad_cases: BadCases,
+    (library, observer): (&Library, &mut Observer<'_>),
+) -> Result<Outcome<UsableCases<ForceCase>>, StudyError> {
+    let Outcome::Complete(dataset) = library.dataset(root, observer)? else {
+        return Ok(Outcome::Cancelled);
+    };
+    if dataset.kind != DatasetKind::Force {
+        return Err(LoadError::NoForces { path: root.to_owned() }.into());
+    }
+    let read = |case: &Case| {
+        ForceCase::from_case(case).map_err(|source| {
+            StudyError::from(LoadError::Case { path: root.to_owned(), source: Box::new(source) })
+        })
+    };
+    usable(&dataset, bad_cases, read).map(Outcome::Complete)
+}
+
+/// The trajectories of a data set; a vehicle that nobody named is added to the assumptions.
+pub(in crate::study) fn response_cases(
+    (root, choice): (&Path, &VehicleChoice),
+    bad_cases: BadCases,
+    assumptions: &mut Vec<Assumption>,
+    (library, observer): (&Library, &mut Observer<'_>),
+) -> Result<Outcome<UsableCases<ResponseCase>>, StudyError> {
+    let Outcome::Complete(dataset) = library.dataset(root, observer)? else {
+        return Ok(Outcome::Cancelled);
+    };
+    if dataset.kind != DatasetKind::Trajectory {
+        return Err(LoadError::NoTrajectories { path: root.to_owned() }.into());
+    }
+    let own = OpenVehicle::OfDataset(dataset.vehicle_file.as_deref());
+    let vehicle = struck_vehicle(choice, &own, assumptions)?;
+    let read = |case: &Case| {
+        ResponseCase::from_case(case, &vehicle).map_err(|source| {
+            let source = Box::new(source);
+            StudyError::from(LoadError::Case { path: root.to_owned(), source })
+        })
+    };
+    usable(&dataset, bad_cases, read).map(Outcome::Complete)
+}
+
+fn usable<T>(
+    dataset: &Dataset,
+    bad_cases: BadCases,
+    read: impl Fn(&Case) -> Result<T, StudyError>,
+) -> Result<UsableCases<T>, StudyError> {
+    let (mut cases, mut left_out) = (Vec::new(), Vec::new());
+    if let Some(problem) = dataset.problems.first() {
+        if bad_cases == BadCases::Refuse {
+            let (path, problem) = (dataset.root.clone(), error_chain(problem));
+            return Err(StudyError::BadCase { path, problem });
+        }
+        left_out.extend(dataset.problems.iter().map(|problem| error_chain(problem)));
+    }
+    for case in &dataset.cases {
+        match (read(case), bad_cases) {
+            (Ok(case), _) => cases.push(case),
+            (Err(problem), BadCases::Refuse) => return Err(problem),
+            (Err(problem), BadCases::LeaveOut) => left_out.push(error_chain(&problem)),
+        }
+    }
+    Ok(UsableCases { cases, left_out })
+}

@@ -1,0 +1,39 @@
+//! Settings of a training and where its state is kept.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+/// Where the settings of a training come from.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ConfigChoice {
+    /// Those of the model that is trained on, else the defaults.
+    #[default]
+    Default,
+    /// A TOML file; what it leaves out keeps its default.
+    File(PathBuf),
+}
+
+impl ConfigChoice {
+    /// The file, if there is one.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Self::Default => None,
+            Self::File(path) => Some(path),
+        }
+    }
+}
+
+impl From<Option<PathBuf>> for ConfigChoice {
+    fn from(file: Option<PathBuf>) -> Self {
+        file.map_or(Self::Default, Self::File)
+    }
+}
+
+/// Where a training keeps its state: beside its model, as `MODEL.training`.
+pub fn checkpoint_beside(model: &Path) -> PathBuf {
+    let mut path = model.to_owned().into_os_string();
+    path.push(".training");
+    path.into()
+}

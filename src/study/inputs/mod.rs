@@ -1,0 +1,17 @@
+//! What questions refer to: vehicles, scenarios, files, models, settings, cases.
+
+mod cases;
+mod config;
+mod file;
+mod model;
+mod scenario;
+mod vehicle;
+
+pub use cases::{BadCases, EvaluatedCases};
+pub(super) use cases::{data_name, data_names, force_cases, response_cases};
+pub use config::{ConfigChoice, checkpoint_beside};
+pub use file::SeriesFile;
+pub use model::ModelChoice;
+pub use scenario::ScenarioChoice;
+pub use vehicle::{DEFAULT_BULLET, DEFAULT_VEHICLE, VehicleChoice};
+pub(super) use vehicle::{OpenVehicle, striking_vehicle, struck_vehicle};

@@ -1,0 +1,50 @@
+//! Which scenario a question is about.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::collision::{Scenario, ScenarioError};
+use crate::study::StudyError;
+
+/// A scenario: a file, or one that is in memory.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ScenarioChoice {
+    /// A scenario file.
+    File(PathBuf),
+    /// The scenario itself.
+    Inline(Box<Scenario>),
+}
+
+impl ScenarioChoice {
+    /// The scenario.
+    ///
+    /// # Errors
+    /// [`StudyError::TomlFile`], with line and column.
+    pub fn load(&self) -> Result<Scenario, StudyError> {
+        match self {
+            Self::File(path) => Ok(Scenario::load(path)?),
+            Self::Inline(scenario) => Ok(scenario.as_ref().clone()),
+        }
+    }
+
+    /// The error of a scenario that has no solution.
+    pub(in crate::study) fn unsolved(&self, source: ScenarioError) -> StudyError {
+        StudyError::Scenario { name: self.name(), source }
+    }
+
+    /// The file, or the name of the scenario, for messages.
+    pub(in crate::study) fn name(&self) -> String {
+        match self {
+            Self::File(path) => path.display().to_string(),
+            Self::Inline(scenario) => scenario.name.clone(),
+        }
+    }
+}
+
+impl From<&Path> for ScenarioChoice {
+    fn from(path: &Path) -> Self {
+        Self::File(path.to_owned())
+    }
+}

@@ -1,0 +1,229 @@
+//! From a force to the distribution of the motion after the impact: `predict`.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use crate::analysis::{
+    Analysis, MotionForecast, MotionForecastSettings, Outcome as MotionOutcome, StruckVehicle,
+    forecast_collision, forecast_forces,
+};
+use crate::data::{DatasetKind, ForceHistory, Outcome};
+use crate::force::{ForceModel, ForceScenario, OutsideTraining};
+use crate::study::simulate_dataset::take_case;
+use crate::study::{
+    AssumedQuantity, Assumption, Library, ModelChoice, MotionSource, Observer, Question,
+    SeriesFile, SimulateAnswer, SimulateRequest, StudyError,
+};
+
+/// Force curves drawn from a predicted force where nobody says how many.
+pub const DEFAULT_DRAWS: usize = 30;
+
+/// Asks where the struck vehicle goes, by the response network, and how sure that is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PredictMotionRequest {
+    /// The struck vehicle, its start, and the force that it takes.
+    pub motion: SimulateRequest,
+    /// Which force drives the motion.
+    pub force: ForceSource,
+    /// The response network.
+    #[serde(default)]
+    pub response_model: ModelChoice,
+    /// Whole force curves to draw from a predicted force.
+    #[serde(default = "default_draws")]
+    pub draws: usize,
+    /// Seed of all draws.
+    #[serde(default)]
+    pub seed: u64,
+}
+
+fn default_draws() -> usize {
+    DEFAULT_DRAWS
+}
+
+/// Which force drives a motion.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ForceSource {
+    /// What a force network says of the collision.
+    Predicted(ModelChoice),
+    /// That of the motion's own source: a record, or the pulse of a scenario.
+    Given,
+    /// A file.
+    File(PathBuf),
+}
+
+/// Where the struck vehicle goes, SI units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PredictMotionReport {
+    /// The scenario, case or file.
+    pub scenario: String,
+    /// The struck vehicle.
+    pub vehicle: String,
+    /// The force file, where the force is one.
+    pub force: Option<PathBuf>,
+    /// The force network, where the force is predicted.
+    pub force_model: Option<String>,
+    /// The response network.
+    pub response_model: String,
+    /// Forces that drive the motion, each as likely as the others.
+    pub n_forces: usize,
+    /// How the motion ends.
+    pub outcome: MotionOutcome,
+    /// Probability that the bullet's corner stays caught, of a predicted force.
+    pub hooking_probability: Option<f64>,
+    /// Where the collision lies outside what the force network has learned from.
+    pub outside_training: Vec<OutsideTraining>,
+    /// What was assumed.
+    pub assumptions: Vec<Assumption>,
+}
+
+/// A predicted motion.
+#[derive(Debug)]
+pub struct PredictMotionAnswer {
+    /// What is told.
+    pub report: PredictMotionReport,
+    /// The 4DOF simulation, the record and the force of the same source.
+    pub analysis: Analysis,
+    /// The distribution of the motion.
+    pub forecast: MotionForecast,
+}
+
+impl PredictMotionRequest {
+    /// A forecast in which nothing is said but the source and which force drives it.
+    pub fn new(source: MotionSource, force: ForceSource) -> Self {
+        Self {
+            motion: SimulateRequest::new(source),
+            force,
+            response_model: ModelChoice::default(),
+            draws: DEFAULT_DRAWS,
+            seed: 0,
+        }
+    }
+
+    /// The force network and the collision that it is asked about.
+    fn predicted(
+        &self,
+        model: &ModelChoice,
+        (library, observer): (&Library, &mut Observer<'_>),
+    ) -> Result<Outcome<(Arc<ForceModel>, ForceScenario)>, StudyError> {
+        let source = &self.motion.source;
+        let collision = match source {
+            MotionSource::Scenario { scenario: choice, .. } => {
+                let scenario = choice.load()?;
+                let numbers = ForceScenario::from_scenario(&scenario);
+                numbers.map_err(|source| choice.unsolved(source))?
+            }
+            MotionSource::Case { dataset, case } => {
+                let Outcome::Complete(dataset) = library.dataset(dataset, observer)? else {
+                    return Ok(Outcome::Cancelled);
+                };
+                if dataset.kind != DatasetKind::Force {
+                    return Err(StudyError::NoCollision { name: source.name() });
+                }
+                ForceScenario::from_case(take_case(&dataset, case)?)?
+            }
+            MotionSource::Trajectory { .. } | MotionSource::Drive(_) => {
+                return Err(StudyError::NoCollision { name: source.name() });
+            }
+        };
+        Ok(Outcome::Complete((library.force_model(model)?, collision)))
+    }
+}
+
+impl Question for PredictMotionRequest {
+    type Answer = PredictMotionAnswer;
+    const NAME: &'static str = "predict motion";
+
+    fn answer(
+        &self,
+        library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<PredictMotionAnswer>, StudyError> {
+        let Outcome::Complete(simulated) = self.motion.answer(library, observer)? else {
+            return Ok(Outcome::Cancelled);
+        };
+        let SimulateAnswer { report: simulated, analysis } = simulated;
+        let name = || self.motion.source.name();
+        let (Some(struck), Some(own_force)) = (&analysis.struck, &analysis.force) else {
+            return Err(StudyError::NoForce { name: name() });
+        };
+
+        let model = library.response_model(&self.response_model)?;
+        let settings = MotionForecastSettings {
+            n_curves: self.draws,
+            duration_s: simulated.duration_s,
+            seed: self.seed,
+        };
+        let failed = |source| StudyError::Forecast { name: name(), source: Box::new(source) };
+        let forecast = match &self.force {
+            ForceSource::Given => {
+                forecast_forces(std::slice::from_ref(own_force), &model, struck, &settings)
+            }
+            ForceSource::File(path) => {
+                let force = given_force(path, library)?;
+                forecast_forces(&[force], &model, struck, &settings)
+            }
+            ForceSource::Predicted(choice) => {
+                let predicted = self.predicted(choice, (library, observer))?;
+                let Outcome::Complete((force_model, collision)) = predicted else {
+                    return Ok(Outcome::Cancelled);
+                };
+                let models = (force_model.as_ref(), model.as_ref());
+                forecast_collision(&collision, models, struck, &settings)
+            }
+        };
+        let forecast = forecast.map_err(failed)?;
+        let mut assumptions = simulated.assumptions;
+        assumptions.retain(|assumption| self.rests_on(assumption));
+        let report = self.report(&analysis.name, struck, (&forecast, assumptions));
+        Ok(Outcome::Complete(PredictMotionAnswer { report, analysis, forecast }))
+    }
+}
+
+/// The force of a file. Where it acts without a yaw moment of its own, the source of the motion says.
+fn given_force(path: &Path, library: &Library) -> Result<ForceHistory, StudyError> {
+    let loaded = library.series(&SeriesFile::new(path))?;
+    ForceHistory::from_series(&loaded.series, loaded.force_sampling())
+        .map_err(|source| StudyError::Series { path: path.to_owned(), source })
+}
+
+impl PredictMotionRequest {
+    /// Whether the motion of the struck vehicle depends on what was assumed for the simulation.
+    fn rests_on(&self, assumption: &Assumption) -> bool {
+        match assumption.quantity {
+            AssumedQuantity::Bullet => false,
+            AssumedQuantity::Pulse => self.force == ForceSource::Given,
+            _ => true,
+        }
+    }
+
+    fn report(
+        &self,
+        name: &str,
+        struck: &StruckVehicle,
+        (forecast, assumptions): (&MotionForecast, Vec<Assumption>),
+    ) -> PredictMotionReport {
+        let predicted = forecast.force.as_ref();
+        PredictMotionReport {
+            scenario: name.to_owned(),
+            vehicle: struck.vehicle.name.clone(),
+            force: match &self.force {
+                ForceSource::File(path) => Some(path.clone()),
+                ForceSource::Given => self.motion.source.force_file().cloned(),
+                ForceSource::Predicted(_) => None,
+            },
+            force_model: match &self.force {
+                ForceSource::Predicted(model) => Some(model.to_string()),
+                ForceSource::Given | ForceSource::File(_) => None,
+            },
+            response_model: self.response_model.to_string(),
+            n_forces: forecast.forces.len(),
+            outcome: forecast.outcome.clone(),
+            hooking_probability: predicted.and_then(|force| force.hooking_probability),
+            outside_training: predicted.map_or_else(Vec::new, |force| force.outside.clone()),
+            assumptions,
+        }
+    }
+}

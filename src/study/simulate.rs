@@ -1,0 +1,393 @@
+//! The motion of one struck vehicle by the 4DOF model: `simulate`.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use crate::analysis::{
+    Analysis, AnalysisError, DriveSetup, PulseSetup, Settings, analyse_case, analyse_drive,
+    analyse_recording, analyse_scenario,
+};
+use crate::data::{
+    Channel, DatasetKind, FileKind, ForceHistory, Loaded, Outcome, Sampling, SeriesError,
+    contact_interval, read_force_file, read_steer_file,
+};
+use crate::study::inputs::{OpenVehicle, striking_vehicle, struck_vehicle};
+use crate::study::simulate_dataset::take_case;
+use crate::study::{
+    AssumedQuantity, Assumption, Library, Observer, Question, ScenarioChoice, SeriesFile,
+    SimulateReport, StudyError, VehicleChoice, word,
+};
+use crate::vehicle::{
+    ContactPoint, Equations, Integrator, SteerHistory, VehicleParameters, VehicleState,
+};
+
+/// Speed of the struck vehicle before the impact where nothing says it, m/s: 72 km/h.
+pub const ASSUMED_SPEED_M_S: f64 = 20.0;
+
+/// Where a force acts where nothing says it: the right rear quarter of a car, where a PIT begins.
+pub const ASSUMED_CONTACT: ContactPoint = ContactPoint { x_m: -1.5, y_m: -0.9, height_m: 0.52 };
+
+/// Times are written with few digits; a contact that leaves the simulated time by less does no harm.
+const TIME_TOLERANCE_S: f64 = 1e-3;
+
+/// Asks where the struck vehicle goes, by the 4DOF model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SimulateRequest {
+    /// What drives the motion.
+    pub source: MotionSource,
+    /// The struck vehicle.
+    #[serde(default)]
+    pub vehicle: VehicleChoice,
+    /// The striking vehicle, where it is simulated.
+    #[serde(default)]
+    pub bullet: VehicleChoice,
+    /// Which equations of motion; those of the vehicle file if not given.
+    #[serde(default)]
+    pub equations: Option<Equations>,
+    /// How they are integrated.
+    #[serde(default)]
+    pub integrator: Integrator,
+    /// Peak friction of the road instead of the vehicle's.
+    #[serde(default)]
+    pub friction: Option<f64>,
+    /// Duration, s; a recorded motion has its own.
+    #[serde(default = "default_duration_s")]
+    pub duration_s: f64,
+}
+
+/// Duration of a simulation where nobody says it, s: that of the trajectory data sets.
+pub const DEFAULT_DURATION_S: f64 = 4.0;
+
+fn default_duration_s() -> f64 {
+    DEFAULT_DURATION_S
+}
+
+/// What drives a motion.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MotionSource {
+    /// A case of a data set, with its recorded start and force.
+    Case {
+        /// The data set.
+        dataset: PathBuf,
+        /// Name of the case.
+        case: String,
+    },
+    /// A recorded motion, simulated from its first sample if it records its force.
+    Trajectory {
+        /// The file.
+        file: SeriesFile,
+        /// Where the force acts; without it, the file's own yaw moment.
+        #[serde(default)]
+        contact: Option<ContactPoint>,
+    },
+    /// A start, a force and a steer angle.
+    Drive(Drive),
+    /// Two vehicles that meet; the impulse is spread over a classic pulse.
+    Scenario {
+        /// The scenario.
+        scenario: ScenarioChoice,
+        /// How the impulse is spread over time.
+        #[serde(default)]
+        pulse: PulseSetup,
+    },
+}
+
+/// How a vehicle starts and what pushes and steers it.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Drive {
+    /// Forward speed at the start, m/s.
+    pub speed_m_s: Option<f64>,
+    /// Leftward speed at the start, m/s.
+    pub vy_m_s: f64,
+    /// Yaw rate at the start, rad/s.
+    pub yaw_rate_rad_s: f64,
+    /// The force on the vehicle.
+    pub force: Option<SeriesFile>,
+    /// What a force sample stands for; without it, as the columns suggest.
+    pub sampling: Option<Sampling>,
+    /// Where the force acts; without it, the file's own yaw moment.
+    pub contact: Option<ContactPoint>,
+    /// The road-wheel angle.
+    pub steer: Option<SeriesFile>,
+}
+
+/// A simulated motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SimulateAnswer {
+    /// What is told.
+    pub report: SimulateReport,
+    /// Motion, force and record.
+    pub analysis: Analysis,
+}
+
+impl SimulateRequest {
+    /// A simulation of `source` in which nothing else is said.
+    pub fn new(source: MotionSource) -> Self {
+        Self {
+            source,
+            vehicle: VehicleChoice::default(),
+            bullet: VehicleChoice::default(),
+            equations: None,
+            integrator: Integrator::default(),
+            friction: None,
+            duration_s: DEFAULT_DURATION_S,
+        }
+    }
+
+    fn settings(
+        &self,
+        open: &OpenVehicle<'_>,
+        assumptions: &mut Vec<Assumption>,
+    ) -> Result<Settings, StudyError> {
+        let mut target = struck_vehicle(&self.vehicle, open, assumptions)?;
+        if let Some(equations) = self.equations {
+            target = target.with_equations(equations);
+        }
+        if let Some(friction) = self.friction {
+            target = target.with_friction(friction);
+        }
+        let has_bullet = match &self.source {
+            MotionSource::Scenario { .. } => true,
+            MotionSource::Case { dataset, .. } => {
+                DatasetKind::of_folder(dataset) == Some(DatasetKind::Force)
+            }
+            MotionSource::Trajectory { .. } | MotionSource::Drive(_) => false,
+        };
+        let mut unused = Vec::new();
+        let assumed = if has_bullet { assumptions } else { &mut unused };
+        let bullet = striking_vehicle(&self.bullet, assumed)?;
+        let (integrator, duration_s) = (self.integrator, self.duration_s);
+        Ok(Settings { target, bullet, integrator, duration_s })
+    }
+
+    fn refuse_contact_outside(&self, analysis: &Analysis) -> Result<(), StudyError> {
+        let interval = analysis.force.as_ref().and_then(contact_interval);
+        let (None, Some((start_s, end_s))) = (&analysis.reference, interval) else { return Ok(()) };
+        let duration_s = self.duration_s;
+        if start_s < -TIME_TOLERANCE_S || end_s > duration_s + TIME_TOLERANCE_S {
+            let name = match self.source.force_file() {
+                Some(path) => path.display().to_string(),
+                None => analysis.name.clone(),
+            };
+            return Err(StudyError::ContactOutside { name, start_s, end_s, duration_s });
+        }
+        Ok(())
+    }
+}
+
+impl Question for SimulateRequest {
+    type Answer = SimulateAnswer;
+    const NAME: &'static str = "simulate";
+
+    fn answer(
+        &self,
+        library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<SimulateAnswer>, StudyError> {
+        let mut assumptions = Vec::new();
+        let made = match &self.source {
+            MotionSource::Case { dataset, case } => {
+                let Outcome::Complete(dataset) = library.dataset(dataset, observer)? else {
+                    return Ok(Outcome::Cancelled);
+                };
+                let case = take_case(&dataset, case)?;
+                if let (DatasetKind::Trajectory, Some(_)) = (case.kind, self.friction) {
+                    return Err(StudyError::FrictionOfCase { case: case.name.clone() });
+                }
+                let own = OpenVehicle::OfDataset(dataset.vehicle_file.as_deref());
+                analyse_case(case, &self.settings(&own, &mut assumptions)?)
+            }
+            MotionSource::Trajectory { file, contact } => {
+                let settings = self.settings(&OpenVehicle::Unknown, &mut assumptions)?;
+                let loaded = trajectory(library, file)?;
+                let force = ForceHistory::from_series(&loaded.series, loaded.force_sampling());
+                let load = force.ok().map(|force| {
+                    let vehicle = &settings.target;
+                    acting_force(force, (*contact, vehicle), &mut assumptions)
+                });
+                analyse_recording(&file.title(), &loaded, load, &settings)
+            }
+            MotionSource::Drive(drive) => {
+                let settings = self.settings(&OpenVehicle::Unknown, &mut assumptions)?;
+                let setup = drive.setup(&settings.target, library, &mut assumptions)?;
+                analyse_drive(&drive.name(), setup, &settings)
+            }
+            MotionSource::Scenario { scenario, pulse } => {
+                assumptions.extend(pulse_assumptions(pulse));
+                let settings = self.settings(&OpenVehicle::Unknown, &mut assumptions)?;
+                analyse_scenario(&scenario.load()?, pulse, &settings)
+            }
+        };
+        let failed =
+            |source| StudyError::Analysis { name: self.source.name(), source: Box::new(source) };
+        let analysis = made.map_err(failed)?;
+        self.refuse_contact_outside(&analysis)?;
+        let report = SimulateReport::of(self, &analysis, assumptions)
+            .map_err(|source| failed(AnalysisError::Series(source)))?;
+        Ok(Outcome::Complete(SimulateAnswer { report, analysis }))
+    }
+}
+
+impl MotionSource {
+    /// The source of a file that was opened, by what the file is about.
+    ///
+    /// - `start`: speed and contact point that the user gave; the file is filled in here.
+    pub fn of_file(file: SeriesFile, kind: FileKind, start: Drive) -> Self {
+        match kind {
+            FileKind::Trajectory => Self::Trajectory { file, contact: start.contact },
+            FileKind::Force => Self::Drive(Drive { force: Some(file), ..start }),
+            FileKind::Steer => Self::Drive(Drive { steer: Some(file), ..start }),
+        }
+    }
+
+    /// What a title calls it.
+    pub fn name(&self) -> String {
+        match self {
+            Self::Case { case, .. } => case.clone(),
+            Self::Trajectory { file, .. } => file.path.display().to_string(),
+            Self::Drive(drive) => drive.name(),
+            Self::Scenario { scenario, .. } => scenario.name(),
+        }
+    }
+
+    /// The file of the force, where the force is one.
+    pub(super) fn force_file(&self) -> Option<&PathBuf> {
+        match self {
+            Self::Drive(drive) => drive.force.as_ref().map(|file| &file.path),
+            Self::Trajectory { file, .. } => Some(&file.path),
+            Self::Case { .. } | Self::Scenario { .. } => None,
+        }
+    }
+}
+
+impl Drive {
+    fn name(&self) -> String {
+        let file = self.force.as_ref().or(self.steer.as_ref());
+        file.map_or_else(|| "manoeuvre".to_owned(), SeriesFile::title)
+    }
+
+    fn setup(
+        &self,
+        vehicle: &VehicleParameters,
+        library: &Library,
+        assumptions: &mut Vec<Assumption>,
+    ) -> Result<DriveSetup, StudyError> {
+        let speed_m_s = self.speed_m_s.unwrap_or_else(|| {
+            let reason = "the speed before the impact is not known; another one: --speed";
+            let value = format!("{ASSUMED_SPEED_M_S} m/s");
+            assumptions.push(Assumption::new(AssumedQuantity::Speed, value, reason));
+            ASSUMED_SPEED_M_S
+        });
+        let mut notes = Vec::new();
+        let load = match &self.force {
+            Some(file) => {
+                let loaded = library.series(file)?;
+                notes.extend(loaded.notes.iter().map(ToString::to_string));
+                let force = force_of(&loaded, self.sampling, file)?;
+                Some(acting_force(force, (self.contact, vehicle), assumptions))
+            }
+            None => None,
+        };
+        let steer = self.steer.as_ref().map(steer_history).transpose()?;
+        let initial = VehicleState {
+            vy_m_s: self.vy_m_s,
+            yaw_rate_rad_s: self.yaw_rate_rad_s,
+            ..VehicleState::driving_straight(speed_m_s)
+        };
+        Ok(DriveSetup { initial, load, steer, notes })
+    }
+}
+
+/// A recorded motion; another kind of file is refused, since its speed is not known.
+fn trajectory(library: &Library, file: &SeriesFile) -> Result<Arc<Loaded>, StudyError> {
+    let loaded = library.series(file)?;
+    if loaded.kind == FileKind::Trajectory {
+        return Ok(loaded);
+    }
+    Err(StudyError::WrongKind {
+        path: file.path.clone(),
+        got: format!("a {} file", word(&loaded.kind)),
+        expected: "a trajectory; `impactlab simulate --out FILE.csv` makes one",
+    })
+}
+
+/// The force of a file, under its own meaning of a sample or a given one.
+fn force_of(
+    loaded: &Loaded,
+    sampling: Option<Sampling>,
+    file: &SeriesFile,
+) -> Result<ForceHistory, StudyError> {
+    let sampling = sampling.unwrap_or_else(|| loaded.force_sampling());
+    match ForceHistory::from_series(&loaded.series, sampling) {
+        Ok(force) => Ok(force),
+        Err(source) => {
+            // Read as a force file it gives the error that says where and what to do.
+            read_force_file(&file.path, file.map.as_ref())?;
+            Err(StudyError::Series { path: file.path.clone(), source })
+        }
+    }
+}
+
+/// A force with the point where it acts.
+///
+/// A given contact point overrules a recorded yaw moment; a recorded yaw moment acts about the CG;
+/// without either, the contact point is assumed.
+pub(super) fn acting_force(
+    mut force: ForceHistory,
+    (contact, vehicle): (Option<ContactPoint>, &VehicleParameters),
+    assumptions: &mut Vec<Assumption>,
+) -> (ForceHistory, ContactPoint) {
+    if let Some(contact) = contact {
+        force.mz_n_m = None;
+        return (force, contact);
+    }
+    if force.mz_n_m.is_some() {
+        let height_m = vehicle.geometry.cg_height_m;
+        return (force, ContactPoint { x_m: 0.0, y_m: 0.0, height_m });
+    }
+    let reason = "the force has no yaw moment (mz) and nothing says where it acts; another point: \
+                  --contact";
+    assumptions.push(Assumption::contact_point(ASSUMED_CONTACT, reason));
+    (force, ASSUMED_CONTACT)
+}
+
+/// What the pulse of a scenario adds to what the momentum solution says.
+fn pulse_assumptions(pulse: &PulseSetup) -> Vec<Assumption> {
+    if *pulse != PulseSetup::default() {
+        return Vec::new();
+    }
+    let shape = format!("{} of {:.0} ms", pulse.shape.label(), pulse.duration_s * 1e3);
+    let height = format!("{} m above the ground", pulse.contact_height_m);
+    vec![
+        Assumption::new(
+            AssumedQuantity::Pulse,
+            shape,
+            "the momentum solution gives the impulse, not the force over time",
+        ),
+        Assumption::new(
+            AssumedQuantity::ContactHeight,
+            height,
+            "a scenario does not say how high the vehicles touch",
+        ),
+    ]
+}
+
+/// The road-wheel angle of a file: that of the front axle, or the mean of its wheels.
+fn steer_history(file: &SeriesFile) -> Result<SteerHistory, StudyError> {
+    let series = read_steer_file(&file.path, file.map.as_ref())?.series;
+    let in_file = |source: SeriesError| StudyError::Series { path: file.path.clone(), source };
+    let steer_rad = match series.get(Channel::Steer) {
+        Some(steer) => steer.to_vec(),
+        None => {
+            let left = series.require(Channel::SteerFl).map_err(in_file)?;
+            let right = series.require(Channel::SteerFr).map_err(in_file)?;
+            let mean = |(left, right): (&f64, &f64)| (left + right) / 2.0;
+            left.iter().zip(right).map(mean).collect()
+        }
+    };
+    Ok(SteerHistory { time_s: series.time_s().to_vec(), steer_rad })
+}

@@ -1,0 +1,235 @@
+//! What is told about the simulation of one vehicle.
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use crate::analysis::Analysis;
+use crate::collision::PrincipalDirectionOfForce;
+use crate::compare::{MotionError, largest_yaw_change_rad};
+use crate::data::{Channel, SeriesError, TimeSeries, contact_interval};
+use crate::numerics::interpolate;
+use crate::study::{Assumption, SimulateRequest, word};
+use crate::vehicle::MotionFlag;
+use crate::vehicle::frames::world_from_body;
+
+/// The simulation of one vehicle, SI units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SimulateReport {
+    /// The case, file or scenario.
+    pub name: String,
+    /// The struck vehicle.
+    pub vehicle: String,
+    /// Which equations of motion.
+    pub equations: String,
+    /// How they are integrated.
+    pub integrator: String,
+    /// Peak friction of the road.
+    pub friction: f64,
+    /// Duration of the simulation, s.
+    pub duration_s: f64,
+    /// The force on the vehicle.
+    pub force: Option<ForceReport>,
+    /// Change of the velocity of the CG over the contact [x, y], world axes, tyres included, m/s.
+    pub delta_v_m_s: Option<[f64; 2]>,
+    /// Its size, m/s.
+    pub delta_v_magnitude_m_s: Option<f64>,
+    /// The state at the last sample; none where a recorded motion cannot be simulated.
+    pub end: Option<EndState>,
+    /// Length of the path of the CG, m.
+    pub distance_m: Option<f64>,
+    /// Largest change of yaw from the start, rad.
+    pub largest_yaw_change_rad: Option<f64>,
+    /// How far the simulation lies from the recorded motion, where there is one.
+    pub error: Option<MotionError>,
+    /// Wheel lift and roll beyond the limit.
+    pub flags: Vec<FlagReport>,
+    /// What a person should know about how this was made.
+    pub notes: Vec<String>,
+    /// What was assumed.
+    pub assumptions: Vec<Assumption>,
+}
+
+/// The force that drives a simulation.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ForceReport {
+    /// Its file; `None` where it comes from a case or a scenario.
+    pub path: Option<PathBuf>,
+    /// What a sample stands for.
+    pub sampling: String,
+    /// Axes of the components.
+    pub axes: String,
+    /// Impulse [x, y] in these axes, N s.
+    pub impulse_n_s: [f64; 2],
+    /// Largest size of the force, N.
+    pub peak_n: f64,
+    /// When it is reached, s.
+    pub peak_time_s: f64,
+    /// Principal direction of force, degrees clockwise from the direction of the x axis.
+    pub pdof_deg: Option<f64>,
+    /// The same as an hour of the clock.
+    pub pdof_clock: Option<u8>,
+    /// First touch, s.
+    pub contact_start_s: Option<f64>,
+    /// Last separation, s.
+    pub contact_end_s: Option<f64>,
+    /// Where the yaw moment comes from: `recorded` or `contact_point`.
+    pub yaw_moment: &'static str,
+}
+
+/// State at the last sample.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct EndState {
+    /// X of the CG, m.
+    pub x_m: f64,
+    /// Y of the CG, m.
+    pub y_m: f64,
+    /// Heading, rad.
+    pub yaw_rad: f64,
+    /// Roll angle, rad.
+    pub roll_rad: f64,
+    /// Forward velocity, m/s.
+    pub vx_m_s: f64,
+    /// Leftward velocity, m/s.
+    pub vy_m_s: f64,
+    /// Yaw rate, rad/s.
+    pub yaw_rate_rad_s: f64,
+    /// Speed of the CG, m/s.
+    pub speed_m_s: f64,
+}
+
+/// A [`MotionFlag`] for machines and, as `message`, for a person.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FlagReport {
+    /// `wheel_lift` or `roll_limit`.
+    pub kind: &'static str,
+    /// When it is first raised, s.
+    pub time_s: f64,
+    /// The wheel that lifts.
+    pub wheel: Option<String>,
+    /// The roll angle, rad.
+    pub roll_rad: Option<f64>,
+    /// For a person.
+    pub message: String,
+}
+
+impl From<&MotionFlag> for FlagReport {
+    fn from(flag: &MotionFlag) -> Self {
+        let message = flag.to_string();
+        match flag {
+            MotionFlag::WheelLift { wheel, time_s } => Self {
+                kind: "wheel_lift",
+                time_s: *time_s,
+                wheel: Some(word(wheel)),
+                roll_rad: None,
+                message,
+            },
+            MotionFlag::RollLimit { time_s, roll_rad } => Self {
+                kind: "roll_limit",
+                time_s: *time_s,
+                wheel: None,
+                roll_rad: Some(*roll_rad),
+                message,
+            },
+        }
+    }
+}
+
+impl SimulateReport {
+    /// What follows from an analysis.
+    pub(super) fn of(
+        request: &SimulateRequest,
+        analysis: &Analysis,
+        assumptions: Vec<Assumption>,
+    ) -> Result<Self, SeriesError> {
+        let motion = analysis.simulation.as_ref();
+        let series = motion.map(|motion| &motion.series);
+        let interval = analysis.force.as_ref().and_then(contact_interval);
+        let delta_v = series.zip(interval);
+        let delta_v =
+            delta_v.map(|(series, interval)| delta_v_m_s(series, interval)).transpose()?;
+        let recorded = analysis.reference.as_ref();
+        let recorded_s = recorded.and_then(|series| series.time_s().last().copied());
+        Ok(Self {
+            name: analysis.name.clone(),
+            vehicle: analysis.vehicle.name.clone(),
+            equations: word(&analysis.vehicle.equations),
+            integrator: word(&request.integrator),
+            friction: analysis.vehicle.tires.friction,
+            duration_s: recorded_s.unwrap_or(request.duration_s),
+            force: ForceReport::of(request, analysis),
+            delta_v_m_s: delta_v,
+            delta_v_magnitude_m_s: delta_v.map(|[x, y]| x.hypot(y)),
+            end: series.map(EndState::of).transpose()?,
+            distance_m: series.map(distance_m).transpose()?,
+            largest_yaw_change_rad: series.map(largest_yaw_change_rad).transpose()?,
+            error: analysis.error.clone(),
+            flags: motion.map_or_else(Vec::new, |motion| {
+                motion.flags.iter().map(FlagReport::from).collect()
+            }),
+            notes: analysis.notes.clone(),
+            assumptions,
+        })
+    }
+}
+
+impl ForceReport {
+    fn of(request: &SimulateRequest, analysis: &Analysis) -> Option<Self> {
+        let force = analysis.force.as_ref()?;
+        let interval = contact_interval(force);
+        let (peak_n, peak_time_s) = force.peak()?;
+        let pdof = PrincipalDirectionOfForce::from_impulse(force.impulse_n_s(), 0.0);
+        Some(Self {
+            path: request.source.force_file().cloned(),
+            sampling: word(&force.sampling),
+            axes: word(&force.axes),
+            impulse_n_s: force.impulse_n_s(),
+            peak_n,
+            peak_time_s,
+            pdof_deg: pdof.map(PrincipalDirectionOfForce::angle_deg),
+            pdof_clock: pdof.map(PrincipalDirectionOfForce::clock),
+            contact_start_s: interval.map(|(start, _)| start),
+            contact_end_s: interval.map(|(_, end)| end),
+            yaw_moment: if force.mz_n_m.is_some() { "recorded" } else { "contact_point" },
+        })
+    }
+}
+
+/// Change of the CG's velocity over the contact, world axes, m/s: tyres included.
+fn delta_v_m_s(series: &TimeSeries, (start_s, end_s): (f64, f64)) -> Result<[f64; 2], SeriesError> {
+    let [vx, vy, yaw] = [Channel::Vx, Channel::Vy, Channel::Yaw].map(|c| series.require(c));
+    let (vx, vy, yaw) = (vx?, vy?, yaw?);
+    let velocity = |time_s| {
+        let at = |values| interpolate(series.time_s(), values, time_s).unwrap_or(f64::NAN);
+        world_from_body(at(yaw), [at(vx), at(vy)])
+    };
+    let ([x0, y0], [x1, y1]) = (velocity(start_s), velocity(end_s));
+    Ok([x1 - x0, y1 - y0])
+}
+
+/// Length of the path of the CG, m.
+fn distance_m(series: &TimeSeries) -> Result<f64, SeriesError> {
+    let (x, y) = (series.require(Channel::X)?, series.require(Channel::Y)?);
+    let steps = x.windows(2).zip(y.windows(2));
+    Ok(steps.map(|(x, y)| (x[1] - x[0]).hypot(y[1] - y[0])).sum())
+}
+
+impl EndState {
+    fn of(series: &TimeSeries) -> Result<Self, SeriesError> {
+        let last = |channel| -> Result<f64, SeriesError> {
+            let values = series.require(channel)?;
+            Ok(values.last().copied().unwrap_or(f64::NAN))
+        };
+        let (vx_m_s, vy_m_s) = (last(Channel::Vx)?, last(Channel::Vy)?);
+        Ok(Self {
+            x_m: last(Channel::X)?,
+            y_m: last(Channel::Y)?,
+            yaw_rad: last(Channel::Yaw)?,
+            roll_rad: last(Channel::Roll)?,
+            vx_m_s,
+            vy_m_s,
+            yaw_rate_rad_s: last(Channel::YawRate)?,
+            speed_m_s: vx_m_s.hypot(vy_m_s),
+        })
+    }
+}

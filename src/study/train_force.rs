@@ -1,0 +1,161 @@
+//! A training of the force network: `train force`.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
+
+use crate::data::Outcome;
+use crate::force::{
+    ForceConfig, ForceModel, ForceTrainSettings, ForceTrainingSet, LossTerms, VarianceFactors,
+    train,
+};
+use crate::study::inputs::{data_names, force_cases};
+use crate::study::{
+    Assumption, BadCases, ConfigChoice, Event, Library, Observer, Question, StudyError,
+};
+
+/// Asks for a force network that has learned from force data sets.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TrainForceRequest {
+    /// A force data set; a share of its cases is kept apart for the test.
+    pub data: PathBuf,
+    /// Other force data sets, all of them to learn from.
+    #[serde(default)]
+    pub extra: Vec<PathBuf>,
+    /// Settings of network and training.
+    #[serde(default)]
+    pub config: ConfigChoice,
+    /// Epochs at most, instead of the configured number.
+    #[serde(default)]
+    pub epochs: Option<usize>,
+    /// Seed of the split and of all draws.
+    #[serde(default)]
+    pub seed: u64,
+    /// What happens to cases that cannot be used.
+    #[serde(default)]
+    pub bad_cases: BadCases,
+    /// Where the state of the training is kept.
+    #[serde(default)]
+    pub checkpoint: Option<PathBuf>,
+    /// Whether to go on from that state, if it is there.
+    #[serde(default)]
+    pub resume: bool,
+}
+
+/// What was trained.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TrainForceReport {
+    /// What the data are called.
+    pub data: String,
+    /// SHA-256 over the cases learned from.
+    pub data_digest: String,
+    /// Cases learned from.
+    pub n_train: usize,
+    /// Cases that decided when to stop.
+    pub n_validation: usize,
+    /// Cases kept apart for the test.
+    pub n_test: usize,
+    /// Weights of the network.
+    pub n_parameters: usize,
+    /// How long it took, s.
+    pub seconds: f64,
+    /// Epoch whose weights these are, from 1.
+    pub best_epoch: usize,
+    /// Epochs in all.
+    pub epochs: usize,
+    /// Factors on the variances, from calibration on training cases.
+    pub variance_factors: VarianceFactors,
+    /// Losses of the best epoch over the cases learned from.
+    pub train: Option<LossTerms>,
+    /// The same over the validation cases.
+    pub validation: Option<LossTerms>,
+    /// Cases that were left out, and why.
+    pub left_out: Vec<String>,
+    /// What was assumed: nothing, since cases and settings say everything.
+    pub assumptions: Vec<Assumption>,
+}
+
+/// A trained force network.
+#[derive(Debug)]
+pub struct TrainForceAnswer {
+    /// What is told.
+    pub report: TrainForceReport,
+    /// The network.
+    pub model: ForceModel,
+}
+
+impl TrainForceRequest {
+    /// The settings that it trains with.
+    ///
+    /// # Errors
+    /// [`StudyError::Force`] or [`StudyError::Data`] with what is wrong with the file.
+    pub fn settings(&self) -> Result<ForceConfig, StudyError> {
+        let mut config = match self.config.file() {
+            Some(path) => ForceConfig::load(path)?,
+            None => ForceConfig::default(),
+        };
+        config.training.epochs = self.epochs.unwrap_or(config.training.epochs);
+        Ok(config)
+    }
+}
+
+impl Question for TrainForceRequest {
+    type Answer = TrainForceAnswer;
+    const NAME: &'static str = "train";
+
+    fn answer(
+        &self,
+        library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<TrainForceAnswer>, StudyError> {
+        let config = self.settings()?;
+        let cases = force_cases(&self.data, self.bad_cases, (library, observer))?;
+        let Outcome::Complete(mut usable) = cases else { return Ok(Outcome::Cancelled) };
+        let mut extra = Vec::new();
+        for root in &self.extra {
+            let cases = force_cases(root, self.bad_cases, (library, observer))?;
+            let Outcome::Complete(more) = cases else { return Ok(Outcome::Cancelled) };
+            extra.extend(more.cases);
+            usable.left_out.extend(more.left_out);
+        }
+        let name = data_names(std::iter::once(&self.data).chain(&self.extra));
+        let share = config.training.test_share;
+        let set = ForceTrainingSet::of_split(name, &usable.cases, self.seed, share);
+        let set = set.with_extra(&extra);
+        let settings = ForceTrainSettings {
+            config,
+            seed: self.seed,
+            checkpoint: self.checkpoint.clone(),
+            resume: self.resume,
+        };
+        let started = Instant::now();
+        let model = train(&set, &settings, &mut |told| observer(Event::Training(told)))?;
+        let seconds = started.elapsed().as_secs_f64();
+        let report = TrainForceReport::of(&model, seconds, usable.left_out);
+        Ok(Outcome::Complete(TrainForceAnswer { report, model }))
+    }
+}
+
+impl TrainForceReport {
+    fn of(model: &ForceModel, seconds: f64, left_out: Vec<String>) -> Self {
+        let record = model.record();
+        let best = record.detail.best_epoch.checked_sub(1).and_then(|idx| record.history.get(idx));
+        Self {
+            data: record.data.clone(),
+            data_digest: record.data_digest.clone(),
+            n_train: record.train.len(),
+            n_validation: record.detail.validation.len(),
+            n_test: record.test.len(),
+            n_parameters: model.n_parameters(),
+            seconds,
+            best_epoch: record.detail.best_epoch,
+            epochs: record.history.len(),
+            variance_factors: record.detail.variance_factors,
+            train: best.map(|record| record.detail.train),
+            validation: best.map(|record| record.detail.validation),
+            left_out,
+            assumptions: Vec::new(),
+        }
+    }
+}

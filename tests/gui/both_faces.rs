@@ -1,0 +1,407 @@
+//! Every kind of question, asked in the window and on the command line: both give the same report, to
+//! the last digit that is printed.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command as Program, Output};
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use impactlab::app::{
+    App, Command, ComparisonCommand, ForceChoice, Latest, Network, Pane, QuestionJob, State,
+    Subject, TrainingCommand, TrainingMode,
+};
+use impactlab::study::{Question, Request};
+use serde::Serialize;
+use serde_json::Value;
+
+use crate::harness::{apply, is_idle, open, step_until};
+
+const FORCES: &str = "datasets/fea";
+const TRAJECTORIES: &str = "datasets/trajectories-fea";
+const SCENARIO: &str = "assets/scenarios/pit_right_rear.toml";
+
+/// What a clock said, and what the command line adds about the files that it writes.
+const NOT_COMPARED: [&str; 4] = ["seconds", "training_s", "time_per_step_us", "out"];
+
+const TINY_FORCE: &str = "\
+[network]
+encoder_branches = [[8, 8, 8]]
+position_channels = 8
+attention = false
+trunk = [16, 16]
+factors = 2
+[crush]
+folds = 2
+max_steps = 2
+";
+
+const TINY_RESPONSE: &str = "\
+[network]
+encoder = [8]
+token_encoder = [4, 4, 4]
+attention_heads = 2
+trunk = [8]
+components = 2
+[pretraining]
+motions = 4
+epochs = 2
+[single_steps]
+epochs = 2
+[rollouts]
+lengths = [5]
+epochs = 2
+[calibration]
+folds = 2
+[tuning]
+iterations = 2
+particles = 4
+";
+
+/// The command line's side of a question.
+struct CommandLine<'a> {
+    args: &'a [&'a str],
+    /// Keys of the report that only the command line prints.
+    only_printed: &'a [&'a str],
+    /// Keys of the question in which the two may differ: where a training is kept, say.
+    not_asked_alike: &'a [&'a str],
+}
+
+fn run(args: &[&str]) -> Output {
+    let mut program = Program::new(env!("CARGO_BIN_EXE_impactlab"));
+    program.current_dir(env!("CARGO_MANIFEST_DIR")).args(args);
+    program.output().expect("the program starts")
+}
+
+fn printed(args: &[&str], option: &str) -> String {
+    let output = run(&[args, &[option]].concat());
+    let text = String::from_utf8(output.stdout).expect("UTF-8");
+    assert!(text.starts_with('{'), "{args:?}: {}", String::from_utf8_lossy(&output.stderr));
+    text
+}
+
+/// The lines of an indented JSON text without those of some keys, whose values are a scalar or a list
+/// of scalars.
+fn lines_without(text: &str, keys: &[&str]) -> Vec<String> {
+    let mut is_in_list = false;
+    let is_kept = |line: &&str| {
+        let line = line.trim();
+        if is_in_list {
+            is_in_list = !line.starts_with(']');
+            return false;
+        }
+        let is_left_out = keys.iter().any(|key| line.starts_with(&format!("\"{key}\":")));
+        is_in_list = is_left_out && line.ends_with('[');
+        !is_left_out
+    };
+    // The comma depends on what follows.
+    text.lines().filter(is_kept).map(|line| line.trim_end_matches(',').to_owned()).collect()
+}
+
+fn without(request: Value, keys: &[&str]) -> Value {
+    let Value::Object(mut fields) = request else { panic!("{request}") };
+    fields.retain(|key, _| !keys.contains(&key.as_str()));
+    Value::Object(fields)
+}
+
+impl<'a> CommandLine<'a> {
+    fn of(args: &'a [&'a str]) -> Self {
+        Self { args, only_printed: &[], not_asked_alike: &[] }
+    }
+
+    fn prints(self, only_printed: &'a [&'a str]) -> Self {
+        Self { only_printed, ..self }
+    }
+
+    fn asks_differently(self, not_asked_alike: &'a [&'a str]) -> Self {
+        Self { not_asked_alike, ..self }
+    }
+
+    /// Asks and compares with what the window was told.
+    fn compare(self, request: impl Into<Request>, report: &impl Serialize) {
+        let keys = [&NOT_COMPARED, self.only_printed].concat();
+        let shown = serde_json::to_string_pretty(report).expect("JSON");
+        let told = printed(self.args, "--json");
+        let [shown, told] = [&shown, &told].map(|text| lines_without(text, &keys));
+        assert!(shown.len() > 5, "{shown:?}");
+        let difference = shown.iter().zip(&told).position(|(shown, told)| shown != told);
+        if let Some(at) = difference {
+            panic!("{:?}: window {:?}, command line {:?}", self.args, shown[at], told[at]);
+        }
+        assert_eq!(shown.len(), told.len(), "{:?}", self.args);
+
+        let asked = serde_json::from_str(&printed(self.args, "--print-request")).expect("JSON");
+        let request = serde_json::to_value(request.into()).expect("JSON");
+        let [request, asked] = [request, asked].map(|of| without(of, self.not_asked_alike));
+        assert_eq!(request, asked, "{:?}", self.args);
+    }
+}
+
+fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
+    harness.state().state()
+}
+
+/// What was asked last, and its answer.
+fn latest<Q: Question>(latest: &Latest<Q>) -> (Q, &Q::Answer) {
+    assert!(!latest.is_waiting());
+    let answer = latest.answer.as_ref().expect("an answer");
+    (latest.asked.clone().expect("a question"), answer.as_ref().expect("no problem"))
+}
+
+/// The same of what takes a while.
+fn finished<Q: Question>(job: &QuestionJob<Q>) -> (Q, &Q::Answer) {
+    assert!(!job.is_running());
+    let latest = job.latest.as_ref().expect("an answer");
+    (latest.question.clone(), latest.answer.as_ref().expect("no problem"))
+}
+
+/// The window on a path, which is simulated.
+fn open_on(path: &str) -> Harness<'static, App> {
+    let mut harness = open(&[path]);
+    step_until(&mut harness, "the data", is_idle);
+    harness
+}
+
+fn select(harness: &mut Harness<'_, App>, dataset: &str, case: &str) {
+    let subject = Subject::Case { dataset: dataset.into(), case: case.to_owned() };
+    apply(harness, Command::Select(subject));
+    step_until(harness, "the case", |state| {
+        is_idle(state) && state.analysis().is_some_and(|answer| answer.report.name == case)
+    });
+}
+
+fn write(folder: &Path, name: &str, text: &str) -> String {
+    let path = folder.join(name);
+    std::fs::write(&path, text).expect("a file");
+    path.display().to_string()
+}
+
+#[test]
+fn what_is_open_is_checked_alike() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let unclear = write(folder.path(), "unclear.csv", "Zeit;Kraft\n0;0\n1;2,5\n2;0\n");
+    for path in [FORCES, "datasets/fea/forces/c001.csv", TRAJECTORIES, &unclear] {
+        let mut harness = open(&[path]);
+        step_until(&mut harness, "the data", |state| {
+            state.session.sources.iter().all(impactlab::app::Source::is_settled)
+        });
+        let check = state(&harness).session.sources[0].check.as_ref().expect("a check");
+        let answer = check.answer.as_ref().expect("a report");
+        CommandLine::of(&["check", path]).compare(check.question.clone(), &answer.report);
+    }
+}
+
+#[test]
+fn a_scenario_is_solved_simulated_and_predicted_alike() {
+    let mut harness = open_on(FORCES);
+    apply(&mut harness, Command::Open(vec![SCENARIO.into()]));
+    step_until(&mut harness, "the scenario", |state| {
+        is_idle(state) && !state.session.impact.is_waiting()
+    });
+    // The window has the scenario in memory, the command line the file.
+    let (request, answer) = latest(&state(&harness).session.impact);
+    CommandLine::of(&["impact", SCENARIO])
+        .asks_differently(&["scenario"])
+        .compare(request, &answer.report);
+    let (request, answer) = latest(&state(&harness).session.analysis);
+    CommandLine::of(&["simulate", "--scenario", SCENARIO])
+        .asks_differently(&["source"])
+        .compare(request, &answer.report);
+
+    apply(&mut harness, Command::Show(Pane::ForcePrediction));
+    apply(&mut harness, Command::PredictScenario);
+    let is_answered = |state: &State| {
+        let forecast = &state.session.force.forecast;
+        forecast.asked.as_ref() == state.force_request().as_ref() && !forecast.is_waiting()
+    };
+    let has_model = |state: &State| state.session.force.model.current.is_some();
+    step_until(&mut harness, "the force model", has_model);
+    step_until(&mut harness, "the force", is_answered);
+    // The window asks about the numbers of the collision, which the user may change.
+    let (request, answer) = latest(&state(&harness).session.force.forecast);
+    CommandLine::of(&["predict", "force", "--scenario", SCENARIO])
+        .asks_differently(&["collision"])
+        .compare(request, &answer.report);
+    select(&mut harness, FORCES, "c002");
+    step_until(&mut harness, "the force of the case", is_answered);
+    let (request, answer) = latest(&state(&harness).session.force.forecast);
+    CommandLine::of(&["predict", "force", "--dataset", FORCES, "--case", "c002"])
+        .asks_differently(&["collision"])
+        .compare(request, &answer.report);
+}
+
+#[test]
+fn cases_and_files_are_simulated_alike() {
+    let mut harness = open_on(FORCES);
+    select(&mut harness, FORCES, "c003");
+    let (request, answer) = latest(&state(&harness).session.analysis);
+    CommandLine::of(&["simulate", "--dataset", FORCES, "--case", "c003"])
+        .compare(request, &answer.report);
+    for (option, path) in [
+        ("--force", "datasets/fea/forces/c001.csv"),
+        ("--force", "datasets/fea-wide/forces/w001.csv"),
+        ("--trajectory", "datasets/trajectories-fea/trajectories/FE_c001.csv"),
+    ] {
+        let harness = open_on(path);
+        let (request, answer) = latest(&state(&harness).session.analysis);
+        CommandLine::of(&["simulate", option, path]).compare(request, &answer.report);
+    }
+}
+
+#[test]
+fn a_data_set_is_simulated_alike() {
+    let mut harness = open_on(TRAJECTORIES);
+    harness.get_by_label("Simulate all 100 cases").click();
+    step_until(&mut harness, "all cases", |state| {
+        state.session.replays.values().any(|replay| replay.report().is_some())
+    });
+    let replays = &state(&harness).session.replays;
+    let (request, answer) = finished(&replays[Path::new(TRAJECTORIES)].question);
+    CommandLine::of(&["simulate", "--dataset", TRAJECTORIES]).compare(request, &answer.report);
+}
+
+#[test]
+fn a_motion_is_predicted_alike() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().display().to_string();
+    let mut harness = open_on(FORCES);
+    {
+        let form = &mut harness.state_mut().state_mut().project.response.forecast;
+        (form.force, form.n_curves, form.seed) = (ForceChoice::Predicted, 3, 7);
+    }
+    select(&mut harness, FORCES, "c002");
+    let of_case = ["predict", "--dataset", FORCES, "--case", "c002", "--out", &out];
+    let drawn = ["--draws", "3", "--seed", "7"];
+    for (force, option) in
+        [(ForceChoice::Predicted, None), (ForceChoice::Given, Some("--given-force"))]
+    {
+        harness.state_mut().state_mut().project.response.forecast.force = force;
+        let is_predicted = force == ForceChoice::Predicted;
+        step_until(&mut harness, "the motion", |state| {
+            let forecast = &state.session.response.forecast;
+            let asked = forecast.asked.as_ref().map(|asked| &asked.request);
+            asked == state.motion_request().as_ref()
+                && !forecast.is_waiting()
+                && state.motion_forecast().is_some_and(|of| of.is_predicted() == is_predicted)
+        });
+        let (question, shown) = latest(&state(&harness).session.response.forecast);
+        let args = [&of_case[..], &drawn, option.as_slice()].concat();
+        CommandLine::of(&args).prints(&["files"]).compare(question.request, &shown.answer.report);
+    }
+}
+
+fn train(harness: &mut Harness<'_, App>, network: Network) {
+    apply(harness, Command::Train(network, TrainingCommand::Start));
+    step_until(harness, "the model", |state| {
+        !state.session.force.training.run.is_running()
+            && !state.session.response.training.run.is_running()
+    });
+}
+
+#[test]
+fn a_force_network_is_trained_and_evaluated_alike() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let config = write(folder.path(), "tiny.toml", TINY_FORCE);
+    let model = folder.path().join("force.safetensors").display().to_string();
+    let mut harness = open_on(FORCES);
+    {
+        let form = &mut harness.state_mut().state_mut().project.force.training;
+        (form.config, form.epochs, form.seed) = (config.clone(), Some(2), 3);
+    }
+    train(&mut harness, Network::Force);
+    let training = &state(&harness).session.force.training;
+    let request = training.request.clone().expect("a question");
+    let report = training.report.as_ref().expect("a report");
+    let args = ["train", "force", "--data", FORCES, "--config", &config, "--epochs", "2"];
+    CommandLine::of(&[&args[..], &["--seed", "3", "--out", &model]].concat())
+        .prints(&["model"])
+        .asks_differently(&["checkpoint"])
+        .compare(request, report);
+
+    apply(&mut harness, Command::Open(vec![PathBuf::from(&model)]));
+    step_until(&mut harness, "the model that the command wrote", |state| {
+        let current = state.session.force.model.current.as_ref();
+        current.is_some_and(|current| current.choice.to_string() == model)
+    });
+    apply(&mut harness, Command::Evaluate);
+    step_until(&mut harness, "the evaluation", |state| {
+        !state.session.force.evaluation.is_running()
+    });
+    let (request, answer) = finished(&state(&harness).session.force.evaluation);
+    CommandLine::of(&["evaluate", "force", "--model", &model, "--data", FORCES])
+        .asks_differently(&["for_figures"])
+        .compare(request, &answer.report);
+}
+
+#[test]
+fn a_response_network_is_trained_fine_tuned_and_evaluated_alike() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let config = write(folder.path(), "tiny.toml", TINY_RESPONSE);
+    let file = |name: &str| folder.path().join(name).display().to_string();
+    let (pretrained, tuned) = (file("pretrained.safetensors"), file("tuned.safetensors"));
+    let mut harness = open(&[FORCES, TRAJECTORIES]);
+    step_until(&mut harness, "the data", is_idle);
+    {
+        let form = &mut harness.state_mut().state_mut().project.response.training;
+        (form.mode, form.dataset) = (TrainingMode::Pretrain, Some(FORCES.into()));
+        (form.config, form.seed) = (config.clone(), 1);
+    }
+    train(&mut harness, Network::Response);
+    let training = &state(&harness).session.response.training;
+    let request = training.request.clone().expect("a question");
+    let report = training.report.as_ref().expect("a report");
+    let args = ["train", "response", "--data", FORCES, "--config", &config, "--seed", "1"];
+    CommandLine::of(&[&args[..], &["--out", &pretrained]].concat())
+        .prints(&["model"])
+        .asks_differently(&["checkpoint"])
+        .compare(request, report);
+
+    let has_model = |path: String| {
+        move |state: &State| {
+            let current = state.session.response.model.current.as_ref();
+            current.is_some_and(|current| current.choice.to_string() == path)
+        }
+    };
+    apply(&mut harness, Command::Open(vec![PathBuf::from(&pretrained)]));
+    step_until(&mut harness, "the pre-trained model", has_model(pretrained.clone()));
+    {
+        let form = &mut harness.state_mut().state_mut().project.response.training;
+        (form.mode, form.dataset) = (TrainingMode::FineTuneCurrent, None);
+        (form.n_trajectories, form.choice) = (Some(3), Some(2));
+    }
+    train(&mut harness, Network::Response);
+    let training = &state(&harness).session.response.training;
+    let request = training.request.clone().expect("a question");
+    let report = training.report.as_ref().expect("a report");
+    let args = ["fine-tune", "response", "--model", &pretrained, "--data", TRAJECTORIES];
+    let numbers = ["--trajectories", "3", "--seed", "1", "--choice", "2", "--config", &config];
+    CommandLine::of(&[&args[..], &numbers, &["--out", &tuned]].concat())
+        .prints(&["model"])
+        .asks_differently(&["checkpoint"])
+        .compare(request, report);
+
+    apply(&mut harness, Command::Open(vec![PathBuf::from(&tuned)]));
+    step_until(&mut harness, "the fine-tuned model", has_model(tuned.clone()));
+    apply(&mut harness, Command::Compare(ComparisonCommand::Evaluate));
+    let is_over = |state: &State| !state.session.response.comparison.is_running();
+    step_until(&mut harness, "the evaluation", is_over);
+    let (request, answer) = finished(&state(&harness).session.response.comparison.evaluate);
+    CommandLine::of(&["evaluate", "response", "--model", &tuned, "--data", TRAJECTORIES])
+        .compare(request, &answer.report);
+}
+
+#[test]
+fn models_are_compared_alike() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let config = write(folder.path(), "tiny.toml", TINY_RESPONSE);
+    let mut harness = open_on(TRAJECTORIES);
+    {
+        let form = &mut harness.state_mut().state_mut().project.response.comparison;
+        (form.config, form.trajectories, form.n_choices) = (config.clone(), "3".to_owned(), 1);
+    }
+    apply(&mut harness, Command::Compare(ComparisonCommand::Start));
+    let is_over = |state: &State| !state.session.response.comparison.is_running();
+    step_until(&mut harness, "the comparison", is_over);
+    let (request, answer) = finished(&state(&harness).session.response.comparison.compare);
+    let args = ["compare", "--data", TRAJECTORIES, "--trajectories", "3", "--choices", "1"];
+    CommandLine::of(&[&args[..], &["--config", &config]].concat()).compare(request, &answer.report);
+}
