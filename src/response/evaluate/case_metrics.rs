@@ -17,7 +17,7 @@ const STRIDE: usize = 10;
 /// Draws behind an energy score.
 const N_DRAWS: usize = 200;
 
-/// How many positions lie in the regions of 50 and 90 %.
+/// How often the recorded positions lie in the predicted regions, for one model on one trajectory.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct MotionCoverage {
     /// Share of the instants inside the 50 % region.
@@ -33,10 +33,10 @@ pub struct MotionCoverage {
     /// Mean over time of the continuous ranked probability score of X, m.
     #[serde(deserialize_with = "null_as_nan")]
     pub crps_x_m: f64,
-    /// The same of Y, m.
+    /// Mean over time of the continuous ranked probability score of Y, m.
     #[serde(deserialize_with = "null_as_nan")]
     pub crps_y_m: f64,
-    /// The same of the heading, rad.
+    /// Mean over time of the continuous ranked probability score of the heading, rad.
     #[serde(deserialize_with = "null_as_nan")]
     pub crps_yaw_rad: f64,
     /// Mean over time of the energy score of (X, Y), m.
@@ -44,7 +44,7 @@ pub struct MotionCoverage {
     pub energy_score_m: f64,
 }
 
-/// One model on one trajectory.
+/// Metrics of one model on one trajectory.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MotionCaseMetrics {
     /// Errors of the mean path; infinite where it is not finite.
@@ -54,12 +54,12 @@ pub struct MotionCaseMetrics {
     pub violations: usize,
     /// Time for a step of the whole answer, µs.
     pub time_per_step_us: f64,
-    /// Of a model with a distribution.
+    /// Coverage of the predicted regions, for a model that predicts a distribution.
     pub coverage: Option<MotionCoverage>,
 }
 
 impl MotionCaseMetrics {
-    /// Asks a model about a trajectory and compares, with what it said.
+    /// Predicts a trajectory with a model and compares; returns the predicted states too.
     ///
     /// # Errors
     /// [`LearningError::Network`].
@@ -68,9 +68,9 @@ impl MotionCaseMetrics {
         case: &ResponseCase,
     ) -> Result<(Self, Vec<VehicleState<f64>>), LearningError> {
         let started = Instant::now();
-        let answer = model.answer(case)?;
+        let predicted = model.predict(case)?;
         let seconds = started.elapsed().as_secs_f64();
-        let PredictedMotion { states, paths, distribution } = answer;
+        let PredictedMotion { states, paths, distribution } = predicted;
         let error = motion_series(&states, &case.inputs)
             .and_then(|predicted| {
                 MotionError::between(&predicted, &motion_series(&case.states, &case.inputs)?)

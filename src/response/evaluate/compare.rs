@@ -15,7 +15,7 @@ use crate::response::{
 };
 use rayon::prelude::*;
 
-/// What to compare.
+/// Settings of a comparison.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ComparisonSettings {
     /// Sizes, weights and rates of the networks.
@@ -24,7 +24,7 @@ pub struct ComparisonSettings {
     pub trajectories: Vec<usize>,
     /// Choices of the trajectories for each number.
     pub n_choices: u64,
-    /// Of the split into training and test, and of the first choice.
+    /// Seed of the split into training and test, and of the first choice.
     pub seed: u64,
 }
 

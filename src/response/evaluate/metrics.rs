@@ -20,7 +20,7 @@ pub struct MeanStd {
     pub median: f64,
 }
 
-/// A model over trajectories.
+/// Metrics of a model over trajectories.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MotionMetrics {
     /// Trajectories asked about, counted once for each choice of the fine-tune trajectories.
@@ -40,27 +40,27 @@ pub struct MotionMetrics {
     pub violations: usize,
     /// Time for a step, µs: the median.
     pub time_per_step_us: f64,
-    /// Of a model with a distribution.
+    /// Coverage of the predicted regions, for a model that predicts a distribution.
     pub coverage: Option<CoverageMetrics>,
 }
 
 /// Root mean square errors over a trajectory.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct RootMeanSquares {
-    /// Of X, m.
+    /// Error of X, m.
     pub x_m: MeanStd,
-    /// Of Y, m.
+    /// Error of Y, m.
     pub y_m: MeanStd,
-    /// Of v_x, km/h.
+    /// Error of v_x, km/h.
     pub vx_km_h: MeanStd,
-    /// Of v_y, km/h.
+    /// Error of v_y, km/h.
     pub vy_km_h: MeanStd,
-    /// Of the yaw rate, deg/s.
+    /// Error of the yaw rate, deg/s.
     pub yaw_rate_deg_s: MeanStd,
 }
 
 impl RootMeanSquares {
-    /// What tables call them, with their units, and the metrics.
+    /// The name of each error in tables, with its unit, and its value.
     pub fn named(&self) -> [(&'static str, MeanStd); 5] {
         [
             ("X, m", self.x_m),
@@ -72,26 +72,26 @@ impl RootMeanSquares {
     }
 }
 
-/// How well a model knows what it does not know.
+/// How well the predicted distribution agrees with the recorded positions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CoverageMetrics {
-    /// Positions along the path in the 50 % regions, share.
+    /// Share of the positions along the path that lie in the 50 % regions.
     #[serde(rename = "50")]
     pub path_50: f64,
-    /// In the 90 % regions.
+    /// Share of the positions along the path that lie in the 90 % regions.
     #[serde(rename = "90")]
     pub path_90: f64,
-    /// Ends in the 50 % regions.
+    /// Share of the ends that lie in the 50 % regions.
     pub end_50: f64,
-    /// Ends in the 90 % regions.
+    /// Share of the ends that lie in the 90 % regions.
     pub end_90: f64,
     /// Mean continuous ranked probability score of X, m.
     #[serde(deserialize_with = "null_as_nan")]
     pub crps_x_m: f64,
-    /// Of Y, m.
+    /// Mean continuous ranked probability score of Y, m.
     #[serde(deserialize_with = "null_as_nan")]
     pub crps_y_m: f64,
-    /// Of the heading, deg.
+    /// Mean continuous ranked probability score of the heading, deg.
     #[serde(deserialize_with = "null_as_nan")]
     pub crps_yaw_deg: f64,
     /// Mean energy score of (X, Y), m.
@@ -100,14 +100,14 @@ pub struct CoverageMetrics {
 }
 
 impl MeanStd {
-    /// In another unit.
+    /// The same in another unit.
     #[must_use]
     pub fn times(self, factor: f64) -> Self {
         let Self { mean, std, median } = self;
         Self { mean: mean * factor, std: std * factor, median: median * factor }
     }
 
-    /// Of values; all zero without any.
+    /// The statistics of values; all zero without any.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
         let mut values: Vec<f64> = values.into_iter().collect();
         values.sort_by(f64::total_cmp);
@@ -122,7 +122,7 @@ impl MeanStd {
 const KM_H_PER_M_S: f64 = 3.6;
 
 impl MotionMetrics {
-    /// Over trajectories.
+    /// Metrics over trajectories.
     pub fn of(cases: &[&MotionCaseMetrics]) -> Self {
         let over = |value: &dyn Fn(&MotionCaseMetrics) -> f64| {
             MeanStd::of(cases.iter().map(|case| value(case)))

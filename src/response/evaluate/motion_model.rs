@@ -8,7 +8,7 @@ use crate::response::{
 };
 use crate::vehicle::VehicleState;
 
-/// What kind of model.
+/// The kind of a model of the motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MotionModelKind {
@@ -22,7 +22,7 @@ pub enum MotionModelKind {
     Network,
 }
 
-/// A model to be compared.
+/// A model that predicts the motion after an impact, to be compared with others.
 #[derive(Debug)]
 pub enum MotionModel {
     /// See [`MotionModelKind::Untuned`].
@@ -35,19 +35,19 @@ pub enum MotionModel {
     Network(Box<ResponseModel>),
 }
 
-/// What a model says of a trajectory.
+/// The motion that a model predicts for a trajectory.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PredictedMotion {
     /// Mean path.
     pub states: Vec<VehicleState<f64>>,
     /// Paths whose mean it is: those in which mechanics must hold.
     pub paths: Vec<Vec<VehicleState<f64>>>,
-    /// With its probabilities, if it has any.
+    /// The distribution of the motion, if the model predicts one.
     pub distribution: Option<MotionDistribution>,
 }
 
 impl MotionModelKind {
-    /// What a table calls it.
+    /// The name of the model in tables.
     pub fn label(self) -> &'static str {
         match self {
             Self::Untuned => "4DOF untuned",
@@ -59,7 +59,7 @@ impl MotionModelKind {
 }
 
 impl MotionModel {
-    /// Its kind.
+    /// The kind of the model.
     pub fn kind(&self) -> MotionModelKind {
         match self {
             Self::Untuned => MotionModelKind::Untuned,
@@ -69,11 +69,11 @@ impl MotionModel {
         }
     }
 
-    /// What it says of the motion after the impact of a case.
+    /// Predicts the motion after the impact of a case.
     ///
     /// # Errors
     /// [`LearningError::Network`].
-    pub(crate) fn answer(&self, case: &ResponseCase) -> Result<PredictedMotion, LearningError> {
+    pub(crate) fn predict(&self, case: &ResponseCase) -> Result<PredictedMotion, LearningError> {
         let initial = case.states.first().copied().unwrap_or_default();
         let four_dof = |vehicle| {
             let states = rollout(vehicle, initial, &case.inputs, |_, _| [0.0; N_RESIDUAL]);

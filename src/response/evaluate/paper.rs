@@ -45,7 +45,7 @@ const PAPER_METRICS: [PaperMetrics; 4] = [
     },
 ];
 
-/// What the paper printed for such a model, if it had one.
+/// The metrics that the paper prints for a model, if it has such a model.
 pub fn paper_metrics(kind: MotionModelKind, trajectories: usize) -> Option<PaperMetrics> {
     PAPER_METRICS
         .into_iter()

@@ -19,7 +19,7 @@ pub const PATH_STEP_S: f64 = 0.1;
 /// Decimals that are kept of them: tenths of a millimetre.
 const PATH_UNIT: f64 = 1e4;
 
-/// A model with its metrics.
+/// A model with its metrics over all trajectories.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ComparedModel {
     /// Such as `PINN`.
@@ -37,7 +37,7 @@ pub struct ComparedModel {
     pub training_s: f64,
 }
 
-/// One model on one trajectory.
+/// A model on one trajectory.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ComparedCase {
     /// Name of the trajectory.
@@ -52,7 +52,7 @@ pub struct ComparedCase {
     pub trajectories: usize,
     /// Which choice of them.
     pub choice: u64,
-    /// Its metrics.
+    /// The metrics of the model on the trajectory.
     #[serde(flatten)]
     pub metrics: MotionCaseMetrics,
     /// Where it says the vehicle goes: [X, Y, ψ] every [`PATH_STEP_S`], m and rad.
@@ -95,7 +95,7 @@ pub struct TestCase {
     pub spins: bool,
     /// Outline of the vehicle.
     pub footprint: Footprint,
-    /// What was recorded: [X, Y, ψ] every [`PATH_STEP_S`], m and rad.
+    /// The recorded path: [X, Y, ψ] every [`PATH_STEP_S`], m and rad.
     pub path: Vec<[f64; 3]>,
 }
 
@@ -104,7 +104,7 @@ pub struct TestCase {
 pub struct Comparison {
     /// What the data are called.
     pub data: String,
-    /// Of the split and the first choice.
+    /// Seed of the split and of the first choice.
     pub seed: u64,
     /// Choices for each number of trajectories.
     pub n_choices: u64,
@@ -112,9 +112,9 @@ pub struct Comparison {
     pub test: Vec<TestCase>,
     /// The models.
     pub models: Vec<ComparedModel>,
-    /// By cluster.
+    /// The models on each cluster of trajectories.
     pub clusters: Vec<ClusterRow>,
-    /// By trajectory.
+    /// Each model on each trajectory.
     pub cases: Vec<ComparedCase>,
 }
 

@@ -16,7 +16,7 @@ pub struct ComparisonTable {
 }
 
 impl ComparisonTable {
-    /// As a table in Markdown.
+    /// The table in Markdown.
     pub fn to_markdown(&self) -> String {
         let mut text = String::new();
         let mut line = |cells: &[String]| {
@@ -32,7 +32,7 @@ impl ComparisonTable {
         text
     }
 
-    /// As CSV.
+    /// The table as CSV.
     pub fn to_csv(&self) -> String {
         let mut writer = csv::Writer::from_writer(Vec::new());
         // Writing to a vector does not fail.

@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::data::{DataError, write_atomically};
 use crate::response::evaluate::{Comparison, all_tables};
 
-/// All tables as Markdown.
+/// All tables of a comparison as Markdown.
 pub fn to_markdown(comparison: &Comparison) -> String {
     let mut text = format!(
         "# {}\n\n{} trajectories that no model has seen, seed {}, {} choices of the trajectories.\n",

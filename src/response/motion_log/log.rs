@@ -8,7 +8,7 @@ use crate::data::{ColumnMap, DataError, SeriesError, TimeSeries, read_motion_log
 /// A log as it was read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionLog {
-    /// Its file.
+    /// The file of the log.
     pub path: PathBuf,
     /// Time, x, y, yaw, and perhaps yaw rate, v_x and v_y, roll, roll rate, steer; the rest is not
     /// looked at.
@@ -21,24 +21,24 @@ pub enum LogError {
     /// The file cannot be read.
     #[error(transparent)]
     Data(#[from] DataError),
-    /// It lacks a column.
+    /// The log lacks a column.
     #[error("{}: cannot be used", path.display())]
     Series {
         /// The log.
         path: PathBuf,
-        /// What it lacks.
+        /// What the log lacks.
         source: SeriesError,
     },
-    /// It ends at once.
+    /// The log ends too soon after the impact.
     #[error("{}: {duration_s:.3} s of motion from the first contact at {start_s} s on, expected {least_s} s or more", path.display())]
     TooShort {
         /// The log.
         path: PathBuf,
         /// First contact, s.
         start_s: f64,
-        /// What follows, s.
+        /// Time that the log goes on after the impact, s.
         duration_s: f64,
-        /// What it takes, s.
+        /// Shortest time that is needed, s.
         least_s: f64,
     },
     /// The contact lies outside.

@@ -16,14 +16,14 @@ use crate::vehicle::{
 /// Times are written with few digits.
 const TIME_TOLERANCE_S: f64 = 1e-3;
 
-/// How a log is read.
+/// Settings for reading a log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LogSettings {
     /// The struck vehicle, on its road.
     pub vehicle: VehicleParameters,
     /// First contact on the log's clock, s; `None`: from the force, else from the motion.
     pub impact_s: Option<f64>,
-    /// How much of the motion from the first contact on is taken, s.
+    /// Duration of the motion from the first contact on that is learned from, s.
     pub duration_s: f64,
 }
 
@@ -31,9 +31,9 @@ pub struct LogSettings {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ForceOrigin {
-    /// It was recorded.
+    /// The force was recorded.
     Recorded,
-    /// From the change of momentum.
+    /// The force was estimated from the change of momentum.
     Estimated,
     /// The log begins after the contact, or there was none.
     None,
@@ -42,7 +42,7 @@ pub enum ForceOrigin {
 /// A log made into a trajectory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoggedImpact {
-    /// What can be learned from.
+    /// The trajectory to learn from.
     pub case: ResponseCase,
     /// Where it begins on the log's clock, s: the first contact.
     pub start_s: f64,
@@ -52,7 +52,7 @@ pub struct LoggedImpact {
     pub force: ForceOrigin,
     /// Impulse on the vehicle along the axes of the force, N s: world axes if it was estimated.
     pub impulse_n_s: [f64; 2],
-    /// What the log's channels scatter by.
+    /// Noise of the channels of the log.
     pub noise: LogNoise,
 }
 

@@ -12,23 +12,23 @@ use crate::response::{LogError, MotionLog};
 use crate::vehicle::VehicleState;
 use crate::vehicle::frames::{body_from_world, world_from_body};
 
-/// What is expected of an angle, its rate and its acceleration before any sample, rad and s.
+/// Standard deviations of an angle, its rate and its acceleration before any sample, rad and s.
 const ANGLE_PRIOR: [f64; 3] = [10.0, 10.0, 30.0];
-/// The same of a position, m and s.
+/// Standard deviations of a position, its velocity and its acceleration before any sample, m and s.
 const POSITION_PRIOR: [f64; 3] = [1e3, 60.0, 30.0];
-/// How long before the first instant that is wanted the log has a say, s.
+/// Time before the first instant that is wanted from which samples of the log are used, s.
 const RUN_IN_S: f64 = 2.0;
 
 /// Noise of a log's channels, standard deviations.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LogNoise {
-    /// Of x and y, m.
+    /// Noise of x and y, m.
     pub position_m: f64,
-    /// Of v_x and v_y, m/s, where the log has them.
+    /// Noise of v_x and v_y, m/s, where the log has them.
     pub velocity_m_s: Option<f64>,
-    /// Of the yaw, rad.
+    /// Noise of the yaw angle, rad.
     pub yaw_rad: f64,
-    /// Of the yaw rate, rad/s, where the log has it.
+    /// Noise of the yaw rate, rad/s, where the log has it.
     pub yaw_rate_rad_s: Option<f64>,
 }
 

@@ -32,7 +32,7 @@ pub(super) struct TrackScales {
 pub(super) struct Tracks {
     /// Samples of each; their `std` is not looked at.
     pub samples: Vec<Vec<TrackSample>>,
-    /// Of a coordinate, its velocity and its acceleration, before any sample.
+    /// Standard deviations of a coordinate, its velocity and its acceleration, before any sample.
     pub prior_std: [f64; 3],
 }
 

@@ -39,7 +39,7 @@ pub struct ResponseLossTerms {
     pub data: f64,
     /// Negative log-likelihood.
     pub likelihood: f64,
-    /// What is added to 4DOF model and effects.
+    /// Size of what the network adds to 4DOF model and effects.
     pub physics: f64,
     /// Components that coincide.
     pub diversity: f64,
@@ -138,7 +138,8 @@ pub(crate) fn huber_of_squares(squares: &Tensor) -> Result<Tensor, NnError> {
     Ok(((squares.sum(D::Minus1)? + 1.0)?.sqrt()? - 1.0)?)
 }
 
-/// Of single steps: Huber's loss of the mean residual, and the likelihood of the next state.
+/// The data terms of single steps: Huber's loss of the mean residual, and the likelihood of the next
+/// state.
 ///
 /// - `targets`: `[rows, 1, 1, 4]`;
 /// - `unit`: errors of the order of which count, as the correction is; `change`: what a unit of it

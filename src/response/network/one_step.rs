@@ -26,14 +26,14 @@ pub(crate) struct MotionView<'a> {
 #[derive(Debug)]
 pub(crate) struct OneStepData {
     rows: Vec<OneStepRow>,
-    /// Of the vehicle of each motion.
+    /// The tokens of the vehicle of each motion.
     tokens: Vec<[[f64; N_TOKEN_NUMBERS]; N_TOKENS]>,
 }
 
 #[derive(Debug)]
 pub(crate) struct OneStepRow {
     pub features: [f64; N_FEATURES],
-    /// What the correction must be to lead to the next state.
+    /// The correction that leads to the next state.
     pub target: [f64; N_RESIDUAL],
     /// Boxed: 1.6 kB.
     pub effects: Box<Effects<f64>>,
@@ -128,7 +128,7 @@ impl OneStepBatch {
     }
 }
 
-/// What the network must know of a vehicle over a whole motion, `[1, N_TOKENS, N_TOKEN_NUMBERS]`.
+/// The tokens of a vehicle, which stay the same over a motion, `[1, N_TOKENS, N_TOKEN_NUMBERS]`.
 pub(crate) fn token_tensor(vehicle: &VehicleParameters) -> Result<Tensor, NnError> {
     let tokens: Vec<f64> = vehicle_tokens(vehicle).as_flattened().to_vec();
     Ok(Tensor::from_vec(tokens, (1, N_TOKENS, N_TOKEN_NUMBERS), &Device::Cpu)?)

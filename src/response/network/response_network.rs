@@ -61,13 +61,13 @@ pub(crate) struct ResponseNetwork {
 /// Which layers give gradients.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Gradients {
-    /// All: pre-training.
+    /// Gradients of all layers, for pre-training.
     All,
-    /// Those that fine-tuning changes.
+    /// Gradients of the layers that fine-tuning changes.
     FineTuned,
 }
 
-/// What the network says of instants.
+/// The outputs of the network at instants.
 #[derive(Debug, Clone)]
 pub(crate) struct ResponseOutput {
     /// a_j, m/s² and rad/s², `[sequences, instants, J, 4]`.
@@ -81,7 +81,7 @@ pub(crate) struct ResponseOutput {
 }
 
 impl ResponseNetwork {
-    /// With weights drawn from `rng`; its residual starts at zero.
+    /// A network with weights drawn from `rng`; its residual starts at zero.
     ///
     /// # Errors
     /// [`NnError`] for sizes that make no layer.

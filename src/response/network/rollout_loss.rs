@@ -23,7 +23,7 @@ const STATE_UNIT: [f64; N_STATE] = [0.3, 0.3, 0.03, 0.1, 0.02, 0.2, 0.1, 0.1];
 const IS_VELOCITY: [f64; N_STATE] = [1.0, 1.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0];
 /// Units of the second differences over the squared step, m/s³ and rad/s³.
 const JERK_UNIT: [f64; N_STATE] = [100.0, 100.0, 100.0, 50.0, 50.0, 200.0, 100.0, 100.0];
-/// As many instants of a rollout count as independent in its likelihood.
+/// Number of instants of a rollout that count as independent in its likelihood.
 const N_INDEPENDENT: f64 = 10.0;
 
 /// A trajectory, and the vehicle of its 4DOF model.
@@ -36,7 +36,7 @@ pub(crate) struct RolloutCase<'a> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RolloutWindow {
     pub case_idx: usize,
-    /// Its first step.
+    /// The first step of the window.
     pub start: usize,
 }
 

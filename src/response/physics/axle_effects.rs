@@ -30,14 +30,14 @@ pub(super) const CHARACTERISTIC_SCALE: f64 = 0.125;
 /// One axle.
 pub(super) struct Axle<'a, T> {
     vehicle: &'a VehicleParameters,
-    /// From the CG, forward, m.
+    /// Distance of the axle from the CG, positive forward, m.
     arm_m: f64,
     /// v̇_x, v̇_y, ṙ, φ̈ by a side force of 1 N.
     by_side_force: [f64; N_RESIDUAL],
     /// v̇_x by a force of 1 N along the car.
     by_along_force: f64,
     cornering_coefficient: f64,
-    /// Of its left and its right wheel.
+    /// Vertical loads of the left and of the right wheel, N.
     loads_n: [T; 2],
 }
 
@@ -54,7 +54,7 @@ impl<'a, T: Scalar> Axle<'a, T> {
         Self { vehicle, arm_m, by_side_force, by_along_force, cornering_coefficient, loads_n }
     }
 
-    /// Its effects in order.
+    /// The effects of the axle, in order.
     ///
     /// - `out`: all zero.
     pub(super) fn effects(

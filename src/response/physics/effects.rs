@@ -175,7 +175,7 @@ fn body_effects<T: Scalar>(
 pub(crate) enum Direction {
     /// Side force of both axles, as a share of the friction.
     Grip,
-    /// The same, more in front and less behind.
+    /// Side force, more on the front axle and less on the rear axle, as a share of the friction.
     Balance,
     /// Yaw moment of the collision, as a share.
     YawImpulse,

@@ -26,7 +26,7 @@ use crate::response::{Effects, N_EFFECTS, N_RESIDUAL};
 
 /// Rounds of reweighting.
 const N_ROUNDS: usize = 8;
-/// What strengths do together.
+/// Strengths that change together.
 const COMMON: [Direction; 4] =
     [Direction::Grip, Direction::Balance, Direction::YawImpulse, Direction::LateralImpulse];
 

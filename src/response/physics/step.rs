@@ -81,7 +81,7 @@ impl Correction {
         }
     }
 
-    /// What a unit of [`Correction::step`]'s value changes the velocities by over a step.
+    /// Change of the velocities over a step by a unit of the value in [`Correction::step`].
     pub fn change_per_unit(self) -> f64 {
         match self {
             Self::Acceleration | Self::Whole => STEP_S,

@@ -21,7 +21,7 @@ const MIN_ROWS_PER_TASK: usize = 16;
 /// State and residual acceleration together.
 const N_BOTH: usize = N_STATE + N_RESIDUAL;
 
-/// What a row of a batch knows besides its state.
+/// Inputs of a row of a batch besides its state.
 #[derive(Debug, Clone)]
 pub(crate) struct StepRow {
     pub vehicle: Arc<VehicleParameters>,

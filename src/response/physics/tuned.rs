@@ -34,19 +34,19 @@ const LOG_LIMIT: f64 = 0.7;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tuning {
-    /// Of the peak friction μ.
+    /// Factor of the peak friction μ.
     pub friction: f64,
-    /// Of the front cornering coefficient C_f.
+    /// Factor of the front cornering coefficient C_f.
     pub cornering_front: f64,
-    /// Of the rear cornering coefficient C_r.
+    /// Factor of the rear cornering coefficient C_r.
     pub cornering_rear: f64,
-    /// Of the sliding friction ratio.
+    /// Factor of the sliding friction ratio.
     pub sliding: f64,
-    /// Of the roll stiffness.
+    /// Factor of the roll stiffness.
     pub roll_stiffness: f64,
-    /// Of the roll damping.
+    /// Factor of the roll damping.
     pub roll_damping: f64,
-    /// Of the front share of the roll stiffness, which shares out the load transfer.
+    /// Factor of the front share of the roll stiffness, which shares out the load transfer.
     pub front_share: f64,
 }
 

@@ -47,10 +47,10 @@ pub(crate) struct Unseen<'a> {
     pub predictor: Predictor,
 }
 
-/// What a trajectory says at an instant.
+/// Deviation of a trajectory from its prediction at an instant.
 struct Observation {
     error: Vector3<f64>,
-    /// Of one unit of each latent.
+    /// Change of the prediction by one unit of each latent factor.
     sensitivities: [Vector3<f64>; N_LATENTS],
     /// Covariance by the steps' noise of deviation one.
     noise: Matrix3<f64>,

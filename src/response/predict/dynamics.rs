@@ -8,7 +8,7 @@ use crate::response::predict::latents::{LatentScales, N_LATENTS};
 use crate::response::{N_EFFECTS, N_FEATURES, N_RESIDUAL, combined, effects};
 use crate::vehicle::{Evaluation, VehicleInput, VehicleParameters, VehicleState};
 
-/// What a step needs besides the state.
+/// Vehicle, network and latent factors: all that a step needs besides the state.
 pub(crate) struct Dynamics<'a> {
     pub vehicle: &'a VehicleParameters,
     pub network: &'a VehicleNetwork,
@@ -29,7 +29,7 @@ pub(crate) struct NetworkBatch {
 pub(super) struct CorrectionTerms {
     /// Effects and remainder of the component with every latent factor at zero.
     value: [f64; N_RESIDUAL],
-    /// What a latent factor of one adds to that.
+    /// Change of that by a latent factor of one.
     by_latents: [[f64; N_RESIDUAL]; N_LATENTS],
 }
 

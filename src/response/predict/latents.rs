@@ -57,7 +57,7 @@ pub(crate) struct LatentShare {
 }
 
 impl LatentScales {
-    /// All scales and the step noise times a factor.
+    /// All scales and the step noise, multiplied by a factor.
     #[must_use]
     pub fn widened(mut self, factor: f64) -> Self {
         self.scales = self.scales.map(|scale| scale * factor);
@@ -82,8 +82,8 @@ impl LatentScales {
         std::array::from_fn(|m| direction(of[m]).map(|value| value * self.scales[m]))
     }
 
-    /// How component `j` of `n` sees the latents: of the one that is shared out it has the j-th of n
-    /// equally likely parts of the standard normal distribution, of the others all.
+    /// The latent factors within component `j` of `n`: of the factor that is shared out, the component has
+    /// the j-th of n equally likely parts of the standard normal distribution; of the others, the whole.
     pub(crate) fn of_component(&self, j: usize, n: usize) -> [LatentShare; N_LATENTS] {
         let whole = LatentShare { mean: 0.0, variance: 1.0 };
         let mut shares = [whole; N_LATENTS];

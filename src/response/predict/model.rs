@@ -25,17 +25,17 @@ impl ResponseModel {
         Self { config, network, latents: LatentScales::default(), record }
     }
 
-    /// The configuration it was trained with.
+    /// The configuration that the model was trained with.
     pub fn config(&self) -> &ResponseConfig {
         &self.config
     }
 
-    /// How it came to be.
+    /// How the model came to be.
     pub fn record(&self) -> &ResponseRecord {
         &self.record
     }
 
-    /// How many weights it has.
+    /// Number of weights.
     pub fn n_parameters(&self) -> usize {
         self.network.parameters().n_values()
     }
@@ -45,7 +45,7 @@ impl ResponseModel {
         self.record.train.iter().any(|known| known.digest == case.digest)
     }
 
-    /// The same model once more.
+    /// A copy of the model.
     ///
     /// # Errors
     /// [`LearningError::Network`].
@@ -61,12 +61,12 @@ impl ResponseModel {
         &self.network
     }
 
-    /// How uncertain it is along a motion.
+    /// How uncertain the model is along a motion.
     pub fn latents(&self) -> &LatentScales {
         &self.latents
     }
 
-    /// The same model with another uncertainty.
+    /// Replaces the uncertainty.
     pub(crate) fn set_latents(&mut self, latents: LatentScales) {
         self.latents = latents;
     }

@@ -43,7 +43,7 @@ pub struct ComponentPath {
 /// The distribution of a motion: a mixture of normal distributions at every instant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionDistribution {
-    /// Its components; their weights sum to one.
+    /// The components; their weights sum to one.
     pub components: Vec<ComponentMotion>,
 }
 

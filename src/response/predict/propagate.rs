@@ -33,7 +33,7 @@ use crate::vehicle::{Evaluation, VehicleInput, VehicleState};
 const N: usize = N_JOINT;
 /// Points about the mean.
 const N_POINTS: usize = 2 * N;
-/// On which sides of the mean the points of a pair lie.
+/// Sides of the mean on which the points of a pair lie.
 const SIDES: [f64; 2] = [1.0, -1.0];
 
 /// Normal distribution of the state at an instant, of one component.
@@ -81,7 +81,7 @@ enum PointReuse {
     Step,
 }
 
-/// What decides on the reuse of results in a step.
+/// Conditions that decide on the reuse of results in a step.
 #[derive(Clone, Copy)]
 struct ReusePlan {
     /// No force will act any more: what is uncertain about the collision has had its effect.
@@ -96,7 +96,7 @@ impl ReusePlan {
         Self { is_free, depends_on_pose: !is_free && in_world }
     }
 
-    /// What can be reused for the points of a column of the root.
+    /// The results that can be reused for the points of a column of the root.
     ///
     /// - `i`: index of the column, and of the first component of ξ in which the points differ from the
     ///   mean.

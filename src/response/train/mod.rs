@@ -11,6 +11,7 @@ mod physics_weight;
 
 mod record;
 
+mod training_data;
 mod training_run;
 
 mod stages;

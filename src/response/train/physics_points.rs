@@ -23,7 +23,7 @@ pub(crate) struct PhysicsPoints {
     features: Vec<[f64; N_FEATURES]>,
     motion_idx: Vec<usize>,
     tokens: Vec<[[f64; N_TOKEN_NUMBERS]; N_TOKENS]>,
-    /// On λ at each.
+    /// Factor on λ at each point.
     factors: Vec<f64>,
 }
 

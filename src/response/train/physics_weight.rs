@@ -77,7 +77,7 @@ impl PhysicsSchedule {
     }
 }
 
-/// Of each feature, 1 where it does not change.
+/// Standard deviation of each feature, 1 where it does not change.
 fn standard_deviations(rows: &[[f64; N_FEATURES]]) -> [f64; N_FEATURES] {
     let n = rows.len().max(1) as f64;
     std::array::from_fn(|i| {

@@ -56,9 +56,9 @@ const N_STEPS: usize = 400;
 /// A simulated motion.
 #[derive(Debug, Clone)]
 pub(crate) struct SimulatedMotion {
-    /// Of the record.
+    /// Vehicle of the record.
     pub data_sheet: VehicleParameters,
-    /// What was simulated.
+    /// Vehicle that was simulated.
     pub vehicle: VehicleParameters,
     pub states: Vec<VehicleState<f64>>,
     pub inputs: Vec<VehicleInput<f64>>,

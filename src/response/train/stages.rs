@@ -12,7 +12,8 @@ use crate::response::network::response_network::ResponseNetwork;
 use crate::response::physics::effects_fit::fit_strengths;
 use crate::response::predict::calibration::{Unseen, calibrate};
 use crate::response::train::simulated::{ImpactRecord, SimulatedMotion, simulate};
-use crate::response::train::training_run::{CHECKPOINT_KIND, Planned, TrainingData, TrainingRun};
+use crate::response::train::training_data::TrainingData;
+use crate::response::train::training_run::{CHECKPOINT_KIND, Planned, TrainingRun};
 use crate::response::{
     Correction, ResponseCase, ResponseConfig, ResponseEpoch, ResponseModel, ResponseRecord,
     ResponseStage, ResponseTraining,

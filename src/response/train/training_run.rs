@@ -9,18 +9,13 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
 use crate::learning::{EpochLoop, EpochRecord, EpochReport, LearningError, SavedTraining};
-use crate::nn::{
-    AdamW, AdamWConfig, Checkpoint, ModelKind, NnError, Schedule, StepReport, random_stream,
-};
+use crate::nn::{AdamW, AdamWConfig, Checkpoint, ModelKind, NnError, Schedule, random_stream};
 use crate::response::network::loss::{ResponseLoss, boundary, diversity, single_step_terms};
-use crate::response::network::one_step::{MotionView, OneStepData};
 use crate::response::network::response_network::{Gradients, ResponseNetwork};
-use crate::response::network::rollout_loss::{RolloutCase, RolloutWindow, rollout_loss};
-use crate::response::train::physics_points::PhysicsPoints;
-use crate::response::train::simulated::{ImpactRecord, SimulatedMotion};
+use crate::response::network::rollout_loss::{RolloutWindow, rollout_loss};
+use crate::response::train::training_data::TrainingData;
 use crate::response::{
-    ResponseCase, ResponseConfig, ResponseEpoch, ResponseLossTerms, ResponseStage,
-    ResponseTrainSettings,
+    ResponseConfig, ResponseEpoch, ResponseLossTerms, ResponseStage, ResponseTrainSettings,
 };
 
 /// The checkpoints of a training.
@@ -39,45 +34,6 @@ const IMPACT_SHARE: f64 = 0.5;
 pub(super) struct Planned {
     pub stage: ResponseStage,
     pub n_epochs: usize,
-}
-
-/// The data of a training.
-pub(super) struct TrainingData<'a> {
-    pub instants: OneStepData,
-    /// Instants away from the data; none for pre-training.
-    physics_points: Option<PhysicsPoints>,
-    rollouts: Vec<RolloutCase<'a>>,
-}
-
-impl<'a> TrainingData<'a> {
-    pub(super) fn of_simulations(motions: &[SimulatedMotion], config: &ResponseConfig) -> Self {
-        let views: Vec<MotionView<'_>> = motions.iter().map(SimulatedMotion::view).collect();
-        let instants = OneStepData::of(&views, &config.network);
-        Self { instants, physics_points: None, rollouts: Vec::new() }
-    }
-
-    pub(super) fn of_trajectories(
-        cases: &'a [ResponseCase],
-        config: &ResponseConfig,
-        seed: u64,
-    ) -> Self {
-        let view = |case: &'a ResponseCase| MotionView {
-            centre: &case.vehicle,
-            vehicle: &case.vehicle,
-            states: &case.states,
-            inputs: &case.inputs,
-        };
-        let views: Vec<MotionView<'_>> = cases.iter().map(view).collect();
-        let instants = OneStepData::of(&views, &config.network);
-        let records: Vec<ImpactRecord> = cases.iter().filter_map(ResponseCase::impact).collect();
-        let physics_points = (config.loss.physics > 0.0 && config.physics.batch_instants > 0)
-            .then(|| PhysicsPoints::about(&instants, &records, (config, seed)));
-        let rollouts = cases
-            .iter()
-            .map(|case| RolloutCase { case, vehicle: case.vehicle.clone().into() })
-            .collect();
-        Self { instants, physics_points, rollouts }
-    }
 }
 
 /// A training under way.
@@ -108,7 +64,7 @@ impl<'a> TrainingRun<'a> {
         Ok(Self { settings, network, data, plan, optimizer, history, n_before })
     }
 
-    /// The same training where a checkpoint left it.
+    /// The training from the point at which a checkpoint was written.
     pub(super) fn resumed(
         mut self,
         saved: SavedTraining<ResponseEpoch>,
@@ -142,8 +98,8 @@ impl<'a> TrainingRun<'a> {
 
     fn optimizer_config(&self, planned: Planned) -> AdamWConfig {
         let ResponseConfig { pretraining, single_steps, rollouts, .. } = &self.settings.config;
-        let n_batches = self.batches_per_epoch(planned.stage);
-        let total_steps = (n_batches * planned.n_epochs) as u64;
+        let (n, batch_size) = self.samples_and_batch_size(planned.stage);
+        let total_steps = (n.div_ceil(batch_size) * planned.n_epochs) as u64;
         let warmup = |share: f64| (total_steps as f64 * share) as u64;
         let (learning_rate, warmup_steps) = match planned.stage {
             ResponseStage::Pretraining => (pretraining.learning_rate, warmup(WARMUP_SHARE)),
@@ -159,90 +115,101 @@ impl<'a> TrainingRun<'a> {
         }
     }
 
-    fn batches_per_epoch(&self, stage: ResponseStage) -> usize {
+    /// Number of instants or trajectories that a stage learns from, and of those in a batch.
+    fn samples_and_batch_size(&self, stage: ResponseStage) -> (usize, usize) {
         let config = &self.settings.config;
         match stage {
             ResponseStage::Pretraining | ResponseStage::SingleSteps => {
-                self.data.instants.rows().len().div_ceil(config.single_steps.batch_instants)
+                (self.data.instants.rows().len(), config.single_steps.batch_instants)
             }
             ResponseStage::Rollouts { .. } => {
-                self.data.rollouts.len().div_ceil(config.rollouts.batch_windows)
+                (self.data.rollouts.len(), config.rollouts.batch_windows)
             }
         }
     }
 
+    /// Passes once over the instants or trajectories of a stage.
     fn pass(&mut self, stage: ResponseStage) -> Result<EpochReport, LearningError> {
         let started = Instant::now();
-        let config = &self.settings.config;
         let epoch = self.history.len() + 1;
-        let balance = self.history.last().map_or(1.0, |record| record.detail.balance);
-        let in_training = epoch - self.n_before;
-        let physics_weight = match stage {
-            ResponseStage::Pretraining => 0.0,
-            _ => config.physics.weight(in_training, balance),
-        };
+        let physics_weight = self.physics_weight(stage);
+        let mut rng =
+            random_stream(self.settings.seed, "epochs of the response network", epoch as u64);
+        let (n, batch_size) = self.samples_and_batch_size(stage);
+        let mut order: Vec<usize> = (0..n).collect();
+        order.shuffle(&mut rng);
         let (mut terms, mut gradient_norm, mut learning_rate) = (Vec::new(), 0.0_f64, 0.0);
-        let mut take = |loss: ResponseLoss, network: &ResponseNetwork, optimizer: &mut AdamW| {
-            let (total, values) = loss.total(&config.loss, physics_weight)?;
+        for batch in order.chunks(batch_size) {
+            let loss = match stage {
+                ResponseStage::Pretraining | ResponseStage::SingleSteps => {
+                    self.single_step_loss(batch, stage, &mut rng)?
+                }
+                ResponseStage::Rollouts { length } => {
+                    self.rollout_batch_loss(batch, length, &mut rng)?
+                }
+            };
+            let (total, values) = loss.total(&self.settings.config.loss, physics_weight)?;
             if !values.total.is_finite() {
                 return Err(LearningError::Diverged { loss: values.total, epoch });
             }
             let gradients = total.backward()?;
-            let step: StepReport = optimizer.step(network.parameters(), &gradients)?;
+            let step = self.optimizer.step(self.network.parameters(), &gradients)?;
             gradient_norm = gradient_norm.max(step.gradient_norm);
             learning_rate = step.learning_rate;
             terms.push(values);
-            Ok(())
-        };
-        let mut rng =
-            random_stream(self.settings.seed, "epochs of the response network", epoch as u64);
-        match stage {
-            ResponseStage::Pretraining | ResponseStage::SingleSteps => {
-                let mut order: Vec<usize> = (0..self.data.instants.rows().len()).collect();
-                order.shuffle(&mut rng);
-                for batch in order.chunks(config.single_steps.batch_instants) {
-                    let loss = self.single_step_loss(batch, stage, &mut rng)?;
-                    take(loss, &self.network, &mut self.optimizer)?;
-                }
-            }
-            ResponseStage::Rollouts { length } => {
-                let mut order: Vec<usize> = (0..self.data.rollouts.len()).collect();
-                order.shuffle(&mut rng);
-                for batch in order.chunks(config.rollouts.batch_windows) {
-                    let n_steps = |case_idx: usize| self.data.rollouts[case_idx].case.inputs.len();
-                    // No further than the shortest record of the batch.
-                    let shortest = batch.iter().map(|&case_idx| n_steps(case_idx)).min();
-                    let length = length.min(shortest.unwrap_or(length));
-                    let window = |&case_idx: &usize| {
-                        let last = n_steps(case_idx).saturating_sub(length);
-                        let is_first = rng.random_bool(IMPACT_SHARE);
-                        let start = if is_first { 0 } else { rng.random_range(0..=last) };
-                        RolloutWindow { case_idx, start }
-                    };
-                    let windows: Vec<RolloutWindow> = batch.iter().map(window).collect();
-                    let lengths = [length, config.rollouts.truncation];
-                    let loss = rollout_loss(&self.network, &self.data.rollouts, &windows, lengths)?;
-                    take(loss, &self.network, &mut self.optimizer)?;
-                }
-            }
         }
         let loss = ResponseLossTerms::mean(&terms);
-        let of_physics = config.loss.physics * physics_weight * loss.physics;
+        let of_physics = self.settings.config.loss.physics * physics_weight * loss.physics;
         let balance = if of_physics > 0.0 { loss.data / (loss.data + of_physics) } else { 1.0 };
         let seconds = started.elapsed().as_secs_f64();
         let detail = ResponseEpoch { stage, loss, physics_weight, balance };
         let record = EpochRecord { epoch, detail, learning_rate, gradient_norm, seconds };
-        let summary = record.summary();
         self.history.push(record);
+        Ok(self.report_of(&record))
+    }
+
+    /// λ_physics of the next epoch.
+    fn physics_weight(&self, stage: ResponseStage) -> f64 {
+        let balance = self.history.last().map_or(1.0, |record| record.detail.balance);
+        let in_training = self.history.len() + 1 - self.n_before;
+        match stage {
+            ResponseStage::Pretraining => 0.0,
+            _ => self.settings.config.physics.weight(in_training, balance),
+        }
+    }
+
+    fn report_of(&self, record: &EpochRecord<ResponseEpoch>) -> EpochReport {
         let n_planned: usize = self.plan.iter().map(|planned| planned.n_epochs).sum();
-        Ok(EpochReport {
-            summary,
+        EpochReport {
+            summary: record.summary(),
             n_before: self.n_before,
             n_epochs: self.n_before + n_planned,
             best_epoch: None,
             training_idx: 0,
             n_trainings: 1,
-        })
+        }
+    }
+
+    /// The loss of rollouts in a window of each trajectory, which starts with the impact or anywhere.
+    fn rollout_batch_loss(
+        &self,
+        batch: &[usize],
+        length: usize,
+        rng: &mut ChaCha8Rng,
+    ) -> Result<ResponseLoss, LearningError> {
+        let n_steps = |case_idx: usize| self.data.rollouts[case_idx].case.inputs.len();
+        // No further than the shortest record of the batch.
+        let shortest = batch.iter().map(|&case_idx| n_steps(case_idx)).min();
+        let length = length.min(shortest.unwrap_or(length));
+        let window = |&case_idx: &usize| {
+            let last = n_steps(case_idx).saturating_sub(length);
+            let is_first = rng.random_bool(IMPACT_SHARE);
+            let start = if is_first { 0 } else { rng.random_range(0..=last) };
+            RolloutWindow { case_idx, start }
+        };
+        let windows: Vec<RolloutWindow> = batch.iter().map(window).collect();
+        let lengths = [length, self.settings.config.rollouts.truncation];
+        Ok(rollout_loss(&self.network, &self.data.rollouts, &windows, lengths)?)
     }
 
     fn single_step_loss(
@@ -307,7 +274,7 @@ impl EpochLoop for TrainingRun<'_> {
         self.pass(planned.stage).map(Some)
     }
 
-    /// At the end of each stage, and every few epochs in it.
+    /// A checkpoint is due at the end of each stage, and every few epochs in it.
     fn is_checkpoint_due(&self) -> bool {
         self.stage_under_way().is_none_or(|(_, n_done)| n_done.is_multiple_of(CHECKPOINT_EPOCHS))
     }
