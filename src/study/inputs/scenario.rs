@@ -11,7 +11,7 @@ use crate::study::StudyError;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ScenarioChoice {
-    /// A scenario file.
+    /// A scenario file, or the name of a scenario that comes with the program.
     File(PathBuf),
     /// The scenario itself.
     Inline(Box<Scenario>),
@@ -24,7 +24,7 @@ impl ScenarioChoice {
     /// [`StudyError::TomlFile`], with line and column.
     pub fn load(&self) -> Result<Scenario, StudyError> {
         match self {
-            Self::File(path) => Ok(Scenario::load(path)?),
+            Self::File(path) => Ok(Scenario::preset_or_file(path)?),
             Self::Inline(scenario) => Ok(scenario.as_ref().clone()),
         }
     }
