@@ -9,7 +9,7 @@ use crate::force::metrics::BAND_LEVELS;
 use crate::nn::random_stream;
 use crate::numerics::{quantile_of_sorted, wrap_angle_rad};
 use crate::uncertainty::{
-    CURVE_INTERVAL_S, CurveBands, CurveFigures, CurveMixture, ForceCurve, MixtureError,
+    CURVE_INTERVAL_S, CurveBands, CurveMixture, CurveQuantities, ForceCurve, MixtureError,
     NormalMixture,
 };
 
@@ -174,7 +174,7 @@ impl ForceForecast {
     pub fn of(mixture: &CurveMixture, settings: ForecastSettings) -> Result<Self, MixtureError> {
         let mut rng = random_stream(settings.seed, "draws", 0);
         let mut curves = mixture.sample(N_DRAWS.max(settings.n_curves), &mut rng);
-        let draws = CurveFigures::of(&curves);
+        let draws = CurveQuantities::of(&curves);
         curves.truncate(settings.n_curves);
         let duration_s = Estimate::of(&mixture.duration_s());
         let mean = ForceCurve { duration_s: duration_s.median, ..mixture.mean() };

@@ -1,12 +1,11 @@
-//! Clusters of collisions by their impulse and the level of their force, for tables of errors by kind
-//! of collision.
+//! Clusters of collisions of similar impulse.
 
 use serde::Serialize;
 
 use crate::data::{ForceHistory, contact_interval};
 use crate::numerics::{ClusterError, Clusters, Summary};
 
-/// What collisions are clustered by; the same for a mirrored one.
+/// The features by which collisions are clustered. A mirrored collision has the same features.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ImpulseFeatures {
     /// Impulse along x, N s.
@@ -30,7 +29,7 @@ pub struct ImpulseClusters {
 }
 
 impl ImpulseFeatures {
-    /// Of a force history; `None` without force.
+    /// Features of a force history; `None` if all its forces are zero.
     pub fn of(history: &ForceHistory) -> Option<Self> {
         let (from_s, to_s) = contact_interval(history)?;
         let [px, py] = history.impulse_n_s();
@@ -54,7 +53,9 @@ impl ImpulseFeatures {
 }
 
 impl ImpulseClusters {
-    /// Of these collisions, with a seed for the initialisations.
+    /// Clusters collisions.
+    ///
+    /// - `seed`: of the random initial centres.
     ///
     /// # Errors
     /// [`ClusterError`].
@@ -65,7 +66,7 @@ impl ImpulseClusters {
         Ok(Self { clusters: clusters.ordered_by(impulse_n_s) })
     }
 
-    /// How many there are.
+    /// Number of clusters.
     pub fn n_clusters(&self) -> usize {
         self.clusters.n_clusters()
     }
@@ -75,7 +76,7 @@ impl ImpulseClusters {
         self.clusters.nearest(&features.row())
     }
 
-    /// What a table calls a cluster.
+    /// Name of a cluster in tables.
     pub fn label(cluster: usize) -> String {
         format!("C{cluster}")
     }

@@ -1,7 +1,7 @@
 //! What can go wrong between a data set and a prediction.
 
 use crate::collision::ImpactError;
-use crate::force::regression::BaselineError;
+use crate::force::regression::CurveFitError;
 use crate::learning::LearningError;
 use crate::nn::NnError;
 use crate::uncertainty::MixtureError;
@@ -35,7 +35,7 @@ pub enum ForceError {
     },
     /// The regressions beside the crush model cannot be fitted or asked.
     #[error("the regressions beside the crush model fail")]
-    Regression(#[from] BaselineError),
+    Regression(#[from] CurveFitError),
     /// The momentum solution has no answer.
     #[error(transparent)]
     Impact(#[from] ImpactError),

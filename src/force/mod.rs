@@ -2,7 +2,7 @@
 //! how well they do.
 //!
 //! Cases: [`ForceCase`], [`split`](crate::learning::split()). Network: [`ForceConfig`], [`train()`], [`ForceModel::predict`].
-//! Figures: [`metrics`].
+//! Metrics: [`metrics`].
 
 mod error;
 
@@ -25,12 +25,12 @@ mod evaluate;
 pub use config::{Centre, CrushConfig, ForceConfig, LossWeights, NetworkConfig, TrainingConfig};
 pub use error::ForceError;
 pub use evaluate::{
-    BaselineFigures, CaseErrors, ClusterFigures, Compared, CrossValidation, EvaluateError,
-    Evaluation, EvaluationError, EvaluationSettings, FittedBaselines, ModelFigures, baselines,
+    BaselineMetrics, CaseErrors, ClusterMetrics, ComparedMetrics, CrossValidation, EvaluateError,
+    Evaluation, EvaluationError, EvaluationSettings, FittedBaselines, ForceMetrics, baselines,
     cross_validate, evaluate, evaluate_model,
 };
 pub use input::{ForceCase, ForceCaseError, ForceScenario, curve_on_grid};
-pub use metrics::Prediction;
+pub use metrics::CurvePrediction;
 pub use network::{OpenFeatures, OutsideTraining, Standardisation};
 pub use physics::{CentreCurve, CentreFit, CentreModel, MomentumModel, regression};
 pub use predict::ForcePrediction;

@@ -9,21 +9,22 @@ use crate::force::train::{ForceModel, network_input};
 use crate::force::{ForceError, ForceScenario};
 use crate::uncertainty::{CURVE_N_INSTANTS, CurveComponent, CurveMixture, ForceCurve};
 
-/// What the model says of a scenario, in the axes of the scenario that was asked for.
+/// The prediction for a scenario, in the axes of this scenario.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForcePrediction {
     /// Distribution of the force history and its duration.
     pub mixture: CurveMixture,
-    /// The same under the condition of what is likelier, hooking or not: point estimates are taken
-    /// from it, as a mean between two kinds of collision is neither.
+    /// The distribution under the condition that the vehicles hook, or that they do not, whichever is
+    /// more likely. Point estimates are taken from it, since a mean over both kinds of collision would
+    /// be similar to neither.
     pub likely: CurveMixture,
-    /// What the centre alone says, before the network: its mean over what the scenario leaves open.
+    /// The curve of the centre alone, as the mean over what the scenario leaves open.
     pub centre: ForceCurve,
     /// Impulse of the momentum solution, N s.
     pub momentum_impulse_n_s: [f64; 2],
-    /// Probability that the bullet's corner stays caught; none for a single component.
+    /// Probability that the vehicles hook; `None` for a model with a single component.
     pub hooking_probability: Option<f64>,
-    /// Where the scenario lies outside what was trained on.
+    /// Features of the scenario that lie outside the range of the training cases.
     pub outside: Vec<OutsideTraining>,
     /// Whether the contact point was left open and drawn from its distribution.
     pub is_contact_open: bool,
@@ -31,7 +32,7 @@ pub struct ForcePrediction {
     pub is_body_open: bool,
 }
 
-/// A scenario with all that it may leave open filled in.
+/// A scenario with contact point and kind of body.
 struct Variant {
     probability: f64,
     contact_m: [f64; 2],
@@ -39,13 +40,14 @@ struct Variant {
 }
 
 impl ForceModel {
-    /// Predicts a scenario in any position: it is brought into canonical form and the answer back.
+    /// Predicts the force of a scenario in any position. The network sees its canonical form, and the
+    /// result is turned back.
     ///
-    /// What the scenario leaves open (contact point, body) is drawn from the distribution of the
-    /// training cases: the answer is the mixture over it.
+    /// Contact point and body that the scenario leaves open are taken from their distribution over the
+    /// training cases, and the result is the mixture over it.
     ///
     /// # Errors
-    /// [`ForceError::Scenario`] for a number that makes no sense, [`ForceError::UnknownBody`],
+    /// [`ForceError::Scenario`] for a number out of range, [`ForceError::UnknownBody`],
     /// [`ForceError::Impact`].
     pub fn predict(&self, scenario: &ForceScenario) -> Result<ForcePrediction, ForceError> {
         check(scenario)?;
@@ -138,7 +140,7 @@ fn mean_curve(centres: &[CentreCurve], variants: &[Variant]) -> ForceCurve {
     ForceCurve::from_values(&sum)
 }
 
-/// Ranges outside of which the physics has no answer.
+/// Checks the ranges within which the physics can be solved.
 fn check(scenario: &ForceScenario) -> Result<(), ForceError> {
     let [target, bullet] = scenario.mass_kg;
     let [vx, vy] = scenario.relative_velocity_m_s();

@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn figures_are_those_of_the_history() {
+    fn impulse_and_peak_are_those_of_the_history() {
         let (curve, history) = (curve(), curve().to_history());
         for (a, b) in curve.impulse_n_s().into_iter().zip(history.impulse_n_s()) {
             assert!((a - b).abs() < 1e-12, "{a} {b}");

@@ -46,6 +46,6 @@ pub use mixture::{CurveComponent, CurveMixture};
 pub use normal_mixture::{NormalMixture, NormalPart};
 pub use planar::{PlanarMixture, PlanarPart};
 pub use planar_grid::{PlanarGrid, PlanarKernel};
-pub use sample::CurveFigures;
+pub use sample::CurveQuantities;
 pub use scores::{distance_n, energy_score_n, sample_crps};
 pub use unscented::{Unscented, UnscentedWeights};

@@ -6,9 +6,9 @@ use rand_distr::StandardNormal;
 use crate::numerics::quantile_of_sorted;
 use crate::uncertainty::{CurveMixture, ForceCurve};
 
-/// Figures of drawn curves, one entry a draw.
+/// Impulse, peak and duration of drawn curves, one entry for each draw.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct CurveFigures {
+pub struct CurveQuantities {
     /// Impulse `[P_x, P_y]`, N s.
     pub impulse_n_s: Vec<[f64; 2]>,
     /// Largest `|F|`, N.
@@ -60,8 +60,8 @@ impl CurveMixture {
     }
 
     /// Impulse, peak, its time and duration of drawn curves.
-    pub fn sample_figures(&self, n_samples: usize, rng: &mut impl Rng) -> CurveFigures {
-        CurveFigures::of(&self.sample(n_samples, rng))
+    pub fn sample_quantities(&self, n_samples: usize, rng: &mut impl Rng) -> CurveQuantities {
+        CurveQuantities::of(&self.sample(n_samples, rng))
     }
 
     /// Index of a component, drawn by the weights.
@@ -77,7 +77,7 @@ impl CurveMixture {
     }
 }
 
-impl CurveFigures {
+impl CurveQuantities {
     /// Of these curves.
     pub fn of(curves: &[ForceCurve]) -> Self {
         let peaks = curves.iter().map(ForceCurve::peak);
@@ -95,19 +95,19 @@ impl CurveFigures {
         self.impulse_n_s.iter().map(|[x, y]| x.hypot(*y)).collect()
     }
 
-    /// Central interval of one of its figures; `None` without draws.
+    /// Central interval of one of the quantities; `None` without draws.
     ///
     /// - `level`: share that it holds, 0 to 1.
-    pub fn interval(figure: &[f64], level: f64) -> Option<[f64; 2]> {
-        let mut sorted = figure.to_vec();
+    pub fn interval(values: &[f64], level: f64) -> Option<[f64; 2]> {
+        let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);
         let at = |probability| quantile_of_sorted(&sorted, probability);
         Some([at((1.0 - level) / 2.0)?, at((1.0 + level) / 2.0)?])
     }
 
-    /// Median of one of its figures; `None` without draws.
-    pub fn median(figure: &[f64]) -> Option<f64> {
-        Self::interval(figure, 0.0).map(|[median, _]| median)
+    /// Median of one of the quantities; `None` without draws.
+    pub fn median(values: &[f64]) -> Option<f64> {
+        Self::interval(values, 0.0).map(|[median, _]| median)
     }
 }
 
@@ -149,11 +149,11 @@ mod tests {
         let n = 20_000;
         let mut rng = ChaCha8Rng::seed_from_u64(1);
         let drawn = mixture.sample(n, &mut rng);
-        let figures = CurveFigures::of(&drawn);
+        let quantities = CurveQuantities::of(&drawn);
         // Bounds: four standard errors of a mean; the impulse's spread to 3 %, some six of its own.
         for axis in [0, 1] {
             let exact = mixture.impulse(axis);
-            let impulses = figures.impulse_n_s.iter().map(|p| p[axis]);
+            let impulses = quantities.impulse_n_s.iter().map(|p| p[axis]);
             let mean = impulses.clone().sum::<f64>() / n as f64;
             let variance = impulses.map(|p| (p - mean).powi(2)).sum::<f64>() / n as f64;
             let error = (mean - exact.mean()) / (exact.std() / (n as f64).sqrt());
@@ -162,7 +162,7 @@ mod tests {
             assert!((ratio - 1.0).abs() < 0.03, "axis {axis}: spread {ratio} of the exact one");
         }
         let durations = mixture.duration_s();
-        let [low, high] = CurveFigures::interval(&figures.duration_s, 0.8).unwrap();
+        let [low, high] = CurveQuantities::interval(&quantities.duration_s, 0.8).unwrap();
         for (got, probability) in [(low, 0.1), (high, 0.9)] {
             // Four standard errors of a share.
             let error = (durations.cdf(got) - probability).abs();
@@ -173,7 +173,7 @@ mod tests {
     #[test]
     fn the_same_seed_draws_the_same() {
         let mixture = example(2, 10);
-        let draw = |seed| mixture.sample_figures(5, &mut ChaCha8Rng::seed_from_u64(seed));
+        let draw = |seed| mixture.sample_quantities(5, &mut ChaCha8Rng::seed_from_u64(seed));
         assert_eq!(draw(3), draw(3));
         assert_ne!(draw(3), draw(4));
     }
@@ -181,9 +181,9 @@ mod tests {
     #[test]
     fn intervals_of_a_row() {
         let row: Vec<f64> = (0..=100).rev().map(f64::from).collect();
-        let [low, high] = CurveFigures::interval(&row, 0.9).unwrap();
+        let [low, high] = CurveQuantities::interval(&row, 0.9).unwrap();
         assert!((low - 5.0).abs() < 1e-9 && (high - 95.0).abs() < 1e-9, "{low} {high}");
-        assert_eq!(CurveFigures::median(&row), Some(50.0));
-        assert_eq!(CurveFigures::median(&[]), None);
+        assert_eq!(CurveQuantities::median(&row), Some(50.0));
+        assert_eq!(CurveQuantities::median(&[]), None);
     }
 }

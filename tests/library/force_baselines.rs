@@ -5,7 +5,8 @@ use std::path::Path;
 
 use impactlab::data::{Dataset, Outcome};
 use impactlab::force::{
-    ColumnSet, Evaluation, EvaluationError, EvaluationSettings, ForceCase, Prediction, evaluate,
+    ColumnSet, CurvePrediction, Evaluation, EvaluationError, EvaluationSettings, ForceCase,
+    evaluate,
 };
 use impactlab::learning::{TEST_SHARE, split};
 
@@ -23,7 +24,7 @@ fn evaluation(columns: ColumnSet) -> Evaluation {
     let split = split(&cases, 0, TEST_SHARE);
     let pick = |part: &[usize]| part.iter().map(|idx| &cases[*idx]).collect::<Vec<_>>();
     let (train, test) = (pick(&split.train), pick(&split.test));
-    let truth = test.iter().map(|case| Prediction::of_curve(case.curve.clone()));
+    let truth = test.iter().map(|case| CurvePrediction::of_curve(case.curve.clone()));
     let settings = EvaluationSettings { columns, ..EvaluationSettings::default() };
     let mut report = |_| ControlFlow::Continue(());
     let parts = (train.as_slice(), test.as_slice());
@@ -57,7 +58,7 @@ fn baselines_on_the_test_part_of_the_shipped_runs() {
         let off = band.share - band.level;
         assert!((-0.1..0.25).contains(&off), "{band:?}");
     }
-    assert_eq!(evaluation.figures.overall.history_error.max, 0.0);
+    assert_eq!(evaluation.metrics.overall.history_error.max, 0.0);
     check_json(&serde_json::to_value(&evaluation).unwrap());
     for table in [evaluation.to_text(), evaluation.to_markdown()] {
         assert!(table.contains("the truth") && table.contains("classic pulse"), "{table}");
@@ -88,7 +89,8 @@ fn check_json(json: &serde_json::Value) {
 fn an_evaluation_can_be_cancelled_and_needs_a_prediction_a_case() {
     let cases = shipped_cases();
     let some: Vec<&ForceCase> = cases.iter().take(8).collect();
-    let truth: Vec<_> = some.iter().map(|case| Prediction::of_curve(case.curve.clone())).collect();
+    let truth: Vec<_> =
+        some.iter().map(|case| CurvePrediction::of_curve(case.curve.clone())).collect();
     let settings = EvaluationSettings::default();
     let mut stop = |_| ControlFlow::Break(());
     let parts = (some.as_slice(), some.as_slice());

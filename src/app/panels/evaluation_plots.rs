@@ -11,7 +11,7 @@ use crate::figure::{
     forecast_figure, parity_figure, pit_figure,
 };
 use crate::force::ForceCase;
-use crate::force::metrics::{BAND_LEVELS, Coverage};
+use crate::force::metrics::{BAND_LEVELS, IntervalCoverage};
 use crate::render::FigureOptions;
 use crate::study::{EvaluateForceReport, EvaluatedForceCases};
 use crate::units::Quantity;
@@ -108,11 +108,11 @@ fn parity(
 }
 
 fn calibration(report: &EvaluateForceReport) -> Vec<Figure> {
-    let Some(spread) = &report.evaluation.figures.overall.probabilistic else {
+    let Some(spread) = &report.evaluation.metrics.overall.probabilistic else {
         return Vec::new();
     };
-    let points = |coverage: &[Coverage]| -> Vec<CoveragePoint> {
-        let point = |of: &Coverage| CoveragePoint {
+    let points = |coverage: &[IntervalCoverage]| -> Vec<CoveragePoint> {
+        let point = |of: &IntervalCoverage| CoveragePoint {
             level: of.level,
             share: of.share,
             standard_error: of.standard_error,

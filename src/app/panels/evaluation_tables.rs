@@ -3,8 +3,8 @@
 use egui::{Grid, Ui};
 
 use crate::app::force::{ForceView, Statistic};
-use crate::force::metrics::{BAND_LEVELS, Coverage, Figures, ProbabilisticFigures};
-use crate::force::{Evaluation, ModelFigures};
+use crate::force::metrics::{BAND_LEVELS, IntervalCoverage, CurveMetrics, DistributionMetrics};
+use crate::force::{Evaluation, ForceMetrics};
 use crate::numerics::Summary;
 use crate::units::{Quantity, UnitSystem, percent};
 
@@ -21,7 +21,7 @@ pub fn tables_ui(
         }
     });
     let models = [
-        (evaluation.model.as_str(), &evaluation.figures),
+        (evaluation.model.as_str(), &evaluation.metrics),
         ("classic pulse", &evaluation.baselines.pulse),
         ("nearest case", &evaluation.baselines.nearest),
         ("Gaussian processes", &evaluation.baselines.statistical),
@@ -31,8 +31,8 @@ pub fn tables_ui(
     clusters_ui(ui, evaluation, (view.statistic, units));
 }
 
-fn errors_ui(ui: &mut Ui, models: [(&str, &ModelFigures); 4], statistic: Statistic) {
-    type Choose = fn(&ModelFigures) -> Option<&Figures>;
+fn errors_ui(ui: &mut Ui, models: [(&str, &ForceMetrics); 4], statistic: Statistic) {
+    type Choose = fn(&ForceMetrics) -> Option<&CurveMetrics>;
     let groups: [(&str, Choose); 2] =
         [("all cases", |of| Some(&of.overall)), ("separated", |of| of.separated.as_ref())];
     Grid::new("force errors").striped(true).show(ui, |ui| {
@@ -56,15 +56,15 @@ fn errors_ui(ui: &mut Ui, models: [(&str, &ModelFigures); 4], statistic: Statist
                 .on_hover_text("Separated: without cases that hook or are still in contact");
             ui.end_row();
             for (name, of) in models {
-                if let Some(figures) = choose(of) {
-                    error_row_ui(ui, name, (figures, statistic));
+                if let Some(metrics) = choose(of) {
+                    error_row_ui(ui, name, (metrics, statistic));
                 }
             }
         }
     });
 }
 
-fn coverage_ui(ui: &mut Ui, models: [(&str, &ModelFigures); 4]) {
+fn coverage_ui(ui: &mut Ui, models: [(&str, &ForceMetrics); 4]) {
     ui.add_space(6.0);
     ui.strong("Share of observed values inside the intervals, ± its standard error");
     Grid::new("force coverage").striped(true).show(ui, |ui| {
@@ -128,14 +128,14 @@ fn titles_ui(ui: &mut Ui, titles: &[(&str, &str)]) {
     ui.end_row();
 }
 
-fn error_row_ui(ui: &mut Ui, name: &str, (figures, statistic): (&Figures, Statistic)) {
+fn error_row_ui(ui: &mut Ui, name: &str, (metrics, statistic): (&CurveMetrics, Statistic)) {
     ui.label(name);
     for error in [
-        &figures.rmse_over_peak,
-        &figures.history_error,
-        &figures.impulse_error,
-        &figures.peak_error,
-        &figures.duration_error,
+        &metrics.rmse_over_peak,
+        &metrics.history_error,
+        &metrics.impulse_error,
+        &metrics.peak_error,
+        &metrics.duration_error,
     ] {
         let all = Statistic::ALL.map(|s| format!("{} {}", s.label(), percent(s.of(error))));
         ui.monospace(percent(statistic.of(error))).on_hover_text(all.join("\n"));
@@ -143,7 +143,7 @@ fn error_row_ui(ui: &mut Ui, name: &str, (figures, statistic): (&Figures, Statis
     ui.end_row();
 }
 
-fn coverage_rows_ui(ui: &mut Ui, name: &str, spread: &ProbabilisticFigures) {
+fn coverage_rows_ui(ui: &mut Ui, name: &str, spread: &DistributionMetrics) {
     let quantities = [
         ("F(t)", &spread.force_n),
         ("|P|", &spread.impulse_n_s),
@@ -153,7 +153,7 @@ fn coverage_rows_ui(ui: &mut Ui, name: &str, spread: &ProbabilisticFigures) {
     for (quantity, coverage) in quantities {
         ui.label(name);
         ui.label(quantity);
-        for Coverage { share, standard_error, .. } in coverage {
+        for IntervalCoverage { share, standard_error, .. } in coverage {
             ui.monospace(format!("{:.0} ± {:.0} %", share * 100.0, standard_error * 100.0));
         }
         ui.end_row();

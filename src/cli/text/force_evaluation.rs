@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use crate::cli::console::print_table;
 use crate::force::CrossValidation;
-use crate::force::metrics::Figures;
+use crate::force::metrics::CurveMetrics;
 use crate::study::{EvaluateForceReport, ForceEvaluation};
 
 /// Prints the tables below each other.
@@ -35,15 +35,15 @@ fn print_folds(out: &mut dyn Write, validation: &CrossValidation) -> io::Result<
     for (title, compared) in parts {
         let Some(compared) = compared else { continue };
         writeln!(out, "{title}, {} folds", validation.folds.len())?;
-        let row = |(name, figures): (&str, &Figures)| {
+        let row = |(name, metrics): (&str, &CurveMetrics)| {
             let percent = |x: f64| format!("{:.1}", 100.0 * x);
             vec![
                 name.to_owned(),
-                percent(figures.rmse_over_peak.mean),
-                format!("{:.3}", figures.history_error.mean),
-                percent(figures.impulse_error.median),
-                percent(figures.peak_error.median),
-                percent(figures.duration_error.median),
+                percent(metrics.rmse_over_peak.mean),
+                format!("{:.3}", metrics.history_error.mean),
+                percent(metrics.impulse_error.median),
+                percent(metrics.peak_error.median),
+                percent(metrics.duration_error.median),
             ]
         };
         let rows: Vec<Vec<String>> = compared.named().into_iter().map(row).collect();

@@ -1,24 +1,24 @@
-//! What cannot be evaluated.
+//! Why a force model cannot be evaluated.
 
-use crate::force::regression::BaselineError;
+use crate::force::regression::CurveFitError;
 use crate::numerics::ClusterError;
 use crate::uncertainty::MixtureError;
 
-/// An evaluation that cannot be made.
+/// Why an evaluation is not possible.
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum EvaluationError {
-    /// No test cases.
+    /// There are no test cases.
     #[error("an evaluation on no cases")]
     NoCases,
-    /// Predictions for other cases.
+    /// The number of predictions is not that of the test cases.
     #[error("{got} predictions for {expected} cases")]
     Predictions {
-        /// Test cases.
+        /// Number of test cases.
         expected: usize,
-        /// Predictions.
+        /// Number of predictions.
         got: usize,
     },
-    /// A prediction that is not finite.
+    /// A prediction contains a number that is not finite.
     #[error("case {case}: the prediction holds a number that is not finite")]
     NotFinite {
         /// Name of the case.
@@ -27,20 +27,20 @@ pub enum EvaluationError {
     /// A baseline cannot be fitted.
     #[error("baseline {baseline}")]
     Baseline {
-        /// Which.
+        /// Name of the baseline.
         baseline: &'static str,
-        /// Why.
-        source: BaselineError,
+        /// The cause.
+        source: CurveFitError,
     },
     /// A distribution cannot be scored.
     #[error("case {case}")]
     Mixture {
         /// Name of the case.
         case: String,
-        /// Why.
+        /// The cause.
         source: MixtureError,
     },
-    /// The clusters fail.
+    /// The training cases cannot be clustered.
     #[error("the training cases cannot be clustered")]
     Clusters(#[from] ClusterError),
 }

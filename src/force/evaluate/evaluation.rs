@@ -1,6 +1,6 @@
-//! A force model on test cases, beside the baselines that it must beat.
+//! The evaluation of a force model and of the baselines on the same test cases.
 //!
-//! Nothing is fitted to test cases or chosen by them: baselines and clusters see training cases only.
+//! Baselines and clusters are fitted to training cases, and no option is chosen on test cases.
 
 use rayon::prelude::*;
 
@@ -9,23 +9,23 @@ use crate::data::Outcome;
 use crate::force::evaluate::baselines::{NearestBaseline, PulseBaseline};
 use crate::force::evaluate::scored::Scored;
 use crate::force::evaluate::{
-    BaselineFigures, CaseErrors, ClusterFigures, Evaluation, EvaluationError,
+    BaselineMetrics, CaseErrors, ClusterMetrics, Evaluation, EvaluationError,
 };
 use crate::force::metrics::ProbabilisticSettings;
-use crate::force::regression::{BaselineError, ColumnSet, StatisticalBaseline};
-use crate::force::{ForceCase, ForceScenario, Prediction};
+use crate::force::regression::{ColumnSet, CurveFitError, CurveRegression};
+use crate::force::{CurvePrediction, ForceCase, ForceScenario};
 use crate::jobs::{Progress, Report};
 use crate::numerics::ClusterError;
 use crate::uncertainty::ForceCurve;
 
-/// What an evaluation needs to be told.
+/// Settings of an evaluation.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EvaluationSettings {
-    /// What baselines may know of a scenario: as much as the model.
+    /// The columns of a scenario that model and baselines may use.
     pub columns: ColumnSet,
     /// Seed of folds, clusters and the baselines' draws.
     pub seed: u64,
-    /// Draws for the scores of distributions.
+    /// Settings of the scores of distributions.
     pub probabilistic: ProbabilisticSettings,
 }
 
@@ -37,11 +37,11 @@ pub struct FittedBaselines {
     /// Nearest case.
     pub nearest: NearestBaseline,
     /// Gaussian processes.
-    pub statistical: StatisticalBaseline,
+    pub statistical: CurveRegression,
 }
 
 impl FittedBaselines {
-    /// Fits all three and chooses their options.
+    /// Fits all three baselines and chooses their options by cross-validation.
     ///
     /// # Errors
     /// [`EvaluationError::Baseline`].
@@ -54,13 +54,13 @@ impl FittedBaselines {
         Ok(Self {
             pulse: PulseBaseline::fit(train, columns, seed).map_err(failed("pulse"))?,
             nearest: NearestBaseline::fit(train, columns, seed).map_err(failed("nearest"))?,
-            statistical: StatisticalBaseline::fit(train, columns, seed)
+            statistical: CurveRegression::fit(train, columns, seed)
                 .map_err(failed("statistical"))?,
         })
     }
 }
 
-/// Evaluates a model beside baselines that are fitted here to the training cases.
+/// Evaluates a model, and beside it baselines that are fitted to the training cases.
 ///
 /// - `predictions`: of the test cases, in their order, canonical axes;
 /// - `report`: is told of each step; breaks to cancel.
@@ -70,7 +70,7 @@ impl FittedBaselines {
 pub fn evaluate(
     model: &str,
     (train, test): (&[&ForceCase], &[&ForceCase]),
-    predictions: &[Prediction],
+    predictions: &[CurvePrediction],
     settings: &EvaluationSettings,
     report: &mut Report<'_>,
 ) -> Result<Outcome<Evaluation>, EvaluationError> {
@@ -99,18 +99,18 @@ pub fn evaluate(
     let scored = Scored::of(test, predictions, settings.probabilistic)?;
     let clusters = cluster(train, settings.seed)?;
     let all = [&scored, &pulse, &nearest, &statistical];
-    let figures = |of: &Scored| of.figures(test).ok_or(EvaluationError::NoCases);
+    let metrics = |of: &Scored| of.metrics(test).ok_or(EvaluationError::NoCases);
     let evaluation = Evaluation {
         model: model.to_owned(),
         columns: settings.columns,
         n_train: train.len(),
-        figures: figures(&scored)?,
-        baselines: BaselineFigures {
-            pulse: figures(&pulse)?,
-            nearest: figures(&nearest)?,
-            statistical: figures(&statistical)?,
+        metrics: metrics(&scored)?,
+        baselines: BaselineMetrics {
+            pulse: metrics(&pulse)?,
+            nearest: metrics(&nearest)?,
+            statistical: metrics(&statistical)?,
         },
-        clusters: cluster_figures(test, &clusters, (&scored, &statistical)),
+        clusters: cluster_metrics(test, &clusters, (&scored, &statistical)),
         cases: case_errors(test, &clusters, all),
         problems,
     };
@@ -118,7 +118,7 @@ pub fn evaluate(
     Ok(Outcome::Complete(evaluation))
 }
 
-fn check(test: &[&ForceCase], predictions: &[Prediction]) -> Result<(), EvaluationError> {
+fn check(test: &[&ForceCase], predictions: &[CurvePrediction]) -> Result<(), EvaluationError> {
     let (expected, got) = (test.len(), predictions.len());
     if expected == 0 {
         return Err(EvaluationError::NoCases);
@@ -126,7 +126,7 @@ fn check(test: &[&ForceCase], predictions: &[Prediction]) -> Result<(), Evaluati
     if expected != got {
         return Err(EvaluationError::Predictions { expected, got });
     }
-    let is_finite = |p: &Prediction| {
+    let is_finite = |p: &CurvePrediction| {
         let values = p.curve.to_values().into_iter().chain(p.impulse_n_s);
         values.chain([p.peak_n]).all(f64::is_finite)
     };
@@ -137,22 +137,27 @@ fn check(test: &[&ForceCase], predictions: &[Prediction]) -> Result<(), Evaluati
 }
 
 /// A model as a function.
-type PredictOne<'a> = dyn Fn(&ForceScenario) -> Result<Prediction, BaselineError> + Sync + 'a;
+type PredictOne<'a> = dyn Fn(&ForceScenario) -> Result<CurvePrediction, CurveFitError> + Sync + 'a;
 
 fn predict_all(
     test: &[&ForceCase],
     (name, predict): (&str, &PredictOne<'_>),
     problems: &mut Vec<String>,
-) -> Vec<Prediction> {
+) -> Vec<CurvePrediction> {
     let predictions: Vec<_> = test.par_iter().map(|case| predict(&case.scenario)).collect();
-    let mut or_no_force = |(case, prediction): (&&ForceCase, Result<Prediction, BaselineError>)| {
-        prediction.unwrap_or_else(|error| {
-            problems.push(format!("{name}, case {}: {}", case.name, crate::error_chain(&error)));
-            let zeros = vec![0.0; case.curve.n_instants()];
-            let (fx_n, fy_n) = (zeros.clone(), zeros);
-            Prediction::of_curve(ForceCurve { fx_n, fy_n, duration_s: 0.0 })
-        })
-    };
+    let mut or_no_force =
+        |(case, prediction): (&&ForceCase, Result<CurvePrediction, CurveFitError>)| {
+            prediction.unwrap_or_else(|error| {
+                problems.push(format!(
+                    "{name}, case {}: {}",
+                    case.name,
+                    crate::error_chain(&error)
+                ));
+                let zeros = vec![0.0; case.curve.n_instants()];
+                let (fx_n, fy_n) = (zeros.clone(), zeros);
+                CurvePrediction::of_curve(ForceCurve { fx_n, fy_n, duration_s: 0.0 })
+            })
+        };
     test.iter().zip(predictions).map(&mut or_no_force).collect()
 }
 
@@ -165,14 +170,14 @@ fn cluster(train: &[&ForceCase], seed: u64) -> Result<ImpulseClusters, ClusterEr
     ImpulseClusters::fit(&rows, seed)
 }
 
-fn cluster_figures(
+fn cluster_metrics(
     test: &[&ForceCase],
     clusters: &ImpulseClusters,
     (model, statistical): (&Scored, &Scored),
-) -> Vec<ClusterFigures> {
+) -> Vec<ClusterMetrics> {
     let of = |number: usize| {
         let is_in = |case: &ForceCase| features(case).is_some_and(|f| clusters.of(&f) == number);
-        Some(ClusterFigures {
+        Some(ClusterMetrics {
             name: ImpulseClusters::label(number),
             impulse_n_s: clusters.impulse_n_s(number)?,
             model: model.chosen(test, is_in)?,

@@ -15,6 +15,6 @@ mod model_evaluation;
 pub use error::EvaluationError;
 pub use evaluation::{EvaluationSettings, FittedBaselines, evaluate};
 pub use model_evaluation::{
-    Compared, CrossValidation, EvaluateError, cross_validate, evaluate_model,
+    ComparedMetrics, CrossValidation, EvaluateError, cross_validate, evaluate_model,
 };
-pub use report::{BaselineFigures, CaseErrors, ClusterFigures, Evaluation, ModelFigures};
+pub use report::{BaselineMetrics, CaseErrors, ClusterMetrics, Evaluation, ForceMetrics};

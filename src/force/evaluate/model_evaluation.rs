@@ -1,49 +1,50 @@
-//! The force network under evaluation: on cases it has not seen, or in folds of those it has.
+//! The evaluation of the force network on test cases, and by cross-validation on training cases.
 
 use serde::Serialize;
 
 use crate::data::Outcome;
-use crate::force::metrics::{Figures, PointErrors};
+use crate::force::metrics::{CurveMetrics, PointErrors};
 use crate::force::regression::ColumnSet;
 use crate::force::{
-    CaseErrors, Evaluation, EvaluationError, EvaluationSettings, ForceCase, ForceConfig,
-    ForceError, ForceModel, ForceScenario, Prediction, evaluate, train,
+    CaseErrors, CurvePrediction, Evaluation, EvaluationError, EvaluationSettings, ForceCase,
+    ForceConfig, ForceError, ForceModel, ForceScenario, evaluate, train,
 };
 use crate::jobs::{Progress, Report};
 use crate::learning::{TrainSettings, TrainingReport, TrainingSet, folds};
 
-/// A model that cannot be evaluated.
+/// Why a model cannot be evaluated.
 #[derive(Debug, thiserror::Error)]
 pub enum EvaluateError {
-    /// It cannot predict a case, or not be trained.
+    /// The model cannot be trained, or not predict a case.
     #[error(transparent)]
     Model(#[from] ForceError),
-    /// Its predictions cannot be measured.
+    /// The predictions cannot be scored.
     #[error(transparent)]
     Evaluation(#[from] EvaluationError),
 }
 
-/// Figures of the network and its baselines over the same cases.
+/// Metrics of the network and of its baselines over the same cases.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Compared {
+pub struct ComparedMetrics {
     /// The force network.
-    pub model: Figures,
+    pub model: CurveMetrics,
     /// Classic pulse with the momentum solution's impulse.
-    pub pulse: Figures,
+    pub pulse: CurveMetrics,
     /// Nearest training case.
-    pub nearest: Figures,
+    pub nearest: CurveMetrics,
     /// Gaussian processes on principal components.
-    pub statistical: Figures,
+    pub statistical: CurveMetrics,
 }
 
-/// A cross-validation: every case predicted by models that have not seen it.
+/// The result of a cross-validation, in which every case is predicted by a model that was trained
+/// without it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CrossValidation {
     /// Over all cases.
-    pub overall: Option<Compared>,
+    pub overall: Option<ComparedMetrics>,
     /// Without cases that hook or have not separated.
-    pub separated: Option<Compared>,
-    /// Each fold, with its distributions.
+    pub separated: Option<ComparedMetrics>,
+    /// The evaluation of each fold, with the scores of its distributions.
     pub folds: Vec<Evaluation>,
 }
 
@@ -52,15 +53,15 @@ impl CrossValidation {
         let compared = |choose: fn(&CaseErrors) -> bool| {
             let cases: Vec<&CaseErrors> =
                 folds.iter().flat_map(|fold| &fold.cases).filter(|case| choose(case)).collect();
-            let figures = |of: fn(&CaseErrors) -> &PointErrors| {
+            let metrics = |of: fn(&CaseErrors) -> &PointErrors| {
                 let errors: Vec<&PointErrors> = cases.iter().map(|case| of(case)).collect();
-                Figures::of(&errors, &[])
+                CurveMetrics::of(&errors, &[])
             };
-            Some(Compared {
-                model: figures(|case| &case.model)?,
-                pulse: figures(|case| &case.pulse)?,
-                nearest: figures(|case| &case.nearest)?,
-                statistical: figures(|case| &case.statistical)?,
+            Some(ComparedMetrics {
+                model: metrics(|case| &case.model)?,
+                pulse: metrics(|case| &case.pulse)?,
+                nearest: metrics(|case| &case.nearest)?,
+                statistical: metrics(|case| &case.statistical)?,
             })
         };
         let (overall, separated) = (compared(|_| true), compared(|case| case.clean));
@@ -68,9 +69,9 @@ impl CrossValidation {
     }
 }
 
-impl Compared {
-    /// Name and figures of each.
-    pub fn named(&self) -> [(&'static str, &Figures); 4] {
+impl ComparedMetrics {
+    /// Name and metrics of each model.
+    pub fn named(&self) -> [(&'static str, &CurveMetrics); 4] {
         [
             ("force network", &self.model),
             ("pulse", &self.pulse),
@@ -80,7 +81,7 @@ impl Compared {
     }
 }
 
-/// Evaluates a model on cases, beside baselines fitted to the model's own training cases.
+/// Evaluates a model on cases, and beside it baselines that are fitted to its training cases.
 ///
 /// # Errors
 /// [`EvaluateError`].
@@ -100,15 +101,15 @@ fn predictions(
     model: &ForceModel,
     test: &[ForceCase],
     settings: &EvaluationSettings,
-) -> Result<Vec<Prediction>, ForceError> {
+) -> Result<Vec<CurvePrediction>, ForceError> {
     let predict = |case: &ForceCase| {
         let said = model.predict(&known(&case.scenario, settings.columns))?;
-        Ok(Prediction::of_mixture(said.mixture, &said.likely))
+        Ok(CurvePrediction::of_mixture(said.mixture, &said.likely))
     };
     test.iter().map(predict).collect()
 }
 
-/// What the model may know of a scenario.
+/// The scenario without the columns that the model may not use.
 fn known(scenario: &ForceScenario, columns: ColumnSet) -> ForceScenario {
     match columns {
         ColumnSet::ThetaContactAndBody => scenario.clone(),
@@ -121,8 +122,8 @@ fn known(scenario: &ForceScenario, columns: ColumnSet) -> ForceScenario {
     }
 }
 
-/// Trains in folds of cases and predicts each case with the model that has not seen it; baselines
-/// likewise. For choosing settings without a look at test cases.
+/// Trains a model for each fold of the cases and evaluates it on the cases of the fold, and baselines
+/// likewise. Settings can be chosen by it without using test cases.
 ///
 /// # Errors
 /// [`EvaluateError`].

@@ -1,41 +1,41 @@
-//! What an evaluation says.
+//! The result of an evaluation.
 
 use serde::Serialize;
 
-use crate::force::metrics::{Figures, PointErrors};
+use crate::force::metrics::{CurveMetrics, PointErrors};
 use crate::force::regression::ColumnSet;
 
-/// Figures of one model.
+/// Metrics of one model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ModelFigures {
+pub struct ForceMetrics {
     /// Over all cases.
-    pub overall: Figures,
-    /// Without cases that hook or have not separated; nothing if that leaves none.
-    pub separated: Option<Figures>,
+    pub overall: CurveMetrics,
+    /// Over the cases that neither hook nor stay together; `None` if there are none.
+    pub separated: Option<CurveMetrics>,
 }
 
-/// Figures of the baselines.
+/// Metrics of the baselines.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct BaselineFigures {
+pub struct BaselineMetrics {
     /// Classic pulse with the momentum solution's impulse.
-    pub pulse: ModelFigures,
+    pub pulse: ForceMetrics,
     /// Nearest training case.
-    pub nearest: ModelFigures,
+    pub nearest: ForceMetrics,
     /// Gaussian processes on principal components.
-    pub statistical: ModelFigures,
+    pub statistical: ForceMetrics,
 }
 
-/// Figures within one cluster.
+/// Metrics within one cluster.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ClusterFigures {
-    /// C0, C1, … by rising impulse.
+pub struct ClusterMetrics {
+    /// Name of the cluster: C0, C1, … by rising impulse.
     pub name: String,
-    /// Impulse at its centre, N s.
+    /// Impulse at the centre of the cluster, N s.
     pub impulse_n_s: f64,
     /// The model.
-    pub model: Figures,
-    /// The strongest baseline.
-    pub statistical: Figures,
+    pub model: CurveMetrics,
+    /// The Gaussian processes, which are the strongest baseline.
+    pub statistical: CurveMetrics,
 }
 
 /// Errors of all models on one case.
@@ -43,38 +43,38 @@ pub struct ClusterFigures {
 pub struct CaseErrors {
     /// Name of the case.
     pub name: String,
-    /// Whether the vehicles part for good.
+    /// Whether the vehicles neither hook nor stay together.
     pub clean: bool,
-    /// Its cluster.
+    /// Name of its cluster.
     pub cluster: String,
     /// The model.
     pub model: PointErrors,
-    /// Baselines.
+    /// The classic pulse.
     pub pulse: PointErrors,
-    /// Baselines.
+    /// The nearest training case.
     pub nearest: PointErrors,
-    /// Baselines.
+    /// The Gaussian processes.
     pub statistical: PointErrors,
 }
 
-/// A model's figures beside those of the baselines.
+/// A model's metrics beside those of the baselines.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Evaluation {
-    /// What a table calls the model.
+    /// Name of the model in tables.
     pub model: String,
-    /// What the baselines knew of a scenario.
+    /// The columns of a scenario that model and baselines used.
     pub columns: ColumnSet,
-    /// Training cases.
+    /// Number of training cases.
     pub n_train: usize,
-    /// The model.
+    /// Metrics of the model.
     #[serde(flatten)]
-    pub figures: ModelFigures,
-    /// The baselines.
-    pub baselines: BaselineFigures,
-    /// By cluster of the training cases; those without a test case are left out.
-    pub clusters: Vec<ClusterFigures>,
-    /// Each case.
+    pub metrics: ForceMetrics,
+    /// Metrics of the baselines.
+    pub baselines: BaselineMetrics,
+    /// Metrics by cluster of the training cases. Clusters without a test case are left out.
+    pub clusters: Vec<ClusterMetrics>,
+    /// Errors of each case.
     pub cases: Vec<CaseErrors>,
-    /// Test cases that a baseline cannot predict, and why: there it predicts no force.
+    /// Test cases that a baseline cannot predict, with the reason. Its prediction there is no force.
     pub problems: Vec<String>,
 }

@@ -1,22 +1,24 @@
-//! One model on all test cases.
+//! Errors and scores of one model on all test cases.
 
 use rayon::prelude::*;
 
-use crate::force::evaluate::{EvaluationError, ModelFigures};
-use crate::force::metrics::{Figures, PointErrors, ProbabilisticScores, ProbabilisticSettings};
-use crate::force::{ForceCase, Prediction};
+use crate::force::evaluate::{EvaluationError, ForceMetrics};
+use crate::force::metrics::{
+    CurveMetrics, PointErrors, ProbabilisticScores, ProbabilisticSettings,
+};
+use crate::force::{CurvePrediction, ForceCase};
 
-/// Scores of one model on all test cases.
+/// Errors and scores of one model on all test cases.
 pub(super) struct Scored {
     pub errors: Vec<PointErrors>,
-    /// Empty without distributions.
+    /// Scores of the distributions; empty if the model has none.
     scores: Vec<ProbabilisticScores>,
 }
 
 impl Scored {
     pub(super) fn of(
         test: &[&ForceCase],
-        predictions: &[Prediction],
+        predictions: &[CurvePrediction],
         settings: ProbabilisticSettings,
     ) -> Result<Self, EvaluationError> {
         let pairs = || test.iter().zip(predictions);
@@ -34,23 +36,23 @@ impl Scored {
         Ok(Self { errors, scores: scores.collect::<Result<_, _>>()? })
     }
 
-    pub(super) fn figures(&self, test: &[&ForceCase]) -> Option<ModelFigures> {
-        Some(ModelFigures {
+    pub(super) fn metrics(&self, test: &[&ForceCase]) -> Option<ForceMetrics> {
+        Some(ForceMetrics {
             overall: self.chosen(test, |_| true)?,
             separated: self.chosen(test, ForceCase::is_clean),
         })
     }
 
-    /// Figures over the cases that `choose` takes.
+    /// Metrics over the cases that `choose` takes.
     pub(super) fn chosen(
         &self,
         test: &[&ForceCase],
         choose: impl Fn(&ForceCase) -> bool,
-    ) -> Option<Figures> {
+    ) -> Option<CurveMetrics> {
         let taken: Vec<usize> =
             test.iter().enumerate().filter(|(_, case)| choose(case)).map(|(idx, _)| idx).collect();
         let errors: Vec<_> = taken.iter().filter_map(|idx| self.errors.get(*idx)).collect();
         let scores: Vec<_> = taken.iter().filter_map(|idx| self.scores.get(*idx)).collect();
-        Figures::of(&errors, &scores)
+        CurveMetrics::of(&errors, &scores)
     }
 }

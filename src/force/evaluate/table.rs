@@ -1,7 +1,7 @@
 //! An evaluation as tables for the terminal and for Markdown.
 
-use crate::force::evaluate::{Evaluation, ModelFigures};
-use crate::force::metrics::{Coverage, Figures, ProbabilisticFigures};
+use crate::force::evaluate::{Evaluation, ForceMetrics};
+use crate::force::metrics::{CurveMetrics, DistributionMetrics, IntervalCoverage};
 use crate::numerics::Summary;
 
 /// A title over a header and rows, all of one width.
@@ -24,7 +24,7 @@ impl Evaluation {
 
     fn tables(&self) -> Vec<Table> {
         let mut tables = vec![self.errors("all cases", |of| Some(&of.overall))];
-        if self.figures.separated.is_some() {
+        if self.metrics.separated.is_some() {
             let title = "without cases that hook or have not separated";
             tables.push(self.errors(title, |of| of.separated.as_ref()));
         }
@@ -34,10 +34,10 @@ impl Evaluation {
         tables
     }
 
-    fn models(&self) -> [(&str, &ModelFigures); 4] {
+    fn models(&self) -> [(&str, &ForceMetrics); 4] {
         let baselines = &self.baselines;
         [
-            (self.model.as_str(), &self.figures),
+            (self.model.as_str(), &self.metrics),
             ("classic pulse", &baselines.pulse),
             ("nearest case", &baselines.nearest),
             ("Gaussian processes", &baselines.statistical),
@@ -47,9 +47,9 @@ impl Evaluation {
     fn errors<'a>(
         &'a self,
         title: &str,
-        block: impl Fn(&'a ModelFigures) -> Option<&'a Figures>,
+        block: impl Fn(&'a ForceMetrics) -> Option<&'a CurveMetrics>,
     ) -> Table {
-        let row = |(name, of): (&str, &'a ModelFigures)| {
+        let row = |(name, of): (&str, &'a ForceMetrics)| {
             let of = block(of)?;
             let errors = [
                 of.history_error,
@@ -61,7 +61,7 @@ impl Evaluation {
             let cells = errors.iter().map(|error| median_and_mean(error, 100.0));
             Some(std::iter::once(name.to_owned()).chain(cells).collect())
         };
-        let n_cases = block(&self.figures).map_or(0, |of| of.n_cases);
+        let n_cases = block(&self.metrics).map_or(0, |of| of.n_cases);
         Table {
             title: format!("Median (mean) error in %, {title}: {n_cases}"),
             header: header(&["", "history", "RMSE/peak", "impulse", "peak", "duration"]),
@@ -69,7 +69,7 @@ impl Evaluation {
         }
     }
 
-    fn with_distribution(&self) -> impl Iterator<Item = (&str, &ProbabilisticFigures)> {
+    fn with_distribution(&self) -> impl Iterator<Item = (&str, &DistributionMetrics)> {
         let models = self.models().into_iter();
         models.filter_map(|(name, of)| Some((name, of.overall.probabilistic.as_ref()?)))
     }
@@ -121,7 +121,7 @@ impl Evaluation {
     }
 
     fn by_cluster(&self) -> Table {
-        let row = |of: &crate::force::evaluate::ClusterFigures| {
+        let row = |of: &crate::force::evaluate::ClusterMetrics| {
             vec![
                 of.name.clone(),
                 of.model.n_cases.to_string(),
@@ -146,7 +146,7 @@ fn median_and_mean(of: &Summary, scale: f64) -> String {
     format!("{:.1} ({:.1})", of.median * scale, of.mean * scale)
 }
 
-fn share(of: &Coverage) -> String {
+fn share(of: &IntervalCoverage) -> String {
     format!("{:.0} ± {:.0}", of.share * 100.0, of.standard_error * 100.0)
 }
 

@@ -1,4 +1,5 @@
-//! Cases of a force data set as the force models learn from them: canonical, over the time grid.
+//! Cases of a force data set in the form from which force models learn: canonical scenarios, and
+//! forces on the common time grid.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -14,11 +15,11 @@ use crate::learning::{
 };
 use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
 
-/// Steps to which numbers are rounded before they are hashed, so that a file written again with
-/// fewer digits, or read on another machine, keeps its hash: 1e-4 in the units of the scenario.
+/// Step to which the numbers of a scenario are rounded before they are hashed, in their units. A file
+/// that was written again with fewer digits keeps its hash.
 const DIGEST_STEP: f64 = 1e-4;
 
-/// The same for forces: 1 N of some 50 kN.
+/// Step to which forces are rounded before they are hashed, N. Peaks are some 50 kN.
 const DIGEST_STEP_N: f64 = 1.0;
 
 /// A collision with its force curve, in the canonical form of [`ForceScenario::canonical`].
@@ -26,51 +27,51 @@ const DIGEST_STEP_N: f64 = 1.0;
 pub struct ForceCase {
     /// Its name in the data set.
     pub name: String,
-    /// What is known beforehand, canonical.
+    /// The canonical scenario.
     pub scenario: ForceScenario,
     /// Whether the recorded case is the mirror image of this one.
     pub mirrored: bool,
-    /// Force on the target, time from the start of the record; its duration from first touch to
-    /// last separation. Mirrored like the scenario.
+    /// Force on the target over the time from the start of the record, mirrored like the scenario. Its
+    /// duration lasts from the first touch to the last separation.
     pub curve: ForceCurve,
     /// First touch, s from the start of the record.
     pub onset_s: f64,
-    /// Impulse of the curve, N s: what is recorded within the time grid.
+    /// Impulse of the curve within the time grid, N s.
     pub impulse_n_s: [f64; 2],
-    /// Largest `|F|` of the curve, N, a mean over 1 ms.
+    /// Largest `|F|` of the curve, whose values are means over 1 ms, N.
     pub peak_n: f64,
-    /// When it is reached, s.
+    /// Time of the peak, s.
     pub peak_time_s: f64,
-    /// Whether the bullet's corner stays caught; `false` where nothing tells.
+    /// Whether a corner of the bullet stays hooked to the target; `false` if the case does not state it.
     pub hooked: bool,
-    /// Whether the vehicles have separated at the end; `true` where nothing tells.
+    /// Whether the vehicles are separated at the end; `true` if the case does not state it.
     pub separated: bool,
-    /// SHA-256 in hex of scenario and curve: the same for the same content under another name, in
-    /// another folder, or mirrored.
+    /// SHA-256 of scenario and curve in hexadecimal digits. It does not depend on name, folder or side
+    /// of the case.
     pub digest: String,
 }
 
-/// A case from which nothing can be learned.
+/// Why a case cannot be learned from.
 #[derive(Debug, thiserror::Error)]
 pub enum ForceCaseError {
-    /// Its row in the table of cases lacks something.
+    /// An attribute in the table of cases is missing or wrong.
     #[error(transparent)]
     Attributes(#[from] DataError),
-    /// Its file lacks something.
+    /// A column of its file is missing or wrong.
     #[error("case {case}")]
     Series {
         /// Name of the case.
         case: String,
-        /// What it lacks.
+        /// What is wrong with the file.
         source: SeriesError,
     },
-    /// Its force is in axes that turn with the target, unknown how far.
+    /// The force is given in axes that turn with the target by an unknown angle.
     #[error("case {case}: the force is in body axes, expected world axes (fx_n, fy_n)")]
     BodyAxes {
         /// Name of the case.
         case: String,
     },
-    /// No force within the time grid.
+    /// There is no force within the time grid.
     #[error("case {case}: no force in the first {grid_s} s of the record")]
     NoForce {
         /// Name of the case.
@@ -81,10 +82,10 @@ pub enum ForceCaseError {
 }
 
 impl ForceCase {
-    /// Of a case of a force data set.
+    /// The canonical form of a case of a force data set.
     ///
-    /// The contact lasts from `t_start_s` to `t_end_s` where the table has them, else as
-    /// [`contact_interval`] says: from the first to the last instant with more than 1 % of the peak.
+    /// The contact lasts from `t_start_s` to `t_end_s` if the table has these columns. Otherwise
+    /// [`contact_interval`] gives it: from the first to the last instant above 1 % of the peak.
     ///
     /// # Errors
     /// [`ForceCaseError`].
@@ -128,7 +129,7 @@ impl ForceCase {
         })
     }
 
-    /// The cases of a force data set that can be learned from, and what is wrong with the rest.
+    /// The cases of a force data set that can be learned from, and the problems of the others.
     pub fn of_dataset(dataset: &Dataset) -> (Vec<Self>, Vec<ForceCaseError>) {
         cases_and_problems(dataset, Self::from_case)
     }
@@ -153,19 +154,19 @@ impl ForceCase {
         Ok(outcome.complete().unwrap_or_default())
     }
 
-    /// Whether the vehicles part for good: not hooked, and separated.
+    /// Whether the vehicles part for good: they do not hook and are separated at the end.
     pub fn is_clean(&self) -> bool {
         self.separated && !self.hooked
     }
 
-    /// A curve of this canonical form as it is in the recorded case's axes.
+    /// A canonical curve in the axes of the recorded case.
     pub fn as_recorded(&self, curve: &ForceCurve) -> ForceCurve {
         if self.mirrored { curve.mirrored() } else { curve.clone() }
     }
 }
 
-/// Means of a force history over the time grid from `start_s`; zero outside the record. Its duration
-/// is not set. `None` if there is no force on it.
+/// Means of a force history over the cells of the time grid that starts at `start_s`, zero outside the
+/// record. The duration is not set. `None` if all forces on the grid are zero.
 pub fn curve_on_grid(history: &ForceHistory, start_s: f64) -> Option<ForceCurve> {
     let cumulative = history.cumulative();
     let mut curve = ForceCurve::default();

@@ -1,7 +1,7 @@
-//! What a force model knows of a collision before it happens, θ, and its canonical form.
+//! The scenario θ of a collision, which is the input of a force model, and its canonical form.
 //!
 //! Two symmetries hold: a mirrored scenario has the mirrored force, and a common velocity of both
-//! vehicles changes nothing (the tyres play no part during contact).
+//! vehicles does not change the force, since tyre forces during the contact are neglected.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,8 @@ use crate::collision::{Scenario, ScenarioError};
 use crate::data::{Case, DataError, ForceAttributes, Side, Value};
 use crate::numerics::wrap_angle_rad;
 
-/// Two vehicles at first contact. World axes with X along the target's heading; neither turns.
+/// Two vehicles at first contact, in world axes with X along the target's heading. Neither vehicle
+/// turns before the contact.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ForceScenario {
     /// Masses of target and bullet, kg.
@@ -33,10 +34,10 @@ pub struct ForceScenario {
 }
 
 impl ForceScenario {
-    /// Of a case of a force data set.
+    /// The scenario of a case of a force data set.
     ///
     /// # Errors
-    /// [`DataError`] at a column that is needed.
+    /// [`DataError`] for a required column that is missing or wrong.
     pub fn from_case(case: &Case) -> Result<Self, DataError> {
         let attributes = ForceAttributes::read(&case.attributes)?;
         let number = |name| case.attributes.number(name);
@@ -49,7 +50,8 @@ impl ForceScenario {
         Ok(Self { bullet_position_m, bullet_body, ..Self::from_attributes(&attributes) })
     }
 
-    /// Of the attributes of a case; neither the bullet's position nor its body is among them.
+    /// The scenario of a case's attributes, without position and body of the bullet, which they do not
+    /// contain.
     pub fn from_attributes(attributes: &ForceAttributes) -> Self {
         let [_, contact_y_m] = attributes.contact_m;
         let theta = attributes.theta_b_rad;
@@ -68,8 +70,8 @@ impl ForceScenario {
         }
     }
 
-    /// Of a scenario, turned so that the target heads along X. Yaw rates before the contact are
-    /// left out: no force model here knows them.
+    /// The scenario of an impact, turned so that the target heads along X. Yaw rates before the contact
+    /// are ignored, since no force model depends on them.
     ///
     /// # Errors
     /// [`ScenarioError`] if the vehicles do not meet.
@@ -121,8 +123,9 @@ impl ForceScenario {
         }
     }
 
-    /// The one of all equivalent scenarios that models see: the bullet on the target's right (so
-    /// that it mostly pushes along +y), the target at rest; and whether it was mirrored for that.
+    /// The canonical form of this scenario, and whether it is mirrored. Of all equivalent scenarios it
+    /// is the one with the bullet on the right of the target, so that it mostly pushes along +y, and
+    /// with the target at rest.
     #[must_use]
     pub fn canonical(&self) -> (Self, bool) {
         let mirrored = self.side == Side::Left;
@@ -132,8 +135,8 @@ impl ForceScenario {
     }
 }
 
-/// The struck side where no attribute tells: that of the contact, else the one from which the bullet
-/// heads towards the target, else the one from which it moves.
+/// The struck side of a case that does not state it: the side of the contact point, else the side
+/// from which the bullet heads towards the target, else the side from which it moves.
 ///
 /// - `approach_m_s`: lateral velocity of the bullet relative to the target.
 fn struck_side(contact_y_m: Option<f64>, theta_b_rad: f64, approach_m_s: f64) -> Side {

@@ -1,14 +1,14 @@
-//! How far a predicted force lies from the recorded one, and how honest its spread is.
+//! Errors of predicted forces, and calibration and sharpness of predicted distributions.
 
-mod prediction;
+mod curve_prediction;
 
-mod figures;
+mod aggregate;
 mod point;
 mod probabilistic;
 
-pub use figures::{Coverage, Figures, ProbabilisticFigures};
+pub use aggregate::{CurveMetrics, DistributionMetrics, IntervalCoverage};
+pub use curve_prediction::CurvePrediction;
 pub use point::PointErrors;
-pub use prediction::Prediction;
 pub use probabilistic::{
-    BAND_LEVELS, Covered, N_PIT_BINS, ProbabilisticScores, ProbabilisticSettings,
+    BAND_LEVELS, CaseCoverage, N_PIT_BINS, ProbabilisticScores, ProbabilisticSettings,
 };

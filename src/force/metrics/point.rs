@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use crate::force::{ForceCase, Prediction};
+use crate::force::{CurvePrediction, ForceCase};
 use crate::uncertainty::distance_n;
 
-/// Errors of one case; shares unless a name says the unit.
+/// Errors of one case, as shares unless the name has a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct PointErrors {
     /// Root mean square error over the peak of `|F|`.
@@ -35,8 +35,8 @@ pub struct PointErrors {
 }
 
 impl PointErrors {
-    /// Of a prediction of a case.
-    pub fn of(case: &ForceCase, prediction: &Prediction) -> Self {
+    /// Errors of a prediction for a case.
+    pub fn of(case: &ForceCase, prediction: &CurvePrediction) -> Self {
         let (truth, curve) = (&case.curve, &prediction.curve);
         let n = truth.n_instants() as f64;
         let [ex, ey] = [difference(&curve.fx_n, &truth.fx_n), difference(&curve.fy_n, &truth.fy_n)];
@@ -73,7 +73,7 @@ mod tests {
     #[test]
     fn a_perfect_prediction_has_no_error() {
         let case = &shipped("fea")[0];
-        let errors = PointErrors::of(case, &Prediction::of_curve(case.curve.clone()));
+        let errors = PointErrors::of(case, &CurvePrediction::of_curve(case.curve.clone()));
         let json = serde_json::to_value(errors).unwrap();
         for (name, value) in json.as_object().unwrap() {
             assert_eq!(value.as_f64(), Some(0.0), "{name}");
@@ -88,7 +88,7 @@ mod tests {
             *force *= 1.1;
         }
         curve.duration_s *= 0.8;
-        let errors = PointErrors::of(case, &Prediction::of_curve(curve));
+        let errors = PointErrors::of(case, &CurvePrediction::of_curve(curve));
         for (name, got, expected) in [
             ("history", errors.history_error, 0.1),
             ("along", errors.history_error_x.unwrap(), 0.1),

@@ -1,27 +1,27 @@
-//! How honest the distribution predicted for one case is.
+//! Scores of the distribution predicted for one case.
 //!
-//! Forces are looked at from the start of the record to the end of the contact, at every instant and
-//! in both axes; later both curve and bands are zero and would only flatter. Impulse, peak and
-//! duration count once a case.
+//! Forces are compared at every instant and along both axes from the start of the record to the end
+//! of the contact. Later instants are left out because curve and bands are zero there, which would
+//! improve every score. Impulse, peak and duration count once for each case.
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::force::ForceCase;
 use crate::uncertainty::{
-    CURVE_INTERVAL_S, CurveFigures, CurveMixture, MixtureError, energy_score_n, sample_crps,
+    CURVE_INTERVAL_S, CurveMixture, CurveQuantities, MixtureError, energy_score_n, sample_crps,
 };
 
-/// Shares that the bands hold.
+/// Nominal shares of the bands.
 pub const BAND_LEVELS: [f64; 4] = [0.5, 0.8, 0.9, 0.95];
 
-/// Bins of the histograms of the probability integral transform.
+/// Number of bins of the histograms of the probability integral transform.
 pub const N_PIT_BINS: usize = 10;
 
-/// What the scores of drawn curves need.
+/// Settings of the scores that are computed from drawn curves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ProbabilisticSettings {
-    /// Curves drawn for each case.
+    /// Number of curves drawn for each case.
     pub n_samples: usize,
     /// Seed of the draws.
     pub seed: u64,
@@ -33,10 +33,10 @@ impl Default for ProbabilisticSettings {
     }
 }
 
-/// Whether the intervals of one quantity hold the observed value, per level of [`BAND_LEVELS`].
+/// Whether the intervals of one quantity contain the observed value, for each of [`BAND_LEVELS`].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Covered {
-    /// Share of the observed values inside: 0 or 1 for a quantity that counts once.
+pub struct CaseCoverage {
+    /// Share of the observed values inside; 0 or 1 for a quantity that counts once.
     pub share: [f64; 4],
     /// Mean width, in the unit of the quantity.
     pub width: [f64; 4],
@@ -45,14 +45,14 @@ pub struct Covered {
 /// Scores of one case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProbabilisticScores {
-    /// Of F_x(t) and F_y(t), N.
-    pub force_n: Covered,
-    /// Of `|P|`, N s, by draws.
-    pub impulse_n_s: Covered,
-    /// Of the largest `|F|`, N, by draws.
-    pub peak_n: Covered,
-    /// Of the duration, s, exact.
-    pub duration_s: Covered,
+    /// Coverage of F_x(t) and F_y(t), N.
+    pub force_n: CaseCoverage,
+    /// Coverage of `|P|`, N s, from draws.
+    pub impulse_n_s: CaseCoverage,
+    /// Coverage of the largest `|F|`, N, from draws.
+    pub peak_n: CaseCoverage,
+    /// Coverage of the duration, s, exact.
+    pub duration_s: CaseCoverage,
     /// Continuous ranked probability score of F_x(t) and F_y(t), mean, N, exact.
     pub crps_force_n: f64,
     /// The same of `|P|`, N s, by draws.
@@ -73,7 +73,9 @@ pub struct ProbabilisticScores {
 }
 
 impl ProbabilisticScores {
-    /// Of a distribution predicted for a case. `stream` sets the draws of cases apart.
+    /// Scores of a distribution predicted for a case.
+    ///
+    /// - `stream`: number of the random stream, different for each case.
     ///
     /// # Errors
     /// [`MixtureError`] if the distribution is over another grid.
@@ -87,10 +89,10 @@ impl ProbabilisticScores {
         rng.set_stream(stream);
         let nll_nats = -mixture.log_density(&case.curve)?;
         let draws = mixture.sample(settings.n_samples, &mut rng);
-        let figures = CurveFigures::of(&draws);
+        let quantities = CurveQuantities::of(&draws);
         let [px, py] = case.impulse_n_s;
         let (impulse, duration_s) = (px.hypot(py), case.curve.duration_s);
-        let impulses = figures.impulse_magnitude_n_s();
+        let impulses = quantities.impulse_magnitude_n_s();
         let durations = mixture.duration_s();
         let mut pit_impulse = [0; N_PIT_BINS];
         for (axis, observed) in case.impulse_n_s.into_iter().enumerate() {
@@ -99,12 +101,12 @@ impl ProbabilisticScores {
         let force = ForceScores::of(case, mixture)?;
         Ok(Self {
             force_n: force.covered,
-            impulse_n_s: Covered::by_draws(&impulses, impulse),
-            peak_n: Covered::by_draws(&figures.peak_n, case.peak_n),
-            duration_s: Covered::one(|level| Some(durations.interval(level)), duration_s),
+            impulse_n_s: CaseCoverage::by_draws(&impulses, impulse),
+            peak_n: CaseCoverage::by_draws(&quantities.peak_n, case.peak_n),
+            duration_s: CaseCoverage::one(|level| Some(durations.interval(level)), duration_s),
             crps_force_n: force.crps_n,
             crps_impulse_n_s: sample_crps(&impulses, impulse),
-            crps_peak_n: sample_crps(&figures.peak_n, case.peak_n),
+            crps_peak_n: sample_crps(&quantities.peak_n, case.peak_n),
             crps_duration_s: durations.crps(duration_s),
             energy_score_n: energy_score_n(&draws, &case.curve),
             nll_nats,
@@ -114,9 +116,9 @@ impl ProbabilisticScores {
     }
 }
 
-impl Covered {
+impl CaseCoverage {
     fn by_draws(draws: &[f64], observed: f64) -> Self {
-        Self::one(|level| CurveFigures::interval(draws, level), observed)
+        Self::one(|level| CurveQuantities::interval(draws, level), observed)
     }
 
     fn one(interval: impl Fn(f64) -> Option<[f64; 2]>, observed: f64) -> Self {
@@ -132,7 +134,7 @@ impl Covered {
 
 /// Scores of the forces over the contact.
 struct ForceScores {
-    covered: Covered,
+    covered: CaseCoverage,
     crps_n: f64,
     pit: [u32; N_PIT_BINS],
 }
@@ -142,7 +144,8 @@ impl ForceScores {
         let n_instants = mixture.n_instants();
         let n_contact = n_contact_instants(case).min(n_instants);
         let bands = mixture.bands(&BAND_LEVELS)?;
-        let mut scores = Self { covered: Covered::default(), crps_n: 0.0, pit: [0; N_PIT_BINS] };
+        let mut scores =
+            Self { covered: CaseCoverage::default(), crps_n: 0.0, pit: [0; N_PIT_BINS] };
         let n_values = (2 * n_contact).max(1) as f64;
         let axes = [(&case.curve.fx_n, &bands.fx), (&case.curve.fy_n, &bands.fy)];
         for (axis, (observed, bands)) in axes.into_iter().enumerate() {

@@ -1,4 +1,4 @@
-//! A scenario and its physics as the numbers that the network sees.
+//! The inputs of the network: numbers that describe a scenario and its physics.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,7 +6,7 @@ use crate::force::physics::CentreCurve;
 use crate::force::{ForceCase, ForceScenario};
 use crate::uncertainty::CURVE_N_INSTANTS;
 
-/// What a user calls the features of the scenario, with units.
+/// Names of the scenario's features as shown to the user, with units.
 const SCENARIO_NAMES: [&str; N_SCENARIO] = [
     "target mass [kg]",
     "bullet mass [kg]",
@@ -16,14 +16,14 @@ const SCENARIO_NAMES: [&str; N_SCENARIO] = [
     "contact x [m]",
 ];
 const N_SCENARIO: usize = 6;
-/// Features of the scenario's physics.
+/// Number of features of the scenario's physics.
 const N_PHYSICS: usize = 6;
-/// Features of the scenario besides one for each body.
+/// Number of features of a scenario besides one for each kind of body.
 pub(crate) const N_FEATURES: usize = N_SCENARIO + N_PHYSICS;
-/// Features of each instant.
+/// Number of features of each instant.
 pub(crate) const N_INSTANT_FEATURES: usize = 6;
 
-/// Depth and sliding velocity in whose units the network sees them.
+/// Units in which crush depth and sliding velocity enter the network.
 const DEPTH_UNIT_M: f64 = 0.1;
 const SLIP_UNIT_M_S: f64 = 2.0;
 
@@ -39,10 +39,11 @@ pub struct Standardisation {
     pub range: Vec<[f64; 2]>,
 }
 
-/// A feature of a scenario that lies outside what was trained on.
+/// A feature of a scenario that lies outside the range of the training cases.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OutsideTraining {
-    /// Which, with its unit. Canonical: bullet on the right, velocities relative to the target.
+    /// Name and unit of the feature in the canonical scenario: bullet on the right, velocities relative
+    /// to the target.
     pub feature: &'static str,
     /// Its value.
     pub value: f64,
@@ -102,7 +103,7 @@ pub(crate) fn instant_features(centre: &CentreCurve) -> Vec<f32> {
 }
 
 impl Standardisation {
-    /// Of the training cases.
+    /// Statistics over the training cases.
     ///
     /// - `rows`: their features, all of one length.
     pub(crate) fn of(rows: &[Vec<f64>]) -> Self {
@@ -128,8 +129,8 @@ impl Standardisation {
         scaled.map(|((x, mean), std)| ((x - mean) / std) as f32).collect()
     }
 
-    /// The features of a canonical scenario that lie outside the range of training. What the
-    /// scenario leaves open is not outside.
+    /// The features of a canonical scenario that lie outside the range of the training cases. Features
+    /// that the scenario leaves open are never listed.
     pub(crate) fn outside(&self, scenario: &ForceScenario) -> Vec<OutsideTraining> {
         let numbers = scenario_numbers(scenario, scenario.contact_m.unwrap_or([f64::NAN; 2]));
         let check = |(i, value): (usize, f64)| {
@@ -149,7 +150,8 @@ impl Standardisation {
     }
 }
 
-/// What the cases leave to be drawn where a scenario does not say it.
+/// Distribution of contact point and kind of body over the training cases, for scenarios that leave
+/// them open.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OpenFeatures {

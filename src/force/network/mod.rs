@@ -1,4 +1,4 @@
-//! The force network: what it sees of a collision, its layers, and the distribution it gives.
+//! The force network: its inputs, its layers, and the distribution that it predicts.
 
 mod features;
 

@@ -1,5 +1,5 @@
-//! What physics says of a collision before any network does: the curve on which the network is
-//! centred, and its impulse.
+//! The force curve and impulse that physics and regressions predict for a collision. The network
+//! learns corrections of this curve, which is therefore called the centre.
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -18,34 +18,35 @@ use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
 /// Yaw inertia over mass where none is known, m²: a uniform body of 4.5 m × 1.8 m has 1.96, cars
 /// 1.5 to 2.1 (MacInnis et al., SAE 970951); the shipped runs have 1.8.
 const YAW_INERTIA_PER_MASS_M2: f64 = 1.8;
-/// Where the rear axle is if no case says, target's body axes, m: the middle of the contacts.
+/// Position of the rear axle if no case gives it, target's body axes, m: the middle of the contacts.
 const NO_NAME: &str = "";
-/// A force below this share of the peak is no contact.
+/// Share of the peak below which a force does not count as contact.
 const CONTACT_SHARE: f64 = 0.01;
 
-/// The physics of one scenario, on the time grid. Canonical axes.
+/// The physics of one scenario on the time grid, in canonical axes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CentreCurve {
     /// Force and its duration.
     pub curve: ForceCurve,
-    /// Greatest overlap of the outlines, m; zero where the centre knows none.
+    /// Largest overlap of the outlines, m; zero if the kind of centre does not compute it.
     pub depth_m: Vec<f64>,
-    /// Sliding velocity at the contact, m/s; zero where the centre knows none.
+    /// Sliding velocity at the contact, m/s; zero if the kind of centre does not compute it.
     pub slip_m_s: Vec<f64>,
-    /// Impulse to which the network's is tied, N s.
+    /// Impulse from which the impulse of the network departs by a bounded correction, N s.
     pub impulse_n_s: [f64; 2],
     /// Impulse of the momentum solution, N s.
     pub momentum_impulse_n_s: [f64; 2],
     /// Largest `|F|`, N: the unit of force of the network.
     pub scale_n: f64,
-    /// Inverse mass K at the contact, 1/kg, and closing velocity there, m/s: energy of an impulse.
+    /// Inverse mass matrix K at the contact point, 1/kg. With the closing velocity it gives the energy
+    /// that an impulse absorbs.
     pub inverse_mass_1_kg: [[f64; 2]; 2],
     /// Velocity of the bullet's contact point relative to the target's, m/s.
     pub closing_velocity_m_s: [f64; 2],
 }
 
 impl CentreCurve {
-    /// The first force above 1 % of the peak, s.
+    /// Time of the first force above 1 % of the peak, s.
     pub fn onset_s(&self) -> f64 {
         let magnitude = self.curve.magnitude_n();
         let is_contact = |force: &f64| *force > CONTACT_SHARE * self.scale_n;
@@ -53,23 +54,23 @@ impl CentreCurve {
     }
 }
 
-/// How far the fits of a centre have come.
+/// Progress of fitting a centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CentreFit {
     /// A law of the crush model is being fitted.
     Crush {
-        /// Which fold, from 0.
+        /// The fold, from 0.
         fit: usize,
-        /// How many.
+        /// Number of folds.
         n_fits: usize,
-        /// Its cost so far.
+        /// Cost of the fit after the latest step.
         cost: f64,
     },
     /// A regression is being fitted.
     Regression {
-        /// Which, from 0.
+        /// The regression, from 0.
         fit: usize,
-        /// How many.
+        /// Number of regressions.
         n_fits: usize,
     },
 }
@@ -88,7 +89,7 @@ impl fmt::Display for CentreFit {
 }
 
 impl CentreFit {
-    /// Fits of this kind done, and how many there are.
+    /// Number of fits of this kind that are done, and number of all of them.
     pub fn progress(self) -> (usize, usize) {
         match self {
             Self::Crush { fit, n_fits, .. } | Self::Regression { fit, n_fits } => (fit, n_fits),
@@ -96,10 +97,10 @@ impl CentreFit {
     }
 }
 
-/// Force and contact on the time grid.
+/// Force and contact of one crush law on the time grid.
 struct History {
     curve: ForceCurve,
-    /// Zero where the centre knows none.
+    /// Zero if the kind of centre does not compute them.
     depth_m: Vec<f64>,
     slip_m_s: Vec<f64>,
 }
@@ -111,14 +112,14 @@ impl History {
     }
 }
 
-/// The fitted physics.
+/// The physics fitted to training cases.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CentreModel {
     kind: Centre,
-    /// One per fold, each fitted without it.
+    /// One crush law for each fold, fitted to the cases outside of it.
     laws: Vec<CrushLaw>,
-    /// What is averaged with the crush model.
+    /// The regression that is averaged with the crush model.
     committee: Option<Committee>,
     /// Mean contact duration of the training cases, s.
     duration_s: f64,
@@ -131,9 +132,9 @@ pub struct CentreModel {
 impl CentreModel {
     /// Fits the physics on training cases.
     ///
-    /// - `report`: is told of each accepted step; breaking ends the fits where they are.
-    /// - returns the model and, for each training case, the curve of a part of it that has not seen
-    ///   the case.
+    /// - `report`: called after each accepted step; if it breaks, the fits end where they are.
+    /// - returns the model and, for each training case, the curve of those parts of the model that
+    ///   were fitted without the case.
     ///
     /// # Errors
     /// [`ForceError::Learning`] for too few cases, [`ForceError::NoCrushFit`], [`ForceError::Regression`],
@@ -182,21 +183,22 @@ impl CentreModel {
         Ok((model, unseen))
     }
 
-    /// The kinds of bullet bodies that were seen, in the order of their index.
+    /// The kinds of bullet bodies in the training cases, in the order of their index.
     pub fn bodies(&self) -> Vec<String> {
         let bodies = self.laws.first().map(|law| law.bodies.as_slice()).unwrap_or_default();
         bodies.iter().map(|body| body.name.clone()).collect()
     }
 
-    /// The rear axle of the target, body axes, m: contact offsets count from it.
+    /// Position of the target's rear axle in its body axes, m, from which contact offsets are measured.
     pub fn rear_axle_x_m(&self) -> f64 {
         self.laws.first().map_or(0.0, |law| law.rear_axle_x_m)
     }
 
-    /// The physics of a scenario: the mean over all laws, and over the committee.
+    /// The physics of a scenario: the mean over all crush laws, averaged with the regression if there
+    /// is one.
     ///
     /// - `scenario`: canonical.
-    /// - `contact_m`, `body_idx`: what the scenario may leave open.
+    /// - `contact_m`, `body_idx`: contact point and kind of body, which the scenario may leave open.
     ///
     /// # Errors
     /// [`ForceError::Impact`], [`ForceError::Regression`].
@@ -264,7 +266,7 @@ impl CentreModel {
         self.momentum.impact(&known)
     }
 
-    /// A history with what follows from it and from the momentum solution.
+    /// The centre of a force history, with the quantities that follow from the momentum solution.
     fn centre_curve(
         &self,
         History { curve, depth_m, slip_m_s }: History,
@@ -288,7 +290,7 @@ impl CentreModel {
         })
     }
 
-    /// A haversine of the mean duration that carries an impulse.
+    /// A haversine pulse of the mean duration with a given impulse.
     fn pulse(&self, [px, py]: [f64; 2]) -> ForceCurve {
         let shape = |i: usize| {
             let at = (i as f64 + 0.5) * CURVE_INTERVAL_S / self.duration_s;
@@ -368,7 +370,8 @@ fn nose_contact(scenario: &ForceScenario) -> Option<(f64, [f64; 2])> {
     Some((scenario.theta_b_rad, [cos * dx + sin * dy, cos * dy - sin * dx]))
 }
 
-/// One law per fold, fitted without it; the prior alone if the centre knows no crush.
+/// One crush law for each fold, fitted to the cases outside of it; none is fitted, and the prior
+/// stands alone, if the kind of centre has no crush model.
 fn fit_laws(
     (cases, folds): (&[ForceCase], &[Split]),
     (kind, config): (Centre, CrushConfig),
@@ -396,7 +399,7 @@ fn fit_laws(
     folds.iter().enumerate().map(law).collect()
 }
 
-/// The mean over the laws; its duration from the first to the last force above 1 % of the peak.
+/// The mean over the laws. Its duration lasts from the first to the last force above 1 % of the peak.
 fn mean_history(laws: &[&CrushLaw], scenario: &CrushScenario) -> History {
     let n = CURVE_N_INSTANTS;
     let histories: Vec<_> =

@@ -1,13 +1,13 @@
-//! Physics and regressions as a committee: each is wrong in its own way, so that their mean is
-//! nearer than either.
+//! The weighted mean of the crush model and a regression. Their errors differ, so that the mean has
+//! smaller errors than either.
 //!
 //! ```text
 //! F(t) = (1 − w) F_crush(t) + w F_regression(t)        T likewise
 //! ```
 //!
-//! The regression is [`StatisticalBaseline`]; the share w is chosen on training cases, each through
-//! members of the committee that have not seen it. Stacking: Wolpert, "Stacked generalization",
-//! Neural Networks 5 (1992). A share of its own for the impulse was tried and is no better in
+//! The regression is a [`CurveRegression`]. The share w is chosen on the training cases, where each
+//! case is predicted by members that were fitted without it (stacking: Wolpert, "Stacked
+//! generalization", Neural Networks 5, 1992). A separate share for the impulse is no better in
 //! cross-validation.
 
 use std::ops::ControlFlow;
@@ -15,20 +15,20 @@ use std::ops::ControlFlow;
 use serde::{Deserialize, Serialize};
 
 use crate::force::metrics::PointErrors;
-use crate::force::regression::{BaselineError, ColumnSet, StatisticalBaseline};
-use crate::force::{ForceCase, ForceError, ForceScenario, Prediction};
+use crate::force::regression::{ColumnSet, CurveFitError, CurveRegression};
+use crate::force::{CurvePrediction, ForceCase, ForceError, ForceScenario};
 use crate::learning::Split;
 use crate::uncertainty::ForceCurve;
 
-/// Shares tried: steps from none to all.
+/// Number of steps between the shares 0 and 1 that are tried.
 const N_SHARES: usize = 20;
 
-/// The regression and what it counts for.
+/// The regression and its share of the mean.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Committee {
     /// Fitted to all training cases.
-    regression: StatisticalBaseline,
+    regression: CurveRegression,
     /// w, 0 to 1.
     share: f64,
 }
@@ -37,9 +37,10 @@ impl Committee {
     /// Fits a regression without each fold, chooses the share, and fits the regression to all.
     ///
     /// - `crush`: for each case the curve of a crush law that has not seen it;
-    /// - `report`: fits done of all; breaking leaves the committee unfounded.
-    /// - returns the committee and, for each case, what members that have not seen it say; `None`
-    ///   if broken off.
+    /// - `report`: called with the number of fits done and of all fits; if it breaks, there is no
+    ///   committee.
+    /// - returns the committee and, for each case, the mean of members that were fitted without it;
+    ///   `None` if `report` broke.
     ///
     /// # Errors
     /// [`ForceError::Regression`].
@@ -50,7 +51,7 @@ impl Committee {
         report: &mut dyn FnMut(usize, usize) -> ControlFlow<()>,
     ) -> Result<Option<(Self, Vec<ForceCurve>)>, ForceError> {
         let regress = |cases: &[&ForceCase]| {
-            StatisticalBaseline::fit(cases, ColumnSet::ThetaContactAndBody, seed)
+            CurveRegression::fit(cases, ColumnSet::ThetaContactAndBody, seed)
         };
         let mut unseen: Vec<ForceCurve> = crush.to_vec();
         for (i, fold) in folds.iter().enumerate() {
@@ -72,7 +73,7 @@ impl Committee {
         Ok(Some((Self { regression, share }, blended.collect())))
     }
 
-    /// What the committee says where the crush model says `crush`.
+    /// The weighted mean of the regression and the crush model's curve `crush`.
     ///
     /// # Errors
     /// [`ForceError::Regression`].
@@ -85,20 +86,20 @@ impl Committee {
     }
 }
 
-/// The regression's curve; the crush model's where vehicles do not approach, which a regression
-/// relative to the momentum solution knows nothing of.
+/// The regression's curve, or the crush model's if the vehicles do not approach each other: then
+/// there is no momentum solution for the regression to scale.
 fn member(
-    regression: &StatisticalBaseline,
+    regression: &CurveRegression,
     crush: &ForceCurve,
     scenario: &ForceScenario,
-) -> Result<ForceCurve, BaselineError> {
+) -> Result<ForceCurve, CurveFitError> {
     match regression.point(scenario) {
-        Err(BaselineError::NotApproaching) => Ok(crush.clone()),
+        Err(CurveFitError::NotApproaching) => Ok(crush.clone()),
         point => Ok(point?.curve),
     }
 }
 
-/// Force and duration.
+/// The weighted mean of two curves and of their durations.
 fn blend(share: f64, crush: &ForceCurve, other: &ForceCurve) -> ForceCurve {
     let pairs = crush.to_values().into_iter().zip(other.to_values());
     let values: Vec<f64> = pairs.map(|(a, b)| (1.0 - share) * a + share * b).collect();
@@ -112,7 +113,7 @@ fn best_share(cases: &[ForceCase], crush: &[ForceCurve], others: &[ForceCurve]) 
         let triples = cases.iter().zip(crush).zip(others);
         let chosen = triples.filter(|((case, _), _)| case.is_clean() || !any_clean);
         let errors = chosen.map(|((case, crush), other)| {
-            let prediction = Prediction::of_curve(blend(share, crush, other));
+            let prediction = CurvePrediction::of_curve(blend(share, crush, other));
             let errors = PointErrors::of(case, &prediction);
             errors.history_error + errors.impulse_error
         });

@@ -1,8 +1,9 @@
-//! The momentum solution of a force scenario: rigid bodies, the normal nearly across the target.
+//! The momentum solution of a force scenario: rigid bodies whose contact normal lies nearly across
+//! the target.
 //!
-//! What a scenario does not tell (where the bullet's CG is, its yaw inertia, where it strikes if the
-//! contact is unknown) is an average of training cases; restitution, friction limit and the angle of
-//! the normal are fitted to their impulses. Canonical scenarios only.
+//! What a scenario leaves open (the position of the bullet's CG, its yaw inertia, the contact point)
+//! is replaced by an average over the training cases. Restitution, friction limit and the angle of the
+//! normal are fitted to the impulses of these cases. All scenarios are canonical.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -14,7 +15,7 @@ use crate::collision::{
 use crate::force::{ForceCase, ForceScenario};
 use crate::numerics::Summary;
 
-/// What the momentum solution takes from training cases.
+/// Parameters of the momentum solution, fitted to training cases.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MomentumModel {
     /// Restitution e.
@@ -23,7 +24,7 @@ pub struct MomentumModel {
     pub friction_limit: f64,
     /// Angle of the contact normal from the target's +y axis, rad, counter-clockwise.
     pub normal_turn_rad: f64,
-    /// Contact point from the target's CG, m, where a scenario does not tell or must not be asked.
+    /// Contact point from the target's CG, m, for scenarios that leave it open or if it must not be used.
     pub contact_m: [f64; 2],
     /// From the bullet's CG to the contact point, in the bullet's own axes, m.
     pub bullet_arm_m: [f64; 2],
@@ -34,8 +35,8 @@ pub struct MomentumModel {
 }
 
 impl MomentumModel {
-    /// Before any case is known: a push on the right rear wheel by a corner of the bullet's front,
-    /// the values that fit the shipped finite-element runs (`tests/library/validation_collision.rs`).
+    /// Values without any training case, for a push on the right rear wheel by a corner of the
+    /// bullet's front. They fit the shipped finite-element runs (`tests/library/validation_collision.rs`).
     pub fn prior(uses_contact: bool) -> Self {
         Self {
             restitution: 0.3,
@@ -48,10 +49,11 @@ impl MomentumModel {
         }
     }
 
-    /// Averages what the cases tell, then takes the e, μ_c and normal with the smallest mean error
-    /// `|P̂ − P| / |P|` of the impulse: on a grid, refined twice about its best point.
+    /// Averages positions and inertias over the cases, then chooses e, μ_c and the angle of the normal
+    /// with the smallest mean error `|P̂ − P| / |P|` of the impulse, on a grid that is refined twice
+    /// about its best point.
     ///
-    /// - `uses_contact`: whether contact points are known, here and in what is to be predicted.
+    /// - `uses_contact`: whether the contact point of a scenario is used, in the fit and in predictions.
     pub fn fit(cases: &[&ForceCase], uses_contact: bool) -> Self {
         let mut model = Self::prior(uses_contact);
         let scenarios = || cases.iter().map(|case| &case.scenario);
@@ -110,10 +112,10 @@ impl MomentumModel {
         }
     }
 
-    /// Impulse and what follows from it for a canonical scenario.
+    /// The impact of a canonical scenario: its impulse and the velocities after it.
     ///
     /// # Errors
-    /// [`ImpactError`] for masses or velocities that make no sense.
+    /// [`ImpactError`] for masses or velocities out of range.
     pub fn solve(&self, scenario: &ForceScenario) -> Result<ImpactSolution, ImpactError> {
         self.impact(scenario).solve()
     }

@@ -1,7 +1,8 @@
-//! What the physics leaves over: how far cases that it has not seen lie from it.
+//! Residuals of the physics: the differences between recorded cases and the predictions of a centre
+//! that was fitted without them.
 //!
-//! Residuals of force and duration in the units and the time of the centre, so that those of a
-//! short hard and of a long soft collision are alike:
+//! Residuals of force and duration are scaled by the peak and the duration of the centre, so that
+//! short hard and long soft collisions can be compared:
 //!
 //! ```text
 //! r(u) = (F(t₀ + u T) − F_c(t₀ + u T)) / max |F_c|      r_Δ = (Δ − Δ_c) / T
@@ -9,7 +10,7 @@
 //! r ≈ m + Σ_f b_f ξ_f + ε      ξ_f ~ N(0, 1), ε a first-order autoregressive process
 //! ```
 //!
-//! m and b_f by principal components; they are what the network's mixture starts from.
+//! m is the median and the b_f are principal components. The network's mixture starts from them.
 
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
@@ -21,21 +22,22 @@ use crate::nn::NnError;
 use crate::numerics::quantile_of_sorted;
 use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS};
 
-/// Nodes of the time of the centre per duration, and durations covered.
+/// Nodes of the scaled time for each duration of the centre. Three durations are covered.
 const NODES_PER_DURATION: usize = 32;
 const N_NODES: usize = 3 * NODES_PER_DURATION;
-/// Forces along x, along y, duration.
+/// Number of values of a residual: forces along x, forces along y, duration.
 const N_VALUES: usize = 2 * N_NODES + 1;
-/// Weight of the duration among the values, whose number would drown it.
+/// Weight of the duration in the principal components, since there are many more values of force.
 const DURATION_WEIGHT: f64 = 4.0;
-/// Cases per latent factor, at least.
+/// Smallest number of cases for each latent factor.
 const CASES_PER_FACTOR: usize = 3;
-/// Variance of a force and of a duration that no residual may go below, squares of peaks and T.
+/// Smallest variance of a force, in squared peaks, and of a duration, in squared T.
 const LEAST_VARIANCE: [f64; 2] = [1e-6, 1e-4];
-/// Correlation of neighbouring nodes is held below this, and an instant is at most so many nodes.
+/// Largest correlation of neighbouring nodes, and largest number of nodes between two instants.
 const MOST_CORRELATED: f64 = 0.98;
 const LONGEST_STEP: f64 = 32.0;
-/// Residuals beyond this, in peaks or durations, are cut: one odd case must not be a factor.
+/// Larger residuals, in peaks or durations, are clamped so that a single outlier does not become a
+/// latent factor.
 const LARGEST_RESIDUAL: f64 = 2.0;
 
 /// Mean, latent factors and independent variance of residuals, `[2 N_NODES + 1]` each.
@@ -49,7 +51,7 @@ pub(crate) struct ResidualProfiles {
     lag_correlation: f64,
 }
 
-/// Profiles of plain cases and of those that hook.
+/// Profiles of ordinary cases and of cases in which the vehicles hook.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ResidualModel {
@@ -59,9 +61,9 @@ pub(crate) struct ResidualModel {
 
 /// The profiles on the time grid of one case, `[F_x…, F_y…, duration]` in peaks and 0.1 s.
 pub(crate) struct ResidualCurve {
-    /// m.
+    /// Mean m.
     pub mean: Vec<f64>,
-    /// b, value by value: `[values, q]`.
+    /// Latent factors b, row by row: `[values, q]`.
     pub factors: Vec<f64>,
     /// Variance of ε.
     pub variance: Vec<f64>,
@@ -70,9 +72,9 @@ pub(crate) struct ResidualCurve {
 }
 
 impl ResidualModel {
-    /// Of cases and the curves of a physics that has not seen them.
+    /// Fits the profiles to cases and to the curves of a centre that was fitted without them.
     ///
-    /// - `n_factors`: latent factors of each kind; those that too few cases back are zero.
+    /// - `n_factors`: latent factors of each profile; those for which there are too few cases are zero.
     pub(crate) fn fit(cases: &[ForceCase], centres: &[CentreCurve], n_factors: usize) -> Self {
         let rows = |choose: &dyn Fn(&ForceCase) -> bool| -> Vec<Vec<f64>> {
             let pairs = cases.iter().zip(centres).filter(|(case, _)| choose(case));
@@ -95,7 +97,7 @@ impl ResidualModel {
         Self { usual, hooking }
     }
 
-    /// Whether it fits a network with this many latent factors, for a file may say anything.
+    /// Checks the sizes read from a file against the number of latent factors of the network.
     ///
     /// # Errors
     /// [`NnError::WrongShape`].
@@ -118,7 +120,7 @@ impl ResidualModel {
         Ok(())
     }
 
-    /// The profiles of hooking, or of the other components, on the time grid of a case.
+    /// The profiles of the hooking component or of the other components on the time grid of a case.
     pub(crate) fn curve(&self, centre: &CentreCurve, hooks: bool) -> ResidualCurve {
         let profiles = if hooks { &self.hooking } else { &self.usual };
         profiles.on_grid(centre)
@@ -199,7 +201,7 @@ impl ResidualProfiles {
     }
 }
 
-/// What the first factors leave of the rows.
+/// The part of the rows that the first factors do not explain.
 fn left_over(
     rows: &DMatrix<f64>,
     svd: &nalgebra::SVD<f64, nalgebra::Dyn, nalgebra::Dyn>,
@@ -227,7 +229,7 @@ fn lag_correlation(left: &DMatrix<f64>) -> f64 {
     if square > 0.0 { (product / square).clamp(0.0, MOST_CORRELATED) } else { 0.0 }
 }
 
-/// Force and duration of a case less those of its centre.
+/// Difference of a case from its centre in force and duration, scaled.
 fn residual(case: &ForceCase, centre: &CentreCurve) -> Vec<f64> {
     let (onset_s, scale_s) = (centre.onset_s(), time_scale_s(centre));
     let pairs = [(&case.curve.fx_n, &centre.curve.fx_n), (&case.curve.fy_n, &centre.curve.fy_n)];
@@ -249,13 +251,13 @@ fn median<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
     quantile_of_sorted(&values, 0.5).unwrap_or(0.0)
 }
 
-/// T: the duration of the triangle with the centre's impulse and peak, s.
+/// T, the duration of a triangular pulse with the impulse and the peak of the centre, s.
 fn time_scale_s(centre: &CentreCurve) -> f64 {
     let area: f64 = centre.curve.magnitude_n().iter().sum::<f64>() * CURVE_INTERVAL_S;
     (2.0 * area / centre.scale_n).max(CURVE_INTERVAL_S)
 }
 
-/// Linear between values; zero before the first and after the last.
+/// Linear interpolation between values; zero before the first and after the last.
 fn value_at(values: &[f64], at: f64) -> f64 {
     if !(0.0..=values.len() as f64 - 1.0).contains(&at) {
         return 0.0;

@@ -1,4 +1,5 @@
-//! Makes the intervals of a trained network hold what they say, by three factors on its variances.
+//! Calibration of a trained network: three factors on its variances, with which its intervals contain
+//! their nominal share of the observed values.
 
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
@@ -6,48 +7,49 @@ use serde::{Deserialize, Serialize};
 use crate::force::ForceCase;
 use crate::nn::random_stream;
 use crate::numerics::normal_cdf;
-use crate::uncertainty::{CURVE_INTERVAL_S, CurveComponent, CurveFigures, CurveMixture};
+use crate::uncertainty::{CURVE_INTERVAL_S, CurveComponent, CurveMixture, CurveQuantities};
 
-/// Share of the observed values that the central intervals hold after calibration.
+/// Nominal share of the central intervals that are calibrated.
 const CALIBRATED_SHARE: f64 = 0.9;
 /// Logarithms of the smallest and largest factor.
 const MOST_EXTREME_LOG_FACTORS: [f64; 2] = [-6.0, 4.0];
 const N_STEPS: usize = 20;
-/// Steps of the search by impulses and peaks, up to this many times what impulses alone take.
+/// Number of steps of the search by impulses and peaks, and largest factor relative to the one that is
+/// right for impulses alone.
 const N_SHARED_STEPS: usize = 8;
 const LARGEST_SHARED: f64 = 4.0;
-/// Draws of a case for its peak.
+/// Number of draws of a case for its peak.
 const N_PEAK_DRAWS: usize = 200;
-/// Fewest cases that decide.
+/// Smallest number of cases for a calibration.
 const LEAST_CASES: usize = 8;
 
 /// Factors on the variances of force curves.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct VarianceFactors {
-    /// On the variance of forces through the latent factors.
+    /// Factor on the variance of forces through the latent factors.
     pub shared: f64,
-    /// On what the factors leave to single instants.
+    /// Factor on the variance of forces that the latent factors do not explain.
     pub single: f64,
-    /// On the variance of the duration.
+    /// Factor on the variance of the duration.
     pub duration: f64,
 }
 
 impl Default for VarianceFactors {
-    /// As predicted.
+    /// Factors that leave the predicted variances unchanged.
     fn default() -> Self {
         Self { shared: 1.0, single: 1.0, duration: 1.0 }
     }
 }
 
 impl VarianceFactors {
-    /// The factors with which the central 90 % intervals hold 90 % of
+    /// The factors with which the central 90 % intervals contain 90 % of
     ///
     /// - the forces during contact, F_x and F_y (`single`),
     /// - the impulses and, as nearly as both allow, the peaks (`shared`),
     /// - the durations (`duration`).
     ///
-    /// As predicted with fewer than eight cases.
+    /// With fewer than eight cases the variances stay unchanged.
     pub(crate) fn calibrated(cases: &[(&ForceCase, CurveMixture)], seed: u64) -> Self {
         if cases.len() < LEAST_CASES {
             return Self::default();
@@ -92,7 +94,8 @@ impl VarianceFactors {
     }
 }
 
-/// The smallest factor with which intervals hold their share, by bisection of its logarithm.
+/// The smallest factor with which intervals contain their nominal share, by bisection of its
+/// logarithm.
 fn smallest(n_steps: usize, held: impl Fn(f64) -> f64) -> f64 {
     let [mut low, mut high] = MOST_EXTREME_LOG_FACTORS;
     for _ in 0..n_steps {
@@ -157,12 +160,12 @@ fn held_durations(cases: &[(&ForceCase, CurveMixture)], factors: VarianceFactors
     }))
 }
 
-/// By the same draws whatever the factors.
+/// Share of the peaks within their intervals, from the same draws for all factors.
 fn held_peaks(cases: &[(&ForceCase, CurveMixture)], factors: VarianceFactors, seed: u64) -> f64 {
     share(cases.iter().enumerate().map(|(i, (case, mixture))| {
         let mut rng: ChaCha8Rng = random_stream(seed, "calibration of peaks", i as u64);
-        let drawn = factors.apply(mixture.clone()).sample_figures(N_PEAK_DRAWS, &mut rng);
-        let interval = CurveFigures::interval(&drawn.peak_n, CALIBRATED_SHARE);
+        let drawn = factors.apply(mixture.clone()).sample_quantities(N_PEAK_DRAWS, &mut rng);
+        let interval = CurveQuantities::interval(&drawn.peak_n, CALIBRATED_SHARE);
         interval.is_some_and(|[low, high]| (low..=high).contains(&case.peak_n))
     }))
 }

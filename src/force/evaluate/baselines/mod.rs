@@ -1,6 +1,6 @@
-//! What a force model must beat besides the regressions in its own centre, each made as strong as it
-//! honestly can be. All are fitted to training cases and choose
-//! their own options by cross-validation on them; all take canonical scenarios.
+//! Baselines of the evaluation besides the regressions of the centre: a classic pulse and the nearest
+//! training case. They are fitted to training cases, choose their options by cross-validation on them
+//! and take canonical scenarios.
 
 mod nearest;
 mod pulse;

@@ -1,22 +1,22 @@
 //! Baseline (b): the curve of the nearest training case.
 
 use crate::force::regression::{
-    BaselineError, ColumnSet, FeatureMap, best_of, case_folds, history_error, mean,
+    ColumnSet, CurveFitError, FeatureMap, best_of, case_folds, history_error, mean,
 };
-use crate::force::{ForceCase, ForceScenario, MomentumModel, Prediction};
+use crate::force::{CurvePrediction, ForceCase, ForceScenario, MomentumModel};
 use crate::numerics::Summary;
 use crate::uncertainty::ForceCurve;
 
 /// Whether the curve of the nearest case is scaled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NearestScaling {
-    /// As it was recorded.
+    /// The curve as it was recorded.
     AsRecorded,
-    /// By the ratio of the momentum solutions' impulses.
+    /// The curve times the ratio of the momentum solutions' impulses.
     ToImpulse,
 }
 
-/// Training cases to look up.
+/// The training cases, from which the nearest one is taken.
 #[derive(Debug, Clone)]
 pub struct NearestBaseline {
     /// The chosen scaling.
@@ -41,8 +41,8 @@ impl NearestBaseline {
     /// Stores the cases and chooses whether curves are scaled, by cross-validation.
     ///
     /// # Errors
-    /// [`BaselineError`].
-    pub fn fit(cases: &[&ForceCase], columns: ColumnSet, seed: u64) -> Result<Self, BaselineError> {
+    /// [`CurveFitError`].
+    pub fn fit(cases: &[&ForceCase], columns: ColumnSet, seed: u64) -> Result<Self, CurveFitError> {
         let mut losses =
             [NearestScaling::AsRecorded, NearestScaling::ToImpulse].map(|scaling| (0.0, scaling));
         for (train, test) in case_folds(cases, seed) {
@@ -53,11 +53,11 @@ impl NearestBaseline {
                 *loss += mean(test.iter().map(error));
             }
         }
-        let scaling = best_of(losses).ok_or(BaselineError::NoCases)?;
+        let scaling = best_of(losses).ok_or(CurveFitError::NoCases)?;
         Ok(Self { scaling, ..Self::store(cases, columns)? })
     }
 
-    fn store(cases: &[&ForceCase], columns: ColumnSet) -> Result<Self, BaselineError> {
+    fn store(cases: &[&ForceCase], columns: ColumnSet) -> Result<Self, CurveFitError> {
         let features = FeatureMap::fit(cases, columns);
         let momentum = columns.fit_momentum(cases);
         let known = cases.iter().map(|case| {
@@ -67,7 +67,7 @@ impl NearestBaseline {
                 impulse_n_s: impulse_n_s(&momentum, &case.scenario)?,
             })
         });
-        let known: Vec<Known> = known.collect::<Result<_, BaselineError>>()?;
+        let known: Vec<Known> = known.collect::<Result<_, CurveFitError>>()?;
         let n_features = known.first().map_or(0, |first| first.row.len());
         let inverse_std = |j: usize| {
             let std = Summary::of(known.iter().map(|known| known.row[j])).map_or(0.0, |of| of.std);
@@ -81,15 +81,15 @@ impl NearestBaseline {
     /// The curve of the nearest case, by the distance of standardised features.
     ///
     /// # Errors
-    /// [`BaselineError`].
-    pub fn predict(&self, scenario: &ForceScenario) -> Result<Prediction, BaselineError> {
+    /// [`CurveFitError`].
+    pub fn predict(&self, scenario: &ForceScenario) -> Result<CurvePrediction, CurveFitError> {
         let row = self.features.row(scenario);
         let distance = |known: &Known| -> f64 {
             let steps = known.row.iter().zip(&row).zip(&self.inverse_std);
             steps.map(|((a, b), inverse)| ((a - b) * inverse).powi(2)).sum()
         };
         let candidates = self.known.iter().map(|known| (distance(known), known));
-        let nearest = best_of(candidates).ok_or(BaselineError::NoCases)?;
+        let nearest = best_of(candidates).ok_or(CurveFitError::NoCases)?;
         let mut curve = nearest.curve.clone();
         if self.scaling == NearestScaling::ToImpulse {
             let ratio = impulse_n_s(&self.momentum, scenario)? / nearest.impulse_n_s;
@@ -97,14 +97,14 @@ impl NearestBaseline {
                 *force *= ratio;
             }
         }
-        Ok(Prediction::of_curve(curve))
+        Ok(CurvePrediction::of_curve(curve))
     }
 }
 
 /// Size of the momentum solution's impulse, N s.
-fn impulse_n_s(momentum: &MomentumModel, scenario: &ForceScenario) -> Result<f64, BaselineError> {
+fn impulse_n_s(momentum: &MomentumModel, scenario: &ForceScenario) -> Result<f64, CurveFitError> {
     let [px, py] = momentum.solve(scenario)?.impulse_n_s;
-    Some(px.hypot(py)).filter(|impulse| *impulse > 0.0).ok_or(BaselineError::NotApproaching)
+    Some(px.hypot(py)).filter(|impulse| *impulse > 0.0).ok_or(CurveFitError::NotApproaching)
 }
 
 #[cfg(test)]

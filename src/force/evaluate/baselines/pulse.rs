@@ -6,10 +6,10 @@
 
 use crate::collision::{Pulse, PulseShape};
 use crate::force::regression::{
-    BaselineError, ColumnSet, FeatureMap, best_of, case_folds, history_error,
+    ColumnSet, CurveFitError, FeatureMap, best_of, case_folds, history_error,
     impulse_share_times_s, mean,
 };
-use crate::force::{ForceCase, ForceScenario, MomentumModel, Prediction};
+use crate::force::{CurvePrediction, ForceCase, ForceScenario, MomentumModel};
 use crate::numerics::{GaussianProcess, GaussianProcessData};
 use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
 
@@ -19,7 +19,7 @@ const SHARES: [f64; 2] = [0.05, 0.90];
 /// Added to times before their logarithm is taken, s: onsets may be zero.
 const TIME_FLOOR_S: f64 = 2e-3;
 
-/// Pulses fitted to training cases.
+/// A pulse whose position, length and shape are fitted to training cases.
 #[derive(Debug, Clone)]
 pub struct PulseBaseline {
     /// The chosen shape.
@@ -33,11 +33,11 @@ pub struct PulseBaseline {
 }
 
 impl PulseBaseline {
-    /// Fits it and chooses its shape.
+    /// Fits the regressions and chooses the shape.
     ///
     /// # Errors
-    /// [`BaselineError`].
-    pub fn fit(cases: &[&ForceCase], columns: ColumnSet, seed: u64) -> Result<Self, BaselineError> {
+    /// [`CurveFitError`].
+    pub fn fit(cases: &[&ForceCase], columns: ColumnSet, seed: u64) -> Result<Self, CurveFitError> {
         let mut losses = PulseShape::ALL.map(|shape| (0.0, shape));
         for (train, test) in case_folds(cases, seed) {
             let fitted = Self::fit_shape(&train, columns, PulseShape::HalfSine)?;
@@ -47,7 +47,7 @@ impl PulseBaseline {
                 *loss += mean(test.iter().map(error));
             }
         }
-        let shape = best_of(losses).ok_or(BaselineError::NoCases)?;
+        let shape = best_of(losses).ok_or(CurveFitError::NoCases)?;
         Self::fit_shape(cases, columns, shape)
     }
 
@@ -55,7 +55,7 @@ impl PulseBaseline {
         cases: &[&ForceCase],
         columns: ColumnSet,
         shape: PulseShape,
-    ) -> Result<Self, BaselineError> {
+    ) -> Result<Self, CurveFitError> {
         let features = FeatureMap::fit(cases, columns);
         let row = |case: &&ForceCase| features.row(&case.scenario);
         let times = |case: &&ForceCase| {
@@ -76,12 +76,12 @@ impl PulseBaseline {
         Ok(Self { shape, momentum: columns.fit_momentum(cases), features, times })
     }
 
-    /// The pulse of a canonical scenario, so placed that its shares of the impulse fall where the
-    /// regression puts them; not before the start of the record.
+    /// The pulse of a canonical scenario. It is placed such that it reaches its shares of the impulse at
+    /// the times that the regression predicts, but does not start before the record.
     ///
     /// # Errors
-    /// [`BaselineError`].
-    pub fn predict(&self, scenario: &ForceScenario) -> Result<Prediction, BaselineError> {
+    /// [`CurveFitError`].
+    pub fn predict(&self, scenario: &ForceScenario) -> Result<CurvePrediction, CurveFitError> {
         let times = self.times.predict(&self.features.row(scenario))?.mean;
         let [ln_first, ln_between, ln_duration] = [0, 1, 2].map(|i| times[i]);
         let [from, to] = SHARES.map(|share| position_of_share(self.shape, share));
@@ -90,11 +90,11 @@ impl PulseBaseline {
         let impulse_n_s = self.momentum.solve(scenario)?.impulse_n_s;
         let pulse = Pulse::new(self.shape, impulse_n_s, start_s, length_s)?;
         let curve = ForceCurve { duration_s: ln_duration.exp(), ..on_grid(&pulse) };
-        Ok(Prediction { impulse_n_s, ..Prediction::of_curve(curve) })
+        Ok(CurvePrediction { impulse_n_s, ..CurvePrediction::of_curve(curve) })
     }
 }
 
-/// Where in a pulse, 0 to 1, this share of its area is reached, by bisection.
+/// Position in a pulse, 0 to 1, at which this share of its area is reached, by bisection.
 fn position_of_share(shape: PulseShape, share: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..40 {
@@ -108,7 +108,7 @@ fn position_of_share(shape: PulseShape, share: f64) -> f64 {
     (low + high) / 2.0
 }
 
-/// Exact means of a pulse over the time grid; its duration is not set.
+/// Exact means of a pulse over the cells of the time grid. The duration is not set.
 fn on_grid(pulse: &Pulse) -> ForceCurve {
     let mut curve = ForceCurve::default();
     let mut before = [0.0; 2];

@@ -1,23 +1,24 @@
-//! Force curves over a time of their own, in axes of their own impulse: what is left of them when
-//! impulse, onset and length are taken out.
+//! Shapes of force curves: the curves over a scaled time and in axes along and across their impulse,
+//! so that neither impulse nor onset nor length matters.
 
 use serde::{Deserialize, Serialize};
 
 use crate::force::ForceCase;
 use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
 
-/// Cells of a shape, over `u` from [`SHAPE_START`], each [`SHAPE_CELL`] wide.
+/// Number of cells of a shape. They start at [`SHAPE_START`] in units of the scaled time and are
+/// [`SHAPE_CELL`] wide.
 pub(crate) const SHAPE_CELLS: usize = 400;
 const SHAPE_START: f64 = -1.0;
 const SHAPE_CELL: f64 = 0.0125;
 
-/// Which stretch of a curve is its unit of time.
+/// The interval of a curve that is the unit of its scaled time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Alignment {
     /// From first touch to last separation.
     Contact,
-    /// Between two shares of `∫ |F| dt`: less moved by weak contact at the ends.
+    /// Between two shares of `∫ |F| dt`, on which weak contact at the ends has little influence.
     ImpulseShares {
         /// Share at the start, 0 to 1.
         from: f64,
@@ -26,12 +27,12 @@ pub enum Alignment {
     },
 }
 
-/// Where a curve lies in time, and what impulse it carries.
+/// Interval and impulse of a curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Placement {
-    /// Start of its unit of time, s.
+    /// Start of the interval that is its unit of time, s.
     pub start_s: f64,
-    /// Its unit of time, s, positive.
+    /// Length of this interval, s, positive.
     pub length_s: f64,
     /// Size of the impulse, N s.
     pub impulse_n_s: f64,
@@ -40,7 +41,7 @@ pub(crate) struct Placement {
 }
 
 impl Alignment {
-    /// Those that are tried.
+    /// The alignments among which cross-validation chooses.
     pub const CANDIDATES: [Self; 4] = [
         Self::Contact,
         Self::ImpulseShares { from: 0.02, to: 0.90 },
@@ -48,7 +49,7 @@ impl Alignment {
         Self::ImpulseShares { from: 0.05, to: 0.90 },
     ];
 
-    /// Start and length of the unit of time of a case, s.
+    /// Start and length of the interval of a case, s.
     pub(crate) fn interval_s(self, case: &ForceCase) -> (f64, f64) {
         match self {
             Self::Contact => {
@@ -62,7 +63,7 @@ impl Alignment {
         }
     }
 
-    /// Where a case's curve lies.
+    /// Interval and impulse of a case.
     pub(crate) fn placement(self, case: &ForceCase) -> Placement {
         let (start_s, length_s) = self.interval_s(case);
         let [px, py] = case.impulse_n_s;
@@ -71,7 +72,7 @@ impl Alignment {
     }
 }
 
-/// When `∫ |F| dt` reaches these shares of its total, s.
+/// Times at which `∫ |F| dt` reaches these shares of its total, s.
 pub(crate) fn impulse_share_times_s(curve: &ForceCurve, shares: [f64; 2]) -> [f64; 2] {
     let magnitudes = curve.magnitude_n();
     let total: f64 = magnitudes.iter().sum();
@@ -88,8 +89,9 @@ pub(crate) fn impulse_share_times_s(curve: &ForceCurve, shares: [f64; 2]) -> [f6
 }
 
 impl Placement {
-    /// What share of the impulse falls into each cell of the own time, per unit of it: across the
-    /// impulse, then along it, `[2 × cells]`. The part along sums to one but for what lies outside.
+    /// The shape of a curve: the share of the impulse in each cell of the scaled time, per unit of this
+    /// time, first across the impulse and then along it, `[2 × cells]`. Without what lies outside of the
+    /// cells, the part along the impulse has the sum 1.
     pub(crate) fn shape_of(&self, curve: &ForceCurve) -> Vec<f64> {
         let edges: Vec<f64> = (0..=SHAPE_CELLS)
             .map(|i| self.start_s + shape_edge(i) * self.length_s)
@@ -103,8 +105,8 @@ impl Placement {
         across.chain(along).collect()
     }
 
-    /// The curve of a shape: the inverse of [`Placement::shape_of`] up to the width of the cells. Its
-    /// duration is not set.
+    /// The curve of a shape, which is the inverse of [`Placement::shape_of`] up to the width of the
+    /// cells. The duration is not set.
     pub(crate) fn curve_of(&self, shape: &[f64]) -> ForceCurve {
         let cell_of =
             |time_s: f64| ((time_s - self.start_s) / self.length_s - SHAPE_START) / SHAPE_CELL;
@@ -128,7 +130,8 @@ fn shape_edge(idx: usize) -> f64 {
     SHAPE_START + idx as f64 * SHAPE_CELL
 }
 
-/// Sums of cell contents between edges that are positions in cells, rising; nothing outside.
+/// Sums of the contents of cells between rising edges, which are positions in cells. Outside of the
+/// cells the content is zero.
 fn rebin(cells: &[f64], edges: &[f64]) -> Vec<f64> {
     let mut sums = Vec::with_capacity(cells.len() + 1);
     let mut sum = 0.0;

@@ -1,41 +1,41 @@
-//! A canonical scenario as numbers to regress on.
+//! The inputs of regressions and baselines: a canonical scenario as a row of numbers.
 
 use serde::{Deserialize, Serialize};
 
 use crate::collision::ImpactSolution;
 use crate::force::{ForceCase, ForceScenario, MomentumModel};
 
-/// Speed at which the lateral closing speed turns from linear to logarithmic, m/s: the smallest
-/// closing speeds of a PIT.
+/// Speed above which the scale of the lateral closing speed is logarithmic rather than linear, m/s. It
+/// is about the smallest closing speed of a PIT manoeuvre.
 const LATERAL_SPEED_SCALE_M_S: f64 = 0.5;
 
-/// What is known of a scenario.
+/// The columns of a scenario that a model may use.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ColumnSet {
-    /// θ alone: masses, velocities, heading of the bullet.
+    /// θ alone: masses, velocities and heading of the bullet.
     #[default]
     Theta,
-    /// Besides where along the target the bullet strikes, and which kind of body it has.
+    /// θ, the contact point along the target, and the kind of the bullet's body.
     ThetaContactAndBody,
 }
 
-/// Turns scenarios into rows of numbers, all alike.
+/// Turns scenarios into rows of equal length.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FeatureMap {
     columns: ColumnSet,
-    /// Mean contact along the target, m: stands for one that is not known.
+    /// Mean contact point along the target, m, which replaces an unknown one.
     contact_x_m: f64,
-    /// Kinds of body, sorted; the first is the one without a column of its own.
+    /// Kinds of body, sorted. The first has no column of its own.
     bodies: Vec<String>,
 }
 
 impl ColumnSet {
-    /// Both.
+    /// Both sets of columns.
     pub const ALL: [Self; 2] = [Self::Theta, Self::ThetaContactAndBody];
 
-    /// What a table calls it.
+    /// Name in tables.
     pub fn label(self) -> &'static str {
         match self {
             Self::Theta => "θ",
@@ -45,7 +45,7 @@ impl ColumnSet {
 }
 
 impl FeatureMap {
-    /// Learns what stands for the unknown.
+    /// Takes mean contact point and kinds of body from training cases.
     pub fn fit(cases: &[&ForceCase], columns: ColumnSet) -> Self {
         let scenarios = || cases.iter().map(|case| &case.scenario);
         let contacts: Vec<f64> = scenarios().filter_map(|s| Some(s.contact_m?[0])).collect();
@@ -56,10 +56,11 @@ impl FeatureMap {
         Self { columns, contact_x_m, bodies }
     }
 
-    /// Relative velocity along X; lateral one on a scale that is logarithmic where it is large, as
-    /// forces and impulses are powers of it; heading; logarithms of the masses; and with all columns
-    /// the contact along the target and one 0 or 1 per further kind of body (an unknown kind: shared
-    /// out evenly).
+    /// The row of a scenario: relative velocity along X; relative lateral velocity on a scale that is
+    /// logarithmic for large values, since forces and impulses are powers of it; heading; logarithms of
+    /// the masses; and, with all columns, the contact point along the target and for each kind of body
+    /// but the first a 1 if the bullet is of this kind, else a 0. For an unknown kind all of them have
+    /// the same share.
     ///
     /// ```text
     /// [v_x, asinh(v_y / 0.5 m/s), θ_b, ln m_t, ln m_b (, x_c, body …)]
@@ -83,7 +84,8 @@ impl FeatureMap {
         row
     }
 
-    /// The same with the momentum solution's impulse: logarithm of its size, and its direction.
+    /// The row of a scenario with two more columns: logarithm of the size and direction of the momentum
+    /// solution's impulse.
     pub fn row_with_impulse(
         &self,
         scenario: &ForceScenario,
@@ -97,7 +99,7 @@ impl FeatureMap {
 }
 
 impl ColumnSet {
-    /// The momentum solution that may know these columns.
+    /// The momentum solution that uses these columns.
     pub(crate) fn fit_momentum(self, cases: &[&ForceCase]) -> MomentumModel {
         MomentumModel::fit(cases, self == Self::ThetaContactAndBody)
     }

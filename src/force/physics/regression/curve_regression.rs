@@ -1,5 +1,6 @@
-//! Baseline (c): Gaussian processes on the principal components of curves that are scaled by their
-//! impulse and duration.
+//! Gaussian processes on the principal components of curves that are scaled by their impulse and
+//! duration. They are a member of the committee in the centre of the network and a baseline of the
+//! evaluation.
 //!
 //! ```text
 //! F(t) = |P| / T · R(direction) · (s̄(u) + Σ_j c_j s_j(u))        u = (t − t₀)/T
@@ -7,12 +8,12 @@
 //!
 //! Impulse and direction are regressed relative to the momentum solution, T, t₀ and the duration as
 //! logarithms, the coefficients `c_j` with one set of hyperparameters. Cases that hook or have not
-//! separated are learned from with a noise of their own ([`GaussianProcess`]). Alignment, number of
+//! separated have a noise of their own ([`GaussianProcess`]). Alignment, number of
 //! components and whether the momentum impulse is an input are chosen by cross-validation on the
 //! training cases.
 //!
-//! The point estimate is the mean curve over the uncertainty of the regressions, not the curve of
-//! their means: where onset and length are unsure, the latter is too sharp.
+//! The point estimate is the mean of the curves over the uncertainty of the regressions. The curve of
+//! their means would be too steep where onset and length are uncertain.
 //!
 //! [`GaussianProcess`]: crate::numerics::GaussianProcess
 
@@ -25,37 +26,39 @@ use crate::force::regression::alignment::{Alignment, Placement};
 use crate::force::regression::choice::choose;
 use crate::force::regression::scales::Scales;
 use crate::force::regression::shapes::{self, Shapes};
-use crate::force::regression::{BaselineError, ColumnSet, spread};
-use crate::force::{ForceCase, ForceScenario, Prediction};
+use crate::force::regression::{ColumnSet, CurveFitError, spread};
+use crate::force::{CurvePrediction, ForceCase, ForceScenario};
 use crate::numerics::GaussianPrediction;
 use crate::uncertainty::{CurveMixture, ForceCurve};
 
-/// Pairs of opposite draws behind a distribution.
+/// Number of antithetic pairs of draws for a distribution.
 const N_PAIRS: usize = 64;
 
-/// Pairs of draws behind a point estimate, where their noise hardly counts.
+/// Number of antithetic pairs of draws for a point estimate, which needs fewer.
 const N_POINT_PAIRS: usize = 16;
 
-/// Regressed numbers besides the coefficients: impulse, direction, duration, length, onset.
+/// Number of regressed quantities besides the coefficients: impulse, direction, duration, length and
+/// onset.
 const N_SCALARS: usize = 5;
 
-/// What is chosen by cross-validation.
+/// Options chosen by cross-validation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct StatisticalOptions {
-    /// The stretch of a curve that is its unit of time.
+pub struct CurveRegressionOptions {
+    /// The interval of a curve that is the unit of its scaled time.
     pub alignment: Alignment,
-    /// Principal components of the shapes, 1 or more.
+    /// Number of principal components of the shapes, 1 or more.
     pub n_components: usize,
-    /// Whether the momentum solution's impulse is among the inputs (it always scales the impulse).
+    /// Whether the momentum solution's impulse is an input of the regressions. In either case their
+    /// impulse is relative to it.
     pub with_impulse: bool,
 }
 
-/// Regressions fitted to training cases.
+/// Regressions of scaled force curves, fitted to training cases.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct StatisticalBaseline {
-    /// What was chosen.
-    pub options: StatisticalOptions,
+pub struct CurveRegression {
+    /// The chosen options.
+    pub options: CurveRegressionOptions,
     scales: Scales,
     shapes: Shapes,
     /// Share of training cases that hook or have not separated.
@@ -63,7 +66,7 @@ pub struct StatisticalBaseline {
     seed: u64,
 }
 
-/// What the regressions say of a scenario.
+/// Predictions of the regressions for a scenario.
 struct Regressed {
     /// Size, N s, and direction of the momentum solution's impulse.
     impulse_n_s: f64,
@@ -75,28 +78,28 @@ struct Regressed {
     coefficients: GaussianPrediction,
 }
 
-impl StatisticalBaseline {
-    /// Chooses its options and fits it.
+impl CurveRegression {
+    /// Chooses the options and fits the regressions.
     ///
-    /// - `seed`: of the folds and of the draws behind predictions.
+    /// - `seed`: of the folds and of the draws for predictions.
     ///
     /// # Errors
-    /// [`BaselineError`].
-    pub fn fit(cases: &[&ForceCase], columns: ColumnSet, seed: u64) -> Result<Self, BaselineError> {
+    /// [`CurveFitError`].
+    pub fn fit(cases: &[&ForceCase], columns: ColumnSet, seed: u64) -> Result<Self, CurveFitError> {
         let options = choose(cases, columns, seed)?;
         Self::fit_with(cases, columns, options, seed)
     }
 
-    /// Fits it with these options.
+    /// Fits the regressions with these options.
     ///
     /// # Errors
-    /// [`BaselineError`].
+    /// [`CurveFitError`].
     pub fn fit_with(
         cases: &[&ForceCase],
         columns: ColumnSet,
-        options: StatisticalOptions,
+        options: CurveRegressionOptions,
         seed: u64,
-    ) -> Result<Self, BaselineError> {
+    ) -> Result<Self, CurveFitError> {
         let scales = Scales::fit(cases, columns, options.with_impulse)?;
         let shapes = Shapes::fit(cases, &scales, options)?;
         Ok(Self::of_parts(cases, (scales, shapes), options, seed))
@@ -105,7 +108,7 @@ impl StatisticalBaseline {
     pub(super) fn of_parts(
         cases: &[&ForceCase],
         (scales, shapes): (Scales, Shapes),
-        options: StatisticalOptions,
+        options: CurveRegressionOptions,
         seed: u64,
     ) -> Self {
         let n_unusual = cases.iter().filter(|case| !case.is_clean()).count();
@@ -113,13 +116,14 @@ impl StatisticalBaseline {
         Self { options, scales, shapes, unusual_share, seed }
     }
 
-    /// Curve, impulse, peak and duration of a canonical scenario with their distribution: one
-    /// component of vehicles that part, one of those that do not, each from draws of all
-    /// regressions. The point estimate is that of vehicles that part.
+    /// Curve, impulse, peak and duration of a canonical scenario with their distribution.
+    ///
+    /// The distribution has one component for vehicles that part and one for vehicles that hook or stay
+    /// together, each from draws of all regressions. The point estimate is for vehicles that part.
     ///
     /// # Errors
-    /// [`BaselineError`].
-    pub fn predict(&self, scenario: &ForceScenario) -> Result<Prediction, BaselineError> {
+    /// [`CurveFitError`].
+    pub fn predict(&self, scenario: &ForceScenario) -> Result<CurvePrediction, CurveFitError> {
         let regressed = self.regress(scenario)?;
         let draws = self.draw(&regressed, false, N_PAIRS);
         let mut prediction = self.mean_of(&regressed, &draws);
@@ -141,13 +145,13 @@ impl StatisticalBaseline {
     /// The point estimate alone, from fewer draws.
     ///
     /// # Errors
-    /// [`BaselineError`].
-    pub fn point(&self, scenario: &ForceScenario) -> Result<Prediction, BaselineError> {
+    /// [`CurveFitError`].
+    pub fn point(&self, scenario: &ForceScenario) -> Result<CurvePrediction, CurveFitError> {
         let regressed = self.regress(scenario)?;
         Ok(self.mean_of(&regressed, &self.draw(&regressed, false, N_POINT_PAIRS)))
     }
 
-    fn regress(&self, scenario: &ForceScenario) -> Result<Regressed, BaselineError> {
+    fn regress(&self, scenario: &ForceScenario) -> Result<Regressed, CurveFitError> {
         let (row, [px, py]) = self.scales.row(scenario)?;
         Ok(Regressed {
             impulse_n_s: px.hypot(py),
@@ -158,9 +162,9 @@ impl StatisticalBaseline {
         })
     }
 
-    /// Mean of draws. The peak is that of the curve of the means: averaged curves are too flat, and
-    /// drawn ones too rough.
-    fn mean_of(&self, regressed: &Regressed, draws: &[ForceCurve]) -> Prediction {
+    /// Mean of draws. Its peak is that of the curve of the means, since the mean of curves is too flat
+    /// and drawn curves are too rough.
+    fn mean_of(&self, regressed: &Regressed, draws: &[ForceCurve]) -> CurvePrediction {
         let mut curve = ForceCurve::from_values(&spread::mean_values(draws));
         let [ln_ratio, turn, ln_duration] = &regressed.scales;
         curve.duration_s = ln_duration.mean[0].exp();
@@ -168,7 +172,7 @@ impl StatisticalBaseline {
         let (sin, cos) = (regressed.direction_rad + turn.mean[0]).sin_cos();
         let n_numbers = N_SCALARS + regressed.coefficients.mean.len();
         let of_means = self.curve(regressed, false, &vec![0.0; n_numbers]);
-        Prediction {
+        CurvePrediction {
             curve,
             impulse_n_s: [impulse * sin, impulse * cos],
             peak_n: of_means.peak().0,
@@ -176,7 +180,7 @@ impl StatisticalBaseline {
         }
     }
 
-    /// Curves with their durations, in pairs of opposite draws.
+    /// Drawn curves with their durations, in antithetic pairs.
     fn draw(&self, regressed: &Regressed, unusual: bool, n_pairs: usize) -> Vec<ForceCurve> {
         let mut rng = ChaCha8Rng::seed_from_u64(self.seed);
         let n_numbers = N_SCALARS + regressed.coefficients.mean.len();
@@ -191,7 +195,7 @@ impl StatisticalBaseline {
         draws
     }
 
-    /// The curve at these numbers of standard deviations of each regression.
+    /// The curve at `z` standard deviations from the mean of each regression.
     fn curve(&self, regressed: &Regressed, unusual: bool, z: &[f64]) -> ForceCurve {
         let at = |of: &GaussianPrediction, i: usize, z: f64| {
             of.mean[i] + z * if unusual { of.std_unusual[i] } else { of.std[i] }
@@ -211,8 +215,8 @@ impl StatisticalBaseline {
         ForceCurve { duration_s: ln_duration.exp(), ..curve }
     }
 
-    /// Deviation of what the principal components leave out, N, at the placement of the means, and a
-    /// floor.
+    /// Standard deviation of the part that the principal components do not explain, N, for the mean
+    /// interval and impulse, with a lower bound.
     fn residual_std_n(&self, regressed: &Regressed, draws: &[ForceCurve]) -> Vec<f64> {
         let placement = Placement {
             start_s: shapes::start_s(regressed.times[1].mean[0]),
@@ -235,7 +239,7 @@ mod tests {
     use crate::learning::{TEST_SHARE, split};
     use crate::numerics::Summary;
 
-    const OPTIONS: StatisticalOptions = StatisticalOptions {
+    const OPTIONS: CurveRegressionOptions = CurveRegressionOptions {
         alignment: Alignment::ImpulseShares { from: 0.02, to: 0.90 },
         n_components: 8,
         with_impulse: false,
@@ -251,7 +255,7 @@ mod tests {
             train.iter().enumerate().partition(|(i, _)| i % 3 == 0);
         let fitted_to: Vec<&ForceCase> = fitted_to.into_iter().map(|(_, case)| *case).collect();
         let columns = ColumnSet::ThetaContactAndBody;
-        let model = StatisticalBaseline::fit_with(&fitted_to, columns, OPTIONS, 0).unwrap();
+        let model = CurveRegression::fit_with(&fitted_to, columns, OPTIONS, 0).unwrap();
         let predict = |case: &ForceCase| model.predict(&case.scenario).unwrap();
         let clean = kept_back.iter().map(|(_, case)| **case).filter(|case| case.is_clean());
         let errors = clean.map(|case| PointErrors::of(case, &predict(case)).history_error);

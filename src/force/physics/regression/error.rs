@@ -1,14 +1,14 @@
-//! What no baseline can do.
+//! Why a regression or baseline cannot be fitted or give a force curve.
 
 use crate::collision::{ImpactError, PulseError};
 use crate::numerics::GaussianProcessError;
 use crate::uncertainty::MixtureError;
 
-/// A baseline that cannot be fitted or asked.
+/// A regression or a baseline that cannot be fitted to cases, or has no curve for a scenario.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum BaselineError {
-    /// No case to learn from.
-    #[error("a baseline fitted to no cases")]
+pub enum CurveFitError {
+    /// There is no case to learn from.
+    #[error("there are no cases to fit to")]
     NoCases,
     /// The momentum solution has no impulse to scale by: the vehicles do not approach.
     #[error("the vehicles do not approach: the momentum solution has no impulse")]
@@ -16,13 +16,13 @@ pub enum BaselineError {
     /// The momentum solution fails.
     #[error("the momentum solution fails")]
     Impact(#[from] ImpactError),
-    /// The pulse is no pulse.
+    /// The parameters of the pulse are out of range.
     #[error("the pulse is out of range")]
     Pulse(#[from] PulseError),
-    /// The regression fails.
+    /// A Gaussian process cannot be fitted or evaluated.
     #[error("the regression fails")]
     Regression(#[from] GaussianProcessError),
-    /// The spread is no distribution.
-    #[error("the spread is no distribution")]
+    /// The drawn curves give no distribution.
+    #[error("the drawn curves give no distribution")]
     Mixture(#[from] MixtureError),
 }

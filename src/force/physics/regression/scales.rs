@@ -1,8 +1,8 @@
-//! Regressions that know no shape: impulse relative to the momentum solution, and duration.
+//! Regressions of the impulse, relative to the momentum solution, and of the duration.
 
 use serde::{Deserialize, Serialize};
 
-use crate::force::regression::{BaselineError, ColumnSet, FeatureMap};
+use crate::force::regression::{ColumnSet, CurveFitError, FeatureMap};
 use crate::force::{ForceCase, ForceScenario, MomentumModel};
 use crate::numerics::{GaussianPrediction, GaussianProcess, GaussianProcessData};
 use crate::uncertainty::CURVE_INTERVAL_S;
@@ -22,7 +22,7 @@ impl Scales {
         cases: &[&ForceCase],
         columns: ColumnSet,
         with_impulse: bool,
-    ) -> Result<Self, BaselineError> {
+    ) -> Result<Self, CurveFitError> {
         let momentum = columns.fit_momentum(cases);
         let features = FeatureMap::fit(cases, columns);
         let mut inputs = Vec::with_capacity(cases.len());
@@ -50,11 +50,11 @@ impl Scales {
     pub(super) fn row(
         &self,
         scenario: &ForceScenario,
-    ) -> Result<(Vec<f64>, [f64; 2]), BaselineError> {
+    ) -> Result<(Vec<f64>, [f64; 2]), CurveFitError> {
         row(&self.momentum, (&self.features, self.with_impulse), scenario)
     }
 
-    pub(super) fn predict(&self, row: &[f64]) -> Result<[GaussianPrediction; 3], BaselineError> {
+    pub(super) fn predict(&self, row: &[f64]) -> Result<[GaussianPrediction; 3], CurveFitError> {
         let [ratio, turn, duration] = &self.regressions;
         Ok([ratio.predict(row)?, turn.predict(row)?, duration.predict(row)?])
     }
@@ -64,10 +64,10 @@ fn row(
     momentum: &MomentumModel,
     (features, with_impulse): (&FeatureMap, bool),
     scenario: &ForceScenario,
-) -> Result<(Vec<f64>, [f64; 2]), BaselineError> {
+) -> Result<(Vec<f64>, [f64; 2]), CurveFitError> {
     let solution = momentum.solve(scenario)?;
     if solution.impulse_n_s == [0.0; 2] {
-        return Err(BaselineError::NotApproaching);
+        return Err(CurveFitError::NotApproaching);
     }
     let row = if with_impulse {
         features.row_with_impulse(scenario, &solution)
@@ -77,7 +77,7 @@ fn row(
     Ok((row, solution.impulse_n_s))
 }
 
-/// Which cases hook or have not separated.
+/// Whether each case hooks or stays together.
 pub(super) fn unusual(cases: &[&ForceCase]) -> Vec<bool> {
     cases.iter().map(|case| !case.is_clean()).collect()
 }

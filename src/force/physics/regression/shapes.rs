@@ -6,23 +6,23 @@ use serde::{Deserialize, Serialize};
 
 use crate::force::ForceCase;
 use crate::force::regression::scales::{Scales, unusual};
-use crate::force::regression::{Alignment, BaselineError, StatisticalOptions};
+use crate::force::regression::{Alignment, CurveFitError, CurveRegressionOptions};
 use crate::numerics::{GaussianPrediction, GaussianProcess, GaussianProcessData};
 
-/// Added to onsets before their logarithm is taken, s: they may be zero.
+/// Added to onsets, which may be zero, before their logarithm is taken, s.
 const ONSET_FLOOR_S: f64 = 2e-3;
 
-/// How much the coefficients of a shape count together for their hyperparameters, in outputs: they
-/// are not as many independent pieces of evidence as they are numbers.
+/// Weight of all coefficients of a shape together in the likelihood of their hyperparameters, in
+/// outputs. It is less than their number since they are not independent.
 const COEFFICIENTS_WEIGHT: f64 = 3.0;
 
-/// Shapes as mean and components, and what predicts them.
+/// Mean and principal components of the shapes, and the regressions that predict their coefficients.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Shapes {
     mean: Vec<f64>,
     /// Unit vectors, by falling share of the variance.
     components: Vec<Vec<f64>>,
-    /// Deviation of what the components leave out.
+    /// Standard deviation of the part that the components do not explain.
     residual_std: Vec<f64>,
     length: GaussianProcess,
     onset: GaussianProcess,
@@ -33,14 +33,14 @@ impl Shapes {
     pub(super) fn fit(
         cases: &[&ForceCase],
         scales: &Scales,
-        options: StatisticalOptions,
-    ) -> Result<Self, BaselineError> {
-        let StatisticalOptions { alignment, n_components, .. } = options;
+        options: CurveRegressionOptions,
+    ) -> Result<Self, CurveFitError> {
+        let CurveRegressionOptions { alignment, n_components, .. } = options;
         let unusual = unusual(cases);
         let shapes: Vec<Vec<f64>> = cases.iter().map(|case| shape_of(alignment, case)).collect();
-        let basis = Basis::of(&shapes, &unusual, n_components).ok_or(BaselineError::NoCases)?;
+        let basis = Basis::of(&shapes, &unusual, n_components).ok_or(CurveFitError::NoCases)?;
         let inputs = cases.iter().map(|case| Ok(scales.row(&case.scenario)?.0));
-        let inputs: Vec<Vec<f64>> = inputs.collect::<Result<_, BaselineError>>()?;
+        let inputs: Vec<Vec<f64>> = inputs.collect::<Result<_, CurveFitError>>()?;
         let regress = |outputs: &[Vec<f64>], weights: &[f64]| {
             let data = GaussianProcessData { inputs: &inputs, outputs, unusual: &unusual, weights };
             GaussianProcess::fit(&data)
@@ -62,7 +62,7 @@ impl Shapes {
         })
     }
 
-    /// The same with the first components only.
+    /// The same with the first `n_components` only.
     pub(super) fn truncated(mut self, n_components: usize) -> Self {
         self.components.truncate(n_components);
         self
@@ -72,14 +72,14 @@ impl Shapes {
     pub(super) fn predict_times(
         &self,
         row: &[f64],
-    ) -> Result<[GaussianPrediction; 2], BaselineError> {
+    ) -> Result<[GaussianPrediction; 2], CurveFitError> {
         Ok([self.length.predict(row)?, self.onset.predict(row)?])
     }
 
     pub(super) fn predict_coefficients(
         &self,
         row: &[f64],
-    ) -> Result<GaussianPrediction, BaselineError> {
+    ) -> Result<GaussianPrediction, CurveFitError> {
         let mut prediction = self.coefficients.predict(row)?;
         for values in [&mut prediction.mean, &mut prediction.std, &mut prediction.std_unusual] {
             values.truncate(self.components.len());
@@ -102,7 +102,7 @@ impl Shapes {
     }
 }
 
-/// Onset of a logarithm that [`Shapes`] regresses, s.
+/// Onset of a regressed logarithm, s.
 pub(super) fn start_s(ln_start: f64) -> f64 {
     ln_start.exp() - ONSET_FLOOR_S
 }
@@ -160,7 +160,7 @@ impl Basis {
         self.components.iter().map(dot).collect()
     }
 
-    /// Root mean square over usual shapes of what the components leave out.
+    /// Root mean square over usual shapes of the part that the components do not explain.
     fn residual_std(&self, shapes: &[Vec<f64>], unusual: &[bool]) -> Vec<f64> {
         let (mut squares, mut n) = (vec![0.0; self.mean.len()], 0.0);
         for (shape, _) in shapes.iter().zip(unusual).filter(|(_, unusual)| !**unusual) {

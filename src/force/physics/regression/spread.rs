@@ -4,14 +4,14 @@ use nalgebra::DMatrix;
 
 use crate::uncertainty::{CurveComponent, ForceCurve};
 
-/// Latent factors of a component.
+/// Number of latent factors of a component.
 const N_FACTORS: usize = 8;
 
-/// Deviation that every force has of itself, as a share of the peak: what runs repeated with hardly
-/// other speed or offset differ by, which is 2 % of the peak and more.
+/// Smallest standard deviation of a force as a share of the peak. Finite-element runs repeated with
+/// nearly the same speed and offset differ by 2 % of the peak and more.
 pub(super) const FLOOR_SHARE_OF_PEAK: f64 = 0.01;
 
-/// Deviation that every duration has of itself, s: a step of the time grid.
+/// Smallest standard deviation of a duration, s: a step of the time grid.
 const FLOOR_DURATION_S: f64 = 1e-3;
 
 /// Mean of the rows of curves with their durations.
@@ -31,10 +31,10 @@ pub(super) fn mean_peak_n(draws: &[ForceCurve]) -> f64 {
     ForceCurve::from_values(&mean_values(draws)).peak().0
 }
 
-/// Normal distribution with the mean and the variances of draws; their covariances by the leading
+/// The normal distribution with mean and variances of draws, and with the covariances of their leading
 /// factors. Its weight is one.
 ///
-/// - `own_std_n`: what each force has besides, N.
+/// - `own_std_n`: standard deviation that each force has besides that of the draws, N.
 pub(super) fn component(draws: &[ForceCurve], own_std_n: Vec<f64>) -> CurveComponent {
     let mean = mean_values(draws);
     let scale = (draws.len().max(1) as f64).sqrt();

@@ -1,16 +1,18 @@
-//! Figures over several cases.
+//! Metrics over several cases.
 
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::force::metrics::{BAND_LEVELS, Covered, N_PIT_BINS, PointErrors, ProbabilisticScores};
+use crate::force::metrics::{
+    BAND_LEVELS, CaseCoverage, N_PIT_BINS, PointErrors, ProbabilisticScores,
+};
 use crate::numerics::Summary;
 
-/// Errors over several cases, as in [`PointErrors`]: every case has the same weight.
+/// Statistics of [`PointErrors`] over several cases, all of the same weight.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Figures {
-    /// Cases.
+pub struct CurveMetrics {
+    /// Number of cases.
     pub n_cases: usize,
     /// Root mean square error over the peak.
     pub rmse_over_peak: Summary,
@@ -30,38 +32,38 @@ pub struct Figures {
     pub peak_error: Summary,
     /// Error of the duration.
     pub duration_error: Summary,
-    /// How honest the spread is; nothing for models without one.
+    /// Metrics of the predicted distributions; `None` for a model without distributions.
     #[serde(flatten)]
-    pub probabilistic: Option<ProbabilisticFigures>,
+    pub probabilistic: Option<DistributionMetrics>,
 }
 
-/// How often the intervals of a level hold the observed values.
+/// How often the intervals of one level contain the observed values.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Coverage {
-    /// Share that they should hold.
+pub struct IntervalCoverage {
+    /// Nominal share.
     pub level: f64,
-    /// Share that they hold: the mean over the cases of each case's share.
+    /// Observed share: the mean over the cases of the share of each case.
     pub share: f64,
-    /// Standard error of `share`: the spread between the cases over the root of their number. The
-    /// instants of one case are no independent trials.
+    /// Standard error of `share`: the standard deviation between cases over the root of their number,
+    /// since the instants of one case are not independent.
     pub standard_error: f64,
     /// Mean width, in the unit of the quantity.
     pub mean_width: f64,
 }
 
-/// How honest a spread is, over several cases, as in [`ProbabilisticScores`].
+/// Statistics of [`ProbabilisticScores`] over several cases.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ProbabilisticFigures {
-    /// Coverage of F_x(t) and F_y(t) by level in percent.
+pub struct DistributionMetrics {
+    /// Observed shares of F_x(t) and F_y(t) by nominal level in percent.
     pub coverage: BTreeMap<String, f64>,
     /// Bands of F_x(t) and F_y(t), N.
-    pub force_n: [Coverage; 4],
+    pub force_n: [IntervalCoverage; 4],
     /// Intervals of `|P|`, N s.
-    pub impulse_n_s: [Coverage; 4],
+    pub impulse_n_s: [IntervalCoverage; 4],
     /// Intervals of the largest `|F|`, N.
-    pub peak_n: [Coverage; 4],
+    pub peak_n: [IntervalCoverage; 4],
     /// Intervals of the duration, s.
-    pub duration_s: [Coverage; 4],
+    pub duration_s: [IntervalCoverage; 4],
     /// Continuous ranked probability score of F(t), N.
     pub crps_force_n: Summary,
     /// The same of `|P|`, N s.
@@ -80,14 +82,14 @@ pub struct ProbabilisticFigures {
     pub pit_impulse: [u32; N_PIT_BINS],
 }
 
-impl Figures {
-    /// Sums up cases; `None` without any.
+impl CurveMetrics {
+    /// Statistics over cases; `None` without any case.
     ///
     /// - `scores`: of the same cases, or empty.
     pub fn of(errors: &[&PointErrors], scores: &[&ProbabilisticScores]) -> Option<Self> {
-        let of = |figure: fn(&PointErrors) -> f64| Summary::of(errors.iter().map(|e| figure(e)));
-        let known = |figure: fn(&PointErrors) -> Option<f64>| {
-            Summary::of(errors.iter().filter_map(|e| figure(e)))
+        let of = |metric: fn(&PointErrors) -> f64| Summary::of(errors.iter().map(|e| metric(e)));
+        let known = |metric: fn(&PointErrors) -> Option<f64>| {
+            Summary::of(errors.iter().filter_map(|e| metric(e)))
         };
         Some(Self {
             n_cases: errors.len(),
@@ -100,27 +102,27 @@ impl Figures {
             impulse_error: of(|e| e.impulse_error)?,
             peak_error: of(|e| e.peak_error)?,
             duration_error: of(|e| e.duration_error)?,
-            probabilistic: ProbabilisticFigures::of(scores),
+            probabilistic: DistributionMetrics::of(scores),
         })
     }
 }
 
-impl ProbabilisticFigures {
-    /// Sums up cases; `None` without any.
+impl DistributionMetrics {
+    /// Statistics over cases; `None` without any case.
     pub fn of(scores: &[&ProbabilisticScores]) -> Option<Self> {
         let of =
-            |figure: fn(&ProbabilisticScores) -> f64| Summary::of(scores.iter().map(|s| figure(s)));
-        let covered = |figure: fn(&ProbabilisticScores) -> &Covered| {
-            Coverage::of(&scores.iter().map(|s| figure(s)).collect::<Vec<_>>())
+            |metric: fn(&ProbabilisticScores) -> f64| Summary::of(scores.iter().map(|s| metric(s)));
+        let covered = |metric: fn(&ProbabilisticScores) -> &CaseCoverage| {
+            IntervalCoverage::of(&scores.iter().map(|s| metric(s)).collect::<Vec<_>>())
         };
-        let pit = |figure: fn(&ProbabilisticScores) -> &[u32; N_PIT_BINS]| {
+        let pit = |metric: fn(&ProbabilisticScores) -> &[u32; N_PIT_BINS]| {
             scores.iter().fold([0; N_PIT_BINS], |mut sum, score| {
-                sum.iter_mut().zip(figure(score)).for_each(|(sum, count)| *sum += count);
+                sum.iter_mut().zip(metric(score)).for_each(|(sum, count)| *sum += count);
                 sum
             })
         };
         let force_n = covered(|s| &s.force_n)?;
-        let by_percent = |c: &Coverage| (format!("{:.0}", c.level * 100.0), c.share);
+        let by_percent = |c: &IntervalCoverage| (format!("{:.0}", c.level * 100.0), c.share);
         Some(Self {
             coverage: force_n.iter().map(by_percent).collect(),
             force_n,
@@ -139,9 +141,9 @@ impl ProbabilisticFigures {
     }
 }
 
-impl Coverage {
-    /// At each of [`BAND_LEVELS`]; `None` without cases.
-    fn of(cases: &[&Covered]) -> Option<[Self; 4]> {
+impl IntervalCoverage {
+    /// Coverage at each of [`BAND_LEVELS`]; `None` without cases.
+    fn of(cases: &[&CaseCoverage]) -> Option<[Self; 4]> {
         let at = |i: usize| {
             let share = Summary::of(cases.iter().map(|case| case.share[i]))?;
             let width = Summary::of(cases.iter().map(|case| case.width[i]))?;
@@ -162,14 +164,14 @@ mod tests {
 
     #[test]
     fn coverage_has_the_standard_error_of_the_cases() {
-        let covered = |share: f64| Covered { share: [share; 4], width: [10.0; 4] };
+        let covered = |share: f64| CaseCoverage { share: [share; 4], width: [10.0; 4] };
         let cases = [covered(1.0), covered(0.0), covered(1.0), covered(1.0)];
-        let all: Vec<&Covered> = cases.iter().collect();
-        let [coverage, ..] = Coverage::of(&all).unwrap();
+        let all: Vec<&CaseCoverage> = cases.iter().collect();
+        let [coverage, ..] = IntervalCoverage::of(&all).unwrap();
         assert_eq!((coverage.level, coverage.share, coverage.mean_width), (0.5, 0.75, 10.0));
         assert!((coverage.standard_error - 0.25).abs() < 1e-12, "{coverage:?}");
-        assert_eq!(Coverage::of(&[]), None);
-        assert_eq!(ProbabilisticFigures::of(&[]), None);
-        assert_eq!(Figures::of(&[], &[]), None);
+        assert_eq!(IntervalCoverage::of(&[]), None);
+        assert_eq!(DistributionMetrics::of(&[]), None);
+        assert_eq!(CurveMetrics::of(&[], &[]), None);
     }
 }

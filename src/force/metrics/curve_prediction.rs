@@ -1,10 +1,10 @@
-//! What a force model says of a case.
+//! What any force model, network, regression or baseline, predicts for a case.
 
 use crate::uncertainty::{CurveMixture, ForceCurve};
 
-/// Point estimates and, if the model has one, a distribution; in canonical axes.
+/// Point estimates and, if the model has one, a distribution, in canonical axes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Prediction {
+pub struct CurvePrediction {
     /// Curve and duration.
     pub curve: ForceCurve,
     /// Impulse, N s.
@@ -15,16 +15,17 @@ pub struct Prediction {
     pub mixture: Option<CurveMixture>,
 }
 
-impl Prediction {
-    /// A curve alone: impulse and peak are its own.
+impl CurvePrediction {
+    /// The prediction of a curve alone, with the impulse and the peak of this curve.
     pub fn of_curve(curve: ForceCurve) -> Self {
         let (impulse_n_s, peak_n) = (curve.impulse_n_s(), curve.peak().0);
         Self { curve, impulse_n_s, peak_n, mixture: None }
     }
 
-    /// A distribution, and the part of it from which the point estimates come: curve, impulse and
-    /// peak are those of its mean, the duration is its median. Drawn curves are rougher than the
-    /// recorded ones, so that the median of their peaks lies too high; it gives the intervals.
+    /// The prediction of a distribution, with point estimates from a part of it.
+    ///
+    /// Curve, impulse and peak are those of the mean of `likely`, and the duration is its median. The
+    /// median of drawn peaks would be too large, since drawn curves are rougher than recorded ones.
     pub fn of_mixture(mixture: CurveMixture, likely: &CurveMixture) -> Self {
         let mut prediction = Self::of_curve(likely.mean());
         prediction.curve.duration_s = likely.duration_s().quantile(0.5);
