@@ -1,15 +1,22 @@
-//! The Swish activation fused with the bias, forward and backward, over rows in one pass each.
+//! What follows the matrix product of a layer, bias and activation, as one operation on rows.
 //!
 //! ```text
 //! z = x Wᵀ + b      y = z·σ(z)      dy/dz = σ(z) + y·(1 − σ(z))      σ(z) = 1/(1 + e⁻ᶻ)
 //! ```
 //!
-//! The slope dy/dz is kept from the forward pass, so the backward pass has no exponential.
-//! All rows are as long as the bias.
+//! The slope dy/dz is kept from the forward pass, so that the backward pass has no exponential, and
+//! the gradient of the bias is summed in one pass over the rows.
 
+use std::sync::OnceLock;
+
+use candle_core::{
+    CpuStorage, CustomOp2, Device, Error, Layout, Result as TensorResult, Shape, Tensor,
+};
 use serde::{Deserialize, Serialize};
 
+use crate::nn::NnError;
 use crate::nn::element::{Element, vectorized};
+use crate::nn::storage::{NumberType, contiguous, cpu_storage, number_type};
 
 /// What follows the sum of a layer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,22 +27,91 @@ pub enum Activation {
     Silu,
 }
 
-/// z + b in place. `z`: `[rows, width]`.
-pub(crate) fn add_bias<T: Element>(z: &mut [T], bias: &[T]) {
-    vectorized(
-        #[inline(always)]
-        || {
-            for row in z.chunks_exact_mut(bias.len()) {
-                for (z, &b) in row.iter_mut().zip(bias) {
-                    *z += b;
-                }
-            }
-        },
-    );
+impl Activation {
+    /// y of the product `x Wᵀ` and the bias.
+    ///
+    /// - `product`: `[rows, width]`, contiguous.
+    /// - `bias`: `[width]`.
+    /// - returns `[rows, width]`.
+    ///
+    /// # Errors
+    /// [`NnError::NumberType`], [`NnError::Tensor`].
+    pub(crate) fn apply(self, product: &Tensor, bias: &Tensor) -> Result<Tensor, NnError> {
+        Ok(match number_type(product, "layer")? {
+            NumberType::F32 => product.apply_op2(bias, BiasActivation::<f32>::new(self))?,
+            NumberType::F64 => product.apply_op2(bias, BiasActivation::<f64>::new(self))?,
+        })
+    }
 }
 
-/// y = silu(z + b) in place. `z`: `[rows, width]`.
-pub(crate) fn bias_silu<T: Element>(z: &mut [T], bias: &[T]) {
+/// One application of bias and activation.
+struct BiasActivation<T> {
+    activation: Activation,
+    /// dy/dz, kept for the backward pass; without an activation none is needed.
+    slope: OnceLock<Vec<T>>,
+}
+
+impl<T: Element> BiasActivation<T> {
+    fn new(activation: Activation) -> Self {
+        Self { activation, slope: OnceLock::new() }
+    }
+}
+
+impl<T: Element> CustomOp2 for BiasActivation<T> {
+    fn name(&self) -> &'static str {
+        "bias and activation"
+    }
+
+    fn cpu_fwd(
+        &self,
+        product: &CpuStorage,
+        product_layout: &Layout,
+        bias: &CpuStorage,
+        bias_layout: &Layout,
+    ) -> TensorResult<(CpuStorage, Shape)> {
+        let bias = contiguous::<T>(bias, bias_layout, self.name())?;
+        let mut y = contiguous::<T>(product, product_layout, self.name())?.to_vec();
+        match self.activation {
+            Activation::None => add_bias(&mut y, bias),
+            Activation::Silu => {
+                let mut slope = vec![T::ZERO; y.len()];
+                bias_silu_with_slope(&mut y, &mut slope, bias);
+                // An operation is applied once, so that no slope is kept yet.
+                self.slope.get_or_init(|| slope);
+            }
+        }
+        Ok((T::to_cpu_storage_owned(y), product_layout.shape().clone()))
+    }
+
+    fn bwd(
+        &self,
+        product: &Tensor,
+        bias: &Tensor,
+        _y: &Tensor,
+        gradient: &Tensor,
+    ) -> TensorResult<(Option<Tensor>, Option<Tensor>)> {
+        let gradient = gradient.contiguous()?;
+        let (storage, layout) = gradient.storage_and_layout();
+        let storage = cpu_storage(&storage, self.name())?;
+        let mut delta = contiguous::<T>(storage, layout, self.name())?.to_vec();
+        if self.activation == Activation::Silu {
+            let slope = self.slope.get().ok_or(Error::BackwardNotSupported { op: self.name() })?;
+            multiply(&mut delta, slope);
+        }
+        let mut bias_gradient = vec![T::ZERO; bias.elem_count()];
+        add_column_sums(&mut bias_gradient, &delta);
+        Ok((
+            Some(Tensor::from_vec(delta, product.shape(), &Device::Cpu)?),
+            Some(Tensor::from_vec(bias_gradient, bias.shape(), &Device::Cpu)?),
+        ))
+    }
+}
+
+/// y = silu(z + b), or z + b, in place. `z`: `[rows, width]`.
+pub(crate) fn bias_silu_rows(z: &mut [f32], bias: &[f32], swish: bool) {
+    if !swish {
+        return add_bias(z, bias);
+    }
     vectorized(
         #[inline(always)]
         || {
@@ -49,13 +125,22 @@ pub(crate) fn bias_silu<T: Element>(z: &mut [T], bias: &[T]) {
     );
 }
 
-/// y = silu(z + b), or z + b, in place. `z`: `[rows, width]`.
-pub(crate) fn bias_silu_rows(z: &mut [f32], bias: &[f32], swish: bool) {
-    if swish { bias_silu(z, bias) } else { add_bias(z, bias) }
+/// z + b in place. `z`: `[rows, width]`.
+fn add_bias<T: Element>(z: &mut [T], bias: &[T]) {
+    vectorized(
+        #[inline(always)]
+        || {
+            for row in z.chunks_exact_mut(bias.len()) {
+                for (z, &b) in row.iter_mut().zip(bias) {
+                    *z += b;
+                }
+            }
+        },
+    );
 }
 
 /// y = silu(z + b) in place, and the slopes dy/dz. `z`, `slope`: `[rows, width]`.
-pub(crate) fn bias_silu_with_slope<T: Element>(z: &mut [T], slope: &mut [T], bias: &[T]) {
+fn bias_silu_with_slope<T: Element>(z: &mut [T], slope: &mut [T], bias: &[T]) {
     let width = bias.len();
     vectorized(
         #[inline(always)]
@@ -72,24 +157,20 @@ pub(crate) fn bias_silu_with_slope<T: Element>(z: &mut [T], slope: &mut [T], bia
     );
 }
 
-/// δ = g·dy/dz in place, and its sums over the rows added to `sums`: the gradients of z and b.
-pub(crate) fn to_delta<T: Element>(gradient: &mut [T], slope: &[T], sums: &mut [T]) {
-    let width = sums.len();
+/// g·dy/dz in place.
+fn multiply<T: Element>(gradient: &mut [T], slope: &[T]) {
     vectorized(
         #[inline(always)]
         || {
-            for (g, slope) in gradient.chunks_exact_mut(width).zip(slope.chunks_exact(width)) {
-                for ((g, &slope), sum) in g.iter_mut().zip(slope).zip(&mut *sums) {
-                    *g *= slope;
-                    *sum += *g;
-                }
+            for (g, &slope) in gradient.iter_mut().zip(slope) {
+                *g *= slope;
             }
         },
     );
 }
 
 /// Sums over the rows of `[rows, width]`, added to `sums`.
-pub(crate) fn add_column_sums<T: Element>(sums: &mut [T], values: &[T]) {
+fn add_column_sums<T: Element>(sums: &mut [T], values: &[T]) {
     vectorized(
         #[inline(always)]
         || {

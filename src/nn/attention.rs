@@ -11,8 +11,10 @@
 use candle_core::Tensor;
 use serde::{Deserialize, Serialize};
 
-use crate::nn::attention_core::AttentionCore;
-use crate::nn::{Activation, LayerNorm, Linear, NnError, ParameterBuilder};
+use crate::nn::{
+    Activation, LayerNorm, Linear, NnError, ParameterBuilder, product, product_with_transposed,
+    softmax,
+};
 
 /// The sizes of an attention layer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -116,10 +118,20 @@ impl Attention {
     }
 
     fn attend(&self, queries: &Tensor, tokens: &Tensor) -> Result<Tensor, NnError> {
-        let (query, key) = (self.query.forward(queries)?, self.key.forward(tokens)?);
-        let core = AttentionCore { heads: self.config.heads };
-        let seen = query.apply_op3(&key, &self.value.forward(tokens)?, core)?;
-        self.output.forward(&seen)
+        let (batch, n_queries, channels) = queries.dims3()?;
+        let head_channels = channels / self.config.heads;
+        let heads = |x: Tensor| -> Result<Tensor, NnError> {
+            let (batch, n, _) = x.dims3()?;
+            let x = x.reshape((batch, n, self.config.heads, head_channels))?;
+            Ok(x.transpose(1, 2)?.contiguous()?)
+        };
+        let query = heads(self.query.forward(queries)?)?;
+        let key = heads(self.key.forward(tokens)?)?;
+        let value = heads(self.value.forward(tokens)?)?;
+        let scale = 1.0 / (head_channels as f64).sqrt();
+        let weights = softmax(&product_with_transposed(&query, &key)?, scale)?;
+        let seen = product(&weights, &value)?.transpose(1, 2)?;
+        self.output.forward(&seen.reshape((batch, n_queries, channels))?)
     }
 }
 

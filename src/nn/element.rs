@@ -1,35 +1,19 @@
-//! The numbers that the kernels compute with, and the exponential function written so that the
+//! The numbers that the operations compute with, and the exponential function written so that the
 //! compiler turns loops over it into vector instructions.
 
-use std::ops::AddAssign;
-
-use candle_core::{CpuStorage, FloatDType};
-use faer::traits::ComplexField;
-
-use crate::nn::workspace::{Pool, Workspace};
-
-/// Rows that one task works on, and over which a sum is taken before the partial sums are added.
-/// Fixed, so that results do not depend on the number of threads.
-pub(crate) const ROWS_PER_BLOCK: usize = 64;
-
-/// Below so many numbers, one thread is faster than two.
-const MIN_PARALLEL: usize = 16_384;
+use candle_core::FloatDType;
+use ndarray::LinalgScalar;
 
 /// Independent accumulators of a sum, so that it can be taken with vector instructions.
 const LANES: usize = 16;
 
-/// `f32` or `f64`, with what the kernels need.
-pub(crate) trait Element: FloatDType + ComplexField + AddAssign {
+/// `f32` or `f64`, with what the operations need.
+pub(crate) trait Element: FloatDType + LinalgScalar {
     const ZERO: Self;
     const ONE: Self;
 
     /// eˣ.
     fn exp(self) -> Self;
-    fn sqrt(self) -> Self;
-    /// The numbers of a storage of this type.
-    fn slice_mut(storage: &mut CpuStorage) -> Option<&mut [Self]>;
-    /// The buffers of this type.
-    fn pool(workspace: &Workspace) -> &Pool<Self>;
 
     /// 1/(1 + e⁻ˣ).
     #[inline(always)]
@@ -69,22 +53,6 @@ impl Element for f32 {
         let e = p * (r * r) + r + 1.0;
         e * f32::from_bits(shifted.to_bits().wrapping_add(127) << 23)
     }
-
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        f32::sqrt(self)
-    }
-
-    fn slice_mut(storage: &mut CpuStorage) -> Option<&mut [Self]> {
-        match storage {
-            CpuStorage::F32(values) => Some(values),
-            _ => None,
-        }
-    }
-
-    fn pool(workspace: &Workspace) -> &Pool<Self> {
-        &workspace.f32
-    }
 }
 
 impl Element for f64 {
@@ -94,22 +62,6 @@ impl Element for f64 {
     #[inline(always)]
     fn exp(self) -> Self {
         f64::exp(self)
-    }
-
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        f64::sqrt(self)
-    }
-
-    fn slice_mut(storage: &mut CpuStorage) -> Option<&mut [Self]> {
-        match storage {
-            CpuStorage::F64(values) => Some(values),
-            _ => None,
-        }
-    }
-
-    fn pool(workspace: &Workspace) -> &Pool<Self> {
-        &workspace.f64
     }
 }
 
@@ -164,22 +116,6 @@ pub(crate) fn max_of<T: Element>(values: &[T], scale: T) -> T {
     largest
 }
 
-/// How many blocks one task takes at least: all of them where two threads would not pay.
-///
-/// - `n_values`: numbers that the blocks hold together.
-pub(crate) fn min_blocks_per_task(n_values: usize) -> usize {
-    if n_values < MIN_PARALLEL { usize::MAX } else { 1 }
-}
-
-/// The sum of the rows of `[n_blocks, width]`, in their order.
-pub(crate) fn sum_of_rows<T: Element>(rows: &[T], width: usize) -> Vec<T> {
-    let mut sums = vec![T::ZERO; width];
-    for row in rows.chunks_exact(width.max(1)) {
-        sums.iter_mut().zip(row).for_each(|(sum, &value)| *sum += value);
-    }
-    sums
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -211,6 +147,5 @@ mod tests {
             let expected = f64::from(n) * f64::from(n - 1) / 2.0;
             assert_eq!(sum_of(&values, &values, |a, _| a), expected, "n = {n}");
         }
-        assert_eq!(sum_of_rows(&[1.0, 2.0, 3.0, 4.0_f32], 2), [4.0, 6.0]);
     }
 }

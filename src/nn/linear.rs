@@ -1,11 +1,9 @@
-//! A fully connected layer as one operation: product, bias and activation, with an exact gradient.
+//! A fully connected layer.
 
 use candle_core::Tensor;
 
-use crate::nn::fused::{FusedLinear, forward_untracked};
-use crate::nn::storage::{NumberType, number_type};
-use crate::nn::workspace::Workspace;
-use crate::nn::{Activation, Init, NnError, ParameterBuilder};
+use crate::nn::storage::number_type;
+use crate::nn::{Activation, Init, NnError, ParameterBuilder, product_with_transposed};
 
 /// A fully connected layer, `[…, n_in]` to `[…, n_out]`.
 #[derive(Debug, Clone)]
@@ -14,7 +12,6 @@ pub struct Linear {
     weight: Tensor,
     bias: Tensor,
     activation: Activation,
-    workspace: Workspace,
 }
 
 impl Linear {
@@ -53,7 +50,7 @@ impl Linear {
         }
         let weight = builder.add("weight", &[n_out, n_in], init)?;
         let bias = builder.add("bias", &[n_out], Init::Zero)?;
-        Ok(Self { name, weight, bias, activation, workspace: Workspace::default() })
+        Ok(Self { name, weight, bias, activation })
     }
 
     /// `[n_in, n_out]`.
@@ -76,44 +73,17 @@ impl Linear {
     /// # Errors
     /// [`NnError::InputWidth`], [`NnError::NumberType`].
     pub fn forward(&self, x: &Tensor) -> Result<Tensor, NnError> {
-        let (x, number_type) = self.checked(x)?;
-        if !x.track_op() && !self.is_tracked() {
-            return forward_untracked(&x, number_type, std::slice::from_ref(self), &self.workspace);
-        }
-        let (weight, bias, activation) = (&self.weight, &self.bias, self.activation);
-        let workspace = &self.workspace;
-        Ok(match number_type {
-            NumberType::F32 => {
-                x.apply_op3(weight, bias, FusedLinear::<f32>::new(activation, workspace))?
-            }
-            NumberType::F64 => {
-                x.apply_op3(weight, bias, FusedLinear::<f64>::new(activation, workspace))?
-            }
-        })
-    }
-
-    /// Weight and bias.
-    pub(crate) fn tensors(&self) -> [&Tensor; 2] {
-        [&self.weight, &self.bias]
-    }
-
-    /// Whether the way back passes here.
-    pub(crate) fn is_tracked(&self) -> bool {
-        self.weight.track_op() || self.bias.track_op()
-    }
-
-    /// The rows that go in, in one piece, checked.
-    pub(crate) fn checked(&self, x: &Tensor) -> Result<(Tensor, NumberType), NnError> {
-        let [expected, _] = self.widths();
-        if x.dims().last() != Some(&expected) {
+        let [n_in, n_out] = self.widths();
+        let mut dims = x.dims().to_vec();
+        let Some(last) = dims.last_mut().filter(|last| **last == n_in) else {
             let (name, got) = (self.name.clone(), x.dims().to_vec());
-            return Err(NnError::InputWidth { name, expected, got });
-        }
-        Ok((x.contiguous()?, number_type(x, &self.name)?))
-    }
-
-    pub(crate) fn activation(&self) -> Activation {
-        self.activation
+            return Err(NnError::InputWidth { name, expected: n_in, got });
+        };
+        *last = n_out;
+        number_type(x, &self.name)?;
+        // One product for all rows, whatever the leading dimensions are.
+        let product = product_with_transposed(&x.reshape(((), n_in))?, &self.weight)?;
+        Ok(self.activation.apply(&product, &self.bias)?.reshape(dims)?)
     }
 }
 
@@ -161,22 +131,22 @@ mod tests {
     }
 
     #[test]
-    fn the_fused_layer_equals_the_plain_one() {
+    fn the_layer_equals_one_of_candles_operations() {
         for activation in [Activation::None, Activation::Silu] {
             for rows in [1, 63, 64, 65, 5000] {
                 let (parameters, linear) = layer(DType::F32, activation);
                 let x = Var::from_tensor(&random_tensor(&[rows, 3], DType::F32, 2)).unwrap();
-                let (fused, plain) = (linear.forward(&x).unwrap(), plain(&linear, &x));
-                assert_close(&fused, &plain, 1e-5);
-                assert_close(&linear.frozen().forward(&x.detach()).unwrap(), &fused, 0.0);
+                let (own, plain) = (linear.forward(&x).unwrap(), plain(&linear, &x));
+                assert_close(&own, &plain, 1e-5);
+                assert_close(&linear.frozen().forward(&x.detach()).unwrap(), &own, 0.0);
                 let weights = random_tensor(&[rows, 4], DType::F32, 3);
                 let weigh = |y: &Tensor| (y * &weights).unwrap().mean_all().unwrap();
-                let fused = weigh(&fused).backward().unwrap();
+                let own = weigh(&own).backward().unwrap();
                 let plain = weigh(&plain).backward().unwrap();
                 let all = parameters.iter().map(|(_, v)| v).chain([&x]);
                 for variable in all {
-                    let (fused, plain) = (fused.get(variable), plain.get(variable));
-                    assert_close(fused.unwrap(), plain.unwrap(), 1e-5);
+                    let (own, plain) = (own.get(variable), plain.get(variable));
+                    assert_close(own.unwrap(), plain.unwrap(), 1e-5);
                 }
             }
         }

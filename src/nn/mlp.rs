@@ -2,16 +2,12 @@
 
 use candle_core::{D, Tensor};
 
-use crate::nn::fused::{FusedStack, forward_untracked};
-use crate::nn::storage::NumberType;
-use crate::nn::workspace::Workspace;
 use crate::nn::{Activation, Linear, NnError, ParameterBuilder};
 
 /// Fully connected layers one after the other, all but perhaps the last with Swish.
 #[derive(Debug, Clone)]
 pub struct Mlp {
     layers: Vec<Linear>,
-    workspace: Workspace,
 }
 
 impl Mlp {
@@ -37,7 +33,7 @@ impl Mlp {
             let activation = if i + 1 == n_layers { last } else { Activation::Silu };
             layers.push(Linear::new(&mut builder.at(i), [pair[0], pair[1]], activation)?);
         }
-        Ok(Self { layers, workspace: Workspace::default() })
+        Ok(Self { layers })
     }
 
     /// The layers, from the input on.
@@ -62,8 +58,7 @@ impl Mlp {
         let freeze = |(i, layer): (usize, &Linear)| {
             if i < n_layers { layer.frozen() } else { layer.clone() }
         };
-        let layers = self.layers.iter().enumerate().map(freeze).collect();
-        Self { layers, workspace: self.workspace.clone() }
+        Self { layers: self.layers.iter().enumerate().map(freeze).collect() }
     }
 
     /// All layers, one after the other.
@@ -74,22 +69,7 @@ impl Mlp {
     /// # Errors
     /// [`NnError::InputWidth`], [`NnError::NumberType`].
     pub fn forward(&self, x: &Tensor) -> Result<Tensor, NnError> {
-        let Some(first) = self.layers.first() else { return Ok(x.clone()) };
-        let (x, number_type) = first.checked(x)?;
-        let is_tracked = x.track_op() || self.layers.iter().any(Linear::is_tracked);
-        if !is_tracked {
-            return forward_untracked(&x, number_type, &self.layers, &self.workspace);
-        }
-        let parameters = self.layers.iter().flat_map(Linear::tensors).map(Tensor::flatten_all);
-        let parameters = Tensor::cat(&parameters.collect::<Result<Vec<_>, _>>()?, 0)?;
-        Ok(match number_type {
-            NumberType::F32 => {
-                x.apply_op2(&parameters, FusedStack::<f32>::new(&self.layers, &self.workspace))?
-            }
-            NumberType::F64 => {
-                x.apply_op2(&parameters, FusedStack::<f64>::new(&self.layers, &self.workspace))?
-            }
-        })
+        self.layers.iter().try_fold(x.clone(), |x, layer| layer.forward(&x))
     }
 }
 
@@ -150,7 +130,7 @@ impl MultiScaleEncoder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::nn::gradient_check::{assert_close, assert_gradients, random_variable};
+    use crate::nn::gradient_check::{assert_gradients, random_variable};
     use crate::nn::{Parameters, random_stream};
     use candle_core::{DType, Var};
 
@@ -183,26 +163,6 @@ mod tests {
         let all = parameters.iter().map(|(_, variable)| of(variable));
         let all: Vec<Tensor> = all.chain([of(x)]).collect();
         [vec![y], all].concat()
-    }
-
-    #[test]
-    fn a_stack_equals_its_layers_one_by_one() {
-        let (parameters, mlp) = build(|at| Mlp::new(at, &[3, 20, 17, 2], Activation::Silu));
-        let mlp = mlp.unwrap();
-        // One group, several, and groups of several blocks.
-        for rows in [1, 129, 1000, 5000] {
-            let x = random_variable(&[rows, 3], 1);
-            let stack = results(&parameters, &x, |x| mlp.forward(x).unwrap());
-            let layers = results(&parameters, &x, |x| {
-                let layers = mlp.layers().iter();
-                layers.fold(x.as_tensor().clone(), |x, layer| layer.forward(&x).unwrap())
-            });
-            for (stack, layers) in stack.iter().zip(&layers) {
-                assert_close(stack, layers, 1e-12);
-            }
-            let frozen = mlp.frozen().forward(&x.detach()).unwrap();
-            assert_close(&frozen, &stack[0], 0.0);
-        }
     }
 
     #[test]

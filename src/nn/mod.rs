@@ -1,5 +1,6 @@
-//! What the networks share: layers with fused kernels and exact gradients, named parameters,
-//! the optimiser, seeds, and the file that holds a trained model.
+//! What the networks share: layers, named parameters, the optimiser, seeds, and the file that holds
+//! a trained model. Layers are made of candle's operations; bias with activation and softmax are
+//! operations of our own, because they take a large share of the time of training otherwise.
 //!
 //! Everything runs on the CPU, in 32 or 64 bits, and gives the same bits for the same seed on the
 //! same machine, whatever the number of threads does: weights are drawn from a generator that the
@@ -23,9 +24,7 @@
 //! ```
 
 mod activation;
-mod adam_moments;
 mod attention;
-mod attention_core;
 mod checkpoint;
 mod checkpoint_bytes;
 #[cfg(test)]
@@ -33,11 +32,9 @@ mod checkpoint_tests;
 mod element;
 mod encoding;
 mod error;
-mod fused;
 #[cfg(test)]
 pub(crate) mod gradient_check;
 mod init;
-mod kernel;
 mod layer_norm;
 mod linear;
 mod mlp;
@@ -46,11 +43,11 @@ mod optimizer;
 #[cfg(test)]
 mod optimizer_tests;
 mod parameters;
+mod product;
 mod schedule;
 mod seed;
 mod softmax;
 pub(crate) mod storage;
-mod workspace;
 
 pub use activation::Activation;
 pub(crate) use activation::bias_silu_rows;
@@ -65,6 +62,7 @@ pub use mlp::{Mlp, MultiScaleEncoder};
 pub use named_tensors::NamedTensors;
 pub use optimizer::{AdamW, AdamWConfig, OptimizerState, StepReport};
 pub use parameters::{ParameterBuilder, Parameters};
+pub use product::{product, product_with_transposed};
 pub use schedule::Schedule;
 pub use seed::{random_stream, sha256_hex};
 pub use softmax::softmax;

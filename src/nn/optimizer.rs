@@ -1,5 +1,4 @@
-//! AdamW, one pass over each parameter per step, with clipping and a schedule; its state can be
-//! saved and taken up again to the bit.
+//! AdamW with clipping and a schedule; its state can be saved and taken up again to the bit.
 //!
 //! ```text
 //! η_t = η·share(t)      ĝ = g·min(1, c/‖g‖)      ‖g‖ over all parameters together
@@ -10,19 +9,13 @@
 //! Source: I. Loshchilov, F. Hutter, Decoupled Weight Decay Regularization, ICLR 2019, algorithm 2.
 
 use candle_core::backprop::GradStore;
-use candle_core::{DType, Tensor};
+use candle_core::{DType, Tensor, Var};
 use serde::{Deserialize, Serialize};
 
-use crate::nn::adam_moments::{Moments, Rates};
-use crate::nn::element::{Element, sum_of, vectorized};
-use crate::nn::named_tensors::check_no_other;
+use crate::nn::named_tensors::{check_no_other, find};
 use crate::nn::parameters::Parameter;
-use crate::nn::storage::{contiguous, cpu_storage};
+use crate::nn::storage::number_type;
 use crate::nn::{NamedTensors, NnError, Parameters, Schedule};
-
-/// Numbers of a gradient that are squared and added in its own type, before the sums are added in
-/// 64 bits.
-const NORM_BLOCK: usize = 4096;
 
 /// The settings of [`AdamW`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -112,6 +105,30 @@ pub struct AdamW {
     moments: Vec<Moments>,
 }
 
+/// Running means of one parameter's gradient and of its square, of the parameter's shape.
+#[derive(Debug)]
+struct Moments {
+    /// Of the parameter.
+    name: String,
+    /// m.
+    first: Tensor,
+    /// v.
+    second: Tensor,
+}
+
+/// The numbers of one step, the same for all parameters.
+#[derive(Debug, Clone, Copy)]
+struct Rates {
+    /// min(1, c/‖g‖).
+    clip: f64,
+    /// η_t/(1 − β₁ᵗ).
+    step_size: f64,
+    /// 1/√(1 − β₂ᵗ).
+    root_scale: f64,
+    /// η_t λ.
+    decay: f64,
+}
+
 impl AdamW {
     /// An optimiser that has taken no step.
     ///
@@ -155,7 +172,8 @@ impl AdamW {
             n_without_gradient += usize::from(entry.trained && gradient.is_none());
             let gradient = gradient.map(|gradient| gradient.detach().contiguous()).transpose()?;
             if let Some(gradient) = &gradient {
-                let squares = squared_norm(gradient)?;
+                let squares =
+                    gradient.to_dtype(DType::F64)?.sqr()?.sum_all()?.to_scalar::<f64>()?;
                 if !squares.is_finite() {
                     return Err(NnError::NonFiniteGradient { name: entry.name.clone() });
                 }
@@ -163,31 +181,45 @@ impl AdamW {
             }
             found.push(gradient);
         }
-        let learning_rate = self.config.learning_rate * self.config.schedule.share(self.step);
         let gradient_norm = sum_of_squares.sqrt();
+        let learning_rate = self.config.learning_rate * self.config.schedule.share(self.step);
         self.step += 1;
+        let rates = self.rates(learning_rate, gradient_norm);
         for ((entry, moments), gradient) in entries.iter().zip(&mut self.moments).zip(&found) {
             if let Some(gradient) = gradient {
                 let decays = self.config.decay_biases || entry.variable.rank() > 1;
-                let rates = Rates::new(&self.config, self.step, learning_rate, gradient_norm);
-                moments.update(&entry.variable, gradient, rates.with_decay(decays))?;
+                let decay = if decays { rates.decay } else { 0.0 };
+                moments.update(
+                    &entry.variable,
+                    gradient,
+                    (&self.config, Rates { decay, ..rates }),
+                )?;
             }
         }
         Ok(StepReport { step: self.step, gradient_norm, learning_rate, n_without_gradient })
     }
 
-    /// Copies of the step and of all moments.
-    ///
-    /// # Errors
-    /// [`NnError::Tensor`].
-    pub fn export(&self) -> Result<OptimizerState, NnError> {
-        let mut all = NamedTensors::new();
-        for moments in &self.moments {
-            for (name, tensor) in moments.export()? {
-                all.insert(name, tensor);
-            }
+    fn rates(&self, learning_rate: f64, gradient_norm: f64) -> Rates {
+        let clip = match self.config.max_gradient_norm {
+            Some(max) if gradient_norm > max => max / gradient_norm,
+            _ => 1.0,
+        };
+        let steps = self.step as f64;
+        Rates {
+            clip,
+            step_size: learning_rate / (1.0 - self.config.beta_1.powf(steps)),
+            root_scale: 1.0 / (1.0 - self.config.beta_2.powf(steps)).sqrt(),
+            decay: learning_rate * self.config.weight_decay,
         }
-        Ok(OptimizerState { step: self.step, moments: all })
+    }
+
+    /// The step and all moments.
+    pub fn export(&self) -> OptimizerState {
+        let tensors = self.moments.iter().flat_map(|moments| {
+            let [first, second] = moments.tensor_names();
+            [(first, moments.first.clone()), (second, moments.second.clone())]
+        });
+        OptimizerState { step: self.step, moments: tensors.collect() }
     }
 
     /// Goes on where the exported optimiser stopped. Nothing is changed unless everything fits.
@@ -198,7 +230,11 @@ impl AdamW {
     pub fn import(&mut self, state: &OptimizerState) -> Result<(), NnError> {
         let imported = self.moments.iter().map(|moments| moments.imported(&state.moments));
         let imported = imported.collect::<Result<Vec<_>, _>>()?;
-        let is_known = |name: &str| self.moments.iter().any(|moments| moments.has(name));
+        let is_known = |tensor: &str| {
+            self.moments
+                .iter()
+                .any(|moments| moments.tensor_names().iter().any(|name| name == tensor))
+        };
         check_no_other(&state.moments, is_known)?;
         (self.moments, self.step) = (imported, state.step);
         Ok(())
@@ -206,33 +242,57 @@ impl AdamW {
 
     /// The parameters must be those of the moments, in the same order.
     fn check_same(&self, entries: &[Parameter]) -> Result<(), NnError> {
+        fn name(moments: &Moments) -> &str {
+            &moments.name
+        }
         let names = entries.iter().map(|entry| entry.name.as_str());
-        let known = self.moments.iter().map(Moments::name);
+        let known = self.moments.iter().map(name);
         if names.clone().eq(known.clone()) {
             return Ok(());
         }
         let differing = known.zip(names.clone()).find(|(known, name)| known != name);
-        let missing = differing.map(|(known, _)| known).or(self.moments.last().map(Moments::name));
+        let missing = differing.map(|(known, _)| known).or(self.moments.last().map(name));
         Err(NnError::MissingTensor { name: missing.unwrap_or_default().to_owned() })
     }
 }
 
-/// Σ g², in 64 bits over blocks of fixed size.
-fn squared_norm(gradient: &Tensor) -> Result<f64, NnError> {
-    fn of<T: Element>(gradient: &Tensor) -> Result<f64, NnError> {
-        let (storage, layout) = gradient.storage_and_layout();
-        let storage = cpu_storage(&storage, "gradient norm")?;
-        let blocks = contiguous::<T>(storage, layout, "gradient norm")?.chunks(NORM_BLOCK);
-        let sum = |block: &[T]| {
-            vectorized(
-                #[inline(always)]
-                || sum_of(block, block, |a, b| a * b),
-            )
-        };
-        Ok(blocks.map(|block| sum(block).to_f64()).sum())
+impl Moments {
+    fn zero(name: &str, variable: &Var) -> Result<Self, NnError> {
+        number_type(variable, name)?;
+        let zero = variable.as_detached_tensor().zeros_like()?;
+        Ok(Self { name: name.to_owned(), first: zero.clone(), second: zero })
     }
-    match gradient.dtype() {
-        DType::F64 => of::<f64>(gradient),
-        _ => of::<f32>(gradient),
+
+    fn tensor_names(&self) -> [String; 2] {
+        ["first_moment", "second_moment"].map(|moment| format!("{moment}.{}", self.name))
+    }
+
+    /// One step of the parameter.
+    ///
+    /// - `gradient`: of the parameter's shape.
+    fn update(
+        &mut self,
+        variable: &Var,
+        gradient: &Tensor,
+        (config, rates): (&AdamWConfig, Rates),
+    ) -> Result<(), NnError> {
+        let mean = |old: &Tensor, new: &Tensor, beta: f64| (old * beta)? + (new * (1.0 - beta))?;
+        let gradient = (gradient * rates.clip)?;
+        self.first = mean(&self.first, &gradient, config.beta_1)?;
+        self.second = mean(&self.second, &gradient.sqr()?, config.beta_2)?;
+        let root = ((self.second.sqrt()? * rates.root_scale)? + config.epsilon)?;
+        let step = ((&self.first * rates.step_size)? / root)?;
+        let kept = (variable.as_detached_tensor() * (1.0 - rates.decay))?;
+        Ok(variable.set(&(kept - step)?)?)
+    }
+
+    /// The same with the values of exported tensors.
+    fn imported(&self, tensors: &NamedTensors) -> Result<Self, NnError> {
+        let [first, second] = self.tensor_names();
+        let value = |name: &str| -> Result<Tensor, NnError> {
+            let tensor = find(tensors, name, self.first.dims())?;
+            Ok(tensor.detach().to_dtype(self.first.dtype())?.contiguous()?)
+        };
+        Ok(Self { name: self.name.clone(), first: value(&first)?, second: value(&second)? })
     }
 }

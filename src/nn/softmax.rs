@@ -4,16 +4,11 @@
 //! yᵢ = e^(s·xᵢ) / Σⱼ e^(s·xⱼ)        dL/dxᵢ = s·yᵢ·(gᵢ − Σⱼ gⱼ yⱼ)
 //! ```
 
-use candle_core::{
-    CpuStorage, CustomOp1, CustomOp2, Layout, Result as TensorResult, Shape, Tensor,
-};
-use rayon::prelude::*;
+use candle_core::{CpuStorage, CustomOp1, Device, Layout, Result as TensorResult, Shape, Tensor};
 
 use crate::nn::NnError;
-use crate::nn::element::{
-    Element, ROWS_PER_BLOCK, max_of, min_blocks_per_task, sum_of, vectorized,
-};
-use crate::nn::storage::{NumberType, contiguous, number_type};
+use crate::nn::element::{Element, max_of, sum_of, vectorized};
+use crate::nn::storage::{NumberType, contiguous, cpu_storage, number_type};
 
 /// Softmax of `scale`·x over the last dimension, which must be finite for the result to be.
 ///
@@ -40,34 +35,42 @@ impl<T: Element> CustomOp1 for Softmax<T> {
     }
 
     fn cpu_fwd(&self, x: &CpuStorage, layout: &Layout) -> TensorResult<(CpuStorage, Shape)> {
-        let x = contiguous::<T>(x, layout, self.name())?;
+        let mut y = contiguous::<T>(x, layout, self.name())?.to_vec();
         let width = layout.dims().last().copied().unwrap_or(1).max(1);
-        let (size, mut y) = (ROWS_PER_BLOCK * width, vec![T::ZERO; x.len()]);
-        let blocks = y.par_chunks_mut(size).zip(x.par_chunks(size));
-        blocks.with_min_len(min_blocks_per_task(x.len())).for_each(|(y, x)| {
-            vectorized(
-                #[inline(always)]
-                || {
-                    for (y, x) in y.chunks_exact_mut(width).zip(x.chunks_exact(width)) {
-                        y.copy_from_slice(x);
-                        softmax_row(y, self.scale);
-                    }
-                },
-            );
-        });
+        vectorized(
+            #[inline(always)]
+            || {
+                for row in y.chunks_exact_mut(width) {
+                    softmax_row(row, self.scale);
+                }
+            },
+        );
         Ok((T::to_cpu_storage_owned(y), layout.shape().clone()))
     }
 
-    fn bwd(&self, _x: &Tensor, y: &Tensor, gradient: &Tensor) -> TensorResult<Option<Tensor>> {
-        let op = SoftmaxBackward { scale: self.scale };
+    fn bwd(&self, x: &Tensor, y: &Tensor, gradient: &Tensor) -> TensorResult<Option<Tensor>> {
         let gradient = gradient.contiguous()?;
-        Ok(Some(y.detach().apply_op2_no_bwd(&gradient, &op)?))
+        let (storage, layout) = gradient.storage_and_layout();
+        let mut dx =
+            contiguous::<T>(cpu_storage(&storage, self.name())?, layout, self.name())?.to_vec();
+        let (storage, layout) = y.storage_and_layout();
+        let y = contiguous::<T>(cpu_storage(&storage, self.name())?, layout, self.name())?;
+        let width = layout.dims().last().copied().unwrap_or(1).max(1);
+        vectorized(
+            #[inline(always)]
+            || {
+                for (dx, y) in dx.chunks_exact_mut(width).zip(y.chunks_exact(width)) {
+                    softmax_backward_row(dx, y, self.scale);
+                }
+            },
+        );
+        Ok(Some(Tensor::from_vec(dx, x.shape(), &Device::Cpu)?))
     }
 }
 
 /// Softmax of `scale`·x in place.
 #[inline(always)]
-pub(crate) fn softmax_row<T: Element>(row: &mut [T], scale: T) {
+fn softmax_row<T: Element>(row: &mut [T], scale: T) {
     // The largest scaled score, taken off so that no exponential overflows.
     let largest = max_of(row, scale);
     for x in row.iter_mut() {
@@ -81,48 +84,10 @@ pub(crate) fn softmax_row<T: Element>(row: &mut [T], scale: T) {
 
 /// The gradient of x in place of that of y.
 #[inline(always)]
-pub(crate) fn softmax_backward_row<T: Element>(gradient: &mut [T], y: &[T], scale: T) {
+fn softmax_backward_row<T: Element>(gradient: &mut [T], y: &[T], scale: T) {
     let mean = sum_of(y, gradient, |y, g| y * g);
     for (g, &y) in gradient.iter_mut().zip(y) {
         *g = scale * y * (*g - mean);
-    }
-}
-
-/// The way back: of y and g.
-struct SoftmaxBackward<T> {
-    scale: T,
-}
-
-impl<T: Element> CustomOp2 for SoftmaxBackward<T> {
-    fn name(&self) -> &'static str {
-        "gradient of the scaled softmax"
-    }
-
-    fn cpu_fwd(
-        &self,
-        y: &CpuStorage,
-        y_layout: &Layout,
-        gradient: &CpuStorage,
-        gradient_layout: &Layout,
-    ) -> TensorResult<(CpuStorage, Shape)> {
-        let y = contiguous::<T>(y, y_layout, self.name())?;
-        let gradient = contiguous::<T>(gradient, gradient_layout, self.name())?;
-        let width = y_layout.dims().last().copied().unwrap_or(1).max(1);
-        let (size, mut dx) = (ROWS_PER_BLOCK * width, vec![T::ZERO; y.len()]);
-        let blocks = dx.par_chunks_mut(size).zip(y.par_chunks(size)).zip(gradient.par_chunks(size));
-        blocks.with_min_len(min_blocks_per_task(y.len())).for_each(|((dx, y), g)| {
-            vectorized(
-                #[inline(always)]
-                || {
-                    let rows = dx.chunks_exact_mut(width).zip(y.chunks_exact(width));
-                    for ((dx, y), g) in rows.zip(g.chunks_exact(width)) {
-                        dx.copy_from_slice(g);
-                        softmax_backward_row(dx, y, self.scale);
-                    }
-                },
-            );
-        });
-        Ok((T::to_cpu_storage_owned(dx), y_layout.shape().clone()))
     }
 }
 

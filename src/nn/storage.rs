@@ -1,12 +1,11 @@
-//! From candle's tensors to slices of numbers, for the kernels.
+//! From candle's tensors to slices of numbers, for operations of our own.
 
-use candle_core::backend::BackendStorage;
-use candle_core::{CpuStorage, DType, Error, Layout, Result, Storage, StorageRef, Tensor};
+use candle_core::{CpuStorage, DType, Error, Layout, Result, Storage, Tensor};
 
 use crate::nn::NnError;
 use crate::nn::element::Element;
 
-/// The types that the kernels are compiled for.
+/// The types of numbers that operations of our own compute with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum NumberType {
     F32,
@@ -14,7 +13,7 @@ pub(crate) enum NumberType {
 }
 
 /// # Errors
-/// [`NnError::NumberType`] for a type that no kernel is compiled for.
+/// [`NnError::NumberType`] for any other type.
 pub(crate) fn number_type(x: &Tensor, name: &str) -> std::result::Result<NumberType, NnError> {
     match x.dtype() {
         DType::F32 => Ok(NumberType::F32),
@@ -24,17 +23,6 @@ pub(crate) fn number_type(x: &Tensor, name: &str) -> std::result::Result<NumberT
             Err(NnError::NumberType { name, expected: "f32 or f64", got })
         }
     }
-}
-
-/// The numbers of several tensors that each lie in one piece.
-pub(crate) fn slices<'a, T: Element>(
-    tensors: &'a [(StorageRef<'_>, &Layout)],
-    op: &'static str,
-) -> Result<Vec<&'a [T]>> {
-    let slice = |(storage, layout): &'a (StorageRef<'_>, &Layout)| {
-        contiguous::<T>(cpu_storage(storage, op)?, layout, op)
-    };
-    tensors.iter().map(slice).collect()
 }
 
 /// The numbers behind a tensor on the CPU.
@@ -54,17 +42,4 @@ pub(crate) fn contiguous<'a, T: Element>(
     let (start, end) = layout.contiguous_offsets().ok_or(Error::RequiresContiguous { op })?;
     let all = T::cpu_storage_as_slice(storage)?;
     all.get(start..end).ok_or(Error::RequiresContiguous { op })
-}
-
-/// The numbers of a tensor that lies in one piece, to be changed.
-pub(crate) fn contiguous_mut<'a, T: Element>(
-    storage: &'a mut CpuStorage,
-    layout: &Layout,
-    op: &'static str,
-) -> Result<&'a mut [T]> {
-    let (start, end) = layout.contiguous_offsets().ok_or(Error::RequiresContiguous { op })?;
-    let got = storage.dtype();
-    let wrong_type = Error::UnexpectedDType { expected: T::DTYPE, got, msg: op };
-    let all = T::slice_mut(storage).ok_or(wrong_type)?;
-    all.get_mut(start..end).ok_or(Error::RequiresContiguous { op })
 }

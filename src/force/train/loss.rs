@@ -1,7 +1,7 @@
 //! The loss of the force network, term by term.
 //!
-//! Source: after `eq:physic_cons2` of
-//! [`PitPinnPaper`](crate::bibliography::PitPinnPaper), which has no likelihood.
+//! Source: after `eq:physic_cons2` of [`PitPinnPaper`](crate::bibliography::PitPinnPaper), which has no
+//! likelihood.
 
 use std::f64::consts::TAU;
 
@@ -10,13 +10,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::force::network::{DURATION_UNIT_S, NetworkOutput};
 use crate::force::{ForceError, LossWeights};
+use crate::nn::product;
 use crate::uncertainty::CURVE_INTERVAL_S;
 
-/// Mean over cases of every term, unweighted, and their weighted sum.
+/// The terms of the loss as means over cases, unweighted, and their weighted sum.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LossTerms {
-    /// What is minimised.
+    /// The weighted sum, which is minimised.
     pub total: f64,
     /// Negative log-likelihood of whole curves, per value, forces in peaks of the centre.
     pub likelihood: f64,
@@ -24,8 +25,8 @@ pub struct LossTerms {
     pub data: f64,
     /// |P̂ − P|² / |P|².
     pub impulse: f64,
-    /// Squared error of the energy as a share of the kinetic energy of approach, and squared energy
-    /// out of nothing.
+    /// Squared error of the absorbed energy as a share of the kinetic energy of approach, and square of
+    /// a negative absorbed energy.
     pub energy: f64,
     /// Squared error of the duration, units of 0.1 s.
     pub duration: f64,
@@ -33,7 +34,7 @@ pub struct LossTerms {
     pub hooking: f64,
 }
 
-/// What the loss compares with, for some cases.
+/// The recorded values of some cases, with which the loss compares.
 #[derive(Debug, Clone)]
 pub(crate) struct Targets {
     /// The curves as `[F_x…, F_y…, duration]`, in peaks of the centre and 0.1 s, `[cases, values]`.
@@ -83,7 +84,7 @@ impl Loss {
         Ok(Self { total, terms })
     }
 
-    /// The numbers.
+    /// The values of the terms.
     pub(crate) fn values(&self) -> Result<LossTerms, ForceError> {
         let number = |tensor: &Tensor| -> Result<f64, ForceError> {
             Ok(tensor.to_dtype(candle_core::DType::F64)?.to_scalar::<f64>()?)
@@ -161,9 +162,9 @@ pub(crate) fn log_normal(output: &NetworkOutput, values: &Tensor) -> Result<Tens
         let scaled = factors.broadcast_div(&deviation.unsqueeze(3)?)?;
         let factors = whitened(&scaled, &output.lag_correlation)?.reshape(flat)?;
         let factors_t = factors.transpose(1, 2)?.contiguous()?;
-        let m = factors_t.matmul(&factors)?;
-        let v = factors_t.matmul(&residual.reshape((n_cases * k, n_values, 1))?)?;
-        let (m_square, m_log_det) = cholesky_forms(&m, &v)?;
+        let m = product(&factors_t, &factors)?;
+        let v = product(&factors_t, &residual.reshape((n_cases * k, n_values, 1))?)?;
+        let (m_square, m_log_det) = quadratic_form_and_log_det(&m, &v)?;
         square = (square - m_square.reshape((n_cases, k))?)?;
         log_det = (log_det + m_log_det.reshape((n_cases, k))?)?;
     }
@@ -192,51 +193,29 @@ fn whitened(rows: &Tensor, lag_correlation: &Tensor) -> Result<Tensor, ForceErro
     Ok(Tensor::cat(&parts, 2)?)
 }
 
-/// `vᵀ (1 + m)⁻¹ v` and `ln |1 + m|` of small matrices by Cholesky's method, written out so that
-/// gradients pass; `m`: `[batch, q, q]`, `v`: `[batch, q, 1]`, both results `[batch]`.
-fn cholesky_forms(m: &Tensor, v: &Tensor) -> Result<(Tensor, Tensor), ForceError> {
-    let q = m.dim(1)?;
-    let entry = |i: usize, j: usize| -> Result<Tensor, ForceError> {
-        let entry = m.narrow(1, i, 1)?.narrow(2, j, 1)?.flatten_all()?;
-        Ok(if i == j { (entry + 1.0)? } else { entry })
-    };
-    let mut lower: Vec<Vec<Tensor>> = Vec::with_capacity(q);
-    let mut solved: Vec<Tensor> = Vec::with_capacity(q);
-    let mut log_det: Option<Tensor> = None;
-    let mut square: Option<Tensor> = None;
-    for i in 0..q {
-        let mut row: Vec<Tensor> = Vec::with_capacity(i + 1);
-        for (j, above) in lower.iter().enumerate() {
-            let mut sum = entry(i, j)?;
-            for (left, right) in row.iter().zip(above) {
-                sum = (sum - (left * right)?)?;
-            }
-            row.push((sum / &above[j])?);
-        }
-        let mut diagonal = entry(i, i)?;
-        for left in &row {
-            diagonal = (diagonal - left.sqr()?)?;
-        }
-        row.push(diagonal.sqrt()?);
-        let mut right = v.narrow(1, i, 1)?.flatten_all()?;
-        for (factor, y) in row.iter().zip(&solved) {
-            right = (right - (factor * y)?)?;
-        }
-        let y = (right / &row[i])?;
-        let (log_diagonal, y_square) = ((row[i].log()? * 2.0)?, y.sqr()?);
-        log_det = Some(match log_det {
-            Some(sum) => (sum + log_diagonal)?,
-            None => log_diagonal,
-        });
-        square = Some(match square {
-            Some(sum) => (sum + y_square)?,
-            None => y_square,
-        });
-        solved.push(y);
-        lower.push(row);
+/// `vᵀ (1 + m)⁻¹ v` and `ln |1 + m|`, both `[batch]`, of positive semidefinite `m`, `[batch, q, q]`,
+/// and `v`, `[batch, q, 1]`, by Gaussian elimination, through which gradients pass:
+///
+/// ```text
+/// ⎡1 + m  v⎤   eliminating the first q rows leaves −vᵀ (1 + m)⁻¹ v in the last one,
+/// ⎣ vᵀ    0⎦   and the product of the pivots is |1 + m|
+/// ```
+fn quadratic_form_and_log_det(m: &Tensor, v: &Tensor) -> Result<(Tensor, Tensor), ForceError> {
+    let (batch, q, _) = m.dims3()?;
+    let one = Tensor::eye(q, m.dtype(), m.device())?.unsqueeze(0)?;
+    let corner = Tensor::zeros((batch, 1, 1), m.dtype(), m.device())?;
+    let upper = Tensor::cat(&[&m.broadcast_add(&one)?, v], 2)?;
+    let lower = Tensor::cat(&[&v.transpose(1, 2)?, &corner], 2)?;
+    let mut left = Tensor::cat(&[upper, lower], 1)?;
+    let mut log_det = corner.flatten_all()?;
+    for n in (1..=q).rev() {
+        let pivot = left.narrow(1, 0, 1)?.narrow(2, 0, 1)?;
+        let row = left.narrow(1, 0, 1)?.narrow(2, 1, n)?;
+        let eliminated = row.transpose(1, 2)?.broadcast_mul(&row.broadcast_div(&pivot)?)?;
+        left = (left.narrow(1, 1, n)?.narrow(2, 1, n)? - eliminated)?;
+        log_det = (log_det + pivot.flatten_all()?.log()?)?;
     }
-    let zero = || Tensor::zeros(m.dim(0)?, m.dtype(), m.device());
-    Ok((square.map_or_else(zero, Ok)?, log_det.map_or_else(zero, Ok)?))
+    Ok((left.flatten_all()?.neg()?, log_det))
 }
 
 /// π_k, `[cases, K, 1]`.
@@ -267,11 +246,11 @@ fn impulse(output: &NetworkOutput, targets: &Targets) -> Result<Tensor, ForceErr
     Ok(((share(&output.impulse)? + share(&of_mean)?)? * 0.5)?)
 }
 
-/// W = v·P − ½ PᵀKP is the energy that the contact takes: it is compared with that of the known
-/// impulse, and must not be negative. In units of ½ v·v / K̄.
+/// Error of the energy W = v·P − ½ PᵀKP that the contact absorbs, which is compared with that of the
+/// recorded impulse and must not be negative, in units of ½ v·v / K̄.
 fn energy(output: &NetworkOutput, targets: &Targets) -> Result<Tensor, ForceError> {
     let work = |impulse: &Tensor| -> Result<Tensor, ForceError> {
-        let velocity = targets.inverse_mass.matmul(&impulse.unsqueeze(2)?)?.squeeze(2)?;
+        let velocity = product(&targets.inverse_mass, &impulse.unsqueeze(2)?)?.squeeze(2)?;
         let first = (&targets.closing * impulse)?.sum(1)?;
         Ok((first - ((impulse * velocity)?.sum(1)? * 0.5)?)?)
     };
@@ -291,7 +270,7 @@ fn duration(output: &NetworkOutput, targets: &Targets) -> Result<Tensor, ForceEr
     Ok((got - known)?.sqr()?.mean_all()?)
 }
 
-/// −ln π of the right kind of component; 0 with a single one.
+/// −ln π of the components of the recorded kind, hooking or not; 0 with a single component.
 fn hooking(output: &NetworkOutput, targets: &Targets) -> Result<Tensor, ForceError> {
     let k = output.logits.dim(1)?;
     if k < 2 {

@@ -360,7 +360,7 @@ impl EpochLoop for ForceTrainingRun<'_> {
         file.put_group("best", self.best_parameters.clone());
         let common = SavedTraining {
             parameters: self.network.parameters().export()?,
-            optimizer: self.optimizer.export()?,
+            optimizer: self.optimizer.export(),
             history: self.history.clone(),
         };
         common.put(file)

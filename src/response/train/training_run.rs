@@ -282,7 +282,7 @@ impl EpochLoop for TrainingRun<'_> {
     fn put(&self, file: &mut Checkpoint) -> Result<(), NnError> {
         let saved = SavedTraining {
             parameters: self.network.parameters().export()?,
-            optimizer: self.optimizer.export()?,
+            optimizer: self.optimizer.export(),
             history: self.history.clone(),
         };
         saved.put(file)
