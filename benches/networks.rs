@@ -1,120 +1,57 @@
-//! How fast the networks' shared layers run and train, the trunk and temporal attention; and how
-//! fast the shipped force network predicts.
+//! How long an epoch of the force network takes in the default and in the paper's sizes, and how fast
+//! the shipped model predicts.
 //!
 //! `cargo bench --no-default-features --bench networks`
 
+#![allow(clippy::print_stdout)]
+
+use std::ops::ControlFlow;
 use std::path::Path;
 
-use candle_core::{DType, Device, Tensor};
 use divan::Bencher;
-use impactlab::force::{ForceModel, ForceScenario};
-use impactlab::learning::ModelFile;
-use impactlab::nn::{
-    Activation, AdamW, AdamWConfig, Attention, AttentionConfig, Mlp, Parameters, random_stream,
+use impactlab::force::{
+    Centre, ForceCase, ForceConfig, ForceModel, ForceScenario, ForceTrainingSet, train,
 };
-use rand::RngExt;
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use impactlab::learning::{ModelFile, TrainSettings};
 
-/// The trunk of the force network, its input first.
-const WIDTHS: [usize; 9] = [96, 256, 512, 512, 256, 128, 64, 32, 16];
-
-/// A batch of 32 curves of 200 samples.
-const N_CURVES: usize = 32;
-const N_SAMPLES: usize = 200;
-
-/// One curve on a grid of 1 ms, 250 ms long.
-const N_ROWS_OF_A_CURVE: usize = 250;
-
-const ATTENTION: AttentionConfig =
-    AttentionConfig { channels: 96, key_channels: 96, heads: 4, layer_norm: true };
+/// Epochs of each size; the first ones warm the caches.
+const N_EPOCHS: usize = 20;
 
 fn main() {
+    println!("| one epoch on 75 cases | weights | fastest | median | slowest |");
+    println!("| --- | --- | --- | --- | --- |");
+    print_epoch("default", ForceConfig::default());
+    print_epoch("without attention", without_attention());
+    print_epoch("paper", ForceConfig::paper());
     divan::main();
 }
 
-struct Network {
-    parameters: Parameters,
-    attention: Attention,
-    trunk: Mlp,
+fn without_attention() -> ForceConfig {
+    let mut config = ForceConfig::default();
+    config.network.attention = false;
+    config
 }
 
-fn network() -> Network {
-    let mut parameters = Parameters::new(DType::F32);
-    let mut rng = random_stream(1, "weights", 0);
-    let mut root = parameters.builder(&mut rng);
-    let attention = Attention::new(&mut root.at("attention"), ATTENTION).expect("sizes that fit");
-    let trunk = Mlp::new(&mut root.at("trunk"), &WIDTHS, Activation::Silu).expect("sizes that fit");
-    Network { parameters, attention, trunk }
-}
-
-fn input(shape: &[usize]) -> Tensor {
-    let mut rng = random_stream(1, "input", 0);
-    let values: Vec<f32> =
-        (0..shape.iter().product()).map(|_| 2.0 * rng.random::<f32>() - 1.0).collect();
-    Tensor::from_vec(values, shape, &Device::Cpu).expect("as many values as the shape says")
-}
-
-fn pool(n_threads: usize) -> ThreadPool {
-    ThreadPoolBuilder::new().num_threads(n_threads).build().expect("threads can be started")
-}
-
-fn forward(bencher: Bencher<'_, '_>, n_rows: usize, n_threads: usize) {
-    let (trunk, x) = (network().trunk.frozen(), input(&[n_rows, WIDTHS[0]]));
-    let pool = pool(n_threads);
-    bencher.bench(|| pool.install(|| trunk.forward(&x).expect("rows that fit")));
-}
-
-/// Forward, backward and the step of the optimiser, with the mean square of the result as loss.
-fn step(bencher: Bencher<'_, '_>, n_threads: usize, forward: impl Fn(&Network) -> Tensor + Sync) {
-    let network = network();
-    let mut optimizer =
-        AdamW::new(AdamWConfig::default(), &network.parameters).expect("settings in range");
-    let pool = pool(n_threads);
-    let mut step = || {
-        let loss = forward(&network).sqr().and_then(|y| y.mean_all());
-        let gradients = loss.and_then(|loss| loss.backward()).expect("a loss");
-        optimizer.step(&network.parameters, &gradients).expect("finite gradients")
-    };
-    bencher.bench_local(|| pool.install(&mut step));
-}
-
-#[divan::bench(args = [1, 2], sample_count = 30, sample_size = 1)]
-fn trunk_forward_6400_rows(bencher: Bencher<'_, '_>, n_threads: usize) {
-    forward(bencher, N_CURVES * N_SAMPLES, n_threads);
-}
-
-#[divan::bench(args = [1, 2])]
-fn trunk_forward_250_rows(bencher: Bencher<'_, '_>, n_threads: usize) {
-    forward(bencher, N_ROWS_OF_A_CURVE, n_threads);
-}
-
-#[divan::bench]
-fn trunk_forward_1_row(bencher: Bencher<'_, '_>) {
-    let (trunk, x) = (network().trunk.frozen(), input(&[1, WIDTHS[0]]));
-    bencher.bench(|| trunk.forward(&x).expect("a row that fits"));
-}
-
-#[divan::bench(args = [1, 2], sample_count = 20, sample_size = 1)]
-fn trunk_step_6400_rows(bencher: Bencher<'_, '_>, n_threads: usize) {
-    let x = input(&[N_CURVES * N_SAMPLES, WIDTHS[0]]);
-    step(bencher, n_threads, |network| network.trunk.forward(&x).expect("rows that fit"));
-}
-
-#[divan::bench(args = [1, 2], sample_count = 20, sample_size = 1)]
-fn attention_step_32_curves(bencher: Bencher<'_, '_>, n_threads: usize) {
-    let x = input(&[N_CURVES, N_SAMPLES, WIDTHS[0]]);
-    step(bencher, n_threads, |network| {
-        network.attention.self_attention(&x).expect("curves that fit")
-    });
-}
-
-#[divan::bench(args = [1, 2], sample_count = 20, sample_size = 1)]
-fn attention_and_trunk_step_32_curves(bencher: Bencher<'_, '_>, n_threads: usize) {
-    let x = input(&[N_CURVES, N_SAMPLES, WIDTHS[0]]);
-    step(bencher, n_threads, |network| {
-        let seen = network.attention.self_attention(&x).expect("curves that fit");
-        network.trunk.forward(&seen).expect("rows that fit")
-    });
+/// Times the epochs of a training around the momentum solution, whose physics is fitted at once; the
+/// network is the same around every physics.
+fn print_epoch(name: &str, mut config: ForceConfig) {
+    config.network.centre = Centre::Momentum;
+    config.training.epochs = N_EPOCHS;
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/fea");
+    let cases = ForceCase::load_quietly(&root).expect("the shipped data set can be read");
+    let set = ForceTrainingSet::of_split("fea", &cases, 0, config.training.test_share);
+    let settings = TrainSettings::unsaved(config, 0);
+    let model = train(&set, &settings, &mut |_| ControlFlow::Continue(())).expect("a training");
+    let mut seconds: Vec<f64> = model.record().history.iter().map(|epoch| epoch.seconds).collect();
+    seconds.sort_by(f64::total_cmp);
+    let ms = |idx: usize| 1e3 * seconds[idx];
+    println!(
+        "| {name} | {} | {:.0} ms | {:.0} ms | {:.0} ms |",
+        model.n_parameters(),
+        ms(0),
+        ms(seconds.len() / 2),
+        ms(seconds.len() - 1)
+    );
 }
 
 /// The distribution of the force history with its bands at 1 ms over 250 ms.

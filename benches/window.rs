@@ -120,7 +120,6 @@ fn main() {
 
     let form = &mut window.0.state_mut().state_mut().project.force.training;
     form.epochs = Some(100_000);
-    form.config = "assets/models/force.toml".to_owned();
     window.apply(Command::Train(Network::Force, TrainingCommand::Start));
     let is_fitting = |state: &State| {
         matches!(state.session.force.training.latest, Some(TrainingReport::Fit { .. }))

@@ -2,7 +2,7 @@
 //! Markdown, from cross-validation over the training cases of a data set. No test case is looked at.
 //!
 //! `cargo run --release --no-default-features --example force_ablation -- \
-//! datasets/fea assets/models/force.toml datasets/fea-wide`
+//! datasets/fea datasets/fea-wide`
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
@@ -12,11 +12,11 @@ use std::path::Path;
 
 use impactlab::data::{Dataset, Outcome};
 use impactlab::force::metrics::{
-    BAND_LEVELS, Figures, PointErrors, ProbabilisticScores, ProbabilisticSettings,
+    BAND_LEVELS, CurveMetrics, PointErrors, ProbabilisticScores, ProbabilisticSettings,
 };
 use impactlab::force::{
-    Centre, CrushConfig, ForceCase, ForceConfig, ForceModel, ForceScenario, NetworkConfig,
-    Prediction, TrainingConfig, fit_physics, train_around,
+    Centre, CrushConfig, CurvePrediction, ForceCase, ForceConfig, ForceModel, ForceScenario,
+    NetworkConfig, TrainingConfig, fit_physics, train_around,
 };
 use impactlab::learning::{TrainSettings, TrainingSet, folds, split};
 
@@ -54,7 +54,7 @@ impl Variant {
             let said = model.predict(&scenario)?;
             let settings = ProbabilisticSettings { n_samples: N_DRAWS, seed: SEED };
             self.scores.push(ProbabilisticScores::of(case, &said.mixture, settings, i as u64)?);
-            let prediction = Prediction::of_mixture(said.mixture, &said.likely);
+            let prediction = CurvePrediction::of_mixture(said.mixture, &said.likely);
             self.errors.push((case.is_clean(), PointErrors::of(case, &prediction)));
         }
         Ok(())
@@ -64,7 +64,7 @@ impl Variant {
         let of = |is_all: bool, scores: &[&ProbabilisticScores]| {
             let chosen: Vec<&PointErrors> =
                 self.errors.iter().filter(|(clean, _)| is_all || *clean).map(|(_, e)| e).collect();
-            Figures::of(&chosen, scores)
+            CurveMetrics::of(&chosen, scores)
         };
         let scores: Vec<&ProbabilisticScores> = self.scores.iter().collect();
         let (Some(all), Some(clean)) = (of(true, &scores), of(false, &[])) else { return };
@@ -180,7 +180,7 @@ fn ablations(config: &ForceConfig) -> Vec<Variant> {
         Variant::new("trunk of one layer of 16", with(|network| network.trunk = vec![16])),
         Variant::new(
             "the paper's trunk of 8 layers",
-            with(|network| network.trunk = NetworkConfig::default().trunk),
+            with(|network| network.trunk = ForceConfig::paper().network.trunk),
         ),
         Variant::new("one component", with(|network| network.components = 1)),
         Variant::new(
@@ -198,10 +198,7 @@ fn ablations(config: &ForceConfig) -> Vec<Variant> {
 fn main() -> Answer<()> {
     let mut arguments = std::env::args().skip(1);
     let data = arguments.next().unwrap_or_else(|| "datasets/fea".to_owned());
-    let config = match arguments.next() {
-        Some(path) => ForceConfig::load(Path::new(&path))?,
-        None => ForceConfig::default(),
-    };
+    let config = ForceConfig::default();
     let mut train = training_cases(&data, &config)?;
     let mut variants = ablations(&config);
     cross_validate(&mut variants, &train, usize::MAX)?;

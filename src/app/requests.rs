@@ -102,6 +102,7 @@ impl State {
             data: chosen.path.to_owned(),
             extra: extra.iter().map(|of| of.path.to_owned()).collect(),
             config: config(&form.config),
+            paper: false,
             epochs: form.epochs,
             seed: form.seed,
             bad_cases: form.bad_cases,

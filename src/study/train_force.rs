@@ -26,6 +26,9 @@ pub struct TrainForceRequest {
     /// Settings of network and training.
     #[serde(default)]
     pub config: ConfigChoice,
+    /// Without a file of settings, the sizes of the paper instead of the default ones.
+    #[serde(default)]
+    pub paper: bool,
     /// Epochs at most, instead of the configured number.
     #[serde(default)]
     pub epochs: Option<usize>,
@@ -93,6 +96,7 @@ impl TrainForceRequest {
     pub fn settings(&self) -> Result<ForceConfig, StudyError> {
         let mut config = match self.config.file() {
             Some(path) => ForceConfig::load(path)?,
+            None if self.paper => ForceConfig::paper(),
             None => ForceConfig::default(),
         };
         config.training.epochs = self.epochs.unwrap_or(config.training.epochs);

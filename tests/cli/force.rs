@@ -116,4 +116,6 @@ fn the_settings_can_be_printed_and_read_again() {
     fs::write(&path, &printed).unwrap();
     let again = ok(program().args(arguments).arg("--config").arg(path).output().unwrap());
     assert_eq!(again, printed);
+    let paper = ok(program().args(arguments).arg("--paper").output().unwrap());
+    assert!(paper != printed && paper.contains("512"), "{paper}");
 }

@@ -263,3 +263,24 @@ fn every_ablation_trains() {
         assert!(impulse.is_finite(), "{:?}", settings.config.network);
     }
 }
+
+#[test]
+fn the_shipped_model_has_the_default_settings() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/models/force.safetensors");
+    let shipped = ForceModel::load(&path).unwrap();
+    assert_eq!(shipped.config(), &ForceConfig::default());
+}
+
+#[test]
+fn the_network_of_the_paper_trains() {
+    let paper = ForceConfig::paper();
+    let mut settings = settings(None);
+    settings.config = ForceConfig { crush: settings.config.crush, ..paper };
+    settings.config.network.centre = Centre::Momentum;
+    settings.config.training.epochs = 3;
+    let model = train(set(), &settings, &mut |_| ControlFlow::Continue(())).unwrap();
+    assert!(model.n_parameters() > 600_000, "{}", model.n_parameters());
+    let losses: Vec<f64> = model.record().history.iter().map(|record| record.detail.train.total).collect();
+    assert!(losses[2] < losses[0], "{losses:?}");
+    assert!(model.predict(&scenario()).unwrap().mixture.impulse(1).mean().is_finite());
+}

@@ -26,6 +26,9 @@ pub(in crate::cli) struct TrainForceArgs {
     /// Settings (TOML); what it leaves out keeps its default, see --print-config
     #[arg(long, value_name = "CONFIG.toml")]
     config: Option<PathBuf>,
+    /// The network in the sizes of the paper instead of the default, which predicts as well
+    #[arg(long, conflicts_with = "config")]
+    paper: bool,
     /// Epochs at most, instead of the configured number
     #[arg(long)]
     epochs: Option<usize>,
@@ -63,6 +66,7 @@ pub(in crate::cli) fn run(
         data: args.data.clone(),
         extra: args.extra.clone(),
         config: args.config.clone().into(),
+        paper: args.paper,
         epochs: args.epochs,
         seed: args.seed,
         bad_cases: args.bad_cases.into(),

@@ -1,4 +1,4 @@
-//! The force network: scenario and physics in, the distribution of the whole force history out.
+//! The force network: from a scenario and its physics to the distribution of the whole force history.
 //!
 //! Source: after `eq:pinn-gmmframework` to `eq:gmmfunction` of
 //! [`PitPinnPaper`](crate::bibliography::PitPinnPaper).
@@ -11,9 +11,9 @@
 //! F | k ~ N(F_base + δ_k, U_k U_kᵀ + diag(σ_min² + exp s_k))      k ~ π(θ)
 //! ```
 //!
-//! δ_k, U_k and s_k start from what the physics leaves over
-//! ([`ResidualModel`](crate::force::physics::ResidualModel)); the network learns by how much the
-//! case at hand departs from it.
+//! δ_k, U_k and s_k start from the residuals of the physics
+//! ([`ResidualModel`](crate::force::physics::ResidualModel)). The network learns how far each case
+//! departs from them.
 //!
 //! Everything is in units of the centre's peak force; the duration, in units of 0.1 s, is one more
 //! value of the curve, so that it varies together with the force.
@@ -37,23 +37,23 @@ use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, CurveComponent};
 
 /// Unit of the duration among the values of a curve, s.
 pub(crate) const DURATION_UNIT_S: f64 = 0.1;
-/// Over which the curve fades out at the end of the contact, s.
+/// Time over which the curve fades out at the end of the contact, s.
 const FADE_S: f64 = 0.006;
-/// Largest change of the logarithm of the deviation of single instants: what is left to them is
-/// ripple; all that lasts is for the latent factors, else drawn curves are jagged and their peaks
-/// too high.
+/// Largest change of the logarithm of the deviation of single instants. It is small because single
+/// instants account for ripple only: if they had to explain longer deviations, which belong to the
+/// latent factors, drawn curves would be jagged and their peaks too high.
 const STD_LOG_CHANGE: f64 = 0.7;
 /// Largest change of the logarithm of the size of a latent factor, for all instants and for one.
 const FACTOR_LOG_CHANGE: f64 = 1.0;
 const FACTOR_INSTANT_CHANGE: f64 = 0.3;
-/// Floor of the force that may be expected at any time, peaks of the centre.
+/// Smallest value of the envelope of expected forces, in peaks of the centre.
 const ENVELOPE_FLOOR: f64 = 0.2;
 /// Log odds of hooking before training.
 const FIRST_HOOKING_LOGIT: f64 = -2.0;
 /// Largest correction of the logit of the duration.
 const DURATION_CORRECTION: f64 = 0.02;
-/// Largest shift of a component's duration, units of 0.1 s: next to nothing, for the physics'
-/// duration is nearer; and of hooking.
+/// Largest shift of a component's duration in units of 0.1 s. It is nearly zero, since the duration
+/// of the physics is more accurate, except for the component of hooking.
 const DURATION_SHIFT: f64 = 0.005;
 const HOOKING_DURATION_SHIFT: f64 = 1.0;
 
@@ -79,7 +79,7 @@ struct Layers {
     whole: Linear,
 }
 
-/// What the network sees of some cases.
+/// The inputs of the network for some cases.
 #[derive(Debug, Clone)]
 pub(crate) struct NetworkInput {
     /// Standardised features, `[cases, features]`.
@@ -89,7 +89,7 @@ pub(crate) struct NetworkInput {
     pub instants: Tensor,
     /// Impulse of the centre in peaks × s, its duration in s and its onset in s, `[cases, 4]`.
     pub whole: Tensor,
-    /// Where the components start from: shift and variance, `[cases, K, values]`.
+    /// Shift and variance of the components before any correction, `[cases, K, values]`.
     pub shift: Tensor,
     pub variance: Tensor,
     /// φ, `[cases, K]`.
@@ -105,9 +105,9 @@ pub(crate) struct NetworkOutput {
     pub logits: Tensor,
     /// Means, `[cases, K, values]`.
     pub mean: Tensor,
-    /// Variance of what the factors leave, `[cases, K, values]`.
+    /// Variance that the factors do not explain, `[cases, K, values]`.
     pub variance: Tensor,
-    /// Correlation φ of what they leave in neighbouring instants, `[cases, K]`.
+    /// Correlation φ of the remainder at neighbouring instants, `[cases, K]`.
     pub lag_correlation: Tensor,
     /// Latent factors U, `[cases, K, values, q]`; none if q = 0.
     pub factors: Option<Tensor>,
@@ -159,9 +159,9 @@ impl NetworkOutput {
 }
 
 impl ForceNetwork {
-    /// New layers with seeded parameters.
+    /// A network with random first weights.
     ///
-    /// - `n_bodies`: kinds of bullet bodies.
+    /// - `n_bodies`: number of kinds of bullet bodies.
     pub(crate) fn new(
         config: &NetworkConfig,
         n_bodies: usize,
@@ -251,8 +251,8 @@ impl ForceNetwork {
         Ok(raw.permute((0, 2, 3, 1, 4))?.contiguous()?)
     }
 
-    /// The latent factors of the residuals, scaled as wholes by `sizes`, `[cases, K, q]`, and
-    /// instant by instant; `[cases, K, values, q]`.
+    /// The latent factors of the residuals, each scaled as a whole by `sizes`, `[cases, K, q]`, and at
+    /// each instant; `[cases, K, values, q]`.
     fn factors(
         &self,
         layers: &Layers,
@@ -280,7 +280,7 @@ impl ForceNetwork {
         Ok(values.to_dtype(self.parameters.number_type())?)
     }
 
-    /// What the trunk says of each instant, `[cases, instants, width]`.
+    /// The output of the trunk at each instant, `[cases, instants, width]`.
     fn hidden(
         &self,
         layers: &Layers,
@@ -319,7 +319,7 @@ impl ForceNetwork {
         Ok((candle_nn::ops::sigmoid(&(logit + correction)?)? * longest)?.squeeze(1)?)
     }
 
-    /// P = P_centre + κ |P_centre| tanh(z); `[cases, 2]`. Free without physics.
+    /// P = P_centre + κ |P_centre| tanh(z); `[cases, 2]`.
     fn impulse(&self, whole: &Tensor, centre: &Tensor) -> Result<Tensor, ForceError> {
         let impulse = centre.narrow(1, 0, 2)?;
         let size = impulse.sqr()?.sum_keepdim(1)?.sqrt()?;
@@ -355,8 +355,8 @@ impl ForceNetwork {
         Ok((raw + amount.broadcast_mul(&carrier)?)?)
     }
 
-    /// 1 until the end of the contact, then 0, `[cases, instants]`; over 6 ms before the end it
-    /// falls, so that the end can be learned.
+    /// 1 during the contact and 0 after it, `[cases, instants]`. Over the last 6 ms it falls linearly, so
+    /// that the end of the contact has a gradient.
     fn window(&self, input: &NetworkInput, duration_s: &Tensor) -> Result<Tensor, ForceError> {
         let n_instants = input.instants.dim(1)?;
         let number_type = self.parameters.number_type();
@@ -372,8 +372,7 @@ impl ForceNetwork {
         Ok((input.instants.narrow(2, 0, 2)?.sqr()?.sum(2)? + 1e-12)?.sqrt()?)
     }
 
-    /// Where forces are to be expected: |centre| and a floor that fades with time after it,
-    /// `[cases, instants]`. Without a centre: 1.
+    /// Envelope of expected forces, `[cases, instants]`: |centre| and a constant; 1 without a centre.
     fn envelope(&self, input: &NetworkInput) -> Result<Tensor, ForceError> {
         let magnitude = self.magnitude(input)?;
         if self.config.centre == Centre::None {
@@ -436,6 +435,77 @@ impl Layers {
             component: self.component.frozen(),
             loading: self.loading.frozen(),
             whole: self.whole.frozen(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use candle_core::Var;
+
+    use super::*;
+    use crate::force::ForceConfig;
+    use crate::nn::gradient_check::{assert_gradients, random_tensor};
+    use crate::nn::random_stream;
+
+    const N_INSTANTS: usize = 6;
+
+    /// Layers as many as the paper has, each a few numbers wide.
+    fn narrow(config: NetworkConfig) -> NetworkConfig {
+        NetworkConfig {
+            encoder_branches: config.encoder_branches.iter().map(|_| [2, 2, 2]).collect(),
+            position_channels: 2,
+            attention_channels: 4,
+            attention_heads: 2,
+            trunk: config.trunk.iter().map(|_| 3).collect(),
+            factors: 1,
+            ..config
+        }
+    }
+
+    /// One case with a force that ends within the instants.
+    fn input(config: &NetworkConfig) -> NetworkInput {
+        let n_values = 2 * N_INSTANTS + 1;
+        let components = [1, config.components, n_values];
+        let random = |shape: &[usize], number| random_tensor(shape, DType::F64, number);
+        let positive = |tensor: Tensor| (tensor.sqr().unwrap() + 0.1).unwrap();
+        let whole = [0.002, 0.003, 0.0043, 0.0];
+        let whole = Tensor::new(&whole, &candle_core::Device::Cpu).unwrap();
+        let factors = [&components[..], &[config.factors]].concat();
+        NetworkInput {
+            features: random(&[1, N_FEATURES + 1], 1),
+            instants: random(&[1, N_INSTANTS, N_INSTANT_FEATURES], 2),
+            whole: whole.unsqueeze(0).unwrap(),
+            shift: random(&components, 3),
+            variance: positive(random(&components, 4)),
+            lag_correlation: random(&[1, config.components], 5),
+            factors: Some(random(&factors, 6)),
+        }
+    }
+
+    /// Everything that the loss is computed from.
+    fn all(output: &NetworkOutput) -> Tensor {
+        let NetworkOutput { logits, mean, variance, factors, impulse, duration_s, .. } = output;
+        let factors = factors.as_ref().unwrap();
+        let tensors = [logits, mean, variance, factors, impulse, duration_s];
+        let flat: Vec<Tensor> =
+            tensors.iter().map(|tensor| tensor.flatten_all().unwrap()).collect();
+        Tensor::cat(&flat, 0).unwrap()
+    }
+
+    #[test]
+    fn gradients_are_those_of_central_differences() {
+        let plain = NetworkConfig { attention: false, ..NetworkConfig::default() };
+        for config in [NetworkConfig::default(), plain, ForceConfig::paper().network] {
+            let (config, mut rng) = (narrow(config), random_stream(1, "test", 0));
+            let network = ForceNetwork::new(&config, 1, &mut rng, DType::F64).unwrap();
+            let parameters: Vec<Var> =
+                network.parameters().iter().map(|(_, variable)| variable.clone()).collect();
+            for (number, variable) in (10..).zip(&parameters) {
+                variable.set(&random_tensor(variable.dims(), DType::F64, number)).unwrap();
+            }
+            let input = input(&config);
+            assert_gradients(&parameters, || all(&network.forward(&input).unwrap()));
         }
     }
 }
