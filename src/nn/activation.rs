@@ -1,4 +1,4 @@
-//! What follows the matrix product of a layer, bias and activation, as one operation on rows.
+//! Bias and activation of a layer as one operation on the rows of a matrix product.
 //!
 //! ```text
 //! z = x Wᵀ + b      y = z·σ(z)      dy/dz = σ(z) + y·(1 − σ(z))      σ(z) = 1/(1 + e⁻ᶻ)
@@ -18,10 +18,10 @@ use crate::nn::NnError;
 use crate::nn::element::{Element, vectorized};
 use crate::nn::storage::{NumberType, contiguous, cpu_storage, number_type};
 
-/// What follows the sum of a layer.
+/// The activation function of a layer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Activation {
-    /// Nothing: y = z.
+    /// The identity: y = z.
     None,
     /// Swish with β = 1, also called SiLU: y = z·σ(z).
     Silu,
@@ -47,7 +47,7 @@ impl Activation {
 /// One application of bias and activation.
 struct BiasActivation<T> {
     activation: Activation,
-    /// dy/dz, kept for the backward pass; without an activation none is needed.
+    /// dy/dz, kept for the backward pass; not set without an activation.
     slope: OnceLock<Vec<T>>,
 }
 

@@ -4,7 +4,7 @@
 //! Q = q̂ W_Q   K = k W_K   V = k W_V   A = softmax(Q Kᵀ/√d) per head   y = q + (A V) W_O
 //! ```
 //!
-//! q̂ is the layer norm of q if switched on, else q. Without masks: every query sees every key.
+//! q̂ is the layer norm of q if switched on, else q. There are no masks.
 //!
 //! Source: A. Vaswani et al., Attention Is All You Need, NeurIPS 2017, section 3.2.
 
@@ -84,7 +84,7 @@ impl Attention {
         }
     }
 
-    /// Every instant looks at every instant of its own sequence.
+    /// Attention of every instant to every instant of its own sequence.
     ///
     /// - `x`: `[batch, time, channels]`.
     /// - returns the same shape.
@@ -97,7 +97,7 @@ impl Attention {
         Ok((x + seen)?)
     }
 
-    /// Every query looks at every token.
+    /// Attention of every query to every token.
     ///
     /// - `queries`: `[batch, n_queries, channels]`.
     /// - `tokens`: `[batch, n_tokens, key_channels]`.

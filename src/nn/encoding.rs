@@ -1,4 +1,4 @@
-//! Where a sample stands on the network's time grid, as sines and cosines.
+//! Positional encoding: the position of a sample on the time grid as sines and cosines.
 
 use candle_core::{DType, Device, Tensor};
 

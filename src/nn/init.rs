@@ -1,4 +1,4 @@
-//! How parameters start.
+//! First values of parameters.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -7,9 +7,9 @@ use rand_distr::StandardNormal;
 /// The first values of a parameter. Fan-in is its last dimension, fan-out its first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Init {
-    /// All zero: biases, and heads whose output shall start at zero.
+    /// Zero: for biases, and for heads whose output starts at zero.
     Zero,
-    /// All the same.
+    /// One value everywhere.
     Constant(f64),
     /// Normal with standard deviation √(2/fan-in), before Swish layers.
     ///

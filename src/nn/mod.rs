@@ -1,9 +1,9 @@
 //! What the networks share: layers, named parameters, the optimiser, seeds, and the file that holds
-//! a trained model. Layers are made of candle's operations; bias with activation and softmax are
-//! operations of our own, because they take a large share of the time of training otherwise.
+//! a trained model. Layers are made of candle's operations, except for matrix product, bias with
+//! activation, and softmax, which take much longer as operations of candle (BENCHMARKS.md).
 //!
 //! Everything runs on the CPU, in 32 or 64 bits, and gives the same bits for the same seed on the
-//! same machine, whatever the number of threads does: weights are drawn from a generator that the
+//! same machine, whatever the number of threads: weights are drawn from a generator that the
 //! caller passes, in the order of the layers, and every sum is taken in a fixed order.
 //!
 //! ```

@@ -74,20 +74,20 @@ impl AdamWConfig {
     }
 }
 
-/// What a step did.
+/// The result of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StepReport {
-    /// Steps taken, this one included.
+    /// Number of steps taken, including this one.
     pub step: u64,
     /// ‖g‖ before clipping.
     pub gradient_norm: f64,
     /// η_t.
     pub learning_rate: f64,
-    /// Trained parameters that the loss does not depend on; they stay as they are.
+    /// Number of trained parameters on which the loss does not depend. They are not changed.
     pub n_without_gradient: usize,
 }
 
-/// What must be saved to go on as if never stopped.
+/// The state from which a training can be resumed to the same bits.
 #[derive(Debug, Clone)]
 pub struct OptimizerState {
     /// Steps taken.
@@ -130,7 +130,7 @@ struct Rates {
 }
 
 impl AdamW {
-    /// An optimiser that has taken no step.
+    /// An optimiser before its first step.
     ///
     /// # Errors
     /// [`NnError::Setting`] for a setting out of range, [`NnError::NumberType`].
@@ -222,7 +222,7 @@ impl AdamW {
         OptimizerState { step: self.step, moments: tensors.collect() }
     }
 
-    /// Goes on where the exported optimiser stopped. Nothing is changed unless everything fits.
+    /// Takes over the state of an exported optimiser. Nothing is changed unless all tensors fit.
     ///
     /// # Errors
     /// [`NnError::MissingTensor`], [`NnError::UnexpectedTensor`], [`NnError::WrongShape`],

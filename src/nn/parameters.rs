@@ -1,4 +1,4 @@
-//! The parameters of a network: named, in the order of its layers, and all of them known.
+//! The parameters of a network by name, in the order of its layers.
 
 use std::fmt::Display;
 
@@ -10,15 +10,15 @@ use crate::nn::{Init, NamedTensors, NnError};
 
 /// Every parameter of a network, in the order in which its layers were made.
 ///
-/// The layers hold the same tensors: what the optimiser or [`Parameters::import`] writes here,
-/// they compute with.
+/// The layers share these tensors, so that they compute with the values that the optimiser or
+/// [`Parameters::import`] writes.
 #[derive(Debug)]
 pub struct Parameters {
     number_type: DType,
     entries: Vec<Parameter>,
 }
 
-/// One of them.
+/// A parameter and whether it is trained.
 #[derive(Debug)]
 pub(crate) struct Parameter {
     pub(crate) name: String,
@@ -27,24 +27,24 @@ pub(crate) struct Parameter {
 }
 
 impl Parameters {
-    /// None yet.
+    /// An empty list of parameters.
     ///
     /// - `number_type`: [`DType::F32`], or [`DType::F64`] for checks of gradients.
     pub fn new(number_type: DType) -> Self {
         Self { number_type, entries: Vec::new() }
     }
 
-    /// What layers add their parameters through; all first values come from `rng`.
+    /// The builder through which layers add their parameters, whose first values are drawn from `rng`.
     pub fn builder<'a>(&'a mut self, rng: &'a mut ChaCha8Rng) -> ParameterBuilder<'a> {
         ParameterBuilder { parameters: self, rng, prefix: String::new() }
     }
 
-    /// The type of all numbers.
+    /// The number type of all parameters.
     pub fn number_type(&self) -> DType {
         self.number_type
     }
 
-    /// Names and values, in order.
+    /// Names and values in their order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (&str, &Var)> {
         self.entries.iter().map(|entry| (entry.name.as_str(), &entry.variable))
     }
@@ -58,14 +58,14 @@ impl Parameters {
         self.entries.iter().find(|entry| entry.name == name).map(|entry| &entry.variable)
     }
 
-    /// How many numbers the parameters hold together.
+    /// Number of values of all parameters together.
     pub fn n_values(&self) -> usize {
         self.entries.iter().map(|entry| entry.variable.elem_count()).sum()
     }
 
-    /// Says by name which parameters the optimiser changes; at first it changes all.
+    /// Selects by name the parameters that the optimiser changes. Without a call it changes all.
     ///
-    /// Returns how many it changes.
+    /// - returns the number of parameters that it changes.
     pub fn set_trained(&mut self, is_trained: impl Fn(&str) -> bool) -> usize {
         self.entries.iter_mut().for_each(|entry| entry.trained = is_trained(&entry.name));
         self.entries.iter().filter(|entry| entry.trained).count()

@@ -280,7 +280,8 @@ fn the_network_of_the_paper_trains() {
     settings.config.training.epochs = 3;
     let model = train(set(), &settings, &mut |_| ControlFlow::Continue(())).unwrap();
     assert!(model.n_parameters() > 600_000, "{}", model.n_parameters());
-    let losses: Vec<f64> = model.record().history.iter().map(|record| record.detail.train.total).collect();
+    let losses: Vec<f64> =
+        model.record().history.iter().map(|record| record.detail.train.total).collect();
     assert!(losses[2] < losses[0], "{losses:?}");
     assert!(model.predict(&scenario()).unwrap().mixture.impulse(1).mean().is_finite());
 }

@@ -3,7 +3,7 @@
 use egui::{Grid, Ui};
 
 use crate::app::force::{ForceView, Statistic};
-use crate::force::metrics::{BAND_LEVELS, IntervalCoverage, CurveMetrics, DistributionMetrics};
+use crate::force::metrics::{BAND_LEVELS, CurveMetrics, DistributionMetrics, IntervalCoverage};
 use crate::force::{Evaluation, ForceMetrics};
 use crate::numerics::Summary;
 use crate::units::{Quantity, UnitSystem, percent};

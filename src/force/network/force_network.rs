@@ -27,7 +27,7 @@ use nalgebra::DMatrix;
 use rand_chacha::ChaCha8Rng;
 
 use crate::force::network::{N_FEATURES, N_INSTANT_FEATURES};
-use crate::force::physics::CentreCurve;
+use crate::force::physics::{CentreCurve, DURATION_UNIT_S};
 use crate::force::{Centre, ForceError, NetworkConfig};
 use crate::nn::{
     Activation, Attention, AttentionConfig, Init, Linear, Mlp, MultiScaleEncoder, Parameters,
@@ -35,8 +35,6 @@ use crate::nn::{
 };
 use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, CurveComponent};
 
-/// Unit of the duration among the values of a curve, s.
-pub(crate) const DURATION_UNIT_S: f64 = 0.1;
 /// Time over which the curve fades out at the end of the contact, s.
 const FADE_S: f64 = 0.006;
 /// Largest change of the logarithm of the deviation of single instants. It is small because single

@@ -6,4 +6,4 @@ mod force_network;
 
 pub(crate) use features::{N_FEATURES, N_INSTANT_FEATURES, features, instant_features};
 pub use features::{OpenFeatures, OutsideTraining, Standardisation};
-pub(crate) use force_network::{DURATION_UNIT_S, ForceNetwork, NetworkInput, NetworkOutput};
+pub(crate) use force_network::{ForceNetwork, NetworkInput, NetworkOutput};

@@ -14,4 +14,4 @@ mod residuals;
 pub(crate) use centre::tests::haversine_centre;
 pub use centre::{CentreCurve, CentreFit, CentreModel};
 pub use momentum::MomentumModel;
-pub(crate) use residuals::ResidualModel;
+pub(crate) use residuals::{DURATION_UNIT_S, ResidualModel};

@@ -16,12 +16,13 @@ use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use crate::force::ForceCase;
-use crate::force::network::DURATION_UNIT_S;
 use crate::force::physics::CentreCurve;
 use crate::nn::NnError;
 use crate::numerics::quantile_of_sorted;
 use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS};
 
+/// Unit of the duration among the values of a curve, s.
+pub(crate) const DURATION_UNIT_S: f64 = 0.1;
 /// Nodes of the scaled time for each duration of the centre. Three durations are covered.
 const NODES_PER_DURATION: usize = 32;
 const N_NODES: usize = 3 * NODES_PER_DURATION;

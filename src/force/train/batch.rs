@@ -2,8 +2,8 @@
 
 use candle_core::{DType, Device, Tensor};
 
-use crate::force::network::{DURATION_UNIT_S, N_INSTANT_FEATURES, NetworkInput, instant_features};
-use crate::force::physics::{CentreCurve, ResidualModel};
+use crate::force::network::{N_INSTANT_FEATURES, NetworkInput, instant_features};
+use crate::force::physics::{CentreCurve, DURATION_UNIT_S, ResidualModel};
 use crate::force::train::loss::Targets;
 use crate::force::{ForceCase, ForceError, NetworkConfig};
 use crate::uncertainty::CURVE_N_INSTANTS;

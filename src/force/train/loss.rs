@@ -8,7 +8,8 @@ use std::f64::consts::TAU;
 use candle_core::{D, Tensor};
 use serde::{Deserialize, Serialize};
 
-use crate::force::network::{DURATION_UNIT_S, NetworkOutput};
+use crate::force::network::NetworkOutput;
+use crate::force::physics::DURATION_UNIT_S;
 use crate::force::{ForceError, LossWeights};
 use crate::nn::product;
 use crate::uncertainty::CURVE_INTERVAL_S;
