@@ -38,7 +38,9 @@ fn print_epoch(name: &str, mut config: ForceConfig) {
     config.network.centre = Centre::Momentum;
     config.training.epochs = N_EPOCHS;
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/fea");
-    let cases = ForceCase::load_quietly(&root).expect("the shipped data set can be read");
+    let mut go_on = |_| ControlFlow::Continue(());
+    let cases = ForceCase::load_all(&root, &mut go_on).expect("the shipped data set can be read");
+    let cases = cases.complete().expect("nothing cancels");
     let set = ForceTrainingSet::of_split("fea", &cases, 0, config.training.test_share);
     let settings = TrainSettings::unsaved(config, 0);
     let model = train(&set, &settings, &mut |_| ControlFlow::Continue(())).expect("a training");

@@ -5,7 +5,7 @@ use crate::compare::HORIZONS_S;
 use crate::figure::scene::vehicle_outline;
 use crate::figure::{Axis, Element, Figure, LineStyle, Role, Series};
 use crate::numerics::quantile_of_sorted;
-use crate::response::comparison::{ComparedModel, Comparison, MeanStd, MotionModelKind};
+use crate::response::evaluate::{ComparedModel, Comparison, MeanStd, MotionModelKind};
 use crate::units::{Quantity, Unit, UnitSystem};
 
 /// Half the height of a box, of a tick, as shares of a row.

@@ -56,17 +56,24 @@ pub fn load_dataset(
     let Outcome::Complete(mut dataset) = Dataset::load(root, report)? else {
         return Ok(Outcome::Cancelled);
     };
-    if dataset.kind != kind {
-        let path = root.to_owned();
-        return Err(match kind {
-            DatasetKind::Force => LoadError::NoForces { path },
-            DatasetKind::Trajectory => LoadError::NoTrajectories { path },
-        });
-    }
+    check_kind(&dataset, kind)?;
     if !dataset.problems.is_empty() {
         return Err(dataset.problems.swap_remove(0).into());
     }
     Ok(Outcome::Complete(dataset))
+}
+
+/// Checks what the cases of a data set are.
+///
+/// # Errors
+/// [`LoadError::NoForces`], [`LoadError::NoTrajectories`].
+pub fn check_kind(dataset: &Dataset, kind: DatasetKind) -> Result<(), LoadError> {
+    let path = || dataset.root.clone();
+    match kind {
+        of_dataset if of_dataset == dataset.kind => Ok(()),
+        DatasetKind::Force => Err(LoadError::NoForces { path: path() }),
+        DatasetKind::Trajectory => Err(LoadError::NoTrajectories { path: path() }),
+    }
 }
 
 /// All cases of a data set, in its order.

@@ -30,7 +30,7 @@ mod model_file;
 pub use case::{CaseId, TrainingCase, content_digest, n_steps};
 pub use epochs::{EpochLoop, run_epochs};
 pub use error::LearningError;
-pub use load::{LoadError, cases_and_problems, load_cases, load_dataset};
+pub use load::{LoadError, cases_and_problems, check_kind, load_cases, load_dataset};
 pub use model_file::ModelFile;
 pub use record::{EpochDetail, EpochRecord, TrainingRecord};
 pub use report::{

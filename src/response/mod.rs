@@ -19,7 +19,6 @@ pub use config::{
     CalibrationConfig, PhysicsSchedule, PhysicsTrend, PretrainingConfig, ResponseConfig,
     ResponseLossWeights, ResponseNetworkConfig, RolloutConfig, SingleStepConfig,
 };
-pub use evaluate as comparison;
 pub use motion_log::{ForceOrigin, LogError, LogNoise, LogSettings, LoggedImpact, MotionLog};
 pub use network::ResponseLossTerms;
 pub use physics::{

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::Outcome;
 use crate::response::ResponseConfig;
-use crate::response::comparison::{Comparison, ComparisonSettings, compare_models};
+use crate::response::evaluate::{Comparison, ComparisonSettings, compare_models};
 use crate::study::inputs::{data_name, response_cases};
 use crate::study::question::progress_of;
 use crate::study::{

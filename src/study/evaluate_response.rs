@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use crate::data::Outcome;
-use crate::response::comparison::{MotionModel, evaluate_motion_model};
+use crate::response::evaluate::{MotionModel, evaluate_motion_model};
 use crate::response::{Correction, ResponseCase, ResponseModel};
 use crate::study::inputs::{data_name, response_cases};
 use crate::study::{

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use impactlab::learning::{LearningError, ModelFile, TrainSettings, TrainingReport};
-use impactlab::response::comparison::{MotionModel, evaluate_motion_model};
+use impactlab::response::evaluate::{MotionModel, evaluate_motion_model};
 use impactlab::response::{
     Correction, ImpactRecord, ResponseCase, ResponseConfig, ResponseModel, ResponseStage,
     ResponseTrainSettings, ResponseTrainingSet, average_error_m, fine_tune, pretrain, rollout,

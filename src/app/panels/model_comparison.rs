@@ -14,7 +14,7 @@ use crate::app::widgets::{
 use crate::data::{DatasetKind, Severity};
 use crate::figure::model_name;
 use crate::render::theme;
-use crate::response::comparison::{
+use crate::response::evaluate::{
     Comparison, ComparisonTable, all_tables, paper_metrics, to_markdown,
 };
 use crate::study::{CompareReport, EvaluatedCases};

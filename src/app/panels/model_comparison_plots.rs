@@ -10,7 +10,7 @@ use crate::figure::{
     horizon_figure, model_name, pit_figure, ranking_figure,
 };
 use crate::render::FigureOptions;
-use crate::response::comparison::{
+use crate::response::evaluate::{
     ComparedModel, Comparison, CoverageMetrics, MeanStd, MotionModelKind, TestCase,
 };
 use crate::units::{Quantity, UnitSystem, significant};

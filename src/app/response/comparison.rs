@@ -8,7 +8,7 @@ use std::time::Duration;
 use crate::app::question_job::QuestionJob;
 use crate::error_chain;
 use crate::jobs::{Job, Progress};
-use crate::response::comparison::{Comparison, write_comparison};
+use crate::response::evaluate::{Comparison, write_comparison};
 use crate::study::{
     CompareAnswer, CompareReport, CompareRequest, EvaluateResponseRequest, Library,
 };

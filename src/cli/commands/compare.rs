@@ -8,7 +8,7 @@ use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::options::{BadCasesArg, VehicleArg};
 use crate::cli::text::print_comparison;
-use crate::response::comparison::write_comparison;
+use crate::response::evaluate::write_comparison;
 use crate::shipped::ModelSource;
 use crate::study::{CompareRequest, DEFAULT_CHOICES, ModelChoice};
 

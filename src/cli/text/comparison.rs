@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use crate::cli::console::{print_assumptions, print_table};
-use crate::response::comparison::all_tables;
+use crate::response::evaluate::all_tables;
 use crate::study::CompareReport;
 
 /// Prints the tables below each other.

@@ -1,7 +1,6 @@
 //! Cases of a force data set in the form from which force models learn: canonical scenarios, and
 //! forces on the common time grid.
 
-use std::ops::ControlFlow;
 use std::path::Path;
 
 use crate::data::{
@@ -145,15 +144,6 @@ impl ForceCase {
         })
     }
 
-    /// [`ForceCase::load_all`] that nobody watches.
-    ///
-    /// # Errors
-    /// As for [`ForceCase::load_all`].
-    pub fn load_quietly(root: &Path) -> Result<Vec<Self>, LoadError> {
-        let outcome = Self::load_all(root, &mut |_| ControlFlow::Continue(()))?;
-        Ok(outcome.complete().unwrap_or_default())
-    }
-
     /// Whether the vehicles part for good: they do not hook and are separated at the end.
     pub fn is_clean(&self) -> bool {
         self.separated && !self.hooked
@@ -209,6 +199,8 @@ impl TrainingCase for ForceCase {
 
 #[cfg(test)]
 pub(crate) mod tests {
+    use std::ops::ControlFlow;
+
     use super::*;
     use crate::collision::ImpulseFeatures;
     use crate::learning::{TEST_SHARE, split};

@@ -1,5 +1,6 @@
 //! The cases that a training, an evaluation or a comparison is made with.
 
+use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -7,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::data::{Case, Dataset, DatasetKind, Outcome};
 use crate::error_chain;
 use crate::force::ForceCase;
-use crate::learning::LoadError;
+use crate::learning::{cases_and_problems, check_kind, load_cases};
 use crate::response::ResponseCase;
 use crate::study::inputs::{OpenVehicle, struck_vehicle};
 use crate::study::{Assumption, Library, Observer, StudyError, VehicleChoice};
@@ -60,15 +61,8 @@ pub(in crate::study) fn force_cases(
     let Outcome::Complete(dataset) = library.dataset(root, observer)? else {
         return Ok(Outcome::Cancelled);
     };
-    if dataset.kind != DatasetKind::Force {
-        return Err(LoadError::NoForces { path: root.to_owned() }.into());
-    }
-    let read = |case: &Case| {
-        ForceCase::from_case(case).map_err(|source| {
-            StudyError::from(LoadError::Case { path: root.to_owned(), source: Box::new(source) })
-        })
-    };
-    usable(&dataset, bad_cases, read).map(Outcome::Complete)
+    check_kind(&dataset, DatasetKind::Force)?;
+    usable(&dataset, bad_cases, ForceCase::from_case).map(Outcome::Complete)
 }
 
 /// The trajectories of a data set; a vehicle that nobody named is added to the assumptions.
@@ -81,39 +75,31 @@ pub(in crate::study) fn response_cases(
     let Outcome::Complete(dataset) = library.dataset(root, observer)? else {
         return Ok(Outcome::Cancelled);
     };
-    if dataset.kind != DatasetKind::Trajectory {
-        return Err(LoadError::NoTrajectories { path: root.to_owned() }.into());
-    }
+    check_kind(&dataset, DatasetKind::Trajectory)?;
     let own = OpenVehicle::OfDataset(dataset.vehicle_file.as_deref());
     let vehicle = struck_vehicle(choice, &own, assumptions)?;
-    let read = |case: &Case| {
-        ResponseCase::from_case(case, &vehicle).map_err(|source| {
-            let source = Box::new(source);
-            StudyError::from(LoadError::Case { path: root.to_owned(), source })
-        })
-    };
-    usable(&dataset, bad_cases, read).map(Outcome::Complete)
+    let from_case = |case: &Case| ResponseCase::from_case(case, &vehicle);
+    usable(&dataset, bad_cases, from_case).map(Outcome::Complete)
 }
 
-fn usable<T>(
+fn usable<T, E: Error + Send + Sync + 'static>(
     dataset: &Dataset,
     bad_cases: BadCases,
-    read: impl Fn(&Case) -> Result<T, StudyError>,
+    from_case: impl FnMut(&Case) -> Result<T, E>,
 ) -> Result<UsableCases<T>, StudyError> {
-    let (mut cases, mut left_out) = (Vec::new(), Vec::new());
-    if let Some(problem) = dataset.problems.first() {
-        if bad_cases == BadCases::Refuse {
-            let (path, problem) = (dataset.root.clone(), error_chain(problem));
-            return Err(StudyError::BadCase { path, problem });
+    let unread: Vec<String> = dataset.problems.iter().map(|problem| error_chain(problem)).collect();
+    match (bad_cases, unread.first()) {
+        (BadCases::Refuse, Some(problem)) => {
+            let (path, problem) = (dataset.root.clone(), problem.clone());
+            Err(StudyError::BadCase { path, problem })
         }
-        left_out.extend(dataset.problems.iter().map(|problem| error_chain(problem)));
-    }
-    for case in &dataset.cases {
-        match (read(case), bad_cases) {
-            (Ok(case), _) => cases.push(case),
-            (Err(problem), BadCases::Refuse) => return Err(problem),
-            (Err(problem), BadCases::LeaveOut) => left_out.push(error_chain(&problem)),
+        (BadCases::Refuse, None) => {
+            Ok(UsableCases { cases: load_cases(dataset, from_case)?, left_out: Vec::new() })
+        }
+        (BadCases::LeaveOut, _) => {
+            let (cases, problems) = cases_and_problems(dataset, from_case);
+            let unusable = problems.iter().map(|problem| error_chain(problem));
+            Ok(UsableCases { cases, left_out: unread.into_iter().chain(unusable).collect() })
         }
     }
-    Ok(UsableCases { cases, left_out })
 }
