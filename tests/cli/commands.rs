@@ -238,6 +238,34 @@ fn what_a_force_sample_stands_for_follows_from_the_columns() {
 }
 
 #[test]
+fn check_says_impulse_peak_and_contact_of_a_force_file() {
+    let folder = TempDir::new().unwrap();
+    let table = "t [ms],Fx [kN],Fy [kN]\n0,0,0\n50,0,0\n100,3,40\n150,0,0\n200,0,0\n";
+    let file = write(&folder, "f.csv", table);
+    let ran = impactlab(&["check", text(&file)]);
+    for line in [
+        "  impulse   2.006 kN s (x 0.150, y 2.000), world axes",
+        "  peak      40.112 kN at 0.100 s",
+    ] {
+        assert!(ran.out.lines().any(|printed| printed == line), "{line}\n{}", ran.out);
+    }
+    let force = &impactlab(&["check", "--json", text(&file)]).json()["files"][0]["force"];
+    let number = |value: &Value| value.as_f64().unwrap_or_else(|| panic!("{force}"));
+    for (got, expected) in [
+        (&force["impulse_n_s"][0], 150.0),
+        (&force["impulse_n_s"][1], 2000.0),
+        (&force["peak_n"], 3000_f64.hypot(40_000.0)),
+        (&force["peak_time_s"], 0.1),
+        (&force["contact_s"][0], 0.05),
+        (&force["contact_s"][1], 0.15),
+    ] {
+        assert!((number(got) - expected).abs() < 1e-9 * expected, "{expected}: {force}");
+    }
+    let steering = impactlab(&["check", "--json", "docs/guide/examples/steering.csv"]).json();
+    assert!(steering["files"][0]["force"].is_null(), "{steering}");
+}
+
+#[test]
 fn bad_files_are_named_with_line_and_column() {
     let folder = TempDir::new().unwrap();
     let force = write(&folder, "f.csv", "time_s,fx_n,fy_n,mz_nm\n0,1,2,0\n0.1,x,3,0\n");

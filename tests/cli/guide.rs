@@ -255,6 +255,19 @@ fn the_readme_is_short_and_every_link_leads_to_a_file() {
 }
 
 #[test]
+fn every_file_that_contributing_names_is_there() {
+    let text = fs::read_to_string(root().join("CONTRIBUTING.md")).unwrap();
+    let folders = ["src/", "tests/", "docs/", "assets/", "examples/", ".ci/"];
+    let named = text.split('`').skip(1).step_by(2);
+    let mut n_files = 0;
+    for path in named.filter(|name| folders.iter().any(|folder| name.starts_with(folder))) {
+        assert!(root().join(path).exists(), "no {path}");
+        n_files += 1;
+    }
+    assert!(n_files > 10, "{n_files}");
+}
+
+#[test]
 fn transcripts_are_found_and_compared() {
     let text = "\
 text
