@@ -45,7 +45,7 @@ pub struct Progress {
 }
 
 /// The callback that a long computation calls: it reports, and breaks when told to.
-pub type Report<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
+pub type ProgressCallback<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
 
 impl Progress {
     /// `done` of `total` units, with a word on what is being done.
@@ -92,7 +92,7 @@ impl<T> Update<Result<T, String>> {
     }
 }
 
-enum Message<T> {
+enum JobMessage<T> {
     Progress(Progress),
     End(Update<T>),
 }
@@ -104,7 +104,7 @@ pub struct Job<T> {
     started: Instant,
     progress: Progress,
     cancel: Arc<AtomicBool>,
-    receiver: Receiver<Message<T>>,
+    receiver: Receiver<JobMessage<T>>,
     ended: bool,
 }
 
@@ -130,7 +130,7 @@ impl<T: Send + 'static> Job<T> {
     pub fn spawn(
         name: &str,
         wake: impl Fn() + Send + 'static,
-        work: impl FnOnce(&mut Report<'_>) -> T + Send + 'static,
+        work: impl FnOnce(&mut ProgressCallback<'_>) -> T + Send + 'static,
     ) -> std::io::Result<Self> {
         Self::start(name, wake, work, |run| run())
     }
@@ -144,7 +144,7 @@ impl<T: Send + 'static> Job<T> {
     pub fn spawn_in_background(
         name: &str,
         wake: impl Fn() + Send + 'static,
-        work: impl FnOnce(&mut Report<'_>) -> T + Send + 'static,
+        work: impl FnOnce(&mut ProgressCallback<'_>) -> T + Send + 'static,
     ) -> std::io::Result<Self> {
         let threads = background_threads(name)?;
         Self::start(name, wake, work, move |run| threads.install(run))
@@ -153,7 +153,7 @@ impl<T: Send + 'static> Job<T> {
     fn start(
         name: &str,
         wake: impl Fn() + Send + 'static,
-        work: impl FnOnce(&mut Report<'_>) -> T + Send + 'static,
+        work: impl FnOnce(&mut ProgressCallback<'_>) -> T + Send + 'static,
         on_threads: impl FnOnce(Box<dyn FnOnce() + Send>) + Send + 'static,
     ) -> std::io::Result<Self> {
         let cancel = Arc::new(AtomicBool::new(false));
@@ -162,7 +162,7 @@ impl<T: Send + 'static> Job<T> {
         let run = move || {
             let mut report = |progress: Progress| {
                 // A dropped receiver means a dropped job, which has set the flag.
-                let _ = sender.send(Message::Progress(progress));
+                let _ = sender.send(JobMessage::Progress(progress));
                 wake();
                 if cancelled.load(Ordering::Relaxed) {
                     ControlFlow::Break(())
@@ -174,7 +174,7 @@ impl<T: Send + 'static> Job<T> {
                 Ok(value) => Update::Finished(value),
                 Err(payload) => Update::Panicked(panic_message(&*payload)),
             };
-            let _ = sender.send(Message::End(end));
+            let _ = sender.send(JobMessage::End(end));
             wake();
         };
         thread::Builder::new().name(name.to_owned()).spawn(move || on_threads(Box::new(run)))?;
@@ -224,13 +224,13 @@ impl<T: Send + 'static> Job<T> {
         }
     }
 
-    fn take_in(&mut self, message: Message<T>) -> Update<T> {
+    fn take_in(&mut self, message: JobMessage<T>) -> Update<T> {
         match message {
-            Message::Progress(progress) => {
+            JobMessage::Progress(progress) => {
                 self.progress = progress;
                 Update::Running
             }
-            Message::End(end) => {
+            JobMessage::End(end) => {
                 self.ended = true;
                 end
             }
@@ -281,7 +281,7 @@ fn panic_message(payload: &(dyn std::any::Any + Send)) -> String {
 mod tests {
     use super::*;
 
-    fn count_until_cancelled(report: &mut Report<'_>) -> u64 {
+    fn count_until_cancelled(report: &mut ProgressCallback<'_>) -> u64 {
         for step in 1.. {
             if report(Progress::new(step, 0, "counting")).is_break() {
                 return step;
@@ -331,7 +331,7 @@ mod tests {
     #[test]
     fn work_in_the_background_stays_on_threads_of_its_own() {
         use rayon::prelude::*;
-        let names = |_: &mut Report<'_>| -> Vec<String> {
+        let names = |_: &mut ProgressCallback<'_>| -> Vec<String> {
             let name = |_| thread::current().name().unwrap_or_default().to_owned();
             (0..64).into_par_iter().map(name).collect()
         };

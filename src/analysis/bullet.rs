@@ -1,6 +1,6 @@
 //! The striking vehicle of a finite-element case: as recorded, then coasting.
 
-use crate::analysis::{AnalysisError, Settings, Track};
+use crate::analysis::{AnalysisError, Settings, VehicleTrack};
 use crate::collision::Footprint;
 use crate::data::{Case, Channel, ForceAttributes, SeriesError, TimeSeries};
 use crate::vehicle::frames::body_from_world;
@@ -22,7 +22,7 @@ pub(super) fn bullet_track(
     case: &Case,
     attributes: &ForceAttributes,
     settings: &Settings,
-) -> Result<Option<Track>, AnalysisError> {
+) -> Result<Option<VehicleTrack>, AnalysisError> {
     let start = [case.attributes.number("bullet_x0_m"), case.attributes.number("bullet_y0_m")];
     let ([Some(x), Some(y)], Some(yaw_rad)) = (start, case.series.get(Channel::BulletYaw)) else {
         return Ok(None);
@@ -35,7 +35,7 @@ pub(super) fn bullet_track(
     let vehicle = settings.bullet.clone().with_mass(mass_kg, yaw_inertia);
     let footprint = Footprint::from(&vehicle.geometry);
     let motion = append_coasting(&case.series, yaw_rad, recorded, (&vehicle, settings))?;
-    Ok(Some(Track { footprint, motion }))
+    Ok(Some(VehicleTrack { footprint, motion }))
 }
 
 /// Integrates the recorded world velocities by the trapezoid rule.

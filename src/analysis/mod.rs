@@ -23,7 +23,7 @@ pub use forecast::{
 pub use motion_bands::{MOTION_BAND_LEVELS, MotionBands};
 pub use motion_density::{DensityMap, DensityTask, Region};
 pub use motion_forecast::{
-    MotionForecast, MotionForecastError, MotionForecastSettings, Outcome, StruckVehicle,
+    MotionForecast, MotionForecastError, MotionForecastSettings, MotionOutcome, StruckVehicle,
     forecast_collision, forecast_forces,
 };
 pub use scenario::{PulseSetup, analyse_scenario};
@@ -43,7 +43,7 @@ pub struct Settings {
 
 /// A vehicle that moves: its outline and its motion.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Track {
+pub struct VehicleTrack {
     /// Its outline.
     pub footprint: Footprint,
     /// Its motion, with X, Y and yaw at least.
@@ -68,7 +68,7 @@ pub struct Analysis {
     /// The recorded motion.
     pub reference: Option<TimeSeries>,
     /// The striking vehicle.
-    pub bullet: Option<Track>,
+    pub bullet: Option<VehicleTrack>,
     /// How far the simulation lies from the reference.
     pub error: Option<MotionError>,
     /// What the user should know about how this was made.

@@ -63,14 +63,14 @@ pub struct MotionForecast {
     /// Forces that it was driven by, in world axes or heading axes as they came.
     pub forces: Vec<ForceHistory>,
     /// What is left of it in the end.
-    pub outcome: Outcome,
+    pub outcome: MotionOutcome,
     /// Of a predicted force: the whole prediction.
     pub force: Option<ForcePrediction>,
 }
 
 /// How a motion ends.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Outcome {
+pub struct MotionOutcome {
     /// When: at rest, or at the end of the forecast, s.
     pub time_s: f64,
     /// Whether the central path is at rest by then.
@@ -232,7 +232,7 @@ fn outcome(
     distribution: &MotionDistribution,
     central: &[VehicleState<f64>],
     seed: u64,
-) -> Option<Outcome> {
+) -> Option<MotionOutcome> {
     let speed = |state: &VehicleState<f64>| state.vx_m_s.hypot(state.vy_m_s);
     let last = central.len().checked_sub(1)?;
     let rest = central.iter().position(|state| speed(state) < REST_SPEED_M_S);
@@ -247,7 +247,7 @@ fn outcome(
         half: spread.half.map(|value| value - start.yaw_rad),
         ninety: spread.ninety.map(|value| value - start.yaw_rad),
     };
-    Some(Outcome {
+    Some(MotionOutcome {
         time_s: at as f64 * STEP_S,
         is_at_rest: rest.is_some(),
         x_m: of(0),

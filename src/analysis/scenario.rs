@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{Analysis, AnalysisError, Settings, StruckVehicle, Track};
+use crate::analysis::{Analysis, AnalysisError, Settings, StruckVehicle, VehicleTrack};
 use crate::collision::{Pose, Pulse, PulseShape, Scenario, ScenarioVehicle};
 use crate::data::ForceHistory;
 use crate::vehicle::frames::body_from_world;
@@ -65,7 +65,10 @@ pub fn analyse_scenario(
         struck: Some(struck),
         simulation: Some(target),
         reference: None,
-        bullet: Some(Track { footprint: scenario.bullet.footprint(), motion: bullet.series }),
+        bullet: Some(VehicleTrack {
+            footprint: scenario.bullet.footprint(),
+            motion: bullet.series,
+        }),
         error: None,
         notes: vec![format!(
             "force: {} of {:.0} ms that carries the impulse of the momentum solution",

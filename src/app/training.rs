@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use crate::data::Outcome;
 use crate::error_chain;
-use crate::jobs::{Job, Progress, Report};
+use crate::jobs::{Job, Progress, ProgressCallback};
 use crate::learning::TrainingReport;
 use crate::study::{Event, Library, Question};
 
@@ -191,7 +191,7 @@ impl<A: Send + 'static> TrainingSlot<A> {
 fn tell(
     event: &Event<'_>,
     (sender, gate): (&Sender<TrainingReport>, &Gate),
-    report: &mut Report<'_>,
+    report: &mut ProgressCallback<'_>,
 ) -> ControlFlow<()> {
     let progress = match event {
         Event::Progress(progress) => progress.clone(),

@@ -19,7 +19,7 @@ use crate::study::Library;
 #[command(name = "impactlab", version, max_term_width = 100, after_help = EXAMPLES)]
 struct Cli {
     #[command(subcommand)]
-    command: Option<Command>,
+    command: Option<CliCommand>,
     /// Print JSON (SI units, the unit in every key) instead of text
     #[arg(long, global = true)]
     json: bool,
@@ -41,7 +41,7 @@ Examples:
 Exit codes: 0 = ok, 1 = the work failed or found problems, 2 = wrong usage";
 
 #[derive(Debug, Subcommand)]
-enum Command {
+enum CliCommand {
     App(app::AppArgs),
     Check(check::CheckArgs),
     Ask(ask::AskArgs),
@@ -91,20 +91,20 @@ pub fn run() -> ExitCode {
     }
 }
 
-fn dispatch(command: Option<Command>, console: &mut Console<'_>) -> Result<Verdict, CliError> {
+fn dispatch(command: Option<CliCommand>, console: &mut Console<'_>) -> Result<Verdict, CliError> {
     match command {
         None => app::run(app::AppArgs::default()),
-        Some(Command::App(args)) => app::run(args),
-        Some(Command::Check(args)) => check::run(&args, console),
-        Some(Command::Ask(args)) => ask::run(&args, console),
-        Some(Command::Impact(args)) => impact::run(&args, console),
-        Some(Command::Simulate(args)) => simulate::run(&args, console),
-        Some(Command::Train(args)) => train::run(&args, console),
-        Some(Command::FineTune(args)) => fine_tune::run(&args, console),
-        Some(Command::Compare(args)) => compare::run(&args, console),
-        Some(Command::Evaluate(args)) => evaluate::run(&args, console),
-        Some(Command::Predict(args)) => predict::run(&args, console),
-        Some(Command::Render(args)) => render::run(&args, console),
-        Some(Command::Vehicles(args)) => vehicles::run(&args, console),
+        Some(CliCommand::App(args)) => app::run(args),
+        Some(CliCommand::Check(args)) => check::run(&args, console),
+        Some(CliCommand::Ask(args)) => ask::run(&args, console),
+        Some(CliCommand::Impact(args)) => impact::run(&args, console),
+        Some(CliCommand::Simulate(args)) => simulate::run(&args, console),
+        Some(CliCommand::Train(args)) => train::run(&args, console),
+        Some(CliCommand::FineTune(args)) => fine_tune::run(&args, console),
+        Some(CliCommand::Compare(args)) => compare::run(&args, console),
+        Some(CliCommand::Evaluate(args)) => evaluate::run(&args, console),
+        Some(CliCommand::Predict(args)) => predict::run(&args, console),
+        Some(CliCommand::Render(args)) => render::run(&args, console),
+        Some(CliCommand::Vehicles(args)) => vehicles::run(&args, console),
     }
 }

@@ -10,7 +10,7 @@ use crate::compare::{
 use crate::data::{
     Case, Channel, DataError, Outcome, SeriesError, TimeSeries, TrajectoryAttributes,
 };
-use crate::jobs::{Progress, Report};
+use crate::jobs::{Progress, ProgressCallback};
 use crate::numerics::Summary;
 use crate::vehicle::{
     ContactLoad, ContactPoint, Integrator, Manoeuvre, Motion, OUTPUT_INTERVAL_S, SimulationError,
@@ -163,7 +163,7 @@ pub fn replay_dataset(
     cases: &[Case],
     vehicle: &VehicleParameters,
     integrator: Integrator,
-    report: &mut Report<'_>,
+    report: &mut ProgressCallback<'_>,
 ) -> Outcome<DatasetReplay> {
     let mut all = DatasetReplay::default();
     let n_cases = cases.len() as u64;

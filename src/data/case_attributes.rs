@@ -9,7 +9,7 @@ const NO_MOTION: &str = "the motion cannot be simulated";
 
 /// The side of the target that is struck.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Side {
+pub enum StruckSide {
     /// Left.
     Left,
     /// Right.
@@ -35,7 +35,7 @@ pub struct ForceAttributes {
     /// Height of the first contact above the road, m.
     pub contact_height_m: Option<f64>,
     /// The struck side.
-    pub side: Option<Side>,
+    pub side: Option<StruckSide>,
     /// Whether the bullet's corner stays caught.
     pub hooked: Option<bool>,
     /// Whether the vehicles have separated at the end.
@@ -54,7 +54,7 @@ pub struct TrajectoryAttributes {
     /// Height above the road at which it acts, m.
     pub contact_height_m: f64,
     /// The struck side.
-    pub side: Option<Side>,
+    pub side: Option<StruckSide>,
     /// Whether the vehicle turns by more than 90°.
     pub spin: Option<bool>,
     /// Whether the vehicles had separated when the recorded force ended.
@@ -137,10 +137,10 @@ impl DatasetKind {
     }
 }
 
-fn side(attributes: &Attributes) -> Option<Side> {
+fn side(attributes: &Attributes) -> Option<StruckSide> {
     match attributes.text("side")?.to_ascii_lowercase().as_str() {
-        "left" => Some(Side::Left),
-        "right" => Some(Side::Right),
+        "left" => Some(StruckSide::Left),
+        "right" => Some(StruckSide::Right),
         _ => None,
     }
 }

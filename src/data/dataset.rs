@@ -11,7 +11,7 @@ use crate::data::{
     Attributes, DataError, FileKind, ForceHistory, Sampling, SeriesError, Table, TimeSeries, Value,
     read_series,
 };
-use crate::jobs::{Progress, Report};
+use crate::jobs::{Progress, ProgressCallback};
 
 /// The table of cases in a data set's folder.
 pub(crate) const CASES_FILE: &str = "cases.csv";
@@ -135,7 +135,10 @@ impl Dataset {
     /// # Errors
     /// [`DataError::NotRecognised`] if the folder has neither `forces/` nor `trajectories/`;
     /// [`DataError`] if `cases.csv` cannot be read or has no column `case`.
-    pub fn load(root: &Path, report: &mut Report<'_>) -> Result<Outcome<Self>, DataError> {
+    pub fn load(
+        root: &Path,
+        report: &mut ProgressCallback<'_>,
+    ) -> Result<Outcome<Self>, DataError> {
         let kind = DatasetKind::of_folder(root)
             .ok_or_else(|| DataError::NotRecognised { path: root.to_owned() })?;
         let table = Table::read(&root.join(CASES_FILE))?;

@@ -24,7 +24,7 @@ mod toml_table;
 mod write;
 
 pub use attributes::{Attributes, Value};
-pub use case_attributes::{ForceAttributes, Side, TrajectoryAttributes};
+pub use case_attributes::{ForceAttributes, StruckSide, TrajectoryAttributes};
 pub use channel::Channel;
 pub use column_map::{ColumnMap, ColumnRef, ColumnSource, MapError};
 pub(crate) use columns::Columns;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::data::dataset::CASES_FILE;
 use crate::data::{DataError, Dataset, DatasetKind, Loaded, Outcome, read_any_series};
-use crate::jobs::Report;
+use crate::jobs::ProgressCallback;
 
 /// What a path turned out to be.
 #[derive(Debug)]
@@ -27,7 +27,7 @@ pub enum Opened {
 /// # Errors
 /// [`DataError::NotRecognised`] for a folder without data sets; else why the file or the table of
 /// cases could not be read.
-pub fn open(path: &Path, report: &mut Report<'_>) -> Result<Outcome<Opened>, DataError> {
+pub fn open(path: &Path, report: &mut ProgressCallback<'_>) -> Result<Outcome<Opened>, DataError> {
     if path.is_dir() {
         return open_folder(path, report);
     }
@@ -40,7 +40,10 @@ pub fn open(path: &Path, report: &mut Report<'_>) -> Result<Outcome<Opened>, Dat
     Ok(Outcome::Complete(Opened::File(loaded)))
 }
 
-fn open_folder(root: &Path, report: &mut Report<'_>) -> Result<Outcome<Opened>, DataError> {
+fn open_folder(
+    root: &Path,
+    report: &mut ProgressCallback<'_>,
+) -> Result<Outcome<Opened>, DataError> {
     if DatasetKind::of_folder(root).is_some() {
         return Ok(Dataset::load(root, report)?.map(Opened::Dataset));
     }

@@ -1,6 +1,6 @@
 //! How good predictions are: predicted against observed, and whether their spread is honest.
 
-use crate::figure::{Axis, Element, Figure, Role};
+use crate::figure::{Axis, Figure, FigureElement, Role};
 use crate::units::{Quantity, Unit, UnitSystem};
 
 /// A number predicted for a case, SI.
@@ -48,12 +48,12 @@ pub fn parity_figure(
     let mut elements = Vec::new();
     if low <= high {
         let diagonal = [low, high].map(|value| [unit.from_si(value); 2]).to_vec();
-        elements.push(Element::dashed("equal", Role::Muted, diagonal));
+        elements.push(FigureElement::dashed("equal", Role::Muted, diagonal));
     }
     for point in points {
         if let Some(ends) = point.interval {
             let bar = ends.map(|end| [unit.from_si(point.observed), unit.from_si(end)]).to_vec();
-            elements.push(Element::line(interval, Role::Muted, bar));
+            elements.push(FigureElement::line(interval, Role::Muted, bar));
         }
     }
     for (name, role, clean) in
@@ -64,7 +64,7 @@ pub fn parity_figure(
             |point: &ParityPoint| [point.observed, point.predicted].map(|v| unit.from_si(v));
         let of_kind: Vec<[f64; 2]> = of_kind.map(shown).collect();
         if !of_kind.is_empty() {
-            elements.push(Element::points(name, role, of_kind));
+            elements.push(FigureElement::points(name, role, of_kind));
         }
     }
     Figure { title: title.to_owned(), x, y, equal_aspect: false, log_y: false, elements }
@@ -80,10 +80,10 @@ pub fn pit_figure(title: &str, counts: &[u32]) -> Figure {
         let [left, right] = [i, i + 1].map(|edge| edge as f64 / n_bins);
         let height = f64::from(*count) / f64::from(total) * n_bins;
         let outline = vec![[left, 0.0], [left, height], [right, height], [right, 0.0]];
-        Element::polygon("observed", Role::Model, outline)
+        FigureElement::polygon("observed", Role::Model, outline)
     };
-    let mut elements: Vec<Element> = counts.iter().enumerate().map(bar).collect();
-    elements.push(Element::dashed("honest", Role::Reference, vec![[0.0, 1.0], [1.0, 1.0]]));
+    let mut elements: Vec<FigureElement> = counts.iter().enumerate().map(bar).collect();
+    elements.push(FigureElement::dashed("honest", Role::Reference, vec![[0.0, 1.0], [1.0, 1.0]]));
     Figure { title: title.to_owned(), x, y, equal_aspect: false, log_y: false, elements }
 }
 
@@ -94,18 +94,18 @@ pub fn coverage_figure(title: &str, rows: &[(&str, Role, Vec<CoveragePoint>)]) -
     let axis = |label: &str| Axis::new(label, percent);
     let shown = |point: [f64; 2]| point.map(|value| percent.from_si(value));
     let diagonal = [[0.4, 0.4], [1.0, 1.0]].map(shown).to_vec();
-    let mut elements = vec![Element::dashed("honest", Role::Muted, diagonal)];
+    let mut elements = vec![FigureElement::dashed("honest", Role::Muted, diagonal)];
     for (name, role, points) in rows {
         for point in points {
             let end = |sign: f64| {
                 let share = point.share + sign * point.standard_error;
                 shown([point.level, share.clamp(0.0, 1.0)])
             };
-            elements.push(Element::line(*name, *role, vec![end(-1.0), end(1.0)]));
+            elements.push(FigureElement::line(*name, *role, vec![end(-1.0), end(1.0)]));
         }
         let curve: Vec<[f64; 2]> = points.iter().map(|p| shown([p.level, p.share])).collect();
-        elements.push(Element::line(*name, *role, curve.clone()));
-        elements.push(Element::points(*name, *role, curve));
+        elements.push(FigureElement::line(*name, *role, curve.clone()));
+        elements.push(FigureElement::points(*name, *role, curve));
     }
     let [x, y] = [axis("Interval should hold"), axis("Interval holds")];
     Figure { title: title.to_owned(), x, y, equal_aspect: false, log_y: false, elements }
@@ -127,7 +127,7 @@ mod tests {
             .elements
             .iter()
             .filter_map(|element| match element {
-                Element::Polygon(bar) => {
+                FigureElement::Polygon(bar) => {
                     Some((bar.points[2][0] - bar.points[1][0]) * bar.points[1][1])
                 }
                 _ => None,
@@ -148,7 +148,7 @@ mod tests {
         let points = [point(1000.0, 2000.0), point(3000.0, 2500.0)];
         let of = (Quantity::Impulse, UnitSystem::Si);
         let figure = parity_figure(("t", "|P|", "90 % interval"), &points, of);
-        let Element::Line(diagonal) = &figure.elements[0] else { unreachable!() };
+        let FigureElement::Line(diagonal) = &figure.elements[0] else { unreachable!() };
         assert_eq!(diagonal.points, [[1.0, 1.0], [3.0, 3.0]]);
         assert_eq!(figure.elements.len(), 5);
         assert!(parity_figure(("t", "|P|", ""), &[], of).elements.is_empty());

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use crate::figure::{Element, Figure};
+use crate::figure::{Figure, FigureElement};
 
 /// Writes every number of the figure: columns `series`, x and y under the axes' own names and
 /// units, one row a point, in drawing order. A band gives two series, a vertical line a row
@@ -15,15 +15,15 @@ pub fn write_figure_csv(figure: &Figure, writer: impl Write) -> Result<(), csv::
     csv.write_record(["series", &figure.x.text(), &figure.y.text()])?;
     for element in &figure.elements {
         match element {
-            Element::Line(series)
-            | Element::Points(series)
-            | Element::Polygon(series)
-            | Element::Arrow(series) => {
+            FigureElement::Line(series)
+            | FigureElement::Points(series)
+            | FigureElement::Polygon(series)
+            | FigureElement::Arrow(series) => {
                 for [x, y] in &series.points {
                     csv.write_record([&series.name, &x.to_string(), &y.to_string()])?;
                 }
             }
-            Element::HeatMap(map) => {
+            FigureElement::HeatMap(map) => {
                 for (i, value) in map.values.iter().enumerate().filter(|(_, v)| **v > 0.0) {
                     let [column, row] = [i % map.size[0].max(1), i / map.size[0].max(1)];
                     let [x, y] = [
@@ -34,7 +34,7 @@ pub fn write_figure_csv(figure: &Figure, writer: impl Write) -> Result<(), csv::
                     csv.write_record([&name, &x.to_string(), &y.to_string()])?;
                 }
             }
-            Element::Band(band) => {
+            FigureElement::Band(band) => {
                 for (edge, values) in [("low", &band.low), ("high", &band.high)] {
                     let name = format!("{} ({edge})", band.name);
                     for (x, y) in band.x.iter().zip(values) {
@@ -42,7 +42,7 @@ pub fn write_figure_csv(figure: &Figure, writer: impl Write) -> Result<(), csv::
                     }
                 }
             }
-            Element::VerticalLine { name, x, .. } => {
+            FigureElement::VerticalLine { name, x, .. } => {
                 csv.write_record([name, &x.to_string(), ""])?;
             }
         }
@@ -66,8 +66,12 @@ mod tests {
             equal_aspect: false,
             log_y: false,
             elements: vec![
-                Element::line("F_x, raw", Role::ComponentX, vec![[0.0, 1.5], [0.1, -2.0]]),
-                Element::VerticalLine { name: "start".to_owned(), role: Role::Muted, x: 0.05 },
+                FigureElement::line("F_x, raw", Role::ComponentX, vec![[0.0, 1.5], [0.1, -2.0]]),
+                FigureElement::VerticalLine {
+                    name: "start".to_owned(),
+                    role: Role::Muted,
+                    x: 0.05,
+                },
             ],
         };
         let mut text = Vec::new();

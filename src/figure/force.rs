@@ -1,7 +1,7 @@
 //! The contact force over time.
 
 use crate::data::{ForceAxes, ForceHistory};
-use crate::figure::{Axis, Element, Figure, Role};
+use crate::figure::{Axis, Figure, FigureElement, Role};
 use crate::units::{Quantity, UnitSystem};
 
 /// What the force figure shows.
@@ -48,20 +48,20 @@ pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
     };
     let mut elements = Vec::new();
     for points in input.raw.map(components).into_iter().flatten() {
-        elements.push(Element::line("unfiltered", Role::Muted, points));
+        elements.push(FigureElement::line("unfiltered", Role::Muted, points));
     }
     let [fx, fy, resultant] = components(input.force);
-    elements.push(Element::dashed("|F|", Role::Resultant, resultant));
-    elements.push(Element::line("F_x", Role::ComponentX, fx));
-    elements.push(Element::line("F_y", Role::ComponentY, fy));
+    elements.push(FigureElement::dashed("|F|", Role::Resultant, resultant));
+    elements.push(FigureElement::line("F_x", Role::ComponentX, fx));
+    elements.push(FigureElement::line("F_y", Role::ComponentY, fy));
     for (name, pulse) in input.pulses {
         let [_, _, resultant] = components(pulse);
-        elements.push(Element::dashed(name, Role::Pulse, resultant));
+        elements.push(FigureElement::dashed(name, Role::Pulse, resultant));
     }
     if let Some((start, end)) = input.contact_s {
         for (name, at) in [("contact starts", start), ("contact ends", end)] {
             let (name, x) = (name.to_owned(), x.unit.from_si(at));
-            elements.push(Element::VerticalLine { name, role: Role::Muted, x });
+            elements.push(FigureElement::VerticalLine { name, role: Role::Muted, x });
         }
     }
     Figure {

@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::ForceForecast;
 use crate::collision::PulseShape;
-use crate::figure::{Axis, Band, Element, Figure, LineStyle, Role, Series, milliseconds};
-use crate::uncertainty::{Band as CurveBand, ForceCurve};
+use crate::figure::{Axis, Band, Figure, FigureElement, LineStyle, Role, Series, milliseconds};
+use crate::uncertainty::{CurveBand, ForceCurve};
 use crate::units::{Quantity, UnitSystem};
 
 /// Opacity of the widest band and of the narrowest; those between in even steps.
@@ -108,10 +108,10 @@ pub fn forecast_figure(component: ForceComponent, input: &ForecastFigure<'_>) ->
         .collect();
     bands.sort_by(|a, b| b.level.total_cmp(&a.level));
     let steps = bands.len().saturating_sub(1).max(1) as f32;
-    let mut elements: Vec<Element> = Vec::new();
+    let mut elements: Vec<FigureElement> = Vec::new();
     for (rank, band) in bands.into_iter().enumerate() {
         let [widest, narrowest] = OPACITY;
-        elements.push(Element::Band(Band {
+        elements.push(FigureElement::Band(Band {
             name: format!("{:.0} %", band.level * 100.0),
             role: component.role(),
             opacity: widest + (narrowest - widest) * rank as f32 / steps,
@@ -121,19 +121,24 @@ pub fn forecast_figure(component: ForceComponent, input: &ForecastFigure<'_>) ->
         }));
     }
     for curve in &input.forecast.curves {
-        elements.push(Element::line("drawn curves", Role::Muted, points(curve)));
+        elements.push(FigureElement::line("drawn curves", Role::Muted, points(curve)));
     }
     for (shape, curve) in input.pulses {
         let (name, role, points) = (shape.label().to_owned(), Role::Pulse, points(curve));
-        elements.push(Element::Line(Series { name, role, style: pulse_style(*shape), points }));
+        elements.push(FigureElement::Line(Series {
+            name,
+            role,
+            style: pulse_style(*shape),
+            points,
+        }));
     }
     if let Some(physics) = input.physics {
-        elements.push(Element::dashed("centre alone", Role::Reference, points(physics)));
+        elements.push(FigureElement::dashed("centre alone", Role::Reference, points(physics)));
     }
     let mean = points(&input.forecast.mean);
-    elements.push(Element::line("mean", component.role(), mean));
+    elements.push(FigureElement::line("mean", component.role(), mean));
     if let Some((name, curve)) = input.recorded {
-        elements.push(Element::line(name, Role::Reference, points(curve)));
+        elements.push(FigureElement::line(name, Role::Reference, points(curve)));
     }
     let title = format!("{}: predicted {} on the target", input.name, component.label());
     Figure { title, x, y, equal_aspect: false, log_y: false, elements }

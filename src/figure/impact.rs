@@ -1,7 +1,7 @@
 //! The momentum solution of a scenario, from above.
 
 use crate::collision::{ImpactSolution, Scenario, ScenarioError};
-use crate::figure::{Axis, Element, Figure, LineStyle, Role, vehicle_outline};
+use crate::figure::{Axis, Figure, FigureElement, LineStyle, Role, vehicle_outline};
 use crate::units::{Quantity, UnitSystem};
 
 /// Length of the longest velocity arrow and of the impulse arrow, m.
@@ -22,7 +22,7 @@ pub fn impact_figure(
     let y = Axis::shown("Y, to the left", Quantity::Length, units);
     let shown = |point: [f64; 2]| point.map(|value| x.unit.from_si(value));
     let arrow = |name: &str, role, [px, py]: [f64; 2], [dx, dy]: [f64; 2]| {
-        Element::arrow(name, role, shown([px, py]), shown([px + dx, py + dy]))
+        FigureElement::arrow(name, role, shown([px, py]), shown([px + dx, py + dy]))
     };
     let contact = geometry.contact_point_m;
     let [cx, cy] = contact;
@@ -38,7 +38,7 @@ pub fn impact_figure(
         let scale = if full > 0.0 { ARROW_LENGTH_M / full } else { 0.0 };
         [dx * scale, dy * scale]
     };
-    let mut elements = vec![Element::dashed("contact surface", Role::Muted, surface)];
+    let mut elements = vec![FigureElement::dashed("contact surface", Role::Muted, surface)];
     for (name, role, footprint, pose, after) in vehicles {
         let look = (name, role, LineStyle::Solid);
         elements.extend(vehicle_outline(look, (&footprint, &pose), x.unit));

@@ -18,7 +18,7 @@ pub struct Figure {
     /// Whether the vertical axis is logarithmic: every y is positive then.
     pub log_y: bool,
     /// From back to front.
-    pub elements: Vec<Element>,
+    pub elements: Vec<FigureElement>,
 }
 
 /// Name and unit of an axis.
@@ -146,7 +146,7 @@ pub struct HeatMap {
 
 /// Something in a figure.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Element {
+pub enum FigureElement {
     /// Values on a grid.
     HeatMap(HeatMap),
     /// A polyline.
@@ -170,7 +170,7 @@ pub enum Element {
     },
 }
 
-impl Element {
+impl FigureElement {
     /// A full line.
     pub fn line(name: impl Into<String>, role: Role, points: Vec<[f64; 2]>) -> Self {
         Self::Line(Series { name: name.into(), role, style: LineStyle::Solid, points })

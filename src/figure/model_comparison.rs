@@ -3,7 +3,7 @@
 use crate::collision::Pose;
 use crate::compare::HORIZONS_S;
 use crate::figure::scene::vehicle_outline;
-use crate::figure::{Axis, Element, Figure, LineStyle, Role, Series};
+use crate::figure::{Axis, Figure, FigureElement, LineStyle, Role, Series};
 use crate::numerics::quantile_of_sorted;
 use crate::response::evaluate::{ComparedModel, Comparison, MeanStd, MotionModelKind};
 use crate::units::{Quantity, Unit, UnitSystem};
@@ -34,7 +34,7 @@ fn rows_figure<'a>(
     title: String,
     x: Axis,
     models: impl DoubleEndedIterator<Item = &'a ComparedModel> + Clone,
-    elements: impl Fn(&ComparedModel, f64) -> Vec<Element>,
+    elements: impl Fn(&ComparedModel, f64) -> Vec<FigureElement>,
 ) -> Figure {
     let from_below = models.rev();
     let names = from_below.clone().map(|model| model_name(&model.name, model.trajectories));
@@ -44,8 +44,8 @@ fn rows_figure<'a>(
     Figure { title, x, y, equal_aspect: false, log_y: false, elements }
 }
 
-fn vertical(name: &str, role: Role, x: f64, (row, half): (f64, f64)) -> Element {
-    Element::line(name, role, vec![[x, row - half], [x, row + half]])
+fn vertical(name: &str, role: Role, x: f64, (row, half): (f64, f64)) -> FigureElement {
+    FigureElement::line(name, role, vec![[x, row - half], [x, row + half]])
 }
 
 /// Mean (point), standard deviation over the trajectories (bar) and median (tick) of a figure of each
@@ -67,9 +67,9 @@ pub fn ranking_figure(
         let (role, name) = (role(model.kind), model_name(&model.name, model.trajectories));
         let [low, high] = [(mean - std).max(0.0), mean + std];
         vec![
-            Element::line(&name, role, vec![[low, row], [high, row]]),
+            FigureElement::line(&name, role, vec![[low, row], [high, row]]),
             vertical(&name, role, median, (row, TICK_HALF)),
-            Element::points(&name, role, vec![[mean, row]]),
+            FigureElement::points(&name, role, vec![[mean, row]]),
         ]
     };
     rows_figure(title.to_owned(), Axis::new(label, unit), models.into_iter(), elements)
@@ -97,9 +97,9 @@ pub fn cluster_figure(comparison: &Comparison, cluster: usize, units: UnitSystem
         let (below, above) = (row - BOX_HALF, row + BOX_HALF);
         let outline = vec![[low, below], [high, below], [high, above], [low, above]];
         vec![
-            Element::line(&name, role, vec![[least, row], [low, row]]),
-            Element::line(&name, role, vec![[high, row], [most, row]]),
-            Element::polygon(&name, role, outline),
+            FigureElement::line(&name, role, vec![[least, row], [low, row]]),
+            FigureElement::line(&name, role, vec![[high, row], [most, row]]),
+            FigureElement::polygon(&name, role, outline),
             vertical(&name, role, median, (row, BOX_HALF)),
         ]
     };
@@ -126,7 +126,7 @@ pub fn horizon_figure(comparison: &Comparison, units: UnitSystem) -> Figure {
             .filter(|(_, error)| error.mean.is_finite())
             .map(|(time_s, error)| [*time_s, y.unit.from_si(error.mean)])
             .collect();
-        Element::Line(Series {
+        FigureElement::Line(Series {
             name: model_name(&model.name, model.trajectories),
             role: role(model.kind),
             style: style(comparison, model.trajectories),
@@ -156,13 +156,13 @@ pub fn compared_case_figure(
     let case = comparison.test.iter().find(|case| case.name == name)?;
     let x = Axis::shown("X, along the road", Quantity::Length, units);
     let y = Axis::shown("Y, to the left", Quantity::Length, units);
-    let of = |name: &str, role, style, path: &[[f64; 3]]| -> Vec<Element> {
+    let of = |name: &str, role, style, path: &[[f64; 3]]| -> Vec<FigureElement> {
         let points = path.iter().map(|[px, py, _]| [x.unit.from_si(*px), x.unit.from_si(*py)]);
         let line = Series { name: name.to_owned(), role, style, points: points.collect() };
         let end = path.last().map(|&[x_m, y_m, yaw_rad]| Pose { x_m, y_m, yaw_rad });
         let outline =
             end.map(|pose| vehicle_outline((name, role, style), (&case.footprint, &pose), x.unit));
-        std::iter::once(Element::Line(line)).chain(outline.into_iter().flatten()).collect()
+        std::iter::once(FigureElement::Line(line)).chain(outline.into_iter().flatten()).collect()
     };
     let mut elements = Vec::new();
     for model in comparison.cases.iter().filter(|model| model.case == name) {

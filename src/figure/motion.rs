@@ -1,7 +1,7 @@
 //! Time histories of the motion.
 
 use crate::data::{Channel, TimeSeries};
-use crate::figure::{Axis, Element, Figure, LineStyle, Role, Series};
+use crate::figure::{Axis, Figure, FigureElement, LineStyle, Role, Series};
 use crate::numerics::interpolate;
 use crate::units::{Quantity, UnitSystem, significant};
 
@@ -22,7 +22,7 @@ pub fn motion_figure(
         let series = series?;
         let samples = series.time_s().iter().zip(series.get(channel)?);
         let points = samples.map(|(&t, &v)| [x.unit.from_si(t), y.unit.from_si(v)]).collect();
-        Some(Element::Line(Series { name: name.to_owned(), role, style, points }))
+        Some(FigureElement::Line(Series { name: name.to_owned(), role, style, points }))
     };
     let elements = [
         line("reference", Role::Reference, LineStyle::Dashed, reference),

@@ -6,7 +6,7 @@ use crate::analysis::{DensityMap, MOTION_BAND_LEVELS, MotionBands};
 use crate::collision::{Footprint, Pose};
 use crate::data::{Channel, TimeSeries};
 use crate::figure::scene::vehicle_outline;
-use crate::figure::{Axis, Band, Element, Figure, HeatMap, LineStyle, Role, Series, pose_at};
+use crate::figure::{Axis, Band, Figure, FigureElement, HeatMap, LineStyle, Role, Series, pose_at};
 use crate::response::{MotionDistribution, STEP_S};
 use crate::units::{Quantity, UnitSystem};
 use crate::vehicle::VehicleState;
@@ -73,13 +73,16 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
         states.map(|state| shown([state.x_m, state.y_m])).collect()
     };
     let at = instant(input);
-    let mut elements: Vec<Element> =
-        input.density.map(|map| Element::HeatMap(heat_map(map, &shown))).into_iter().collect();
+    let mut elements: Vec<FigureElement> = input
+        .density
+        .map(|map| FigureElement::HeatMap(heat_map(map, &shown)))
+        .into_iter()
+        .collect();
     for region in input.density.iter().flat_map(|map| &map.regions) {
         let name = format!("{:.0} % region", 100.0 * region.level);
         let outline = |points: &Vec<[f64; 2]>| {
             let points = points.iter().map(|point| shown(*point)).collect();
-            Element::line(&name, Role::Model, points)
+            FigureElement::line(&name, Role::Model, points)
         };
         elements.extend(region.outlines.iter().map(outline));
     }
@@ -88,13 +91,13 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
         let stride = components.len().div_ceil(MAX_PATHS).max(1);
         for component in components.iter().step_by(stride) {
             let points = path(&mut component.states.iter().map(|state| &state.mean));
-            elements.push(Element::line("components", Role::Muted, points));
+            elements.push(FigureElement::line("components", Role::Muted, points));
         }
     }
-    let line = |name: &str, role, style, series: &TimeSeries| -> Option<Element> {
+    let line = |name: &str, role, style, series: &TimeSeries| -> Option<FigureElement> {
         let points = series.get(Channel::X)?.iter().zip(series.get(Channel::Y)?);
         let points = points.map(|(px, py)| shown([*px, *py])).collect();
-        Some(Element::Line(Series { name: name.to_owned(), role, style, points }))
+        Some(FigureElement::Line(Series { name: name.to_owned(), role, style, points }))
     };
     let others = [
         ("4DOF model", Role::Pulse, LineStyle::Dotted, input.simulation),
@@ -103,7 +106,11 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
     for (name, role, style, series) in others {
         elements.extend(series.and_then(|series| line(name, role, style, series)));
     }
-    elements.push(Element::line("central path", Role::Target, path(&mut input.central.iter())));
+    elements.push(FigureElement::line(
+        "central path",
+        Role::Target,
+        path(&mut input.central.iter()),
+    ));
     if let Some(state) = input.central.get(at) {
         let pose = Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad };
         let look = ("central path", Role::Target, LineStyle::Solid);
@@ -190,7 +197,7 @@ pub fn forecast_channel_figure(
             let ends = input.bands.intervals.iter().map(|of| of[axis][rank][end]);
             ends.map(|value| y.unit.from_si(value)).collect()
         };
-        elements.push(Element::Band(Band {
+        elements.push(FigureElement::Band(Band {
             name: format!("{:.0} % band", 100.0 * level),
             role: Role::Model,
             opacity,
@@ -199,10 +206,10 @@ pub fn forecast_channel_figure(
             high: edge(1),
         }));
     }
-    let line = |name: &str, role, style, series: &TimeSeries| -> Option<Element> {
+    let line = |name: &str, role, style, series: &TimeSeries| -> Option<FigureElement> {
         let samples = series.time_s().iter().zip(series.get(channel)?);
         let points = samples.map(|(&t, &v)| [x.unit.from_si(t), y.unit.from_si(v)]).collect();
-        Some(Element::Line(Series { name: name.to_owned(), role, style, points }))
+        Some(FigureElement::Line(Series { name: name.to_owned(), role, style, points }))
     };
     let others = [
         ("4DOF model", Role::Pulse, LineStyle::Dotted, input.simulation),
@@ -215,7 +222,7 @@ pub fn forecast_channel_figure(
     let central = central.map(|(i, state)| {
         [x.unit.from_si(i as f64 * STEP_S), y.unit.from_si(state.planar()[axis])]
     });
-    elements.push(Element::line("central path", Role::Target, central.collect()));
+    elements.push(FigureElement::line("central path", Role::Target, central.collect()));
     let title = format!("{}: {} over time", input.title, channel.label());
     Figure { title, x, y, equal_aspect: false, log_y: false, elements }
 }

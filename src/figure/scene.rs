@@ -2,7 +2,7 @@
 
 use crate::collision::{Footprint, Pose};
 use crate::data::{Channel, TimeSeries};
-use crate::figure::{Axis, Element, Figure, LineStyle, Role, Series};
+use crate::figure::{Axis, Figure, FigureElement, LineStyle, Role, Series};
 use crate::numerics::interpolate;
 use crate::units::{Quantity, Unit, UnitSystem};
 
@@ -18,7 +18,7 @@ pub fn vehicle_outline(
     (name, role, style): (&str, Role, LineStyle),
     (footprint, pose): (&Footprint, &Pose),
     unit: Unit,
-) -> [Element; 2] {
+) -> [FigureElement; 2] {
     let (front, half) = (footprint.cg_from_front_m, footprint.width_m / 2.0);
     let shoulder = front - CHEVRON_SHARE * footprint.length_m;
     let chevron = [[shoulder, -half], [front, 0.0], [shoulder, half]];
@@ -28,8 +28,8 @@ pub fn vehicle_outline(
         Series { name: name.to_owned(), role, style, points }
     };
     [
-        Element::Polygon(series(style, footprint.corners_m(pose).to_vec())),
-        Element::Line(series(LineStyle::Solid, chevron)),
+        FigureElement::Polygon(series(style, footprint.corners_m(pose).to_vec())),
+        FigureElement::Line(series(LineStyle::Solid, chevron)),
     ]
 }
 
@@ -72,7 +72,7 @@ pub fn scene_figure(input: &SceneFigure<'_>) -> Figure {
     Figure { title: input.title.to_owned(), x, y, equal_aspect: true, log_y: false, elements }
 }
 
-fn vehicle_elements(vehicle: &SceneVehicle<'_>, time_s: f64, unit: Unit) -> Vec<Element> {
+fn vehicle_elements(vehicle: &SceneVehicle<'_>, time_s: f64, unit: Unit) -> Vec<FigureElement> {
     let motion = vehicle.motion;
     let (Some(x), Some(y)) = (motion.get(Channel::X), motion.get(Channel::Y)) else {
         return Vec::new();
@@ -84,7 +84,7 @@ fn vehicle_elements(vehicle: &SceneVehicle<'_>, time_s: f64, unit: Unit) -> Vec<
         points: shown(unit, points),
     };
     let path = x.iter().zip(y).map(|(&x, &y)| [x, y]).collect();
-    let mut elements = vec![Element::Line(series(vehicle.style, path))];
+    let mut elements = vec![FigureElement::Line(series(vehicle.style, path))];
     let end = motion.time_s().last().copied().unwrap_or(0.0);
     let start = motion.time_s().first().copied().unwrap_or(0.0);
     let n_ticks = ((end - start) / HEADING_TICK_INTERVAL_S).floor() as usize;
@@ -93,7 +93,7 @@ fn vehicle_elements(vehicle: &SceneVehicle<'_>, time_s: f64, unit: Unit) -> Vec<
         if let Some(pose) = pose_at(motion, at) {
             let ends = [-HEADING_TICK_LENGTH_M, HEADING_TICK_LENGTH_M];
             let points = ends.map(|along| pose.world_from_body([along, 0.0])).to_vec();
-            elements.push(Element::Line(series(LineStyle::Solid, points)));
+            elements.push(FigureElement::Line(series(LineStyle::Solid, points)));
         }
     }
     if let Some(pose) = pose_at(motion, time_s) {

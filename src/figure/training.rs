@@ -1,6 +1,6 @@
 //! How a loss falls while a network learns.
 
-use crate::figure::{Axis, Element, Figure, Role};
+use crate::figure::{Axis, Figure, FigureElement, Role};
 use crate::units::{Quantity, UnitSystem};
 
 /// Colours of several losses, one a loss; they come round again.
@@ -46,14 +46,18 @@ pub fn loss_figure(
             _ if curve.validation.is_empty() => ([curve.name.clone(), String::new()], role),
             _ => (["train", "validation"].map(|kind| format!("{}, {kind}", curve.name)), role),
         };
-        elements.push(Element::line(train, role, points(&curve.train)));
+        elements.push(FigureElement::line(train, role, points(&curve.train)));
         if !curve.validation.is_empty() {
-            elements.push(Element::dashed(validation, of_validation, points(&curve.validation)));
+            elements.push(FigureElement::dashed(
+                validation,
+                of_validation,
+                points(&curve.validation),
+            ));
         }
     }
     if let Some(best) = best_epoch {
         let (name, role) = ("best".to_owned(), Role::Muted);
-        elements.push(Element::VerticalLine { name, role, x: best as f64 });
+        elements.push(FigureElement::VerticalLine { name, role, x: best as f64 });
     }
     let is_positive = |curve: &LossCurve| {
         curve.train.iter().chain(&curve.validation).all(|loss| *loss > 0.0 && loss.is_finite())
@@ -72,8 +76,8 @@ pub fn balance_figure(balances: Vec<[f64; 2]>, physics_weights: Vec<[f64; 2]>) -
         y: Axis::shown("Share, weight", Quantity::Ratio, UnitSystem::Si),
         equal_aspect: false,
         elements: vec![
-            Element::line("share of data in the loss", Role::Model, balances),
-            Element::dashed("weight of physics", Role::Validation, physics_weights),
+            FigureElement::line("share of data in the loss", Role::Model, balances),
+            FigureElement::dashed("weight of physics", Role::Validation, physics_weights),
         ],
     }
 }

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use crate::data::{Case, DataError, Dataset, DatasetKind, Outcome, TomlError};
-use crate::jobs::Report;
+use crate::jobs::ProgressCallback;
 
 /// A folder whose cases a network cannot learn from or be tested on.
 #[derive(Debug, thiserror::Error)]
@@ -51,7 +51,7 @@ pub enum LoadError {
 pub fn load_dataset(
     root: &Path,
     kind: DatasetKind,
-    report: &mut Report<'_>,
+    report: &mut ProgressCallback<'_>,
 ) -> Result<Outcome<Dataset>, LoadError> {
     let Outcome::Complete(mut dataset) = Dataset::load(root, report)? else {
         return Ok(Outcome::Cancelled);

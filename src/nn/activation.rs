@@ -15,7 +15,7 @@ use candle_core::{
 use serde::{Deserialize, Serialize};
 
 use crate::nn::NnError;
-use crate::nn::element::{Element, vectorized};
+use crate::nn::element::{NetworkNumber, vectorized};
 use crate::nn::storage::{NumberType, contiguous, cpu_storage, number_type};
 
 /// The activation function of a layer.
@@ -51,13 +51,13 @@ struct BiasActivation<T> {
     slope: OnceLock<Vec<T>>,
 }
 
-impl<T: Element> BiasActivation<T> {
+impl<T: NetworkNumber> BiasActivation<T> {
     fn new(activation: Activation) -> Self {
         Self { activation, slope: OnceLock::new() }
     }
 }
 
-impl<T: Element> CustomOp2 for BiasActivation<T> {
+impl<T: NetworkNumber> CustomOp2 for BiasActivation<T> {
     fn name(&self) -> &'static str {
         "bias and activation"
     }
@@ -126,7 +126,7 @@ pub(crate) fn bias_silu_rows(z: &mut [f32], bias: &[f32], swish: bool) {
 }
 
 /// z + b in place. `z`: `[rows, width]`.
-fn add_bias<T: Element>(z: &mut [T], bias: &[T]) {
+fn add_bias<T: NetworkNumber>(z: &mut [T], bias: &[T]) {
     vectorized(
         #[inline(always)]
         || {
@@ -140,7 +140,7 @@ fn add_bias<T: Element>(z: &mut [T], bias: &[T]) {
 }
 
 /// y = silu(z + b) in place, and the slopes dy/dz. `z`, `slope`: `[rows, width]`.
-fn bias_silu_with_slope<T: Element>(z: &mut [T], slope: &mut [T], bias: &[T]) {
+fn bias_silu_with_slope<T: NetworkNumber>(z: &mut [T], slope: &mut [T], bias: &[T]) {
     let width = bias.len();
     vectorized(
         #[inline(always)]
@@ -158,7 +158,7 @@ fn bias_silu_with_slope<T: Element>(z: &mut [T], slope: &mut [T], bias: &[T]) {
 }
 
 /// g·dy/dz in place.
-fn multiply<T: Element>(gradient: &mut [T], slope: &[T]) {
+fn multiply<T: NetworkNumber>(gradient: &mut [T], slope: &[T]) {
     vectorized(
         #[inline(always)]
         || {
@@ -170,7 +170,7 @@ fn multiply<T: Element>(gradient: &mut [T], slope: &[T]) {
 }
 
 /// Sums over the rows of `[rows, width]`, added to `sums`.
-fn add_column_sums<T: Element>(sums: &mut [T], values: &[T]) {
+fn add_column_sums<T: NetworkNumber>(sums: &mut [T], values: &[T]) {
     vectorized(
         #[inline(always)]
         || {

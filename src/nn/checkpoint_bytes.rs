@@ -13,7 +13,7 @@ use safetensors::tensor::{Dtype, Metadata, SafeTensors, TensorView};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use crate::nn::element::Element;
+use crate::nn::element::NetworkNumber;
 use crate::nn::named_tensors::check_finite;
 use crate::nn::{Checkpoint, ModelKind, NamedTensors, NnError, sha256_hex};
 
@@ -183,7 +183,7 @@ fn from_stored(name: &str, view: &TensorView<'_>) -> Result<Tensor, NnError> {
     Ok(tensor)
 }
 
-fn to_tensor<T: Element, const N: usize>(
+fn to_tensor<T: NetworkNumber, const N: usize>(
     view: &TensorView<'_>,
     from_bytes: impl Fn([u8; N]) -> T,
 ) -> Result<Tensor, NnError> {

@@ -8,7 +8,7 @@ use ndarray::LinalgScalar;
 const LANES: usize = 16;
 
 /// `f32` or `f64`, with what the operations need.
-pub(crate) trait Element: FloatDType + LinalgScalar {
+pub(crate) trait NetworkNumber: FloatDType + LinalgScalar {
     const ZERO: Self;
     const ONE: Self;
 
@@ -22,7 +22,7 @@ pub(crate) trait Element: FloatDType + LinalgScalar {
     }
 }
 
-impl Element for f32 {
+impl NetworkNumber for f32 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
 
@@ -55,7 +55,7 @@ impl Element for f32 {
     }
 }
 
-impl Element for f64 {
+impl NetworkNumber for f64 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
 
@@ -74,7 +74,7 @@ pub(crate) fn vectorized<R>(work: impl FnOnce() -> R) -> R {
 
 /// Σ f(a, b) over two slices of one length, in an order that depends on the length alone.
 #[inline(always)]
-pub(crate) fn sum_of<T: Element>(a: &[T], b: &[T], f: impl Fn(T, T) -> T) -> T {
+pub(crate) fn sum_of<T: NetworkNumber>(a: &[T], b: &[T], f: impl Fn(T, T) -> T) -> T {
     let mut lanes = [T::ZERO; LANES];
     let (a_chunks, b_chunks) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
     let (a_rest, b_rest) = (a_chunks.remainder(), b_chunks.remainder());
@@ -95,7 +95,7 @@ pub(crate) fn sum_of<T: Element>(a: &[T], b: &[T], f: impl Fn(T, T) -> T) -> T {
 
 /// The largest of `scale`·x; of an empty slice 0.
 #[inline(always)]
-pub(crate) fn max_of<T: Element>(values: &[T], scale: T) -> T {
+pub(crate) fn max_of<T: NetworkNumber>(values: &[T], scale: T) -> T {
     let first = values.first().map_or(T::ZERO, |&x| x * scale);
     let mut lanes = [first; LANES];
     let chunks = values.chunks_exact(LANES);
@@ -124,7 +124,7 @@ mod tests {
     fn the_fast_exponential_is_right_to_two_units_in_the_last_place() {
         for i in -870_000..=880_000 {
             let x = i as f32 * 1e-4;
-            let (got, exact) = (Element::exp(x), f64::exp(f64::from(x)));
+            let (got, exact) = (NetworkNumber::exp(x), f64::exp(f64::from(x)));
             let relative = (f64::from(got) / exact - 1.0).abs();
             assert!(relative < 2.4e-7, "x = {x}: {got} instead of {exact}, off by {relative:e}");
         }
@@ -132,10 +132,12 @@ mod tests {
 
     #[test]
     fn the_fast_exponential_keeps_its_limits() {
-        assert_eq!(Element::exp(0.0_f32), 1.0);
-        assert!(Element::exp(f32::NAN).is_nan());
-        assert!(Element::exp(-1e30_f32) < 2e-38 && Element::exp(f32::NEG_INFINITY) >= 0.0);
-        assert!(Element::exp(f32::INFINITY).is_finite());
+        assert_eq!(NetworkNumber::exp(0.0_f32), 1.0);
+        assert!(NetworkNumber::exp(f32::NAN).is_nan());
+        assert!(
+            NetworkNumber::exp(-1e30_f32) < 2e-38 && NetworkNumber::exp(f32::NEG_INFINITY) >= 0.0
+        );
+        assert!(NetworkNumber::exp(f32::INFINITY).is_finite());
         assert_eq!(f32::INFINITY.sigmoid(), 1.0);
         assert!((-1e3_f32).sigmoid() < 1e-37);
     }

@@ -13,7 +13,7 @@ use ndarray::ArrayView2;
 use ndarray::linalg::general_mat_mul;
 
 use crate::nn::NnError;
-use crate::nn::element::Element;
+use crate::nn::element::NetworkNumber;
 use crate::nn::storage::{NumberType, contiguous, cpu_storage, number_type};
 
 /// A B for each matrix of a batch.
@@ -43,12 +43,12 @@ pub fn product_with_transposed(a: &Tensor, b: &Tensor) -> Result<Tensor, NnError
 fn apply(a: &Tensor, b: &Tensor, transposes_b: bool) -> Result<Tensor, NnError> {
     let (a, b) = (a.contiguous()?, b.contiguous()?);
     Ok(match number_type(&a, "matrix product")? {
-        NumberType::F32 => a.apply_op2(&b, Product::<f32>::new(transposes_b))?,
-        NumberType::F64 => a.apply_op2(&b, Product::<f64>::new(transposes_b))?,
+        NumberType::F32 => a.apply_op2(&b, MatrixProduct::<f32>::new(transposes_b))?,
+        NumberType::F64 => a.apply_op2(&b, MatrixProduct::<f64>::new(transposes_b))?,
     })
 }
 
-struct Product<T> {
+struct MatrixProduct<T> {
     transposes_b: bool,
     number: std::marker::PhantomData<T>,
 }
@@ -61,7 +61,7 @@ struct Matrices<'a, T> {
     is_transposed: bool,
 }
 
-impl<'a, T: Element> Matrices<'a, T> {
+impl<'a, T: NetworkNumber> Matrices<'a, T> {
     fn new(values: &'a [T], dims: &[usize], is_transposed: bool) -> Option<Self> {
         let (_, &[rows, columns]) = dims.split_last_chunk::<2>()?;
         Some(Self { values, shape: [rows, columns], is_transposed })
@@ -82,7 +82,7 @@ impl<'a, T: Element> Matrices<'a, T> {
 }
 
 /// C of each pair, row by row; `None` if the shapes do not fit.
-fn products<T: Element>(n: usize, a: Matrices<'_, T>, b: Matrices<'_, T>) -> Option<Vec<T>> {
+fn products<T: NetworkNumber>(n: usize, a: Matrices<'_, T>, b: Matrices<'_, T>) -> Option<Vec<T>> {
     let ([m, k], [k_of_b, width]) = (a.read_shape(), b.read_shape());
     if k != k_of_b {
         return None;
@@ -95,7 +95,7 @@ fn products<T: Element>(n: usize, a: Matrices<'_, T>, b: Matrices<'_, T>) -> Opt
     Some(all)
 }
 
-impl<T: Element> Product<T> {
+impl<T: NetworkNumber> MatrixProduct<T> {
     fn new(transposes_b: bool) -> Self {
         Self { transposes_b, number: std::marker::PhantomData }
     }
@@ -105,7 +105,7 @@ impl<T: Element> Product<T> {
     }
 }
 
-impl<T: Element> CustomOp2 for Product<T> {
+impl<T: NetworkNumber> CustomOp2 for MatrixProduct<T> {
     fn name(&self) -> &'static str {
         "matrix product"
     }

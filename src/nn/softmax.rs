@@ -7,7 +7,7 @@
 use candle_core::{CpuStorage, CustomOp1, Device, Layout, Result as TensorResult, Shape, Tensor};
 
 use crate::nn::NnError;
-use crate::nn::element::{Element, max_of, sum_of, vectorized};
+use crate::nn::element::{NetworkNumber, max_of, sum_of, vectorized};
 use crate::nn::storage::{NumberType, contiguous, cpu_storage, number_type};
 
 /// Softmax of `scale`·x over the last dimension, which must be finite for the result to be.
@@ -29,7 +29,7 @@ struct Softmax<T> {
     scale: T,
 }
 
-impl<T: Element> CustomOp1 for Softmax<T> {
+impl<T: NetworkNumber> CustomOp1 for Softmax<T> {
     fn name(&self) -> &'static str {
         "scaled softmax"
     }
@@ -70,7 +70,7 @@ impl<T: Element> CustomOp1 for Softmax<T> {
 
 /// Softmax of `scale`·x in place.
 #[inline(always)]
-fn softmax_row<T: Element>(row: &mut [T], scale: T) {
+fn softmax_row<T: NetworkNumber>(row: &mut [T], scale: T) {
     // The largest scaled score, taken off so that no exponential overflows.
     let largest = max_of(row, scale);
     for x in row.iter_mut() {
@@ -84,7 +84,7 @@ fn softmax_row<T: Element>(row: &mut [T], scale: T) {
 
 /// The gradient of x in place of that of y.
 #[inline(always)]
-fn softmax_backward_row<T: Element>(gradient: &mut [T], y: &[T], scale: T) {
+fn softmax_backward_row<T: NetworkNumber>(gradient: &mut [T], y: &[T], scale: T) {
     let mean = sum_of(y, gradient, |y, g| y * g);
     for (g, &y) in gradient.iter_mut().zip(y) {
         *g = scale * y * (*g - mean);

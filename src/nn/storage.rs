@@ -3,7 +3,7 @@
 use candle_core::{CpuStorage, DType, Error, Layout, Result, Storage, Tensor};
 
 use crate::nn::NnError;
-use crate::nn::element::Element;
+use crate::nn::element::NetworkNumber;
 
 /// The types of numbers that operations of our own compute with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,7 +34,7 @@ pub(crate) fn cpu_storage<'a>(storage: &'a Storage, op: &'static str) -> Result<
 }
 
 /// The numbers of a tensor that lies in one piece.
-pub(crate) fn contiguous<'a, T: Element>(
+pub(crate) fn contiguous<'a, T: NetworkNumber>(
     storage: &'a CpuStorage,
     layout: &Layout,
     op: &'static str,

@@ -21,5 +21,5 @@ pub use least_squares::{LeastSquares, levenberg_marquardt};
 pub use normal::{normal_cdf, normal_density, normal_quantile};
 pub use ode::{Stage, euler_step, rk4_step};
 pub use scalar::{Lanes, Scalar};
-pub use smoother::{Track, TrackPoint, TrackSample};
+pub use smoother::{MeasuredTrack, TrackPoint, TrackSample};
 pub use statistics::{Summary, quantile_of_sorted};

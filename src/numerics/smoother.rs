@@ -34,7 +34,7 @@ pub struct TrackPoint {
 }
 
 /// Samples of one coordinate, in order of time, and how lively it moves.
-pub struct Track<'a> {
+pub struct MeasuredTrack<'a> {
     /// The samples; those of one instant one after the other.
     pub samples: &'a [TrackSample],
     /// Spectral density q of p⃛ between two instants, (unit/s³)²·s, positive.
@@ -52,7 +52,7 @@ struct Node {
     filtered: (Vector3<f64>, Matrix3<f64>),
 }
 
-impl Track<'_> {
+impl MeasuredTrack<'_> {
     /// Logarithm of the probability density of the samples.
     pub fn log_likelihood(&self) -> f64 {
         self.filter(&[]).1
@@ -167,8 +167,11 @@ mod tests {
 
     use super::*;
 
-    fn track<'a>(samples: &'a [TrackSample], density: &'a dyn Fn(f64, f64) -> f64) -> Track<'a> {
-        Track { samples, density, prior_std: [1e3, 1e2, 1e2] }
+    fn track<'a>(
+        samples: &'a [TrackSample],
+        density: &'a dyn Fn(f64, f64) -> f64,
+    ) -> MeasuredTrack<'a> {
+        MeasuredTrack { samples, density, prior_std: [1e3, 1e2, 1e2] }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use egui_plot::Corner;
 
-use crate::figure::{Element, Figure, Series};
+use crate::figure::{Figure, FigureElement, Series};
 
 /// Share of width and height that a legend may take.
 const LEGEND_SHARE: [f64; 2] = [0.4, 0.45];
@@ -40,17 +40,19 @@ pub fn emptiest_corner(figure: &Figure) -> Corner {
     CORNERS.into_iter().min_by_key(hidden).unwrap_or(Corner::RightTop)
 }
 
-fn points(element: &Element) -> Vec<[f64; 2]> {
+fn points(element: &FigureElement) -> Vec<[f64; 2]> {
     match element {
-        Element::Points(series) => series.points.clone(),
-        Element::Line(series) | Element::Polygon(series) | Element::Arrow(series) => along(series),
-        Element::HeatMap(_) => Vec::new(),
-        Element::Band(band) => {
+        FigureElement::Points(series) => series.points.clone(),
+        FigureElement::Line(series)
+        | FigureElement::Polygon(series)
+        | FigureElement::Arrow(series) => along(series),
+        FigureElement::HeatMap(_) => Vec::new(),
+        FigureElement::Band(band) => {
             let edge = |edge: &[f64]| band.x.iter().copied().zip(edge.iter().copied()).collect();
             let (low, high): (Vec<_>, Vec<_>) = (edge(&band.low), edge(&band.high));
             low.into_iter().chain(high).map(|(x, y)| [x, y]).collect()
         }
-        Element::VerticalLine { .. } => Vec::new(),
+        FigureElement::VerticalLine { .. } => Vec::new(),
     }
 }
 
@@ -81,7 +83,7 @@ mod tests {
             y: axis,
             equal_aspect: false,
             log_y: false,
-            elements: vec![Element::line("line", Role::Simulation, points)],
+            elements: vec![FigureElement::line("line", Role::Simulation, points)],
         }
     }
 

@@ -9,7 +9,7 @@ use egui_plot::{
     PlotPoint, PlotPoints, PlotUi, Points, Polygon, VLine,
 };
 
-use crate::figure::{Element, Figure, HeatMap, LineStyle, Series};
+use crate::figure::{Figure, FigureElement, HeatMap, LineStyle, Series};
 use crate::render::legend::emptiest_corner;
 use crate::render::theme;
 use crate::render::thin::thinned;
@@ -88,7 +88,7 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
     }
     for element in &figure.elements {
         // egui_plot fits arrows by their origins only.
-        if let Element::Arrow(series) = element {
+        if let FigureElement::Arrow(series) = element {
             for [x, y] in &series.points {
                 plot = plot.include_x(*x).include_y(*y);
             }
@@ -203,10 +203,14 @@ fn heat_map(plot: &mut PlotUi<'_>, map: &HeatMap, color: Color32) {
 }
 
 fn n_legend_names(figure: &Figure) -> usize {
-    figure.elements.iter().map(Element::name).collect::<BTreeSet<_>>().len()
+    figure.elements.iter().map(FigureElement::name).collect::<BTreeSet<_>>().len()
 }
 
-fn draw_element<'a>(plot: &mut PlotUi<'a>, element: &'a Element, (dark, log_y): (bool, bool)) {
+fn draw_element<'a>(
+    plot: &mut PlotUi<'a>,
+    element: &'a FigureElement,
+    (dark, log_y): (bool, bool),
+) {
     let color = theme::color(element.role(), dark);
     let stroke = Stroke::new(theme::line_width(element.role()), color);
     let style = |series: &Series| match series.style {
@@ -221,31 +225,31 @@ fn draw_element<'a>(plot: &mut PlotUi<'a>, element: &'a Element, (dark, log_y): 
         PlotPoints::from(points)
     };
     match element {
-        Element::Line(series) => {
+        FigureElement::Line(series) => {
             plot.line(Line::new(&series.name, points(series)).stroke(stroke).style(style(series)));
         }
-        Element::Points(series) => {
+        FigureElement::Points(series) => {
             plot.points(Points::new(&series.name, points(series)).color(color).radius(3.0));
         }
-        Element::Polygon(series) => {
+        FigureElement::Polygon(series) => {
             let fill = color.gamma_multiply(theme::FILL_OPACITY);
             let polygon = Polygon::new(&series.name, points(series)).fill_color(fill);
             plot.polygon(polygon.stroke(stroke).style(style(series)));
         }
-        Element::Arrow(series) => {
+        FigureElement::Arrow(series) => {
             if let [from, to] = series.points[..] {
                 let (origin, tip) = (PlotPoints::from(vec![from]), PlotPoints::from(vec![to]));
                 plot.arrows(Arrows::new(&series.name, origin, tip).color(color).tip_length(10.0));
             }
         }
-        Element::HeatMap(map) => heat_map(plot, map, color),
-        Element::Band(band) => {
+        FigureElement::HeatMap(map) => heat_map(plot, map, color),
+        FigureElement::Band(band) => {
             let edge = |edge: &[f64]| edge.iter().map(|y| height(*y)).collect::<Vec<_>>();
             let (low, high) = (edge(&band.low), edge(&band.high));
             let area = FilledArea::new(&band.name, &band.x, &low, &high);
             plot.add(area.fill_color(color.gamma_multiply(band.opacity)));
         }
-        Element::VerticalLine { name, x, .. } => {
+        FigureElement::VerticalLine { name, x, .. } => {
             plot.vline(VLine::new(name, *x).stroke(stroke).style(PlotLineStyle::dashed_dense()));
         }
     }

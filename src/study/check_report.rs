@@ -306,12 +306,12 @@ impl ProposedColumn {
 
 fn channels<S: Serializer>(channels: &[Channel], serializer: S) -> Result<S::Ok, S::Error> {
     #[derive(Serialize)]
-    struct Column {
+    struct JsonColumn {
         name: &'static str,
         channel: &'static str,
         unit: &'static str,
     }
-    serializer.collect_seq(channels.iter().map(|channel| Column {
+    serializer.collect_seq(channels.iter().map(|channel| JsonColumn {
         name: channel.header(),
         channel: channel.short_name(),
         unit: channel.quantity().si_unit().symbol,

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{
-    Analysis, MotionForecast, MotionForecastSettings, Outcome as MotionOutcome, StruckVehicle,
+    Analysis, MotionForecast, MotionForecastSettings, MotionOutcome, StruckVehicle,
     forecast_collision, forecast_forces,
 };
 use crate::data::{DatasetKind, ForceHistory, Outcome};

@@ -13,7 +13,7 @@ use crate::uncertainty::{CurveComponent, CurveMixture, MixtureError};
 
 /// A central band over the instants.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Band {
+pub struct CurveBand {
     /// Share that it holds at each instant, 0 to 1.
     pub level: f64,
     /// Its lower edge, N.
@@ -26,11 +26,11 @@ pub struct Band {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CurveBands {
     /// Of F_x.
-    pub fx: Vec<Band>,
+    pub fx: Vec<CurveBand>,
     /// Of F_y.
-    pub fy: Vec<Band>,
+    pub fy: Vec<CurveBand>,
     /// Of `|F|`.
-    pub magnitude: Vec<Band>,
+    pub magnitude: Vec<CurveBand>,
 }
 
 impl CurveMixture {
@@ -60,7 +60,7 @@ impl CurveMixture {
             let mut rows = rows.into_iter();
             let band = |&level: &f64| {
                 let (lower_n, upper_n) = (rows.next()?, rows.next()?);
-                Some(Band { level, lower_n, upper_n })
+                Some(CurveBand { level, lower_n, upper_n })
             };
             levels.iter().filter_map(band).collect()
         };

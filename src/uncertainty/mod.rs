@@ -39,7 +39,7 @@ mod planar;
 mod planar_grid;
 mod unscented;
 
-pub use bands::{Band, CurveBands};
+pub use bands::{CurveBand, CurveBands};
 pub use curve::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
 pub use error::MixtureError;
 pub use mixture::{CurveComponent, CurveMixture};

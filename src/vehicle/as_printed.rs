@@ -13,7 +13,7 @@ use crate::numerics::Lanes;
 use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::four_dof::{LOAD_PASSES, collision_wrench};
 use crate::vehicle::loads::Wheel;
-use crate::vehicle::{Evaluation, VehicleInput, VehicleParameters, VehicleState};
+use crate::vehicle::{VehicleEvaluation, VehicleInput, VehicleParameters, VehicleState};
 
 /// Which equations of motion.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -32,7 +32,7 @@ impl VehicleParameters {
         &self,
         x: &VehicleState<T>,
         u: &VehicleInput<T>,
-    ) -> Evaluation<T> {
+    ) -> VehicleEvaluation<T> {
         let collision = collision_wrench(x.yaw_rad, u.collision.as_ref());
         let mass_kg = self.mass.mass_kg;
         let mut acceleration = [T::from(0.0); 2];
@@ -56,7 +56,7 @@ impl VehicleParameters {
             - collision.force_n[1] * (contact_height_m - suspension.roll_axis_height_m)
             - yaw_acceleration * self.mass.roll_yaw_product_kg_m2;
         let roll_acceleration = roll_moment / self.mass.roll_inertia_kg_m2;
-        Evaluation {
+        VehicleEvaluation {
             derivative: x.derivative(acceleration, [yaw_acceleration, roll_acceleration]),
             acceleration_m_s2: acceleration,
             vertical_loads_n: loads,

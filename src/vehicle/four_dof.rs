@@ -99,7 +99,7 @@ impl<T: Lanes> VehicleInput<T> {
 
 /// What the equations of motion give at one state and input.
 #[derive(Debug, Clone, Copy)]
-pub struct Evaluation<T> {
+pub struct VehicleEvaluation<T> {
     /// Time derivative of the state.
     pub derivative: VehicleState<T>,
     /// Acceleration of the CG along x and y of the body, m/s².
@@ -112,10 +112,10 @@ pub struct Evaluation<T> {
     pub collision_yaw_moment_n_m: T,
 }
 
-impl<T: Lanes> Evaluation<T> {
+impl<T: Lanes> VehicleEvaluation<T> {
     /// The same evaluation in another scalar.
-    pub(crate) fn map<U: Lanes>(self, convert: impl Fn(T) -> U + Copy) -> Evaluation<U> {
-        Evaluation {
+    pub(crate) fn map<U: Lanes>(self, convert: impl Fn(T) -> U + Copy) -> VehicleEvaluation<U> {
+        VehicleEvaluation {
             derivative: self.derivative.map(convert),
             acceleration_m_s2: self.acceleration_m_s2.map(convert),
             vertical_loads_n: self.vertical_loads_n.map(convert),
@@ -134,7 +134,11 @@ pub(super) struct Wrench<T> {
 
 impl VehicleParameters {
     /// The right-hand side f(x, u) of the equations of motion.
-    pub fn evaluate<T: Lanes>(&self, x: &VehicleState<T>, u: &VehicleInput<T>) -> Evaluation<T> {
+    pub fn evaluate<T: Lanes>(
+        &self,
+        x: &VehicleState<T>,
+        u: &VehicleInput<T>,
+    ) -> VehicleEvaluation<T> {
         if self.equations == Equations::Paper {
             return self.evaluate_as_printed(x, u);
         }
@@ -156,7 +160,7 @@ impl VehicleParameters {
         let roll_moment = leaning_n_m + self.roll_moment_n_m(x, ay)
             - collision.force_n[1] * (contact_height_m - self.suspension.roll_axis_height_m);
         let [yaw_acceleration, roll_acceleration] = self.solve_yaw_roll(yaw_moment, roll_moment);
-        Evaluation {
+        VehicleEvaluation {
             derivative: x.derivative([ax, ay], [yaw_acceleration, roll_acceleration]),
             acceleration_m_s2: [ax, ay],
             vertical_loads_n,

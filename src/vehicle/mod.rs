@@ -14,7 +14,7 @@ mod four_dof;
 mod simulate;
 
 pub use as_printed::Equations;
-pub use four_dof::{CollisionForce, ContactPoint, Evaluation, VehicleInput};
+pub use four_dof::{CollisionForce, ContactPoint, VehicleEvaluation, VehicleInput};
 pub use loads::Wheel;
 pub use multibody_record::MultibodyRecord;
 pub use parameters::{GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters};

@@ -1,7 +1,7 @@
 //! What else changes in a scenario when a user changes one number of it.
 
 use crate::collision::Scenario;
-use crate::data::Side;
+use crate::data::StruckSide;
 use crate::force::ForceScenario;
 
 /// Where the first contact is taken to be along the target once it is no longer unknown, m from the
@@ -41,12 +41,12 @@ pub fn forget_contact(scenario: &mut ForceScenario) {
 /// Takes the first contact to be at a usual place of the struck side.
 pub fn know_contact(scenario: &mut ForceScenario) {
     let half_width_m = Scenario::example().target.width_m / 2.0;
-    let y_m = if scenario.side == Side::Left { half_width_m } else { -half_width_m };
+    let y_m = if scenario.side == StruckSide::Left { half_width_m } else { -half_width_m };
     scenario.contact_m = Some([USUAL_CONTACT_X_M, y_m]);
 }
 
 /// Strikes the other side: the mirror image of the whole scenario.
-pub fn set_side(scenario: &mut ForceScenario, side: Side) {
+pub fn set_side(scenario: &mut ForceScenario, side: StruckSide) {
     if scenario.side != side {
         *scenario = scenario.mirrored();
     }
@@ -78,7 +78,7 @@ mod tests {
         let (before, mut after) = (scenario(), scenario());
         set_side(&mut after, before.side);
         assert_eq!(after, before);
-        set_side(&mut after, Side::Left);
+        set_side(&mut after, StruckSide::Left);
         assert_eq!(after, before.mirrored());
         forget_contact(&mut after);
         know_contact(&mut after);

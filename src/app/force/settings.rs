@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use crate::collision::Scenario;
-use crate::data::Side;
+use crate::data::StruckSide;
 use crate::figure::ForceComponent;
 use crate::force::ForceScenario;
 use crate::study::{BadCases, EvaluatedCases};
@@ -117,7 +117,7 @@ impl Default for ForceProject {
             target_velocity_m_s: [15.0, 0.0],
             bullet_velocity_m_s: [16.0, 3.0],
             theta_b_rad: 0.3,
-            side: Side::Right,
+            side: StruckSide::Right,
             contact_m: None,
             bullet_position_m: None,
             bullet_body: None,

@@ -58,7 +58,7 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 /// The last abscissa of a figure.
 fn figure_end(figure: &crate::figure::Figure) -> f64 {
     let ends = figure.elements.iter().filter_map(|element| match element {
-        crate::figure::Element::Line(series) => series.points.last().map(|point| point[0]),
+        crate::figure::FigureElement::Line(series) => series.points.last().map(|point| point[0]),
         _ => None,
     });
     ends.fold(0.0, f64::max)

@@ -11,7 +11,7 @@ use crate::app::force::{
 };
 use crate::app::state::{Project, View};
 use crate::app::widgets::{SliderRange, quantity_slider};
-use crate::data::{Severity, Side};
+use crate::data::{Severity, StruckSide};
 use crate::force::ForceScenario;
 use crate::render::theme;
 use crate::units::{Quantity, UnitSystem, significant};
@@ -139,7 +139,7 @@ fn side_ui(ui: &mut Ui, scenario: &mut ForceScenario) {
     let name = ui.label("Struck side").on_hover_text(hint);
     ui.horizontal(|ui| {
         let mut side = scenario.side;
-        for (value, label) in [(Side::Left, "left"), (Side::Right, "right")] {
+        for (value, label) in [(StruckSide::Left, "left"), (StruckSide::Right, "right")] {
             let radio = ui.radio_value(&mut side, value, label).labelled_by(name.id);
             radio.on_hover_text(hint);
         }

@@ -11,11 +11,11 @@ use crate::cli::console::{Console, Verdict};
 #[derive(Debug, Args)]
 pub(in crate::cli) struct EvaluateArgs {
     #[command(subcommand)]
-    what: What,
+    what: EvaluatedNetwork,
 }
 
 #[derive(Debug, Subcommand)]
-enum What {
+enum EvaluatedNetwork {
     /// The force network beside classic pulse, nearest case and Gaussian processes
     Force(EvaluateForceArgs),
     /// A response network on trajectories
@@ -28,7 +28,7 @@ pub(in crate::cli) fn run(
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
     match &args.what {
-        What::Force(args) => evaluate_force::run(args, console),
-        What::Response(args) => evaluate_response::run(args, console),
+        EvaluatedNetwork::Force(args) => evaluate_force::run(args, console),
+        EvaluatedNetwork::Response(args) => evaluate_response::run(args, console),
     }
 }

@@ -20,11 +20,11 @@ use crate::vehicle::ContactPoint;
 #[derive(Debug, Args)]
 pub(in crate::cli) struct FineTuneArgs {
     #[command(subcommand)]
-    what: What,
+    what: FineTunedNetwork,
 }
 
 #[derive(Debug, Subcommand)]
-enum What {
+enum FineTunedNetwork {
     /// The response network: force history and vehicle to motion after the impact
     Response(FineTuneResponseArgs),
 }
@@ -127,7 +127,7 @@ pub(in crate::cli) fn run(
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
     match &args.what {
-        What::Response(args) => fine_tune_response(args, console),
+        FineTunedNetwork::Response(args) => fine_tune_response(args, console),
     }
 }
 

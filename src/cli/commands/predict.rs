@@ -12,13 +12,13 @@ use crate::cli::console::{Console, Verdict};
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub(in crate::cli) struct PredictArgs {
     #[command(subcommand)]
-    what: Option<What>,
+    what: Option<PredictedQuantity>,
     #[command(flatten)]
     motion: Option<PredictMotionArgs>,
 }
 
 #[derive(Debug, Subcommand)]
-enum What {
+enum PredictedQuantity {
     /// The impact force history of a scenario, with bands
     Force(PredictForceArgs),
 }
@@ -29,7 +29,7 @@ pub(in crate::cli) fn run(
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
     match (&args.what, &args.motion) {
-        (Some(What::Force(args)), _) => predict_force::run(args, console),
+        (Some(PredictedQuantity::Force(args)), _) => predict_force::run(args, console),
         (None, Some(args)) => predict_motion::run(args, console),
         (None, None) => Err(CliError::NothingToPredict),
     }

@@ -62,7 +62,7 @@ JSON: impulse_n_s {mean [x, y], x, y, magnitude}, peak_n, peak_time_s, duration_
 
 /// The report, and where its files are.
 #[derive(Debug, Serialize)]
-struct Printed<'a> {
+struct PrintedForce<'a> {
     #[serde(flatten)]
     report: &'a PredictForceReport,
     out: Option<&'a Path>,
@@ -82,7 +82,7 @@ pub(in crate::cli) fn run(
         seed: args.seed,
     };
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
-    let printed = Printed { report: &answer.report, out: args.out.as_deref() };
+    let printed = PrintedForce { report: &answer.report, out: args.out.as_deref() };
     if let Some(folder) = &args.out {
         write_force_prediction(folder, &answer, &printed)?;
     }

@@ -88,7 +88,7 @@ JSON: scenario, vehicle, force_model, response_model, n_forces, outcome {time_s,
 
 /// The report, and which files were written.
 #[derive(Debug, Serialize)]
-struct Printed<'a> {
+struct PrintedMotion<'a> {
     #[serde(flatten)]
     report: &'a PredictMotionReport,
     files: Vec<PathBuf>,
@@ -114,7 +114,7 @@ pub(in crate::cli) fn run(
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
     let wanted = MotionFiles { folder: &args.out, window_s: args.window, units: args.units.into() };
     let files = write_motion_prediction(&wanted, &answer)?;
-    let printed = Printed { report: &answer.report, files };
+    let printed = PrintedMotion { report: &answer.report, files };
     let json = serde_json::to_vec_pretty(&printed).map_err(std::io::Error::from)?;
     write_atomically(&args.out.join("outcome.json"), |out| out.write_all(&json))?;
     let report = &answer.report;

@@ -59,7 +59,7 @@ impactlab render forecast datasets/trajectories-fea --case FE_c002 --channel yaw
     /// The impact of a scenario from above: impulse and delta-v
     #[command(after_help = "\
 Example:\n  impactlab render impact pit-right-rear --out impact.png")]
-    Impact(ImpactArgs),
+    Impact(ImpactFigureArgs),
 }
 
 /// Where the figure goes, and how it looks.
@@ -154,7 +154,7 @@ struct SceneArgs {
 }
 
 #[derive(Debug, Args)]
-struct ImpactArgs {
+struct ImpactFigureArgs {
     /// The scenario: a file, or `pit-right-rear`
     #[arg(value_name = "NAME|FILE")]
     scenario: PathBuf,
@@ -218,7 +218,7 @@ fn scale(text: &str) -> Result<f32, String> {
 }
 
 #[derive(Debug, Serialize)]
-struct Answer<'a> {
+struct RenderedFigure<'a> {
     out: &'a Path,
     title: &'a str,
     x_axis: String,
@@ -272,7 +272,7 @@ pub(in crate::cli) fn run(
     };
     draw(&figure, output)?;
     if console.json {
-        let answer = Answer {
+        let answer = RenderedFigure {
             out: &output.out,
             title: &figure.title,
             x_axis: figure.x.text(),

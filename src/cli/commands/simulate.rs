@@ -165,7 +165,7 @@ struct SingleArgs {
 
 /// A report, and where the motions were written.
 #[derive(Debug, Serialize)]
-struct Printed<'a, R: Serialize> {
+struct PrintedSimulation<'a, R: Serialize> {
     #[serde(flatten)]
     report: &'a R,
     out: Option<&'a Path>,
@@ -205,7 +205,7 @@ fn simulate_one(
     if let (Some(path), Some(motion)) = (out, &answer.analysis.simulation) {
         write_series_csv(path, &motion.series)?;
     }
-    let printed = Printed { report, out };
+    let printed = PrintedSimulation { report, out };
     console.print(&printed, |text| print_simulation(text, (report, out), args.units.into()))?;
     Ok(Verdict::Clean)
 }
@@ -230,7 +230,7 @@ fn simulate_dataset(
             write_series_csv(&path.join(format!("{}.csv", case.case)), &case.motion.series)?;
         }
     }
-    let printed = Printed { report, out };
+    let printed = PrintedSimulation { report, out };
     console
         .print(&printed, |text| print_dataset_simulation(text, (report, out), args.units.into()))?;
     Ok(Verdict::of(!report.failures.is_empty()))

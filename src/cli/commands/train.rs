@@ -11,11 +11,11 @@ use crate::cli::console::{Console, Verdict};
 #[derive(Debug, Args)]
 pub(in crate::cli) struct TrainArgs {
     #[command(subcommand)]
-    what: What,
+    what: TrainedNetwork,
 }
 
 #[derive(Debug, Subcommand)]
-enum What {
+enum TrainedNetwork {
     /// The force network: scenario to impact force history
     Force(TrainForceArgs),
     /// The response network, on simulations: force history and vehicle to motion after the impact
@@ -28,7 +28,7 @@ pub(in crate::cli) fn run(
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
     match &args.what {
-        What::Force(args) => train_force::run(args, console),
-        What::Response(args) => train_response::run(args, console),
+        TrainedNetwork::Force(args) => train_force::run(args, console),
+        TrainedNetwork::Response(args) => train_response::run(args, console),
     }
 }

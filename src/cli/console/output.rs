@@ -24,8 +24,8 @@ pub(in crate::cli) fn print_table(
     rows: &[Vec<String>],
 ) -> io::Result<()> {
     let header: Vec<String> = header.iter().map(|&name| name.to_owned()).collect();
-    let columns: Vec<Column> =
-        (0..header.len()).map(|idx| Column::of(&header, rows, idx)).collect();
+    let columns: Vec<TextColumn> =
+        (0..header.len()).map(|idx| TextColumn::of(&header, rows, idx)).collect();
     let titled = header.iter().any(|name| !name.is_empty());
     for row in titled.then_some(&header).into_iter().chain(rows) {
         let cells = row.iter().zip(&columns);
@@ -44,12 +44,12 @@ pub(in crate::cli) fn print_facts(out: &mut dyn Write, facts: &[(&str, String)])
     Ok(())
 }
 
-struct Column {
+struct TextColumn {
     width: usize,
     is_numeric: bool,
 }
 
-impl Column {
+impl TextColumn {
     fn of(header: &[String], rows: &[Vec<String>], idx: usize) -> Self {
         let cells = || rows.iter().filter_map(|row| row.get(idx));
         let is_number = |cell: &String| cell.is_empty() || cell.parse::<f64>().is_ok();

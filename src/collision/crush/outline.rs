@@ -44,7 +44,7 @@ impl Default for Nose {
 
 /// One spring of the outline.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Element {
+pub(super) struct SkinElement {
     /// Position in the bullet's body axes, m.
     pub position_m: [f64; 2],
     /// Outward normal.
@@ -98,7 +98,10 @@ impl Nose {
     ///
     /// - `log_factors`: logarithms of the stiffness factors at the five marks of
     ///   [`N_OUTLINE_FACTORS`], linear in between.
-    pub(super) fn elements(&self, log_factors: &[f64; N_OUTLINE_FACTORS]) -> [Element; N_ELEMENTS] {
+    pub(super) fn elements(
+        &self,
+        log_factors: &[f64; N_OUTLINE_FACTORS],
+    ) -> [SkinElement; N_ELEMENTS] {
         let between = |mark: usize, share: f64| {
             (log_factors[mark] * (1.0 - share) + log_factors[mark + 1] * share).exp()
         };
@@ -106,7 +109,7 @@ impl Nose {
         std::array::from_fn(|i| {
             if i < N_SIDE {
                 let behind = N_SIDE as f64 - middle(i);
-                Element {
+                SkinElement {
                     position_m: [self.corner_x_m - STRAIGHT_ELEMENT_M * behind, self.half_width_m],
                     normal: [0.0, 1.0],
                     length_m: STRAIGHT_ELEMENT_M,
@@ -116,7 +119,7 @@ impl Nose {
                 let share = middle(i - N_SIDE) / N_CORNER as f64;
                 let slope = FRONT_SLOPE * share;
                 let length = slope.hypot(1.0);
-                Element {
+                SkinElement {
                     position_m: self.corner_point_m(slope),
                     normal: [slope / length, 1.0 / length],
                     length_m: self.radius_m * FRONT_SLOPE / N_CORNER as f64 * length,
@@ -129,7 +132,7 @@ impl Nose {
             } else {
                 let inwards = middle(i - N_SIDE - N_CORNER);
                 let [x, y] = self.corner_point_m(FRONT_SLOPE);
-                Element {
+                SkinElement {
                     position_m: [x, y - STRAIGHT_ELEMENT_M * inwards],
                     normal: [1.0, 0.0],
                     length_m: STRAIGHT_ELEMENT_M,

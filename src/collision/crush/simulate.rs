@@ -3,7 +3,7 @@
 use super::law::{
     BULLET_STRUCTURE_KNOTS_M, CrushLaw, DEPTH_KNOTS_M, SKIN_KNOTS_M, TARGET_STRUCTURE_KNOTS_M,
 };
-use super::outline::{Element, N_ELEMENTS};
+use super::outline::{N_ELEMENTS, SkinElement};
 
 /// Deeper overlap than this is no crush, m: the outline has come through to the other side.
 const MAX_DEPTH_M: f64 = 0.9;
@@ -77,7 +77,7 @@ impl Body {
 
 /// What the springs do together in one step.
 #[derive(Debug, Clone, Copy, Default)]
-struct Contact {
+struct CrushContact {
     force_n: [f64; 2],
     target_moment_n_m: f64,
     bullet_moment_n_m: f64,
@@ -91,7 +91,7 @@ struct Contact {
 struct Springs<'a> {
     law: &'a CrushLaw,
     scenario: &'a CrushScenario,
-    elements: [Element; N_ELEMENTS],
+    elements: [SkinElement; N_ELEMENTS],
     /// Depth of the bullet's structure at each element and with the angle, m.
     structure_m: [f64; N_ELEMENTS],
     slope: [f64; DEPTH_KNOTS_M.len()],
@@ -202,11 +202,11 @@ impl<'a> Springs<'a> {
         [target, bullet]
     }
 
-    fn contact(&mut self, target: &Body, bullet: &Body) -> Contact {
+    fn contact(&mut self, target: &Body, bullet: &Body) -> CrushContact {
         let turn_target = target.yaw_rad.sin_cos();
         let turn_bullet = bullet.yaw_rad.sin_cos();
         let turn_between = (bullet.yaw_rad - target.yaw_rad).sin_cos();
-        let mut sum = Contact { depth_m: f64::NEG_INFINITY, ..Contact::default() };
+        let mut sum = CrushContact { depth_m: f64::NEG_INFINITY, ..CrushContact::default() };
         for i in 0..N_ELEMENTS {
             let element = self.elements[i];
             let arm_bullet = turned(turn_bullet, element.position_m);

@@ -14,7 +14,7 @@ use crate::force::evaluate::{
 use crate::force::metrics::ProbabilisticSettings;
 use crate::force::regression::{ColumnSet, CurveFitError, CurveRegression};
 use crate::force::{CurvePrediction, ForceCase, ForceScenario};
-use crate::jobs::{Progress, Report};
+use crate::jobs::{Progress, ProgressCallback};
 use crate::numerics::ClusterError;
 use crate::uncertainty::ForceCurve;
 
@@ -72,7 +72,7 @@ pub fn evaluate(
     (train, test): (&[&ForceCase], &[&ForceCase]),
     predictions: &[CurvePrediction],
     settings: &EvaluationSettings,
-    report: &mut Report<'_>,
+    report: &mut ProgressCallback<'_>,
 ) -> Result<Outcome<Evaluation>, EvaluationError> {
     const N_STEPS: u64 = 3;
     check(test, predictions)?;

@@ -9,7 +9,7 @@ use crate::force::{
     CaseErrors, CurvePrediction, Evaluation, EvaluationError, EvaluationSettings, ForceCase,
     ForceConfig, ForceError, ForceModel, ForceScenario, evaluate, train,
 };
-use crate::jobs::{Progress, Report};
+use crate::jobs::{Progress, ProgressCallback};
 use crate::learning::{TrainSettings, TrainingReport, TrainingSet, folds};
 
 /// Why a model cannot be evaluated.
@@ -89,7 +89,7 @@ pub fn evaluate_model(
     model: &ForceModel,
     test: &[ForceCase],
     settings: &EvaluationSettings,
-    report: &mut Report<'_>,
+    report: &mut ProgressCallback<'_>,
 ) -> Result<Outcome<Evaluation>, EvaluateError> {
     let predictions = predictions(model, test, settings)?;
     let train: Vec<&ForceCase> = model.training_cases().iter().collect();
@@ -131,7 +131,7 @@ pub fn cross_validate(
     cases: &[ForceCase],
     config: &ForceConfig,
     (n_folds, settings): (usize, &EvaluationSettings),
-    report: &mut Report<'_>,
+    report: &mut ProgressCallback<'_>,
 ) -> Result<Outcome<CrossValidation>, EvaluateError> {
     let folds = folds(cases, n_folds, settings.seed);
     let n_steps = (folds.len() * config.training.epochs) as u64;

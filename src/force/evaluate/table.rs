@@ -5,7 +5,7 @@ use crate::force::metrics::{CurveMetrics, DistributionMetrics, IntervalCoverage}
 use crate::numerics::Summary;
 
 /// A title over a header and rows, all of one width.
-struct Table {
+struct MetricsTable {
     title: String,
     header: Vec<String>,
     rows: Vec<Vec<String>>,
@@ -14,15 +14,15 @@ struct Table {
 impl Evaluation {
     /// Tables in columns of equal width.
     pub fn to_text(&self) -> String {
-        self.tables().iter().map(Table::to_text).collect::<Vec<_>>().join("\n")
+        self.tables().iter().map(MetricsTable::to_text).collect::<Vec<_>>().join("\n")
     }
 
     /// Tables in Markdown.
     pub fn to_markdown(&self) -> String {
-        self.tables().iter().map(Table::to_markdown).collect::<Vec<_>>().join("\n")
+        self.tables().iter().map(MetricsTable::to_markdown).collect::<Vec<_>>().join("\n")
     }
 
-    fn tables(&self) -> Vec<Table> {
+    fn tables(&self) -> Vec<MetricsTable> {
         let mut tables = vec![self.errors("all cases", |of| Some(&of.overall))];
         if self.metrics.separated.is_some() {
             let title = "without cases that hook or have not separated";
@@ -48,7 +48,7 @@ impl Evaluation {
         &'a self,
         title: &str,
         block: impl Fn(&'a ForceMetrics) -> Option<&'a CurveMetrics>,
-    ) -> Table {
+    ) -> MetricsTable {
         let row = |(name, of): (&str, &'a ForceMetrics)| {
             let of = block(of)?;
             let errors = [
@@ -62,7 +62,7 @@ impl Evaluation {
             Some(std::iter::once(name.to_owned()).chain(cells).collect())
         };
         let n_cases = block(&self.metrics).map_or(0, |of| of.n_cases);
-        Table {
+        MetricsTable {
             title: format!("Median (mean) error in %, {title}: {n_cases}"),
             header: header(&["", "history", "RMSE/peak", "impulse", "peak", "duration"]),
             rows: self.models().into_iter().filter_map(row).collect(),
@@ -74,7 +74,7 @@ impl Evaluation {
         models.filter_map(|(name, of)| Some((name, of.overall.probabilistic.as_ref()?)))
     }
 
-    fn coverage(&self) -> Option<Table> {
+    fn coverage(&self) -> Option<MetricsTable> {
         let rows = self.with_distribution().flat_map(|(name, of)| {
             let quantities = [
                 ("F(t)", &of.force_n),
@@ -90,10 +90,10 @@ impl Evaluation {
         let rows: Vec<Vec<String>> = rows.collect();
         let header = header(&["", "bands of", "50 %", "80 %", "90 %", "95 %"]);
         let title = "Share inside the bands in %, ± standard error between cases".to_owned();
-        (!rows.is_empty()).then_some(Table { title, header, rows })
+        (!rows.is_empty()).then_some(MetricsTable { title, header, rows })
     }
 
-    fn scores(&self) -> Option<Table> {
+    fn scores(&self) -> Option<MetricsTable> {
         let rows = self.with_distribution().map(|(name, of)| {
             let scores = [
                 (of.crps_force_n, 1e-3),
@@ -117,10 +117,10 @@ impl Evaluation {
             "NLL [nats]",
         ]);
         let title = "Mean scores, smaller is better".to_owned();
-        (!rows.is_empty()).then_some(Table { title, header, rows })
+        (!rows.is_empty()).then_some(MetricsTable { title, header, rows })
     }
 
-    fn by_cluster(&self) -> Table {
+    fn by_cluster(&self) -> MetricsTable {
         let row = |of: &crate::force::evaluate::ClusterMetrics| {
             vec![
                 of.name.clone(),
@@ -130,7 +130,7 @@ impl Evaluation {
                 median_and_mean(&of.statistical.history_error, 100.0),
             ]
         };
-        Table {
+        MetricsTable {
             title: "History error in % by cluster of impulse, median (mean)".to_owned(),
             header: header(&["", "cases", "impulse [kN s]", &self.model, "Gaussian processes"]),
             rows: self.clusters.iter().map(row).collect(),
@@ -150,7 +150,7 @@ fn share(of: &IntervalCoverage) -> String {
     format!("{:.0} ± {:.0}", of.share * 100.0, of.standard_error * 100.0)
 }
 
-impl Table {
+impl MetricsTable {
     fn to_text(&self) -> String {
         let lines = || std::iter::once(&self.header).chain(&self.rows);
         let width = |column: usize| {
@@ -181,9 +181,9 @@ impl Table {
 mod tests {
     use super::*;
 
-    fn table() -> Table {
+    fn table() -> MetricsTable {
         let row = |a: &str, b: &str| vec![a.to_owned(), b.to_owned()];
-        Table {
+        MetricsTable {
             title: "Title".to_owned(),
             header: row("", "error"),
             rows: vec![row("the network", "1.0 (2.0)"), row("θ", "0.5")],

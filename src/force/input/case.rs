@@ -8,7 +8,7 @@ use crate::data::{
     contact_interval,
 };
 use crate::force::ForceScenario;
-use crate::jobs::Report;
+use crate::jobs::ProgressCallback;
 use crate::learning::{
     LoadError, TrainingCase, cases_and_problems, content_digest, load_cases, load_dataset, n_steps,
 };
@@ -137,7 +137,10 @@ impl ForceCase {
     ///
     /// # Errors
     /// [`LoadError`] with the first thing that is wrong.
-    pub fn load_all(root: &Path, report: &mut Report<'_>) -> Result<Outcome<Vec<Self>>, LoadError> {
+    pub fn load_all(
+        root: &Path,
+        report: &mut ProgressCallback<'_>,
+    ) -> Result<Outcome<Vec<Self>>, LoadError> {
         Ok(match load_dataset(root, DatasetKind::Force, report)? {
             Outcome::Complete(dataset) => Outcome::Complete(load_cases(&dataset, Self::from_case)?),
             Outcome::Cancelled => Outcome::Cancelled,

@@ -6,7 +6,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::collision::{Scenario, ScenarioError};
-use crate::data::{Case, DataError, ForceAttributes, Side, Value};
+use crate::data::{Case, DataError, ForceAttributes, StruckSide, Value};
 use crate::numerics::wrap_angle_rad;
 
 /// Two vehicles at first contact, in world axes with X along the target's heading. Neither vehicle
@@ -22,7 +22,7 @@ pub struct ForceScenario {
     /// Heading of the bullet against the target's, rad, −π to π.
     pub theta_b_rad: f64,
     /// The struck side of the target.
-    pub side: Side,
+    pub side: StruckSide,
     /// First contact `[x, y]` in the target's body axes from its CG, m, where it is known.
     pub contact_m: Option<[f64; 2]>,
     /// The bullet's CG `[x, y]` from the target's CG, m, where it is known.
@@ -114,8 +114,8 @@ impl ForceScenario {
             bullet_velocity_m_s: mirror(self.bullet_velocity_m_s),
             theta_b_rad: -self.theta_b_rad,
             side: match self.side {
-                Side::Left => Side::Right,
-                Side::Right => Side::Left,
+                StruckSide::Left => StruckSide::Right,
+                StruckSide::Right => StruckSide::Left,
             },
             contact_m: self.contact_m.map(mirror),
             bullet_position_m: self.bullet_position_m.map(mirror),
@@ -128,7 +128,7 @@ impl ForceScenario {
     /// with the target at rest.
     #[must_use]
     pub fn canonical(&self) -> (Self, bool) {
-        let mirrored = self.side == Side::Left;
+        let mirrored = self.side == StruckSide::Left;
         let right = if mirrored { self.mirrored() } else { self.clone() };
         let bullet_velocity_m_s = right.relative_velocity_m_s();
         (Self { target_velocity_m_s: [0.0; 2], bullet_velocity_m_s, ..right }, mirrored)
@@ -139,11 +139,11 @@ impl ForceScenario {
 /// from which the bullet heads towards the target, else the side from which it moves.
 ///
 /// - `approach_m_s`: lateral velocity of the bullet relative to the target.
-fn struck_side(contact_y_m: Option<f64>, theta_b_rad: f64, approach_m_s: f64) -> Side {
+fn struck_side(contact_y_m: Option<f64>, theta_b_rad: f64, approach_m_s: f64) -> StruckSide {
     let signs = [contact_y_m.unwrap_or(0.0), -theta_b_rad, -approach_m_s];
     match signs.into_iter().find(|sign| *sign != 0.0) {
-        Some(sign) if sign > 0.0 => Side::Left,
-        _ => Side::Right,
+        Some(sign) if sign > 0.0 => StruckSide::Left,
+        _ => StruckSide::Right,
     }
 }
 
@@ -154,24 +154,24 @@ pub(crate) mod tests {
     use super::*;
     use crate::collision::ContactLocation;
 
-    pub(crate) fn example(side: Side) -> ForceScenario {
+    pub(crate) fn example(side: StruckSide) -> ForceScenario {
         let right = ForceScenario {
             mass_kg: [2000.0, 1500.0],
             target_velocity_m_s: [15.0, 0.25],
             bullet_velocity_m_s: [16.0, 3.5],
             theta_b_rad: 0.5,
-            side: Side::Right,
+            side: StruckSide::Right,
             contact_m: Some([-1.5, -0.925]),
             bullet_position_m: Some([-2.75, -2.5]),
             bullet_body: Some("A".to_owned()),
             yaw_inertia_kg_m2: [Some(3600.0), None],
         };
-        if side == Side::Right { right } else { right.mirrored() }
+        if side == StruckSide::Right { right } else { right.mirrored() }
     }
 
     #[test]
     fn mirrored_twice_is_the_same() {
-        for side in [Side::Left, Side::Right] {
+        for side in [StruckSide::Left, StruckSide::Right] {
             let scenario = example(side);
             assert_eq!(scenario.mirrored().mirrored(), scenario);
             assert_ne!(scenario.mirrored(), scenario);
@@ -180,12 +180,12 @@ pub(crate) mod tests {
 
     #[test]
     fn mirror_images_and_moving_observers_share_one_canonical_form() {
-        let (canonical, mirrored) = example(Side::Right).canonical();
+        let (canonical, mirrored) = example(StruckSide::Right).canonical();
         assert!(!mirrored);
         assert_eq!(canonical.relative_velocity_m_s(), [1.0, 3.25]);
-        assert_eq!(example(Side::Left).canonical(), (canonical.clone(), true));
+        assert_eq!(example(StruckSide::Left).canonical(), (canonical.clone(), true));
         assert_eq!(canonical.canonical(), (canonical.clone(), false));
-        let mut faster = example(Side::Right);
+        let mut faster = example(StruckSide::Right);
         for velocity in [&mut faster.target_velocity_m_s, &mut faster.bullet_velocity_m_s] {
             *velocity = [velocity[0] + 8.0, velocity[1] - 0.5];
         }
@@ -195,13 +195,13 @@ pub(crate) mod tests {
     #[test]
     fn the_side_follows_from_contact_heading_and_motion() {
         for (contact_y_m, theta_b_rad, approach_m_s, side) in [
-            (Some(-0.9), -0.3, -1.0, Side::Right),
-            (Some(0.9), 0.3, 1.0, Side::Left),
-            (None, 0.3, -1.0, Side::Right),
-            (None, -0.3, 1.0, Side::Left),
-            (None, 0.0, 1.0, Side::Right),
-            (None, 0.0, -1.0, Side::Left),
-            (None, 0.0, 0.0, Side::Right),
+            (Some(-0.9), -0.3, -1.0, StruckSide::Right),
+            (Some(0.9), 0.3, 1.0, StruckSide::Left),
+            (None, 0.3, -1.0, StruckSide::Right),
+            (None, -0.3, 1.0, StruckSide::Left),
+            (None, 0.0, 1.0, StruckSide::Right),
+            (None, 0.0, -1.0, StruckSide::Left),
+            (None, 0.0, 0.0, StruckSide::Right),
         ] {
             let got = struck_side(contact_y_m, theta_b_rad, approach_m_s);
             assert_eq!(got, side, "{contact_y_m:?} {theta_b_rad} {approach_m_s}");
@@ -212,7 +212,7 @@ pub(crate) mod tests {
     fn a_scenario_is_seen_from_the_target() {
         let scenario = Scenario::example();
         let seen = ForceScenario::from_scenario(&scenario).unwrap();
-        assert_eq!(seen.side, Side::Right);
+        assert_eq!(seen.side, StruckSide::Right);
         assert!(seen.contact_m.unwrap()[0] < -1.0, "{seen:?}");
         // Turn the whole scene by a quarter: nothing changes.
         let mut turned = scenario;

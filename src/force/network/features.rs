@@ -187,12 +187,12 @@ impl OpenFeatures {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::Side;
+    use crate::data::StruckSide;
     use crate::force::input::example;
 
     #[test]
     fn what_was_never_seen_is_named_with_its_distance() {
-        let seen = example(Side::Right);
+        let seen = example(StruckSide::Right);
         let row = |scenario: &ForceScenario| {
             scenario_numbers(scenario, scenario.contact_m.unwrap()).to_vec()
         };

@@ -98,14 +98,14 @@ impl CentreFit {
 }
 
 /// Force and contact of one crush law on the time grid.
-struct History {
+struct CentreHistory {
     curve: ForceCurve,
     /// Zero if the kind of centre does not compute them.
     depth_m: Vec<f64>,
     slip_m_s: Vec<f64>,
 }
 
-impl History {
+impl CentreHistory {
     fn without_contact(curve: ForceCurve) -> Self {
         let none = vec![0.0; CURVE_N_INSTANTS];
         Self { curve, depth_m: none.clone(), slip_m_s: none }
@@ -175,7 +175,7 @@ impl CentreModel {
                 }
             }
         }
-        let curve = |(case, history): (&ForceCase, History)| {
+        let curve = |(case, history): (&ForceCase, CentreHistory)| {
             let (contact_m, _) = model.known(&case.scenario);
             model.centre_curve(history, &case.scenario, contact_m)
         };
@@ -224,7 +224,7 @@ impl CentreModel {
         &self,
         cases: &[ForceCase],
         folds: &[Split],
-    ) -> Result<Vec<History>, ForceError> {
+    ) -> Result<Vec<CentreHistory>, ForceError> {
         let law_of = |idx: usize| {
             let fold = folds.iter().position(|fold| fold.test.contains(&idx));
             fold.and_then(|fold| self.laws.get(fold)).or(self.laws.first())
@@ -248,16 +248,16 @@ impl CentreModel {
         laws: &[&CrushLaw],
         scenario: &ForceScenario,
         (contact_m, body_idx): ([f64; 2], usize),
-    ) -> Result<History, ForceError> {
+    ) -> Result<CentreHistory, ForceError> {
         Ok(match self.kind {
             Centre::Committee | Centre::Crush => {
                 mean_history(laws, &crush_scenario(scenario, contact_m, body_idx))
             }
             Centre::Momentum => {
                 let momentum = self.impact(scenario, contact_m).solve()?.impulse_n_s;
-                History::without_contact(self.pulse(momentum))
+                CentreHistory::without_contact(self.pulse(momentum))
             }
-            Centre::None => History::without_contact(self.nothing()),
+            Centre::None => CentreHistory::without_contact(self.nothing()),
         })
     }
 
@@ -269,7 +269,7 @@ impl CentreModel {
     /// The centre of a force history, with the quantities that follow from the momentum solution.
     fn centre_curve(
         &self,
-        History { curve, depth_m, slip_m_s }: History,
+        CentreHistory { curve, depth_m, slip_m_s }: CentreHistory,
         scenario: &ForceScenario,
         contact_m: [f64; 2],
     ) -> Result<CentreCurve, ForceError> {
@@ -400,7 +400,7 @@ fn fit_laws(
 }
 
 /// The mean over the laws. Its duration lasts from the first to the last force above 1 % of the peak.
-fn mean_history(laws: &[&CrushLaw], scenario: &CrushScenario) -> History {
+fn mean_history(laws: &[&CrushLaw], scenario: &CrushScenario) -> CentreHistory {
     let n = CURVE_N_INSTANTS;
     let histories: Vec<_> =
         laws.iter().filter_map(|law| law.simulate(scenario, n, CURVE_INTERVAL_S)).collect();
@@ -415,7 +415,7 @@ fn mean_history(laws: &[&CrushLaw], scenario: &CrushScenario) -> History {
     let first = magnitude.iter().position(in_contact).unwrap_or(0);
     let last = magnitude.iter().rposition(in_contact).unwrap_or(0);
     curve.duration_s = (last + 1 - first) as f64 * CURVE_INTERVAL_S;
-    History { curve, depth_m: series(|of| &of.depth_m), slip_m_s: series(|of| &of.slip_m_s) }
+    CentreHistory { curve, depth_m: series(|of| &of.depth_m), slip_m_s: series(|of| &of.slip_m_s) }
 }
 
 #[cfg(test)]

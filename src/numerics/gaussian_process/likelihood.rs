@@ -110,7 +110,7 @@ pub(super) struct Likelihood {
 
 /// Cost and gradient at a point.
 #[derive(Clone)]
-struct Evaluation {
+struct LikelihoodEvaluation {
     at: Vec<f64>,
     cost: f64,
     gradient: Vec<f64>,
@@ -130,8 +130,9 @@ impl Likelihood {
     /// line search that gets no further ends it: the best point so far is taken.
     pub(super) fn maximise(self: &Likelihood) -> Hyperparameters {
         let start: Vec<f64> = self.priors().iter().map(|(mean, _)| *mean).collect();
-        let best = Rc::new(RefCell::new(None::<Evaluation>));
-        let problem = Problem { likelihood: self, last: RefCell::new(None), best: best.clone() };
+        let best = Rc::new(RefCell::new(None::<LikelihoodEvaluation>));
+        let problem =
+            LikelihoodProblem { likelihood: self, last: RefCell::new(None), best: best.clone() };
         let line_search = MoreThuenteLineSearch::new();
         let solver = LBFGS::new(line_search, MEMORY).with_tolerance_grad(GRADIENT_TOLERANCE);
         let ended = solver.and_then(|solver| {
@@ -155,12 +156,12 @@ impl Likelihood {
     /// L = Σ_o w_o (½ y_oᵀ K⁻¹ y_o + ½ ln |K|) + prior      α_o = K⁻¹ y_o
     /// ∂L/∂h = ½ tr(G ∂K/∂h)                               G = Σ_o w_o (K⁻¹ − α_o α_oᵀ)
     /// ```
-    fn evaluate(&self, at: &[f64]) -> Evaluation {
+    fn evaluate(&self, at: &[f64]) -> LikelihoodEvaluation {
         let h = Hyperparameters::new(at.to_vec());
         let n_parameters = at.len();
         let Some(cholesky) = h.covariance(&self.inputs, &self.unusual).cholesky() else {
             let gradient = vec![0.0; n_parameters];
-            return Evaluation { at: at.to_vec(), cost: f64::INFINITY, gradient };
+            return LikelihoodEvaluation { at: at.to_vec(), cost: f64::INFINITY, gradient };
         };
         let n = self.inputs.nrows() as f64;
         let mut alpha = cholesky.solve(&self.outputs);
@@ -177,7 +178,7 @@ impl Likelihood {
             cost += ((value - mean) / std).powi(2) / 2.0;
             *g = (*g + (value - mean) / (std * std)) / n;
         }
-        Evaluation { at: at.to_vec(), cost: cost / n, gradient }
+        LikelihoodEvaluation { at: at.to_vec(), cost: cost / n, gradient }
     }
 
     /// `½ tr(G ∂K/∂h)` for each logarithm h.
@@ -214,14 +215,14 @@ impl Likelihood {
 }
 
 /// The likelihood as `argmin` wants it: cost and gradient at a point are computed together once.
-struct Problem<'a> {
+struct LikelihoodProblem<'a> {
     likelihood: &'a Likelihood,
-    last: RefCell<Option<Evaluation>>,
-    best: Rc<RefCell<Option<Evaluation>>>,
+    last: RefCell<Option<LikelihoodEvaluation>>,
+    best: Rc<RefCell<Option<LikelihoodEvaluation>>>,
 }
 
-impl Problem<'_> {
-    fn at(&self, parameters: &[f64]) -> Evaluation {
+impl LikelihoodProblem<'_> {
+    fn at(&self, parameters: &[f64]) -> LikelihoodEvaluation {
         if let Some(last) = self.last.borrow().as_ref().filter(|last| last.at == parameters) {
             return last.clone();
         }
@@ -236,7 +237,7 @@ impl Problem<'_> {
     }
 }
 
-impl CostFunction for Problem<'_> {
+impl CostFunction for LikelihoodProblem<'_> {
     type Param = Vec<f64>;
     type Output = f64;
 
@@ -245,7 +246,7 @@ impl CostFunction for Problem<'_> {
     }
 }
 
-impl Gradient for Problem<'_> {
+impl Gradient for LikelihoodProblem<'_> {
     type Param = Vec<f64>;
     type Gradient = Vec<f64>;
 

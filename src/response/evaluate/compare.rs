@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::ops::ControlFlow;
 
 use crate::collision::{ImpulseClusters, ImpulseFeatures};
-use crate::jobs::{Progress, Report};
+use crate::jobs::{Progress, ProgressCallback};
 use crate::learning::{LearningError, TEST_SHARE, TrainSettings, TrainingReport, TrainingSet};
 use crate::response::evaluate::{
     ComparedCase, Comparison, MotionCaseMetrics, MotionModel, path_of,
@@ -39,7 +39,7 @@ pub fn compare_models(
     (name, cases): (&str, &[ResponseCase]),
     start: Option<&ResponseModel>,
     settings: &ComparisonSettings,
-    report: &mut Report<'_>,
+    report: &mut ProgressCallback<'_>,
 ) -> Result<Option<Comparison>, LearningError> {
     let all = TrainingSet::of_split(name, cases, settings.seed, TEST_SHARE);
     all.check_size(1)?;
@@ -127,14 +127,14 @@ fn answers(
 /// Trainings, one after the other, under one progress.
 struct Work<'a, 'b> {
     settings: &'a ComparisonSettings,
-    report: &'a mut Report<'b>,
+    report: &'a mut ProgressCallback<'b>,
     is_broken: Cell<bool>,
     done: u64,
     total: u64,
 }
 
 impl<'a, 'b> Work<'a, 'b> {
-    fn new(settings: &'a ComparisonSettings, report: &'a mut Report<'b>) -> Self {
+    fn new(settings: &'a ComparisonSettings, report: &'a mut ProgressCallback<'b>) -> Self {
         let n_sets = settings.trajectories.len() as u64 * settings.n_choices;
         // Two pre-trainings; of each set a tuning, a network and a plain network.
         Self { settings, report, is_broken: Cell::new(false), done: 0, total: 2 + 3 * n_sets }

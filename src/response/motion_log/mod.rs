@@ -7,7 +7,7 @@
 //! force file, or the impulse that explains the change of momentum ──────────────┴──> trajectory
 //! ```
 //!
-//! - *States*: ψ, then X and Y, each by the smoother of [`Track`](crate::numerics::Track); velocities
+//! - *States*: ψ, then X and Y, each by the smoother of [`MeasuredTrack`](crate::numerics::MeasuredTrack); velocities
 //!   in body axes are turned into world axes by the smoothed ψ before that. Accelerations are left
 //!   out: what a sensor says holds gravity by roll and pitch, and its place on the car.
 //! - *Contact*: the window in which a livelier motion explains the samples best; none where nothing

@@ -3,7 +3,7 @@
 use argmin::core::{CostFunction, Error, Executor};
 use argmin::solver::neldermead::NelderMead;
 
-use crate::numerics::{Track, TrackPoint, TrackSample};
+use crate::numerics::{MeasuredTrack, TrackPoint, TrackSample};
 
 /// Spectral density of p⃛ to start with, away from contact and during it, (m/s³)²·s or (rad/s³)²·s:
 /// tyres change the acceleration by some 5 m/s² within 0.2 s, an impact by 30 m/s² within 0.05 s.
@@ -81,7 +81,7 @@ impl Tracks {
 
     /// TrackScales with which the samples are most likely, held near those to start with.
     pub(super) fn fit(&self, window: LogWindow) -> TrackScales {
-        let problem = Problem { tracks: self, start: self.start(), window };
+        let problem = TrackProblem { tracks: self, start: self.start(), window };
         let start = problem.start;
         let mut simplex = vec![vec![0.0; 4]; 5];
         for (i, corner) in simplex.iter_mut().skip(1).enumerate() {
@@ -108,7 +108,7 @@ impl Tracks {
             let samples = scaled(samples.get(from..to).unwrap_or_default(), scales);
             let density = |a, b| scales.density_between(window, [a, b]);
             let prior_std = self.prior_std;
-            Track { samples: &samples, density: &density, prior_std }.log_likelihood()
+            MeasuredTrack { samples: &samples, density: &density, prior_std }.log_likelihood()
         };
         self.samples.iter().map(of).sum()
     }
@@ -123,7 +123,8 @@ impl Tracks {
         let of = |samples: &Vec<TrackSample>| {
             let samples = scaled(samples, scales);
             let density = |a, b| scales.density_between(window, [a, b]);
-            Track { samples: &samples, density: &density, prior_std: self.prior_std }.smooth(at_s)
+            MeasuredTrack { samples: &samples, density: &density, prior_std: self.prior_std }
+                .smooth(at_s)
         };
         self.samples.iter().map(of).collect()
     }
@@ -156,13 +157,13 @@ fn scaled(samples: &[TrackSample], scales: &TrackScales) -> Vec<TrackSample> {
     samples.iter().map(of).collect()
 }
 
-struct Problem<'a> {
+struct TrackProblem<'a> {
     tracks: &'a Tracks,
     start: TrackScales,
     window: LogWindow,
 }
 
-impl CostFunction for Problem<'_> {
+impl CostFunction for TrackProblem<'_> {
     type Param = Vec<f64>;
     type Output = f64;
 

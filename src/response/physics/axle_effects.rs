@@ -2,7 +2,7 @@
 
 use crate::numerics::Scalar;
 use crate::response::N_RESIDUAL;
-use crate::vehicle::{Evaluation, VehicleParameters, VehicleState};
+use crate::vehicle::{VehicleEvaluation, VehicleParameters, VehicleState};
 
 /// Slip angles at which the axle characteristic is corrected, rad, on a road of friction μ₀.
 const SLIP_KNOTS_RAD: [f64; 10] = [0.01, 0.025, 0.05, 0.09, 0.15, 0.25, 0.4, 0.6, 0.85, 1.2];
@@ -60,7 +60,7 @@ impl<'a, T: Scalar> Axle<'a, T> {
     pub(super) fn effects(
         &self,
         x: &VehicleState<T>,
-        now: &Evaluation<T>,
+        now: &VehicleEvaluation<T>,
         out: &mut [[T; N_RESIDUAL]; N_PER_AXLE],
     ) {
         let friction = self.vehicle.tires.friction;
@@ -103,7 +103,7 @@ impl<'a, T: Scalar> Axle<'a, T> {
     }
 
     /// `−σ/V ∂F_y/∂α α̇`, N.
-    fn relaxation_n(&self, [u, w, slip_rad]: [T; 3], now: &Evaluation<T>, load_n: T) -> T {
+    fn relaxation_n(&self, [u, w, slip_rad]: [T; 3], now: &VehicleEvaluation<T>, load_n: T) -> T {
         let rate = &now.derivative;
         let across = rate.vy_m_s + rate.yaw_rate_rad_s * self.arm_m;
         let speed_squared = u * u + w * w + SLOW_M_S * SLOW_M_S;

@@ -39,7 +39,7 @@ use crate::response::N_RESIDUAL;
 use crate::response::physics::axle_effects::{
     Axle, CHARACTERISTIC_SCALE, N_PER_AXLE, N_SLIP_KNOTS,
 };
-use crate::vehicle::{Evaluation, VehicleParameters, VehicleState};
+use crate::vehicle::{VehicleEvaluation, VehicleParameters, VehicleState};
 
 /// An effect of the body, named by its cause and by the acceleration that it adds to. The effects of the
 /// front axle and of the rear axle come before it.
@@ -116,7 +116,7 @@ pub type Effects<T> = [[T; N_RESIDUAL]; N_EFFECTS];
 pub fn effects<T: Scalar>(
     vehicle: &VehicleParameters,
     x: &VehicleState<T>,
-    now: &Evaluation<T>,
+    now: &VehicleEvaluation<T>,
 ) -> Effects<T> {
     let mut effects = [[T::from(0.0); N_RESIDUAL]; N_EFFECTS];
     fill(&mut effects, vehicle, x, now);
@@ -127,7 +127,7 @@ fn fill<T: Scalar>(
     effects: &mut Effects<T>,
     vehicle: &VehicleParameters,
     x: &VehicleState<T>,
-    now: &Evaluation<T>,
+    now: &VehicleEvaluation<T>,
 ) {
     let geometry = &vehicle.geometry;
     let (tires, [fl, fr, rl, rr]) = (&vehicle.tires, now.vertical_loads_n);
@@ -149,7 +149,7 @@ fn fill<T: Scalar>(
 fn body_effects<T: Scalar>(
     vehicle: &VehicleParameters,
     x: &VehicleState<T>,
-    now: &Evaluation<T>,
+    now: &VehicleEvaluation<T>,
     out: &mut [[T; N_RESIDUAL]; BodyEffect::COUNT],
 ) {
     let mass = &vehicle.mass;

@@ -2,7 +2,7 @@
 //! of the order of one.
 
 use crate::numerics::Lanes;
-use crate::vehicle::{Evaluation, VehicleInput, VehicleParameters, VehicleState};
+use crate::vehicle::{VehicleEvaluation, VehicleInput, VehicleParameters, VehicleState};
 
 /// Numbers of an instant.
 pub const N_FEATURES: usize = 20;
@@ -61,7 +61,7 @@ pub fn features<T: Lanes>(
 pub(crate) fn features_of<T: Lanes>(
     vehicle: &VehicleParameters,
     x: &VehicleState<T>,
-    now: &Evaluation<T>,
+    now: &VehicleEvaluation<T>,
     time_s: f64,
 ) -> [T; N_FEATURES] {
     let (rate, [ax, ay]) = (&now.derivative, now.acceleration_m_s2);

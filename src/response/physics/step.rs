@@ -11,7 +11,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::numerics::{Lanes, Stage, rk4_step};
-use crate::vehicle::{Evaluation, N_STATE, VehicleInput, VehicleParameters, VehicleState};
+use crate::vehicle::{N_STATE, VehicleEvaluation, VehicleInput, VehicleParameters, VehicleState};
 
 /// Length of a step, s: that of the trajectory data sets.
 pub const STEP_S: f64 = 0.01;
@@ -56,7 +56,7 @@ impl Correction {
     pub(crate) fn step_from<T: Lanes>(
         self,
         vehicle: &VehicleParameters,
-        (x, u, now): (&VehicleState<T>, &VehicleInput<T>, &Evaluation<T>),
+        (x, u, now): (&VehicleState<T>, &VehicleInput<T>, &VehicleEvaluation<T>),
         value: [T; N_RESIDUAL],
     ) -> VehicleState<T> {
         match self {
@@ -105,7 +105,7 @@ pub fn step<T: Lanes>(
 
 fn step_from<T: Lanes>(
     vehicle: &VehicleParameters,
-    (x, u, now): (&VehicleState<T>, &VehicleInput<T>, &Evaluation<T>),
+    (x, u, now): (&VehicleState<T>, &VehicleInput<T>, &VehicleEvaluation<T>),
     residual: [T; N_RESIDUAL],
 ) -> VehicleState<T> {
     let [ax, ay, yaw, roll] = residual;

@@ -87,7 +87,7 @@ impl Tuning {
         report: &mut dyn FnMut(u64, f64) -> ControlFlow<()>,
     ) -> Self {
         let best = RefCell::new((f64::INFINITY, vec![0.0; N_TUNED]));
-        let problem = Problem {
+        let problem = TuningProblem {
             cases,
             untuned_m: cases.iter().map(|case| Self::default().error_m(case)).collect(),
             config,
@@ -149,7 +149,7 @@ impl Tuning {
 /// Error below which a case counts no more for being better, m.
 const ERROR_FLOOR_M: f64 = 0.05;
 
-struct Problem<'a> {
+struct TuningProblem<'a> {
     cases: &'a [&'a ResponseCase],
     /// Average error of each case by the data sheet, m.
     untuned_m: Vec<f64>,
@@ -165,7 +165,7 @@ struct Problem<'a> {
 #[error("broken off")]
 struct BrokenOff;
 
-impl CostFunction for Problem<'_> {
+impl CostFunction for TuningProblem<'_> {
     type Param = Vec<f64>;
     type Output = f64;
 

@@ -65,7 +65,8 @@ pub(crate) fn calibrate(unseen: &[Unseen<'_>], prior_std: f64) -> LatentScales {
     if observations.is_empty() {
         return LatentScales::default();
     }
-    let problem = Problem { observations: &observations, n_cases: unseen.len(), prior_std };
+    let problem =
+        CalibrationProblem { observations: &observations, n_cases: unseen.len(), prior_std };
     let start = vec![0.0; N_LATENTS + 1];
     let mut simplex = vec![start.clone()];
     for i in 0..start.len() {
@@ -137,13 +138,13 @@ fn scales_of(logs: &[f64]) -> LatentScales {
     }
 }
 
-struct Problem<'a> {
+struct CalibrationProblem<'a> {
     observations: &'a [Observation],
     n_cases: usize,
     prior_std: f64,
 }
 
-impl CostFunction for Problem<'_> {
+impl CostFunction for CalibrationProblem<'_> {
     type Param = Vec<f64>;
     type Output = f64;
 

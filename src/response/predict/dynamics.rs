@@ -6,7 +6,7 @@ use crate::response::network::vehicle_network::{VehicleNetwork, Workspace};
 use crate::response::physics::features::features_of;
 use crate::response::predict::latents::{LatentScales, N_LATENTS};
 use crate::response::{N_EFFECTS, N_FEATURES, N_RESIDUAL, combined, effects};
-use crate::vehicle::{Evaluation, VehicleInput, VehicleParameters, VehicleState};
+use crate::vehicle::{VehicleEvaluation, VehicleInput, VehicleParameters, VehicleState};
 
 /// Vehicle, network and latent factors: all that a step needs besides the state.
 pub(crate) struct Dynamics<'a> {
@@ -76,7 +76,7 @@ impl<'a> Dynamics<'a> {
         &self,
         component: usize,
         x: &VehicleState<f64>,
-        now: &Evaluation<f64>,
+        now: &VehicleEvaluation<f64>,
     ) -> CorrectionTerms {
         let effects = effects(self.vehicle, x, now);
         let known = self.network.strengths(component).map(|known| combined(&effects, known));
@@ -125,7 +125,7 @@ impl<'a> Dynamics<'a> {
     /// - `now`: the 4DOF model at the beginning.
     pub(super) fn advance<T: Lanes>(
         &self,
-        (x, now): (&VehicleState<T>, &Evaluation<T>),
+        (x, now): (&VehicleState<T>, &VehicleEvaluation<T>),
         correction: [T; N_RESIDUAL],
         u: &VehicleInput<T>,
     ) -> VehicleState<T> {

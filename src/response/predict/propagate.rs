@@ -28,7 +28,7 @@ use crate::response::predict::joint_state::{
 };
 use crate::response::predict::latents::N_LATENTS;
 use crate::uncertainty::{Unscented, UnscentedWeights};
-use crate::vehicle::{Evaluation, VehicleInput, VehicleState};
+use crate::vehicle::{VehicleEvaluation, VehicleInput, VehicleState};
 
 const N: usize = N_JOINT;
 /// Points about the mean.
@@ -65,7 +65,7 @@ struct StepBuffers {
 /// evaluated there.
 struct PairEvaluation {
     x: VehicleState<f64x2>,
-    now: Evaluation<f64x2>,
+    now: VehicleEvaluation<f64x2>,
     terms: [CorrectionTerms; 2],
 }
 

@@ -9,7 +9,7 @@ use crate::data::{
     Case, Channel, Dataset, DatasetKind, ForceAxes, ForceHistory, Outcome, Sampling, SeriesError,
     TimeSeries, TrajectoryAttributes,
 };
-use crate::jobs::Report;
+use crate::jobs::ProgressCallback;
 use crate::learning::{
     LoadError, TrainingCase, cases_and_problems, content_digest, load_cases, load_dataset, n_steps,
 };
@@ -147,7 +147,7 @@ impl ResponseCase {
     pub fn load_all(
         root: &Path,
         vehicle: Option<&VehicleParameters>,
-        report: &mut Report<'_>,
+        report: &mut ProgressCallback<'_>,
     ) -> Result<Outcome<Vec<Self>>, LoadError> {
         let Outcome::Complete(dataset) = load_dataset(root, DatasetKind::Trajectory, report)?
         else {

@@ -108,7 +108,7 @@ impl ColumnSet {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::Side;
+    use crate::data::StruckSide;
     use crate::force::input::example;
     use crate::force::input::shipped;
 
@@ -117,7 +117,7 @@ mod tests {
         let cases = shipped("fea");
         let cases: Vec<&ForceCase> = cases.iter().collect();
         let [theta, all] = ColumnSet::ALL.map(|columns| FeatureMap::fit(&cases, columns));
-        let known = example(Side::Right);
+        let known = example(StruckSide::Right);
         let unknown = ForceScenario { contact_m: None, bullet_body: None, ..known.clone() };
         assert_eq!(theta.row(&known), theta.row(&unknown));
         assert_ne!(all.row(&known), all.row(&unknown));
