@@ -13,7 +13,7 @@ use crate::study::{
     CompareRequest, ConfigChoice, Drive, EvaluateForceRequest, EvaluateResponseRequest,
     FineTuneRequest, ForceQuestion, ForceSource, ImpactRequest, ModelChoice, MotionSource,
     PredictForceRequest, PredictMotionRequest, ScenarioChoice, SeriesFile, SimulateDatasetRequest,
-    SimulateRequest, TrainForceRequest, TrainResponseRequest,
+    SimulateRequest, TrainForceRequest, TrainResponseRequest, TrainingOptions,
 };
 
 impl State {
@@ -101,13 +101,15 @@ impl State {
         TrainForceRequest {
             data: chosen.path.to_owned(),
             extra: extra.iter().map(|of| of.path.to_owned()).collect(),
-            config: config(&form.config),
             paper: false,
             epochs: form.epochs,
-            seed: form.seed,
-            bad_cases: form.bad_cases,
-            checkpoint: self.session.force.checkpoint.clone(),
-            resume: form.resume,
+            training: TrainingOptions {
+                config: config(&form.config),
+                seed: form.seed,
+                bad_cases: form.bad_cases,
+                checkpoint: self.session.force.checkpoint.clone(),
+                resume: form.resume,
+            },
         }
     }
 
@@ -117,12 +119,14 @@ impl State {
         TrainResponseRequest {
             data,
             vehicle: self.project.vehicle.clone(),
-            config: config(&form.config),
             plain: false,
-            seed: form.seed,
-            bad_cases: form.bad_cases,
-            checkpoint: self.session.response.checkpoint.clone(),
-            resume: form.resume,
+            training: TrainingOptions {
+                config: config(&form.config),
+                seed: form.seed,
+                bad_cases: form.bad_cases,
+                checkpoint: self.session.response.checkpoint.clone(),
+                resume: form.resume,
+            },
         }
     }
 
@@ -142,12 +146,14 @@ impl State {
             data: vec![data],
             trajectories: form.n_trajectories,
             vehicle: self.project.vehicle.clone(),
-            config: config(&form.config),
-            seed: form.seed,
             choice: form.choice,
-            bad_cases: form.bad_cases,
-            checkpoint: self.session.response.checkpoint.clone(),
-            resume: form.resume,
+            training: TrainingOptions {
+                config: config(&form.config),
+                seed: form.seed,
+                bad_cases: form.bad_cases,
+                checkpoint: self.session.response.checkpoint.clone(),
+                resume: form.resume,
+            },
             ..FineTuneRequest::default()
         })
     }

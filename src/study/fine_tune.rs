@@ -14,8 +14,8 @@ use crate::response::{
 use crate::study::inputs::{OpenVehicle, data_name, response_cases, struck_vehicle};
 use crate::study::train_response::TrainingNotes;
 use crate::study::{
-    BadCases, ConfigChoice, Event, Library, ModelChoice, MotionLogs, Observer, Question,
-    ResponseTrainingAnswer, StudyError, VehicleChoice,
+    ConfigChoice, Event, Library, ModelChoice, MotionLogs, Observer, Question,
+    ResponseTrainingAnswer, StudyError, TrainingOptions, VehicleChoice,
 };
 
 /// Asks for a response network that has learned from recorded motions.
@@ -37,27 +37,15 @@ pub struct FineTuneRequest {
     /// The struck vehicle.
     #[serde(default)]
     pub vehicle: VehicleChoice,
-    /// Settings instead of the model's own; layers must be the same.
-    #[serde(default)]
-    pub config: ConfigChoice,
     /// Share of the cases that is kept for the test.
     #[serde(default = "default_test_share")]
     pub test_share: f64,
-    /// Seed of the split.
-    #[serde(default)]
-    pub seed: u64,
     /// Seed of the choice of the trajectories and of all other draws; the split's if not given.
     #[serde(default)]
     pub choice: Option<u64>,
-    /// What happens to cases that cannot be used.
-    #[serde(default)]
-    pub bad_cases: BadCases,
-    /// Where the state of the training is kept.
-    #[serde(default)]
-    pub checkpoint: Option<PathBuf>,
-    /// Whether to go on from that state, if it is there.
-    #[serde(default)]
-    pub resume: bool,
+    /// Settings, seed, checkpoint.
+    #[serde(flatten)]
+    pub training: TrainingOptions,
 }
 
 fn default_test_share() -> f64 {
@@ -72,13 +60,9 @@ impl Default for FineTuneRequest {
             logs: None,
             trajectories: None,
             vehicle: VehicleChoice::default(),
-            config: ConfigChoice::default(),
             test_share: TEST_SHARE,
-            seed: 0,
             choice: None,
-            bad_cases: BadCases::default(),
-            checkpoint: None,
-            resume: false,
+            training: TrainingOptions::default(),
         }
     }
 }
@@ -93,12 +77,12 @@ impl FineTuneRequest {
         library: &Library,
     ) -> Result<(ResponseConfig, Option<Arc<ResponseModel>>), StudyError> {
         let start = self.model.as_ref().map(|model| library.response_model(model)).transpose()?;
-        let mut config = match (self.config.file(), &start) {
+        let mut config = match (self.training.config.file(), &start) {
             (Some(path), _) => ResponseConfig::load(path)?,
             (None, Some(start)) => start.config().clone(),
             (None, None) => ResponseConfig::default(),
         };
-        if self.config == ConfigChoice::Default && self.logs.is_some() {
+        if self.training.config == ConfigChoice::Default && self.logs.is_some() {
             config.effects = config.effects.few_samples();
         }
         Ok((config, start))
@@ -122,11 +106,12 @@ impl FineTuneRequest {
         for root in &self.data {
             let chosen = (root.as_path(), &self.vehicle);
             let assumptions = &mut notes.assumptions;
-            let cases = response_cases(chosen, self.bad_cases, assumptions, (library, observer))?;
+            let cases =
+                response_cases(chosen, self.training.bad_cases, assumptions, (library, observer))?;
             let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
             notes.left_out.extend(usable.left_out);
             let (name, share) = (data_name(root), self.test_share);
-            let set = ResponseTrainingSet::of_split(name, &usable.cases, self.seed, share);
+            let set = ResponseTrainingSet::of_split(name, &usable.cases, self.training.seed, share);
             sets.push(set.choose(self.trajectories, self.choice_seed())?);
         }
         if sets.is_empty() {
@@ -136,7 +121,7 @@ impl FineTuneRequest {
     }
 
     fn choice_seed(&self) -> u64 {
-        self.choice.unwrap_or(self.seed)
+        self.choice.unwrap_or(self.training.seed)
     }
 }
 
@@ -156,8 +141,8 @@ impl Question for FineTuneRequest {
         let settings = ResponseTrainSettings {
             config,
             seed: self.choice_seed(),
-            checkpoint: self.checkpoint.clone(),
-            resume: self.resume,
+            checkpoint: self.training.checkpoint.clone(),
+            resume: self.training.resume,
         };
         let started = Instant::now();
         let model = fine_tune(start.as_deref(), &set, &settings, &mut |told| {

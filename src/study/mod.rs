@@ -65,7 +65,7 @@ pub use fine_tune::FineTuneRequest;
 pub use impact::{BodyReport, ImpactAnswer, ImpactReport, ImpactRequest};
 pub use inputs::{
     BadCases, ConfigChoice, DEFAULT_BULLET, DEFAULT_VEHICLE, EvaluatedCases, ModelChoice,
-    ScenarioChoice, SeriesFile, VehicleChoice, checkpoint_beside,
+    ScenarioChoice, SeriesFile, TrainingOptions, VehicleChoice, checkpoint_beside,
 };
 pub use library::Library;
 pub use motion_logs::{DEFAULT_LOG_DURATION_S, LogReport, MotionLogs};

@@ -11,9 +11,7 @@ use crate::force::{
     train,
 };
 use crate::study::inputs::{data_names, force_cases};
-use crate::study::{
-    Assumption, BadCases, ConfigChoice, Event, Library, Observer, Question, StudyError,
-};
+use crate::study::{Assumption, Event, Library, Observer, Question, StudyError, TrainingOptions};
 
 /// Asks for a force network that has learned from force data sets.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -23,27 +21,15 @@ pub struct TrainForceRequest {
     /// Other force data sets, all of them to learn from.
     #[serde(default)]
     pub extra: Vec<PathBuf>,
-    /// Settings of network and training.
-    #[serde(default)]
-    pub config: ConfigChoice,
     /// Without a file of settings, the sizes of the paper instead of the default ones.
     #[serde(default)]
     pub paper: bool,
     /// Epochs at most, instead of the configured number.
     #[serde(default)]
     pub epochs: Option<usize>,
-    /// Seed of the split and of all draws.
-    #[serde(default)]
-    pub seed: u64,
-    /// What happens to cases that cannot be used.
-    #[serde(default)]
-    pub bad_cases: BadCases,
-    /// Where the state of the training is kept.
-    #[serde(default)]
-    pub checkpoint: Option<PathBuf>,
-    /// Whether to go on from that state, if it is there.
-    #[serde(default)]
-    pub resume: bool,
+    /// Settings, seed, checkpoint.
+    #[serde(flatten)]
+    pub training: TrainingOptions,
 }
 
 /// What was trained.
@@ -94,7 +80,7 @@ impl TrainForceRequest {
     /// # Errors
     /// [`StudyError::Force`] or [`StudyError::Data`] with what is wrong with the file.
     pub fn settings(&self) -> Result<ForceConfig, StudyError> {
-        let mut config = match self.config.file() {
+        let mut config = match self.training.config.file() {
             Some(path) => ForceConfig::load(path)?,
             None if self.paper => ForceConfig::paper(),
             None => ForceConfig::default(),
@@ -114,24 +100,24 @@ impl Question for TrainForceRequest {
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<TrainForceAnswer>, StudyError> {
         let config = self.settings()?;
-        let cases = force_cases(&self.data, self.bad_cases, (library, observer))?;
+        let cases = force_cases(&self.data, self.training.bad_cases, (library, observer))?;
         let Outcome::Complete(mut usable) = cases else { return Ok(Outcome::Cancelled) };
         let mut extra = Vec::new();
         for root in &self.extra {
-            let cases = force_cases(root, self.bad_cases, (library, observer))?;
+            let cases = force_cases(root, self.training.bad_cases, (library, observer))?;
             let Outcome::Complete(more) = cases else { return Ok(Outcome::Cancelled) };
             extra.extend(more.cases);
             usable.left_out.extend(more.left_out);
         }
         let name = data_names(std::iter::once(&self.data).chain(&self.extra));
         let share = config.training.test_share;
-        let set = ForceTrainingSet::of_split(name, &usable.cases, self.seed, share);
+        let set = ForceTrainingSet::of_split(name, &usable.cases, self.training.seed, share);
         let set = set.with_extra(&extra);
         let settings = ForceTrainSettings {
             config,
-            seed: self.seed,
-            checkpoint: self.checkpoint.clone(),
-            resume: self.resume,
+            seed: self.training.seed,
+            checkpoint: self.training.checkpoint.clone(),
+            resume: self.training.resume,
         };
         let started = Instant::now();
         let model = train(&set, &settings, &mut |told| observer(Event::Training(told)))?;

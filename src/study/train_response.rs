@@ -15,7 +15,7 @@ use crate::response::{
 };
 use crate::study::inputs::{OpenVehicle, data_name, force_cases, response_cases, struck_vehicle};
 use crate::study::{
-    Assumption, BadCases, ConfigChoice, Event, Library, LogReport, Observer, Question, StudyError,
+    Assumption, Event, Library, LogReport, Observer, Question, StudyError, TrainingOptions,
     VehicleChoice,
 };
 use crate::vehicle::VehicleParameters;
@@ -29,24 +29,12 @@ pub struct TrainResponseRequest {
     /// The struck vehicle.
     #[serde(default)]
     pub vehicle: VehicleChoice,
-    /// Settings of network and training.
-    #[serde(default)]
-    pub config: ConfigChoice,
     /// The plain network of the comparison instead: no 4DOF model, no guard, no physics.
     #[serde(default)]
     pub plain: bool,
-    /// Seed of the split and of all draws.
-    #[serde(default)]
-    pub seed: u64,
-    /// What happens to cases that cannot be used.
-    #[serde(default)]
-    pub bad_cases: BadCases,
-    /// Where the state of the training is kept.
-    #[serde(default)]
-    pub checkpoint: Option<PathBuf>,
-    /// Whether to go on from that state, if it is there.
-    #[serde(default)]
-    pub resume: bool,
+    /// Settings, seed, checkpoint.
+    #[serde(flatten)]
+    pub training: TrainingOptions,
 }
 
 /// What was trained.
@@ -102,7 +90,7 @@ impl TrainResponseRequest {
     /// # Errors
     /// [`StudyError::Learning`] with what is wrong with the file.
     pub fn settings(&self) -> Result<ResponseConfig, StudyError> {
-        let config = match self.config.file() {
+        let config = match self.training.config.file() {
             Some(path) => ResponseConfig::load(path)?,
             None => ResponseConfig::default(),
         };
@@ -118,7 +106,8 @@ impl TrainResponseRequest {
         if DatasetKind::of_folder(&self.data) == Some(DatasetKind::Trajectory) {
             let chosen = (self.data.as_path(), &self.vehicle);
             let assumptions = &mut notes.assumptions;
-            let cases = response_cases(chosen, self.bad_cases, assumptions, (library, observer))?;
+            let cases =
+                response_cases(chosen, self.training.bad_cases, assumptions, (library, observer))?;
             return Ok(cases.map(|usable| {
                 notes.left_out = usable.left_out;
                 let kept = self.learned_from(&usable.cases);
@@ -127,7 +116,7 @@ impl TrainResponseRequest {
         }
         let vehicle =
             struck_vehicle(&self.vehicle, &OpenVehicle::OfDataset(None), &mut notes.assumptions)?;
-        let cases = force_cases(&self.data, self.bad_cases, (library, observer))?;
+        let cases = force_cases(&self.data, self.training.bad_cases, (library, observer))?;
         Ok(cases.map(|usable| {
             notes.left_out = usable.left_out;
             let kept = self.learned_from(&usable.cases);
@@ -136,7 +125,10 @@ impl TrainResponseRequest {
     }
 
     fn learned_from<'a, C: TrainingCase>(&self, cases: &'a [C]) -> impl Iterator<Item = &'a C> {
-        split(cases, self.seed, TEST_SHARE).train.into_iter().filter_map(|idx| cases.get(idx))
+        split(cases, self.training.seed, TEST_SHARE)
+            .train
+            .into_iter()
+            .filter_map(|idx| cases.get(idx))
     }
 }
 
@@ -168,9 +160,9 @@ impl Question for TrainResponseRequest {
     ) -> Result<Outcome<ResponseTrainingAnswer>, StudyError> {
         let settings = ResponseTrainSettings {
             config: self.settings()?,
-            seed: self.seed,
-            checkpoint: self.checkpoint.clone(),
-            resume: self.resume,
+            seed: self.training.seed,
+            checkpoint: self.training.checkpoint.clone(),
+            resume: self.training.resume,
         };
         let mut notes = TrainingNotes::default();
         let records = self.records(&mut notes, (library, observer))?;

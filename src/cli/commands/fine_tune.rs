@@ -6,14 +6,12 @@ use clap::{Args, Subcommand};
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_settings};
-use crate::cli::options::{BadCasesArg, VehicleArg, contact_point, time_s};
+use crate::cli::options::{TrainingArgs, VehicleArg, contact_point, time_s};
 use crate::cli::text::{Trained, print_response_training};
 use crate::data::ColumnMap;
 use crate::learning::{ModelFile, TEST_SHARE};
 use crate::shipped::ModelSource;
-use crate::study::{
-    DEFAULT_LOG_DURATION_S, FineTuneRequest, ModelChoice, MotionLogs, checkpoint_beside,
-};
+use crate::study::{DEFAULT_LOG_DURATION_S, FineTuneRequest, ModelChoice, MotionLogs};
 use crate::vehicle::ContactPoint;
 
 /// Fine-tune a network on data of your own
@@ -49,29 +47,14 @@ struct FineTuneResponseArgs {
     /// The struck vehicle: a preset or a file, instead of the data set's own
     #[arg(long, value_name = "NAME|FILE")]
     vehicle: Option<VehicleArg>,
-    /// Where the model goes; the training is kept beside it in MODEL.training
-    #[arg(long, value_name = "MODEL")]
-    out: PathBuf,
-    /// Settings (TOML) instead of the model's own; layers must be the same
-    #[arg(long, value_name = "CONFIG.toml")]
-    config: Option<PathBuf>,
     /// Share of the cases that is kept for the test
     #[arg(long, default_value_t = TEST_SHARE, value_name = "SHARE")]
     test_share: f64,
-    /// Seed of the split
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
     /// Seed of the choice of the trajectories and of all other draws; the split's if not given
     #[arg(long)]
     choice: Option<u64>,
     #[command(flatten)]
-    bad_cases: BadCasesArg,
-    /// Go on from MODEL.training, if it is there
-    #[arg(long)]
-    resume: bool,
-    /// Print the settings as TOML and stop
-    #[arg(long)]
-    print_config: bool,
+    training: TrainingArgs,
 }
 
 const EXAMPLES: &str = "\
@@ -141,20 +124,16 @@ fn fine_tune_response(
         logs: args.logs.logs(),
         trajectories: args.trajectories,
         vehicle: VehicleArg::choice(&args.vehicle),
-        config: args.config.clone().into(),
         test_share: args.test_share,
-        seed: args.seed,
         choice: args.choice,
-        bad_cases: args.bad_cases.into(),
-        checkpoint: Some(checkpoint_beside(&args.out)),
-        resume: args.resume,
+        training: args.training.options(),
     };
-    if args.print_config {
+    if args.training.print_config {
         return print_settings(&request.settings(&console.library)?.0, console);
     }
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
-    answer.model.save(&args.out)?;
-    let trained = Trained { model: &args.out, report: &answer.report };
+    answer.model.save(&args.training.out)?;
+    let trained = Trained { model: &args.training.out, report: &answer.report };
     console.print(&trained, |out| print_response_training(out, &trained))?;
     Ok(Verdict::Clean)
 }

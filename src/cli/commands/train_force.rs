@@ -6,10 +6,10 @@ use clap::Args;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_settings};
-use crate::cli::options::BadCasesArg;
+use crate::cli::options::TrainingArgs;
 use crate::cli::text::{Trained, print_force_training};
 use crate::learning::ModelFile;
-use crate::study::{TrainForceRequest, checkpoint_beside};
+use crate::study::TrainForceRequest;
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -20,29 +20,14 @@ pub(in crate::cli) struct TrainForceArgs {
     /// Another force data set, all of it to learn from; may be repeated
     #[arg(long, value_name = "DIR")]
     extra: Vec<PathBuf>,
-    /// Where the model goes; the training is kept beside it in MODEL.training
-    #[arg(long, value_name = "MODEL")]
-    out: PathBuf,
-    /// Settings (TOML); what it leaves out keeps its default, see --print-config
-    #[arg(long, value_name = "CONFIG.toml")]
-    config: Option<PathBuf>,
     /// The network in the sizes of the paper instead of the default, which predicts as well
     #[arg(long, conflicts_with = "config")]
     paper: bool,
     /// Epochs at most, instead of the configured number
     #[arg(long)]
     epochs: Option<usize>,
-    /// Seed of the split and of all draws
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
     #[command(flatten)]
-    bad_cases: BadCasesArg,
-    /// Go on from MODEL.training, if it is there
-    #[arg(long)]
-    resume: bool,
-    /// Print the settings as TOML and stop
-    #[arg(long)]
-    print_config: bool,
+    training: TrainingArgs,
 }
 
 const EXAMPLES: &str = "\
@@ -65,20 +50,16 @@ pub(in crate::cli) fn run(
     let request = TrainForceRequest {
         data: args.data.clone(),
         extra: args.extra.clone(),
-        config: args.config.clone().into(),
         paper: args.paper,
         epochs: args.epochs,
-        seed: args.seed,
-        bad_cases: args.bad_cases.into(),
-        checkpoint: Some(checkpoint_beside(&args.out)),
-        resume: args.resume,
+        training: args.training.options(),
     };
-    if args.print_config {
+    if args.training.print_config {
         return print_settings(&request.settings()?, console);
     }
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
-    answer.model.save(&args.out)?;
-    let trained = Trained { model: &args.out, report: &answer.report };
+    answer.model.save(&args.training.out)?;
+    let trained = Trained { model: &args.training.out, report: &answer.report };
     console.print(&trained, |out| print_force_training(out, &trained))?;
     Ok(Verdict::Clean)
 }

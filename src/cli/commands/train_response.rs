@@ -6,10 +6,10 @@ use clap::Args;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_settings};
-use crate::cli::options::{BadCasesArg, VehicleArg};
+use crate::cli::options::{TrainingArgs, VehicleArg};
 use crate::cli::text::{Trained, print_response_training};
 use crate::learning::ModelFile;
-use crate::study::{TrainResponseRequest, checkpoint_beside};
+use crate::study::TrainResponseRequest;
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -21,26 +21,11 @@ pub(in crate::cli) struct TrainResponseArgs {
     /// The struck vehicle: a preset or a file; the data set's own, or the reference car
     #[arg(long, value_name = "NAME|FILE")]
     vehicle: Option<VehicleArg>,
-    /// Where the model goes; the training is kept beside it in MODEL.training
-    #[arg(long, value_name = "MODEL")]
-    out: PathBuf,
-    /// Settings (TOML); what it leaves out keeps its default, see --print-config
-    #[arg(long, value_name = "CONFIG.toml")]
-    config: Option<PathBuf>,
     /// The plain network of the comparison instead: no 4DOF model, no guard, no physics
     #[arg(long)]
     plain: bool,
-    /// Seed of the split and of all draws
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
     #[command(flatten)]
-    bad_cases: BadCasesArg,
-    /// Go on from MODEL.training, if it is there
-    #[arg(long)]
-    resume: bool,
-    /// Print the settings as TOML and stop
-    #[arg(long)]
-    print_config: bool,
+    training: TrainingArgs,
 }
 
 const EXAMPLES: &str = "\
@@ -63,19 +48,15 @@ pub(in crate::cli) fn run(
     let request = TrainResponseRequest {
         data: args.data.clone(),
         vehicle: VehicleArg::choice(&args.vehicle),
-        config: args.config.clone().into(),
         plain: args.plain,
-        seed: args.seed,
-        bad_cases: args.bad_cases.into(),
-        checkpoint: Some(checkpoint_beside(&args.out)),
-        resume: args.resume,
+        training: args.training.options(),
     };
-    if args.print_config {
+    if args.training.print_config {
         return print_settings(&request.settings()?, console);
     }
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
-    answer.model.save(&args.out)?;
-    let trained = Trained { model: &args.out, report: &answer.report };
+    answer.model.save(&args.training.out)?;
+    let trained = Trained { model: &args.training.out, report: &answer.report };
     console.print(&trained, |out| print_response_training(out, &trained))?;
     Ok(Verdict::Clean)
 }

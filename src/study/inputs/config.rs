@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use crate::study::BadCases;
+
 /// Where the settings of a training come from.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -29,6 +31,22 @@ impl From<Option<PathBuf>> for ConfigChoice {
     fn from(file: Option<PathBuf>) -> Self {
         file.map_or(Self::Default, Self::File)
     }
+}
+
+/// How a network is trained, whichever it is.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct TrainingOptions {
+    /// Settings of network and training.
+    pub config: ConfigChoice,
+    /// Seed of the split and, where no other is given, of all draws.
+    pub seed: u64,
+    /// What happens to cases that cannot be used.
+    pub bad_cases: BadCases,
+    /// Where the state of the training is kept.
+    pub checkpoint: Option<PathBuf>,
+    /// Whether to go on from that state, if it is there.
+    pub resume: bool,
 }
 
 /// Where a training keeps its state: beside its model, as `MODEL.training`.

@@ -9,7 +9,7 @@ mod vehicle;
 
 pub use cases::{BadCases, EvaluatedCases};
 pub(super) use cases::{data_name, data_names, force_cases, response_cases};
-pub use config::{ConfigChoice, checkpoint_beside};
+pub use config::{ConfigChoice, TrainingOptions, checkpoint_beside};
 pub use file::SeriesFile;
 pub use model::ModelChoice;
 pub use scenario::ScenarioChoice;
