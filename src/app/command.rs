@@ -44,7 +44,7 @@ pub enum Command {
     CancelReplay(PathBuf),
     /// Go to a moment, s.
     SetTime(f64),
-    /// Go this many small steps on.
+    /// Go forward by this many small steps; back if negative.
     StepTime(f64),
     /// Let time run, or stop it.
     TogglePlay,
@@ -60,9 +60,9 @@ pub enum Command {
     PredictCase,
     /// Predict the force of the scenario panel's scenario.
     PredictScenario,
-    /// Answer by the model of this file; by the shipped one without.
+    /// Use the model of this file; without a path the shipped one.
     UseModel(Network, Option<PathBuf>),
-    /// Answer by the model that a cancelled training left.
+    /// Use the model that a cancelled training has left.
     UseTrained(Network),
     /// Write a model to a file.
     SaveModel(Network, PathBuf),
@@ -95,7 +95,7 @@ pub enum Command {
 pub enum TrainingCommand {
     /// Begin.
     Start,
-    /// Hold it up, or let it go on.
+    /// Pause it (`true`), or let it go on.
     Pause(bool),
     /// End it with the weights so far.
     Cancel,

@@ -8,32 +8,32 @@ use crate::error_chain;
 use crate::jobs::Job;
 use crate::study::{Library, ModelChoice};
 
-/// A model and where it comes from.
+/// A model that can answer questions, and where it comes from.
 pub struct CurrentModel<M> {
-    /// What questions call it.
+    /// The name of the model in questions.
     pub choice: ModelChoice,
     /// The model.
     pub model: Arc<M>,
-    /// For a person: the file's name, or that it was trained here.
+    /// The name that is shown: that of its file, or how it was trained.
     pub name: String,
-    /// Whether a file holds it.
+    /// Whether the model stands in a file.
     pub is_saved: bool,
 }
 
-/// The model, and which one is wanted.
+/// The model of one network that answers, and the one that the project asks for.
 pub struct ModelStatus<M> {
     /// The file that was asked for last; the inner `None` is the shipped model.
     requested: Option<Option<PathBuf>>,
     job: Option<Job<Result<CurrentModel<M>, String>>>,
     saving: Option<Job<Result<PathBuf, String>>>,
     n_trained: usize,
-    /// What answers.
+    /// The model that answers questions.
     pub current: Option<CurrentModel<M>>,
-    /// What a cancelled training left: it answers only once the user says so.
+    /// The model of a cancelled training, which answers only once the user says so.
     pub set_aside: Option<CurrentModel<M>>,
-    /// Why the wanted one does not.
+    /// Why the model that the project asks for could not be loaded.
     pub problem: Option<String>,
-    /// A path to which it is to be saved, being typed.
+    /// The path in the text field for saving, as far as it has been typed.
     pub typed_path: String,
 }
 
@@ -53,34 +53,30 @@ impl<M> Default for ModelStatus<M> {
 }
 
 impl<M: TrainedModel> ModelStatus<M> {
-    /// Starts loading if another model is wanted than the last time. Once one has been loaded, or
-    /// could not be, it says so.
+    /// Starts to load a model if the project asks for another one than before. Returns once why a
+    /// model could not be loaded.
     pub fn update(
         &mut self,
         wanted: &Option<PathBuf>,
         library: &Arc<Library>,
         wake: impl Fn() + Send + 'static,
-    ) -> Option<Result<(), String>> {
+    ) -> Option<String> {
         if self.requested.as_ref() != Some(wanted) {
             self.requested = Some(wanted.clone());
             let (path, library) = (wanted.clone(), Arc::clone(library));
             match Job::spawn("load model", wake, move |_| load(path, &library)) {
                 Ok(job) => self.job = Some(job),
-                Err(error) => return Some(Err(error.to_string())),
+                Err(error) => return Some(error.to_string()),
             }
         }
         let result = self.job.as_mut()?.poll().into_result("the loader")?;
         self.job = None;
-        Some(match result {
-            Ok(current) => {
-                (self.current, self.problem) = (Some(current), None);
-                Ok(())
-            }
-            Err(problem) => {
-                self.problem = Some(problem.clone());
-                Err(problem)
-            }
-        })
+        self.problem = None;
+        match result {
+            Ok(current) => self.current = Some(current),
+            Err(problem) => self.problem = Some(problem),
+        }
+        self.problem.clone()
     }
 
     /// Whether a model is being loaded.
@@ -88,10 +84,10 @@ impl<M: TrainedModel> ModelStatus<M> {
         self.job.is_some()
     }
 
-    /// Takes a model that was just trained and lets the library hold it.
+    /// Takes a model that was just trained and puts it into the library.
     ///
-    /// - `name`: how it came to be;
-    /// - `is_used`: whether it answers from now on; otherwise it is set aside.
+    /// - `name`: how it was trained, for a person;
+    /// - `is_used`: whether it answers questions from now on; otherwise it is set aside.
     pub fn take_trained(&mut self, model: M, name: String, (library, is_used): (&Library, bool)) {
         self.n_trained += 1;
         // A name stands for one model, so that an answer of another one is not taken for its own.
@@ -107,7 +103,7 @@ impl<M: TrainedModel> ModelStatus<M> {
         }
     }
 
-    /// Lets the model of a cancelled training answer.
+    /// Puts the model of a cancelled training into use.
     pub fn use_trained(&mut self) {
         if let Some(trained) = self.set_aside.take() {
             self.job = None;
@@ -116,7 +112,7 @@ impl<M: TrainedModel> ModelStatus<M> {
         }
     }
 
-    /// Reads the file again, e.g. after the user asked for it once more.
+    /// Reads the file again at the next update.
     pub fn reload(&mut self) {
         self.requested = None;
     }
@@ -140,7 +136,7 @@ impl<M: TrainedModel> ModelStatus<M> {
         self.saving.is_some()
     }
 
-    /// The file that was just written, which is the wanted one from now on.
+    /// The file that has just been written. The model is that file's from now on.
     pub fn poll_saving(&mut self, library: &Library) -> Option<Result<PathBuf, String>> {
         let result = self.saving.as_mut()?.poll().into_result("the writer")?;
         self.saving = None;

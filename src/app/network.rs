@@ -14,7 +14,7 @@ use crate::study::{
     TrainForceAnswer, TrainForceReport,
 };
 
-/// One of the two.
+/// One of the two networks.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Network {
     /// Scenario to impact force.
@@ -25,7 +25,7 @@ pub enum Network {
 }
 
 impl Network {
-    /// Both.
+    /// Both networks.
     pub const ALL: [Self; 2] = [Self::Force, Self::Response];
 
     /// In a sentence: “force model”.
@@ -64,13 +64,13 @@ pub trait TrainedModel: Sized + Send + Sync + 'static {
     /// What is told of a training.
     type Report;
 
-    /// The model that questions call so, read if it is not in memory.
+    /// The model of this name in questions; it is read if it is not in memory.
     ///
     /// # Errors
     /// [`StudyError`] if it cannot be read.
     fn of_library(library: &Library, choice: &ModelChoice) -> Result<Arc<Self>, StudyError>;
 
-    /// Keeps the model under what questions call it.
+    /// Keeps the model in the library under its name in questions.
     fn hold(library: &Library, choice: ModelChoice, model: Arc<Self>);
 
     /// Writes the model to a file.

@@ -84,9 +84,13 @@ impl State {
         }
     }
 
+    /// Uses the model of a file, or the shipped one. A file is read again even if its model is in
+    /// use already, and what was asked of it is asked again.
     pub(super) fn use_model(&mut self, network: Network, path: Option<PathBuf>) {
         if let Some(path) = &path {
             self.session.library.forget(path);
+            self.session.force.forecast.ask_again();
+            self.session.response.forecast.ask_again();
         }
         match network {
             Network::Force => {
@@ -118,13 +122,10 @@ impl State {
         }
     }
 
-    /// Tells the user why a model could not be opened. Once one has been read, questions are asked
-    /// again, as its file may have changed.
-    pub(super) fn take_loaded(&mut self, loaded: Option<Result<(), String>>) {
-        match loaded {
-            None => {}
-            Some(Ok(())) => self.ask_again(),
-            Some(Err(problem)) => self.say(Severity::Error, problem),
+    /// Tells the user what went wrong, if something did.
+    pub(super) fn say_problem(&mut self, problem: Option<String>) {
+        if let Some(problem) = problem {
+            self.say(Severity::Error, problem);
         }
     }
 

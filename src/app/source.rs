@@ -22,21 +22,21 @@ pub struct Source {
     pub path: PathBuf,
     /// The user's columns of a file whose header does not say which column is which.
     pub map: Option<ColumnMap>,
-    /// What was found when it was opened; sources from one folder share it.
+    /// The check of the opened path with its report; sources from one folder share it.
     pub check: Option<Arc<Answered<CheckRequest>>>,
-    /// What it holds.
+    /// The data, or why there are none.
     pub content: Content,
 }
 
 /// What a source holds.
 pub enum Content {
-    /// Not known yet.
+    /// It is being loaded.
     Loading(Job<Result<Outcome<OpenedPath>, String>>),
     /// A dataset.
     Dataset(Arc<CheckedDataset>),
     /// A single file.
     File(Arc<CheckedFile>),
-    /// Nothing: why.
+    /// It could not be read, for this reason.
     Failed(String),
 }
 
@@ -55,7 +55,7 @@ pub struct CheckedDataset {
 pub struct OpenDataset<'a> {
     /// Its folder.
     pub path: &'a Path,
-    /// What was read of it.
+    /// Its data and their checks.
     pub checked: &'a Arc<CheckedDataset>,
 }
 

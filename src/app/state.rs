@@ -27,18 +27,18 @@ use crate::vehicle::{ContactPoint, Equations, Integrator};
 /// Version of the saved state; another one is not read.
 const SAVED_VERSION: u32 = 1;
 
-/// Everything.
+/// The whole state of the app.
 #[derive(Default)]
 pub struct State {
     /// What the user works on; undo works on this.
     pub project: Project,
-    /// How it is shown.
+    /// How the project is shown.
     pub view: View,
-    /// What is loaded, computed and under way.
+    /// Loaded data, answers and work under way.
     pub session: Session,
 }
 
-/// What is shown and simulated.
+/// A case, file or scenario that is shown and simulated.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Subject {
     /// A case of a dataset.
@@ -69,7 +69,7 @@ pub struct FileStart {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Project {
-    /// What is shown and simulated.
+    /// The case, file or scenario that is shown and simulated.
     pub subject: Option<Subject>,
     /// The struck vehicle.
     pub vehicle: VehicleChoice,
@@ -87,9 +87,9 @@ pub struct Project {
     pub show_pulses: bool,
     /// The scenario of the scenario panel.
     pub scenario: Scenario,
-    /// How its impulse is spread over time.
+    /// How the impulse of the scenario is spread over time.
     pub pulse: PulseSetup,
-    /// What single files do not say.
+    /// Speed and contact point for single files, which do not say them.
     pub file_start: FileStart,
     /// The force network: what it is asked and how it is trained.
     pub force: ForceProject,
@@ -117,7 +117,7 @@ impl Default for Project {
     }
 }
 
-/// How things are shown.
+/// How the project is shown.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct View {
@@ -129,7 +129,7 @@ pub struct View {
     pub filter: String,
     /// Column by which cases are sorted; the table's own order without one.
     pub sort_column: Option<String>,
-    /// Whether the largest comes first.
+    /// Whether the largest value comes first.
     pub sort_descending: bool,
     /// The dataset whose cases are listed.
     pub listed: Option<PathBuf>,
@@ -160,18 +160,18 @@ impl Default for View {
     }
 }
 
-/// What is loaded, computed and under way.
+/// Loaded data, answers and work under way; not saved.
 #[derive(Default)]
 pub struct Session {
     /// The data and models that questions refer to, as far as they are in memory.
     pub library: Arc<Library>,
-    /// What is open, in the order of opening.
+    /// The data that are open, in the order of opening.
     pub sources: Vec<Source>,
     /// The simulation of the subject.
     pub analysis: Latest<SimulateRequest>,
     /// The impulse solution of the scenario panel's scenario.
     pub impact: Latest<ImpactRequest>,
-    /// Whole datasets, simulated.
+    /// The simulations of whole datasets.
     pub replays: Replays,
     /// The force network.
     pub force: ForceSession,
@@ -202,9 +202,9 @@ pub struct Session {
 /// Something the user should know.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Message {
-    /// How much it matters.
+    /// Its severity.
     pub severity: Severity,
-    /// What it is.
+    /// The message itself.
     pub text: String,
 }
 

@@ -40,8 +40,8 @@ pub fn impact_figure(
     };
     let mut elements = vec![FigureElement::dashed("contact surface", Role::Muted, surface)];
     for (name, role, footprint, pose, after) in vehicles {
-        let look = (name, role, LineStyle::Solid);
-        elements.extend(vehicle_outline(look, (&footprint, &pose), x.unit));
+        let appearance = (name, role, LineStyle::Solid);
+        elements.extend(vehicle_outline(appearance, (&footprint, &pose), x.unit));
         let delta_v = scaled(after.delta_v_m_s, longest);
         elements.push(arrow(&format!("Δv {name}"), role, [pose.x_m, pose.y_m], delta_v));
     }

@@ -113,12 +113,12 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
     ));
     if let Some(state) = input.central.get(at) {
         let pose = Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad };
-        let look = ("central path", Role::Target, LineStyle::Solid);
-        elements.extend(vehicle_outline(look, (&input.footprint, &pose), x.unit));
+        let appearance = ("central path", Role::Target, LineStyle::Solid);
+        elements.extend(vehicle_outline(appearance, (&input.footprint, &pose), x.unit));
     }
     if let Some(pose) = input.reference.and_then(|series| pose_at(series, at as f64 * STEP_S)) {
-        let look = ("reference", Role::Reference, LineStyle::Dashed);
-        elements.extend(vehicle_outline(look, (&input.footprint, &pose), x.unit));
+        let appearance = ("reference", Role::Reference, LineStyle::Dashed);
+        elements.extend(vehicle_outline(appearance, (&input.footprint, &pose), x.unit));
     }
     let title = format!("{}: position after {:.2} s", input.title, at as f64 * STEP_S);
     Figure { title, x, y, equal_aspect: true, log_y: false, elements }

@@ -97,8 +97,8 @@ fn vehicle_elements(vehicle: &SceneVehicle<'_>, time_s: f64, unit: Unit) -> Vec<
         }
     }
     if let Some(pose) = pose_at(motion, time_s) {
-        let look = (vehicle.name, vehicle.role, vehicle.style);
-        elements.extend(vehicle_outline(look, (&vehicle.footprint, &pose), unit));
+        let appearance = (vehicle.name, vehicle.role, vehicle.style);
+        elements.extend(vehicle_outline(appearance, (&vehicle.footprint, &pose), unit));
     }
     elements
 }

@@ -6,7 +6,7 @@ use crate::figure::{Figure, FigureElement, Series};
 
 /// Share of width and height that a legend may take.
 const LEGEND_SHARE: [f64; 2] = [0.4, 0.45];
-/// Segments of a line that are looked at.
+/// Segments of a line that are taken into account; of a longer line, some.
 const MAX_SEGMENTS: usize = 400;
 /// Points into which a segment is cut, so that long segments count along their length.
 const SEGMENT_POINTS: usize = 16;

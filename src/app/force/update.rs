@@ -31,12 +31,12 @@ impl State {
     /// Takes in what loader, predictor and training report, and asks for what is due.
     pub(in crate::app) fn update_force(&mut self, context: &Context) {
         let (force, library) = (&mut self.session.force, &self.session.library);
-        let loaded = force.model.update(&self.project.force.model, library, wake(context));
+        let problem = force.model.update(&self.project.force.model, library, wake(context));
         let saved = force.model.poll_saving(library);
         if let Some(Ok(path)) = &saved {
             self.project.force.model = Some(path.clone());
         }
-        self.take_loaded(loaded);
+        self.say_problem(problem);
         self.say_of_file(saved);
         self.find_recorded_case();
         self.poll_training();

@@ -17,13 +17,13 @@ impl State {
     /// Takes in what loader, forecast, training and comparison report, and asks for what is due.
     pub(in crate::app) fn update_response(&mut self, context: &Context) {
         let (response, library) = (&mut self.session.response, &self.session.library);
-        let loaded = response.model.update(&self.project.response.model, library, wake(context));
+        let problem = response.model.update(&self.project.response.model, library, wake(context));
         let saved = response.model.poll_saving(library);
         if let Some(Ok(path)) = &saved {
             self.project.response.model = Some(path.clone());
         }
         let written = response.comparison.poll();
-        self.take_loaded(loaded);
+        self.say_problem(problem);
         self.say_of_file(saved);
         self.say_of_file(written);
         self.poll_response_training();
