@@ -186,6 +186,7 @@ impl Quantity {
 
 /// A number with four significant digits, without an exponent: as it stands in a readout.
 pub fn significant(value: f64) -> String {
+    let value = value + 0.0; // no negative zero
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
     }

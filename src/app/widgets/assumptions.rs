@@ -8,7 +8,7 @@ use crate::study::{AssumedQuantity, Assumption};
 pub fn assumptions_ui(ui: &mut Ui, assumptions: &[Assumption]) {
     for Assumption { quantity, value, reason } in assumptions {
         let text = format!("assumed: {}: {value}", quantity.label());
-        let label = egui::Label::new(RichText::new(text).weak()).wrap();
+        let label = egui::Label::new(RichText::new(text).italics()).wrap();
         ui.add(label).on_hover_text(format!("{reason}\n{}", place(*quantity)));
     }
 }

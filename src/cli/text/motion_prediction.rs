@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use crate::analysis::Spread;
 use crate::cli::console::{print_assumptions, print_facts, shown};
 use crate::study::PredictMotionReport;
-use crate::units::{Quantity, UnitSystem};
+use crate::units::{Quantity, UnitSystem, percent};
 
 /// Prints how the motion ends.
 pub(in crate::cli) fn print_motion_prediction(
@@ -23,7 +23,6 @@ pub(in crate::cli) fn print_motion_prediction(
             shown(quantity, high, units)
         )
     };
-    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
     let when = match outcome.is_at_rest {
         true => format!("at rest after {:.2} s", outcome.time_s),
         false => format!("after {:.2} s", outcome.time_s),
