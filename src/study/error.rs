@@ -197,7 +197,10 @@ pub enum StudyError {
         name: String,
     },
     /// It is not known how the vehicles met, so that the force cannot be predicted.
-    #[error("{name}: does not say how the vehicles met, so its force cannot be predicted")]
+    #[error(
+        "{name}: does not say how the vehicles met, so its force cannot be predicted; its own force \
+         drives the motion with --given-force"
+    )]
     NoCollision {
         /// The file or case.
         name: String,
