@@ -163,6 +163,11 @@ impl Question for PredictMotionRequest {
             }
             ForceSource::File(path) => {
                 let force = given_force(path, library)?;
+                // A recorded yaw moment acts about the CG: it does not say where another force acts.
+                let has_contact = [struck.contact.x_m, struck.contact.y_m] != [0.0; 2];
+                if force.mz_n_m.is_none() && !has_contact {
+                    return Err(StudyError::NoYawMoment { path: path.clone() });
+                }
                 forecast_forces(&[force], &model, struck, &settings)
             }
             ForceSource::Predicted(choice) => {
