@@ -1,9 +1,10 @@
-//! Bands of the force over time.
+//! Central bands of the force over time.
 //!
-//! `F_x` and `F_y`: quantiles of the exact mixture of normals at each instant, to 1e-7 of the
-//! probability. `|F|`: each component's pair (F_x, F_y) is spread over points of a spiral that
-//! covers the plane normal distribution evenly, and the quantile taken from some 400 of them; no
-//! random numbers, about half a percent of the probability.
+//! For `F_x` and `F_y` the edges are quantiles of the exact normal mixture at each instant, to 1e-7
+//! of the probability. For `|F|` the pair (F_x, F_y) of each component is represented by points on
+//! a spiral that covers the bivariate normal distribution evenly, some 400 points for all
+//! components; the quantiles of these points are correct to about half a percent of the
+//! probability. No random numbers are used.
 
 use serde::Serialize;
 
@@ -11,35 +12,35 @@ use crate::uncertainty::magnitude::magnitude_quantiles;
 use crate::uncertainty::quantiles::QuantileSolver;
 use crate::uncertainty::{CurveComponent, CurveMixture, MixtureError};
 
-/// A central band over the instants.
+/// A central band over the instants of the time grid.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CurveBand {
-    /// Share that it holds at each instant, 0 to 1.
+    /// Probability that the force lies inside the band at an instant, 0 to 1.
     pub level: f64,
-    /// Its lower edge, N.
+    /// Lower edge at each instant, N.
     pub lower_n: Vec<f64>,
-    /// Its upper edge, N.
+    /// Upper edge at each instant, N.
     pub upper_n: Vec<f64>,
 }
 
-/// Bands of a force, one a level, in the order that was asked for.
+/// Bands of a force, one for each level in the order in which the levels were given.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CurveBands {
-    /// Of F_x.
+    /// Bands of the force along x.
     pub fx: Vec<CurveBand>,
-    /// Of F_y.
+    /// Bands of the force along y.
     pub fy: Vec<CurveBand>,
-    /// Of `|F|`.
+    /// Bands of the magnitude `|F|`.
     pub magnitude: Vec<CurveBand>,
 }
 
 impl CurveMixture {
     /// Central bands of F_x, F_y and `|F|` at every instant.
     ///
-    /// - `levels`: share that each holds, between 0 and 1.
+    /// - `levels`: probability that each band holds, strictly between 0 and 1.
     ///
     /// # Errors
-    /// [`MixtureError::Level`].
+    /// [`MixtureError::Level`] for a level outside this range.
     pub fn bands(&self, levels: &[f64]) -> Result<CurveBands, MixtureError> {
         if let Some(&level) = levels.iter().find(|level| !(0.0 < **level && **level < 1.0)) {
             return Err(MixtureError::Level { level });
@@ -68,14 +69,14 @@ impl CurveMixture {
     }
 }
 
-/// Moments of each force under each component.
+/// Means, standard deviations and covariances of the forces under each component.
 pub(super) struct Marginals {
     pub n_instants: usize,
     pub weights: Vec<f64>,
-    /// `[component][value]`, forces only.
+    /// Mean forces, N, `[component][value]`, F_x at all instants followed by F_y.
     pub means: Vec<Vec<f64>>,
     pub stds: Vec<Vec<f64>>,
-    /// Covariance of F_x and F_y, `[component][instant]`.
+    /// Covariance of F_x and F_y, N², `[component][instant]`.
     pub covariances: Vec<Vec<f64>>,
 }
 

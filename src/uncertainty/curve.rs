@@ -1,29 +1,32 @@
-//! A contact force over a fixed time grid: what the force models predict.
+//! The force curve that the force models predict: a contact force on a fixed time grid.
 
 use serde::{Deserialize, Serialize};
 
 use crate::data::{ForceAxes, ForceHistory, Sampling};
 
-/// Width of the intervals of the time grid, s. A value of a curve is the mean force over one.
+/// Width of the intervals of the time grid, s. Each value of a curve is the mean force over an
+/// interval.
 pub const CURVE_INTERVAL_S: f64 = 1e-3;
 
-/// Intervals of the time grid: 0 to 0.25 s, about twice the median contact of the shipped runs.
+/// Number of intervals of the time grid: 0 to 0.25 s, about twice the median contact duration of
+/// the shipped runs.
 pub const CURVE_N_INSTANTS: usize = 250;
 
-/// Force ON the target as means over [`CURVE_INTERVAL_S`], interval i around `(i + ½)` intervals
-/// from the start, and how long the contact lasts.
+/// Contact force on the target, as means over intervals of [`CURVE_INTERVAL_S`], and the duration
+/// of the contact. Interval i is centred at `(i + ½)` intervals after the first contact.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ForceCurve {
-    /// Along x, N.
+    /// Force along x, N, one value for each interval.
     pub fx_n: Vec<f64>,
-    /// Along y, N; as long as `fx_n`.
+    /// Force along y, N; as many values as `fx_n`.
     pub fy_n: Vec<f64>,
-    /// From first touch to last separation, s.
+    /// Time from first contact to final separation, s.
     pub duration_s: f64,
 }
 
 impl ForceCurve {
-    /// The curve in a row `[F_x(t₁) … F_x(t_T), F_y(t₁) … F_y(t_T), duration]`.
+    /// The curve whose values are the row `[F_x(t₁) … F_x(t_T), F_y(t₁) … F_y(t_T), duration]` of
+    /// 2T + 1 values. A duration that is missing is zero.
     pub fn from_values(values: &[f64]) -> Self {
         let n_instants = values.len().saturating_sub(1) / 2;
         let (fx, rest) = values.split_at(n_instants);
@@ -35,33 +38,33 @@ impl ForceCurve {
         }
     }
 
-    /// The row that [`ForceCurve::from_values`] takes.
+    /// The row of 2T + 1 values that [`ForceCurve::from_values`] takes.
     pub fn to_values(&self) -> Vec<f64> {
         let forces = self.fx_n.iter().chain(&self.fy_n).copied();
         forces.chain([self.duration_s]).collect()
     }
 
-    /// Intervals of its time grid.
+    /// Number of intervals of the curve's time grid.
     pub fn n_instants(&self) -> usize {
         self.fx_n.len()
     }
 
-    /// Middle of each interval, s.
+    /// Time of the middle of each interval, s.
     pub fn time_s(&self) -> Vec<f64> {
         (0..self.n_instants()).map(instant_s).collect()
     }
 
-    /// `|F|` at each instant, N.
+    /// Magnitude `|F|` in each interval, N.
     pub fn magnitude_n(&self) -> Vec<f64> {
         self.fx_n.iter().zip(&self.fy_n).map(|(x, y)| x.hypot(*y)).collect()
     }
 
-    /// Impulse `∫ F dt` over the grid, N s.
+    /// Impulse `∫ F dt` over the grid as `[P_x, P_y]`, N s.
     pub fn impulse_n_s(&self) -> [f64; 2] {
         [&self.fx_n, &self.fy_n].map(|force| force.iter().sum::<f64>() * CURVE_INTERVAL_S)
     }
 
-    /// Largest `|F|`, N, and its time, s; zeros for an empty curve.
+    /// Largest `|F|`, N, and the time at which it occurs, s; both are zero for an empty curve.
     pub fn peak(&self) -> (f64, f64) {
         let squares = self.fx_n.iter().zip(&self.fy_n).map(|(x, y)| x * x + y * y);
         let largest = squares
@@ -70,13 +73,14 @@ impl ForceCurve {
         if self.fx_n.is_empty() { (0.0, 0.0) } else { (largest.1.sqrt(), instant_s(largest.0)) }
     }
 
-    /// The mirror image left to right: `F_y` changes its sign.
+    /// The curve of the collision mirrored left to right: `F_y` changes its sign.
     #[must_use]
     pub fn mirrored(&self) -> Self {
         Self { fy_n: self.fy_n.iter().map(|f| -f).collect(), ..self.clone() }
     }
 
-    /// As a force history in world axes.
+    /// The curve as a force history whose axes are called world axes, with samples that are means
+    /// over the interval around their time. There is no yaw moment.
     pub fn to_history(&self) -> ForceHistory {
         ForceHistory {
             axes: ForceAxes::World,
@@ -89,6 +93,7 @@ impl ForceCurve {
     }
 }
 
+/// Time of the middle of an interval, s.
 fn instant_s(idx: usize) -> f64 {
     (idx as f64 + 0.5) * CURVE_INTERVAL_S
 }

@@ -1,7 +1,9 @@
-//! Log density of a whole curve without forming its covariance: a low-rank update of a diagonal
-//! matrix (Woodbury's identity and the matrix determinant lemma).
+//! Logarithm of the probability density of a whole force curve. The covariance of a component is a
+//! low-rank update of a matrix that is cheap to invert, so that the density follows from Woodbury's
+//! identity and the matrix determinant lemma, without forming the full covariance.
 //!
-//! Source: [`GolubVanLoan2013`](crate::bibliography::GolubVanLoan2013), section 2.1.4.
+//! Source: [`GolubVanLoan2013`](crate::bibliography::GolubVanLoan2013), section 2.1.4. Checked
+//! against the density by the full covariance matrix.
 
 use std::f64::consts::TAU;
 
@@ -10,14 +12,16 @@ use nalgebra::{DMatrix, DVector};
 use crate::uncertainty::{CurveComponent, CurveMixture, ForceCurve, MixtureError};
 
 impl CurveMixture {
-    /// Natural logarithm of the density of a curve and its duration, forces in N, duration in s.
+    /// Natural logarithm of the joint density of the forces (N) and the duration (s) of a curve.
     ///
     /// ```text
     /// ln p(y) = ln Σ_k π_k N(y; m_k, U_k U_kᵀ + √D_k R_k √D_k)
     /// ```
     ///
+    /// - `curve`: has as many instants as the mixture.
+    ///
     /// # Errors
-    /// [`MixtureError::Shape`] for a curve over another grid.
+    /// [`MixtureError::Shape`] for a curve with another number of instants.
     pub fn log_density(&self, curve: &ForceCurve) -> Result<f64, MixtureError> {
         let values = curve.to_values();
         let mut logs = Vec::with_capacity(self.components().len());
@@ -34,7 +38,7 @@ impl CurveMixture {
 }
 
 impl CurveComponent {
-    /// Log density of a row of values, without the component's weight.
+    /// Natural logarithm of the component's density at a row of 2T + 1 values, without its weight.
     ///
     /// ```text
     /// z, W: y − m and U, whitened     A = I + Wᵀ W = L Lᵀ     b = Wᵀ z
@@ -56,7 +60,8 @@ impl CurveComponent {
         let n_steps = 2 * (values.len() / 2).saturating_sub(1);
         let log_own: f64 = self.variance.iter().map(|d| d.ln()).sum::<f64>()
             + n_steps as f64 * (1.0 - self.lag_correlation.powi(2)).ln();
-        // `inner` is the identity plus a Gram matrix, so positive definite for finite factors.
+        // `inner` is the identity plus a Gram matrix, which is positive definite for finite
+        // factors.
         let Some(cholesky) = inner.cholesky() else { return f64::NAN };
         let explained = cholesky.solve(&projected).dot(&projected);
         let log_determinant = log_own + 2.0 * cholesky.l_dirty().diagonal().map(f64::ln).sum();
@@ -70,7 +75,7 @@ mod tests {
     use super::*;
     use crate::uncertainty::mixture::tests::{covariance, example};
 
-    /// The density by the covariance in full.
+    /// Log density of a row of values by the full covariance matrix.
     fn dense_log_density(mixture: &CurveMixture, values: &[f64]) -> f64 {
         let density = |component: &CurveComponent| {
             let covariance = covariance(component);

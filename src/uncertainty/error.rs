@@ -1,72 +1,78 @@
-//! What is no distribution.
+//! Errors of invalid mixtures of distributions.
 
-/// Numbers that make no mixture.
+/// Reason for which numbers do not define a mixture, or for which a mixture cannot answer a
+/// question.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MixtureError {
-    /// No components.
+    /// The mixture has no components.
     #[error("a mixture of no components")]
     Empty,
-    /// A weight below zero or not finite.
+    /// A weight is negative or not finite.
     #[error("weight of component {component} is {weight}, expected 0 or more")]
     Weight {
-        /// Index of the component.
+        /// Index of the component, from 0.
         component: usize,
-        /// Its weight.
+        /// Weight of the component.
         weight: f64,
     },
-    /// Weights that sum to zero.
+    /// All weights are zero.
     #[error("the weights sum to zero")]
     NoWeight,
-    /// A mean, a row of factors or a variance is missing or too many.
+    /// The mean, the factors, the variances or a curve do not have the number of values that the
+    /// mixture requires.
     #[error("component {component}: {what} has {got} values, expected {expected}")]
     Shape {
-        /// Index of the component.
+        /// Index of the component, from 0.
         component: usize,
-        /// Which of its fields.
+        /// Name of the quantity that has the wrong length.
         what: &'static str,
-        /// Values needed.
+        /// Number of values required.
         expected: usize,
-        /// Values there.
+        /// Number of values found.
         got: usize,
     },
-    /// A variance that is not a positive number.
+    /// A variance is not a positive finite number.
     #[error(
         "component {component}: variance of value {value_idx} is {variance}, expected more than 0"
     )]
     Variance {
-        /// Index of the component.
+        /// Index of the component, from 0.
         component: usize,
-        /// Index of the value.
+        /// Index of the value within the row.
         value_idx: usize,
-        /// Its variance.
+        /// Variance of the value.
         variance: f64,
     },
-    /// A correlation of neighbouring instants that is none.
+    /// The correlation of neighbouring instants is outside `0 ≤ φ < 1`.
     #[error("component {component}: correlation of neighbours is {value}, expected 0 to below 1")]
     LagCorrelation {
-        /// Index of the component.
+        /// Index of the component, from 0.
         component: usize,
-        /// Its correlation.
+        /// Correlation of the component.
         value: f64,
     },
-    /// A mean or a factor that is not finite.
+    /// A mean or a factor is not finite.
     #[error("component {component}: {what} holds a number that is not finite")]
     NotFinite {
-        /// Index of the component.
+        /// Index of the component, from 0.
         component: usize,
-        /// Which of its fields.
+        /// Name of the field that holds the value.
         what: &'static str,
     },
-    /// A band that is none.
+    /// The level of a band is not strictly between 0 and 1.
     #[error("level of a band is {level}, expected between 0 and 1")]
     Level {
-        /// The level.
+        /// Level that was asked for.
         level: f64,
     },
 }
 
 impl MixtureError {
-    /// The sum of weights, if they are fit for a mixture.
+    /// Checks weights and returns their sum.
+    ///
+    /// # Errors
+    /// [`MixtureError::Weight`] for a weight that is negative or not finite,
+    /// [`MixtureError::Empty`] without weights, [`MixtureError::NoWeight`] if they sum to zero.
     pub(crate) fn check_weights(weights: &[f64]) -> Result<f64, Self> {
         for (component, &weight) in weights.iter().enumerate() {
             if !(weight >= 0.0 && weight.is_finite()) {

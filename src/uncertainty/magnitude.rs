@@ -1,16 +1,21 @@
-//! Quantiles of the size of a force whose components are mixtures of normals.
+//! Quantiles of the magnitude `|F|` of a force whose components F_x and F_y follow mixtures of
+//! bivariate normal distributions. Each distribution is represented by points on a spiral instead
+//! of random draws; their weighted histogram gives the quantiles.
 
 use std::f64::consts::TAU;
 
 use crate::uncertainty::bands::Marginals;
 
-/// Points for `|F|` over all components, and the fewest for one.
+/// Number of points that all components share in proportion to their weights, and smallest number
+/// of points of one component.
 const SPIRAL_POINTS: (f64, usize) = (400.0, 8);
 
-/// Cells of the distribution of `|F|` at an instant.
+/// Number of cells of the histogram of `|F|` at an instant.
 const N_CELLS: usize = 512;
 
-/// `[probability][instant]` of `|F|`.
+/// Quantiles of `|F|`, N, `[probability][instant]`.
+///
+/// - `probabilities`: between 0 and 1.
 pub(super) fn magnitude_quantiles(marginals: &Marginals, probabilities: &[f64]) -> Vec<Vec<f64>> {
     let n = marginals.n_instants;
     let spirals: Vec<Vec<[f64; 2]>> = marginals.weights.iter().map(|&w| spiral(w)).collect();
@@ -22,7 +27,7 @@ pub(super) fn magnitude_quantiles(marginals: &Marginals, probabilities: &[f64]) 
         for (k, spiral) in spirals.iter().enumerate() {
             let (means, stds) = (&marginals.means[k], &marginals.stds[k]);
             let (mean_x, mean_y, std_x) = (means[i], means[n + i], stds[i]);
-            // Cholesky factor of the covariance of (F_x, F_y).
+            // Lower Cholesky factor of the covariance of (F_x, F_y): [[std_x, 0], [shared, own]].
             let shared = marginals.covariances[k][i] / std_x;
             let own = (stds[n + i].powi(2) - shared * shared).max(0.0).sqrt();
             magnitudes.extend(spiral.iter().map(|[a, b]| {
@@ -31,7 +36,7 @@ pub(super) fn magnitude_quantiles(marginals: &Marginals, probabilities: &[f64]) 
             }));
         }
         let largest = magnitudes.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        // A hair below one, so that the largest falls into the last cell.
+        // The factor slightly below one keeps the largest value inside the last cell.
         let per_n = N_CELLS as f64 * (1.0 - 1e-12) / largest;
         cells.fill(0.0);
         let mut drawn = magnitudes.iter();
@@ -48,7 +53,7 @@ pub(super) fn magnitude_quantiles(marginals: &Marginals, probabilities: &[f64]) 
     rows
 }
 
-/// Position in cells of a quantile, evenly spread inside each.
+/// Position of a quantile in units of cells, with the share of each cell spread uniformly over it.
 fn cell_quantile(cells: &[f64], probability: f64) -> f64 {
     let mut left = probability;
     for (idx, &share) in cells.iter().enumerate() {
@@ -60,8 +65,11 @@ fn cell_quantile(cells: &[f64], probability: f64) -> f64 {
     cells.len() as f64
 }
 
-/// Points that cover the standard normal distribution of the plane evenly, with mean squares of
-/// one: radii at equal steps of probability, each a golden angle further round.
+/// Points that cover the bivariate standard normal distribution evenly: the radii are at equal
+/// steps of probability, and each point is rotated by the golden angle from the one before. They
+/// are scaled so that the mean square of the radius is exactly 2, as in the distribution.
+///
+/// - `weight`: weight of the component, which determines the number of points.
 fn spiral(weight: f64) -> Vec<[f64; 2]> {
     let (of_all, fewest) = SPIRAL_POINTS;
     let n = ((of_all * weight).round() as usize).max(fewest);

@@ -1,4 +1,5 @@
-//! Distribution of a whole force curve and its duration.
+//! Probability distribution of a whole force curve and its duration: a mixture of multivariate
+//! normal distributions with structured covariances.
 //!
 //! ```text
 //! y = [F_x(t₁) … F_x(t_T), F_y(t₁) … F_y(t_T), duration]
@@ -6,13 +7,16 @@
 //! R_k[i, j] = φ_k^|i − j| within F_x and within F_y, else δ_ij
 //! ```
 //!
-//! The component is chosen once per curve and its few latent factors `U_k` act on all instants, so
-//! the spread of a curve does not average out in its impulse as independent draws at each instant
-//! would. What is left to single instants has a memory of a few of them (φ, a first-order autoregressive
-//! process: φ = 0 is a diagonal): ripple of a structure is no white noise, and white noise of the
-//! same size makes drawn peaks too high. The paper's mixture
-//! ([`PitPinnPaper`](crate::bibliography::PitPinnPaper), `eq:gmmfunction`) has its deviations on
-//! the diagonal of each covariance.
+//! A component k holds for a whole curve, and its few latent factors, the columns of `U_k`, act on
+//! all instants. The spread of the curves therefore does not average out in the impulse, as it
+//! would with independent draws at each instant.
+//!
+//! The residual that the factors do not explain is a first-order autoregressive process along each
+//! axis: residuals of neighbouring instants have the correlation φ, and φ = 0 gives a diagonal
+//! covariance. The force oscillations of a structure are correlated over a few instants; white
+//! noise of the same size would make the peaks of drawn curves too high. The paper's mixture
+//! ([`PitPinnPaper`](crate::bibliography::PitPinnPaper), `eq:gmmfunction`) has diagonal
+//! covariances.
 //!
 //! Left out: bounds. A duration or a force drawn far from its mean may have the wrong sign.
 
@@ -20,33 +24,39 @@ use nalgebra::DMatrix;
 
 use crate::uncertainty::{CURVE_INTERVAL_S, ForceCurve, MixtureError, NormalMixture, NormalPart};
 
-/// One component of a [`CurveMixture`]; with T instants a row has 2T + 1 values, forces in N, the
-/// duration in s.
+/// One component of a [`CurveMixture`]. With T instants a row has 2T + 1 values: forces in N, then
+/// the duration in s.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurveComponent {
-    /// Share π of the mixture, 0 to 1.
+    /// Weight π of the component in the mixture, 0 to 1.
     pub weight: f64,
-    /// Mean curve, `[2T + 1]`.
+    /// Mean curve m, `[2T + 1]`.
     pub mean: Vec<f64>,
-    /// Latent factors U, `[2T + 1, q]`, a column each: what one standard deviation of a factor adds.
+    /// Latent factors U, `[2T + 1, q]`: each column is the change of the curve by one standard
+    /// deviation of a factor.
     pub factors: DMatrix<f64>,
-    /// Variance d of what the factors leave in each value, `[2T + 1]`, positive.
+    /// Variance d of the residual that the factors do not explain, for each value, `[2T + 1]`,
+    /// positive.
     pub variance: Vec<f64>,
-    /// φ: correlation of what they leave in neighbouring instants, 0 to below 1.
+    /// Correlation φ of the residuals of neighbouring instants, `0 ≤ φ < 1`.
     pub lag_correlation: f64,
 }
 
-/// A mixture of [`CurveComponent`]s: weights that sum to one, equal shapes, positive variances.
+/// A mixture of [`CurveComponent`]s whose weights sum to one, whose shapes are equal and whose
+/// variances are positive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CurveMixture {
     components: Vec<CurveComponent>,
 }
 
 impl CurveMixture {
-    /// A mixture of these components; the weights are scaled to sum to one.
+    /// Makes a mixture of components and scales their weights to sum to one.
     ///
     /// # Errors
-    /// [`MixtureError`] names the first component that does not fit.
+    /// [`MixtureError::Empty`], [`MixtureError::Weight`] or [`MixtureError::NoWeight`] for the
+    /// weights; [`MixtureError::Shape`], [`MixtureError::NotFinite`],
+    /// [`MixtureError::LagCorrelation`] or [`MixtureError::Variance`] for the first component that
+    /// is not valid.
     pub fn new(mut components: Vec<CurveComponent>) -> Result<Self, MixtureError> {
         let weights: Vec<f64> = components.iter().map(|component| component.weight).collect();
         let sum = MixtureError::check_weights(&weights)?;
@@ -58,12 +68,14 @@ impl CurveMixture {
         Ok(Self { components })
     }
 
-    /// One mixture of several, e.g. of an ensemble or over values of an unknown input.
+    /// Merges several mixtures into one, for example those of an ensemble, or those for several
+    /// values of an unknown input.
     ///
-    /// - `weighted`: share of each, 0 or more; scaled to sum to one.
+    /// - `weighted`: weight (0 or more; scaled to sum to one) and mixture.
     ///
     /// # Errors
-    /// [`MixtureError`] for weights that are none or mixtures over different grids.
+    /// [`MixtureError::Empty`], [`MixtureError::Weight`] or [`MixtureError::NoWeight`] for the
+    /// weights, [`MixtureError::Shape`] for mixtures over different grids.
     pub fn merge(weighted: Vec<(f64, Self)>) -> Result<Self, MixtureError> {
         let weights: Vec<f64> = weighted.iter().map(|(weight, _)| *weight).collect();
         MixtureError::check_weights(&weights)?;
@@ -77,23 +89,24 @@ impl CurveMixture {
         Self::new(components.collect())
     }
 
-    /// The mixture with each component changed in place; shapes and weights must stay.
+    /// Changes each component in place. The result is not checked: `change` must keep shapes and
+    /// weights and leave values that are valid.
     pub(crate) fn map_components(mut self, change: impl Fn(&mut CurveComponent)) -> Self {
         self.components.iter_mut().for_each(change);
         self
     }
 
-    /// Its components.
+    /// The components of the mixture.
     pub fn components(&self) -> &[CurveComponent] {
         &self.components
     }
 
-    /// Instants T of the time grid.
+    /// Number of instants T of the time grid.
     pub fn n_instants(&self) -> usize {
         self.components.first().map_or(0, |first| first.mean.len() / 2)
     }
 
-    /// Mean curve and mean duration.
+    /// Mean curve and mean duration of the mixture.
     pub fn mean(&self) -> ForceCurve {
         let mut mean = vec![0.0; 2 * self.n_instants() + 1];
         for component in &self.components {
@@ -104,7 +117,8 @@ impl CurveMixture {
         ForceCurve::from_values(&mean)
     }
 
-    /// Standard deviation of each force and of the duration: within the components and between.
+    /// Standard deviation of each force and of the duration, from the spread within the components
+    /// and between them.
     pub fn std(&self) -> ForceCurve {
         let mean = self.mean().to_values();
         let mut variance = vec![0.0; mean.len()];
@@ -119,7 +133,7 @@ impl CurveMixture {
         ForceCurve::from_values(&std)
     }
 
-    /// Mirror image left to right: `F_y` changes its sign.
+    /// The distribution for the collision mirrored left to right: `F_y` changes its sign.
     #[must_use]
     pub fn mirrored(mut self) -> Self {
         let n_instants = self.n_instants();
@@ -132,8 +146,8 @@ impl CurveMixture {
         self
     }
 
-    /// Distribution of one value of the row: F_x at instant i for `i`, F_y for `T + i`, the
-    /// duration for `2T`. `None` past the end.
+    /// Marginal distribution of one value of the row: F_x at instant i for index i, F_y for T + i,
+    /// the duration for 2T. `None` for an index beyond the row.
     pub fn value(&self, value_idx: usize) -> Option<NormalMixture> {
         let part = |component: &CurveComponent| {
             let row = component.factors.row_iter().nth(value_idx)?;
@@ -145,13 +159,13 @@ impl CurveMixture {
         Some(NormalMixture::from_checked(parts?))
     }
 
-    /// Distribution of the duration, s.
+    /// Distribution of the contact duration, s.
     pub fn duration_s(&self) -> NormalMixture {
         self.linear(&|value_idx| if value_idx == 2 * self.n_instants() { 1.0 } else { 0.0 })
     }
 
-    /// Distribution of the impulse along x (`axis` 0) or y (1), N s: exact, as the impulse is a
-    /// weighted sum of forces.
+    /// Distribution of the impulse along x (`axis` 0) or y (`axis` 1), N s. It is exact, because
+    /// the impulse is a weighted sum of the forces.
     pub fn impulse(&self, axis: usize) -> NormalMixture {
         let n_instants = self.n_instants();
         self.linear(&|value_idx| match value_idx.checked_sub(axis * n_instants) {
@@ -160,11 +174,13 @@ impl CurveMixture {
         })
     }
 
-    /// Distribution of `Σ_i c_i y_i`, exact.
+    /// Exact distribution of the linear combination `Σ_i c_i y_i` of the values of a row.
     ///
     /// ```text
     /// Σ_k π_k N(cᵀ m_k, |U_kᵀ c|² + cᵀ √D_k R_k √D_k c)
     /// ```
+    ///
+    /// - `coefficient`: gives c_i for the index i of a value, 0 to 2T.
     pub fn linear(&self, coefficient: &dyn Fn(usize) -> f64) -> NormalMixture {
         let part = |component: &CurveComponent| {
             let c: Vec<f64> = (0..component.mean.len()).map(coefficient).collect();
@@ -185,7 +201,8 @@ impl CurveMixture {
 }
 
 impl CurveComponent {
-    /// Variance of each value: that of the factors and its own.
+    /// Variance of each value, `[2T + 1]`: the sum of the squared factors and the residual
+    /// variance.
     pub(crate) fn total_variance(&self) -> Vec<f64> {
         let mut variance = self.variance.clone();
         for column in self.factors.column_iter() {
@@ -196,7 +213,8 @@ impl CurveComponent {
         variance
     }
 
-    /// cᵀ √D R √D c, in one pass per axis.
+    /// Variance `cᵀ √D R √D c` of the residual's part of `Σ_i c_i y_i`, computed in one pass along
+    /// each axis.
     fn own_variance_of(&self, c: &[f64]) -> f64 {
         let scaled: Vec<f64> = self.variance.iter().zip(c).map(|(d, c)| c * d.sqrt()).collect();
         let n_instants = scaled.len() / 2;
@@ -211,7 +229,7 @@ impl CurveComponent {
         scaled.chunks(n_instants.max(1)).map(of_axis).sum()
     }
 
-    /// What has the identity for covariance where a row has √D R √D.
+    /// Whitens a row: if its covariance is √D R √D, the covariance of the result is the identity.
     ///
     /// ```text
     /// z_i = (x_i/√d_i − φ x_(i−1)/√d_(i−1)) / √(1 − φ²)      z = x/√d at the first of an axis
@@ -228,6 +246,10 @@ impl CurveComponent {
         z
     }
 
+    /// Checks the shapes and values of a component.
+    ///
+    /// - `component`: its index, for error messages.
+    /// - `expected`: number of values of a row, 2T + 1.
     fn check(&self, component: usize, expected: usize) -> Result<(), MixtureError> {
         for (what, got) in [
             ("mean", self.mean.len()),
@@ -262,7 +284,7 @@ impl CurveComponent {
 pub(crate) mod tests {
     use super::*;
 
-    /// A smooth mixture over `n_instants` with two factors and different components.
+    /// Mixture of smooth curves over `n_instants`, with two factors and components that differ.
     pub(crate) fn example(n_components: usize, n_instants: usize) -> CurveMixture {
         let component = |k: usize| {
             let (k, n) = (k as f64, n_instants as f64);
@@ -283,7 +305,7 @@ pub(crate) mod tests {
         CurveMixture::new((0..n_components).map(component).collect()).unwrap()
     }
 
-    /// The covariance in full.
+    /// Full covariance matrix of a component, `[2T + 1, 2T + 1]`.
     pub(crate) fn covariance(component: &CurveComponent) -> DMatrix<f64> {
         let (n, d) = (component.mean.len(), &component.variance);
         let own = DMatrix::from_fn(n, n, |i, j| {

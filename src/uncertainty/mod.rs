@@ -1,4 +1,6 @@
-//! How sure a prediction is: distributions of whole force curves.
+//! Probability distributions of predictions: mixtures of normal distributions over whole force
+//! curves, over scalars and over positions in the plane, with their densities, draws, quantiles and
+//! scores; and the unscented transform.
 //!
 //! ```
 //! use impactlab::uncertainty::{CurveComponent, CurveMixture};

@@ -1,36 +1,41 @@
-//! Mixture of normal distributions of one quantity.
+//! Mixture of normal distributions of a scalar: moments, density, quantiles and continuous ranked
+//! probability score (CRPS).
 //!
-//! Source of the score: [`Grimit2006`](crate::bibliography::Grimit2006).
+//! Source of the score: [`Grimit2006`](crate::bibliography::Grimit2006). Checked against the
+//! numerical integral that defines the score.
 
 use crate::numerics::{normal_cdf, normal_density, normal_quantile};
 use crate::uncertainty::MixtureError;
 
-/// Steps that a quantile may take: bisection alone would need 60 to the last bit.
+/// Largest number of steps of the search for a quantile. Bisection alone would need 60 for the last
+/// bit.
 const MAX_STEPS: usize = 100;
 
 /// One normal distribution of a mixture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NormalPart {
-    /// Share, 0 to 1.
+    /// Weight in the mixture, 0 to 1.
     pub weight: f64,
-    /// Mean.
+    /// Mean, in the unit of the quantity.
     pub mean: f64,
-    /// Standard deviation, positive.
+    /// Standard deviation, positive, in the unit of the quantity.
     pub std: f64,
 }
 
-/// `Σ_k w_k N(m_k, s_k²)` with weights that sum to one and positive deviations.
+/// The distribution `Σ_k w_k N(m_k, s_k²)`, whose weights sum to one and whose standard deviations
+/// are positive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NormalMixture {
     parts: Vec<NormalPart>,
 }
 
 impl NormalMixture {
-    /// A mixture of these; the weights are scaled to sum to one.
+    /// Makes a mixture of normal distributions and scales their weights to sum to one.
     ///
     /// # Errors
-    /// [`MixtureError`] for no part, a weight below zero, weights that sum to nothing, or a
-    /// deviation that is not positive.
+    /// [`MixtureError::Empty`], [`MixtureError::Weight`] or [`MixtureError::NoWeight`] for the
+    /// weights, [`MixtureError::Variance`] for a mean that is not finite or a standard deviation
+    /// that is not a positive finite number.
     pub fn new(mut parts: Vec<NormalPart>) -> Result<Self, MixtureError> {
         let weights: Vec<f64> = parts.iter().map(|part| part.weight).collect();
         let sum = MixtureError::check_weights(&weights)?;
@@ -44,40 +49,42 @@ impl NormalMixture {
         Ok(Self { parts })
     }
 
-    /// For parts that a checked mixture gives.
+    /// Makes a mixture of parts that come from a mixture that was checked already.
     pub(crate) fn from_checked(parts: Vec<NormalPart>) -> Self {
         Self { parts }
     }
 
-    /// Its normal distributions.
+    /// The normal distributions of the mixture.
     pub fn parts(&self) -> &[NormalPart] {
         &self.parts
     }
 
-    /// Mean.
+    /// Mean of the mixture.
     pub fn mean(&self) -> f64 {
         self.sum(|part| part.mean)
     }
 
-    /// Standard deviation: within the parts and between them.
+    /// Standard deviation of the mixture, from the spread within the parts and between them.
     pub fn std(&self) -> f64 {
         let mean = self.mean();
         self.sum(|part| part.std.powi(2) + (part.mean - mean).powi(2)).sqrt()
     }
 
-    /// Density at a value.
+    /// Probability density at a value, in the inverse of the quantity's unit.
     pub fn density(&self, value: f64) -> f64 {
         self.sum(|part| normal_density((value - part.mean) / part.std) / part.std)
     }
 
-    /// Probability of a value up to this one.
+    /// Cumulative distribution function: the probability of a value up to this one.
     pub fn cdf(&self, value: f64) -> f64 {
         self.sum(|part| normal_cdf((value - part.mean) / part.std))
     }
 
-    /// The value with this probability below it, 0 to 1 without the ends, to 1e-12 of the
-    /// probability. It lies between the smallest and the largest quantile of the parts; Newton's
-    /// method, kept inside by bisection.
+    /// The value below which the quantity lies with a given probability, to 1e-12 of the
+    /// probability. The value lies between the smallest and the largest quantile of the parts, and
+    /// is found by Newton's method, which bisection keeps between these bounds.
+    ///
+    /// - `probability`: strictly between 0 and 1.
     pub fn quantile(&self, probability: f64) -> f64 {
         let z = normal_quantile(probability);
         let ends = self.parts.iter().map(|part| part.mean + z * part.std);
@@ -102,12 +109,14 @@ impl NormalMixture {
         value
     }
 
-    /// The central interval that holds this share, 0 to 1.
+    /// Central interval `[low, high]` that holds the quantity with probability `level`, 0 to below
+    /// 1.
     pub fn interval(&self, level: f64) -> [f64; 2] {
         [self.quantile((1.0 - level) / 2.0), self.quantile((1.0 + level) / 2.0)]
     }
 
-    /// Continuous ranked probability score of an observed value; smaller is better, same unit.
+    /// Continuous ranked probability score for an observed value, in the unit of the quantity;
+    /// smaller is better.
     ///
     /// ```text
     /// CRPS = Σ_k w_k A(y − m_k, s_k²) − ½ Σ_j Σ_k w_j w_k A(m_j − m_k, s_j² + s_k²)
@@ -121,12 +130,13 @@ impl NormalMixture {
         to_observed - among / 2.0
     }
 
+    /// Weighted sum of a quantity over the parts.
     fn sum(&self, of: impl Fn(&NormalPart) -> f64) -> f64 {
         self.parts.iter().map(|part| part.weight * of(part)).sum()
     }
 }
 
-/// Mean of `|X|` for a normal X.
+/// Expected value of `|X|` for a normally distributed X, A(m, s²) in [`NormalMixture::crps`].
 fn mean_distance(mean: f64, std: f64) -> f64 {
     let z = mean / std;
     2.0 * std * normal_density(z) + mean * (2.0 * normal_cdf(z) - 1.0)

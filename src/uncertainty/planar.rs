@@ -1,16 +1,16 @@
-//! Mixture of normal distributions of a position in the plane: density on a grid, and the regions in
-//! which the position lies with a given probability.
+//! Mixture of normal distributions of a position in the plane: its density, draws, and the regions
+//! of highest density that hold the position with a given probability.
 //!
 //! ```text
 //! p(x) = Σ_k w_k N(x; m_k, P_k)
 //! region of level q: {x : p(x) ≥ c_q}   with   P(p(X) ≥ c_q) = q
 //! ```
 //!
-//! Regions of highest density are the smallest of their probability, and fall apart where the
-//! distribution has several modes.
+//! A region of highest density is the smallest region of its probability. It has several separate
+//! parts where the distribution has several modes.
 //!
-//! Source: R. J. Hyndman, Computing and Graphing Highest Density Regions, The American Statistician 50
-//! (1996) 120–126.
+//! Source: R. J. Hyndman, Computing and Graphing Highest Density Regions, The American Statistician
+//! 50 (1996) 120–126.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -18,16 +18,17 @@ use rand_distr::StandardNormal;
 
 use crate::uncertainty::PlanarKernel;
 
-/// Draws behind a level of density: its probability is known to 1 %.
+/// Number of draws from which the level of a density is estimated; the standard error of the level
+/// is then about 1 %.
 const N_DRAWS: usize = 2000;
-/// Least variance relative to the larger one, and least of all, m².
+/// Smallest variance relative to the larger one of a part, and smallest absolute variance, m².
 const LEAST_RATIO: f64 = 1e-9;
 const LEAST_VARIANCE_M2: f64 = 1e-8;
 
-/// One normal distribution.
+/// One normal distribution of a planar mixture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanarPart {
-    /// Share, 0 to 1.
+    /// Weight in the mixture, 0 to 1.
     pub weight: f64,
     /// Mean [x, y], m.
     pub mean: [f64; 2],
@@ -35,15 +36,16 @@ pub struct PlanarPart {
     pub covariance: [f64; 3],
 }
 
-/// `Σ_k w_k N(m_k, P_k)`.
+/// The distribution `Σ_k w_k N(m_k, P_k)` of a position in the plane.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PlanarMixture {
     parts: Vec<PlanarPart>,
 }
 
 impl PlanarMixture {
-    /// Of parts; the weights are scaled to sum to one. A covariance that is not positive definite is
-    /// lifted to the nearest that is.
+    /// Makes a mixture of parts and scales their weights to sum to one. Where a covariance is not
+    /// positive definite, variances that are too small are raised and the size of P_xy is limited
+    /// until it is.
     pub fn new(mut parts: Vec<PlanarPart>) -> Self {
         let sum: f64 = parts.iter().map(|part| part.weight).sum();
         for part in &mut parts {
@@ -58,29 +60,29 @@ impl PlanarMixture {
         Self { parts }
     }
 
-    /// Several mixtures that are equally likely.
+    /// The mixture of several distributions, weighted equally if the weights of each sum to one.
     pub fn mixed<'a>(mixtures: impl IntoIterator<Item = &'a Self>) -> Self {
         Self::new(mixtures.into_iter().flat_map(|mixture| mixture.parts.clone()).collect())
     }
 
-    /// Its normal distributions.
+    /// The normal distributions of the mixture.
     pub fn parts(&self) -> &[PlanarPart] {
         &self.parts
     }
 
-    /// The parts as their density is computed.
+    /// The parts in the form in which their density is computed.
     pub fn kernels(&self) -> Vec<PlanarKernel> {
         self.parts.iter().map(PlanarKernel::of).collect()
     }
 
-    /// Density at a point, 1/m².
+    /// Density at a point [x, y] in m, 1/m².
     pub fn density(&self, point: [f64; 2]) -> f64 {
         self.parts.iter().map(|part| PlanarKernel::of(part).density(point)).sum()
     }
 
-    /// Draws of a position.
+    /// Draws `n` positions [x, y], m; NaN for a mixture without parts.
     ///
-    /// - `seed`: of the draws.
+    /// - `seed`: seed of the random numbers.
     pub fn sample(&self, n: usize, seed: u64) -> Vec<[f64; 2]> {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let draw = |_| {
@@ -102,15 +104,17 @@ impl PlanarMixture {
         (0..n).map(draw).collect()
     }
 
-    /// Level of the smallest region that holds a point: 0 at the highest density, 1 far away. A point
-    /// drawn from the mixture has a level that is evenly distributed.
+    /// Level of the smallest region of highest density that holds a point: 0 at the highest
+    /// density, 1 far away. The levels of points that are drawn from the mixture are distributed
+    /// uniformly. Estimated from draws with a fixed seed.
     pub fn level_of(&self, point: [f64; 2]) -> f64 {
         let (densities, at) = (self.densities_of_draws(N_DRAWS), self.density(point));
         let n_below = densities.partition_point(|density| *density < at);
         1.0 - n_below as f64 / densities.len().max(1) as f64
     }
 
-    /// Densities at `n` draws, rising, 1/m².
+    /// Densities at `n` positions drawn from the mixture with a fixed seed, in ascending order,
+    /// 1/m².
     pub fn densities_of_draws(&self, n: usize) -> Vec<f64> {
         let kernels = self.kernels();
         let density = |point: &[f64; 2]| kernels.iter().map(|kernel| kernel.density(*point)).sum();
@@ -119,7 +123,8 @@ impl PlanarMixture {
         densities
     }
 
-    /// A rectangle that holds all parts out to `reach` standard deviations, `[low, high]`, m.
+    /// The smallest rectangle `[low, high]` that holds all parts out to `reach` standard deviations
+    /// along each axis, m; `None` for a mixture without parts.
     pub fn bounds(&self, reach: f64) -> Option<[[f64; 2]; 2]> {
         let of = |part: &PlanarPart| {
             let [xx, _, yy] = part.covariance;

@@ -1,16 +1,19 @@
-//! Density of a planar mixture on a grid, row by row.
+//! Probability density of a planar mixture on a rectangular grid, computed row by row.
 //!
-//! Along a row the exponent of a part is a quadratic in the column, so its values follow from two
-//! multiplications each:
+//! Along a row the exponent of a part is a quadratic function of the column, so that each value
+//! follows from the one before by two multiplications:
 //!
 //! ```text
 //! v_i = c exp(−(a u_i² + d dy²)/2)      u_i = u_0 + i h      u = dx − k dy
 //! v_{i+n} = v_i s_i                     s_{i+n} = s_i g      g = exp(−a n² h²)
 //! ```
 //!
-//! n neighbours are computed at once. Both products start anew every [`N_BLOCKS`] blocks, before
-//! rounding reaches 1e-10 of a value. Rows are independent, and a row adds the parts up in their
-//! order: the same values for any number of threads.
+//! A block of n neighbouring columns is computed at once. After every [`N_BLOCKS`] blocks the
+//! products are started again from the exponential function, before rounding errors reach 1e-10 of
+//! a value. Rows are independent of each other, and within a row the parts are added in their
+//! order, so that the values do not depend on the number of threads.
+//!
+//! Checked against the density by the inverse of each covariance.
 
 use std::f64::consts::TAU;
 
@@ -18,41 +21,46 @@ use rayon::prelude::*;
 
 use crate::uncertainty::{PlanarMixture, PlanarPart};
 
-/// Beyond this many standard deviations a part adds nothing: e^(−8²/2) = 1e-14.
+/// Distance from the mean, in standard deviations, beyond which a part is neglected: e^(−8²/2) =
+/// 1e-14.
 const REACH: f64 = 8.0;
 
-/// Columns that are computed at once.
+/// Number n of columns that are computed at once.
 const LANES: usize = 8;
 
-/// Blocks of columns until the products start anew.
+/// Number of blocks of columns after which the products are started again.
 const N_BLOCKS: usize = 64;
 
-/// Points of a rectangle, row by row from the lowest y on.
+/// A rectangular grid of points, stored row by row from the lowest y upwards.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanarGrid {
     /// Lowest x and y of the points, m.
     pub low_m: [f64; 2],
-    /// Between neighbouring points, m.
+    /// Distance between neighbouring points along x and y, m.
     pub step_m: [f64; 2],
-    /// Points along x and y.
+    /// Number of points along x and y.
     pub size: [usize; 2],
 }
 
-/// A part as its density is computed: `c exp(−(a (dx − k dy)² + d dy²)/2)`.
+/// Weighted density of a part in the form in which it is computed:
+/// `c exp(−(a (dx − k dy)² + d dy²)/2)` at the offset (dx, dy) from the mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanarKernel {
     /// Mean [x, y], m.
     pub mean: [f64; 2],
-    /// k: how the mean of x given y moves with y.
+    /// k: change of the conditional mean of x for each metre of y.
     pub slope: f64,
-    /// [a, d]: inverse variances of x given y, and of y, 1/m².
+    /// [a, d]: inverse of the conditional variance of x given y, and inverse of the variance of y,
+    /// 1/m².
     pub precision: [f64; 2],
-    /// c: weight over 2π √det P, 1/m².
+    /// c: density at the mean, the weight divided by 2π √det P, 1/m².
     pub peak: f64,
 }
 
 impl PlanarGrid {
-    /// About a rectangle, with points on its edges.
+    /// Grid over the rectangle `[low, high]`, m, with points on its edges.
+    ///
+    /// - `size`: number of points along x and y.
     pub fn over([low_m, high_m]: [[f64; 2]; 2], size: [usize; 2]) -> Self {
         let step = |axis: usize| {
             (high_m[axis] - low_m[axis]) / (size[axis].saturating_sub(1)).max(1) as f64
@@ -67,7 +75,7 @@ impl PlanarGrid {
 }
 
 impl PlanarMixture {
-    /// Density at the points of a grid, 1/m², row by row. A part adds nothing beyond eight standard
+    /// Density at the points of a grid, 1/m², row by row. A part is neglected beyond eight standard
     /// deviations, where it is below 1e-13 of its peak.
     pub fn density_on(&self, grid: &PlanarGrid) -> Vec<f64> {
         let [n_columns, n_rows] = grid.size;
@@ -87,12 +95,13 @@ impl PlanarMixture {
 }
 
 impl PlanarKernel {
-    /// Half width and half height of the rectangle outside of which it adds nothing, m.
+    /// Half width and half height of the rectangle outside of which the part is neglected, m.
     pub fn reach_m(&self) -> [f64; 2] {
         let [x_given_y, y] = self.precision.map(f64::recip);
         [x_given_y + self.slope * self.slope * y, y].map(|variance| REACH * variance.sqrt())
     }
 
+    /// Kernel of a part.
     pub(super) fn of(part: &PlanarPart) -> Self {
         let [xx, xy, yy] = part.covariance;
         let determinant = xx * yy - xy * xy;
@@ -104,35 +113,40 @@ impl PlanarKernel {
         }
     }
 
+    /// Density at a position [x, y] in m, 1/m².
     pub(super) fn density(&self, [x, y]: [f64; 2]) -> f64 {
         let dy = y - self.mean[1];
         self.at(x - self.mean[0] - self.slope * dy, dy)
     }
 
-    /// - `u`: from the mean of x given y, m.
-    /// - `dy`: from the mean of y, m.
+    /// Density at an offset from the mean, 1/m².
+    ///
+    /// - `u`: distance of x from its conditional mean given y, m.
+    /// - `dy`: distance of y from its mean, m.
     fn at(&self, u: f64, dy: f64) -> f64 {
         let [a, d] = self.precision;
         self.peak * (-0.5 * (a * u * u + d * dy * dy)).exp()
     }
 }
 
-/// A kernel, and how its values follow each other along the rows of a grid.
+/// A kernel, with the factors by which its values follow from each other along the rows of a grid.
+/// The symbols are those of [`RowKernel::new`].
 struct RowKernel {
     kernel: PlanarKernel,
-    /// Lowest x of the row and between its points, m.
+    /// Lowest x of the row, m, and distance between its points, m.
     low_m: f64,
     step_m: f64,
-    /// v_l over v_0 r^l, where r = s_0 for neighbours (n = 1).
+    /// v_l / (v_0 r^l) for lane l, where r = v_1 / v_0 is the ratio of the first two values.
     start: [f64; LANES],
-    /// s_l over r^n.
+    /// s_l / r^n for lane l.
     ratio: [f64; LANES],
-    /// g.
+    /// g: the factor by which s changes from one block to the next.
     bend: f64,
 }
 
 impl RowKernel {
-    /// From neighbour to neighbour, the ratio of values falls by b = exp(−a h²). Hence
+    /// Computes the factors. From a point to its neighbour, the ratio of successive values falls by
+    /// the factor b = exp(−a h²). Hence
     ///
     /// ```text
     /// v_l = v_0 r^l b^(l(l−1)/2)      s_l = v_{l+n}/v_l = r^n b^(n l + n(n−1)/2)      g = b^(n²)
@@ -151,7 +165,11 @@ impl RowKernel {
         }
     }
 
-    /// - `sums`: of the row, and of `LANES` points beyond its end.
+    /// Adds the density of the part to the points of a row.
+    ///
+    /// - `y`: of the row, m.
+    /// - `sums`: the values of the row, followed by `LANES` values beyond its end that are not
+    ///   used.
     fn add_to_row(&self, y: f64, sums: &mut [f64]) {
         let dy = y - self.kernel.mean[1];
         let [a, d] = self.kernel.precision;
@@ -170,10 +188,11 @@ impl RowKernel {
         }
     }
 
-    /// At the first point the part is within its reach. So no product overflows: r^n is largest for
-    /// points eight standard deviations apart, e^256.
+    /// Adds the density of the part to consecutive blocks of a row. The first point must be within
+    /// the reach of the part. Then no product overflows: r^n is largest, e^256, for points eight
+    /// standard deviations apart.
     ///
-    /// - `u`, `dy`: of the first point, as in [`PlanarKernel::at`].
+    /// - `u`, `dy`: offset of the first point, as in [`PlanarKernel::at`].
     fn add_to_blocks(&self, u: f64, dy: f64, sums: &mut [f64]) {
         let a = self.kernel.precision[0];
         let step_ratio = (-a * self.step_m * (u + 0.5 * self.step_m)).exp();
@@ -204,7 +223,7 @@ impl RowKernel {
 mod tests {
     use super::*;
 
-    /// Σ w N by the inverse of the covariance, 1/m².
+    /// Density by the inverse of each covariance, Σ w N, 1/m².
     fn plain(mixture: &PlanarMixture, [x, y]: [f64; 2]) -> f64 {
         let density = |part: &PlanarPart| {
             let [xx, xy, yy] = part.covariance;

@@ -1,5 +1,6 @@
-//! Quantiles of mixtures of normals at many instants, fast: a table of the normal distribution and
-//! Halley's method from the instant before.
+//! Fast computation of quantiles of normal mixtures at many successive instants. The normal
+//! distribution is interpolated in a table, and Halley's method starts from an extrapolation of the
+//! quantiles at the two instants before.
 
 use std::f64::consts::SQRT_2;
 use std::ops::Range;
@@ -9,23 +10,24 @@ use statrs::function::erf::erfc;
 use crate::numerics::{normal_density, normal_quantile};
 use crate::uncertainty::bands::Marginals;
 
-/// Newton steps for a quantile before it is taken as it is; bisection gains a bit in each.
+/// Largest number of steps of the search for a quantile; bisection gains one bit in each.
 const MAX_STEPS: usize = 60;
 
-/// Error of the probability at which a quantile is good.
+/// Error of the probability below which a quantile is accepted.
 const TOLERANCE: f64 = 1e-7;
 
-/// A step, in the smallest deviation of a component, after which none is needed: its cube is below
+/// Size of a step, in units of the smallest standard deviation of a component, after which no
+/// further step is needed: the error that is left is of the order of its cube, which is below
 /// [`TOLERANCE`].
 const SMALL_STEP: f64 = 4e-3;
 
-/// Quantiles of a mixture of normals at many instants.
+/// Computes the quantiles of normal mixtures at many instants for given probabilities.
 pub(super) struct QuantileSolver<'a> {
     table: NormalTable,
     probabilities: &'a [f64],
 }
 
-/// A component at one instant.
+/// A component of the mixture at one instant; `inverse` is 1 / `std`.
 #[derive(Clone, Copy)]
 struct Part {
     weight: f64,
@@ -39,12 +41,15 @@ impl<'a> QuantileSolver<'a> {
         Self { table: NormalTable::new(), probabilities }
     }
 
-    /// `[probability][instant]`.
+    /// Quantiles of the values in a range of rows, `[probability][instant]`, in the unit of the
+    /// values.
+    ///
+    /// - `values`: indices of the values, in the order of the instants.
     pub(super) fn quantiles(&self, marginals: &Marginals, values: Range<usize>) -> Vec<Vec<f64>> {
         let z: Vec<f64> = self.probabilities.iter().map(|&p| normal_quantile(p)).collect();
         let mut rows = vec![Vec::with_capacity(values.len()); z.len()];
-        // Where each quantile lay one and two instants ago, in standard deviations: continued in a
-        // straight line they are a good first guess.
+        // Offsets of each quantile from the mean at the latest instant and at the one before, in
+        // standard deviations. Their linear extrapolation is the first guess for the next instant.
         let mut past = z.iter().map(|&z| [z, z]).collect::<Vec<_>>();
         let mut parts: Vec<Part> = Vec::with_capacity(marginals.weights.len());
         for value_idx in values {
@@ -68,7 +73,11 @@ impl<'a> QuantileSolver<'a> {
         rows
     }
 
-    /// Newton's method kept between the smallest and the largest quantile of the parts.
+    /// The value with the given probability below it, by Halley's method, which bisection keeps
+    /// between the smallest and the largest quantile of the parts.
+    ///
+    /// - `probability`, `z`: the probability and its quantile of the standard normal distribution.
+    /// - `guess`: start of the iteration.
     fn quantile(&self, parts: &[Part], (probability, z): (f64, f64), guess: f64) -> f64 {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         let mut sharpest: f64 = 0.0;
@@ -98,12 +107,12 @@ impl<'a> QuantileSolver<'a> {
             } else {
                 low = value;
             }
-            // Halley's step, which uses the slope of the density.
+            // Halley's step also uses the slope of the density.
             let step = excess * density / (density * density - excess * slope / 2.0);
             let next = value - step;
             let is_inside = next > low && next < high;
             value = if is_inside { next } else { (low + high) / 2.0 };
-            // What is left after a small step is of the third order in it.
+            // The error after such a step is of third order in the step.
             if is_inside && step.abs() * sharpest < SMALL_STEP {
                 break;
             }
@@ -115,9 +124,10 @@ impl<'a> QuantileSolver<'a> {
     }
 }
 
-/// Φ and φ between −8 and 8 from a table, by cubic Hermite interpolation: error of Φ below 1e-9.
+/// The standard normal distribution Φ and its density φ between −8 and 8, by cubic Hermite
+/// interpolation in a table. The error of Φ is below 1e-9.
 struct NormalTable {
-    /// Φ and φ·step at the knots.
+    /// Φ, and φ times the distance between knots, at each knot.
     knots: Vec<[f64; 2]>,
 }
 
@@ -134,7 +144,8 @@ impl NormalTable {
         Self { knots: (0..=n).map(knot).collect() }
     }
 
-    /// (Φ(z), φ(z)); the density is linear between knots, good enough for a slope.
+    /// Φ(z) and φ(z). The density is interpolated linearly, which suffices for the derivative of
+    /// the iteration; outside of the table it is zero.
     fn at(&self, z: f64) -> (f64, f64) {
         let position = (z + Self::END) * Self::PER_UNIT;
         if !(0.0..2.0 * Self::END * Self::PER_UNIT).contains(&position) {
@@ -145,7 +156,7 @@ impl NormalTable {
             return (1.0, 0.0);
         };
         let u = position - f64::from(idx);
-        // y0 + d0 u + (3Δ − 2d0 − d1) u² + (d0 + d1 − 2Δ) u³
+        // Cubic Hermite polynomial y0 + d0 u + (3Δ − 2d0 − d1) u² + (d0 + d1 − 2Δ) u³.
         let rise = y1 - y0;
         let cubic = d0 + d1 - 2.0 * rise;
         let square = rise - d0 - cubic;

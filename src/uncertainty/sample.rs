@@ -1,4 +1,5 @@
-//! Coherent draws of whole curves, and what follows from them.
+//! Random draws of whole force curves from a mixture, and the impulse, peak and duration of the
+//! drawn curves.
 
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
@@ -9,24 +10,25 @@ use crate::uncertainty::{CurveMixture, ForceCurve};
 /// Impulse, peak and duration of drawn curves, one entry for each draw.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct CurveQuantities {
-    /// Impulse `[P_x, P_y]`, N s.
+    /// Impulse `[P_x, P_y]` on the target, N s.
     pub impulse_n_s: Vec<[f64; 2]>,
     /// Largest `|F|`, N.
     pub peak_n: Vec<f64>,
-    /// When it is reached, s.
+    /// Time at which the largest `|F|` occurs, s.
     pub peak_time_s: Vec<f64>,
-    /// Duration, s.
+    /// Contact duration, s.
     pub duration_s: Vec<f64>,
 }
 
 impl CurveMixture {
-    /// Draws whole curves: a component each, then its factors and what is independent.
+    /// Draws whole curves: for each curve a component, its latent factors, and the correlated
+    /// residual.
     ///
     /// ```text
     /// k ~ π     y = m_k + U_k z + √d_k ⊙ ε     z ~ N(0, 1)     ε_i = φ ε_(i−1) + √(1 − φ²) N(0, 1)
     /// ```
     ///
-    /// A duration that comes out negative is drawn as zero.
+    /// A negative duration is replaced by zero.
     pub fn sample(&self, n_samples: usize, rng: &mut impl Rng) -> Vec<ForceCurve> {
         let mut drawn = Vec::with_capacity(n_samples);
         let deviations: Vec<Vec<f64>> = self
@@ -59,12 +61,12 @@ impl CurveMixture {
         drawn
     }
 
-    /// Impulse, peak, its time and duration of drawn curves.
+    /// Impulse, peak, time of the peak and duration of drawn curves.
     pub fn sample_quantities(&self, n_samples: usize, rng: &mut impl Rng) -> CurveQuantities {
         CurveQuantities::of(&self.sample(n_samples, rng))
     }
 
-    /// Index of a component, drawn by the weights.
+    /// Index of a component, drawn with the weights as probabilities.
     fn draw_component(&self, rng: &mut impl Rng) -> usize {
         let mut left: f64 = rng.random();
         for (k, component) in self.components().iter().enumerate() {
@@ -78,7 +80,7 @@ impl CurveMixture {
 }
 
 impl CurveQuantities {
-    /// Of these curves.
+    /// Impulse, peak, time of the peak and duration of given curves.
     pub fn of(curves: &[ForceCurve]) -> Self {
         let peaks = curves.iter().map(ForceCurve::peak);
         let (peak_n, peak_time_s) = peaks.unzip();
@@ -90,14 +92,14 @@ impl CurveQuantities {
         }
     }
 
-    /// Size of the impulse of each draw, N s.
+    /// Magnitude of the impulse of each draw, N s.
     pub fn impulse_magnitude_n_s(&self) -> Vec<f64> {
         self.impulse_n_s.iter().map(|[x, y]| x.hypot(*y)).collect()
     }
 
-    /// Central interval of one of the quantities; `None` without draws.
+    /// Central interval `[low, high]` of the draws of one quantity; `None` without draws.
     ///
-    /// - `level`: share that it holds, 0 to 1.
+    /// - `level`: share of the draws that the interval holds, 0 to 1.
     pub fn interval(values: &[f64], level: f64) -> Option<[f64; 2]> {
         let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);
@@ -105,7 +107,7 @@ impl CurveQuantities {
         Some([at((1.0 - level) / 2.0)?, at((1.0 + level) / 2.0)?])
     }
 
-    /// Median of one of the quantities; `None` without draws.
+    /// Median of the draws of one quantity; `None` without draws.
     pub fn median(values: &[f64]) -> Option<f64> {
         Self::interval(values, 0.0).map(|[median, _]| median)
     }
@@ -150,7 +152,8 @@ mod tests {
         let mut rng = ChaCha8Rng::seed_from_u64(1);
         let drawn = mixture.sample(n, &mut rng);
         let quantities = CurveQuantities::of(&drawn);
-        // Bounds: four standard errors of a mean; the impulse's spread to 3 %, some six of its own.
+        // The bounds are four standard errors of a mean; the spread of the impulse may be off by 3
+        // %, some six of its standard errors.
         for axis in [0, 1] {
             let exact = mixture.impulse(axis);
             let impulses = quantities.impulse_n_s.iter().map(|p| p[axis]);
@@ -164,7 +167,7 @@ mod tests {
         let durations = mixture.duration_s();
         let [low, high] = CurveQuantities::interval(&quantities.duration_s, 0.8).unwrap();
         for (got, probability) in [(low, 0.1), (high, 0.9)] {
-            // Four standard errors of a share.
+            // The bound is four standard errors of a share.
             let error = (durations.cdf(got) - probability).abs();
             assert!(error < 4.0 * (0.09 / n as f64).sqrt(), "{probability}: {error}");
         }

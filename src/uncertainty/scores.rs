@@ -1,16 +1,16 @@
-//! Scores of what was drawn against what was observed; smaller is better.
+//! Scores of draws from a predicted distribution against an observation; smaller is better.
 //!
 //! Source: [`GneitingRaftery2007`](crate::bibliography::GneitingRaftery2007).
 
 use crate::uncertainty::ForceCurve;
 
-/// Continuous ranked probability score of draws, in their unit; 0 without draws.
+/// Continuous ranked probability score of draws of a scalar, in its unit; 0 without draws.
 ///
 /// ```text
 /// CRPS = mean |X − y| − ½ mean |X − X'|
 /// ```
 ///
-/// over all draws and all pairs of draws, eq. (21) of the source.
+/// The means are over all draws and all pairs of draws, eq. (21) of the source.
 pub fn sample_crps(draws: &[f64], observed: f64) -> f64 {
     let n = draws.len() as f64;
     if draws.is_empty() {
@@ -19,12 +19,13 @@ pub fn sample_crps(draws: &[f64], observed: f64) -> f64 {
     let mut sorted = draws.to_vec();
     sorted.sort_by(f64::total_cmp);
     let to_observed: f64 = sorted.iter().map(|x| (x - observed).abs()).sum::<f64>() / n;
-    // Σ_j Σ_k |x_j − x_k| / 2 = Σ_i (2i + 1 − n) x_(i) for sorted values.
+    // For sorted values, Σ_j Σ_k |x_j − x_k| / 2 = Σ_i (2i + 1 − n) x_(i).
     let ranks = sorted.iter().enumerate().map(|(i, x)| (2.0 * i as f64 + 1.0 - n) * x);
     to_observed - ranks.sum::<f64>() / (n * n)
 }
 
-/// Energy score of whole curves, N; 0 without draws. Durations do not count.
+/// Energy score of draws of whole force curves, N; 0 without draws. The durations of the curves are
+/// not compared.
 ///
 /// ```text
 /// ES = mean |Y − y| − ½ mean |Y − Y'|        |·|² = mean over instants and both axes of the square
@@ -42,8 +43,8 @@ pub fn energy_score_n(draws: &[ForceCurve], observed: &ForceCurve) -> f64 {
     to_observed / n - among / (n * n)
 }
 
-/// Root mean square over instants and both axes of the difference of two curves, N; over the
-/// instants that both have.
+/// Root mean square of the difference of two curves over both axes and the instants that both
+/// curves have, N.
 pub fn distance_n(a: &ForceCurve, b: &ForceCurve) -> f64 {
     let n = a.n_instants().min(b.n_instants()).max(1) as f64;
     let square =
@@ -68,7 +69,7 @@ mod tests {
         let exact = NormalMixture::new(vec![part]).unwrap();
         for observed in [-3.0, 0.0, 0.7, 5.0] {
             let (score, expected) = (sample_crps(&draws, observed), exact.crps(observed));
-            // Standard error of a mean of 20 000 distances: 0.007.
+            // The standard error of a mean of 20 000 distances is 0.007.
             assert!((score - expected).abs() < 0.03, "{observed}: {score}, exact {expected}");
         }
         assert_eq!(sample_crps(&[2.0], 5.0), 3.0);

@@ -1,5 +1,5 @@
-//! The unscented transform: mean and covariance through a non-linear function, from points about the
-//! mean.
+//! The unscented transform: mean and covariance of a non-linear function of a random vector, from
+//! evaluations at sigma points around the mean.
 //!
 //! ```text
 //! χ_0 = m    χ_i = m ± (√((n + λ) P))_i        λ = α² (n + κ) − n
@@ -9,19 +9,20 @@
 //! Source: S. J. Julier, J. K. Uhlmann, Unscented Filtering and Nonlinear Estimation, Proc. IEEE 92
 //! (2004) 401–422; `eq:sigma_points_gmm` of [`PitPinnPaper`](crate::bibliography::PitPinnPaper).
 //!
-//! Departure from the paper: its α = 1e-3 makes the weight of the centre some −10⁶, of which single
-//! precision loses 8 m in 120 m; here α = 1 in double precision.
+//! Departure from the paper: its α = 1e-3 gives the centre a weight of some −10⁶, with which single
+//! precision loses 8 m in 120 m. Here α = 1 is used, in double precision.
 
 use nalgebra::{SMatrix, SVector};
 
-/// How far the points lie from the mean.
+/// Parameters that determine the distance of the sigma points from the mean and their weights.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unscented {
-    /// α.
+    /// α: scale of the distance of the sigma points from the mean.
     pub alpha: f64,
-    /// β: 2 for normal distributions.
+    /// β: correction of the centre's weight in the covariance by the shape of the distribution; 2
+    /// for normal distributions.
     pub beta: f64,
-    /// κ.
+    /// κ: second parameter of the distance, added to the number of dimensions.
     pub kappa: f64,
 }
 
@@ -31,26 +32,26 @@ impl Default for Unscented {
     }
 }
 
-/// Weights of the points.
+/// Distance and weights of the sigma points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UnscentedWeights {
-    /// √(n + λ): how many standard deviations from the mean the points lie.
+    /// √(n + λ): distance of the outer points from the mean, in standard deviations.
     pub reach: f64,
-    /// Of the centre in the mean.
+    /// W_0^m: weight of the centre in the mean.
     pub centre_mean: f64,
-    /// Of the centre in the covariance.
+    /// W_0^c: weight of the centre in the covariance.
     pub centre_covariance: f64,
-    /// Of each other point.
+    /// W_i: weight of each outer point in the mean and in the covariance.
     pub other: f64,
 }
 
 impl Unscented {
-    /// The settings of the paper.
+    /// The parameters of the paper: α = 1e-3, β = 2, κ = 0.
     pub fn paper() -> Self {
         Self { alpha: 1e-3, ..Self::default() }
     }
 
-    /// Weights in `n` dimensions.
+    /// Distance and weights of the sigma points in `n` dimensions.
     pub fn weights(&self, n: usize) -> UnscentedWeights {
         let n = n as f64;
         let scale = self.alpha * self.alpha * (n + self.kappa);
@@ -63,8 +64,8 @@ impl Unscented {
         }
     }
 
-    /// Mean and covariance of `f(x)` for x of this mean and covariance; `None` if the covariance is
-    /// not positive definite.
+    /// Mean `[M]` and covariance `[M, M]` of `f(x)` for a random vector x of a given mean `[N]` and
+    /// covariance `[N, N]`; `None` if the covariance is not positive definite.
     pub fn transform<const N: usize, const M: usize>(
         &self,
         mean: &SVector<f64, N>,
@@ -78,7 +79,8 @@ impl Unscented {
             .column_iter()
             .flat_map(|column| [f(&(mean + column)), f(&(mean - column))])
             .collect();
-        // About the centre, so that large weights of both signs cancel before they are large.
+        // Sums are taken relative to the value at the centre, so that large weights of opposite
+        // sign cancel before they multiply large numbers.
         let off: SVector<f64, M> = others.iter().map(|point| point - centre).sum();
         let moved = off * weights.other;
         let spread: SMatrix<f64, M, M> = others
@@ -119,7 +121,7 @@ mod tests {
                 SVector::<f64, 1>::new(x[0] * x[0])
             })
             .unwrap();
-        // E x² = m² + s²; Var x² = 4 m² s² + 2 s⁴.
+        // The exact moments are E x² = m² + s² and Var x² = 4 m² s² + 2 s⁴.
         assert!((m[0] - 9.25).abs() < 1e-12, "{m}");
         assert!((p[(0, 0)] - (9.0 + 2.0 * 0.0625)).abs() < 0.07, "{p}");
     }
