@@ -1,10 +1,11 @@
-//! What an answer rests on that nobody said.
+//! The list of the values that the program assumed because the question left them open.
 
 use egui::{RichText, Ui};
 
 use crate::study::{AssumedQuantity, Assumption};
 
-/// Lists what was assumed in a line; the reason is told on hover. Draws nothing without assumptions.
+/// Lists the assumptions, one wrapped line each. Hovering over a line shows the reason and the
+/// place in the window where the user can set the value. An empty list draws nothing.
 pub fn assumptions_ui(ui: &mut Ui, assumptions: &[Assumption]) {
     for Assumption { quantity, value, reason } in assumptions {
         let text = format!("assumed: {}: {value}", quantity.label());
@@ -13,7 +14,7 @@ pub fn assumptions_ui(ui: &mut Ui, assumptions: &[Assumption]) {
     }
 }
 
-/// Where the user says it.
+/// The place in the window where the user sets the quantity instead of having it assumed.
 fn place(quantity: AssumedQuantity) -> &'static str {
     match quantity {
         AssumedQuantity::Vehicle

@@ -1,10 +1,11 @@
-//! What happens to cases that cannot be used.
+//! The choice of what happens to the cases of a data set that cannot be used.
 
 use egui::Ui;
 
 use crate::study::BadCases;
 
-/// Chooses whether cases that cannot be used are left out.
+/// Draws a checkbox: if it is set, cases that cannot be used are left out, otherwise the first of
+/// them ends the work with an error.
 pub fn bad_cases_ui(ui: &mut Ui, bad_cases: &mut BadCases) {
     let mut leave_out = *bad_cases == BadCases::LeaveOut;
     let checkbox = ui.checkbox(&mut leave_out, "leave out cases that cannot be used");

@@ -1,4 +1,4 @@
-//! The choice of one of the open data sets.
+//! The choice of one of the open data sets, and a hint where none of the needed kind is open.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,14 @@ use egui::{ComboBox, Response, Ui};
 use crate::app::source::{OpenDataset, chosen_dataset};
 use crate::data::DatasetKind;
 
-/// Chooses one of the data sets; the first one where none of them is chosen.
+/// Draws a drop-down list of the data sets and returns the response of its button.
+///
+/// The list shows the first data set as selected as long as `chosen` names none of them; `chosen`
+/// is only written when the user selects an entry.
+///
+/// - `id`: distinguishes this list from others in the same panel.
+/// - `datasets`: the data sets to choose from.
+/// - `chosen`: path of the chosen data set.
 pub fn dataset_choice(
     ui: &mut Ui,
     id: &str,
@@ -29,7 +36,7 @@ pub fn dataset_choice(
         .response
 }
 
-/// Says how to open a data set where none is.
+/// Tells the user that no data set of this kind is open, and which folder to open.
 pub fn no_dataset_ui(ui: &mut Ui, kind: DatasetKind) {
     ui.label(match kind {
         DatasetKind::Force => "No force data set is open. Open a folder with cases.csv and forces/, e.g. the shipped datasets/fea.",

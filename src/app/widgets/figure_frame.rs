@@ -1,4 +1,4 @@
-//! A figure with its title and the ways to take it along.
+//! A figure with its heading and a menu that exports it.
 
 use egui::{Align, Layout, RichText, Ui};
 
@@ -7,7 +7,10 @@ use crate::app::dialogs::Purpose;
 use crate::figure::Figure;
 use crate::render::{FigureOptions, FigureResponse, figure_ui};
 
-/// Draws a figure under a heading, with a menu to save its picture or its numbers or to copy them.
+/// Draws a figure under a heading, with a menu that saves the picture as PNG, saves the numbers as
+/// CSV or copies the numbers.
+///
+/// - returns what the user did in the figure, such as the abscissa that was clicked.
 pub fn figure_frame(
     ui: &mut Ui,
     (heading, figure): (&str, &Figure),

@@ -1,4 +1,4 @@
-//! Parts that several panels use.
+//! Controls, tables and lists that several panels use.
 
 mod assumptions;
 mod bad_cases;

@@ -1,4 +1,6 @@
-//! Numbers with units.
+//! Controls that show and edit a physical quantity in the unit system that the user has chosen.
+//!
+//! The values that they edit are in SI units; they are converted only for display.
 
 use std::ops::RangeInclusive;
 use std::time::Duration;
@@ -7,7 +9,12 @@ use egui::{DragValue, Slider, SliderClamping, Ui};
 
 use crate::units::{Quantity, UnitSystem};
 
-/// A labelled field in a two-column grid that edits an SI value in the shown unit.
+/// Draws a row of a two-column grid: a label and a number field that edits `value_si`.
+///
+/// - `value_si`: the value in SI units; it is written only when the user changes the field.
+/// - `range_si`: the admissible values in SI units, to which the field is limited.
+/// - `units`: the unit system in which the value is shown and typed.
+/// - returns whether the user changed the value in this frame.
 pub fn quantity_field(
     ui: &mut Ui,
     label: &str,
@@ -32,7 +39,8 @@ pub fn quantity_field(
     changed
 }
 
-/// A duration for a person: “42 s”, “3 min 20 s”, “2 h 5 min”.
+/// Formats a duration as “42 s”, “3 min 20 s” or “2 h 5 min”, rounded up to whole seconds. From one
+/// hour on, the seconds are dropped.
 pub fn duration_text(duration: Duration) -> String {
     let s = duration.as_secs_f64().ceil() as u64;
     match (s / 3600, s / 60 % 60, s % 60) {
@@ -42,22 +50,26 @@ pub fn duration_text(duration: Duration) -> String {
     }
 }
 
-/// What a slider edits and how.
+/// Labels, quantity and ranges of a slider.
 pub struct SliderRange<'a> {
-    /// The number's name.
+    /// Label in front of the slider.
     pub label: &'a str,
-    /// What it is, in a sentence.
+    /// Explanation of the value, shown on hover.
     pub hint: &'a str,
-    /// What it measures.
+    /// Physical quantity, which determines the unit that is shown.
     pub quantity: Quantity,
-    /// Ends of the slider, SI. Typed numbers may go beyond.
+    /// Values at the two ends of the slider, SI units. A typed number may lie outside of them.
     pub usual: RangeInclusive<f64>,
-    /// The numbers that make sense, SI.
+    /// Admissible values, SI units; a changed value is clamped to them.
     pub possible: RangeInclusive<f64>,
 }
 
-/// A labelled slider with a number field in a two-column grid, for an SI value in the shown unit.
-/// The new value once it is changed.
+/// Draws a row of a two-column grid: a label and a slider with a number field.
+///
+/// - `value_si`: the present value, SI units.
+/// - `units`: the unit system in which the value is shown and typed.
+/// - returns the new value in SI units, clamped to `range.possible`, or `None` if the user has not
+///   changed it in this frame or has typed a number that is not finite.
 pub fn quantity_slider(
     ui: &mut Ui,
     range: &SliderRange<'_>,
@@ -78,7 +90,7 @@ pub fn quantity_slider(
     (changed && shown.is_finite()).then(|| unit.to_si(shown).clamp(least, most))
 }
 
-/// A labelled value in a two-column grid; clicking copies it.
+/// Draws a row of a two-column grid: a label and a text that is copied to the clipboard on a click.
 pub fn value_row(ui: &mut Ui, label: &str, text: &str) {
     ui.label(label);
     let value = egui::Label::new(egui::RichText::new(text).monospace()).sense(egui::Sense::click());

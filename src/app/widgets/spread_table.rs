@@ -1,28 +1,30 @@
-//! Numbers with their intervals.
+//! A table of predicted quantities: the median with the intervals that hold 50 % and 90 %.
 
 use egui::{Grid, Ui};
 
 use crate::analysis::Spread;
 use crate::units::{Unit, significant};
 
-/// Digits of a number beside its interval.
+/// Significant digits of the numbers in the table.
 const DIGITS: i32 = 3;
 
-/// A number, its unit, and what it is.
+/// One predicted quantity of the table.
 pub struct SpreadRow {
-    /// Its name.
+    /// Name of the quantity.
     pub label: &'static str,
-    /// The unit in which it is shown.
+    /// Unit in which the quantity is shown.
     pub unit: Unit,
-    /// Median and intervals, SI.
+    /// Median and ends of the intervals, SI units.
     pub spread: Spread,
-    /// What it is, in a sentence.
+    /// Explanation of the quantity, shown on hover.
     pub hint: &'static str,
 }
 
-/// A table of numbers with a button that copies it.
+/// Draws the table with a button that copies it to the clipboard, separated by tabs.
 ///
-/// - `name`: of what they are, for the copy; tables of one panel differ by it.
+/// The identifier of the grid is fixed, so a panel should hold only one such table.
+///
+/// - `name`: the case or scenario to which the numbers belong; first cell of the copied table.
 pub fn spread_table_ui(ui: &mut Ui, name: &str, rows: &[SpreadRow]) {
     ui.horizontal(|ui| {
         ui.strong("Numbers");
@@ -52,13 +54,15 @@ pub fn spread_table_ui(ui: &mut Ui, name: &str, rows: &[SpreadRow]) {
     });
 }
 
+/// Median, 50 % interval and 90 % interval in the unit of the row, as they are shown.
 fn texts(row: &SpreadRow) -> [String; 3] {
     let text = |value| rounded(row.unit.from_si(value));
     let interval = |[low, high]: [f64; 2]| format!("{} … {}", text(low), text(high));
     [text(row.spread.median), interval(row.spread.half), interval(row.spread.ninety)]
 }
 
-/// A number with [`DIGITS`] digits, those before the point in any case.
+/// Formats a number with [`DIGITS`] significant digits and at most 6 decimals. Digits before the
+/// decimal point are never rounded away.
 fn rounded(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
@@ -67,7 +71,8 @@ fn rounded(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-/// Tab-separated, with both ends of the intervals.
+/// The table as tab-separated text: one line per quantity, with the lower and the upper end of each
+/// interval in columns of their own.
 fn table(name: &str, rows: &[SpreadRow]) -> String {
     let head = format!("{name}\tunit\tmedian\t50 % low\t50 % high\t90 % low\t90 % high");
     let line = |row: &SpreadRow| {
