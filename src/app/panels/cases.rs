@@ -1,4 +1,4 @@
-//! The cases of a data set.
+//! The “Cases” pane: a table of the cases of the listed data set, which can be filtered and sorted.
 
 use egui::{RichText, Sense, Ui};
 use egui_extras::{Column, TableBuilder, TableRow};
@@ -10,10 +10,14 @@ use crate::app::state::{Subject, View};
 use crate::render::theme;
 use crate::units::UnitSystem;
 
+/// Height of a row of the table, points.
 const ROW_HEIGHT: f32 = 20.0;
+/// Examples of filters, shown while the filter field is empty.
 const FILTER_HINT: &str = "Filter: c012, hooked, spin=1, m_b_kg>2000";
 
-/// Draws the case table.
+/// Draws the filter, the number of cases that pass it, and the table. A click on a row selects its
+/// case. The table scrolls to the selected case when the filter changes and when the plots fit
+/// their view again, as they do after a selection.
 pub fn cases_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands } = pane;
     if listed_in(&session.sources, view).is_none() {
@@ -53,19 +57,25 @@ fn filter_ui(ui: &mut Ui, view: &mut View) {
     });
 }
 
+/// What the table shows.
 struct Table<'a> {
+    /// The cases that pass the filter, in the order in which they are shown.
     cases: CaseTable<'a>,
+    /// The columns after those of the name and the flags.
     columns: &'static [CaseColumn],
+    /// Name of the selected case, if it belongs to the listed data set.
     selected: Option<&'a str>,
 }
 
 impl Table<'_> {
-    /// Draws the table; gives the case that was clicked.
+    /// Draws the table and returns the name of the case that the user clicked, if any.
+    ///
+    /// - `show_selected`: whether the table scrolls to the selected case.
     fn ui(&self, ui: &mut Ui, (view, show_selected): (&mut View, bool)) -> Option<String> {
         let mut picked = None;
         let units = view.units;
         egui::ScrollArea::horizontal().show(ui, |ui| {
-            // A selectable label would take the click that is meant for its row.
+            // A selectable label would consume the click that is meant for its row.
             ui.style_mut().interaction.selectable_labels = false;
             let mut table = TableBuilder::new(ui)
                 .striped(true)
@@ -129,7 +139,8 @@ impl Table<'_> {
     }
 }
 
-/// Rising, falling, unsorted.
+/// Changes the sorting after a click on the heading of a column: from unsorted to ascending, then
+/// descending, then unsorted again.
 fn sort_by(view: &mut View, key: &str) {
     let sorted = view.sort_column.as_deref() == Some(key);
     (view.sort_column, view.sort_descending) = match (sorted, view.sort_descending) {

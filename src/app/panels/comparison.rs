@@ -1,4 +1,5 @@
-//! The simulation of the 4DOF model against recorded motions: one case and the whole data set.
+//! The “Comparison” pane: the errors of the 4DOF simulation against the recorded motion, for the
+//! selected subject and for all cases of the listed trajectory data set.
 
 use egui::{Grid, ScrollArea, Ui};
 
@@ -14,7 +15,8 @@ use crate::render::theme;
 use crate::study::{SimulateDatasetReport, SimulateReport};
 use crate::units::{Quantity, UnitSystem, significant};
 
-/// Draws the errors.
+/// Draws the errors of the selected subject, and below them those of the whole data set with the
+/// button that starts its simulation.
 pub fn comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { view, session, commands, .. } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -68,6 +70,8 @@ fn case_ui(ui: &mut Ui, report: &SimulateReport, units: UnitSystem) {
     }
 }
 
+/// Labels and values of the error metrics of one motion. Metrics of channels that were not recorded
+/// are left out.
 fn error_rows(error: &MotionError, units: UnitSystem) -> Vec<(String, String)> {
     let length = |value| Quantity::Length.shown(value, units);
     let mut rows = vec![
@@ -93,6 +97,8 @@ fn error_rows(error: &MotionError, units: UnitSystem) -> Vec<(String, String)> {
     rows
 }
 
+/// Draws the average position error over all cases, and separately over the cases that spin and
+/// those that do not.
 fn dataset_ui(ui: &mut Ui, report: &SimulateDatasetReport, units: UnitSystem) {
     let violations: usize = report.cases.iter().map(|case| case.violations).sum();
     ui.strong(format!("All {} cases, average position error", report.cases.len()));

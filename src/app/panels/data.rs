@@ -1,4 +1,5 @@
-//! What is open: data sets with their problems, single files, the scenario.
+//! The “Data” pane: the open data sets with their problems, the open single files, and the
+//! scenario.
 
 use egui::{CollapsingHeader, Response, RichText, ScrollArea, Ui};
 
@@ -12,10 +13,10 @@ use crate::data::{DatasetKind, FileKind, Severity};
 use crate::error_chain;
 use crate::render::theme;
 
-/// Problems that the tree spells out.
+/// Largest number of problems of one data set that are listed; of further ones the number is shown.
 const SHOWN_PROBLEMS: usize = 50;
 
-/// Draws the tree of what is open.
+/// Draws the buttons that open data, and below them the tree of everything that is open.
 pub fn data_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands } = pane;
     ui.horizontal(|ui| {
@@ -59,6 +60,8 @@ pub fn data_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     });
 }
 
+/// Draws the entry of one opened path according to its state: loading, data set, file, or not
+/// readable.
 fn source_ui(
     ui: &mut Ui,
     source: &Source,
@@ -94,6 +97,9 @@ fn source_ui(
     }
 }
 
+/// Draws a data set with its flags, its vehicle file and its problems.
+///
+/// - `listed`: whether its cases are shown in the case table.
 fn dataset_ui(
     ui: &mut Ui,
     source: &Source,
@@ -137,6 +143,9 @@ fn dataset_ui(
     });
 }
 
+/// Draws a single file with its flags. Hovering over it shows how its columns were read.
+///
+/// - `selected`: whether the file is the selected subject.
 fn file_ui(
     ui: &mut Ui,
     source: &Source,
@@ -180,6 +189,7 @@ fn problem_ui(ui: &mut Ui, text: &str) {
     ui.colored_label(color, text);
 }
 
+/// Adds the context menu with which a data set or a file is loaded again or closed.
 fn source_menu(response: &Response, source: &Source, commands: &mut Vec<Command>) {
     response.context_menu(|ui| {
         if source.path.is_absolute() || source.path.components().count() > 0 {

@@ -1,4 +1,5 @@
-//! How well the force network does on a data set.
+//! The “Force evaluation” pane: the errors and the calibration of the force network on a force data
+//! set, beside those of the baselines.
 
 use egui::{ProgressBar, ScrollArea, Ui};
 
@@ -14,7 +15,8 @@ use crate::data::{DatasetKind, Severity};
 use crate::render::theme;
 use crate::study::{EvaluateForceReport, EvaluatedCases, ForceEvaluation};
 
-/// Draws the choice of data, the tables and the plots.
+/// Draws the choice of the data set and of its cases, and the tables and plots of the last
+/// evaluation.
 pub fn evaluation_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { view, session, commands, .. } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -40,6 +42,8 @@ pub fn evaluation_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     });
 }
 
+/// Draws the choice of the data set and of its cases, the button that starts the evaluation, and
+/// the progress while it runs.
 fn start_ui(
     ui: &mut Ui,
     (view, force): (&mut ForceView, &ForceSession),
@@ -89,6 +93,8 @@ fn start_ui(
     }
 }
 
+/// Names the model and the data, offers the results as text, and warns of training cases among the
+/// evaluated ones, of problems and of cases that were left out.
 fn heading_ui(ui: &mut Ui, report: &EvaluateForceReport) {
     let model = file_name(report.model_file.as_ref());
     let (data, evaluation) = (file_name(&report.data), &report.evaluation);

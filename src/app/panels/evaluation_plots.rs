@@ -1,4 +1,5 @@
-//! Plots of an evaluation: predicted against observed, honesty of the spread, sample cases.
+//! The plots of an evaluation of the force network: predicted against observed values, calibration
+//! of the predicted distribution, and the force curves of sample cases.
 
 use egui::{Id, Ui};
 
@@ -18,10 +19,12 @@ use crate::units::Quantity;
 
 /// Height of a plot, points.
 const PLOT_HEIGHT: f32 = 240.0;
-/// Plots side by side.
+/// Number of plots in a row.
 const N_COLUMNS: usize = 3;
 
-/// Draws all plots.
+/// Draws all plots of an evaluation.
+///
+/// - `reset`: whether the plots fit their view to the data again.
 pub fn plots_ui(
     ui: &mut Ui,
     (report, cases): (&EvaluateForceReport, &EvaluatedForceCases),
@@ -61,7 +64,11 @@ pub fn plots_ui(
     rows_ui(ui, &samples, (Some(Id::unique("samples")), reset), commands);
 }
 
-/// Figures side by side; those of a group share the time axis and the legend of the first.
+/// Draws figures in rows of [`N_COLUMNS`].
+///
+/// - `group`: figures with a group share the time axis and the cursor, and only the first of them
+///   has a legend; without a group each figure has its own axes and legend.
+/// - `reset`: whether the plots fit their view to the data again.
 fn rows_ui(
     ui: &mut Ui,
     figures: &[Figure],
@@ -85,6 +92,9 @@ fn rows_ui(
     }
 }
 
+/// Median of the prediction against the observed value, with the 90 % interval, one point per case.
+///
+/// - `quantity`: the impulse for [`Quantity::Impulse`], otherwise the peak of the force.
 fn parity(
     cases: &EvaluatedForceCases,
     (title, label, quantity): (&str, &str, Quantity),
@@ -107,6 +117,8 @@ fn parity(
     parity_figure((title, label, "90 % interval"), &points, (quantity, view.units))
 }
 
+/// Coverage of the intervals and histograms of the probability integral transform (PIT) of force
+/// and impulse. The list is empty if the model predicts no distribution.
 fn calibration(report: &EvaluateForceReport) -> Vec<Figure> {
     let Some(spread) = &report.evaluation.metrics.overall.probabilistic else {
         return Vec::new();

@@ -1,4 +1,5 @@
-//! The tables of an evaluation.
+//! The tables of an evaluation of the force network: errors, coverage of the intervals, and errors
+//! by cluster of impulse.
 
 use egui::{Grid, Ui};
 
@@ -8,7 +9,8 @@ use crate::force::{Evaluation, ForceMetrics};
 use crate::numerics::Summary;
 use crate::units::{Quantity, UnitSystem, percent};
 
-/// Draws errors, coverage and errors by cluster.
+/// Draws the tables of errors, of coverage and of errors by cluster, for the model and its three
+/// baselines, and the choice of the statistic over the cases that is shown.
 pub fn tables_ui(
     ui: &mut Ui,
     evaluation: &Evaluation,
@@ -31,6 +33,8 @@ pub fn tables_ui(
     clusters_ui(ui, evaluation, (view.statistic, units));
 }
 
+/// Draws the relative errors of each model, over all cases and over those in which the vehicles
+/// separate.
 fn errors_ui(ui: &mut Ui, models: [(&str, &ForceMetrics); 4], statistic: Statistic) {
     type Choose = fn(&ForceMetrics) -> Option<&CurveMetrics>;
     let groups: [(&str, Choose); 2] =
@@ -64,6 +68,8 @@ fn errors_ui(ui: &mut Ui, models: [(&str, &ForceMetrics); 4], statistic: Statist
     });
 }
 
+/// Draws the share of the observed values that lie inside the predicted intervals. Models that
+/// predict no distribution have no rows.
 fn coverage_ui(ui: &mut Ui, models: [(&str, &ForceMetrics); 4]) {
     ui.add_space(6.0);
     ui.strong("Share of observed values inside the intervals, ± its standard error");
@@ -83,6 +89,8 @@ fn coverage_ui(ui: &mut Ui, models: [(&str, &ForceMetrics); 4]) {
     });
 }
 
+/// Draws the errors of the model in each cluster of impulse, beside those of the Gaussian
+/// processes.
 fn clusters_ui(ui: &mut Ui, evaluation: &Evaluation, (statistic, units): (Statistic, UnitSystem)) {
     ui.add_space(6.0);
     ui.strong("By cluster of impulse")
@@ -117,7 +125,9 @@ fn clusters_ui(ui: &mut Ui, evaluation: &Evaluation, (statistic, units): (Statis
     });
 }
 
-/// A row of titles with hints.
+/// Draws the heading row of a grid.
+///
+/// - `titles`: pairs of the title of a column and its explanation on hover, which may be empty.
 fn titles_ui(ui: &mut Ui, titles: &[(&str, &str)]) {
     for (title, hint) in titles {
         let label = ui.strong(*title);
@@ -128,6 +138,7 @@ fn titles_ui(ui: &mut Ui, titles: &[(&str, &str)]) {
     ui.end_row();
 }
 
+/// Draws the errors of one model; hovering over an error shows all statistics of it.
 fn error_row_ui(ui: &mut Ui, name: &str, (metrics, statistic): (&CurveMetrics, Statistic)) {
     ui.label(name);
     for error in [
@@ -161,7 +172,7 @@ fn coverage_rows_ui(ui: &mut Ui, name: &str, spread: &DistributionMetrics) {
 }
 
 impl Statistic {
-    /// Of a summary.
+    /// Reads this statistic from a summary over cases.
     fn of(self, summary: &Summary) -> f64 {
         match self {
             Self::Median => summary.median,

@@ -1,4 +1,5 @@
-//! The contact force over time.
+//! The “Force” pane: the contact force of the selected subject over time, its impulse, peak,
+//! duration and principal direction, and classic pulses of the same impulse.
 
 use egui::{ComboBox, Grid, Id, Ui};
 
@@ -12,10 +13,11 @@ use crate::render::FigureOptions;
 use crate::study::{ForceReport, SimulateAnswer};
 use crate::units::{Quantity, UnitSystem};
 
-/// Interval at which pulses are drawn, s.
+/// Sample interval at which the classic pulses are drawn, s.
 const PULSE_INTERVAL_S: f64 = 5e-4;
 
-/// Draws the force plot with its readouts.
+/// Draws the choice of the SAE J211 filter and of the classic pulses, the characteristic numbers of
+/// the force, and the plot.
 pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands } = pane;
     let Some(SimulateAnswer { report, analysis }) = analysis_or_hint(ui, session) else {
@@ -63,6 +65,7 @@ pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     }
 }
 
+/// Draws impulse, peak, contact interval and principal direction of force (PDOF).
 fn readouts_ui(ui: &mut Ui, force: &ForceReport, units: UnitSystem) {
     let [px, py] = force.impulse_n_s;
     let peak = Quantity::Force.shown(force.peak_n, units);
@@ -80,6 +83,7 @@ fn readouts_ui(ui: &mut Ui, force: &ForceReport, units: UnitSystem) {
     });
 }
 
+/// Duration, start and end of the contact, or “none” if the force shows no contact.
 fn contact_text(force: &ForceReport) -> String {
     let (Some(start), Some(end)) = (force.contact_start_s, force.contact_end_s) else {
         return "none".to_owned();
@@ -87,7 +91,9 @@ fn contact_text(force: &ForceReport) -> String {
     format!("{:.1} ms, from {:.1} to {:.1} ms", (end - start) * 1e3, start * 1e3, end * 1e3)
 }
 
-/// Against the heading before the impact, along X.
+/// Principal direction of force: its angle, measured clockwise from the x axis of the force, and
+/// its clock direction; “none” without an impulse. Data sets and files have the x axis along the
+/// heading before the impact; a scenario has it along the X axis of the world.
 fn pdof_text(force: &ForceReport) -> String {
     match (force.pdof_deg, force.pdof_clock) {
         (Some(angle_deg), Some(clock)) => format!("{angle_deg:.0} deg, {clock} o'clock"),
@@ -95,7 +101,8 @@ fn pdof_text(force: &ForceReport) -> String {
     }
 }
 
-/// The classic pulses of the same impulse over the same contact.
+/// The classic pulses with the impulse and the contact interval of `force`, each with its name. A
+/// pulse that cannot be constructed is left out; without a contact the list is empty.
 fn pulses(force: &ForceHistory) -> Vec<(String, ForceHistory)> {
     let Some((start, end)) = contact_interval(force) else {
         return Vec::new();

@@ -1,4 +1,8 @@
-//! A panel a file: each draws its pane, edits its own settings and asks for the rest.
+//! The panes of the window.
+//!
+//! Each pane has one function that draws it. A pane edits its own settings directly and requests
+//! everything else with a [`Command`](crate::app::Command). Large panes are divided among several
+//! files.
 
 mod cases;
 mod comparison;
@@ -45,7 +49,8 @@ use crate::app::state::Session;
 use crate::render::theme;
 use crate::study::SimulateAnswer;
 
-/// The simulation of the subject, or a word on why there is none.
+/// Returns the simulation of the selected subject. If there is none, it draws the reason (an error,
+/// a simulation that is still running, or no selection) and returns `None`.
 fn analysis_or_hint<'a>(ui: &mut Ui, session: &'a Session) -> Option<&'a SimulateAnswer> {
     match &session.analysis.answer {
         Some(Ok(answer)) => return Some(answer),

@@ -1,4 +1,5 @@
-//! The response network beside other models, on trajectories that none has seen, or alone.
+//! The “Compare models” pane: the response network beside the other motion models on trajectories
+//! that none of them was trained on, or an evaluation of the current model alone.
 
 use egui::{DragValue, Grid, ProgressBar, ScrollArea, Ui};
 
@@ -19,7 +20,8 @@ use crate::response::evaluate::{
 };
 use crate::study::{CompareReport, EvaluatedCases};
 
-/// Draws the form, the figures, the case browser and the tables.
+/// Draws the settings and buttons, and of the last comparison the figures, the case browser and the
+/// tables.
 pub fn model_comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -49,7 +51,7 @@ pub fn model_comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     });
 }
 
-/// Whether there is something to compare on.
+/// Draws the settings of a comparison and returns whether a trajectory data set is open.
 fn form_ui(ui: &mut Ui, form: &mut ComparisonForm, sources: &[Source]) -> bool {
     let datasets = open_datasets(sources, &[DatasetKind::Trajectory]);
     if datasets.is_empty() {
@@ -87,6 +89,10 @@ fn form_ui(ui: &mut Ui, form: &mut ComparisonForm, sources: &[Source]) -> bool {
     !datasets.is_empty()
 }
 
+/// Draws the buttons that start, open and save a comparison, and the progress while one runs.
+///
+/// - `can_compare`: whether there are data to compare the models on.
+/// - `can_evaluate`: whether there are data and a current model to evaluate on them.
 fn buttons_ui(
     ui: &mut Ui,
     status: &mut ComparisonStatus,
@@ -139,6 +145,8 @@ fn buttons_ui(
     });
 }
 
+/// Draws the title, what was assumed, the cases that were left out, and the errors that the paper
+/// prints for the models that it has.
 fn heading_ui(ui: &mut Ui, report: &CompareReport) {
     let comparison = &report.comparison;
     ui.horizontal_wrapped(|ui| {
@@ -166,7 +174,7 @@ fn heading_ui(ui: &mut Ui, report: &CompareReport) {
     });
     let mut of_paper: Vec<String> = of_paper.collect();
     of_paper.sort();
-    of_paper.dedup(); // one figure of the paper stands for several models here
+    of_paper.dedup(); // One number of the paper stands for several models here.
     if !of_paper.is_empty() {
         let text = of_paper.join("; ");
         ui.weak(format!("The paper printed, for other data that are not comparable: {text}"));

@@ -1,4 +1,4 @@
-//! The figures of a comparison, and its cases one by one.
+//! The figures of a comparison of motion models, and the browser that shows its cases one by one.
 
 use egui::{DragValue, Grid, ScrollArea, Ui};
 
@@ -19,11 +19,15 @@ use crate::units::{Quantity, UnitSystem, significant};
 const PLOT_HEIGHT: f32 = 220.0;
 /// Height of the case browser, points.
 const BROWSER_HEIGHT: f32 = 420.0;
-/// Bins of the histogram of levels.
+/// Number of bins of the histogram of the levels at which the recorded ends lie.
 const N_BINS: usize = 10;
+/// Speed in km/h of 1 m/s.
 const KM_H_PER_M_S: f64 = 3.6;
 
-/// Ranking, errors of each variable, horizons, clusters, calibration.
+/// Draws the ranking of the models by average error, the errors by horizon, by variable and by
+/// cluster of impulse, and the calibration of the networks.
+///
+/// - `reset`: whether the plots fit their view to the data again.
 pub fn overview_ui(
     ui: &mut Ui,
     comparison: &Comparison,
@@ -46,7 +50,9 @@ pub fn overview_ui(
     }
 }
 
-/// Figures side by side, three in a row, or two where that fills the rows.
+/// Draws figures in rows of three, or in rows of two if there are one, two or four of them.
+///
+/// - `id`: distinguishes these figures from the others of the panel.
 fn row_ui(ui: &mut Ui, (id, figures): (&str, &[Figure]), reset: bool, commands: &mut Vec<Command>) {
     let n_columns = if matches!(figures.len(), 1 | 2 | 4) { 2 } else { 3 };
     for (row, part) in figures.chunks(n_columns).enumerate() {
@@ -56,7 +62,7 @@ fn row_ui(ui: &mut Ui, (id, figures): (&str, &[Figure]), reset: bool, commands: 
                     id: format!("compared {id} {row} {place}"),
                     height: Some(PLOT_HEIGHT),
                     reset,
-                    // Rows are named on the axis.
+                    // Figures with named rows carry the names of the models on the axis.
                     legend: figure.y.names.is_empty(),
                     ..FigureOptions::default()
                 };
@@ -66,12 +72,14 @@ fn row_ui(ui: &mut Ui, (id, figures): (&str, &[Figure]), reset: bool, commands: 
     }
 }
 
+/// Average position error of each model.
 fn ranking(comparison: &Comparison, units: UnitSystem) -> Figure {
     let unit = Quantity::Length.display_unit(units);
     let of = |model: &ComparedModel| model.metrics.average_error_m.times(unit.from_si(1.0));
     ranking_figure(comparison, ("Average error", "Average error", unit), of)
 }
 
+/// Root mean square error of each model in X, Y, v_x, v_y and yaw rate, one figure per variable.
 fn variables(comparison: &Comparison, units: UnitSystem) -> Vec<Figure> {
     type Of = fn(&ComparedModel) -> MeanStd;
     let rows: [(&str, Quantity, f64, Of); 5] = [
@@ -93,12 +101,20 @@ fn variables(comparison: &Comparison, units: UnitSystem) -> Vec<Figure> {
     rows.into_iter().map(figure).collect()
 }
 
-/// Coverage along the path and at the end, and at which level of its region each end lies.
+/// Calibration of the position distribution of each response network: the share of recorded
+/// positions inside the 50 % and 90 % regions, along the path and at the end, and a histogram of
+/// the levels of the smallest regions that hold the recorded ends.
+///
+/// The bars are the standard error of a share `p` of `n` trajectories:
+///
+/// ```text
+/// √(p (1 − p) / n)
+/// ```
 fn calibration(comparison: &Comparison) -> Vec<Figure> {
     let networks = comparison.models.iter().filter(|model| model.kind == MotionModelKind::Network);
     let points = |model: &ComparedModel, of: &CoverageMetrics, is_end: bool| {
         let shares = if is_end { [of.end_50, of.end_90] } else { [of.path_50, of.path_90] };
-        // Instants of one trajectory are no independent observations.
+        // The instants of one trajectory are correlated, so each trajectory counts once.
         let n = model.metrics.n.max(1) as f64;
         let point = |(level, share): (f64, f64)| CoveragePoint {
             level,
@@ -132,7 +148,10 @@ fn calibration(comparison: &Comparison) -> Vec<Figure> {
     figures
 }
 
-/// A table of the cases, and what all models say of the one that is chosen.
+/// Draws the table of the cases, and a figure with the recorded path of the chosen case and the
+/// paths that all models predict for it.
+///
+/// - `reset`: whether the plot fits its view to the data again.
 pub fn browser_ui(
     ui: &mut Ui,
     comparison: &Comparison,
@@ -171,7 +190,12 @@ pub fn browser_ui(
     }
 }
 
-/// The name that was clicked.
+/// Draws the table of the average error of each model on each case, and returns the name of the
+/// case that the user clicked, if any.
+///
+/// - `chosen`: the case that is marked.
+/// - `choice`: seed of the choice of training trajectories whose models are shown. Models that were
+///   trained on no trajectories are shown for every choice.
 fn cases_ui(
     ui: &mut Ui,
     comparison: &Comparison,

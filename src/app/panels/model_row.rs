@@ -1,4 +1,5 @@
-//! Which model of a network answers, and the ways to get another.
+//! The rows that show which model of a network is in use and with which the user opens, saves or
+//! trains another one.
 
 use egui::{RichText, Ui};
 
@@ -10,9 +11,10 @@ use crate::data::Severity;
 use crate::render::theme;
 use crate::study::ModelChoice;
 
-/// What to do while there is no model.
+/// Draws the state of a network that has no model: a note while one is loaded, otherwise buttons to
+/// open a model, to use the shipped one, or to train one.
 ///
-/// - `use_of_it`: what a model does, in a sentence.
+/// - `use_of_it`: a sentence that tells what a model of this network does.
 pub fn no_model_ui<M: TrainedModel>(
     ui: &mut Ui,
     model: &ModelStatus<M>,
@@ -45,9 +47,10 @@ pub fn no_model_ui<M: TrainedModel>(
     });
 }
 
-/// The name of the model, with the buttons to open, save and put it back.
+/// Draws the name of the current model, with buttons to open another model, to save the current
+/// one, and to return to the shipped one. Without a current model it draws nothing.
 ///
-/// - `hint`: how it came to be.
+/// - `hint`: description of how the model was trained, shown on hover.
 pub fn model_row_ui<M: TrainedModel>(
     ui: &mut Ui,
     model: &ModelStatus<M>,
@@ -77,8 +80,9 @@ pub fn model_row_ui<M: TrainedModel>(
     }
 }
 
-/// The same where models are trained: a field for the path, too, for systems without file dialogs,
-/// and what a cancelled training has left.
+/// Draws the row of the current model for the training pane. In addition to the buttons, it has a
+/// text field for the path, for systems without file dialogs, and it offers the model that a
+/// cancelled training has left.
 pub fn save_model_ui<M: TrainedModel>(
     ui: &mut Ui,
     model: &mut ModelStatus<M>,

@@ -1,4 +1,5 @@
-//! The motion over time.
+//! The “Motion” pane: the simulated motion of the struck vehicle over time, beside the recorded
+//! one.
 
 use egui::{Id, Ui};
 
@@ -10,12 +11,13 @@ use crate::figure::{MOTION_CHANNELS, analysis_motion_figure, analysis_readout};
 use crate::render::FigureOptions;
 use crate::study::SimulateAnswer;
 
-/// Smallest height of one plot, points.
+/// Smallest height of a plot, points.
 const MIN_PLOT_HEIGHT: f32 = 110.0;
-/// Height of a title row, points.
+/// Height of the heading above a plot, points.
 const TITLE_HEIGHT: f32 = 30.0;
 
-/// Draws v_x, v_y, yaw rate and roll over time, with a common cursor at the scene's time.
+/// Draws v_x, v_y, yaw rate and roll over time, with a cursor at the time of the scene. A click or
+/// a drag in a plot sets this time.
 pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { view, session, commands, .. } = pane;
     let Some(SimulateAnswer { report, analysis }) = analysis_or_hint(ui, session) else {
@@ -55,7 +57,7 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     });
 }
 
-/// The last abscissa of a figure.
+/// Largest time at which a line of the figure ends, s; 0 if the figure has no line.
 fn figure_end(figure: &crate::figure::Figure) -> f64 {
     let ends = figure.elements.iter().filter_map(|element| match element {
         crate::figure::FigureElement::Line(series) => series.points.last().map(|point| point[0]),

@@ -1,4 +1,5 @@
-//! Where the struck vehicle goes, with how sure that is: from above and over time.
+//! The “Motion forecast” pane: the probability distribution of the motion of the struck vehicle as
+//! the response network predicts it, in a plan view and over time.
 
 use std::sync::Arc;
 
@@ -26,20 +27,22 @@ use crate::render::{FigureOptions, theme};
 use crate::response::STEP_S;
 use crate::study::PredictMotionAnswer;
 
-/// Width of the form at first, points.
+/// Width of the form before the user resizes it, points.
 const FORM_WIDTH: f32 = 330.0;
-/// Share of the height that the scene takes.
+/// Share of the available height that the plan view takes.
 const SCENE_SHARE: f32 = 0.52;
 /// Smallest height of a plot over time, points.
 const MIN_PLOT_HEIGHT: f32 = 110.0;
-/// Height of a title row, points.
+/// Height of the heading above a plot, points.
 const TITLE_HEIGHT: f32 = 30.0;
-/// A density of this much before or after the slider's moment is not shown any more, s.
+/// Largest difference between the time of a computed density and the time of the slider, s. A
+/// density further away is not drawn.
 const STALE_S: f64 = 0.15;
-/// Plots over time side by side.
+/// Number of plots over time in a row.
 const N_COLUMNS: usize = 3;
 
-/// Draws the form, the outcome, the scene and the quantities over time.
+/// Draws the form and the outcome on the left, and on the right the plan view and the predicted
+/// quantities over time.
 pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands } = pane;
     if session.response.model.current.is_none() {
@@ -84,6 +87,8 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     );
 }
 
+/// Names the current response model, describes its training on hover, and warns of a model that was
+/// trained on simulations only.
 fn model_ui(ui: &mut Ui, response: &ResponseSession, commands: &mut Vec<Command>) {
     let Some(current) = &response.model.current else { return };
     let record = current.model.record();
@@ -109,7 +114,9 @@ fn model_ui(ui: &mut Ui, response: &ResponseSession, commands: &mut Vec<Command>
     }
 }
 
-/// By which force the forecast is driven.
+/// Draws the choice of the force that drives the forecast: the given one or one predicted by the
+/// force network. Warnings say why a force cannot be predicted, and which features of the collision
+/// lie outside the training of the force model.
 fn force_ui(
     ui: &mut Ui,
     project: &mut ResponseProject,
@@ -161,7 +168,7 @@ fn force_ui(
     }
 }
 
-/// What is drawn.
+/// Draws the choice of the density map, of the time window, and of the motions that are drawn.
 fn shown_ui(ui: &mut Ui, view: &mut ResponseView, session: &Session, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         ui.strong("Density").on_hover_text("Where the CG is likely to be");
@@ -200,10 +207,12 @@ fn shown_ui(ui: &mut Ui, view: &mut ResponseView, session: &Session, commands: &
     });
 }
 
+/// Time of the last instant of the forecast, s.
 fn end_s(answer: &MotionAnswer) -> f64 {
     answer.answer.forecast.distribution.n_instants().saturating_sub(1) as f64 * STEP_S
 }
 
+/// Draws the clock, the plan view with the density, and the bands of each quantity over time.
 fn figures_ui(
     ui: &mut Ui,
     (answer, session): (&MotionAnswer, &Session),
@@ -258,7 +267,7 @@ fn figures_ui(
                         cursor_x: Some(time_s),
                         height: Some(height),
                         reset: session.fit_plots,
-                        // As in the scene; too small for one of their own.
+                        // The plots are too small for a legend; that of the plan view applies.
                         legend: false,
                         ..FigureOptions::default()
                     };

@@ -1,4 +1,5 @@
-//! How a forecast motion ends, in numbers.
+//! The numbers that describe the end of a forecast motion: position, heading, speed, and
+//! probabilities of large changes of heading.
 
 use egui::{Grid, Ui};
 
@@ -6,7 +7,8 @@ use crate::app::response::MotionAnswer;
 use crate::app::widgets::{SpreadRow, assumptions_ui, spread_table_ui, value_row};
 use crate::units::{Quantity, UnitSystem, percent};
 
-/// Draws the outcome.
+/// Draws the time at which the vehicle comes to rest on the central path (or at which the forecast
+/// ends), the assumptions, and the state of the vehicle at that time.
 pub fn outcome_ui(ui: &mut Ui, answer: &MotionAnswer, units: UnitSystem) {
     let report = &answer.answer.report;
     let outcome = &report.outcome;

@@ -1,4 +1,5 @@
-//! What the force network says of a collision: bands of the force over time, and numbers.
+//! The “Force prediction” pane: the distribution of the contact force of a collision as the force
+//! network predicts it, as bands over time and as numbers.
 
 use egui::{Id, Panel, ScrollArea, Ui};
 
@@ -17,14 +18,14 @@ use crate::force::metrics::BAND_LEVELS;
 use crate::render::{FigureOptions, theme};
 use crate::study::PredictForceAnswer;
 
-/// Width of the form at first, points.
+/// Width of the form before the user resizes it, points.
 const FORM_WIDTH: f32 = 340.0;
-/// Smallest height of one plot, points.
+/// Smallest height of a plot, points.
 const MIN_PLOT_HEIGHT: f32 = 120.0;
-/// Height of a title row, points.
+/// Height of the heading above a plot, points.
 const TITLE_HEIGHT: f32 = 30.0;
 
-/// Draws the form, the numbers and the plots.
+/// Draws the form and the numbers on the left, and the plots on the right.
 pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands } = pane;
     if session.force.model.current.is_none() {
@@ -61,6 +62,7 @@ pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     );
 }
 
+/// Names the current force model; hovering over it describes its training.
 fn model_ui(ui: &mut Ui, force: &ForceSession, commands: &mut Vec<Command>) {
     let Some(current) = &force.model.current else { return };
     let record = current.model.record();
@@ -79,6 +81,8 @@ fn model_ui(ui: &mut Ui, force: &ForceSession, commands: &mut Vec<Command>) {
     model_row_ui(ui, &force.model, &hint, commands);
 }
 
+/// Draws the choice of the components, bands and curves that are drawn, and the number and the seed
+/// of the curves that are sampled from the prediction.
 fn choices_ui(ui: &mut Ui, view: &mut View) {
     let view = &mut view.force;
     ui.horizontal_wrapped(|ui| {
@@ -119,13 +123,18 @@ fn choices_ui(ui: &mut Ui, view: &mut View) {
     });
 }
 
+/// The prediction that is drawn, and its surroundings.
 #[derive(Clone, Copy)]
 struct Shown<'a> {
+    /// The predicted force.
     answer: &'a PredictForceAnswer,
+    /// The session, which holds the recorded force of the selected case.
     session: &'a ForceSession,
+    /// Whether the plots fit their view to the data again.
     reset: bool,
 }
 
+/// Draws one plot over time for each chosen component of the force.
 fn plots_ui(ui: &mut Ui, shown: Shown<'_>, view: &View, commands: &mut Vec<Command>) {
     let levels: Vec<f64> = BAND_LEVELS
         .iter()

@@ -1,4 +1,5 @@
-//! The collision whose force is predicted.
+//! The form with the collision whose force is predicted: masses, velocities, heading of the bullet,
+//! struck side, contact point and body of the bullet.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -16,10 +17,11 @@ use crate::force::ForceScenario;
 use crate::render::theme;
 use crate::units::{Quantity, UnitSystem, significant};
 
-/// Width of a slider without its number, points.
+/// Width of a slider without its number field, points.
 const SLIDER_WIDTH: f32 = 110.0;
 
-/// Draws where the collision comes from, its numbers, and where they are unlike the training's.
+/// Draws the origin of the collision, its numbers, and warnings for numbers that lie outside the
+/// range of the training data.
 pub fn form_ui(
     ui: &mut Ui,
     (project, view): (&mut Project, &mut View),
@@ -63,6 +65,8 @@ pub fn form_ui(
     }
 }
 
+/// Draws the buttons that take the collision from the selected case or from the scenario, and tells
+/// whether the model was trained on the recorded case.
 fn start_ui(
     ui: &mut Ui,
     (project, view): (&mut Project, &mut View),
@@ -96,6 +100,8 @@ fn start_ui(
     });
 }
 
+/// Draws the masses, the velocities along and across the heading of the target, and the heading of
+/// the bullet relative to it.
 fn motion_ui(ui: &mut Ui, scenario: &mut ForceScenario, units: UnitSystem) {
     for (vehicle, label, hint) in [
         (0, "Target mass m_t", "Mass of the struck vehicle"),
@@ -134,6 +140,7 @@ fn motion_ui(ui: &mut Ui, scenario: &mut ForceScenario, units: UnitSystem) {
     }
 }
 
+/// Draws the choice of the struck side. A change of the side mirrors the whole scenario.
 fn side_ui(ui: &mut Ui, scenario: &mut ForceScenario) {
     let hint = "The side on which the target is struck; the other side is the mirror image";
     let name = ui.label("Struck side").on_hover_text(hint);
@@ -148,6 +155,7 @@ fn side_ui(ui: &mut Ui, scenario: &mut ForceScenario) {
     ui.end_row();
 }
 
+/// Draws the longitudinal position of the first contact, or the checkbox that leaves it open.
 fn contact_ui(ui: &mut Ui, scenario: &mut ForceScenario, units: UnitSystem) {
     if let Some([x_m, _]) = scenario.contact_m {
         let range = SliderRange {
@@ -174,6 +182,8 @@ fn contact_ui(ui: &mut Ui, scenario: &mut ForceScenario, units: UnitSystem) {
     ui.end_row();
 }
 
+/// Draws the choice of the body of the bullet among those that the model was trained on, or
+/// unknown.
 fn body_ui(ui: &mut Ui, scenario: &mut ForceScenario, bodies: &[String]) {
     let hint = "Shape of the bullet's front, as the data set calls it";
     let name = ui.label("Bullet body").on_hover_text(hint);

@@ -1,4 +1,5 @@
-//! The numbers of a predicted force, with intervals.
+//! The characteristic numbers of a predicted force with their intervals, and the components of the
+//! predicted mixture.
 
 use egui::{Grid, Ui};
 
@@ -7,12 +8,13 @@ use crate::app::widgets::{SpreadRow, spread_table_ui, value_row};
 use crate::study::PredictForceReport;
 use crate::units::{Quantity, UnitSystem, percent};
 
-/// Components of a mixture that are spelled out.
+/// Largest number of mixture components that are listed; of further ones the number is shown.
 const SHOWN_MODES: usize = 4;
-/// Weight below which a component is not.
+/// Weight below which a mixture component is not listed.
 const LEAST_WEIGHT: f64 = 0.01;
 
-/// Draws the numbers and a button that copies them.
+/// Draws the table of the numbers, which can be copied, the impulse of the momentum solution, the
+/// clock direction, the probability of hooking, and the components of the mixture.
 pub fn numbers_ui(ui: &mut Ui, report: &PredictForceReport, units: UnitSystem) {
     spread_table_ui(ui, &report.scenario, &rows(report, units));
     Grid::new("force momentum").num_columns(2).show(ui, |ui| {
@@ -26,6 +28,7 @@ pub fn numbers_ui(ui: &mut Ui, report: &PredictForceReport, units: UnitSystem) {
     modes_ui(ui, report, units);
 }
 
+/// The rows of the table: impulse, peak, duration and principal direction of force (PDOF).
 fn rows(report: &PredictForceReport, units: UnitSystem) -> Vec<SpreadRow> {
     let unit = |quantity: Quantity| quantity.display_unit(units);
     let milliseconds = || {
@@ -54,7 +57,9 @@ fn rows(report: &PredictForceReport, units: UnitSystem) -> Vec<SpreadRow> {
     ]
 }
 
-/// The ways in which it may go, the likeliest first.
+/// Draws the components of the mixture, each with its weight and the numbers of its mean curve, in
+/// order of falling weight. A mixture with fewer than two components of notable weight draws
+/// nothing.
 fn modes_ui(ui: &mut Ui, report: &PredictForceReport, units: UnitSystem) {
     let likely: Vec<_> = report.modes.iter().filter(|mode| mode.weight >= LEAST_WEIGHT).collect();
     if likely.len() < 2 {

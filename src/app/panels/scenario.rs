@@ -1,4 +1,4 @@
-//! The impact solver: two vehicles of the user's own.
+//! The “Scenario” pane: the form of a collision of two vehicles, with its momentum solution.
 
 use egui::{ComboBox, Grid, ScrollArea, Ui};
 
@@ -14,10 +14,11 @@ use crate::render::{FigureOptions, theme};
 use crate::study::{BodyReport, ImpactAnswer, ImpactReport};
 use crate::units::{Quantity, UnitSystem};
 
-/// Height of the plan, points.
+/// Height of the plan view, points.
 const PLAN_HEIGHT: f32 = 200.0;
 
-/// Draws the plan, the solution and the form.
+/// Draws the plan view of the vehicles at first contact, the momentum solution, and the form that
+/// edits the scenario.
 pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -71,6 +72,8 @@ fn vehicles_form(ui: &mut Ui, project: &mut Project, units: UnitSystem) {
     }
 }
 
+/// Draws the fields of one vehicle in a two-column grid. The velocity is edited as speed and course
+/// in world axes.
 fn vehicle_form(ui: &mut Ui, vehicle: &mut ScenarioVehicle, units: UnitSystem) {
     let mut speed_m_s = vehicle.vx_m_s.hypot(vehicle.vy_m_s);
     let mut course_rad = vehicle.vy_m_s.atan2(vehicle.vx_m_s);
@@ -103,6 +106,8 @@ fn vehicle_form(ui: &mut Ui, vehicle: &mut ScenarioVehicle, units: UnitSystem) {
     quantity_field(ui, "CG behind front", &mut vehicle.cg_from_front_m, Quantity::Length, range);
 }
 
+/// Draws the fields of the contact location, restitution and friction, and of the pulse over which
+/// the impulse is spread in the simulation.
 fn contact_form(ui: &mut Ui, project: &mut Project, units: UnitSystem) {
     egui::CollapsingHeader::new("Contact").default_open(true).show(ui, |ui| {
         Grid::new("contact").num_columns(2).show(ui, |ui| {
@@ -133,6 +138,7 @@ fn contact_form(ui: &mut Ui, project: &mut Project, units: UnitSystem) {
     });
 }
 
+/// Draws the fields of the contact location, in the way in which the scenario specifies it.
 fn location_form(ui: &mut Ui, location: &mut ContactLocation, units: UnitSystem) {
     let length = |ui: &mut Ui, label: &str, value: &mut f64| {
         quantity_field(ui, label, value, Quantity::Length, (-20.0..=20.0, units));
@@ -168,6 +174,8 @@ fn location_form(ui: &mut Ui, location: &mut ContactLocation, units: UnitSystem)
     }
 }
 
+/// Draws the momentum solution: impulse, regime of the contact, closing speed, dissipated energy,
+/// and the motion of each vehicle after the impact.
 fn solution_ui(ui: &mut Ui, report: &ImpactReport, units: UnitSystem) {
     let impulse = |vector| Quantity::Impulse.shown_vector(vector, units);
     ui.strong("Momentum solution");
@@ -188,6 +196,7 @@ fn solution_ui(ui: &mut Ui, report: &ImpactReport, units: UnitSystem) {
     });
 }
 
+/// Labels and values of the change of velocity and of the motion of one vehicle after the impact.
 fn body_rows(after: &BodyReport, units: UnitSystem) -> Vec<(&'static str, String)> {
     let vector = |value| Quantity::Speed.shown_vector(value, units);
     let mut rows = vec![

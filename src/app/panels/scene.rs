@@ -1,4 +1,5 @@
-//! The scene from above, with its clock.
+//! The “Scene” pane: a plan view of the motion at a chosen time, and the clock with which the time
+//! is chosen.
 
 use egui::{Slider, Ui};
 
@@ -10,7 +11,7 @@ use crate::figure::analysis_scene_figure;
 use crate::render::FigureOptions;
 use crate::study::SimulateAnswer;
 
-/// Draws the scene and the time slider.
+/// Draws the time slider and the plan view.
 pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { view, session, commands, .. } = pane;
     let Some(SimulateAnswer { analysis, .. }) = analysis_or_hint(ui, session) else {
@@ -32,7 +33,10 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     figure_frame(ui, (&figure.title, &figure), &options, commands);
 }
 
-/// Play, pause, and a slider for the moment, s.
+/// Draws the button that plays or pauses the motion, and the slider of the time.
+///
+/// - `time_s`: the present time, s.
+/// - `end_s`: the end of the motion and of the slider, s; the slider starts at 0.
 pub fn clock_ui(
     ui: &mut Ui,
     (time_s, end_s): (f64, f64),

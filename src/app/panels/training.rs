@@ -1,4 +1,4 @@
-//! How the networks learn.
+//! The “Training” pane: settings, progress and losses of the training of either network.
 
 use egui::{ScrollArea, Ui};
 
@@ -11,7 +11,7 @@ use crate::app::panes::PaneContext;
 use crate::app::widgets::no_dataset_ui;
 use crate::data::DatasetKind;
 
-/// Draws the training of one of the networks.
+/// Draws the choice between the two networks and the training of the chosen one.
 pub fn training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.horizontal(|ui| {

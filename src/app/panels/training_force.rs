@@ -1,4 +1,4 @@
-//! What the force network learns from, and how.
+//! The form with the data and the settings of a training of the force network.
 
 use egui::{Grid, Ui};
 
@@ -8,7 +8,7 @@ use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::dataset_choice;
 use crate::data::DatasetKind;
 
-/// Draws the form; whether there is something to train on.
+/// Draws the form and returns whether a force data set is open to train on.
 pub fn force_form_ui(ui: &mut Ui, form: &mut ForceTrainingForm, sources: &[Source]) -> bool {
     let datasets = open_datasets(sources, &[DatasetKind::Force]);
     Grid::new("training form").num_columns(2).show(ui, |ui| {

@@ -1,4 +1,4 @@
-//! The losses of a training of either network, epoch by epoch.
+//! The losses of a training of either network over the epochs.
 
 use egui::{Grid, Ui};
 
@@ -12,20 +12,27 @@ use crate::units::significant;
 
 /// Smallest height of a plot, points.
 const MIN_PLOT_HEIGHT: f32 = 200.0;
-/// Height of what stands below the plots and of their titles, points.
+/// Height that is reserved for the titles of the plots and for the numbers below them, points.
 const BELOW_PLOT: f32 = 190.0;
 
-/// How losses are shown.
+/// Settings that determine how the losses are drawn.
 pub struct LossView<'a> {
-    /// Names of the loss terms that are drawn.
+    /// Names of the loss terms that are drawn; the user changes them with checkboxes.
     pub terms: &'a mut Vec<String>,
-    /// Whether the axis of the losses is logarithmic.
+    /// Whether the axis of the losses should be logarithmic. It is linear if a shown loss is not
+    /// positive.
     pub log: &'a mut bool,
-    /// Whether the plots are to show everything again.
+    /// Whether the plots fit their view to the data again.
     pub reset: bool,
 }
 
-/// Draws the losses, the balance of data and physics if there is one, and the last epoch in numbers.
+/// Draws the losses, the balance between the data and the physics loss if the training has one, and
+/// the numbers of the last epoch. An empty history draws nothing.
+///
+/// - `title`: title of the plot of the losses.
+/// - `history`: the epochs of the training, in order.
+/// - `best_epoch`: the epoch with the best weights, if the training keeps those instead of the
+///   last.
 pub fn losses_ui(
     ui: &mut Ui,
     network: Network,
@@ -69,7 +76,9 @@ pub fn losses_ui(
     }
 }
 
-/// The chosen loss terms over the epochs.
+/// The training and the validation loss of each chosen term over the epochs.
+///
+/// - `names`: the loss terms in the order in which every epoch lists them.
 fn curves(history: &[EpochSummary], names: &[&'static str], chosen: &[String]) -> Vec<LossCurve> {
     let of_term = |idx: usize| history.iter().filter_map(move |epoch| epoch.losses.get(idx));
     let is_chosen = |name: &str| chosen.iter().any(|chosen| chosen == name);
@@ -83,7 +92,8 @@ fn curves(history: &[EpochSummary], names: &[&'static str], chosen: &[String]) -
         .collect()
 }
 
-/// How data and physics balance over the epochs, where physics has a weight that changes.
+/// The share of the data in the loss and the weight of the physics loss over the epochs; `None` if
+/// no epoch reports them.
 fn balance(history: &[EpochSummary]) -> Option<Figure> {
     let over_epochs = |value: fn(PhysicsBalance) -> f64| -> Vec<[f64; 2]> {
         let point = |epoch: &EpochSummary| Some([epoch.epoch as f64, value(epoch.physics?)]);
@@ -94,6 +104,8 @@ fn balance(history: &[EpochSummary]) -> Option<Figure> {
     (!shares.is_empty()).then(|| balance_figure(shares, weights))
 }
 
+/// Draws the numbers of the last epoch in a two-column grid: losses, learning rate, gradient norm
+/// and time.
 fn last_epoch_ui(ui: &mut Ui, last: &EpochSummary, best_epoch: Option<usize>) {
     let stage = last.stage.as_ref().map_or(String::new(), |stage| format!(", {stage}"));
     match best_epoch {
@@ -116,7 +128,9 @@ fn last_epoch_ui(ui: &mut Ui, last: &EpochSummary, best_epoch: Option<usize>) {
     value_row(ui, "Time per epoch", &format!("{:.2} s", last.seconds));
 }
 
-/// Which losses are drawn, and whether their axis is logarithmic.
+/// Draws the choice of the loss terms and of the logarithmic axis.
+///
+/// - `selected`: names of the chosen terms.
 fn loss_choice_ui(
     ui: &mut Ui,
     names: &[&'static str],

@@ -1,4 +1,5 @@
-//! What the trainings of both networks show alike.
+//! The parts of the training pane that both networks share: buttons, progress, the resulting model
+//! and common settings.
 
 use std::time::Duration;
 
@@ -15,10 +16,11 @@ use crate::data::Severity;
 use crate::render::theme;
 use crate::study::{Assumption, BadCases};
 
-/// Draws the buttons and the progress of a training, the model, and the losses: of the training under
-/// way, else of the model's own training.
+/// Draws the buttons and the progress of a training, the current model, and the losses. The losses
+/// are those of the latest training of this session, or, if there is none, those of the training
+/// from which the current model came.
 ///
-/// - `can_start`: whether there is something to train on.
+/// - `can_start`: whether there are data to train on.
 pub fn network_training_ui<M: TrainedModel>(
     ui: &mut Ui,
     can_start: bool,
@@ -52,8 +54,10 @@ pub fn network_training_ui<M: TrainedModel>(
     }
 }
 
-/// Rows of a two-column grid: a file with settings, whether bad cases are left out, and whether to go
-/// on from a checkpoint.
+/// Draws three rows of a two-column grid: the settings file, whether unusable cases are left out,
+/// and whether an interrupted training is continued from its checkpoint.
+///
+/// - `parts`: the sections that the settings file may have, shown as a hint.
 pub fn settings_rows_ui(
     ui: &mut Ui,
     parts: &str,
@@ -74,9 +78,10 @@ pub fn settings_rows_ui(
     ui.end_row();
 }
 
-/// A number that may be left open.
+/// Draws a number field whose value may be left open, and returns its response. The number 0 leaves
+/// the value open, which sets it to `None`.
 ///
-/// - `open`: what stands for it then; 0 leaves it open.
+/// - `open`: text that is shown instead of the number while the value is open.
 pub fn optional_number_ui(ui: &mut Ui, value: &mut Option<usize>, open: &str) -> Response {
     let mut number = value.unwrap_or(0);
     let text = |n: f64, _| if n < 1.0 { open.to_owned() } else { format!("{n:.0}") };
@@ -88,7 +93,7 @@ pub fn optional_number_ui(ui: &mut Ui, value: &mut Option<usize>, open: &str) ->
     response
 }
 
-/// Train, pause, cancel.
+/// Draws the buttons that start, pause or resume, and cancel a training.
 fn run_buttons_ui<M: TrainedModel>(
     ui: &mut Ui,
     can_start: bool,
@@ -112,7 +117,11 @@ fn run_buttons_ui<M: TrainedModel>(
     });
 }
 
-/// How far it is, with the time left.
+/// Draws a progress bar with the remaining time, or a spinner while the progress is not known.
+///
+/// - `what`: what the training is doing.
+/// - `fraction`: the share that is done, 0 to 1.
+/// - `left`: the estimated remaining time.
 fn run_progress_ui(ui: &mut Ui, what: &str, (fraction, left): (Option<f32>, Option<Duration>)) {
     let left = left.map_or(String::new(), |left| format!(", {} left", duration_text(left)));
     match fraction {
@@ -124,7 +133,11 @@ fn run_progress_ui(ui: &mut Ui, what: &str, (fraction, left): (Option<f32>, Opti
     }
 }
 
-/// Why there is no model, which cases were left out, and what was assumed.
+/// Draws the messages of the latest training: the reason why it gave no model, the cases that were
+/// left out, and the assumptions.
+///
+/// - `problem`: the reason for the failure; `None` if the training did not fail.
+/// - `left_out`: one reason for each case that was left out.
 fn run_record_ui(
     ui: &mut Ui,
     problem: Option<&str>,

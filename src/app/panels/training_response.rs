@@ -1,4 +1,4 @@
-//! What the response network learns from, and how.
+//! The form with the data and the settings of a training of the response network.
 
 use egui::{ComboBox, DragValue, Grid, Ui};
 
@@ -7,7 +7,7 @@ use crate::app::response::{ResponseTrainingForm, TrainingMode};
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::dataset_choice;
 
-/// Draws the form; whether there is something to train on.
+/// Draws the form and returns whether a data set that suits the training mode is open.
 pub fn response_form_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, sources: &[Source]) -> bool {
     let datasets = open_datasets(sources, form.mode.data_kinds());
     Grid::new("response training form").num_columns(2).show(ui, |ui| {
@@ -35,6 +35,8 @@ pub fn response_form_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, sources: &
     !datasets.is_empty()
 }
 
+/// Draws the number of trajectories, the seeds and the settings in a two-column grid. Pre-training
+/// on simulations uses neither the number of trajectories nor the seed of their choice.
 fn numbers_ui(ui: &mut Ui, form: &mut ResponseTrainingForm) {
     let is_fine_tuning = form.mode != TrainingMode::Pretrain;
     let name = ui.label("Trajectories");

@@ -1,4 +1,5 @@
-//! The vehicle and how it is simulated.
+//! The “Vehicle” pane: the struck and the striking vehicle, the settings of the simulation, and the
+//! speed and contact point for files that contain only a force.
 
 use egui::{ComboBox, Grid, ScrollArea, Ui};
 
@@ -12,7 +13,8 @@ use crate::study::{
 use crate::units::{Quantity, UnitSystem};
 use crate::vehicle::{ContactPoint, Equations, Integrator, Preset, VehicleParameters};
 
-/// Draws the choice of vehicle and integrator, and the parameters.
+/// Draws the choice of the vehicles, the equations and the integrator, the start of single force
+/// files, and, if the struck vehicle is a preset, its parameters.
 pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, .. } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
@@ -40,6 +42,7 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     });
 }
 
+/// Draws the choice of the struck and of the striking vehicle.
 fn choice_ui(ui: &mut Ui, project: &mut Project) {
     let open = format!("as the data set says, else {}", DEFAULT_VEHICLE.id());
     let hint = "A vehicle file of your own: open it, or drop it here";
@@ -49,9 +52,9 @@ fn choice_ui(ui: &mut Ui, project: &mut Project) {
     vehicle_choice_ui(ui, ("Striking vehicle", hint), (&mut project.bullet, &open));
 }
 
-/// Chooses a vehicle in a two-column grid.
+/// Draws a row of a two-column grid with the choice of a vehicle among the presets.
 ///
-/// - `open`: what happens if none is chosen.
+/// - `open`: text that tells which vehicle is used if the user chooses none.
 fn vehicle_choice_ui(
     ui: &mut Ui,
     (title, hint): (&str, &str),
@@ -78,7 +81,9 @@ fn vehicle_choice_ui(
     ui.end_row();
 }
 
-/// A labelled choice of a few values in a two-column grid.
+/// Draws a row of a two-column grid: a label and a drop-down list of a few values.
+///
+/// - `options`, `label`: the values, and the function that gives the text of a value.
 fn list_ui<T: Copy + PartialEq>(
     ui: &mut Ui,
     title: &str,
@@ -113,7 +118,7 @@ fn integrator_label(integrator: Integrator) -> &'static str {
     }
 }
 
-/// The speed before the impact, or what is assumed for it.
+/// Draws the speed before the impact if the user has set it, otherwise the value that is assumed.
 fn speed_ui(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
     let label = "Speed before impact";
     let Some(speed_m_s) = &mut start.speed_m_s else {
@@ -129,7 +134,8 @@ fn speed_ui(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
     }
 }
 
-/// Where the force acts, or what is assumed for it.
+/// Draws the contact point, at which the force acts, if the user has set it, otherwise the point
+/// that is assumed.
 fn contact_ui(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
     let Some(ContactPoint { x_m, y_m, height_m }) = &mut start.contact else {
         let ContactPoint { x_m, y_m, height_m } = ASSUMED_CONTACT;
@@ -153,7 +159,8 @@ fn contact_ui(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
     }
 }
 
-/// A row that says what is assumed; whether the user wants to say it.
+/// Draws a row of a two-column grid with the value that is assumed, and returns whether the user
+/// clicked the button to set the value instead.
 fn assumed_ui(ui: &mut Ui, label: &str, assumed: &str) -> bool {
     ui.label(label);
     let is_clicked = ui
@@ -167,7 +174,8 @@ fn assumed_ui(ui: &mut Ui, label: &str, assumed: &str) -> bool {
     is_clicked
 }
 
-/// A row with a button; whether the user wants the value to be assumed.
+/// Draws a row of a two-column grid with a button, and returns whether the user clicked it to have
+/// the value assumed.
 fn leave_open_ui(ui: &mut Ui, label: &str) -> bool {
     ui.label("");
     let is_clicked = ui.small_button(label).on_hover_text("Assume a value").clicked();
@@ -175,7 +183,8 @@ fn leave_open_ui(ui: &mut Ui, label: &str) -> bool {
     is_clicked
 }
 
-/// The parameters as the file has them, and by which rule the estimates came about.
+/// Draws the parameters of a vehicle with the names and SI units of its file, marks the estimates,
+/// and lists the rule by which each estimate was made.
 fn parameters_ui(ui: &mut Ui, vehicle: &VehicleParameters) {
     ui.strong(&vehicle.name);
     ui.weak(&vehicle.source);
