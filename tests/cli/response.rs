@@ -186,6 +186,31 @@ fn a_recorded_force_takes_the_place_of_the_predicted_one() {
 }
 
 #[test]
+fn a_force_that_does_not_say_where_it_acts_replaces_no_recorded_one() {
+    let place = workplace();
+    let with_moment = fs::read_to_string("datasets/fea/forces/c001.csv").unwrap();
+    let without_moment = place.folder.path().join("without-moment.csv");
+    let rows: Vec<String> = with_moment
+        .lines()
+        .map(|line| line.split(',').take(3).collect::<Vec<_>>().join(","))
+        .collect();
+    fs::write(&without_moment, rows.join("\n")).unwrap();
+    let predict = |force: &Path, contact: &[&str]| {
+        let mut command = program();
+        let record = "datasets/trajectories-fea/trajectories/FE_c001.csv";
+        command.args(["predict", "--trajectory", record, "--force"]).arg(force).args(contact);
+        command.arg("--response-model").arg(&place.tuned);
+        command.arg("--out").arg(place.folder.path().join("moment")).output().unwrap()
+    };
+    // The recorded motion has a yaw moment about the centre of gravity and no contact point.
+    let refused = predict(&without_moment, &[]);
+    let text = String::from_utf8(refused.stderr).unwrap();
+    assert!(!refused.status.success() && text.contains("without-moment.csv"), "{text}");
+    assert!(text.contains("yaw moment"), "{text}");
+    ok(predict(Path::new("datasets/fea/forces/c001.csv"), &[]));
+}
+
+#[test]
 fn what_cannot_be_done_is_said_in_one_line() {
     let place = workplace();
     let error = |command: &mut Command| {

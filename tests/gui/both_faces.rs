@@ -259,34 +259,56 @@ fn a_data_set_is_simulated_alike() {
     CommandLine::of(&["simulate", "--dataset", TRAJECTORIES]).compare(request, &answer.report);
 }
 
+/// Waits for the motion that the window predicts under a force, and compares it with what a command
+/// says that asks the same.
+fn compare_motion(harness: &mut Harness<'_, App>, force: ForceChoice, asks: CommandLine<'_>) {
+    harness.state_mut().state_mut().project.response.forecast.force = force;
+    let is_predicted = force == ForceChoice::Predicted;
+    step_until(harness, "the motion", |state| {
+        let forecast = &state.session.response.forecast;
+        let asked = forecast.asked.as_ref().map(|asked| &asked.request);
+        asked.is_some()
+            && asked == state.motion_request().as_ref()
+            && !forecast.is_waiting()
+            && state.motion_forecast().is_some_and(|of| of.is_predicted() == is_predicted)
+    });
+    let (question, shown) = latest(&state(harness).session.response.forecast);
+    asks.prints(&["files"]).compare(question.request, &shown.answer.report);
+}
+
 #[test]
 fn a_motion_is_predicted_alike() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().display().to_string();
-    let mut harness = open_on(FORCES);
-    {
+    let drawn = ["--draws", "3", "--seed", "7", "--out", &out];
+    let few_draws = |harness: &mut Harness<'_, App>| {
         let form = &mut harness.state_mut().state_mut().project.response.forecast;
-        (form.force, form.n_curves, form.seed) = (ForceChoice::Predicted, 3, 7);
-    }
+        (form.n_curves, form.seed) = (3, 7);
+    };
+
+    let mut harness = open_on(FORCES);
+    few_draws(&mut harness);
     select(&mut harness, FORCES, "c002");
-    let of_case = ["predict", "--dataset", FORCES, "--case", "c002", "--out", &out];
-    let drawn = ["--draws", "3", "--seed", "7"];
-    for (force, option) in
-        [(ForceChoice::Predicted, None), (ForceChoice::Given, Some("--given-force"))]
-    {
-        harness.state_mut().state_mut().project.response.forecast.force = force;
-        let is_predicted = force == ForceChoice::Predicted;
-        step_until(&mut harness, "the motion", |state| {
-            let forecast = &state.session.response.forecast;
-            let asked = forecast.asked.as_ref().map(|asked| &asked.request);
-            asked == state.motion_request().as_ref()
-                && !forecast.is_waiting()
-                && state.motion_forecast().is_some_and(|of| of.is_predicted() == is_predicted)
-        });
-        let (question, shown) = latest(&state(&harness).session.response.forecast);
-        let args = [&of_case[..], &drawn, option.as_slice()].concat();
-        CommandLine::of(&args).prints(&["files"]).compare(question.request, &shown.answer.report);
-    }
+    let of_case = [&["predict", "--dataset", FORCES, "--case", "c002"][..], &drawn].concat();
+    compare_motion(&mut harness, ForceChoice::Predicted, CommandLine::of(&of_case));
+    let given = [&of_case[..], &["--given-force"]].concat();
+    compare_motion(&mut harness, ForceChoice::Given, CommandLine::of(&given));
+
+    // The window has the scenario in memory, the command line the file.
+    apply(&mut harness, Command::Open(vec![SCENARIO.into()]));
+    step_until(&mut harness, "the scenario", is_idle);
+    let of_scenario = [&["predict", "--scenario", SCENARIO][..], &drawn].concat();
+    let predicted = CommandLine::of(&of_scenario).asks_differently(&["motion"]);
+    compare_motion(&mut harness, ForceChoice::Predicted, predicted);
+    let given = [&of_scenario[..], &["--given-force"]].concat();
+    let given = CommandLine::of(&given).asks_differently(&["motion"]);
+    compare_motion(&mut harness, ForceChoice::Given, given);
+
+    let record = "datasets/trajectories-fea/trajectories/FE_c001.csv";
+    let mut harness = open_on(record);
+    few_draws(&mut harness);
+    let of_record = [&["predict", "--trajectory", record, "--given-force"][..], &drawn].concat();
+    compare_motion(&mut harness, ForceChoice::Given, CommandLine::of(&of_record));
 }
 
 fn train(harness: &mut Harness<'_, App>, network: Network) {
