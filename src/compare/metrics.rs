@@ -1,4 +1,4 @@
-//! Errors of a predicted motion against a reference.
+//! Error metrics of a predicted motion against a reference, and violations of energy conservation.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,25 +6,26 @@ use crate::data::{Channel, SeriesError, TimeSeries, null_as_nan, nulls_as_nan};
 use crate::numerics::{interpolate, wrap_angle_rad};
 use crate::vehicle::VehicleParameters;
 
-/// Horizons at which the distance is reported, s.
+/// Times after the start at which the position error is reported, s.
 pub const HORIZONS_S: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 
-/// Yaw change beyond which a motion counts as a spin, rad (as in the trajectory datasets).
+/// Change of yaw beyond which a motion counts as a spin, rad, as in the trajectory data sets.
 pub const SPIN_YAW_CHANGE_RAD: f64 = std::f64::consts::FRAC_PI_2;
 
-/// How far a predicted motion lies from a reference, over the reference's samples.
+/// Errors of a predicted motion against a reference, evaluated at the reference's samples.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MotionError {
-    /// Mean over time of the distance in (X, Y), m.
+    /// Mean over the samples of the distance between the positions (X, Y), m.
     #[serde(deserialize_with = "null_as_nan")]
     pub average_error_m: f64,
-    /// Distance at the last sample, m.
+    /// Distance between the positions at the last sample, m.
     #[serde(deserialize_with = "null_as_nan")]
     pub final_error_m: f64,
-    /// Wrapped difference of yaw at the last sample (prediction − reference), rad.
+    /// Difference of yaw (prediction − reference) at the last sample, wrapped, rad.
     #[serde(deserialize_with = "null_as_nan")]
     pub final_heading_error_rad: f64,
-    /// Distance at each of [`HORIZONS_S`], m; the last sample stands for a horizon just behind it.
+    /// Distance between the positions at each of [`HORIZONS_S`], m, linear between samples. For a
+    /// horizon beyond the end of the reference it is the distance at the last sample.
     #[serde(deserialize_with = "nulls_as_nan")]
     pub horizon_error_m: [f64; 4],
     /// Root mean square error of X, m.
@@ -33,17 +34,17 @@ pub struct MotionError {
     /// Root mean square error of Y, m.
     #[serde(deserialize_with = "null_as_nan")]
     pub rmse_y_m: f64,
-    /// Root mean square error of v_x, m/s, where the reference has it.
+    /// Root mean square error of v_x, m/s; `None` unless both motions have it.
     pub rmse_vx_m_s: Option<f64>,
-    /// Root mean square error of v_y, m/s, where the reference has it.
+    /// Root mean square error of v_y, m/s; `None` unless both motions have it.
     pub rmse_vy_m_s: Option<f64>,
-    /// Root mean square error of the yaw rate, rad/s, where the reference has it.
+    /// Root mean square error of the yaw rate, rad/s; `None` unless both motions have it.
     pub rmse_yaw_rate_rad_s: Option<f64>,
 }
 
 impl MotionError {
-    /// Compares `predicted` with `reference` at the reference's instants; the prediction is
-    /// interpolated.
+    /// Compares `predicted` with `reference` at the times of the reference. The prediction is
+    /// interpolated linearly, and its end values are held outside of its time range.
     ///
     /// # Errors
     /// [`SeriesError::Missing`] if X, Y or yaw is missing in either.
@@ -75,21 +76,23 @@ impl MotionError {
     }
 }
 
-/// Growth of kinetic energy per sample that counts as a violation, as a share of the initial one:
-/// far above rounding and what roll hands to yaw through I_xz, far below what an eye would see.
+/// Growth of kinetic energy from one sample to the next that counts as a violation, as a share of
+/// the initial energy. It is far above rounding errors and the energy that passes from roll to yaw
+/// through I_xz, and far below what is visible in a plot.
 const VIOLATION_SHARE: f64 = 1e-4;
 
-/// How often the planar kinetic energy grows without a force on the vehicle: samples i whose
-/// contact force is zero over the interval to i + 1 while
+/// Number of samples after which the planar kinetic energy grows without a force on the vehicle. A
+/// sample i counts if the contact force is zero over the interval from i to i + 1 while
 ///
 /// ```text
 /// E = m (v_x² + v_y²)/2 + I_zz r²/2        E(i + 1) − E(i) > 10⁻⁴ E(0)
 /// ```
 ///
-/// The force columns hold means over the coming interval, as in [`Motion`](crate::vehicle::Motion).
+/// The force columns hold means over the interval that follows the sample, as in
+/// [`Motion`](crate::vehicle::Motion).
 ///
 /// # Errors
-/// [`SeriesError::Missing`] without velocities, yaw rate or force.
+/// [`SeriesError::Missing`] without velocities, yaw rate or force in body axes.
 pub fn physical_violations(
     motion: &TimeSeries,
     vehicle: &VehicleParameters,
@@ -115,7 +118,7 @@ fn root_mean_square(values: &[f64]) -> f64 {
     (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// Largest change of yaw from the start, rad.
+/// Largest deviation of yaw from its initial value, to either side, rad.
 ///
 /// # Errors
 /// [`SeriesError::Missing`] without a yaw column.
@@ -154,7 +157,7 @@ mod tests {
     fn energy_that_grows_without_a_force_is_counted() {
         let vehicle = crate::vehicle::Preset::Reference.parameters();
         let mut series = TimeSeries::new(vec![0.0, 0.01, 0.02, 0.03]).unwrap();
-        // Up under force, up without, down without.
+        // The energy grows under force, grows without force, and falls without force.
         for (channel, values) in [
             (Channel::Vx, vec![10.0, 11.0, 11.5, 11.4]),
             (Channel::Vy, vec![0.0; 4]),

@@ -1,4 +1,5 @@
-//! Simulation against reference.
+//! Comparison of simulated with recorded motions: error metrics, and the replay of trajectory data
+//! sets.
 
 mod metrics;
 mod replay;

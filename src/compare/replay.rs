@@ -1,5 +1,5 @@
-//! Simulates the cases of a trajectory dataset from their recorded initial state and force, and
-//! compares each with its recorded motion.
+//! Replay of trajectory data sets: each case is simulated with the 4DOF model from its recorded
+//! initial state under its recorded force, and compared with its recorded motion.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -17,88 +17,89 @@ use crate::vehicle::{
     VehicleParameters, VehicleState,
 };
 
-/// Cases that are simulated in parallel between two reports of progress.
+/// Number of cases that are simulated in parallel between two reports of progress.
 const BLOCK_CASES: usize = 32;
 
-/// One case, simulated and compared.
+/// Simulation of a case and its comparison with the recorded motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Replay {
     /// Name of the case.
     pub case: String,
     /// The simulated motion.
     pub motion: Motion,
-    /// How far it lies from the recorded one.
+    /// Errors of the simulated motion against the recorded one.
     pub error: MotionError,
-    /// Whether the recorded motion is a spin.
+    /// Whether the recorded motion is a spin: its yaw changes by more than [`SPIN_YAW_CHANGE_RAD`].
     pub spin: bool,
-    /// How often the simulated kinetic energy grows without a force: see [`physical_violations`].
+    /// Number of samples after which the simulated kinetic energy grows without a force, see
+    /// [`physical_violations`].
     pub violations: usize,
 }
 
-/// A case that cannot be simulated or compared.
+/// Reason for which a case cannot be simulated or compared.
 #[derive(Debug, thiserror::Error)]
 pub enum ReplayError {
-    /// Its row in the table of cases lacks something.
+    /// An attribute of the case in the table of cases is missing or invalid.
     #[error(transparent)]
     Attributes(#[from] DataError),
-    /// Its file lacks something.
+    /// A column of the case's file is missing or invalid.
     #[error("case {case}")]
     Series {
         /// Name of the case.
         case: String,
-        /// What it lacks.
+        /// The underlying error.
         source: SeriesError,
     },
-    /// The simulation failed.
+    /// The simulation of the case failed.
     #[error("case {case}")]
     Simulation {
         /// Name of the case.
         case: String,
-        /// Why.
+        /// The underlying error.
         source: SimulationError,
     },
 }
 
-/// All cases of a dataset, simulated and compared.
+/// Simulations and comparisons of all cases of a data set.
 #[derive(Debug, Default)]
 pub struct DatasetReplay {
-    /// The cases, in the dataset's order.
+    /// Replays of the cases, in the order of the data set.
     pub cases: Vec<Replay>,
-    /// Those that could not be done.
+    /// Errors of the cases that could not be simulated or compared.
     pub failures: Vec<ReplayError>,
 }
 
-/// Error figures over several cases.
+/// Error metrics summarised over several cases.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ErrorSummary {
-    /// Mean over time of the distance in (X, Y), m.
+    /// Mean over time of the distance between the positions (X, Y), m.
     pub average_error_m: Summary,
-    /// `1/mean` of the average error, 1/m.
+    /// Score of the method: the inverse of the mean over the cases of the average error, 1/m.
     pub score_1_m: f64,
-    /// Distance at the last sample, m.
+    /// Distance between the positions at the last sample, m.
     pub final_error_m: Summary,
-    /// Size of the final heading error, rad.
+    /// Absolute value of the wrapped heading error at the last sample, rad.
     pub final_heading_error_rad: Summary,
-    /// Distance at each of [`HORIZONS_S`](crate::compare::HORIZONS_S), m.
+    /// Distance between the positions at each of [`HORIZONS_S`](crate::compare::HORIZONS_S), m.
     pub horizon_error_m: [Summary; 4],
     /// Root mean square error of X, m.
     pub rmse_x_m: Summary,
     /// Root mean square error of Y, m.
     pub rmse_y_m: Summary,
-    /// Root mean square error of v_x, m/s, where it is known.
+    /// Root mean square error of v_x, m/s, over the cases that have it.
     pub rmse_vx_m_s: Option<Summary>,
-    /// Root mean square error of v_y, m/s, where it is known.
+    /// Root mean square error of v_y, m/s, over the cases that have it.
     pub rmse_vy_m_s: Option<Summary>,
-    /// Root mean square error of the yaw rate, rad/s, where it is known.
+    /// Root mean square error of the yaw rate, rad/s, over the cases that have it.
     pub rmse_yaw_rate_rad_s: Option<Summary>,
-    /// Physical violations of all cases.
+    /// Total number of physical violations in all cases.
     pub violations: usize,
 }
 
-/// The recorded initial state and force of a case as a manoeuvre of its recorded duration.
+/// The recorded initial state and contact force of a case as a manoeuvre of the recorded duration.
 ///
 /// # Errors
-/// [`ReplayError`] if an attribute or a column is missing.
+/// [`ReplayError::Attributes`] if an attribute, [`ReplayError::Series`] if a column is missing.
 pub fn recorded_manoeuvre(case: &Case) -> Result<Manoeuvre, ReplayError> {
     let attributes = TrajectoryAttributes::read(&case.attributes)?;
     let in_case = |source| ReplayError::Series { case: case.name.clone(), source };
@@ -115,10 +116,11 @@ pub fn recorded_manoeuvre(case: &Case) -> Result<Manoeuvre, ReplayError> {
     })
 }
 
-/// State at the first sample; a rate or a roll angle that the file lacks is zero.
+/// Vehicle state at the first sample of a recorded motion. Yaw rate, roll angle and roll rate are
+/// zero where the file does not record them.
 ///
 /// # Errors
-/// [`SeriesError::Missing`] without pose or velocity.
+/// [`SeriesError::Missing`] without position, yaw or velocity.
 pub fn initial_state(series: &TimeSeries) -> Result<VehicleState<f64>, SeriesError> {
     let first = |values: &[f64]| values.first().copied().unwrap_or(0.0);
     let needed = |channel| series.require(channel).map(first);
@@ -135,10 +137,12 @@ pub fn initial_state(series: &TimeSeries) -> Result<VehicleState<f64>, SeriesErr
     })
 }
 
-/// Simulates a case with a vehicle on the case's own friction, and compares.
+/// Simulates a case with the friction coefficient of the case, and compares the result with the
+/// recorded motion.
 ///
 /// # Errors
-/// [`ReplayError`].
+/// [`ReplayError::Attributes`] or [`ReplayError::Series`] if an attribute or a column is missing,
+/// [`ReplayError::Simulation`] if the motion diverges.
 pub fn replay_case(
     case: &Case,
     vehicle: &VehicleParameters,
@@ -157,8 +161,10 @@ pub fn replay_case(
     Ok(Replay { case: case.name.clone(), motion, error, spin, violations })
 }
 
-/// Simulates and compares cases of a data set in parallel. A case that fails does not stop
-/// the others.
+/// Simulates and compares the cases of a data set in parallel. A case that fails does not stop the
+/// others.
+///
+/// - `report`: called after each block of cases; the replay is cancelled if it breaks.
 pub fn replay_dataset(
     cases: &[Case],
     vehicle: &VehicleParameters,
@@ -185,7 +191,7 @@ pub fn replay_dataset(
 }
 
 impl ErrorSummary {
-    /// Sums up the cases that `choose` takes; `None` if it takes none.
+    /// Summarises the cases for which `choose` returns true; `None` if there are none.
     pub fn of<'a>(
         replays: impl IntoIterator<Item = &'a Replay>,
         choose: impl Fn(&Replay) -> bool,
