@@ -1,4 +1,4 @@
-//! The striking vehicle of a finite-element case: as recorded, then coasting.
+//! The motion of the striking vehicle in a finite-element case: as recorded, then coasting.
 
 use crate::analysis::{AnalysisError, Settings, VehicleTrack};
 use crate::collision::Footprint;
@@ -6,18 +6,20 @@ use crate::data::{Case, Channel, ForceAttributes, SeriesError, TimeSeries};
 use crate::vehicle::frames::body_from_world;
 use crate::vehicle::{Manoeuvre, OUTPUT_INTERVAL_S, VehicleParameters, VehicleState};
 
-/// Position, heading and world velocity at each recorded sample.
+/// Position at each recorded sample, m, and state of the vehicle at the last one.
 struct Recorded {
     x_m: Vec<f64>,
     y_m: Vec<f64>,
     end: VehicleState<f64>,
 }
 
-/// Where the bullet goes: over the run by the recorded velocities, from its starting point; after
-/// it as a 4DOF vehicle with wheel and throttle released. `None` if the case does not record it.
+/// Outline and motion of the bullet. During the recording its position is the integral of the
+/// recorded velocities from its initial position; after it the bullet coasts as a 4DOF vehicle
+/// without steering, drive or braking, until the duration of the settings. `None` if the case does
+/// not record the bullet.
 ///
 /// # Errors
-/// [`AnalysisError::Simulation`] if the coasting diverges.
+/// [`AnalysisError::Simulation`] if the simulation of the coasting diverges.
 pub(super) fn bullet_track(
     case: &Case,
     attributes: &ForceAttributes,
@@ -38,7 +40,8 @@ pub(super) fn bullet_track(
     Ok(Some(VehicleTrack { footprint, motion }))
 }
 
-/// Integrates the recorded world velocities by the trapezoid rule.
+/// Integrates the recorded world velocities by the trapezoidal rule from a start [x, y], m. `None`
+/// if a channel of the bullet is missing.
 fn integrate(series: &TimeSeries, start_m: [f64; 2]) -> Option<Recorded> {
     let time_s = series.time_s();
     let (vx, vy) = (series.get(Channel::BulletVx)?, series.get(Channel::BulletVy)?);
@@ -66,6 +69,7 @@ fn integrate(series: &TimeSeries, start_m: [f64; 2]) -> Option<Recorded> {
     Some(Recorded { x_m, y_m, end })
 }
 
+/// Appends the coasting to the recorded positions and yaw angles.
 fn append_coasting(
     series: &TimeSeries,
     yaw_rad: &[f64],

@@ -1,4 +1,4 @@
-//! Cases of datasets.
+//! Analysis of the cases of force and trajectory data sets.
 
 use crate::analysis::{Analysis, AnalysisError, Settings, StruckVehicle, bullet::bullet_track};
 use crate::collision::Footprint;
@@ -6,7 +6,7 @@ use crate::compare::{recorded_manoeuvre, replay_case};
 use crate::data::{Case, DatasetKind, ForceAttributes, TrajectoryAttributes};
 use crate::vehicle::{ContactLoad, ContactPoint, Manoeuvre, VehicleState};
 
-/// Analyses a case of a force or a trajectory dataset.
+/// Analyses a case of a force or a trajectory data set.
 ///
 /// # Errors
 /// [`AnalysisError`] if an attribute or a column is missing or the motion diverges.
@@ -17,6 +17,7 @@ pub fn analyse_case(case: &Case, settings: &Settings) -> Result<Analysis, Analys
     }
 }
 
+/// Replays a recorded trajectory from its initial state with its recorded force and friction.
 fn analyse_trajectory_case(case: &Case, settings: &Settings) -> Result<Analysis, AnalysisError> {
     let replay = replay_case(case, &settings.target, settings.integrator)?;
     let manoeuvre = recorded_manoeuvre(case)?;
@@ -41,7 +42,9 @@ fn analyse_trajectory_case(case: &Case, settings: &Settings) -> Result<Analysis,
     })
 }
 
-/// The target starts on X with the case's velocities, and takes the recorded force and moment.
+/// Simulates the target of a force case from the origin, heading along X, with the case's
+/// velocities and under the recorded force and yaw moment. The force acts at the height of the CG
+/// if the case gives no contact height.
 fn analyse_force_case(case: &Case, settings: &Settings) -> Result<Analysis, AnalysisError> {
     let attributes = ForceAttributes::read(&case.attributes)?;
     let force = case.force_history()?;
@@ -104,7 +107,8 @@ mod tests {
 
     #[test]
     fn on_ice_a_finite_element_case_ends_with_the_recorded_motion() {
-        // The finite-element runs have no tyres: without friction the 4DOF model must meet them.
+        // The finite-element runs have no tyres, so that the 4DOF model without friction must
+        // reproduce them.
         let dataset = load("fea-wide");
         let mut settings = settings(Preset::Target);
         let target = &mut settings.target;

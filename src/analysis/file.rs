@@ -1,4 +1,5 @@
-//! Single files: a recorded motion, or what drives a vehicle.
+//! Analysis of single files: a recorded motion, or a force and a steer angle that drive a
+//! simulation.
 
 use crate::analysis::{Analysis, AnalysisError, Settings, StruckVehicle};
 use crate::collision::Footprint;
@@ -6,23 +7,24 @@ use crate::compare::{MotionError, initial_state};
 use crate::data::{ForceHistory, Loaded, SeriesError};
 use crate::vehicle::{ContactLoad, ContactPoint, Manoeuvre, Motion, SteerHistory, VehicleState};
 
-/// A force and the point where it acts; a yaw moment that it records overrules the point.
+/// A force history and the point where it acts. If the history records a yaw moment, this moment is
+/// used instead of the one that follows from the contact point.
 pub type ActingForce = (ForceHistory, ContactPoint);
 
-/// What a vehicle does before it is pushed, and what pushes and steers it.
+/// Initial state of a vehicle, and the force and steer angle that act on it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DriveSetup {
-    /// State at the start.
+    /// State of the vehicle at the start of the simulation.
     pub initial: VehicleState<f64>,
-    /// The force on it.
+    /// Force on the vehicle and the point where it acts.
     pub load: Option<ActingForce>,
-    /// The road-wheel angle.
+    /// Road-wheel angle of the front axle over time.
     pub steer: Option<SteerHistory>,
-    /// What a person should know about the files.
+    /// Notes for the user on the files that were read.
     pub notes: Vec<String>,
 }
 
-/// Simulates a vehicle from a given start under a force and a steer angle.
+/// Simulates a vehicle from a given initial state under a force and a steer angle.
 ///
 /// # Errors
 /// [`AnalysisError::Simulation`] if the motion diverges.
@@ -37,13 +39,14 @@ pub fn analyse_drive(
     Ok(Analysis { simulation, notes, ..of_load(name, Some(initial), load, settings) })
 }
 
-/// Shows a recorded motion, and simulates it from its first sample if it records velocities and a
-/// force.
+/// Analyses a recorded motion, and simulates it from its first sample over the recorded duration if
+/// the file records velocities and there is a force. Otherwise a note says why it was not
+/// simulated.
 ///
-/// A trajectory's recorded toe changes are no steering.
+/// The steer angle is zero: changes of toe that a trajectory records are not steering.
 ///
 /// # Errors
-/// [`AnalysisError`] if the motion diverges.
+/// [`AnalysisError::Simulation`] if the motion diverges.
 pub fn analyse_recording(
     name: &str,
     file: &Loaded,
@@ -74,6 +77,7 @@ pub fn analyse_recording(
     Ok(Analysis { simulation, reference, error, notes, ..analysis })
 }
 
+/// Simulates the target; a recorded yaw moment takes precedence over that of the contact point.
 fn simulate(
     (initial, duration_s): (VehicleState<f64>, f64),
     load: Option<&ActingForce>,
@@ -89,7 +93,7 @@ fn simulate(
     Ok(settings.target.simulate(&manoeuvre, settings.integrator)?)
 }
 
-/// What is known before anything is simulated.
+/// The analysis before anything is simulated.
 fn of_load(
     name: &str,
     initial: Option<VehicleState<f64>>,

@@ -1,4 +1,5 @@
-//! A predicted force made ready to be shown: bands, mean, whole curves, and numbers with intervals.
+//! A predicted impact force in the form in which it is shown: bands, mean curve, drawn curves, and
+//! scalar quantities with their intervals.
 
 use std::f64::consts::TAU;
 
@@ -13,90 +14,92 @@ use crate::uncertainty::{
     NormalMixture,
 };
 
-/// Curves drawn for the intervals that no formula gives: a 5 % tail then has 100 of them.
+/// Number of curves drawn for quantities whose distribution has no closed form; a 5 % tail then has
+/// 100 of them.
 const N_DRAWS: usize = 2000;
 
-/// How many whole curves to show, and from which seed.
+/// Number of whole curves to show, and seed of the draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ForecastSettings {
-    /// Curves to show.
+    /// Number of curves to show.
     pub n_curves: usize,
-    /// Seed of all draws.
+    /// Seed of all random draws.
     pub seed: u64,
 }
 
-/// A number with the central intervals that hold 50 % and 90 %, SI.
+/// Median of a quantity with its central 50 % and 90 % intervals, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Spread {
-    /// As likely exceeded as not.
+    /// Median: the value that is exceeded with a probability of 50 %.
     pub median: f64,
-    /// Ends of the interval that holds 50 %.
+    /// Lower and upper end of the central interval that holds 50 %.
     pub half: [f64; 2],
-    /// Ends of the interval that holds 90 %.
+    /// Lower and upper end of the central interval that holds 90 %.
     pub ninety: [f64; 2],
 }
 
-/// A central interval of a number.
+/// A central interval of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Interval {
-    /// Probability that it holds the number, 0 to 1.
+    /// Probability that the interval holds the quantity, 0 to 1.
     pub level: f64,
-    /// Lower end.
+    /// Lower end of the interval.
     pub low: f64,
-    /// Upper end.
+    /// Upper end of the interval.
     pub high: f64,
 }
 
-/// A number with its central intervals at [`BAND_LEVELS`], SI.
+/// Median of a quantity with its central intervals at [`BAND_LEVELS`], in SI units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Estimate {
-    /// As likely exceeded as not.
+    /// Median: the value that is exceeded with a probability of 50 %.
     pub median: f64,
-    /// From the narrowest to the widest.
+    /// Intervals from the narrowest to the widest.
     pub intervals: Vec<Interval>,
 }
 
-/// One way in which a collision may go.
+/// One component of the predicted mixture: one of the possible courses of the collision.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Mode {
-    /// Its probability, 0 to 1.
+    /// Probability of the component, 0 to 1.
     pub weight: f64,
-    /// Impulse of its mean curve, N s.
+    /// Impulse `[P_x, P_y]` of the component's mean curve, N s.
     pub impulse_n_s: [f64; 2],
-    /// Largest `|F|` of its mean curve, N.
+    /// Largest `|F|` of the component's mean curve, N.
     pub peak_n: f64,
-    /// Mean duration, s.
+    /// Mean contact duration of the component, s.
     pub duration_s: f64,
 }
 
-/// A predicted force.
+/// A predicted force with the quantities that are shown.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForceForecast {
-    /// Bands at [`BAND_LEVELS`], in that order.
+    /// Bands of the force at [`BAND_LEVELS`], in that order.
     pub bands: CurveBands,
-    /// Mean curve; its duration is the median.
+    /// Mean curve; its duration is the median duration.
     pub mean: ForceCurve,
-    /// Whole curves, drawn.
+    /// Whole curves drawn from the distribution.
     pub curves: Vec<ForceCurve>,
-    /// Impulse along x and y, N s, exact.
+    /// Impulse along x and y, N s, from the exact distribution.
     pub impulse_n_s: [Estimate; 2],
-    /// Size of the impulse, N s, by draws.
+    /// Magnitude of the impulse, N s, from draws.
     pub impulse_magnitude_n_s: Estimate,
-    /// Largest `|F|`, N, by draws.
+    /// Largest `|F|`, N, from draws.
     pub peak_n: Estimate,
-    /// When it is reached, s, by draws.
+    /// Time at which the largest `|F|` occurs, s, from draws.
     pub peak_time_s: Estimate,
-    /// Duration, s, exact.
+    /// Contact duration, s, from the exact distribution.
     pub duration_s: Estimate,
-    /// Principal direction of force of the target, rad clockwise from straight ahead, by draws: the
-    /// median in `[0, 2π)`, the ends around it without a jump.
+    /// Principal direction of force on the target, rad clockwise from straight ahead, from draws.
+    /// The median lies in `[0, 2π)`; the ends of the intervals continue from it without a jump and
+    /// may lie outside of this range.
     pub pdof_rad: Estimate,
-    /// The components of the mixture, the likeliest first.
+    /// Components of the mixture, in descending order of probability.
     pub modes: Vec<Mode>,
 }
 
 impl Spread {
-    /// Of a distribution that is known.
+    /// Median and intervals of a normal mixture.
     pub fn of(distribution: &NormalMixture) -> Self {
         Self {
             median: distribution.quantile(0.5),
@@ -105,7 +108,7 @@ impl Spread {
         }
     }
 
-    /// Of draws, one or more; zeros without any.
+    /// Median and intervals of draws; zeros without any.
     pub fn of_draws(mut draws: Vec<f64>) -> Self {
         draws.sort_by(f64::total_cmp);
         let at = |probability| quantile_of_sorted(&draws, probability).unwrap_or(0.0);
@@ -114,7 +117,7 @@ impl Spread {
 }
 
 impl Estimate {
-    /// Of the quantile function of a distribution.
+    /// Median and intervals from a quantile function, which takes a probability.
     fn of_quantiles(quantile: impl Fn(f64) -> f64) -> Self {
         let interval = |level: f64| Interval {
             level,
@@ -125,35 +128,38 @@ impl Estimate {
         Self { median: quantile(0.5), intervals }
     }
 
-    /// Of a distribution that is known.
+    /// Median and intervals of a normal mixture.
     pub fn of(distribution: &NormalMixture) -> Self {
         Self::of_quantiles(|probability| distribution.quantile(probability))
     }
 
-    /// Of draws, one or more; zeros without any.
+    /// Median and intervals of draws; zeros without any.
     pub fn of_draws(mut draws: Vec<f64>) -> Self {
         draws.sort_by(f64::total_cmp);
         Self::of_quantiles(|probability| quantile_of_sorted(&draws, probability).unwrap_or(0.0))
     }
 
-    /// The ends of the interval of this level, if there is one.
+    /// Ends `[low, high]` of the interval at a level; `None` if there is no interval at this level.
     pub fn interval(&self, level: f64) -> Option<[f64; 2]> {
         let of_level = self.intervals.iter().find(|interval| interval.level == level)?;
         Some([of_level.low, of_level.high])
     }
 
-    /// Median, 50 % and 90 % intervals alone.
+    /// The median with the 50 % and 90 % intervals alone.
     pub fn spread(&self) -> Spread {
         let ends = |level| self.interval(level).unwrap_or([self.median; 2]);
         Spread { median: self.median, half: ends(0.5), ninety: ends(0.9) }
     }
 
-    /// The same in another unit: every number multiplied by a positive factor.
+    /// The same estimate in another unit.
+    ///
+    /// - `factor`: positive; median and ends are multiplied by it.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         self.mapped(|value| value * factor)
     }
 
+    /// Applies an increasing function to the median and the ends.
     fn mapped(&self, map: impl Fn(f64) -> f64) -> Self {
         let intervals = self.intervals.iter();
         let of = |Interval { level, low, high }: &Interval| Interval {
@@ -166,11 +172,11 @@ impl Estimate {
 }
 
 impl ForceForecast {
-    /// Of a predicted distribution of curves. The shown curves are the first of those that make the
-    /// intervals.
+    /// Prepares a predicted distribution of curves for display. The curves shown are the first of
+    /// the draws from which the intervals are computed.
     ///
     /// # Errors
-    /// [`MixtureError`], which a checked mixture does not give.
+    /// [`MixtureError`], which does not occur with a mixture that was checked when it was made.
     pub fn of(mixture: &CurveMixture, settings: ForecastSettings) -> Result<Self, MixtureError> {
         let mut rng = random_stream(settings.seed, "draws", 0);
         let mut curves = mixture.sample(N_DRAWS.max(settings.n_curves), &mut rng);
@@ -193,7 +199,8 @@ impl ForceForecast {
     }
 }
 
-/// Of impulses, around that of `mean`.
+/// Estimate of the principal direction of force from drawn impulses [x, y], N s. Angles are taken
+/// relative to the direction of the impulse `mean`, so that the intervals do not jump at 2π.
 fn pdof_rad(mean: [f64; 2], impulses: &[[f64; 2]]) -> Estimate {
     let angle = |impulse| PrincipalDirectionOfForce::from_impulse(impulse, 0.0);
     let centre_rad = angle(mean).map_or(0.0, |pdof| pdof.angle_rad);
@@ -204,6 +211,7 @@ fn pdof_rad(mean: [f64; 2], impulses: &[[f64; 2]]) -> Estimate {
     around.mapped(|angle| angle + shift)
 }
 
+/// Components of a mixture with the quantities that are shown, in descending order of weight.
 fn modes(mixture: &CurveMixture) -> Vec<Mode> {
     let mode = |component: &crate::uncertainty::CurveComponent| {
         let mean = ForceCurve::from_values(&component.mean);
@@ -219,7 +227,10 @@ fn modes(mixture: &CurveMixture) -> Vec<Mode> {
     modes
 }
 
-/// The classic pulses with this impulse over this time, from the start of the time grid.
+/// Classic pulses of all shapes that carry a given impulse, from the start of the time grid.
+///
+/// - `impulse_n_s`: [P_x, P_y], N s.
+/// - `duration_s`: positive.
 ///
 /// # Errors
 /// [`PulseError`] for a duration that is not positive.
@@ -242,7 +253,8 @@ mod tests {
     use super::*;
     use crate::uncertainty::CurveComponent;
 
-    /// Half-sines along y with a share along x, of which one factor changes the height.
+    /// Half-sine pulses along y, with a share along x, whose height is changed by one latent
+    /// factor.
     fn example() -> CurveMixture {
         let component = |(weight, height_n): (f64, f64)| {
             let sine = |i: usize| (std::f64::consts::PI * (i as f64 + 0.5) / 60.0).sin();

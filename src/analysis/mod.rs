@@ -1,5 +1,7 @@
-//! One case from its file to a motion: what is recorded, what the 4DOF model makes of it, and how
-//! far the two lie apart. The command line and the app show the same [`Analysis`].
+//! Analysis of one case, file or scenario: the recorded motion, the motion simulated with the
+//! four-degree-of-freedom (4DOF) vehicle model, and the difference between the two; and forecasts
+//! of the impact force and of the motion after it as probability distributions. The command line
+//! and the app show the same [`Analysis`].
 
 mod bullet;
 mod case;
@@ -28,72 +30,77 @@ pub use motion_forecast::{
 };
 pub use scenario::{PulseSetup, analyse_scenario};
 
-/// With what a case is simulated.
+/// Vehicles and settings of the simulation of a case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
-    /// The struck vehicle; friction, and for force cases mass and yaw inertia, are the case's own.
+    /// Parameters of the struck vehicle (target). A trajectory case replaces the friction
+    /// coefficient by its own; a force case and a scenario replace mass and yaw inertia.
     pub target: VehicleParameters,
-    /// The striking vehicle, where it is simulated; its mass and yaw inertia are the case's own.
+    /// Parameters of the striking vehicle (bullet), used where it is simulated. The case or
+    /// scenario replaces its mass and yaw inertia.
     pub bullet: VehicleParameters,
-    /// How the equations of motion are integrated.
+    /// Integration method for the equations of motion.
     pub integrator: Integrator,
-    /// How long, s; trajectory cases take the recorded duration.
+    /// Duration of the simulation, s. Trajectory cases and recorded motions are simulated over the
+    /// recorded duration instead.
     pub duration_s: f64,
 }
 
-/// A vehicle that moves: its outline and its motion.
+/// Outline and motion of a vehicle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VehicleTrack {
-    /// Its outline.
+    /// Outline of the vehicle.
     pub footprint: Footprint,
-    /// Its motion, with X, Y and yaw at least.
+    /// Motion of the vehicle, with at least the channels X, Y and yaw.
     pub motion: TimeSeries,
 }
 
-/// What is known and computed of one case.
+/// Recorded and computed data of one case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Analysis {
-    /// Name of the case.
+    /// Name of the case, file or scenario.
     pub name: String,
-    /// The struck vehicle that was simulated, with the mass and friction of the case.
+    /// Parameters with which the struck vehicle was simulated, including what the case sets.
     pub vehicle: VehicleParameters,
-    /// Its outline.
+    /// Outline of the struck vehicle.
     pub footprint: Footprint,
-    /// The force on the target.
+    /// Contact force on the target; `None` if no force acts or none is known.
     pub force: Option<ForceHistory>,
-    /// The struck vehicle as the force meets it; none without a force.
+    /// State of the struck vehicle at the start of the impact and the point where the force acts;
+    /// `None` without a force.
     pub struck: Option<StruckVehicle>,
-    /// The 4DOF simulation.
+    /// Motion of the target simulated with the 4DOF model; `None` if it could not be simulated, for
+    /// the reason given in `notes`.
     pub simulation: Option<Motion>,
-    /// The recorded motion.
+    /// Recorded motion of the target; `None` if there is no recording.
     pub reference: Option<TimeSeries>,
-    /// The striking vehicle.
+    /// Outline and motion of the striking vehicle, if known.
     pub bullet: Option<VehicleTrack>,
-    /// How far the simulation lies from the reference.
+    /// Errors of the simulated motion against the recorded one; `None` unless both exist.
     pub error: Option<MotionError>,
-    /// What the user should know about how this was made.
+    /// Notes on the analysis for the user.
     pub notes: Vec<String>,
 }
 
-/// A case that cannot be analysed.
+/// Reason for which a case cannot be analysed.
 #[derive(Debug, thiserror::Error)]
 pub enum AnalysisError {
-    /// Its row in the table of cases lacks something.
+    /// An attribute of the case in the table of cases is missing or invalid.
     #[error(transparent)]
     Attributes(#[from] DataError),
-    /// Its file lacks something.
+    /// A column of the case's file is missing or invalid.
     #[error(transparent)]
     Series(#[from] SeriesError),
-    /// It cannot be replayed.
+    /// The trajectory case cannot be replayed.
     #[error(transparent)]
     Replay(#[from] ReplayError),
-    /// The motion cannot be simulated.
+    /// The simulation of the motion failed.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
-    /// The impact cannot be solved.
+    /// The collision of the scenario cannot be solved.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
-    /// The pulse is not one.
+    /// The shape or duration of the force pulse is invalid.
     #[error(transparent)]
     Pulse(#[from] PulseError),
 }

@@ -1,24 +1,25 @@
-//! Intervals of a forecast's quantities over time.
+//! Central intervals of the quantities of a motion forecast over time.
 
 use rayon::prelude::*;
 
 use crate::response::{MotionDistribution, STEP_S};
 
-/// Probabilities of the intervals, the widest first.
+/// Probabilities of the intervals, from the widest to the narrowest.
 pub const MOTION_BAND_LEVELS: [f64; 2] = [0.9, 0.5];
 
-/// Intervals of X, Y, ψ, v_x, v_y and r over time, m, rad, m/s and rad/s: from quantile to quantile
-/// with as much probability on either side.
+/// Central intervals of X, Y (m), ψ (rad), v_x, v_y (m/s) and r (rad/s) over time: each end leaves
+/// the same probability outside.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionBands {
-    /// The instants, s.
+    /// Times of the instants, s.
     pub time_s: Vec<f64>,
-    /// At each instant, of each quantity, at each of [`MOTION_BAND_LEVELS`]: lower and upper end.
+    /// Intervals `[lower, upper]` by instant, quantity and level of [`MOTION_BAND_LEVELS`].
     pub intervals: Vec<[[[f64; 2]; MOTION_BAND_LEVELS.len()]; 6]>,
 }
 
 impl MotionBands {
-    /// Of every `stride`-th instant and the last.
+    /// Intervals of every `stride`-th instant and of the last one. A quantity without a marginal
+    /// distribution has its mean for both ends.
     pub fn of(motion: &MotionDistribution, stride: usize) -> Self {
         let last = motion.n_instants().saturating_sub(1);
         let mut instants: Vec<usize> = (0..motion.n_instants()).step_by(stride.max(1)).collect();

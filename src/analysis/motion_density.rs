@@ -1,5 +1,8 @@
-//! Where a struck vehicle is likely to be: the density of its position on a grid, at a moment or over
-//! a window of time.
+//! Probability density of the position of a struck vehicle on a grid, at an instant or averaged
+//! over a time window, with the regions that hold the position with given probabilities.
+//!
+//! Checked against the total probability of one and against the regions of a circular normal
+//! distribution.
 
 use std::sync::Arc;
 
@@ -9,56 +12,61 @@ use crate::analysis::MOTION_BAND_LEVELS;
 use crate::response::{MotionDistribution, STEP_S};
 use crate::uncertainty::{PlanarGrid, PlanarMixture, PlanarPart};
 
-/// Points along the longer side of the rectangle.
+/// Number of grid points along the longer side of the rectangle.
 const GRID_POINTS: usize = 256;
-/// How many standard deviations of all parts the rectangle reaches.
+/// Distance, in standard deviations of every part, that the rectangle covers.
 const REACH: f64 = 4.0;
-/// Least side of the rectangle, m.
+/// Smallest side of the rectangle, m.
 const LEAST_SIDE_M: f64 = 2.0;
-/// Standard deviation by which every part is blurred, in cells: one that is narrower would fall
-/// between the points, or be all in one. The sum over the points is off by
-/// `4 exp(−2 π² 0.7²) = 0.03 %` at most.
+/// Standard deviation of the blur that is applied to every part, in cells. A part that is narrower
+/// than a cell would fall between the grid points or lie entirely in one cell. With the blur the
+/// sum over the points is off by at most `4 exp(−2 π² 0.7²) = 0.03 %`.
 const BLUR_CELLS: f64 = 0.7;
 
-/// Cells around the rectangle for what the blur spreads.
+/// Number of cells added around the rectangle for the effect of the blur.
 const MARGIN_CELLS: usize = 3;
 
-/// The density of a position on a grid.
+/// Probability density of a position on a grid.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DensityMap {
-    /// From when to when, s; the same for a moment.
+    /// Start and end of the time window, s; both are the same for an instant.
     pub window_s: [f64; 2],
-    /// The points.
+    /// Grid of points at which the density is given.
     pub grid: PlanarGrid,
-    /// Probability density, 1/m²; over a window its mean over time. Row by row from the lowest Y on.
+    /// Probability density, 1/m², row by row from the lowest Y upwards. For a window it is the mean
+    /// over time.
     pub values: Arc<Vec<f64>>,
-    /// The smallest regions that hold the position with each of [`MOTION_BAND_LEVELS`].
+    /// The smallest regions that hold the position with the probabilities [`MOTION_BAND_LEVELS`].
     pub regions: Vec<Region>,
 }
 
-/// A region of a map.
+/// A region of highest density.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Region {
-    /// Probability of the position being inside, 0 to 1.
+    /// Probability that the position lies inside the region, 0 to 1.
     pub level: f64,
-    /// Closed outlines of its parts, and of what they leave out, m.
+    /// Closed outlines of the separate parts of the region and of holes in them, points [x, y] in
+    /// m.
     pub outlines: Vec<Vec<[f64; 2]>>,
 }
 
-/// The distribution of the position in a window of time, each instant as likely as the others, and a
-/// grid about it.
+/// Distribution of the position in a time window, in which all instants are equally likely, and a
+/// grid around it. The density at the grid points is still to be computed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DensityTask {
-    /// From when to when, s, on the grid of the motion.
+    /// Start and end of the window, s, rounded to instants of the motion.
     pub window_s: [f64; 2],
-    /// The position.
+    /// Distribution of the position, blurred as the grid requires.
     pub position: PlanarMixture,
-    /// The points.
+    /// Grid of points at which the density is to be computed.
     pub grid: PlanarGrid,
 }
 
 impl DensityTask {
-    /// - `window_s`: from when to when, s; the same twice for a moment.
+    /// Prepares the distribution and the grid for a time window.
+    ///
+    /// - `window_s`: start and end of the window, s; twice the same time for an instant. Times are
+    ///   rounded to the instants of the motion and limited to its duration.
     pub fn new(motion: &MotionDistribution, window_s: [f64; 2]) -> Self {
         let last = motion.n_instants().saturating_sub(1);
         let instant = |time_s: f64| ((time_s.max(0.0) / STEP_S).round() as usize).min(last);
@@ -76,20 +84,22 @@ impl DensityTask {
         Self { window_s: [from, to].map(|at| at as f64 * STEP_S), position, grid }
     }
 
-    /// The map, computed on the CPU.
+    /// Computes the density on the CPU.
     pub fn on_cpu(self) -> DensityMap {
         let values = self.position.density_on(&self.grid);
         self.with(values)
     }
 
-    /// The map with values that were computed elsewhere.
+    /// Makes the map from densities that were computed elsewhere, in the order of
+    /// [`DensityMap::values`].
     pub fn with(self, values: Vec<f64>) -> DensityMap {
         let regions = regions(&self.grid, &values);
         DensityMap { window_s: self.window_s, grid: self.grid, values: Arc::new(values), regions }
     }
 }
 
-/// Where the density is above the value above which there is as much probability as each level says.
+/// Regions of highest density: where the density exceeds the threshold above which the grid holds
+/// the probability of each level.
 fn regions(grid: &PlanarGrid, values: &[f64]) -> Vec<Region> {
     let mut falling = values.to_vec();
     falling.sort_unstable_by(|a, b| b.total_cmp(a));
@@ -103,7 +113,7 @@ fn regions(grid: &PlanarGrid, values: &[f64]) -> Vec<Region> {
         last.copied().unwrap_or(0.0)
     };
     let [width, height] = grid.size;
-    // There, a value stands in the middle of its cell.
+    // The contour builder places each value in the middle of its cell.
     let origin = [0, 1].map(|axis| grid.low_m[axis] - 0.5 * grid.step_m[axis]);
     let builder = ContourBuilder::new(width, height, true)
         .x_origin(origin[0])
@@ -119,7 +129,7 @@ fn regions(grid: &PlanarGrid, values: &[f64]) -> Vec<Region> {
     MOTION_BAND_LEVELS.map(region).to_vec()
 }
 
-/// Square cells over a rectangle that holds nearly all of it.
+/// A grid of square cells over a rectangle that holds nearly all of the distribution.
 fn grid_about(position: &PlanarMixture) -> PlanarGrid {
     let mut bounds = position.bounds(REACH).unwrap_or([[0.0; 2]; 2]);
     let [low, high] = &mut bounds;
@@ -143,7 +153,7 @@ mod tests {
     use crate::vehicle::VehicleState;
     use nalgebra::SMatrix;
 
-    /// Ten metres per second along X, the deviation rising from nothing to 0.5 m.
+    /// A motion along X at 10 m/s, whose standard deviation grows from nearly zero to 0.5 m.
     fn motion() -> MotionDistribution {
         let state = |i: usize| StateDistribution {
             mean: VehicleState { x_m: i as f64 * STEP_S * 10.0, ..VehicleState::default() },
@@ -165,7 +175,8 @@ mod tests {
         }
     }
 
-    /// −2 ln(1 − q): radius of the region that holds q of a round normal distribution, squared.
+    /// The squared radius of the region that holds q of a circular normal distribution is −2 ln(1 −
+    /// q), in variances.
     #[test]
     fn regions_of_a_round_distribution_are_circles_about_its_mean() {
         let map = DensityTask::new(&motion(), [1.0, 1.0]).on_cpu();

@@ -1,9 +1,10 @@
-//! Where the struck car goes, and how sure that is: from the distribution of the impact force, or a
-//! recorded force, through the response network to the distribution of its motion.
+//! Forecast of the motion of the struck vehicle with its uncertainty: the distribution of the
+//! impact force, or a given force, is propagated through the response network to a distribution of
+//! the motion.
 //!
-//! Each whole curve drawn from the force's distribution drives its own distribution of motions; all of
-//! them, equally likely, make up the answer. So the impulse is uncertain as a whole, and not instant
-//! by instant.
+//! Each whole curve drawn from the distribution of the force gives its own distribution of motions,
+//! and the forecast is the mixture of these, equally weighted. The impulse is therefore uncertain
+//! as a whole, and not independently at each instant.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -23,98 +24,102 @@ use crate::vehicle::{
     ContactLoad, ContactPoint, Manoeuvre, VehicleInput, VehicleParameters, VehicleState,
 };
 
-/// Speed below which a car counts as at rest, m/s.
+/// Speed of the CG below which a vehicle counts as at rest, m/s.
 const REST_SPEED_M_S: f64 = 0.3;
-/// Draws of the end, behind its intervals, and behind the area of its region, which then is known to
-/// some 2 %.
+/// Number of draws for the intervals of the final position.
 const N_END_DRAWS: usize = 4000;
 const N_REGION_DRAWS: usize = 10_000;
 
-/// How a motion is forecast.
+/// Settings of a motion forecast.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotionForecastSettings {
-    /// Whole force curves to draw.
+    /// Number of whole force curves that are drawn; at least one is drawn.
     pub n_curves: usize,
-    /// From the start of the impact, s.
+    /// Duration of the forecast from the start of the impact, s, 0.1 to 60.
     pub duration_s: f64,
-    /// Seed of all draws.
+    /// Seed of all random draws.
     pub seed: u64,
 }
 
-/// What the struck car does before it is pushed, and by what.
+/// Parameters and initial state of the struck vehicle, and the point where the force acts on it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StruckVehicle {
-    /// Its parameters.
+    /// Parameters of the vehicle.
     pub vehicle: VehicleParameters,
-    /// Its state at the start of the impact.
+    /// State of the vehicle at the start of the impact.
     pub initial: VehicleState<f64>,
-    /// Where the force acts.
+    /// Point where the force acts, in body axes.
     pub contact: ContactPoint,
 }
 
-/// A forecast of a motion.
+/// A forecast of the motion of the struck vehicle.
 #[derive(Debug, Clone)]
 pub struct MotionForecast {
-    /// Every [`STEP_S`].
+    /// Distribution of the motion, at intervals of [`STEP_S`].
     pub distribution: MotionDistribution,
-    /// The path without what is uncertain about the vehicle
-    /// ([`Predictor::central_path`]), the mean over the force curves.
+    /// The path with the latent factors of the model at zero ([`Predictor::central_path`]),
+    /// averaged over the force curves.
     pub central: Vec<VehicleState<f64>>,
-    /// Forces that it was driven by, in world axes or heading axes as they came.
+    /// Force histories with which the motions were computed; the axes are those in which they were
+    /// given.
     pub forces: Vec<ForceHistory>,
-    /// What is left of it in the end.
+    /// Final position, heading and speed.
     pub outcome: MotionOutcome,
-    /// Of a predicted force: the whole prediction.
+    /// The prediction of the force network, if the force was predicted.
     pub force: Option<ForcePrediction>,
 }
 
-/// How a motion ends.
+/// State of the vehicle at rest, or at the end of the forecast.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MotionOutcome {
-    /// When: at rest, or at the end of the forecast, s.
+    /// Time from the start of the impact at which the central path comes to rest, or duration of
+    /// the forecast, s.
     pub time_s: f64,
-    /// Whether the central path is at rest by then.
+    /// Whether the speed on the central path falls below 0.3 m/s within the forecast.
     pub is_at_rest: bool,
-    /// X of the CG, m.
+    /// X of the CG at that time, m.
     pub x_m: Spread,
-    /// Y of the CG, m.
+    /// Y of the CG at that time, m.
     pub y_m: Spread,
-    /// Heading against that at the start, rad, positive to the left; goes on beyond a turn.
+    /// Change of heading since the start of the impact, rad, positive to the left. It is not
+    /// wrapped: a full turn counts as 2π.
     pub heading_change_rad: Spread,
-    /// Speed on the central path, m/s.
+    /// Speed of the CG on the central path, m/s.
     pub speed_m_s: f64,
-    /// Area of the smallest region that holds the position with 90 %, m².
+    /// Area of the smallest region that holds the position with a probability of 90 %, m².
     pub region_90_m2: f64,
-    /// P(|heading change| ≥ 90°).
+    /// Probability that the change of heading is at least 90° to either side at that time.
     pub p_quarter_turn: f64,
-    /// P(|heading change| ≥ 180°).
+    /// Probability that the change of heading is at least 180° to either side at that time.
     pub p_half_turn: f64,
 }
 
-/// A forecast that cannot be made.
+/// Reason for which a forecast cannot be made.
 #[derive(Debug, thiserror::Error)]
 pub enum MotionForecastError {
-    /// The force network refuses.
+    /// The force network cannot predict the force.
     #[error(transparent)]
     Force(#[from] ForceError),
-    /// The response network refuses.
+    /// The response network cannot predict the motion.
     #[error(transparent)]
     Response(#[from] LearningError),
-    /// A duration that is none.
+    /// The duration of the forecast is outside the permitted range.
     #[error("the duration is {duration_s} s, expected 0.1 to 60 s")]
     Duration {
-        /// As asked for.
+        /// Duration that was asked for, s.
         duration_s: f64,
     },
-    /// A motion that leaves all numbers behind.
+    /// The predicted motion is not finite.
     #[error("the predicted motion diverges")]
     Diverged,
 }
 
 impl StruckVehicle {
-    /// The target of a scenario.
+    /// The target of a scenario at first contact.
     ///
-    /// - `vehicle`: its kind, whose mass and yaw inertia are replaced by the scenario's.
+    /// - `vehicle`: parameters of the target, whose mass and yaw inertia are replaced by those of
+    ///   the scenario.
+    /// - `contact_height_m`: height of the contact point above the ground, m.
     ///
     /// # Errors
     /// [`ScenarioError`] if the vehicles do not meet.
@@ -142,6 +147,7 @@ impl StruckVehicle {
         })
     }
 
+    /// Inputs of the vehicle at each time step under a force, without steering.
     fn inputs(&self, force: &ForceHistory, duration_s: f64) -> Vec<VehicleInput<f64>> {
         let manoeuvre = Manoeuvre {
             initial: self.initial,
@@ -157,10 +163,15 @@ impl StruckVehicle {
     }
 }
 
-/// The motion after the force that a force network predicts for a collision.
+/// Forecast of the motion after a collision whose force is predicted by a force network.
+///
+/// - `collision`: the numbers of the collision that the force network takes.
+/// - `struck`: the vehicle; the force acts at its contact point, and its heading defines the axes
+///   of the predicted force.
 ///
 /// # Errors
-/// [`MotionForecastError`].
+/// [`MotionForecastError::Force`] if the force network refuses the collision, and the errors of
+/// [`forecast_forces`].
 pub fn forecast_collision(
     collision: &ForceScenario,
     (force_model, response): (&ForceModel, &ResponseModel),
@@ -178,10 +189,12 @@ pub fn forecast_collision(
     Ok(forecast)
 }
 
-/// The motion after given forces, each as likely as the others.
+/// Forecast of the motion after given forces, which are equally likely.
 ///
 /// # Errors
-/// [`MotionForecastError`].
+/// [`MotionForecastError::Duration`] for a duration outside 0.1 to 60 s,
+/// [`MotionForecastError::Response`] if the response network refuses the vehicle,
+/// [`MotionForecastError::Diverged`] if the motion is not finite.
 pub fn forecast_forces(
     forces: &[ForceHistory],
     response: &ResponseModel,
@@ -210,7 +223,7 @@ pub fn forecast_forces(
     Ok(MotionForecast { distribution, central, forces: forces.to_vec(), outcome, force: None })
 }
 
-/// A curve in axes along the target's heading at the start, as one in world axes.
+/// Rotates a curve from axes along the target's initial heading into world axes.
 fn in_world(curve: &ForceCurve, heading_rad: f64) -> ForceHistory {
     let mut history = curve.to_history();
     let (sin, cos) = heading_rad.sin_cos();
@@ -221,6 +234,7 @@ fn in_world(curve: &ForceCurve, heading_rad: f64) -> ForceHistory {
     history
 }
 
+/// Mean state of several paths at each instant.
 fn mean_of(paths: &[Vec<VehicleState<f64>>]) -> Vec<VehicleState<f64>> {
     let n_instants = paths.first().map_or(0, Vec::len);
     let weight = 1.0 / paths.len().max(1) as f64;
@@ -228,6 +242,7 @@ fn mean_of(paths: &[Vec<VehicleState<f64>>]) -> Vec<VehicleState<f64>> {
     (0..n_instants).map(|i| weighted_mean(states(i))).collect()
 }
 
+/// Outcome of a motion; `None` for an empty motion.
 fn outcome(
     distribution: &MotionDistribution,
     central: &[VehicleState<f64>],
@@ -260,18 +275,23 @@ fn outcome(
     })
 }
 
-/// Probability that the heading has changed by an angle or more, to either side, 0 to 1.
+/// Probability that the change of heading is at least `angle_rad` to either side, 0 to 1.
 ///
-/// The cumulative probability of a mixture may exceed 1 by rounding, which must not make this one
-/// negative.
+/// The cumulative probability of a mixture may exceed 1 by rounding errors, which must not make
+/// this probability negative.
 fn p_turn(heading: &NormalMixture, start_rad: f64, angle_rad: f64) -> f64 {
     let (left, right) = (start_rad + angle_rad, start_rad - angle_rad);
     (1.0 - heading.cdf(left) + heading.cdf(right)).clamp(0.0, 1.0)
 }
 
-/// Area of the smallest region that holds the position with a probability, m².
+/// Area of the smallest region that holds the position with probability `level`, m².
 ///
-/// `E[1/p(X); p(X) ≥ c]`: the area is the mean of 1/p over draws inside.
+/// ```text
+/// A = E[1/p(X); p(X) ≥ c]
+/// ```
+///
+/// The expected value is estimated by the mean over draws X, with the threshold c exceeded by the
+/// share `level` of them.
 fn region_m2(position: &PlanarMixture, level: f64) -> f64 {
     let densities = position.densities_of_draws(N_REGION_DRAWS);
     let n_outside = ((1.0 - level) * densities.len() as f64).round() as usize;
@@ -286,7 +306,7 @@ mod tests {
 
     #[test]
     fn the_probability_of_a_turn_that_cannot_be_is_not_below_zero() {
-        // The weights sum to a little more than one.
+        // The weights sum to slightly more than one.
         let weights = (1..60).map(|i| f64::from(i) / 1770.0);
         for n_parts in 2..60 {
             let parts = weights.clone().take(n_parts);
@@ -302,7 +322,8 @@ mod tests {
     #[test]
     fn the_region_of_a_normal_distribution_is_an_ellipse() {
         let part = PlanarPart { weight: 1.0, mean: [0.0; 2], covariance: [4.0, 0.0, 1.0] };
-        // −2 ln 0.1 = 4.605: π · 4.605 · 2 · 1
+        // The squared radius of the 90 % region is −2 ln 0.1 = 4.605, and its area π · 4.605 · 2 ·
+        // 1.
         let area = region_m2(&PlanarMixture::new(vec![part]), 0.9);
         assert!((area / 28.93 - 1.0).abs() < 0.05, "{area}");
     }

@@ -1,4 +1,5 @@
-//! A scenario of two vehicles: solved, spread over a classic pulse, and driven on.
+//! Analysis of a two-vehicle scenario: the collision is solved by conservation of momentum, its
+//! impulse is spread over a classic force pulse, and the motion of both vehicles is simulated.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,31 +11,35 @@ use crate::vehicle::{
     ContactLoad, ContactPoint, Manoeuvre, Motion, VehicleParameters, VehicleState,
 };
 
-/// Sample interval of the pulse, s.
+/// Longest sample interval of the pulse, s; a shorter pulse has at least 20 intervals.
 const PULSE_INTERVAL_S: f64 = 1e-3;
 
-/// How the impulse of the momentum solution is spread over time.
+/// Force pulse over which the impulse of the momentum solution is spread.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PulseSetup {
-    /// Shape.
+    /// Shape of the pulse.
     pub shape: PulseShape,
-    /// Duration, s.
+    /// Duration of the pulse, s.
     pub duration_s: f64,
-    /// Height above the ground at which it acts, m.
+    /// Height of the contact point above the ground, m.
     pub contact_height_m: f64,
 }
 
 impl Default for PulseSetup {
-    /// A haversine over 0.1 s: durations of the shipped finite-element runs lie around 0.116 s.
+    /// A haversine over 0.1 s. The contact durations of the shipped finite-element runs lie around
+    /// 0.116 s.
     fn default() -> Self {
         Self { shape: PulseShape::Haversine, duration_s: 0.1, contact_height_m: 0.52 }
     }
 }
 
-/// Solves a scenario and simulates both vehicles with the impulse spread over a classic pulse.
+/// Solves the collision of a scenario, and simulates both vehicles from first contact on under the
+/// impulse of the solution, which is spread over a classic pulse.
 ///
 /// # Errors
-/// [`AnalysisError`] if the vehicles do not meet, the pulse is no pulse or a motion diverges.
+/// [`AnalysisError::Scenario`] if the vehicles do not meet or the collision cannot be solved,
+/// [`AnalysisError::Pulse`] if the pulse is invalid, [`AnalysisError::Simulation`] if a motion
+/// diverges.
 pub fn analyse_scenario(
     scenario: &Scenario,
     pulse: &PulseSetup,
@@ -78,7 +83,7 @@ pub fn analyse_scenario(
     })
 }
 
-/// A vehicle of a scenario from first contact on, with wheel and throttle released.
+/// Simulates a vehicle of a scenario from first contact on, without steering, drive or braking.
 fn drive_on(
     vehicle: &ScenarioVehicle,
     parameters: &VehicleParameters,
