@@ -1,4 +1,7 @@
-//! The rows of the case table: filtered and sorted. Knows no egui.
+//! The rows of the case table: which cases are listed, in which order, and the text of their cells.
+//!
+//! The filter and the sorting are computed here without egui; the pane that draws the table is in
+//! `panels`.
 
 use std::path::PathBuf;
 
@@ -12,15 +15,17 @@ use crate::units::{Quantity, UnitSystem, significant};
 /// A column of the case table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CaseColumn {
-    /// Key of the attribute, or of an error of the simulation.
+    /// Name of the attribute of the case, or [`AVERAGE_ERROR`].
     pub key: &'static str,
-    /// Heading without unit.
+    /// Heading of the column, without the unit.
     pub title: &'static str,
-    /// What it measures; the attribute is in SI units.
+    /// Physical quantity of the column. The values are in SI units; the table shows them in display
+    /// units.
     pub quantity: Quantity,
 }
 
-/// Key of the column of average errors.
+/// Key of the column with the average position error of the simulation, which is no attribute of
+/// the case.
 pub const AVERAGE_ERROR: &str = "average_error";
 
 const fn column(key: &'static str, title: &'static str, quantity: Quantity) -> CaseColumn {
@@ -47,20 +52,21 @@ const TRAJECTORY_COLUMNS: &[CaseColumn] = &[
     column(AVERAGE_ERROR, "Error", Quantity::Length),
 ];
 
-/// A row of the case table.
+/// A row of the case table: one case of the listed data set.
 pub struct CaseRow<'a> {
     /// Name of the case.
     pub name: &'a str,
     /// The case.
     pub case: &'a Case,
-    /// Its flags.
+    /// Flags that the check of the data set raised for the case.
     pub flags: &'a [Flag],
-    /// How far its simulation lies from its reference, once it is known.
+    /// Difference between the simulated and the recorded motion; `None` before the data set has
+    /// been simulated, and for a case that could not be simulated.
     pub error: Option<&'a MotionError>,
 }
 
 impl CaseColumn {
-    /// The columns of a kind of dataset.
+    /// Returns the columns of the table for a kind of data set.
     pub fn of(kind: DatasetKind) -> &'static [Self] {
         match kind {
             DatasetKind::Force => FORCE_COLUMNS,
@@ -68,7 +74,8 @@ impl CaseColumn {
         }
     }
 
-    /// Heading with unit.
+    /// Returns the heading with the display unit in brackets, or the title alone for a
+    /// dimensionless quantity.
     pub fn heading(&self, units: UnitSystem) -> String {
         match self.quantity.display_unit(units).symbol {
             "" => self.title.to_owned(),
@@ -78,7 +85,7 @@ impl CaseColumn {
 }
 
 impl CaseRow<'_> {
-    /// A number of the row, SI.
+    /// Returns the number of a column in SI units; `None` if the case has no such number.
     pub fn number(&self, key: &str) -> Option<f64> {
         match key {
             AVERAGE_ERROR => self.error.map(|error| error.average_error_m),
@@ -86,7 +93,8 @@ impl CaseRow<'_> {
         }
     }
 
-    /// A cell as it is shown.
+    /// Returns the text of a cell: a number in display units, the text of an attribute, or an empty
+    /// string.
     pub fn text(&self, column: &CaseColumn, units: UnitSystem) -> String {
         if let Some(number) = self.number(column.key) {
             if column.quantity == Quantity::Ratio {
@@ -100,8 +108,10 @@ impl CaseRow<'_> {
         }
     }
 
-    /// Whether every word of the filter holds: `key<number`, `key>number`, `key=value`, or a part
-    /// of the name, of a text attribute or of a flag.
+    /// Whether the row passes the filter, that is, matches each of its words.
+    ///
+    /// A word is `key<number`, `key>number`, `key=value`, or a part of the case name, of a text
+    /// attribute or of a flag. Upper and lower case are not distinguished in texts.
     fn matches(&self, filter: &str) -> bool {
         filter.split_whitespace().all(|word| self.matches_word(word))
     }
@@ -132,15 +142,18 @@ impl CaseRow<'_> {
     }
 }
 
-/// Which cases are listed, in which order. Kept between frames: filtering and sorting 10 000 cases
-/// takes longer than a frame may.
+/// The cases that are listed and their order.
+///
+/// The order is kept between frames, because filtering and sorting 10 000 cases takes longer than
+/// one frame.
 #[derive(Default)]
 pub struct CaseList {
     key: Option<ListKey>,
     order: Vec<usize>,
 }
 
-/// What the order was made for.
+/// The inputs from which the order was computed. The order is computed again when one of them
+/// changes.
 #[derive(PartialEq)]
 struct ListKey {
     path: PathBuf,
@@ -150,17 +163,19 @@ struct ListKey {
     sort: Option<(String, bool)>,
 }
 
-/// The listed data set, ready to be shown.
+/// The listed data set with its cases in the order of the table.
 #[derive(Clone, Copy)]
 pub struct CaseTable<'a> {
-    /// The data set.
+    /// The listed data set and its checks.
     pub checked: &'a CheckedDataset,
     errors: Option<&'a ReplayStatus>,
     order: &'a [usize],
 }
 
 impl CaseList {
-    /// Sorts and filters again if what the order was made for has changed.
+    /// Filters and sorts the cases again if an input of the order has changed: the listed data set,
+    /// its number of cases or of simulated cases, the filter, or the sort column. Without a listed
+    /// data set the list becomes empty.
     pub fn update(&mut self, sources: &[Source], replays: &Replays, view: &View) {
         let (Some(path), Some(checked)) = (&view.listed, listed_in(sources, view)) else {
             *self = Self::default();
@@ -181,7 +196,7 @@ impl CaseList {
         }
     }
 
-    /// The table in this order.
+    /// Returns the listed data set in the current order; `None` if no data set is listed.
     pub fn table<'a>(
         &'a self,
         sources: &'a [Source],
@@ -195,24 +210,25 @@ impl CaseList {
 }
 
 impl<'a> CaseTable<'a> {
-    /// Number of rows.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         self.order.len()
     }
 
-    /// A row.
+    /// Returns the row at `index`, counted from 0; `None` beyond the last row.
     pub fn row(&self, index: usize) -> Option<CaseRow<'a>> {
         row(self.checked, self.errors, *self.order.get(index)?)
     }
 
-    /// Where a case stands.
+    /// Returns the row index of a case, from 0; `None` if the filter excludes the case or there is
+    /// no such case.
     pub fn position(&self, name: &str) -> Option<usize> {
         let cases = &self.checked.dataset.cases;
         self.order.iter().position(|&case| cases.get(case).is_some_and(|case| case.name == name))
     }
 }
 
-/// The dataset that is listed.
+/// Returns the data set that the view lists, if it is loaded.
 pub fn listed_in<'a>(sources: &'a [Source], view: &View) -> Option<&'a CheckedDataset> {
     let path = view.listed.as_ref()?;
     let source = sources.iter().find(|source| source.path == *path)?;
@@ -241,7 +257,12 @@ fn order(checked: &CheckedDataset, errors: Option<&ReplayStatus>, view: &View) -
     rows.into_iter().map(|(index, _)| index).collect()
 }
 
-/// Numbers before texts before nothing; rows that tie keep their order.
+/// Sorts rows by a column. In rising order, rows with a number come first, by value; the others
+/// follow by their text, and an empty text comes before any other. `descending` reverses this
+/// order. Rows with equal keys keep their order.
+///
+/// The key `case` sorts by name. The key `flags` puts the cases with the most flags first in rising
+/// order.
 fn sort(rows: &mut [(usize, CaseRow<'_>)], key: &str, descending: bool) {
     let text = |row: &CaseRow<'_>| match key {
         "case" => row.name.to_owned(),

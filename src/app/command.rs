@@ -1,4 +1,7 @@
-//! What the user can do, and the one place where it is done.
+//! The commands of the user interface and [`State::apply`], the one function that carries them out.
+//!
+//! A pane edits its own settings directly. For everything else, menus, keys and panes put a
+//! [`Command`] into a list, which is applied after the frame has been drawn.
 
 use std::path::PathBuf;
 
@@ -14,111 +17,114 @@ use crate::error_chain;
 use crate::figure::Figure;
 use crate::study::SimulateAnswer;
 
-/// Step of the arrow keys in the scene, s.
+/// Time step of the left and right arrow keys in the scene, s.
 const TIME_STEP_S: f64 = 0.05;
 
-/// Something the user asks for.
+/// An action that the user requests.
 #[derive(Debug, Clone)]
 pub enum Command {
-    /// Open files or folders.
+    /// Open files or folders: data, models, vehicles, scenarios or comparisons.
     Open(Vec<PathBuf>),
-    /// Close what was opened under this path.
+    /// Close the sources that were opened under this path, or whose own path it is.
     Close(PathBuf),
-    /// Ask for a path.
+    /// Ask the user for a path with a native file dialog.
     Ask(Purpose),
-    /// Show and simulate something.
+    /// Select a case, a file or the scenario, so that it is shown and simulated.
     Select(Subject),
-    /// Select the next (1) or previous (−1) case of the list.
+    /// Move the selection in the case table by this many rows; negative values move up.
     SelectNeighbour(isize),
-    /// List the cases of a dataset.
+    /// List the cases of the data set in this folder.
     List(PathBuf),
-    /// Ask which column of a file is which.
+    /// Open the dialog in which the user assigns channels and units to the columns of a file.
     AskMapping(PathBuf),
-    /// Read a file with the user's columns.
+    /// Read a file with the columns that the user assigned.
     OpenMapped(PathBuf, ColumnMap),
-    /// Close the mapping dialog.
+    /// Close the dialog of the columns without reading the file.
     CancelMapping,
-    /// Simulate every case of a dataset.
+    /// Simulate every case of the data set in this folder.
     ReplayDataset(PathBuf),
-    /// Stop simulating a dataset.
+    /// Cancel the simulation of the data set in this folder.
     CancelReplay(PathBuf),
-    /// Go to a moment, s.
+    /// Set the time that is shown, in seconds.
     SetTime(f64),
-    /// Go forward by this many small steps; back if negative.
+    /// Move the time by this number of arrow-key steps of 0.05 s and stop playback; negative values
+    /// move back.
     StepTime(f64),
-    /// Let time run, or stop it.
+    /// Start or stop the playback. At the end of the motion it starts again from zero.
     TogglePlay,
-    /// Fit all plots to their data.
+    /// Fit the axes of all plots to their data.
     FitPlots,
-    /// Write a figure, as PNG or CSV by the path's ending.
+    /// Write a figure to a file: as CSV if the path ends in `.csv`, otherwise as PNG.
     Export(Box<Figure>, PathBuf),
-    /// Put a figure's numbers on the clipboard.
+    /// Copy the numbers of a figure to the clipboard, as CSV.
     CopyNumbers(Box<Figure>),
-    /// Write the scenario to a file.
+    /// Write the scenario of the scenario pane to a TOML file.
     SaveScenario(PathBuf),
     /// Predict the force of the selected case.
     PredictCase,
-    /// Predict the force of the scenario panel's scenario.
+    /// Predict the force of the collision in the scenario pane.
     PredictScenario,
-    /// Use the model of this file; without a path the shipped one.
+    /// Use the model in this file; `None` is the shipped model.
     UseModel(Network, Option<PathBuf>),
-    /// Use the model that a cancelled training has left.
+    /// Use the model of a cancelled training, which has been set aside.
     UseTrained(Network),
-    /// Write a model to a file.
+    /// Write the current model of a network to a file.
     SaveModel(Network, PathBuf),
-    /// Train a model.
+    /// Start, pause or cancel the training of a network.
     Train(Network, TrainingCommand),
-    /// Compare response models, or evaluate the current one.
+    /// Compare response models, evaluate the current one, or open or save a comparison.
     Compare(ComparisonCommand),
-    /// Evaluate the force model on a data set.
+    /// Evaluate the current force model on the chosen data set.
     Evaluate,
-    /// Stop evaluating.
+    /// Cancel the evaluation of the force model.
     CancelEvaluation,
     /// Bring a pane to the front.
     Show(Pane),
-    /// Bring the training of a network to the front.
+    /// Bring the training pane to the front and show this network in it.
     ShowTraining(Network),
-    /// Put all panes back.
+    /// Restore the default layout of the panes.
     ResetLayout,
-    /// Tell the user something.
+    /// Show a message in the status line.
     Say(Severity, String),
-    /// Forget the messages.
+    /// Clear the messages of the status line.
     DismissMessages,
-    /// Go back a step.
+    /// Undo the last change of the project.
     Undo,
-    /// Repeat the step that was undone.
+    /// Redo the change of the project that was undone last.
     Redo,
 }
 
-/// What to do with a training.
+/// An action on the training of a network.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TrainingCommand {
-    /// Begin.
+    /// Start the training with the settings of the form.
     Start,
-    /// Pause it (`true`), or let it go on.
+    /// Pause the training (`true`) or resume it (`false`).
     Pause(bool),
-    /// End it with the weights so far.
+    /// End the training and keep the weights reached so far.
     Cancel,
 }
 
-/// What to do with a comparison.
+/// An action on the comparison of response models.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ComparisonCommand {
     /// Train response models and compare them.
     Start,
-    /// Evaluate the current response model.
+    /// Evaluate the current response model alone.
     Evaluate,
-    /// Stop.
+    /// Cancel the comparison or the evaluation.
     Cancel,
-    /// Read one from a file.
+    /// Read a comparison from a `comparison.json` file.
     Open(PathBuf),
-    /// Write it into a folder.
+    /// Write the comparison that is shown into a folder.
     Save(PathBuf),
 }
 
 impl State {
-    /// Does what was asked for. [`Command::Undo`] and [`Command::Redo`] are the app's, which keeps
-    /// the past.
+    /// Carries out a command.
+    ///
+    /// [`Command::Undo`] and [`Command::Redo`] do nothing here: [`App`](crate::app::App) carries
+    /// them out, because it keeps the history of the project.
     pub fn apply(&mut self, command: Command, context: &Context) {
         match command {
             Command::Open(paths) => self.open(paths, context),
@@ -193,7 +199,9 @@ impl State {
         }
     }
 
-    /// Shows something from its beginning.
+    /// Selects a subject and shows it from time zero. Selecting the current subject again changes
+    /// nothing but the listed data set. The force of the case is predicted if the view follows the
+    /// selected case.
     pub(super) fn select(&mut self, subject: Subject) {
         if let Subject::Case { dataset, .. } = &subject {
             self.view.listed = Some(dataset.clone());
@@ -248,7 +256,8 @@ impl State {
         }
     }
 
-    /// The last moment of what is shown, s.
+    /// Returns the last time of the simulation of the subject, or of its recorded motion if it is
+    /// not simulated, in seconds; 0 without either.
     pub fn end_time_s(&self) -> f64 {
         let last = |SimulateAnswer { analysis, .. }: &SimulateAnswer| {
             let simulation = analysis.simulation.as_ref().map(|motion| &motion.series);
@@ -259,7 +268,7 @@ impl State {
     }
 }
 
-/// Wakes the window from another thread.
+/// Returns a callback with which another thread requests a new frame of the window.
 pub fn wake(context: &Context) -> impl Fn() + Send + 'static {
     let context = context.clone();
     move || context.request_repaint()

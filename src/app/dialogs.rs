@@ -1,4 +1,5 @@
-//! Native file dialogs, and the dialog that asks which column is which.
+//! The native file dialogs, and the dialog in which the user assigns channels to the columns of a
+//! file.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -15,39 +16,40 @@ use crate::data::{
 use crate::figure::Figure;
 use crate::jobs::{Job, Update};
 
-/// What to do where the system has no file dialog.
+/// Message that is shown if the desktop has no file dialog.
 const NO_DIALOG: &str = "this system showed no file dialog (xdg-desktop-portal brings one); type the path in the Data pane or drop files here; figures are written by `impactlab render` too";
 
-/// Ending of model files.
+/// File extension of model files.
 pub const MODEL_ENDING: &str = "safetensors";
 
-/// What a path is asked for.
+/// The purpose for which the user is asked for a path.
 #[derive(Debug, Clone)]
 pub enum Purpose {
-    /// Open a folder.
+    /// A data set or a folder of data sets to open.
     Folder,
-    /// Open files.
+    /// Single files to open.
     Files,
-    /// Save a figure's picture.
+    /// A PNG file for the picture of a figure.
     Picture(Box<Figure>),
-    /// Save a figure's numbers.
+    /// A CSV file for the numbers of a figure.
     Numbers(Box<Figure>),
-    /// Save the scenario.
+    /// A TOML file for the scenario.
     Scenario,
-    /// Open a model.
+    /// A model file to open.
     OpenModel,
-    /// Save a model.
+    /// A file for the current model of a network.
     SaveModel(Network),
-    /// Open a comparison.
+    /// A `comparison.json` file to open.
     OpenComparison,
-    /// Save a comparison into a folder.
+    /// A folder for the comparison of response models.
     SaveComparison,
 }
 
-/// A dialog that is answered faster than this was never seen: there is no native dialog.
+/// Shortest time after which a user can have cancelled a dialog. A dialog that returns nothing in
+/// less time was not displayed, because the desktop provides none.
 const UNSEEN: Duration = Duration::from_millis(300);
 
-/// A native dialog that waits for the user, on a thread of its own.
+/// A native file dialog that waits for the user on its own thread.
 pub struct FileDialog {
     purpose: Purpose,
     job: Job<Vec<PathBuf>>,
@@ -56,15 +58,21 @@ pub struct FileDialog {
 impl FileDialog {
     /// Opens a dialog.
     ///
+    /// - `purpose`: decides which dialog is opened and which command follows;
+    /// - `wake`: called when the user has answered.
+    ///
     /// # Errors
-    /// The operating system's, if no thread can be started.
+    /// The error of the operating system, if the thread cannot be started.
     pub fn open(purpose: Purpose, wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let asked = purpose.clone();
         let job = Job::spawn("file dialog", wake, move |_| pollster::block_on(ask(&asked)))?;
         Ok(Self { purpose, job })
     }
 
-    /// What to do now that the user has answered; `None` while the dialog is open.
+    /// Returns the commands that follow from the user's answer; `None` while the dialog is open.
+    ///
+    /// The list is empty if the user cancelled. If the desktop has no file dialog, it holds a
+    /// message that says so.
     pub fn poll(&mut self) -> Option<Vec<Command>> {
         match self.job.poll() {
             Update::Running => None,
@@ -137,7 +145,7 @@ async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
     one.iter().map(|file| file.path().to_owned()).collect()
 }
 
-/// Asks which column of a file is which.
+/// The dialog in which the user says which column of a file holds which channel in which unit.
 pub struct MappingDialog {
     path: PathBuf,
     proposals: Vec<ColumnProposal>,
@@ -145,7 +153,8 @@ pub struct MappingDialog {
     units: Vec<usize>,
 }
 
-/// What a loose file can hold, in the order of the dialog's lists.
+/// The channels that can be assigned to a column of a single file, in the order of the dialog's
+/// lists.
 const CHOICES: [Channel; 14] = [
     Channel::Time,
     Channel::Fx,
@@ -164,10 +173,11 @@ const CHOICES: [Channel; 14] = [
 ];
 
 impl MappingDialog {
-    /// Reads the header and the first rows of a file and proposes what each column is.
+    /// Reads the header and the first rows of a file and proposes a channel and a unit for each
+    /// column.
     ///
     /// # Errors
-    /// [`DataError`] if the file is no table.
+    /// [`DataError`] if the file cannot be read as a table.
     pub fn open(path: PathBuf) -> Result<Self, DataError> {
         let proposals = propose_columns(&path)?;
         let choices = proposals.iter().map(|p| p.guess.map(|(channel, _)| channel)).collect();
@@ -179,7 +189,7 @@ impl MappingDialog {
         Ok(Self { path, proposals, choices, units })
     }
 
-    /// Draws the dialog.
+    /// Draws the dialog and adds a command when the user confirms or cancels.
     pub fn ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
         ui.heading("Which column is which?");
         ui.label(self.path.display().to_string());

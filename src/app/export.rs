@@ -1,4 +1,4 @@
-//! Figures become files, in the background.
+//! Writes figures to files in the background, as pictures or as tables.
 
 use std::path::{Path, PathBuf};
 
@@ -8,10 +8,15 @@ use crate::figure::{Figure, write_figure_csv};
 use crate::jobs::Job;
 use crate::render::{Canvas, figure_image, save_png};
 
-/// Starts writing a figure: its numbers if the path ends in `.csv`, else a picture.
+/// Starts writing a figure to a file: its numbers if the path ends in `.csv`, otherwise a PNG
+/// picture.
+///
+/// - `dark`: whether the picture has the dark theme;
+/// - `wake`: called at the end;
+/// - returns the job, whose result is the path that was written or a message for the user.
 ///
 /// # Errors
-/// The operating system's, if no thread can be started.
+/// The error of the operating system, if the thread cannot be started.
 pub fn spawn(
     figure: Figure,
     path: PathBuf,
@@ -33,10 +38,10 @@ fn write(figure: &Figure, path: &Path, dark: bool) -> Result<(), String> {
         .map_err(|error| error_chain(&error))
 }
 
-/// The numbers of a figure as CSV text.
+/// Returns the numbers of a figure as CSV text.
 ///
 /// # Errors
-/// A message, if they cannot be written.
+/// A message for the user, if the text cannot be made.
 pub fn numbers(figure: &Figure) -> Result<String, String> {
     let mut bytes = Vec::new();
     write_figure_csv(figure, &mut bytes).map_err(|error| error_chain(&error))?;

@@ -1,22 +1,22 @@
-//! Keys.
+//! The keyboard shortcuts and the commands that they give.
 
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
 
-/// Undo.
+/// Shortcut that undoes the last change of the project.
 pub const UNDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
-/// Redo.
+/// Shortcut that redoes the change that was undone last.
 pub const REDO: KeyboardShortcut =
     KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
-/// Open files.
+/// Shortcut that asks for files to open.
 pub const OPEN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::O);
-/// Open a folder.
+/// Shortcut that asks for a folder to open.
 pub const OPEN_FOLDER: KeyboardShortcut =
     KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::O);
 
-/// The keys that need no modifier, with what they do, for the help.
+/// The keys that act without a modifier, with the description that the help menu shows.
 pub const PLAIN_KEYS: [(Key, &str); 7] = [
     (Key::Space, "play or pause"),
     (Key::ArrowLeft, "a step back in time"),
@@ -27,7 +27,8 @@ pub const PLAIN_KEYS: [(Key, &str); 7] = [
     (Key::F, "fit plots to their data"),
 ];
 
-/// What the pressed keys ask for. A text field that has the focus keeps its keys.
+/// Adds the commands of the keys that were pressed in this frame. While a text field has the focus,
+/// the keys without a modifier are left to it.
 pub fn commands(context: &Context, commands: &mut Vec<Command>) {
     let shortcuts = [
         (REDO, Command::Redo),

@@ -1,5 +1,7 @@
-//! Answers questions on a thread of its own, so that the window keeps its pace: while a slider
-//! moves, only the latest question is answered, and the last answer stays until the next one comes.
+//! Answers short questions on a separate thread, so that the window does not wait for them.
+//!
+//! If questions arrive faster than they are answered, as while a slider is moved, only the latest
+//! one is answered. The last answer remains available until the next one arrives.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -10,17 +12,17 @@ use crate::error_chain;
 use crate::jobs::{Job, Progress, Update};
 use crate::study::{Event, Library, Question};
 
-/// An answer, or a message that says why there is none.
+/// The answer to a question, or a message that says why there is none.
 pub type AnswerResult<Q> = Result<Arc<<Q as Question>::Answer>, String>;
 
-/// The latest question and the latest answer.
+/// The latest question of one kind and the latest answer to it.
 pub struct Latest<Q: Question> {
     thread: Option<Thread<Q>>,
     n_asked: u64,
     n_answered: u64,
     /// The question that was asked last.
     pub asked: Option<Q>,
-    /// The latest answer, or why there is none. It belongs to `asked` unless
+    /// The latest answer, or the reason why there is none. It belongs to `asked` unless
     /// [`Latest::is_waiting`].
     pub answer: Option<AnswerResult<Q>>,
 }
@@ -38,7 +40,8 @@ impl<Q: Question> Default for Latest<Q> {
 }
 
 impl<Q: Question> Latest<Q> {
-    /// Takes in what was answered.
+    /// Receives the answers that have arrived and keeps the latest. A panic of the thread becomes
+    /// an answer with an error, and the next question starts a new thread.
     pub fn poll(&mut self) {
         let Some(thread) = &mut self.thread else { return };
         if let Some((number, answer)) = thread.answers.try_iter().last() {
@@ -51,7 +54,12 @@ impl<Q: Question> Latest<Q> {
         }
     }
 
-    /// Asks, unless it was the last question. `wake` is called after every answer.
+    /// Asks a question, unless it equals the question that was asked last.
+    ///
+    /// - `library`: data and models that the question refers to; the thread keeps the library with
+    ///   which it was started;
+    /// - `wake`: called after every answer; the thread keeps the callback with which it was
+    ///   started.
     pub fn ask(&mut self, question: Q, library: &Arc<Library>, wake: impl Fn() + Send + 'static) {
         if self.asked.as_ref() == Some(&question) {
             return;
@@ -68,7 +76,8 @@ impl<Q: Question> Latest<Q> {
         }
         match Thread::spawn(Arc::clone(library), wake) {
             Ok(thread) => {
-                // The thread has just been started and waits for its first question.
+                // The send cannot fail, because the thread has just been started and waits for its
+                // first question.
                 let _ = thread.questions.send(numbered);
                 self.thread = Some(thread);
             }
@@ -79,23 +88,24 @@ impl<Q: Question> Latest<Q> {
         }
     }
 
-    /// Whether the answer to the latest question is still to come.
+    /// Whether the answer to the latest question has not arrived yet.
     pub fn is_waiting(&self) -> bool {
         self.n_asked != self.n_answered
     }
 
-    /// Lets the same question be asked again, because the files or models that it refers to have
-    /// changed.
+    /// Allows the same question to be asked again, because the files or models that it refers to
+    /// have changed.
     pub fn ask_again(&mut self) {
         self.asked = None;
     }
 
-    /// Forgets question and answer.
+    /// Drops the question, the answer and the thread.
     pub fn forget(&mut self) {
         *self = Self::default();
     }
 
-    /// The answer, if there is one.
+    /// Returns the latest answer, if it is not an error. While [`Latest::is_waiting`], it belongs
+    /// to an earlier question.
     pub fn ok(&self) -> Option<&Arc<Q::Answer>> {
         self.answer.as_ref()?.as_ref().ok()
     }

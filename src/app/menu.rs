@@ -1,4 +1,4 @@
-//! The menu at the top and the status line at the bottom.
+//! The menu at the top of the window and the status line at the bottom.
 
 use std::time::Duration;
 
@@ -17,16 +17,16 @@ use crate::jobs::{Job, Progress};
 use crate::render::theme;
 use crate::units::UnitSystem;
 
-/// Which way the undo history goes.
+/// Whether the project can be undone and redone.
 #[derive(Clone, Copy)]
 pub struct History {
-    /// Whether there is something to undo.
+    /// Whether there is a change to undo.
     pub can_undo: bool,
-    /// Whether there is something to redo.
+    /// Whether there is an undone change to redo.
     pub can_redo: bool,
 }
 
-/// Draws the menu.
+/// Draws the menu with the files, the panes, the keys, the theme and the units.
 pub fn menu_ui(ui: &mut Ui, state: &mut State, history: History, commands: &mut Vec<Command>) {
     Panel::top("menu").show(ui, |ui| {
         MenuBar::new().ui(ui, |ui| {
@@ -135,7 +135,7 @@ fn help_menu_ui(ui: &mut Ui) {
     ui.label("The shipped data are simulations, not measurements.");
 }
 
-/// Draws the status line: work under way, messages.
+/// Draws the status line: the work in progress with its progress bars, and the latest message.
 pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     Panel::bottom("status").show(ui, |ui| {
         for source in &state.session.sources {
@@ -190,7 +190,8 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     });
 }
 
-/// A training under way, which is seen from every pane.
+/// Draws a row for a training in progress, with a button that brings the training pane to the
+/// front.
 fn training_job_ui(
     ui: &mut Ui,
     (network, is_paused): (Network, bool),
@@ -214,7 +215,7 @@ fn training_job_ui(
     });
 }
 
-/// A running job: progress, time left, cancel.
+/// Draws a row for a running job: a button to cancel, the share done and the time left.
 fn job_ui<T>(ui: &mut Ui, what: &str, job: &Job<T>, cancel: Command, commands: &mut Vec<Command>) {
     progress_ui(ui, what, (job.progress(), job.elapsed()), cancel, commands);
 }
@@ -242,7 +243,7 @@ fn progress_ui(
     });
 }
 
-/// Says what a drop will do while a file hovers over the window.
+/// Draws a hint over the window that says what can be dropped, while the user drags a file over it.
 pub fn drop_hint_ui(ui: &Ui) {
     if ui.ctx().input(|input| input.raw.hovered_files.is_empty()) {
         return;

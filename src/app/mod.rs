@@ -1,5 +1,7 @@
-//! The window. It edits settings, makes questions of them, and shows the answers, which come from the
-//! [`study`](crate::study) by way of [`jobs`](crate::jobs).
+//! The window of the program.
+//!
+//! It edits settings, makes questions of them and shows the answers. The questions are answered by
+//! [`study`](crate::study), on threads that [`jobs`](crate::jobs) starts.
 
 mod case_table;
 mod command;
@@ -50,35 +52,39 @@ pub use response::{DensityChoice, ForceChoice, MotionAnswer, ResponseSession, Tr
 pub use source::{Content, Source};
 pub use state::{FileStart, Project, State, Subject, View};
 
-/// The icon of the window, which the desktop entry shows too.
+/// The icon of the window, which is also the icon of the desktop entry.
 const ICON: &[u8] = include_bytes!("../../assets/desktop/impactlab.png");
 
-/// The program's name in folders of the user.
+/// Name of the program's folder among the user's data.
 const APP_ID: &str = "impactlab";
-/// The file that keeps the state.
+/// Name of the file that stores the project and the view between runs.
 const STATE_FILE: &str = "state.json";
-/// The files beside it that keep a training while it runs, force and response network.
+/// Names of the files, beside the state file, that store the state of a running training: of the
+/// force network and of the response network.
 const TRAINING_FILES: [&str; 2] = ["force-training.safetensors", "response-training.safetensors"];
 
-/// A window that could not be opened.
+/// The window could not be opened, with the message of the windowing system.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "no window could be opened ({0}); a graphics driver may be missing: on Debian or Ubuntu, `apt-get install mesa-vulkan-drivers libvulkan1` brings a software one. Without a window: `impactlab check`, `impactlab render`"
 )]
 pub struct WindowError(String);
 
-/// The app.
+/// The application: its state, the history for undo and redo, and the file that stores the state.
 pub struct App {
     state: State,
     undoer: Undoer<Project>,
     store: Option<Store>,
 }
 
-/// Opens the window on these paths, or on what was open last, or on the shipped data sets, or, where
-/// there are none, on the example scenario.
+/// Opens the window and returns when the user closes it.
+///
+/// - `paths`: files and folders to open. If there are none, the paths that were open at the end of
+///   the last run are opened, otherwise the data sets of the repository. If those are not found
+///   either, the window shows the example scenario.
 ///
 /// # Errors
-/// [`WindowError`] without a display or a graphics driver.
+/// [`WindowError`] if there is no display or no graphics driver.
 pub fn run(paths: Vec<PathBuf>) -> Result<(), WindowError> {
     let viewport = egui::ViewportBuilder::default()
         .with_icon(icon())
@@ -104,8 +110,10 @@ fn icon() -> egui::IconData {
 }
 
 impl App {
-    /// Starts from what the last run left in `state_file`, if there is one, and keeps the state
-    /// there.
+    /// Creates the application from the state that the last run has stored, and opens the paths as
+    /// [`run`] describes.
+    ///
+    /// - `state_file`: file in which the state is stored; `None` stores nothing.
     pub fn new(cc: &CreationContext<'_>, paths: Vec<PathBuf>, state_file: Option<PathBuf>) -> Self {
         let training_files =
             TRAINING_FILES.map(|name| Some(state_file.as_ref()?.with_file_name(name)));
@@ -127,22 +135,22 @@ impl App {
         }
         state.apply(Command::Open(to_open), &cc.egui_ctx);
         if state.project.subject.is_some() {
-            state.session.select_when_loaded = None; // the last run's subject stays
+            state.session.select_when_loaded = None; // The subject of the last run stays.
         }
         Self { state, undoer: Undoer::default(), store }
     }
 
-    /// What the app knows.
+    /// Returns the state of the application.
     pub fn state(&self) -> &State {
         &self.state
     }
 
-    /// What the app knows, to be changed by a test.
+    /// Returns the state of the application so that a test can change it.
     pub fn state_mut(&mut self) -> &mut State {
         &mut self.state
     }
 
-    /// Does something as if the user had asked for it.
+    /// Carries out a command as if the user had asked for it, including undo and redo.
     pub fn apply(&mut self, command: Command, context: &Context) {
         match command {
             Command::Undo => {
@@ -231,16 +239,17 @@ impl App {
     }
 }
 
-/// The window's graphics processor for density maps; none where a program plays it, which would be
-/// slower than the same on all cores.
+/// Returns the window's graphics processor for density maps. `None` if there is none or if it is
+/// emulated in software, which is slower than the computation on all cores.
 fn graphics_processor(cc: &CreationContext<'_>) -> Option<Arc<DensityGpu>> {
     let render = cc.wgpu_render_state.as_ref()?;
     let gpu = DensityGpu::new(render.device.clone(), render.queue.clone()).ok()?;
     (gpu.adapter_info().device_type != DeviceType::Cpu).then(|| Arc::new(gpu))
 }
 
-/// The data sets of the repository, which are too large to be part of the program: below the current
-/// folder, beside the program, or in the sources it was built from.
+/// Returns the folder of the repository's data sets, which are too large to be part of the program.
+/// It is searched below the current folder, in the folders above the program, and in the source
+/// folder from which the program was built.
 fn shipped_datasets() -> Option<PathBuf> {
     let program = std::env::current_exe().unwrap_or_default();
     let roots = [PathBuf::from(".")]

@@ -1,4 +1,5 @@
-//! The model that answers: loaded and saved in the background, or fresh from a training.
+//! The model that answers the questions of one network. It is loaded and saved in the background,
+//! or it comes from a training.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -8,32 +9,36 @@ use crate::error_chain;
 use crate::jobs::Job;
 use crate::study::{Library, ModelChoice};
 
-/// A model that can answer questions, and where it comes from.
+/// A model in use or ready for use, and its origin.
 pub struct CurrentModel<M> {
-    /// The name of the model in questions.
+    /// The reference to the model in questions.
     pub choice: ModelChoice,
     /// The model.
     pub model: Arc<M>,
-    /// The name that is shown: that of its file, or how it was trained.
+    /// The name that is shown: the name of the file, “shipped”, or a description of the training.
     pub name: String,
-    /// Whether the model stands in a file.
+    /// Whether the model is stored in a file or is the shipped one.
     pub is_saved: bool,
 }
 
-/// The model of one network that answers, and the one that the project asks for.
+/// The state of the model of one network: the model in use, the one that is being loaded or saved,
+/// and the one that a cancelled training has left.
 pub struct ModelStatus<M> {
-    /// The file that was asked for last; the inner `None` is the shipped model.
+    /// The file that was requested last; the inner `None` is the shipped model. The outer `None`
+    /// means that no model has been requested yet, or that it must be read again.
     requested: Option<Option<PathBuf>>,
     job: Option<Job<Result<CurrentModel<M>, String>>>,
     saving: Option<Job<Result<PathBuf, String>>>,
+    /// Number of models that trainings have given since the start of the program.
     n_trained: usize,
-    /// The model that answers questions.
+    /// The model that answers questions; `None` before the first one is loaded.
     pub current: Option<CurrentModel<M>>,
-    /// The model of a cancelled training, which answers only once the user says so.
+    /// The model of the last training that is not in use, because the training was cancelled. It
+    /// answers only after the user has asked for it.
     pub set_aside: Option<CurrentModel<M>>,
-    /// Why the model that the project asks for could not be loaded.
+    /// The reason why the model that the project requests could not be loaded.
     pub problem: Option<String>,
-    /// The path in the text field for saving, as far as it has been typed.
+    /// The path in the text field for saving, as the user has typed it so far.
     pub typed_path: String,
 }
 
@@ -53,8 +58,12 @@ impl<M> Default for ModelStatus<M> {
 }
 
 impl<M: TrainedModel> ModelStatus<M> {
-    /// Starts to load a model if the project asks for another one than before. Returns once why a
-    /// model could not be loaded.
+    /// Starts to load a model if the project requests another one than before, and receives the
+    /// model that has been loaded. If loading fails, the model in use stays.
+    ///
+    /// - `wanted`: file of the requested model; `None` is the shipped one;
+    /// - `wake`: called when the model is loaded;
+    /// - returns the reason why a model could not be loaded, once.
     pub fn update(
         &mut self,
         wanted: &Option<PathBuf>,
@@ -84,13 +93,15 @@ impl<M: TrainedModel> ModelStatus<M> {
         self.job.is_some()
     }
 
-    /// Takes a model that was just trained and puts it into the library.
+    /// Receives a model that was just trained and puts it into the library.
     ///
-    /// - `name`: how it was trained, for a person;
-    /// - `is_used`: whether it answers questions from now on; otherwise it is set aside.
+    /// - `name`: description of the training, shown to the user; a number is appended from the
+    ///   second training on;
+    /// - `is_used`: whether the model answers questions from now on; otherwise it is set aside.
     pub fn take_trained(&mut self, model: M, name: String, (library, is_used): (&Library, bool)) {
         self.n_trained += 1;
-        // A name stands for one model, so that an answer of another one is not taken for its own.
+        // The library identifies a model by its name. Two models of the same name would make the
+        // answers of one pass for those of the other.
         let name = match self.n_trained {
             1 => name,
             n => format!("{name} (training {n})"),
@@ -103,7 +114,7 @@ impl<M: TrainedModel> ModelStatus<M> {
         }
     }
 
-    /// Puts the model of a cancelled training into use.
+    /// Puts the model that was set aside into use and stops loading another one.
     pub fn use_trained(&mut self) {
         if let Some(trained) = self.set_aside.take() {
             self.job = None;
@@ -112,15 +123,17 @@ impl<M: TrainedModel> ModelStatus<M> {
         }
     }
 
-    /// Reads the file again at the next update.
+    /// Makes the next update read the requested file again.
     pub fn reload(&mut self) {
         self.requested = None;
     }
 
-    /// Starts writing the model to a file.
+    /// Starts writing the model in use to a file.
+    ///
+    /// - `wake`: called when the file has been written.
     ///
     /// # Errors
-    /// A message for the user.
+    /// A message for the user, if there is no model or the thread cannot be started.
     pub fn save(&mut self, path: PathBuf, wake: impl Fn() + Send + 'static) -> Result<(), String> {
         let Some(current) = &self.current else {
             return Err(format!("there is no {} to save", M::NETWORK.model()));
@@ -136,7 +149,8 @@ impl<M: TrainedModel> ModelStatus<M> {
         self.saving.is_some()
     }
 
-    /// The file that has just been written. The model is that file's from now on.
+    /// Returns the path of the file that has just been written, or why it could not be; `None`
+    /// otherwise. The model in use refers to that file from then on.
     pub fn poll_saving(&mut self, library: &Library) -> Option<Result<PathBuf, String>> {
         let result = self.saving.as_mut()?.poll().into_result("the writer")?;
         self.saving = None;
@@ -165,7 +179,7 @@ fn load<M: TrainedModel>(
     }
 }
 
-/// The last part of a path.
+/// Returns the last component of a path, as text.
 pub fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }

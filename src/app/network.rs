@@ -1,4 +1,4 @@
-//! The two networks, where the app treats them alike.
+//! The two networks behind one interface, for the parts of the app that treat them alike.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -17,10 +17,10 @@ use crate::study::{
 /// One of the two networks.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Network {
-    /// Scenario to impact force.
+    /// The force network, which predicts the impact force from the collision.
     #[default]
     Force,
-    /// Impact force to motion.
+    /// The response network, which predicts the motion of the struck vehicle from the impact force.
     Response,
 }
 
@@ -28,7 +28,7 @@ impl Network {
     /// Both networks.
     pub const ALL: [Self; 2] = [Self::Force, Self::Response];
 
-    /// In a sentence: “force model”.
+    /// Returns the name of a model of this network for use in a sentence, such as “force model”.
     pub fn model(self) -> &'static str {
         match self {
             Self::Force => "force model",
@@ -36,7 +36,7 @@ impl Network {
         }
     }
 
-    /// As a choice.
+    /// Returns the name of the network for headings and lists.
     pub fn label(self) -> &'static str {
         match self {
             Self::Force => "Force network",
@@ -44,7 +44,7 @@ impl Network {
         }
     }
 
-    /// What a file with such a model is called at first.
+    /// Returns the file name that is proposed when a model of this network is saved.
     pub fn file_name(self) -> &'static str {
         match self {
             Self::Force => "force.safetensors",
@@ -53,45 +53,49 @@ impl Network {
     }
 }
 
-/// A model that files hold and trainings make.
+/// A trained model of either network, which can be stored in a file, held in a library and come out
+/// of a training.
 pub trait TrainedModel: Sized + Send + Sync + 'static {
-    /// Of which network.
+    /// The network that the model belongs to.
     const NETWORK: Network;
 
-    /// What a training answers.
+    /// The answer of a training of this network, which contains the model.
     type Answer: Send + 'static;
 
-    /// What is told of a training.
+    /// The report of a training of this network.
     type Report;
 
-    /// The model of this name in questions; it is read if it is not in memory.
+    /// Returns the model to which questions refer by `choice`; it is read from its file if it is
+    /// not in memory.
     ///
     /// # Errors
-    /// [`StudyError`] if it cannot be read.
+    /// [`StudyError`] if the model cannot be read.
     fn of_library(library: &Library, choice: &ModelChoice) -> Result<Arc<Self>, StudyError>;
 
-    /// Keeps the model in the library under its name in questions.
+    /// Keeps the model in the library, where questions refer to it by `choice`.
     fn hold(library: &Library, choice: ModelChoice, model: Arc<Self>);
 
     /// Writes the model to a file.
     ///
     /// # Errors
-    /// A message for the user.
+    /// A message for the user, if the file cannot be written.
     fn write(&self, path: &Path) -> Result<(), String>;
 
-    /// The model that came out of a training, and what is told of it.
+    /// Separates the answer of a training into the model and the report.
     fn of_answer(answer: Self::Answer) -> (Self, Self::Report);
 
-    /// Cases that the training left out, and what it assumed.
+    /// Returns the cases that the training left out, each with its reason, and the assumptions of
+    /// the training.
     fn notes(report: &Self::Report) -> (&[String], &[Assumption]);
 
-    /// What the data that it learned from were called.
+    /// Returns the name of the data that the model was trained on.
     fn data(&self) -> &str;
 
-    /// Every epoch of its training.
+    /// Returns a summary of each epoch of the training.
     fn history(&self) -> Vec<EpochSummary>;
 
-    /// The epoch whose weights it has, where that is not the last one.
+    /// Returns the epoch, from 1, from which the weights were taken; `None` if they are those of
+    /// the last epoch.
     fn best_epoch(&self) -> Option<usize>;
 }
 

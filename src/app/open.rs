@@ -1,4 +1,4 @@
-//! Opening and closing: data, models, vehicles, scenarios, comparisons.
+//! Opens and closes data, models, vehicles, scenarios and comparisons, and saves models.
 
 use std::path::{Path, PathBuf};
 
@@ -20,6 +20,8 @@ use crate::study::VehicleChoice;
 use crate::vehicle::VehicleParameters;
 
 impl State {
+    /// Opens paths by their extension: `.toml` is a vehicle or a scenario, `.safetensors` a model
+    /// and `.json` a comparison. Any other path is loaded as data.
     pub(super) fn open(&mut self, paths: Vec<PathBuf>, context: &Context) {
         for path in paths {
             if path.extension().is_some_and(|ending| ending == "toml") {
@@ -39,10 +41,11 @@ impl State {
         }
     }
 
-    /// Starts to load a data set, a folder of data sets or a file; what was loaded from the path
-    /// before is forgotten.
+    /// Starts to load a data set, a folder of data sets or a data file. Sources that were loaded
+    /// from the same path before are closed.
     ///
-    /// - `map`: the user's columns of a file, where its header does not say.
+    /// - `map`: the columns that the user has assigned, for a file whose header does not identify
+    ///   them.
     pub(super) fn load(&mut self, path: PathBuf, map: Option<ColumnMap>, context: &Context) {
         self.forget_sources(|source| source.opened == path || source.path == path);
         self.session.select_when_loaded = Some(path.clone());
@@ -50,7 +53,8 @@ impl State {
         self.session.sources.push(source);
     }
 
-    /// Closes sources, and lets the library read them again if they are asked about later.
+    /// Closes the sources for which `is_closed` holds, together with their simulations, and removes
+    /// their data from the library, so that a later question reads them again.
     fn forget_sources(&mut self, is_closed: impl Fn(&Source) -> bool) {
         let session = &mut self.session;
         session.sources.retain(|source| {
@@ -64,7 +68,7 @@ impl State {
         session.force.recorded = None;
     }
 
-    /// Lets every question be asked again, because what it refers to has changed.
+    /// Allows every question to be asked again, because the data that it refers to have changed.
     pub(super) fn ask_again(&mut self) {
         let session = &mut self.session;
         session.analysis.ask_again();
@@ -72,20 +76,21 @@ impl State {
         session.response.forecast.ask_again();
     }
 
-    /// Takes a model file for the network that it says it is of.
+    /// Uses the model of a file for the network that the file's header names.
     fn open_trained(&mut self, path: PathBuf) {
         match kind_of_file(&path).as_deref() {
             Ok(kind) if kind == ResponseModel::KIND.name => {
                 self.use_model(Network::Response, Some(path))
             }
-            // Says what is wrong with it, if something is.
+            // A file of an unknown kind goes to the loader as well, which reports what is wrong
+            // with it.
             Ok(_) => self.use_model(Network::Force, Some(path)),
             Err(error) => self.say(Severity::Error, error_chain(error)),
         }
     }
 
-    /// Uses the model of a file, or the shipped one. A file is read again even if its model is in
-    /// use already, and what was asked of it is asked again.
+    /// Uses the model of a file; `None` is the shipped one. A file is read again even if its model
+    /// is in use already, and the forecasts that depend on it are asked again.
     pub(super) fn use_model(&mut self, network: Network, path: Option<PathBuf>) {
         if let Some(path) = &path {
             self.session.library.forget(path);
@@ -104,7 +109,7 @@ impl State {
         }
     }
 
-    /// Lets the model that a cancelled training left answer.
+    /// Puts the model of a cancelled training, which was set aside, into use.
     pub(super) fn use_trained(&mut self, network: Network) {
         match network {
             Network::Force => self.session.force.model.use_trained(),
@@ -112,6 +117,8 @@ impl State {
         }
     }
 
+    /// Starts writing the current model of a network to a file, or tells the user why that is not
+    /// possible.
     pub(super) fn save_model(&mut self, network: Network, path: PathBuf, context: &Context) {
         let started = match network {
             Network::Force => self.session.force.model.save(path, wake(context)),
@@ -122,14 +129,14 @@ impl State {
         }
     }
 
-    /// Tells the user what went wrong, if something did.
+    /// Shows a problem to the user, if there is one.
     pub(super) fn say_problem(&mut self, problem: Option<String>) {
         if let Some(problem) = problem {
             self.say(Severity::Error, problem);
         }
     }
 
-    /// Tells the user what became of a file that was to be written.
+    /// Tells the user that a file has been written, or why it could not be.
     pub(super) fn say_of_file(&mut self, written: Option<Result<PathBuf, String>>) {
         match written {
             None => {}
@@ -138,7 +145,8 @@ impl State {
         }
     }
 
-    /// Takes a TOML file for a vehicle if it is one, else for a scenario. Such files are small.
+    /// Reads a TOML file as a vehicle or, if it is none, as a scenario. The file is read on the
+    /// window's thread, because such files are small.
     fn open_model(&mut self, path: PathBuf) {
         if let Ok(vehicle) = VehicleParameters::load(&path) {
             self.project.vehicle = VehicleChoice::File(path);
@@ -155,6 +163,8 @@ impl State {
         }
     }
 
+    /// Closes the sources of a path. If the subject belongs to them, nothing is selected
+    /// afterwards.
     pub(super) fn close(&mut self, path: &Path) {
         self.forget_sources(|source| source.opened == path || source.path == path);
         let is_open = |open: &Path| self.session.sources.iter().any(|s| s.path == *open);

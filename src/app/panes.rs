@@ -1,4 +1,4 @@
-//! The panes of the window and where they stand.
+//! The panes of the window and their layout.
 
 use egui::{Id, Ui, WidgetText};
 use egui_tiles::{
@@ -10,45 +10,45 @@ use crate::app::command::Command;
 use crate::app::panels;
 use crate::app::state::{Project, Session, View};
 
-/// Panes after which a tab with several is called.
+/// Number of pane titles that the tab of a container shows before it ends in “…”.
 const MAX_TITLES: usize = 2;
 
-/// Where the panes stand.
+/// The arrangement of the panes in the window, which the user can change.
 pub type Layout = Tree<Pane>;
 
-/// A part of the window.
+/// A pane of the window. Each one is drawn by a function in `panels`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Pane {
-    /// What is open.
+    /// The data sets and files that are open, with the problems found in them.
     Data,
-    /// The cases of a dataset.
+    /// The cases of the listed data set.
     Cases,
-    /// Vehicle and integration.
+    /// The vehicles, the equations of motion and their integration.
     Vehicle,
-    /// The impact solver.
+    /// The scenario of two vehicles and its impulse solution.
     Scenario,
-    /// The scene from above.
+    /// The scene of the impact and the motion, seen from above.
     Scene,
-    /// Motion over time.
+    /// The motion over time.
     Motion,
-    /// Force over time.
+    /// The contact force over time.
     Force,
-    /// Simulation against reference.
+    /// The simulation compared with the recorded motion.
     Comparison,
-    /// What the force network predicts.
+    /// The force history that the force network predicts.
     ForcePrediction,
-    /// Where the struck vehicle goes, with how sure that is.
+    /// The predicted motion of the struck vehicle, with its uncertainty.
     MotionForecast,
-    /// How a network learns.
+    /// The training of either network.
     Training,
-    /// How well the force network does.
+    /// The evaluation of the force network on a data set.
     Evaluation,
-    /// How well the response network does beside other models.
+    /// The comparison of response models.
     ModelComparison,
 }
 
 impl Pane {
-    /// Every pane.
+    /// Every pane, in the order of the menu.
     pub const ALL: [Self; 13] = [
         Self::Data,
         Self::Cases,
@@ -65,7 +65,7 @@ impl Pane {
         Self::ModelComparison,
     ];
 
-    /// Its title.
+    /// Returns the title of the pane.
     pub fn title(self) -> &'static str {
         match self {
             Self::Data => "Data",
@@ -85,8 +85,11 @@ impl Pane {
     }
 }
 
-/// On the left data and cases, with scenario and vehicle behind; the rest is one case (scene and
-/// motion, force and figures) or, behind it, the two networks.
+/// Returns the default layout.
+///
+/// The data stand at the upper left, with the cases, the scenario and the vehicle in tabs below.
+/// The rest of the window holds tabs: one with scene, motion, force and comparison of a single
+/// case, and one for each pane of the two networks.
 pub fn default_layout() -> Layout {
     let mut tiles = Tiles::default();
     let mut tabs = |panes: &[Pane]| {
@@ -123,7 +126,8 @@ pub fn default_layout() -> Layout {
     Tree::new(Id::unique("panes"), root, tiles)
 }
 
-/// Whether a layout has every pane.
+/// Whether a layout contains every pane. A layout that was saved by an earlier version may lack
+/// some.
 pub fn is_complete(layout: &Layout) -> bool {
     let has = |pane: &Pane| {
         let mut tiles = layout.tiles.tiles();
@@ -137,15 +141,15 @@ pub fn show_pane(layout: &mut Layout, pane: Pane) {
     layout.make_active(|_, tile| matches!(tile, egui_tiles::Tile::Pane(other) if *other == pane));
 }
 
-/// Draws the panes over the parts of the state.
+/// The context in which the panes are drawn: the parts of the state, and the list of commands.
 pub struct PaneContext<'a> {
-    /// What the user works on.
+    /// What the user works on. Panes edit their own settings in it.
     pub project: &'a mut Project,
-    /// How it is shown, without the layout, which is being drawn.
+    /// How the project is shown. Its layout is empty while the panes are drawn.
     pub view: &'a mut View,
-    /// What is loaded and computed.
+    /// Loaded data, answers and running work.
     pub session: &'a mut Session,
-    /// What the user asks for.
+    /// The commands that the panes add.
     pub commands: &'a mut Vec<Command>,
 }
 
@@ -174,7 +178,8 @@ impl Behavior<Pane> for PaneContext<'_> {
         pane.title().into()
     }
 
-    /// A tab with several panes is called after them.
+    /// Returns the title of a tab: that of its pane or, for a container, the titles of the first
+    /// panes in it.
     fn tab_title_for_tile(&mut self, tiles: &Tiles<Pane>, tile_id: TileId) -> WidgetText {
         let mut names = Vec::new();
         collect_titles(tiles, tile_id, &mut names);
@@ -188,7 +193,7 @@ impl Behavior<Pane> for PaneContext<'_> {
     }
 }
 
-/// The titles of the panes in a tile, in their order.
+/// Collects the titles of the panes in a tile, in their order.
 fn collect_titles(tiles: &Tiles<Pane>, tile_id: TileId, titles: &mut Vec<&'static str>) {
     match tiles.get(tile_id) {
         Some(egui_tiles::Tile::Pane(pane)) => titles.push(pane.title()),

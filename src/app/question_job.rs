@@ -1,5 +1,5 @@
-//! A question that takes a while, answered in the background: progress, cancel, and the latest
-//! answer with the question that it belongs to.
+//! Answers questions that take seconds to minutes, in the background: with progress, with a way to
+//! cancel, and with the latest answer kept beside the question that it belongs to.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -12,19 +12,20 @@ use crate::study::{Event, Library, Question};
 
 /// A question with its answer, or with the reason why there is none.
 pub struct Answered<Q: Question> {
-    /// What was asked.
+    /// The question that was asked.
     pub question: Q,
-    /// What was answered.
+    /// The answer, or the reason why there is none.
     pub answer: AnswerResult<Q>,
 }
 
+/// The thread that answers a question.
 type AnswerJob<Q> = Job<Result<Outcome<<Q as Question>::Answer>, String>>;
 
-/// The question that is being answered, and the latest one that was.
+/// A question that is being answered, and the latest one that has been answered.
 pub struct QuestionJob<Q: Question> {
     running: Option<(Q, AnswerJob<Q>)>,
-    /// The latest question that was answered or could not be answered. A cancelled question leaves
-    /// the one before it here.
+    /// The latest question that was answered or could not be answered. A question that was
+    /// cancelled does not replace it.
     pub latest: Option<Answered<Q>>,
 }
 
@@ -35,10 +36,12 @@ impl<Q: Question> Default for QuestionJob<Q> {
 }
 
 impl<Q: Question> QuestionJob<Q> {
-    /// Starts to answer a question; one that is being answered is cancelled.
+    /// Starts to answer a question. A question that is still being answered is cancelled.
+    ///
+    /// - `wake`: called after every report of progress and at the end.
     ///
     /// # Errors
-    /// The operating system's, if no thread can be started.
+    /// The error of the operating system, if the thread cannot be started.
     pub fn start(
         &mut self,
         question: Q,
@@ -57,7 +60,7 @@ impl<Q: Question> QuestionJob<Q> {
         Ok(())
     }
 
-    /// The job that is under way, for its progress.
+    /// Returns the running job, which knows its progress.
     pub fn job(&self) -> Option<&AnswerJob<Q>> {
         self.running.as_ref().map(|(_, job)| job)
     }
@@ -67,14 +70,15 @@ impl<Q: Question> QuestionJob<Q> {
         self.running.is_some()
     }
 
-    /// Stops answering; the latest answer stays.
+    /// Cancels the running question. The latest answer is kept.
     pub fn cancel(&self) {
         if let Some(job) = self.job() {
             job.cancel();
         }
     }
 
-    /// Takes in what has come to an end; whether there is a new answer or a new problem.
+    /// Receives the result, if the job has ended. Returns whether there is a new answer or a new
+    /// problem; a cancelled question gives neither.
     pub fn poll(&mut self) -> bool {
         let Some((_, job)) = &mut self.running else { return false };
         let Some(result) = job.poll().into_result("the answer") else { return false };
@@ -88,12 +92,12 @@ impl<Q: Question> QuestionJob<Q> {
         true
     }
 
-    /// The latest answer, if there is one.
+    /// Returns the latest answer, if it is not an error.
     pub fn ok(&self) -> Option<&Arc<Q::Answer>> {
         self.latest.as_ref()?.answer.as_ref().ok()
     }
 
-    /// Why the latest question has no answer.
+    /// Returns the reason why the latest question has no answer.
     pub fn problem(&self) -> Option<&str> {
         self.latest.as_ref()?.answer.as_ref().err().map(String::as_str)
     }

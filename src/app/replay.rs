@@ -1,4 +1,4 @@
-//! A data set that is simulated as a whole, with its cases by name.
+//! The simulation of all cases of a data set, and the errors of its cases by name.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -8,22 +8,25 @@ use crate::app::question_job::QuestionJob;
 use crate::compare::MotionError;
 use crate::study::{Library, SimulateDatasetAnswer, SimulateDatasetReport, SimulateDatasetRequest};
 
-/// The simulation of a whole data set, under way or over.
+/// The simulation of a data set, running or finished.
 #[derive(Default)]
 pub struct ReplayStatus {
-    /// The question, and the answer that is shown.
+    /// The question, the running job and the latest answer.
     pub question: QuestionJob<SimulateDatasetRequest>,
+    /// Index of each case in the report, by the name of the case.
     by_case: BTreeMap<String, usize>,
 }
 
-/// The simulated data sets, by their folders.
+/// The simulated data sets, by the path of their folder.
 pub type Replays = BTreeMap<PathBuf, ReplayStatus>;
 
 impl ReplayStatus {
-    /// Starts to simulate; what is under way is cancelled.
+    /// Starts the simulation. A simulation that is still running is cancelled.
+    ///
+    /// - `wake`: called after every report of progress and at the end.
     ///
     /// # Errors
-    /// The operating system's, if no thread can be started.
+    /// The error of the operating system, if the thread cannot be started.
     pub fn start(
         &mut self,
         question: SimulateDatasetRequest,
@@ -33,12 +36,13 @@ impl ReplayStatus {
         self.question.start(question, library, wake)
     }
 
-    /// Stops what is under way.
+    /// Cancels the running simulation.
     pub fn cancel(&self) {
         self.question.cancel();
     }
 
-    /// Takes in the end of a simulation; what the user should be told.
+    /// Receives the result, if the simulation has ended. Returns a message for the user if it
+    /// failed or if cases could not be simulated.
     pub fn poll(&mut self) -> Option<String> {
         if !self.question.poll() {
             return None;
@@ -57,18 +61,19 @@ impl ReplayStatus {
         told
     }
 
-    /// Whether there is nothing to show: neither a simulation under way nor a result.
+    /// Whether there is nothing to show: no simulation is running and none has given a result.
     pub fn is_empty(&self) -> bool {
         !self.question.is_running() && self.report().is_none()
     }
 
-    /// What is told of the latest simulation.
+    /// Returns the report of the latest simulation.
     pub fn report(&self) -> Option<&SimulateDatasetReport> {
         let answer: &SimulateDatasetAnswer = self.question.ok()?;
         Some(&answer.report)
     }
 
-    /// How far the simulation of a case lies from its record.
+    /// Returns the difference between the simulated and the recorded motion of a case; `None` if it
+    /// is not known.
     pub fn error(&self, case: &str) -> Option<&MotionError> {
         let idx = self.by_case.get(case)?;
         self.report()?.cases.get(*idx).map(|replay| &replay.error)

@@ -1,5 +1,7 @@
-//! The questions that the project asks. What the project leaves open is left open here, so that the
-//! [`study`](crate::study) decides it, as it does for the command line.
+//! Makes questions from the project.
+//!
+//! What the project leaves open stays open in the question, so that [`study`](crate::study) decides
+//! it as it does for the command line.
 
 use std::path::{Path, PathBuf};
 
@@ -17,12 +19,13 @@ use crate::study::{
 };
 
 impl State {
-    /// The impulse solution of the scenario panel's scenario.
+    /// Returns the question for the impulse solution of the scenario in the scenario pane.
     pub fn impact_request(&self) -> ImpactRequest {
         ImpactRequest { scenario: self.scenario(), paper: false }
     }
 
-    /// The simulation of the subject; `None` if there is none, or if its data are not open.
+    /// Returns the question for the simulation of the subject; `None` if nothing is selected or its
+    /// data are not open.
     pub fn simulate_request(&self) -> Option<SimulateRequest> {
         let project = &self.project;
         Some(SimulateRequest {
@@ -35,7 +38,7 @@ impl State {
         })
     }
 
-    /// The simulation of a whole data set.
+    /// Returns the question for the simulation of all cases of a data set.
     pub(in crate::app) fn replay_request(&self, dataset: PathBuf) -> SimulateDatasetRequest {
         SimulateDatasetRequest {
             dataset,
@@ -46,7 +49,8 @@ impl State {
         }
     }
 
-    /// The force of the collision that the force prediction is about; `None` without a model.
+    /// Returns the question for the force of the collision in the force prediction pane; `None` if
+    /// no force model is loaded.
     pub fn force_request(&self) -> Option<PredictForceRequest> {
         let (project, view) = (&self.project.force, &self.view.force);
         Some(PredictForceRequest {
@@ -62,9 +66,11 @@ impl State {
         })
     }
 
-    /// The motion of the struck vehicle after the force; `None` without a model or a subject.
+    /// Returns the question for the motion of the struck vehicle that the force causes; `None` if
+    /// no response model is loaded or there is nothing to simulate.
     ///
-    /// The force is the given one where the collision is not known, so that it cannot be predicted.
+    /// The force is predicted if the user wants that, a force model is loaded and the collision of
+    /// the subject is known. Otherwise it is the force that the subject gives.
     pub fn motion_request(&self) -> Option<PredictMotionRequest> {
         let form = &self.project.response.forecast;
         let force_model = choice(self.session.force.model.current.as_ref());
@@ -83,7 +89,8 @@ impl State {
         })
     }
 
-    /// Whether the subject says how the vehicles met.
+    /// Whether the subject describes the collision of the two vehicles, so that its force can be
+    /// predicted.
     fn is_collision_known(&self) -> bool {
         match &self.project.subject {
             Some(Subject::Case { .. }) => self.session.force.recorded.is_some(),
@@ -92,7 +99,10 @@ impl State {
         }
     }
 
-    /// A training of the force network on data sets that are open.
+    /// Returns the question that trains the force network.
+    ///
+    /// - `chosen`: the data set of which a part is kept for the test;
+    /// - `extra`: other data sets, from which all cases are used for training.
     pub(in crate::app) fn train_force_request(
         &self,
         (chosen, extra): (&OpenDataset<'_>, &[OpenDataset<'_>]),
@@ -113,7 +123,8 @@ impl State {
         }
     }
 
-    /// A pre-training of the response network on a data set.
+    /// Returns the question that pre-trains the response network on simulations with the forces of
+    /// a data set.
     pub(in crate::app) fn train_response_request(&self, data: PathBuf) -> TrainResponseRequest {
         let form: &ResponseTrainingForm = &self.project.response.training;
         TrainResponseRequest {
@@ -130,8 +141,8 @@ impl State {
         }
     }
 
-    /// A fine-tuning of the response network on a data set; `None` if the current model is to be
-    /// fine-tuned and there is none.
+    /// Returns the question that fine-tunes the response network on a data set; `None` if the
+    /// current model is to be fine-tuned and there is none.
     pub(in crate::app) fn fine_tune_request(&self, data: PathBuf) -> Option<FineTuneRequest> {
         let form: &ResponseTrainingForm = &self.project.response.training;
         let model = match form.mode {
@@ -158,7 +169,8 @@ impl State {
         })
     }
 
-    /// An evaluation of the current force model on a data set; `None` without a model.
+    /// Returns the question that evaluates the current force model on a data set; `None` if no
+    /// model is loaded.
     pub(in crate::app) fn evaluate_force_request(
         &self,
         data: PathBuf,
@@ -173,7 +185,8 @@ impl State {
         })
     }
 
-    /// An evaluation of the current response model on a data set; `None` without a model.
+    /// Returns the question that evaluates the current response model on a data set; `None` if no
+    /// model is loaded.
     pub(in crate::app) fn evaluate_response_request(
         &self,
         data: PathBuf,
@@ -189,10 +202,10 @@ impl State {
         })
     }
 
-    /// A comparison of response models on a data set.
+    /// Returns the question that compares response models on a data set.
     ///
     /// # Errors
-    /// A message, if the numbers of trajectories are none.
+    /// A message for the user, if the form does not list positive numbers of trajectories.
     pub(in crate::app) fn compare_request(&self, data: PathBuf) -> Result<CompareRequest, String> {
         let form: &ComparisonForm = &self.project.response.comparison;
         Ok(CompareRequest {
@@ -210,7 +223,8 @@ impl State {
         ScenarioChoice::Inline(Box::new(self.project.scenario.clone()))
     }
 
-    /// What drives the motion of the subject.
+    /// Returns the source of force and motion of the subject; `None` if nothing is selected or its
+    /// data are not open.
     fn motion_source(&self) -> Option<MotionSource> {
         let find = |path: &Path| self.session.sources.iter().find(|source| source.path == path);
         match self.project.subject.as_ref()? {
@@ -235,18 +249,19 @@ impl State {
     }
 }
 
-/// What questions call the current model.
+/// Returns the reference to the current model in questions.
 fn choice<M>(current: Option<&CurrentModel<M>>) -> Option<ModelChoice> {
     current.map(|current| current.choice.clone())
 }
 
-/// The settings file whose path was typed; none if nothing was.
+/// Returns the settings file whose path the user typed. An empty text means the settings of the
+/// model that is trained on, or the defaults.
 fn config(typed: &str) -> ConfigChoice {
     let path = typed.trim();
     (!path.is_empty()).then(|| PathBuf::from(path)).into()
 }
 
-/// `5, 20` as numbers.
+/// Reads a list of positive numbers separated by commas, such as `5, 20`.
 fn trajectories(text: &str) -> Result<Vec<usize>, String> {
     let number = |part: &str| match part.trim().parse::<usize>() {
         Ok(n) if n > 0 => Ok(n),

@@ -1,4 +1,5 @@
-//! What is open: loaded in the background, checked, and kept with its problems.
+//! The data that are open: loaded in the background, checked, and kept with the problems found in
+//! them.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -14,52 +15,55 @@ use crate::study::{
 };
 use crate::vehicle::VehicleParameters;
 
-/// Something that was opened.
+/// A data set or a file that the user has opened.
 pub struct Source {
-    /// The path that the user opened; several sources may come from one folder.
+    /// The path that the user opened. Opening one folder may give several sources.
     pub opened: PathBuf,
-    /// The path of the dataset or file itself.
+    /// The path of the data set or file itself.
     pub path: PathBuf,
-    /// The user's columns of a file whose header does not say which column is which.
+    /// The columns that the user assigned, for a file whose header does not identify them.
     pub map: Option<ColumnMap>,
-    /// The check of the opened path with its report; sources from one folder share it.
+    /// The check of the opened path with its report; `None` until it is finished. Sources from one
+    /// folder share it.
     pub check: Option<Arc<Answered<CheckRequest>>>,
-    /// The data, or why there are none.
+    /// The data, or the reason why there are none.
     pub content: Content,
 }
 
-/// What a source holds.
+/// The content of a source.
 pub enum Content {
-    /// It is being loaded.
+    /// The data are being loaded.
     Loading(Job<Result<Outcome<OpenedPath>, String>>),
-    /// A dataset.
+    /// A data set.
     Dataset(Arc<CheckedDataset>),
     /// A single file.
     File(Arc<CheckedFile>),
-    /// It could not be read, for this reason.
+    /// The data could not be read, for the given reason.
     Failed(String),
 }
 
-/// A dataset with its checks and its vehicle.
+/// A data set with the results of its check.
 pub struct CheckedDataset {
     /// The data.
     pub dataset: Arc<Dataset>,
-    /// Flags of each case.
+    /// Flags of each case, in the order of the cases.
     pub flags: Vec<Vec<Flag>>,
-    /// Name of the vehicle in its `vehicle.toml`; `None` without one.
+    /// Name of the vehicle in the `vehicle.toml` of the data set, or the reason why the file cannot
+    /// be read; `None` if the data set has no such file.
     pub vehicle: Option<Result<String, String>>,
 }
 
-/// A dataset that is open.
+/// A data set that is open, and its path.
 #[derive(Clone, Copy)]
 pub struct OpenDataset<'a> {
-    /// Its folder.
+    /// The folder of the data set.
     pub path: &'a Path,
-    /// Its data and their checks.
+    /// The data set and its checks.
     pub checked: &'a Arc<CheckedDataset>,
 }
 
-/// The datasets of these kinds that are open, kind by kind in the order of the sources.
+/// Returns the open data sets of the given kinds, ordered by kind as in `kinds`, and within a kind
+/// by the order of opening.
 pub fn open_datasets<'a>(sources: &'a [Source], kinds: &[DatasetKind]) -> Vec<OpenDataset<'a>> {
     let of_kind = |kind: &DatasetKind| {
         let kind = *kind;
@@ -71,7 +75,7 @@ pub fn open_datasets<'a>(sources: &'a [Source], kinds: &[DatasetKind]) -> Vec<Op
     kinds.iter().flat_map(of_kind).collect()
 }
 
-/// The wanted one of the datasets, or else the first.
+/// Returns the data set at the wanted path, or the first data set if that one is not among them.
 pub fn chosen_dataset<'a>(
     datasets: &[OpenDataset<'a>],
     wanted: Option<&Path>,
@@ -80,26 +84,31 @@ pub fn chosen_dataset<'a>(
     chosen.or(datasets.first()).copied()
 }
 
-/// A single file with its checks.
+/// A single file with the results of its check.
 pub struct CheckedFile {
     /// The data.
     pub loaded: Arc<Loaded>,
-    /// Its flags.
+    /// Flags that the check raised for the file.
     pub flags: Vec<Flag>,
 }
 
-/// What became of a path that was opened.
+/// The result of opening a path.
 pub struct OpenedPath {
+    /// The check of the path.
     check: Answered<CheckRequest>,
+    /// The data sets and files at the path, each with its own path, among them those that cannot be
+    /// read.
     contents: Vec<(PathBuf, Content)>,
-    /// What is wrong with the path as a whole, if nothing of it can be read.
+    /// The first problem, if nothing at the path can be read.
     pub failure: Option<PathProblem>,
 }
 
 impl Source {
-    /// Starts to read and check a path.
+    /// Starts to read and check a path in the background.
     ///
-    /// - `map`: the user's columns of a single file, where its header does not say.
+    /// - `map`: the columns that the user assigned, for a single file whose header does not
+    ///   identify them;
+    /// - `wake`: called after every report of progress and at the end.
     pub fn load(
         path: PathBuf,
         map: Option<ColumnMap>,
@@ -126,13 +135,17 @@ impl Source {
         }
     }
 
-    /// A source that could not be opened.
+    /// Returns a source for a path that could not be opened.
+    ///
+    /// - `why`: reason, shown to the user.
     pub fn failed(path: PathBuf, why: String) -> Self {
         let content = Content::Failed(why);
         Self { opened: path.clone(), path, map: None, check: None, content }
     }
 
-    /// The sources that a path turned out to hold; the library holds their data from now on.
+    /// Returns the sources found at the path once it has been read, and puts their data into the
+    /// library. A file with columns that the user assigned is not put there, because the library
+    /// identifies files by their path alone.
     pub fn opened(self, opened: OpenedPath, library: &Library) -> Vec<Self> {
         let check = Some(Arc::new(opened.check));
         let source = |(path, content): (PathBuf, Content)| {
@@ -149,17 +162,17 @@ impl Source {
         opened.contents.into_iter().map(source).collect()
     }
 
-    /// The last part of its path.
+    /// Returns the last component of the path, as text.
     pub fn name(&self) -> String {
         file_name(&self.path)
     }
 
-    /// Whether it has been loaded, with whatever result.
+    /// Whether loading has ended, with data or with an error.
     pub fn is_settled(&self) -> bool {
         !matches!(self.content, Content::Loading(_))
     }
 
-    /// The dataset, if it is one.
+    /// Returns the data set, if the source holds one.
     pub fn dataset(&self) -> Option<&Arc<CheckedDataset>> {
         match &self.content {
             Content::Dataset(dataset) => Some(dataset),
@@ -169,7 +182,7 @@ impl Source {
 }
 
 impl OpenDataset<'_> {
-    /// The last part of its path.
+    /// Returns the last component of the path, as text.
     pub fn name(&self) -> String {
         file_name(self.path)
     }
@@ -189,7 +202,8 @@ impl OpenedPath {
     }
 }
 
-/// Data with their checks, and of a dataset the name of its vehicle.
+/// Returns the path and the content of a checked item; for a data set, the name of its vehicle is
+/// read.
 fn content(item: &CheckedItem) -> (PathBuf, Content) {
     let content = match &item.content {
         CheckedContent::Dataset(dataset, flags) => {

@@ -1,4 +1,5 @@
-//! What the app knows: the project and the view are saved, the session is not.
+//! The state of the application. The project and the view are saved between runs, the session is
+//! not.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -24,76 +25,78 @@ use crate::study::{
 use crate::units::UnitSystem;
 use crate::vehicle::{ContactPoint, Equations, Integrator};
 
-/// Version of the saved state; another one is not read.
+/// Version of the format in which the state is saved. A state of another version is not read.
 const SAVED_VERSION: u32 = 1;
 
-/// The whole state of the app.
+/// The whole state of the application.
 #[derive(Default)]
 pub struct State {
-    /// What the user works on; undo works on this.
+    /// What the user works on. Undo and redo change this part alone.
     pub project: Project,
     /// How the project is shown.
     pub view: View,
-    /// Loaded data, answers and work under way.
+    /// Loaded data, answers and running work.
     pub session: Session,
 }
 
-/// A case, file or scenario that is shown and simulated.
+/// The case, file or scenario that is shown and simulated.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Subject {
-    /// A case of a dataset.
+    /// A case of a data set.
     Case {
-        /// The dataset's folder.
+        /// Folder of the data set.
         dataset: PathBuf,
         /// Name of the case.
         case: String,
     },
-    /// A single file.
+    /// A single file, by its path.
     File(PathBuf),
-    /// The scenario of the scenario panel.
+    /// The scenario in the scenario pane.
     Scenario,
 }
 
-/// What a single file does not say about the struck vehicle. What is left open is assumed by the
-/// [`study`](crate::study).
+/// Quantities that a single file does not state about the struck vehicle. For those that are left
+/// open, [`study`](crate::study) assumes a value and lists it in the report.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct FileStart {
-    /// Speed before the impact, m/s.
+    /// Speed of the struck vehicle before the impact, m/s.
     pub speed_m_s: Option<f64>,
-    /// Where the force acts.
+    /// Point of the struck vehicle at which the force acts, in its body axes.
     pub contact: Option<ContactPoint>,
 }
 
-/// What the user works on.
+/// What the user works on: the subject, the vehicles, and the settings of simulation, prediction
+/// and training.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Project {
-    /// The case, file or scenario that is shown and simulated.
+    /// The case, file or scenario that is shown and simulated; `None` if nothing is selected.
     pub subject: Option<Subject>,
-    /// The struck vehicle.
+    /// The struck vehicle (target).
     pub vehicle: VehicleChoice,
-    /// The striking vehicle, where it is simulated.
+    /// The striking vehicle (bullet), for subjects in which it is simulated.
     pub bullet: VehicleChoice,
-    /// Which equations of motion; those of the vehicle file if not given.
+    /// The equations of motion; `None` takes those of the vehicle file.
     pub equations: Option<Equations>,
-    /// How the equations of motion are integrated.
+    /// The method that integrates the equations of motion.
     pub integrator: Integrator,
-    /// Duration of simulations without a recorded motion, s.
+    /// Duration of simulations for which no motion is recorded, s.
     pub duration_s: f64,
-    /// Channel class of the force plot.
+    /// The filter of the force plot by its channel frequency class; `None` shows the force
+    /// unfiltered.
     pub channel_class: Option<ChannelClass>,
-    /// Whether classic pulses of the same impulse are drawn over the force.
+    /// Whether pulses of classic shapes with the same impulse are drawn over the force.
     pub show_pulses: bool,
-    /// The scenario of the scenario panel.
+    /// The scenario in the scenario pane.
     pub scenario: Scenario,
-    /// How the impulse of the scenario is spread over time.
+    /// Shape and duration of the pulse that spreads the impulse of the scenario over time.
     pub pulse: PulseSetup,
-    /// Speed and contact point for single files, which do not say them.
+    /// Speed and contact point for single files, which do not state them.
     pub file_start: FileStart,
-    /// The force network: what it is asked and how it is trained.
+    /// Settings of the force network: the collision, the model and the training.
     pub force: ForceProject,
-    /// The response network: what it is asked, how it is trained and compared.
+    /// Settings of the response network: the forecast, the model, the training and the comparison.
     pub response: ResponseProject,
 }
 
@@ -121,25 +124,25 @@ impl Default for Project {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct View {
-    /// Units of everything on screen.
+    /// The system of units in which all quantities are shown.
     pub units: UnitSystem,
-    /// Dark theme.
+    /// Whether the theme is dark.
     pub dark: bool,
-    /// Filter of the case table.
+    /// Filter of the case table, as the user typed it.
     pub filter: String,
-    /// Column by which cases are sorted; the table's own order without one.
+    /// Key of the column by which the cases are sorted; `None` keeps the order of the data set.
     pub sort_column: Option<String>,
-    /// Whether the largest value comes first.
+    /// Whether the sorting is reversed, so that the largest number comes first.
     pub sort_descending: bool,
-    /// The dataset whose cases are listed.
+    /// Folder of the data set whose cases are listed.
     pub listed: Option<PathBuf>,
     /// How the force network is shown.
     pub force: ForceView,
     /// How the response network is shown.
     pub response: ResponseView,
-    /// Which network the training pane trains.
+    /// The network that the training pane shows.
     pub trained: Network,
-    /// Where the panes stand.
+    /// The arrangement of the panes.
     pub layout: Layout,
 }
 
@@ -160,55 +163,55 @@ impl Default for View {
     }
 }
 
-/// Loaded data, answers and work under way; not saved.
+/// Loaded data, answers and running work, which are not saved.
 #[derive(Default)]
 pub struct Session {
-    /// The data and models that questions refer to, as far as they are in memory.
+    /// The data and models in memory to which questions refer.
     pub library: Arc<Library>,
-    /// The data that are open, in the order of opening.
+    /// The sources that are open, in the order of opening.
     pub sources: Vec<Source>,
     /// The simulation of the subject.
     pub analysis: Latest<SimulateRequest>,
-    /// The impulse solution of the scenario panel's scenario.
+    /// The impulse solution of the scenario in the scenario pane.
     pub impact: Latest<ImpactRequest>,
-    /// The simulations of whole datasets.
+    /// The simulations of whole data sets.
     pub replays: Replays,
-    /// The force network.
+    /// Model, forecast, training and evaluation of the force network.
     pub force: ForceSession,
-    /// The response network.
+    /// Model, forecast, training and comparison of the response network.
     pub response: ResponseSession,
-    /// Which cases of the listed data set are shown, in which order.
+    /// The cases that the case table lists, in their order.
     pub cases: CaseList,
-    /// The moment shown in the scene, s.
+    /// The time that is shown in the scene, s.
     pub time_s: f64,
-    /// Whether time runs.
+    /// Whether the playback is running.
     pub playing: bool,
-    /// What the user should know, newest last.
+    /// Messages for the user, the newest last.
     pub messages: Vec<Message>,
-    /// A native file dialog that is open.
+    /// The native file dialog that is open.
     pub file_dialog: Option<FileDialog>,
-    /// A dialog that asks which column is which.
+    /// The dialog for the columns of a file that is open.
     pub mapping: Option<MappingDialog>,
-    /// Files being written.
+    /// Jobs that write figures to files.
     pub exports: Vec<Job<Result<PathBuf, String>>>,
-    /// What the user opened last, to be selected once it is loaded.
+    /// The path that the user opened last. Its first case or file is selected once it is loaded.
     pub select_when_loaded: Option<PathBuf>,
-    /// A path that is being typed.
+    /// The path in the text field of the data pane, as the user has typed it so far.
     pub typed_path: String,
-    /// Whether plots should fit their data in this frame.
+    /// Whether the plots fit their axes to their data in this frame.
     pub fit_plots: bool,
 }
 
-/// Something the user should know.
+/// A message for the user.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Message {
-    /// Its severity.
+    /// Severity of the message, which gives its colour.
     pub severity: Severity,
-    /// The message itself.
+    /// Text of the message.
     pub text: String,
 }
 
-/// What survives a restart.
+/// The part of the state that is stored between runs.
 #[derive(Serialize, Deserialize)]
 pub struct Saved {
     version: u32,
@@ -218,7 +221,8 @@ pub struct Saved {
 }
 
 impl State {
-    /// What is to be saved, as text.
+    /// Returns the project, the view and the opened paths as JSON; `None` if they cannot be written
+    /// as such.
     pub fn save(&self) -> Option<String> {
         let saved = Saved {
             version: SAVED_VERSION,
@@ -229,12 +233,15 @@ impl State {
         serde_json::to_string(&saved).ok()
     }
 
-    /// The saved state and the paths that were open. `None` if the text is from another version or
-    /// damaged: the app then starts without one.
+    /// Reads the state that [`save`](Self::save) has written and returns it with the paths that
+    /// were open.
+    ///
+    /// Returns `None` if the text is damaged or of another version; the application then starts
+    /// with the default state. A layout that lacks a pane is replaced by the default one.
     pub fn restore(text: &str) -> Option<(Self, Vec<PathBuf>)> {
         let mut saved: Saved = serde_json::from_str(text).ok()?;
         if !is_complete(&saved.view.layout) {
-            saved.view.layout = default_layout(); // panes have been added since
+            saved.view.layout = default_layout(); // It was saved before a pane was added.
         }
         let state = Self { project: saved.project, view: saved.view, session: Session::default() };
         let mut sources = saved.sources;
@@ -242,12 +249,13 @@ impl State {
         (saved.version == SAVED_VERSION).then_some((state, sources))
     }
 
-    /// The simulation of the subject, to be shown.
+    /// Returns the latest simulation of the subject. While a newer one is awaited, it may belong to
+    /// an earlier subject.
     pub fn analysis(&self) -> Option<&SimulateAnswer> {
         self.session.analysis.ok().map(Arc::as_ref)
     }
 
-    /// Tells the user something.
+    /// Adds a message for the user.
     pub fn say(&mut self, severity: Severity, text: impl Into<String>) {
         self.session.messages.push(Message { severity, text: text.into() });
     }

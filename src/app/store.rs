@@ -1,5 +1,8 @@
-//! Keeps the state on disk: a moment after every change, so that a kill loses nothing, and by a
-//! temporary name, so that a kill leaves no half file.
+//! Stores the state of the application on disk.
+//!
+//! The state is written about one second after its last change, so that little is lost if the
+//! process is killed. It is written to a temporary file that is then renamed, so that the file is
+//! never left incomplete.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -10,32 +13,37 @@ use crate::data::{DataError, write_atomically};
 use crate::error_chain;
 use crate::jobs::{Job, Update};
 
-/// How long the state must have been as it is before it is written.
+/// Time for which the state must not have changed before it is written.
 const SETTLING_TIME: Duration = Duration::from_secs(1);
 
-/// Where the state is kept, and what of it is there.
+/// The file of the state, what has been written to it, and what is still to be written.
 pub struct Store {
     path: PathBuf,
+    /// The text that was written last, or the text of the file if nothing has been written yet.
     written: String,
-    /// A newer state, and since when it is so, s of the window's clock.
+    /// A newer state that has not been written, and the time since which it has not changed, in
+    /// seconds of the window's clock.
     pending: Option<(String, f64)>,
     job: Option<Job<Result<(), DataError>>>,
 }
 
 impl Store {
-    /// Keeps the state in this file.
+    /// Returns a store that keeps the state in this file. Nothing is read or written yet.
     pub fn new(path: PathBuf) -> Self {
         Self { path, written: String::new(), pending: None, job: None }
     }
 
-    /// What the last run left; `None` at the first.
+    /// Reads the state that the last run has left; `None` if there is no readable file.
     pub fn read(&mut self) -> Option<String> {
         self.written = std::fs::read_to_string(&self.path).ok()?;
         Some(self.written.clone())
     }
 
-    /// Takes in the state of this frame and writes it once it has settled. An error is for the
-    /// user.
+    /// Receives the state of this frame and writes it in the background once it has not changed for
+    /// [`SETTLING_TIME`].
+    ///
+    /// - `text`: the state as text;
+    /// - returns a message for the user if an earlier write has failed.
     pub fn keep(&mut self, text: String, context: &Context) -> Option<String> {
         let failure = self.poll();
         if text == self.written {
@@ -59,9 +67,9 @@ impl Store {
         failure
     }
 
-    /// Writes what has not been written, at the end.
+    /// Writes the state at the end of the program, on the calling thread.
     pub fn finish(&mut self, text: &str) {
-        // Nobody is left to tell.
+        // The window is closed already, so that an error cannot be shown.
         let _ = write(&self.path, text);
     }
 
@@ -80,7 +88,7 @@ impl Store {
 
 fn write(path: &Path, text: &str) -> Result<(), DataError> {
     if let Some(folder) = path.parent() {
-        // If this fails, writing says so.
+        // If the folder cannot be created, writing the file below fails and reports the error.
         let _ = std::fs::create_dir_all(folder);
     }
     write_atomically(path, |out| out.write_all(text.as_bytes()))

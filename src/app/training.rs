@@ -1,7 +1,7 @@
-//! A training in the background: reports while it runs, pause, cancel.
+//! Runs a training in the background, with reports while it runs, and with pause and cancel.
 //!
-//! A training question knows one observer. Here it sends the reports to the window and blocks while
-//! the training is paused.
+//! A training question has a single observer. Here the observer sends the reports to the window and
+//! blocks the thread while the training is paused.
 
 use std::ops::ControlFlow;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -14,27 +14,28 @@ use crate::jobs::{Job, Progress, ProgressCallback};
 use crate::learning::TrainingReport;
 use crate::study::{Event, Library, Question};
 
-/// Latest epochs by whose pace the time left is estimated.
+/// Number of the latest epochs from whose durations the remaining time is estimated.
 const PACE_EPOCHS: usize = 10;
 
-/// A training under way: it gives an answer of type `A` in the end, and reports before.
+/// A running training. It sends reports and ends with an answer of type `A`.
 pub struct Training<A> {
     job: Job<Result<Outcome<A>, String>>,
     reports: Receiver<TrainingReport>,
     gate: Arc<Gate>,
 }
 
-/// How a training ended.
+/// The end of a training.
 pub enum TrainingEnd<A> {
-    /// As it was asked for.
+    /// The training was completed.
     Complete(A),
-    /// Early, because the user cancelled it: with the weights so far, if there were any.
+    /// The user cancelled the training. It holds the answer with the weights reached so far, if
+    /// there are any.
     Cancelled(Option<A>),
-    /// With an error, for the user.
+    /// The training failed, with a message for the user.
     Failed(String),
 }
 
-/// Holds a thread up while it is closed.
+/// Blocks a thread while the gate is closed, which pauses a training.
 #[derive(Default)]
 struct Gate {
     state: Mutex<GateState>,
@@ -44,6 +45,7 @@ struct Gate {
 #[derive(Default)]
 struct GateState {
     is_closed: bool,
+    /// Whether a thread is waiting at the gate.
     is_held: bool,
 }
 
@@ -61,11 +63,12 @@ impl Gate {
         self.state().is_closed
     }
 
-    /// Whether a thread is being held up.
+    /// Whether a thread is waiting at the closed gate.
     fn is_holding(&self) -> bool {
         self.state().is_held
     }
 
+    /// Returns at once if the gate is open, otherwise when it is opened.
     fn pass(&self) {
         let mut state = self.state();
         while state.is_closed {
@@ -99,9 +102,10 @@ impl<A: Send + 'static> Training<A> {
         Ok(Self { job, reports, gate })
     }
 
-    /// What was reported since the last time, and the end, if it has come.
+    /// Returns the reports since the last call, and the end, if the training has ended.
     fn poll(&mut self) -> (Vec<TrainingReport>, Option<TrainingEnd<A>>) {
-        let update = self.job.poll(); // before the reports: what it ends with comes after them
+        // The job is polled before the reports, so that all reports sent before its end are received.
+        let update = self.job.poll();
         let end = update.into_result("the training").map(|result| match result {
             Ok(Outcome::Complete(answer)) if self.job.is_cancelled() => {
                 TrainingEnd::Cancelled(Some(answer))
@@ -114,7 +118,7 @@ impl<A: Send + 'static> Training<A> {
     }
 }
 
-/// A training, if one is under way.
+/// The training of one network, if one is running.
 pub struct TrainingSlot<A>(Option<Training<A>>);
 
 impl<A> Default for TrainingSlot<A> {
@@ -124,34 +128,36 @@ impl<A> Default for TrainingSlot<A> {
 }
 
 impl<A> TrainingSlot<A> {
-    /// Whether a training is under way, paused or not.
+    /// Whether a training is running, paused or not.
     pub fn is_running(&self) -> bool {
         self.0.is_some()
     }
 
-    /// Whether it was asked to pause: the epoch under way comes to its end first.
+    /// Whether the training was asked to pause. It continues until its next report, which usually is
+    /// at the end of the current epoch.
     pub fn is_paused(&self) -> bool {
         self.0.as_ref().is_some_and(|training| training.gate.is_closed())
     }
 
-    /// Whether it has come to rest after it was asked to pause.
+    /// Whether the training has stopped after it was asked to pause.
     pub fn is_at_rest(&self) -> bool {
         self.0.as_ref().is_some_and(|training| training.gate.is_holding())
     }
 
-    /// Whether it was told to stop.
+    /// Whether the training was told to end.
     pub fn is_cancelled(&self) -> bool {
         self.0.as_ref().is_some_and(|training| training.job.is_cancelled())
     }
 
-    /// Stops before the next report, or goes on.
+    /// Pauses the training at its next report, or resumes it.
     pub fn set_paused(&self, is_paused: bool) {
         if let Some(training) = &self.0 {
             training.gate.set_closed(is_paused);
         }
     }
 
-    /// Ends it at the next report, with the weights so far.
+    /// Ends the training at its next report; it keeps the weights reached so far. A paused training
+    /// is resumed so that it can end.
     pub fn cancel(&self) {
         if let Some(training) = &self.0 {
             training.job.cancel();
@@ -161,10 +167,12 @@ impl<A> TrainingSlot<A> {
 }
 
 impl<A: Send + 'static> TrainingSlot<A> {
-    /// Starts a training; one that is under way is dropped.
+    /// Starts a training. A training that is still running is cancelled and its result dropped.
+    ///
+    /// - `wake`: called after every report and at the end.
     ///
     /// # Errors
-    /// The operating system's, if no thread can be started.
+    /// The error of the operating system, if the thread cannot be started.
     pub fn start<Q: Question<Answer = A>>(
         &mut self,
         question: Q,
@@ -175,8 +183,8 @@ impl<A: Send + 'static> TrainingSlot<A> {
         Ok(())
     }
 
-    /// What was reported since the last time; with the end, if it has come, after which the slot is
-    /// empty.
+    /// Returns the reports since the last call, and the end, if the training has ended; the slot is
+    /// empty afterwards.
     pub fn poll(&mut self) -> (Vec<TrainingReport>, Option<TrainingEnd<A>>) {
         let Some(training) = &mut self.0 else { return (Vec::new(), None) };
         let (reports, end) = training.poll();
@@ -187,7 +195,9 @@ impl<A: Send + 'static> TrainingSlot<A> {
     }
 }
 
-/// Sends reports to the window, waits while paused, and asks whether to go on.
+/// Passes an event of the training on to the window, waits while the training is paused, and
+/// returns whether to continue. It asks once more after the pause, because the user may have
+/// cancelled meanwhile.
 fn tell(
     event: &Event<'_>,
     (sender, gate): (&Sender<TrainingReport>, &Gate),
@@ -196,7 +206,8 @@ fn tell(
     let progress = match event {
         Event::Progress(progress) => progress.clone(),
         Event::Training(told) => {
-            // A receiver that is gone means a dropped training, which is cancelled.
+            // The send fails only if the receiver has been dropped with the training, which is
+            // cancelled then.
             let _ = sender.send((*told).clone());
             Progress::default()
         }
@@ -208,9 +219,10 @@ fn tell(
     report(progress)
 }
 
-/// The time left at the pace of the latest epochs.
+/// Estimates the remaining time from the mean duration of the latest epochs.
 ///
-/// - `seconds`: of the epochs so far, the last one last; `n_left`: epochs to come.
+/// - `seconds`: durations of the epochs so far in their order, s;
+/// - `n_left`: number of epochs still to come.
 pub fn time_left(seconds: impl DoubleEndedIterator<Item = f64>, n_left: usize) -> Option<Duration> {
     let latest: Vec<f64> = seconds.rev().take(PACE_EPOCHS).collect();
     let pace_s = latest.iter().sum::<f64>() / latest.len().max(1) as f64;

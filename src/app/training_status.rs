@@ -1,4 +1,4 @@
-//! What the window knows of a training, under way or over, of either network.
+//! The state of a training of either network, as the window shows it.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -8,27 +8,30 @@ use crate::app::training::{TrainingEnd, TrainingSlot, time_left};
 use crate::learning::{EpochSummary, TrainingReport};
 use crate::study::{Library, Question, Request};
 
-/// A training of a model of type `M`, under way or over.
+/// The training of a model of type `M`, running or finished.
 pub struct TrainingStatus<M: TrainedModel> {
-    /// The training under way.
+    /// The running training.
     pub run: TrainingSlot<M::Answer>,
-    /// What was asked for.
+    /// The question that started the training.
     pub request: Option<Request>,
-    /// What is told of the training in the end.
+    /// The report of the training, once it has given a model.
     pub report: Option<M::Report>,
-    /// What was reported last; nothing before the first fit or epoch.
+    /// The latest report; `None` before the first fit or epoch.
     pub latest: Option<TrainingReport>,
-    /// Whether the training has come to its end.
+    /// Whether the training has ended.
     pub is_over: bool,
-    /// Every epoch of the model itself so far, those of a training before it left out.
+    /// Summaries of the epochs of the model itself so far, without those of the calibration's
+    /// trainings. Once the training is over, they are all epochs of the model, including those
+    /// before it was resumed.
     pub history: Vec<EpochSummary>,
-    /// The epoch with the best weights so far, where the best are kept and not the last.
+    /// The epoch with the best weights so far, from 1; `None` for a network that keeps the last
+    /// weights.
     pub best_epoch: Option<usize>,
-    /// Duration of each epoch of all trainings, s.
+    /// Durations of the epochs of all trainings, including those for the calibration, s.
     seconds: Vec<f64>,
-    /// Why there is no model in the end.
+    /// The reason why the training gave no model.
     pub problem: Option<String>,
-    /// What the data are called.
+    /// The name of the data, shown to the user.
     pub data: String,
 }
 
@@ -50,12 +53,13 @@ impl<M: TrainedModel> Default for TrainingStatus<M> {
 }
 
 impl<M: TrainedModel> TrainingStatus<M> {
-    /// Starts a training; one that is under way is dropped.
+    /// Starts a training. A training that is still running is cancelled and its result dropped.
     ///
-    /// - `data`: what a person calls the data.
+    /// - `data`: name of the data, shown to the user;
+    /// - `wake`: called after every report and at the end.
     ///
     /// # Errors
-    /// The operating system's, if no thread can be started.
+    /// The error of the operating system, if the thread cannot be started.
     pub fn start<Q: Question<Answer = M::Answer> + Into<Request>>(
         &mut self,
         question: Q,
@@ -66,8 +70,9 @@ impl<M: TrainedModel> TrainingStatus<M> {
         self.run.start(question, library, wake)
     }
 
-    /// Takes in what was reported; in the end the model, and whether the training was completed and
-    /// not cancelled.
+    /// Receives the reports. When the training has ended, returns the model and whether the
+    /// training was completed, `true`, or cancelled, `false`; or the reason why it failed. Returns
+    /// `None` while it runs, and when it was cancelled without any weights.
     pub fn poll(&mut self) -> Option<Result<(M, bool), String>> {
         let (reports, end) = self.run.poll();
         for report in reports {
@@ -79,7 +84,8 @@ impl<M: TrainedModel> TrainingStatus<M> {
         match end {
             TrainingEnd::Complete(answer) | TrainingEnd::Cancelled(Some(answer)) => {
                 let (model, report) = M::of_answer(answer);
-                // A resumed training has epochs from before it.
+                // The reports lack the epochs before a training was resumed; the model has all of
+                // them.
                 self.history = model.history();
                 self.best_epoch = model.best_epoch();
                 self.report = Some(report);
@@ -104,7 +110,8 @@ impl<M: TrainedModel> TrainingStatus<M> {
         self.latest = Some(report);
     }
 
-    /// The share done, 0 to 1, and the time left at the pace of the latest epochs.
+    /// Returns the share that is done, 0 to 1, and the remaining time at the pace of the latest
+    /// epochs; `None` for both before the first epoch and after the end.
     pub fn progress(&self) -> (Option<f32>, Option<Duration>) {
         let Some(TrainingReport::Epoch(epoch)) = self.latest.as_ref().filter(|_| !self.is_over)
         else {
@@ -115,7 +122,7 @@ impl<M: TrainedModel> TrainingStatus<M> {
         (Some(epoch.share_done() as f32), left)
     }
 
-    /// What the training is doing, for a person.
+    /// Returns a description of what the training is doing, shown to the user.
     pub fn doing(&self) -> String {
         let what = match &self.latest {
             _ if self.run.is_cancelled() => "ending".to_owned(),

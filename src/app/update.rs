@@ -1,4 +1,5 @@
-//! What happens between frames: jobs report, time runs, a changed request starts a new analysis.
+//! The work that is done before each frame: results of jobs are received, time advances, and
+//! questions that have changed are asked.
 
 use std::sync::Arc;
 
@@ -11,7 +12,11 @@ use crate::data::{DatasetKind, Outcome, Severity};
 use crate::jobs::Update;
 
 impl State {
-    /// Takes in what the jobs report and starts what is due.
+    /// Receives the results of the jobs, asks the questions that have changed and advances the
+    /// time.
+    ///
+    /// - `commands`: receives the commands that follow, such as opening the paths chosen in a file
+    ///   dialog.
     pub fn update(&mut self, context: &Context, commands: &mut Vec<Command>) {
         self.poll_sources(commands);
         self.poll_replays();
@@ -61,7 +66,7 @@ impl State {
         }
     }
 
-    /// Takes in the data sets that have been simulated, and tells of cases that could not be.
+    /// Receives the simulations of whole data sets and shows their problems to the user.
     fn poll_replays(&mut self) {
         let mut problems = Vec::new();
         for replay in self.session.replays.values_mut() {
@@ -90,8 +95,10 @@ impl State {
         self.session.exports.append(&mut jobs);
     }
 
-    /// Selects what the user has just opened, or anything at all, so that a new user sees
-    /// something.
+    /// Selects the first case or file of what the user opened last, once everything is loaded. If
+    /// nothing is selected after that, the first case or file of all sources is selected, so that
+    /// the window shows something at the first start. If no open data set is listed, the first one
+    /// is.
     fn select_something(&mut self) {
         let sources = &self.session.sources;
         if !sources.iter().all(Source::is_settled) {
@@ -115,7 +122,8 @@ impl State {
         }
     }
 
-    /// Asks about the subject and the scenario of the scenario panel, if they have changed.
+    /// Asks for the simulation of the subject and for the impulse solution of the scenario, if the
+    /// questions have changed.
     fn update_simulation(&mut self, context: &Context) {
         let (simulate, impact) = (self.simulate_request(), self.impact_request());
         let Session { analysis, impact: solution, library, .. } = &mut self.session;
@@ -142,7 +150,8 @@ impl State {
     }
 }
 
-/// The first case of recorded motions, else the first case or file.
+/// Returns the first case of the first trajectory data set; without one, that of the first force
+/// data set; without either, the first file.
 fn first_subject<'a>(sources: impl Iterator<Item = &'a Source>) -> Option<Subject> {
     let subject = |source: &Source| match &source.content {
         Content::Dataset(checked) => {

@@ -1,27 +1,35 @@
-//! What else changes in a scenario when a user changes one number of it.
+//! Changes of one quantity of a collision, with the changes of other quantities that follow from
+//! it.
 
 use crate::collision::Scenario;
 use crate::data::StruckSide;
 use crate::force::ForceScenario;
 
-/// Where the first contact is taken to be along the target once it is no longer unknown, m from the
-/// CG: about the rear axle, where a PIT begins.
+/// Position of the first contact along the target, from its CG, that is proposed when the contact
+/// point becomes known, m. It is near the rear axle, where a PIT manoeuvre begins.
 const USUAL_CONTACT_X_M: f64 = -1.5;
 
-/// Changes the mass of the target (0) or the bullet (1). A yaw inertia that was known belonged to
-/// the old mass; the model then takes the usual one.
+/// Sets the mass of a vehicle.
+///
+/// A known yaw inertia belonged to the old mass and is dropped; the model then assumes one that is
+/// proportional to the mass.
+///
+/// - `vehicle`: 0 for the target, 1 for the bullet;
+/// - `mass_kg`: the new mass, kg.
 pub fn set_mass(scenario: &mut ForceScenario, vehicle: usize, mass_kg: f64) {
     scenario.mass_kg[vehicle] = mass_kg;
     scenario.yaw_inertia_kg_m2[vehicle] = None;
 }
 
-/// Changes the bullet's heading; where its CG then stands is no longer known.
+/// Sets the heading of the bullet relative to the target, rad. The position of its CG, which
+/// depends on it, is no longer known then.
 pub fn set_bullet_heading(scenario: &mut ForceScenario, theta_b_rad: f64) {
     scenario.theta_b_rad = theta_b_rad;
     scenario.bullet_position_m = None;
 }
 
-/// Moves the first contact along the target's side, and the bullet with it.
+/// Moves the first contact to `x_m` along the target, from its CG, and moves the bullet by the same
+/// distance. Nothing changes if the contact point is unknown.
 pub fn set_contact_x(scenario: &mut ForceScenario, x_m: f64) {
     if let Some([old_m, _]) = scenario.contact_m
         && let Some([bullet_m, _]) = &mut scenario.bullet_position_m
@@ -33,19 +41,20 @@ pub fn set_contact_x(scenario: &mut ForceScenario, x_m: f64) {
     }
 }
 
-/// Leaves the first contact open.
+/// Marks the contact point and the position of the bullet as unknown.
 pub fn forget_contact(scenario: &mut ForceScenario) {
     (scenario.contact_m, scenario.bullet_position_m) = (None, None);
 }
 
-/// Takes the first contact to be at a usual place of the struck side.
+/// Proposes a contact point on the struck side, 1.5 m behind the CG and at half the width of the
+/// example scenario's target.
 pub fn know_contact(scenario: &mut ForceScenario) {
     let half_width_m = Scenario::example().target.width_m / 2.0;
     let y_m = if scenario.side == StruckSide::Left { half_width_m } else { -half_width_m };
     scenario.contact_m = Some([USUAL_CONTACT_X_M, y_m]);
 }
 
-/// Strikes the other side: the mirror image of the whole scenario.
+/// Sets the struck side. If it changes, the whole scenario is mirrored left to right.
 pub fn set_side(scenario: &mut ForceScenario, side: StruckSide) {
     if scenario.side != side {
         *scenario = scenario.mirrored();

@@ -1,5 +1,5 @@
-//! The force network in the app: which model is loaded, what it is asked, how it learns and how
-//! well it does. The panels of the same names show it.
+//! The force network in the app: its settings, its model, its forecast, its training and its
+//! evaluation. The panes of these names show them.
 
 mod edit;
 mod settings;
@@ -20,19 +20,20 @@ use crate::app::training_status::TrainingStatus;
 use crate::force::ForceModel;
 use crate::study::{EvaluateForceRequest, PredictForceRequest};
 
-/// What is loaded, computed and under way about the force network.
+/// The data and the running work of the force network, which are not saved.
 #[derive(Default)]
 pub struct ForceSession {
-    /// The model that answers.
+    /// The model that predicts.
     pub model: ModelStatus<ForceModel>,
-    /// What it says of the collision.
+    /// The predicted force of the collision.
     pub forecast: Latest<PredictForceRequest>,
-    /// The selected case, if it has a force to compare with.
+    /// The selected case, if it has a recorded force with which the prediction can be compared.
     pub recorded: Option<RecordedCase>,
-    /// A training, under way or over.
+    /// The training, running or finished.
     pub training: TrainingStatus<ForceModel>,
-    /// An evaluation, under way or over.
+    /// The evaluation on a data set, running or finished.
     pub evaluation: QuestionJob<EvaluateForceRequest>,
-    /// Where a training is kept while it runs, so that it can go on after a crash.
+    /// The file in which the state of a training is stored while it runs, so that it can be resumed
+    /// after a crash.
     pub checkpoint: Option<PathBuf>,
 }

@@ -1,4 +1,4 @@
-//! What of the force network is saved.
+//! The settings of the force network, which are saved between runs.
 
 use std::path::PathBuf;
 
@@ -10,42 +10,42 @@ use crate::figure::ForceComponent;
 use crate::force::ForceScenario;
 use crate::study::{BadCases, EvaluatedCases};
 
-/// What the user works on.
+/// What the user works on with the force network.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ForceProject {
     /// The collision whose force is predicted.
     pub scenario: ForceScenario,
-    /// What it was taken from, for titles.
+    /// Name of the case or scenario from which the collision was taken, for titles.
     pub name: String,
-    /// File of the model; the shipped one without.
+    /// File of the model; `None` is the shipped model.
     pub model: Option<PathBuf>,
-    /// How a model is trained.
+    /// Settings of the training.
     pub training: ForceTrainingForm,
 }
 
-/// How a model is trained.
+/// Settings of a training of the force network.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ForceTrainingForm {
-    /// Folder of the force data set, of which some cases are kept for the test; the first that is
-    /// open without.
+    /// Folder of the force data set to train on, of which some cases are kept for the test; `None`
+    /// takes the first one that is open.
     pub dataset: Option<PathBuf>,
-    /// Whether the cases of all other open force data sets are learned from too.
+    /// Whether all cases of the other open force data sets are used for training too.
     pub use_others: bool,
-    /// Epochs at most, instead of the configured number.
+    /// Largest number of epochs; `None` takes the configured number.
     pub epochs: Option<usize>,
-    /// Seed of split and training.
+    /// Seed of the split into training and test cases and of the training.
     pub seed: u64,
-    /// A file with further settings; the defaults if empty.
+    /// Path of a file with further settings; empty for the default settings.
     pub config: String,
-    /// What happens to cases that cannot be used.
+    /// How cases that cannot be used are treated.
     pub bad_cases: BadCases,
-    /// Whether to go on from where a training of the same settings was interrupted.
+    /// Whether to resume a training with the same settings that was interrupted.
     pub resume: bool,
 }
 
-/// How it is shown.
+/// How the force network is shown.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ForceView {
@@ -55,50 +55,52 @@ pub struct ForceView {
     pub components: [bool; 3],
     /// Whether the recorded force of the selected case is drawn.
     pub recorded: bool,
-    /// Whether what the network starts from is drawn.
+    /// Whether the centre curve of the physics model is drawn, to which the network adds its
+    /// correction.
     pub physics: bool,
-    /// Whether classic pulses of the momentum solution are drawn.
+    /// Whether pulses of classic shapes with the impulse of the momentum solution are drawn.
     pub pulses: bool,
-    /// Whether selecting a case of a force data set predicts it.
+    /// Whether selecting a case of a force data set predicts its force.
     pub follow_case: bool,
-    /// Whole curves drawn.
+    /// Number of force curves that are drawn at random from the predicted distribution.
     pub n_curves: usize,
-    /// Seed of the draws.
+    /// Seed of the random curves.
     pub seed: u64,
     /// Names of the loss terms that are drawn, see
     /// [`LossTerms::named`](crate::force::LossTerms::named).
     pub loss_terms: Vec<String>,
     /// Whether the axis of the losses is logarithmic.
     pub log_losses: bool,
-    /// Folder of the data set on which the model is evaluated; the first that is open without.
+    /// Folder of the data set on which the model is evaluated; `None` takes the first one that is
+    /// open.
     pub evaluated: Option<PathBuf>,
-    /// On which of its cases.
+    /// The cases of that data set on which the model is evaluated.
     pub evaluated_cases: EvaluatedCases,
-    /// What happens to cases that cannot be used.
+    /// How cases that cannot be used in the evaluation are treated.
     pub bad_cases: BadCases,
-    /// Which statistic of the errors the tables show.
+    /// The statistic over the cases that the tables of errors show.
     pub statistic: Statistic,
-    /// What is drawn of the sample cases.
+    /// The component of the force that is drawn for the sample cases of an evaluation.
     pub sample_component: ForceComponent,
 }
 
-/// What sums up the errors of many cases.
+/// A statistic that summarises the errors of many cases.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Statistic {
-    /// Half of the cases are better.
+    /// The median.
     #[default]
     Median,
-    /// Arithmetic mean.
+    /// The arithmetic mean.
     Mean,
-    /// Nine tenths of the cases are better.
+    /// The 90th percentile.
     P90,
 }
 
 impl Statistic {
-    /// All three.
+    /// All statistics.
     pub const ALL: [Self; 3] = [Self::Median, Self::Mean, Self::P90];
 
-    /// For a person.
+    /// Returns the name of the statistic, shown to the user.
     pub fn label(self) -> &'static str {
         match self {
             Self::Median => "median",
@@ -111,7 +113,8 @@ impl Statistic {
 impl Default for ForceProject {
     fn default() -> Self {
         let example = Scenario::example();
-        // The example's vehicles meet (a test says so); anything else would do as well.
+        // In the example the vehicles do meet, which a test checks. The values below are never
+        // used.
         let scenario = ForceScenario::from_scenario(&example).unwrap_or(ForceScenario {
             mass_kg: [2000.0, 2000.0],
             target_velocity_m_s: [15.0, 0.0],

@@ -1,4 +1,4 @@
-//! What happens between frames, and what the user asks for, about the force network.
+//! Background work and commands of the force network.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -14,21 +14,23 @@ use crate::force::{ForceCase, ForceScenario};
 use crate::study::PredictForceAnswer;
 use crate::uncertainty::ForceCurve;
 
-/// The force that was recorded in the selected case, in the case's own axes.
+/// The selected case with its recorded force.
 pub struct RecordedCase {
+    /// Folder of the data set.
     dataset: PathBuf,
     /// Name of the case.
     pub case: String,
-    /// What was known before it.
+    /// The collision of the case as it was before the impact.
     pub scenario: ForceScenario,
-    /// The force.
+    /// The recorded force over time, in the axes of the case.
     pub curve: ForceCurve,
-    /// As models see it.
+    /// The case in the canonical form in which the models see it.
     pub canonical: ForceCase,
 }
 
 impl State {
-    /// Takes in what loader, predictor and training report, and asks for what is due.
+    /// Receives the results of the loader, the training, the evaluation and the forecast, and asks
+    /// for a new forecast if the question has changed.
     pub(in crate::app) fn update_force(&mut self, context: &Context) {
         let (force, library) = (&mut self.session.force, &self.session.library);
         let problem = force.model.update(&self.project.force.model, library, wake(context));
@@ -61,9 +63,10 @@ impl State {
         }
     }
 
-    /// Tells the user that a training is over.
+    /// Tells the user that a training has ended.
     ///
-    /// - `name`: of its model.
+    /// - `name`: description of the trained model;
+    /// - `is_complete`: whether the training was completed; otherwise it was cancelled.
     pub(in crate::app) fn say_of_training(&mut self, name: &str, is_complete: bool) {
         self.say(
             Severity::Info,
@@ -74,14 +77,15 @@ impl State {
         );
     }
 
-    /// Asks if anything has changed since the last question.
+    /// Asks for the force of the collision, if the question has changed.
     fn ask_for_force(&mut self, context: &Context) {
         let Some(question) = self.force_request() else { return };
         let (force, library) = (&mut self.session.force, &self.session.library);
         force.forecast.ask(question, library, wake(context));
     }
 
-    /// Looks up the force of the selected case once it is selected.
+    /// Finds the recorded force of the selected case, if a case is selected and it is not the one
+    /// found before.
     fn find_recorded_case(&mut self) {
         let Some(Subject::Case { dataset, case }) = &self.project.subject else {
             self.session.force.recorded = None;
@@ -94,7 +98,8 @@ impl State {
         self.session.force.recorded = force_case(&self.session.sources, (dataset, case));
     }
 
-    /// Predicts the selected case.
+    /// Takes the collision of the selected case into the force prediction, if the case has a
+    /// recorded force.
     pub(in crate::app) fn predict_case(&mut self) {
         self.find_recorded_case();
         if let Some(recorded) = &self.session.force.recorded {
@@ -104,7 +109,7 @@ impl State {
         }
     }
 
-    /// Predicts the scenario of the scenario panel.
+    /// Takes the collision of the scenario pane into the force prediction.
     pub(in crate::app) fn predict_scenario(&mut self) {
         match ForceScenario::from_scenario(&self.project.scenario) {
             Ok(scenario) => {
@@ -116,7 +121,7 @@ impl State {
         }
     }
 
-    /// Does what was asked for with a training.
+    /// Starts, pauses or cancels the training of the force network.
     pub(in crate::app) fn train_force(&mut self, command: TrainingCommand, context: &Context) {
         let training = &self.session.force.training;
         match command {
@@ -126,7 +131,7 @@ impl State {
         }
     }
 
-    /// Starts a training on the chosen data.
+    /// Starts a training on the chosen data set.
     fn start_force_training(&mut self, context: &Context) {
         let form = &self.project.force.training;
         let datasets = open_datasets(&self.session.sources, &[DatasetKind::Force]);
@@ -145,7 +150,7 @@ impl State {
         }
     }
 
-    /// Evaluates the current model on the chosen data.
+    /// Starts an evaluation of the current force model on the chosen data set.
     pub(in crate::app) fn evaluate(&mut self, context: &Context) {
         let datasets = open_datasets(&self.session.sources, &[DatasetKind::Force]);
         let chosen = chosen_dataset(&datasets, self.view.force.evaluated.as_deref());
@@ -160,12 +165,15 @@ impl State {
         }
     }
 
-    /// What the network says of the collision, as far as it has answered.
+    /// Returns the latest predicted force, if there is one. While a newer one is awaited, it
+    /// belongs to an earlier question.
     pub fn force_forecast(&self) -> Option<&PredictForceAnswer> {
         self.session.force.forecast.ok().map(Arc::as_ref)
     }
 }
 
+/// Returns the case of an open force data set with its recorded force; `None` if it is not open or
+/// cannot be used.
 fn force_case(sources: &[Source], (path, name): (&Path, &str)) -> Option<RecordedCase> {
     let source = sources.iter().find(|source| source.path == path)?;
     let checked = source.dataset().filter(|c| c.dataset.kind == DatasetKind::Force)?;

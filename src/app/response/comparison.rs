@@ -1,5 +1,5 @@
-//! A comparison of response models, or the evaluation of one: made in the background, or read from a
-//! file.
+//! The comparison of response models or the evaluation of one of them: computed in the background
+//! or read from a file.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -13,26 +13,27 @@ use crate::study::{
     CompareAnswer, CompareReport, CompareRequest, EvaluateResponseRequest, Library,
 };
 
-/// A comparison or an evaluation, under way or over.
+/// A comparison or an evaluation, running or finished.
 #[derive(Default)]
 pub struct ComparisonStatus {
-    /// Models that are trained and compared.
+    /// The comparison, for which models are trained.
     pub compare: QuestionJob<CompareRequest>,
-    /// The current model alone.
+    /// The evaluation of the current model alone.
     pub evaluate: QuestionJob<EvaluateResponseRequest>,
     opening: Option<Job<Result<Comparison, String>>>,
     saving: Option<Job<Result<PathBuf, String>>>,
-    /// The latest that is over, or why there is none.
+    /// The latest result of a comparison, an evaluation or a file, or the reason why there is none.
     pub shown: Option<Result<Arc<CompareAnswer>, String>>,
-    /// A folder to which it is to be saved, being typed.
+    /// The path in the text field for saving, as the user has typed it so far.
     pub typed_path: String,
 }
 
 impl ComparisonStatus {
-    /// Trains and compares; what is under way is cancelled.
+    /// Starts to train and compare models. A comparison or an evaluation that is still running is
+    /// cancelled.
     ///
     /// # Errors
-    /// The operating system's, if no thread can be started.
+    /// The error of the operating system, if the thread cannot be started.
     pub fn start(
         &mut self,
         request: CompareRequest,
@@ -43,10 +44,11 @@ impl ComparisonStatus {
         self.compare.start(request, library, wake)
     }
 
-    /// Evaluates the current model; what is under way is cancelled.
+    /// Starts to evaluate the current model. A comparison or an evaluation that is still running is
+    /// cancelled.
     ///
     /// # Errors
-    /// The operating system's, if no thread can be started.
+    /// The error of the operating system, if the thread cannot be started.
     pub fn evaluate(
         &mut self,
         request: EvaluateResponseRequest,
@@ -57,28 +59,29 @@ impl ComparisonStatus {
         self.evaluate.start(request, library, wake)
     }
 
-    /// Stops what is under way.
+    /// Cancels a running comparison or evaluation.
     pub fn cancel(&self) {
         self.compare.cancel();
         self.evaluate.cancel();
     }
 
-    /// Whether something is under way.
+    /// Whether a comparison, an evaluation or the reading of a file is running.
     pub fn is_running(&self) -> bool {
         self.compare.is_running() || self.evaluate.is_running() || self.opening.is_some()
     }
 
-    /// What is under way, how far it is, and since when.
+    /// Returns a description of the running comparison or evaluation, its progress and the time
+    /// since its start.
     pub fn progress(&self) -> Option<(&'static str, &Progress, Duration)> {
         let compare = self.compare.job().map(|job| ("Comparing", job.progress(), job.elapsed()));
         let evaluate = self.evaluate.job();
         compare.or_else(|| evaluate.map(|job| ("Evaluating", job.progress(), job.elapsed())))
     }
 
-    /// Reads a `comparison.json`.
+    /// Starts to read a `comparison.json` file.
     ///
     /// # Errors
-    /// The operating system's, if no thread can be started.
+    /// The error of the operating system, if the thread cannot be started.
     pub fn open(&mut self, path: PathBuf, wake: impl Fn() + Send + 'static) -> std::io::Result<()> {
         let job = Job::spawn("open comparison", wake, move |_| {
             Comparison::load(&path).map_err(|error| error_chain(&error))
@@ -87,10 +90,10 @@ impl ComparisonStatus {
         Ok(())
     }
 
-    /// Writes the comparison into a folder: JSON, Markdown, tables.
+    /// Starts to write the comparison that is shown into a folder, as JSON, Markdown and tables.
     ///
     /// # Errors
-    /// A message for the user.
+    /// A message for the user, if there is no comparison or the thread cannot be started.
     pub fn save(
         &mut self,
         folder: PathBuf,
@@ -108,7 +111,8 @@ impl ComparisonStatus {
         Ok(())
     }
 
-    /// Takes in what has come to an end: the folder that was written.
+    /// Receives the results that have arrived. Returns the folder that has just been written, or
+    /// why it could not be; `None` otherwise.
     pub fn poll(&mut self) -> Option<Result<PathBuf, String>> {
         if self.compare.poll() {
             self.shown = self.compare.latest.as_ref().map(|latest| latest.answer.clone());
@@ -130,7 +134,7 @@ impl ComparisonStatus {
         Some(saved)
     }
 
-    /// What is told of the comparison, if there is one.
+    /// Returns the report of the comparison that is shown, if there is one.
     pub fn report(&self) -> Option<&CompareReport> {
         self.shown.as_ref()?.as_ref().ok().map(|answer| &answer.report)
     }

@@ -1,5 +1,5 @@
-//! The response network in the app: which model is loaded, what it forecasts, how it learns, how it
-//! compares. The panels of the same names show it.
+//! The response network in the app: its settings, its model, its forecast, its training and the
+//! comparison with other models. The panes of these names show them.
 
 mod comparison;
 mod motion;
@@ -22,21 +22,22 @@ use crate::app::training_status::TrainingStatus;
 use crate::render::DensityGpu;
 use crate::response::ResponseModel;
 
-/// What is loaded, computed and under way about the response network.
+/// The data and the running work of the response network, which are not saved.
 #[derive(Default)]
 pub struct ResponseSession {
-    /// The model that answers.
+    /// The model that predicts.
     pub model: ModelStatus<ResponseModel>,
-    /// Where the struck vehicle goes.
+    /// The predicted motion of the struck vehicle.
     pub forecast: Latest<MotionQuestion>,
-    /// Where it is likely to be.
+    /// The probability density of the vehicle's position at the chosen times.
     pub density: Latest<DensityQuestion>,
-    /// What computes densities; the CPU without.
+    /// The graphics processor that computes densities; `None` computes them on the CPU.
     pub gpu: Option<Arc<DensityGpu>>,
-    /// A training, under way or over.
+    /// The training, running or finished.
     pub training: TrainingStatus<ResponseModel>,
-    /// A comparison or an evaluation, under way or over.
+    /// The comparison or evaluation, running or finished.
     pub comparison: ComparisonStatus,
-    /// Where a training is kept while it runs, so that it can go on after a crash.
+    /// The file in which the state of a training is stored while it runs, so that it can be resumed
+    /// after a crash.
     pub checkpoint: Option<PathBuf>,
 }

@@ -1,5 +1,5 @@
-//! Where the struck vehicle goes, made ready to be drawn: bands over time, and the density of its
-//! position.
+//! The predicted motion of the struck vehicle, prepared for drawing: bands over time, and the
+//! density of its position.
 
 use std::sync::Arc;
 
@@ -10,26 +10,26 @@ use crate::study::{
     Library, Observer, PredictMotionAnswer, PredictMotionRequest, Question, StudyError,
 };
 
-/// Every how many steps the bands over time have an edge: 50 ms.
+/// Number of time steps between two points of the bands over time, which makes 50 ms.
 const BAND_STRIDE: usize = 5;
 
-/// A question for a motion whose answer is drawn.
+/// A question for a predicted motion, whose answer is prepared for drawing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionQuestion {
-    /// What is asked.
+    /// The question for the motion itself.
     pub request: PredictMotionRequest,
 }
 
-/// Where the struck vehicle goes.
+/// A predicted motion with its bands.
 pub struct MotionAnswer {
-    /// What was answered.
+    /// The answer to the question for the motion.
     pub answer: PredictMotionAnswer,
-    /// Its intervals over time, for the figures.
+    /// The intervals of the states over time, for the figures.
     pub bands: MotionBands,
 }
 
 impl MotionAnswer {
-    /// Whether the force was predicted.
+    /// Whether the force that drives the motion was predicted by a force network.
     pub fn is_predicted(&self) -> bool {
         self.answer.report.force_model.is_some()
     }
@@ -52,17 +52,19 @@ impl Question for MotionQuestion {
     }
 }
 
-/// Asks for the density of a forecast's position.
+/// A question for the density of the predicted position.
 #[derive(Clone)]
 pub struct DensityQuestion {
-    /// The forecast.
+    /// The predicted motion.
     pub motion: Arc<MotionAnswer>,
-    /// From when to when, s.
+    /// First and last time over which the density is averaged, s; equal for a single time.
     pub window_s: [f64; 2],
-    /// What computes it; the CPU without.
+    /// The graphics processor that computes the density; `None` computes it on the CPU.
     pub gpu: Option<Arc<DensityGpu>>,
 }
 
+/// Two questions are equal if they refer to the same prediction in memory and the same times. The
+/// processor is left out, because it does not change the answer.
 impl PartialEq for DensityQuestion {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.motion, &other.motion) && self.window_s == other.window_s
@@ -73,7 +75,8 @@ impl Question for DensityQuestion {
     type Answer = DensityMap;
     const NAME: &'static str = "density";
 
-    /// What the graphics processor refuses, the CPU computes.
+    /// Computes the density on the graphics processor, or on the CPU if there is none or it reports
+    /// an error.
     fn answer(
         &self,
         _library: &Library,

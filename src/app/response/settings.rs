@@ -1,4 +1,4 @@
-//! What of the response network is saved.
+//! The settings of the response network, which are saved between runs.
 
 use std::path::PathBuf;
 
@@ -7,39 +7,40 @@ use serde::{Deserialize, Serialize};
 use crate::data::DatasetKind;
 use crate::study::{BadCases, CompareRequest, DEFAULT_DRAWS, EvaluatedCases};
 
-/// What the user works on.
+/// What the user works on with the response network.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ResponseProject {
-    /// File of the model; the shipped one without.
+    /// File of the model; `None` is the shipped model.
     pub model: Option<PathBuf>,
-    /// How a motion is forecast.
+    /// Settings of the forecast.
     pub forecast: ForecastForm,
-    /// How a model is trained.
+    /// Settings of the training.
     pub training: ResponseTrainingForm,
-    /// How models are compared.
+    /// Settings of the comparison.
     pub comparison: ComparisonForm,
 }
 
-/// Which force drives a forecast.
+/// The force that drives a predicted motion.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ForceChoice {
-    /// That of the case's file; of a scenario the classic pulse.
+    /// The recorded force of the case or file; for a scenario, the classic pulse with the impulse
+    /// of the momentum solution.
     #[default]
     Given,
-    /// What the force network says of the collision.
+    /// The force that the force network predicts for the collision.
     Predicted,
 }
 
-/// How a motion is forecast.
+/// Settings of a predicted motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ForecastForm {
-    /// By which force it is driven.
+    /// The force that drives the motion.
     pub force: ForceChoice,
-    /// Whole force curves that are drawn from a predicted force.
+    /// Number of force curves that are drawn at random from a predicted force.
     pub n_curves: usize,
-    /// Seed of all draws.
+    /// Seed of all random draws.
     pub seed: u64,
 }
 
@@ -49,26 +50,26 @@ impl Default for ForecastForm {
     }
 }
 
-/// What a training of the response network starts from and learns from.
+/// The initial weights and the data of a training of the response network.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum TrainingMode {
-    /// Fine-tunes the shipped pre-trained network on trajectories.
+    /// Fine-tune the shipped pre-trained network on trajectories.
     #[default]
     FineTuneShipped,
-    /// Fine-tunes the current model on trajectories.
+    /// Fine-tune the current model on trajectories.
     FineTuneCurrent,
-    /// Trains random weights on trajectories alone.
+    /// Train a network with random initial weights on trajectories alone.
     FromScratch,
-    /// Pre-trains random weights on simulations.
+    /// Pre-train a network with random initial weights on simulations.
     Pretrain,
 }
 
 impl TrainingMode {
-    /// All of them.
+    /// All modes.
     pub const ALL: [Self; 4] =
         [Self::FineTuneShipped, Self::FineTuneCurrent, Self::FromScratch, Self::Pretrain];
 
-    /// For a person.
+    /// Returns the name of the mode, shown to the user.
     pub fn label(self) -> &'static str {
         match self {
             Self::FineTuneShipped => "fine-tune the shipped pre-trained network",
@@ -78,7 +79,7 @@ impl TrainingMode {
         }
     }
 
-    /// The kinds of data sets from which it can learn.
+    /// Returns the kinds of data sets from which a training in this mode can learn.
     pub fn data_kinds(self) -> &'static [DatasetKind] {
         match self {
             Self::FineTuneShipped | Self::FineTuneCurrent | Self::FromScratch => {
@@ -89,46 +90,47 @@ impl TrainingMode {
     }
 }
 
-/// How a model is trained.
+/// Settings of a training of the response network.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ResponseTrainingForm {
-    /// What it starts from and learns from.
+    /// The initial weights and the data of the training.
     #[serde(alias = "course")]
     pub mode: TrainingMode,
-    /// Folder of the data set; the first that is open without.
+    /// Folder of the data set to train on; `None` takes the first one that is open.
     pub dataset: Option<PathBuf>,
-    /// Trajectories to learn from; all that are not kept for the test if not given.
+    /// Number of trajectories to train on; `None` takes all that are not kept for the test.
     pub n_trajectories: Option<usize>,
-    /// Seed of the split into training and test.
+    /// Seed of the split into training and test cases.
     pub seed: u64,
-    /// Seed of the choice of trajectories and of all other draws; the split's if not given.
+    /// Seed of the choice of trajectories and of all other random draws; `None` takes the seed of
+    /// the split.
     pub choice: Option<u64>,
-    /// A file with further settings; the model's own or the defaults if empty.
+    /// Path of a file with further settings; if empty, those of the model or the defaults.
     pub config: String,
-    /// What happens to cases that cannot be used.
+    /// How cases that cannot be used are treated.
     pub bad_cases: BadCases,
-    /// Whether to go on from where a training of the same settings was interrupted.
+    /// Whether to resume a training with the same settings that was interrupted.
     pub resume: bool,
 }
 
-/// How models are compared.
+/// Settings of a comparison of response models.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ComparisonForm {
-    /// Folder of the trajectory data set; the first that is open without.
+    /// Folder of the trajectory data set; `None` takes the first one that is open.
     pub dataset: Option<PathBuf>,
-    /// Numbers of trajectories to fine-tune on, with commas between them.
+    /// Numbers of trajectories to fine-tune on, separated by commas.
     pub trajectories: String,
-    /// Choices of the trajectories for each number.
+    /// Number of random choices of trajectories for each of these numbers.
     pub n_choices: u64,
-    /// Seed of the split and of the first choice.
+    /// Seed of the split into training and test cases and of the first choice of trajectories.
     pub seed: u64,
-    /// A file with settings; the defaults if empty.
+    /// Path of a file with settings; empty for the default settings.
     pub config: String,
-    /// What happens to cases that cannot be used.
+    /// How cases that cannot be used are treated.
     pub bad_cases: BadCases,
-    /// On which cases the current model is evaluated.
+    /// The cases on which the current model is evaluated.
     pub evaluated_cases: EvaluatedCases,
 }
 
@@ -148,31 +150,31 @@ impl Default for ComparisonForm {
     }
 }
 
-/// Of which moments the density is shown.
+/// The times for which the density of the position is shown.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum DensityChoice {
-    /// Of none.
+    /// The density is not shown.
     Hidden,
-    /// Of that of the slider.
+    /// The density at the time that is shown in the scene.
     #[default]
     Moment,
-    /// Of all in a window.
+    /// The density averaged over a time window.
     Window,
 }
 
-/// How it is shown.
+/// How the response network is shown.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ResponseView {
-    /// Of which moments the density is shown.
+    /// The times for which the density is shown.
     pub density: DensityChoice,
-    /// The window, s.
+    /// First and last time of the window, s.
     pub window_s: [f64; 2],
-    /// Whether the scene shows the surroundings of the vehicle at the slider's moment only.
+    /// Whether the scene follows the vehicle and shows only its surroundings at the current time.
     pub follow: bool,
-    /// Whether the paths of the components are drawn.
+    /// Whether the paths of the mixture components are drawn.
     pub components: bool,
-    /// Whether the 4DOF simulation is drawn.
+    /// Whether the simulated motion of the 4DOF model is drawn.
     pub simulation: bool,
     /// Whether the recorded motion is drawn.
     pub reference: bool,
@@ -180,9 +182,9 @@ pub struct ResponseView {
     pub loss_terms: Vec<String>,
     /// Whether the axis of the losses is logarithmic.
     pub log_losses: bool,
-    /// The case of a comparison whose paths are drawn.
+    /// The case of a comparison whose paths are drawn; `None` leaves the choice to the pane.
     pub compared_case: Option<String>,
-    /// The choice of the trajectories whose models are drawn in it, from 0.
+    /// Index of the random choice of trajectories whose models are drawn for that case, from 0.
     pub compared_choice: u64,
 }
 

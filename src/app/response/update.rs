@@ -1,4 +1,4 @@
-//! What happens between frames, and what the user asks for, about the response network.
+//! Background work and commands of the response network.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -14,7 +14,8 @@ use crate::app::state::State;
 use crate::data::{DatasetKind, Severity};
 
 impl State {
-    /// Takes in what loader, forecast, training and comparison report, and asks for what is due.
+    /// Receives the results of the loader, the training, the comparison and the forecast, and asks
+    /// for a new forecast and a new density if their questions have changed.
     pub(in crate::app) fn update_response(&mut self, context: &Context) {
         let (response, library) = (&mut self.session.response, &self.session.library);
         let problem = response.model.update(&self.project.response.model, library, wake(context));
@@ -50,7 +51,8 @@ impl State {
         }
     }
 
-    /// Asks if anything has changed since the last question.
+    /// Asks for the motion of the struck vehicle, if the question has changed. It waits until the
+    /// simulation of the subject is finished, and drops the forecast if that has no struck vehicle.
     fn ask_for_motion(&mut self, context: &Context) {
         let analysis = &self.session.analysis;
         let Some(simulated) = analysis.ok().filter(|_| !analysis.is_waiting()) else { return };
@@ -63,6 +65,8 @@ impl State {
         response.forecast.ask(MotionQuestion { request }, library, wake(context));
     }
 
+    /// Asks for the density of the predicted position at the chosen times, if the question has
+    /// changed.
     fn ask_for_density(&mut self, context: &Context) {
         let view = &self.view.response;
         let window_s = match view.density {
@@ -79,7 +83,7 @@ impl State {
         response.density.ask(question, library, wake(context));
     }
 
-    /// Does what was asked for with a training.
+    /// Starts, pauses or cancels the training of the response network.
     pub(in crate::app) fn train_response(&mut self, command: TrainingCommand, context: &Context) {
         let training = &self.session.response.training;
         match command {
@@ -89,7 +93,7 @@ impl State {
         }
     }
 
-    /// Starts a training on the chosen data.
+    /// Starts a training on the chosen data set.
     fn start_response_training(&mut self, context: &Context) {
         let form = &self.project.response.training;
         let (mode, kinds) = (form.mode, form.mode.data_kinds());
@@ -114,7 +118,7 @@ impl State {
         }
     }
 
-    /// Does what was asked for with a comparison.
+    /// Starts or cancels a comparison or an evaluation, or opens or saves a comparison.
     pub(in crate::app) fn compare(&mut self, command: ComparisonCommand, context: &Context) {
         let comparison = &mut self.session.response.comparison;
         let problem = match command {
@@ -131,7 +135,7 @@ impl State {
         }
     }
 
-    /// Starts a comparison on the chosen data.
+    /// Starts a comparison on the chosen data set.
     fn start_comparison(&mut self, context: &Context) {
         let Some(data) = self.compared_data() else { return };
         let request = match self.compare_request(data) {
@@ -147,7 +151,7 @@ impl State {
         }
     }
 
-    /// Starts an evaluation of the current model on the chosen data.
+    /// Starts an evaluation of the current response model on the chosen data set.
     fn evaluate_response(&mut self, context: &Context) {
         let Some(data) = self.compared_data() else { return };
         let Some(request) = self.evaluate_response_request(data) else {
@@ -160,7 +164,8 @@ impl State {
         }
     }
 
-    /// The data set of the comparison form. Without one, the user is told.
+    /// Returns the folder of the data set in the comparison form. If there is none, tells the user
+    /// to open one.
     fn compared_data(&mut self) -> Option<PathBuf> {
         let wanted = self.project.response.comparison.dataset.as_deref();
         let chosen = self.chosen_data(wanted, &[DatasetKind::Trajectory]);
@@ -170,7 +175,8 @@ impl State {
         chosen.map(|(path, _)| path)
     }
 
-    /// Folder and name of a data set that is open; the first of all if none is wanted.
+    /// Returns the folder and the name of the wanted data set, or of the first open one of the
+    /// given kinds if the wanted one is not open; `None` if none is open.
     fn chosen_data(
         &self,
         wanted: Option<&Path>,
@@ -181,7 +187,8 @@ impl State {
         Some((chosen.path.to_owned(), chosen.name()))
     }
 
-    /// Where the struck vehicle goes, as far as that is known.
+    /// Returns the latest predicted motion, if there is one. While a newer one is awaited, it
+    /// belongs to an earlier question.
     pub fn motion_forecast(&self) -> Option<&MotionAnswer> {
         self.session.response.forecast.ok().map(Arc::as_ref)
     }
