@@ -1,20 +1,21 @@
-//! What a table of cases says about one case: every column, in order.
+//! The attributes of one case: one row of the table of cases (`cases.csv`), with every column in
+//! the order of the file.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::data::{DataError, Table};
 
-/// The content of a cell.
+/// The content of a cell that is not blank.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
     /// A finite number.
     Number(f64),
-    /// Anything else that is not blank.
+    /// Any text that is not a finite number.
     Text(String),
 }
 
-/// One row of a table of cases.
+/// One row of a table of cases, with the names of its columns and its place in the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Attributes {
     path: Arc<Path>,
@@ -24,7 +25,7 @@ pub struct Attributes {
 }
 
 impl Attributes {
-    /// Every row of a table.
+    /// Takes all rows of a table, in the order of the file.
     pub(crate) fn of(table: &Table) -> Vec<Self> {
         let (path, names) = (Arc::from(table.path()), Arc::from(table.header()));
         let value = |row, column| match (table.number(row, column), table.cell(row, column)) {
@@ -41,18 +42,20 @@ impl Attributes {
         (0..table.n_rows()).map(row).collect()
     }
 
-    /// All columns in the order of the file; `None` is a blank cell.
+    /// Returns the name and the content of every column in the order of the file; a blank cell is
+    /// `None`.
     pub fn iter(&self) -> impl Iterator<Item = (&str, Option<&Value>)> {
         let values = self.values.iter().map(Option::as_ref);
         self.names.iter().map(String::as_str).zip(values)
     }
 
-    /// The cell in a column; `None` if it is blank or there is no such column.
+    /// The content of a cell; `None` if the cell is blank or the table has no column of this name.
     pub fn get(&self, name: &str) -> Option<&Value> {
         self.iter().find(|(column, _)| *column == name)?.1
     }
 
-    /// The number in a column.
+    /// The number in a cell; `None` if the cell is blank or holds text, or if there is no such
+    /// column.
     pub fn number(&self, name: &str) -> Option<f64> {
         match self.get(name)? {
             Value::Number(number) => Some(*number),
@@ -60,7 +63,8 @@ impl Attributes {
         }
     }
 
-    /// The text in a column.
+    /// The text in a cell; `None` if the cell is blank or holds a number, or if there is no such
+    /// column.
     pub fn text(&self, name: &str) -> Option<&str> {
         match self.get(name)? {
             Value::Number(_) => None,
@@ -68,7 +72,9 @@ impl Attributes {
         }
     }
 
-    /// A yes or no, written 1 or 0, true or false, yes or no.
+    /// The value of a yes-or-no column, which is written as a number (0 is no, any other number is
+    /// yes), as `true` or `false`, or as `yes` or `no`, in upper or lower case. Any other text, a
+    /// blank cell and a missing column are `None`.
     pub fn flag(&self, name: &str) -> Option<bool> {
         match self.get(name)? {
             Value::Number(number) => Some(*number != 0.0),
@@ -80,10 +86,14 @@ impl Attributes {
         }
     }
 
-    /// The number in a column that must have one.
+    /// The number in a column that the computation cannot do without.
+    ///
+    /// - `consequence`: what cannot be computed without the number, in words; it becomes part of
+    ///   the error.
     ///
     /// # Errors
-    /// [`DataError::MissingAttribute`] with the `consequence`, or [`DataError::Cell`].
+    /// [`DataError::MissingAttribute`] if the cell is blank or there is no such column, and
+    /// [`DataError::Cell`] if the cell holds text.
     pub fn require(&self, name: &str, consequence: &'static str) -> Result<f64, DataError> {
         match self.get(name) {
             Some(Value::Number(number)) => Ok(*number),
@@ -97,22 +107,22 @@ impl Attributes {
         }
     }
 
-    /// The table of cases.
+    /// Path of the table of cases.
     pub fn path(&self) -> PathBuf {
         self.path.to_path_buf()
     }
 
-    /// The row's line, from 1.
+    /// Line of the row in the table of cases, counted from 1.
     pub fn line(&self) -> u64 {
         self.line
     }
 
-    /// Number of a column, from 1; 0 if there is none of this name.
+    /// Number of a column, counted from 1; 0 if there is no column of this name.
     pub(crate) fn column(&self, name: &str) -> usize {
         self.names.iter().position(|column| column == name).map_or(0, |idx| idx + 1)
     }
 
-    /// The error for text where a number is needed.
+    /// Builds the error for a cell that holds text where a number is needed.
     pub(crate) fn not_a_number(&self, name: &str, text: &str) -> DataError {
         DataError::Cell {
             path: self.path(),

@@ -1,4 +1,5 @@
-//! The attributes that the physics needs, with their units.
+//! The attributes of a case that the physics needs, taken from the columns of `cases.csv` by name.
+//! The names end in the SI unit.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,57 +8,60 @@ use crate::data::{Attributes, DataError, DatasetKind};
 const NO_COLLISION: &str = "the collision cannot be computed";
 const NO_MOTION: &str = "the motion cannot be simulated";
 
-/// The side of the target that is struck.
+/// The side of the target that is struck, as seen by its driver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum StruckSide {
-    /// Left.
+    /// The left side of the target, +y in its body axes.
     Left,
-    /// Right.
+    /// The right side of the target, −y in its body axes.
     Right,
 }
 
-/// A case of a force data set: two vehicles at first contact. World axes: X along the target's
-/// heading.
+/// The attributes of a case of a force data set: two vehicles at the instant of first contact. The
+/// X axis of the world points along the heading of the target, Y to its left.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ForceAttributes {
-    /// Masses of target and bullet, kg.
+    /// Masses of the target and of the bullet, kg.
     pub mass_kg: [f64; 2],
-    /// Yaw inertias of target and bullet, kg m², where they are given.
+    /// Yaw moments of inertia of the target and of the bullet, kg m²; `None` where the table does
+    /// not give one.
     pub yaw_inertia_kg_m2: [Option<f64>; 2],
-    /// Velocity `[x, y]` of the target's CG, m/s.
+    /// Velocity `[x, y]` of the centre of gravity of the target, world axes, m/s.
     pub target_velocity_m_s: [f64; 2],
-    /// Velocity `[x, y]` of the bullet's CG, m/s.
+    /// Velocity `[x, y]` of the centre of gravity of the bullet, world axes, m/s.
     pub bullet_velocity_m_s: [f64; 2],
-    /// Heading of the bullet against the target's, rad.
+    /// Heading of the bullet relative to that of the target, rad, counter-clockwise positive.
     pub theta_b_rad: f64,
-    /// First contact `[x, y]` in the target's body axes from its CG, m.
+    /// Point of first contact `[x, y]` in the body axes of the target, from its centre of gravity,
+    /// m.
     pub contact_m: [f64; 2],
-    /// Height of the first contact above the road, m.
+    /// Height of the point of first contact above the road, m.
     pub contact_height_m: Option<f64>,
-    /// The struck side.
+    /// The struck side of the target.
     pub side: Option<StruckSide>,
-    /// Whether the bullet's corner stays caught.
+    /// Whether a corner of the bullet stays hooked to the target.
     pub hooked: Option<bool>,
-    /// Whether the vehicles have separated at the end.
+    /// Whether the vehicles are separated at the end of the record.
     pub separated: Option<bool>,
 }
 
-/// A case of a trajectory data set: one vehicle, struck while it rolls.
+/// The attributes of a case of a trajectory data set: one vehicle that is struck while it is
+/// driving.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrajectoryAttributes {
     /// Speed before the impact, m/s.
     pub speed_m_s: f64,
-    /// Peak lateral friction coefficient of the tires.
+    /// Peak coefficient of lateral friction of the tires.
     pub mu: f64,
-    /// Where the force acts, `[x, y]` in body axes from the CG, m.
+    /// Point of application of the force, `[x, y]` in body axes from the centre of gravity, m.
     pub contact_m: [f64; 2],
-    /// Height above the road at which it acts, m.
+    /// Height of the point of application above the road, m.
     pub contact_height_m: f64,
-    /// The struck side.
+    /// The struck side of the vehicle.
     pub side: Option<StruckSide>,
     /// Whether the vehicle turns by more than 90°.
     pub spin: Option<bool>,
-    /// Whether the vehicles had separated when the recorded force ended.
+    /// Whether the vehicles were separated when the record of the force ended.
     pub separated: Option<bool>,
 }
 
@@ -75,10 +79,11 @@ impl ForceAttributes {
         "contact_y_m",
     ];
 
-    /// Takes them out of a row.
+    /// Reads the attributes of a force case from its row.
     ///
     /// # Errors
-    /// [`DataError::MissingAttribute`] or [`DataError::Cell`] at a needed column.
+    /// [`DataError::MissingAttribute`] if a needed column is missing or blank, and
+    /// [`DataError::Cell`] if it holds text.
     pub fn read(attributes: &Attributes) -> Result<Self, DataError> {
         let need = |name| attributes.require(name, NO_COLLISION);
         Ok(Self {
@@ -101,10 +106,11 @@ impl TrajectoryAttributes {
     pub const NEEDED: &'static [&'static str] =
         &["speed_m_s", "mu", "contact_x_m", "contact_y_m", "contact_height_m"];
 
-    /// Takes them out of a row.
+    /// Reads the attributes of a trajectory case from its row.
     ///
     /// # Errors
-    /// [`DataError::MissingAttribute`] or [`DataError::Cell`] at a needed column.
+    /// [`DataError::MissingAttribute`] if a needed column is missing or blank, and
+    /// [`DataError::Cell`] if it holds text.
     pub fn read(attributes: &Attributes) -> Result<Self, DataError> {
         let need = |name| attributes.require(name, NO_MOTION);
         Ok(Self {
@@ -120,7 +126,7 @@ impl TrajectoryAttributes {
 }
 
 impl DatasetKind {
-    /// The columns of `cases.csv` that the physics needs.
+    /// The columns of `cases.csv` without which the physics of such a case cannot be computed.
     pub fn needed_attributes(self) -> &'static [&'static str] {
         match self {
             Self::Force => ForceAttributes::NEEDED,
@@ -128,7 +134,7 @@ impl DatasetKind {
         }
     }
 
-    /// What cannot be done without them.
+    /// What cannot be computed if a needed column is missing, for an error message.
     pub(crate) fn consequence(self) -> &'static str {
         match self {
             Self::Force => NO_COLLISION,

@@ -1,5 +1,6 @@
-//! The quantities that time-series files hold: one place for their names in our files, their
-//! units, what a plot calls them and how other programs spell them.
+//! The quantities that a time-series file can hold. For each of them one table defines the header
+//! in the program's own files, the quantity and thus the unit, the label in plots, and the headers
+//! that other programs use.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,25 +8,30 @@ use crate::units::Quantity;
 
 macro_rules! channels {
     ($($(#[$doc:meta])* $variant:ident: $name:literal, $quantity:ident, $label:literal, [$($alias:literal),*];)+) => {
-        /// A column of a time-series file.
+        /// A quantity that is recorded over time in one column of a file.
         ///
-        /// Force and moment act ON the target. World axes unless the name says `Body`: body axes
-        /// are the heading axes at the centre of gravity (ISO 8855: x forward, y left).
+        /// Force and moment act ON the target. World axes are X along the road and Y to its left.
+        /// Body axes are the heading axes at the centre of gravity (ISO 8855: x forward, y left);
+        /// they turn with the yaw angle. Forces are in world axes unless the name says `Body`.
+        /// Velocity and acceleration are in body axes unless the name says `Target` or `Bullet`:
+        /// those are in world axes.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
         pub enum Channel {
             $($(#[$doc])* $variant,)+
         }
 
         impl Channel {
-            /// Every channel, in the order in which files are written.
+            /// Every channel, in the order in which the columns of a file are written.
             pub const ALL: &'static [Self] = &[$(Self::$variant),+];
 
-            /// The header in our own files, with the SI unit at its end.
+            /// The header in the program's own files, which ends in the SI unit, such as
+            /// `yaw_rate_rad_s`.
             pub fn header(self) -> &'static str {
                 match self { $(Self::$variant => $name),+ }
             }
 
-            /// The header without its unit: what `--map` and messages call the channel.
+            /// The header without its unit, such as `yaw_rate`: the name of the channel in a column
+            /// mapping and in messages.
             pub fn short_name(self) -> &'static str {
                 let unit = match self.quantity() {
                     Quantity::Time => "_s",
@@ -41,17 +47,19 @@ macro_rules! channels {
                 self.header().strip_suffix(unit).unwrap_or(self.header())
             }
 
-            /// What it measures.
+            /// The physical quantity that the channel measures, which decides its units.
             pub fn quantity(self) -> Quantity {
                 match self { $(Self::$variant => Quantity::$quantity),+ }
             }
 
-            /// What a plot or a table calls it, without unit.
+            /// The label of the channel in plots and tables, without the unit.
             pub fn label(self) -> &'static str {
                 match self { $(Self::$variant => $label),+ }
             }
 
-            /// Spellings of other programs, in lower-case letters and digits only, without unit.
+            /// The headers by which other programs name this channel, without the unit. They
+            /// consist of lower-case letters and digits only, the form to which a header is reduced
+            /// before it is compared.
             pub fn aliases(self) -> &'static [&'static str] {
                 match self { $(Self::$variant => &[$($alias),*]),+ }
             }
@@ -62,67 +70,67 @@ macro_rules! channels {
 channels! {
     /// Time.
     Time: "time_s", Time, "Time", ["time", "t", "zeit", "temps", "tiempo"];
-    /// Position along the road.
+    /// Position of the centre of gravity along the road, world axes.
     X: "x_m", Length, "X", ["x", "xpos", "posx", "positionx", "xposition", "xm", "xworld", "easting", "xg"];
-    /// Position to the left of the road.
+    /// Position of the centre of gravity to the left of the road, world axes.
     Y: "y_m", Length, "Y", ["y", "ypos", "posy", "positiony", "yposition", "ym", "yworld", "northing", "yg"];
-    /// Yaw ψ, counter-clockwise.
+    /// Yaw angle ψ of the vehicle, counter-clockwise positive.
     Yaw: "yaw_rad", Angle, "Yaw ψ", ["yaw", "yawangle", "psi", "heading", "headingangle", "gierwinkel"];
-    /// Roll φ about the forward axis.
+    /// Roll angle φ about the forward axis.
     Roll: "roll_rad", Angle, "Roll φ", ["roll", "rollangle", "phi", "wankwinkel"];
-    /// Forward velocity of the centre of gravity.
+    /// Forward velocity of the centre of gravity, body axes.
     Vx: "vx_m_s", Speed, "v_x", ["vx", "vxbody", "velx", "velocityx", "longitudinalvelocity", "speedx"];
-    /// Leftward velocity of the centre of gravity.
+    /// Leftward velocity of the centre of gravity, body axes.
     Vy: "vy_m_s", Speed, "v_y", ["vy", "vybody", "vely", "velocityy", "lateralvelocity", "speedy"];
     /// Yaw rate r.
     YawRate: "yaw_rate_rad_s", AngularVelocity, "Yaw rate r", ["yawrate", "r", "psidot", "wz", "omegaz", "gyroz", "gierrate"];
-    /// Roll rate.
+    /// Roll rate about the forward axis.
     RollRate: "roll_rate_rad_s", AngularVelocity, "Roll rate", ["rollrate", "p", "phidot", "wx", "omegax", "gyrox"];
-    /// Forward acceleration.
+    /// Forward acceleration, body axes.
     Ax: "ax_m_s2", Acceleration, "a_x", ["ax", "accx", "accelx", "accelerationx", "longitudinalacceleration"];
-    /// Leftward acceleration.
+    /// Leftward acceleration, body axes.
     Ay: "ay_m_s2", Acceleration, "a_y", ["ay", "accy", "accely", "accelerationy", "lateralacceleration"];
-    /// Contact force along the world X axis.
+    /// Contact force along the X axis of the world.
     Fx: "fx_n", Force, "F_x", ["fx", "forcex", "xforce", "contactforcex", "fxworld", "kraftx"];
-    /// Contact force along the world Y axis.
+    /// Contact force along the Y axis of the world.
     Fy: "fy_n", Force, "F_y", ["fy", "forcey", "yforce", "contactforcey", "fyworld", "krafty"];
-    /// Contact force along the heading.
+    /// Contact force along the heading of the target.
     FxBody: "fx_body_n", Force, "F_x body", ["fxbody", "fxheading", "fxlocal"];
-    /// Contact force to the left of the heading.
+    /// Contact force to the left of the heading of the target.
     FyBody: "fy_body_n", Force, "F_y body", ["fybody", "fyheading", "fylocal"];
-    /// Yaw moment of the contact force about the centre of gravity.
+    /// Yaw moment of the contact force about the centre of gravity of the target.
     Mz: "mz_nm", Moment, "M_z", ["mz", "yawmoment", "momentz", "zmoment"];
-    /// Roll moment of the contact force about the centre of gravity.
+    /// Roll moment of the contact force about the centre of gravity of the target.
     Mx: "mx_nm", Moment, "M_x", ["mx", "rollmoment", "momentx", "xmoment"];
-    /// Road-wheel angle of the front axle.
+    /// Road-wheel steer angle of the front axle.
     Steer: "steer_rad", Angle, "Steer δ", ["steer", "steerangle", "delta", "roadwheelangle", "lenkwinkel"];
-    /// Road-wheel angle, front left.
+    /// Road-wheel steer angle of the front left wheel.
     SteerFl: "steer_fl_rad", Angle, "Steer FL", ["steerfl", "deltafl"];
-    /// Road-wheel angle, front right.
+    /// Road-wheel steer angle of the front right wheel.
     SteerFr: "steer_fr_rad", Angle, "Steer FR", ["steerfr", "deltafr"];
-    /// Vertical load, front left.
+    /// Vertical load of the front left wheel.
     FzFl: "fz_fl_n", Force, "F_z FL", ["fzfl"];
-    /// Vertical load, front right.
+    /// Vertical load of the front right wheel.
     FzFr: "fz_fr_n", Force, "F_z FR", ["fzfr"];
-    /// Vertical load, rear left.
+    /// Vertical load of the rear left wheel.
     FzRl: "fz_rl_n", Force, "F_z RL", ["fzrl"];
-    /// Vertical load, rear right.
+    /// Vertical load of the rear right wheel.
     FzRr: "fz_rr_n", Force, "F_z RR", ["fzrr"];
-    /// Target's velocity along world X.
+    /// Velocity of the target along the X axis of the world.
     TargetVx: "target_vx_m_s", Speed, "Target v_x", ["targetvx"];
-    /// Target's velocity along world Y.
+    /// Velocity of the target along the Y axis of the world.
     TargetVy: "target_vy_m_s", Speed, "Target v_y", ["targetvy"];
-    /// Target's yaw rate.
+    /// Yaw rate of the target.
     TargetYawRate: "target_yaw_rate_rad_s", AngularVelocity, "Target yaw rate", ["targetyawrate"];
-    /// Target's yaw.
+    /// Yaw angle of the target.
     TargetYaw: "target_yaw_rad", Angle, "Target yaw", ["targetyaw"];
-    /// Bullet's velocity along world X.
+    /// Velocity of the bullet along the X axis of the world.
     BulletVx: "bullet_vx_m_s", Speed, "Bullet v_x", ["bulletvx"];
-    /// Bullet's velocity along world Y.
+    /// Velocity of the bullet along the Y axis of the world.
     BulletVy: "bullet_vy_m_s", Speed, "Bullet v_y", ["bulletvy"];
-    /// Bullet's yaw rate.
+    /// Yaw rate of the bullet.
     BulletYawRate: "bullet_yaw_rate_rad_s", AngularVelocity, "Bullet yaw rate", ["bulletyawrate"];
-    /// Bullet's yaw.
+    /// Yaw angle of the bullet.
     BulletYaw: "bullet_yaw_rad", Angle, "Bullet yaw", ["bulletyaw"];
 }
 

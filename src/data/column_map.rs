@@ -1,4 +1,5 @@
-//! Which column holds which channel, said by the user: `fx=Kraft X:kN,time=1:ms`.
+//! A mapping of columns to channels that the user states, in the syntax of the option `--map`:
+//! `fx=Kraft X:kN,time=1:ms`.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -9,25 +10,27 @@ use serde::{Deserialize, Serialize};
 use crate::data::{Channel, spelling};
 use crate::units::Unit;
 
-/// A column of a file.
+/// A reference to a column of a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ColumnRef {
-    /// By its number, from 1.
+    /// The number of the column, counted from 1.
     Number(usize),
-    /// By its header, with or without the unit in it.
+    /// The header of the column, with or without the unit that it contains.
     Name(String),
 }
 
-/// Where a channel comes from.
+/// The column from which a channel is read, and its unit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ColumnSource {
     /// The column.
     pub column: ColumnRef,
-    /// The unit of its numbers; `None`: as the header says, SI if it says nothing.
+    /// The unit of the numbers. If it is `None`, the unit that the file states applies, or the SI
+    /// unit if the file states none.
     pub unit: Option<Unit>,
 }
 
-/// Explicit choice of columns; it goes before what the headers look like.
+/// The columns that the user has chosen for channels. They take precedence over what the headers
+/// suggest.
 ///
 /// ```
 /// use impactlab::data::{Channel, ColumnMap};
@@ -43,49 +46,49 @@ pub struct ColumnMap {
     sources: BTreeMap<Channel, ColumnSource>,
 }
 
-/// A mapping that cannot be understood.
+/// The reason why the text of a mapping is refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MapError {
-    /// A part without `=`, or with nothing on one side of it.
+    /// A part has no `=`, or nothing on one side of it.
     #[error(
         "{part:?} is no mapping, expected channel=column or channel=column:unit, e.g. fx=Kraft X:kN"
     )]
     Syntax {
-        /// The part between two commas.
+        /// The part of the text between two commas.
         part: String,
     },
-    /// The left side names no channel.
+    /// The text to the left of `=` names no channel.
     #[error("{name:?} is no channel, expected one of {}", short_names())]
     Channel {
-        /// The left side.
+        /// The text to the left of `=`.
         name: String,
     },
-    /// Columns are counted from 1.
+    /// The column has the number 0, but columns are counted from 1.
     #[error("{} is taken from column 0, but columns are counted from 1", channel.short_name())]
     ColumnZero {
-        /// The channel.
+        /// The channel that is mapped.
         channel: Channel,
     },
-    /// A channel is mapped twice.
+    /// A channel is mapped more than once.
     #[error("{} is mapped twice", channel.short_name())]
     Twice {
-        /// The channel.
+        /// The channel that is mapped.
         channel: Channel,
     },
 }
 
 impl ColumnMap {
-    /// Takes `channel` from `source`, instead of an earlier choice.
+    /// Sets the column from which `channel` is read; it replaces an earlier choice.
     pub fn insert(&mut self, channel: Channel, source: ColumnSource) {
         self.sources.insert(channel, source);
     }
 
-    /// Where a channel comes from, if the user said so.
+    /// The column that was chosen for a channel; `None` if none was chosen.
     pub fn get(&self, channel: Channel) -> Option<&ColumnSource> {
         self.sources.get(&channel)
     }
 
-    /// All choices, in channel order.
+    /// Returns all chosen columns, in the order of the channels.
     pub fn iter(&self) -> impl Iterator<Item = (Channel, &ColumnSource)> {
         self.sources.iter().map(|(channel, source)| (*channel, source))
     }
@@ -101,8 +104,9 @@ impl FromIterator<(Channel, ColumnSource)> for ColumnMap {
 impl FromStr for ColumnMap {
     type Err = MapError;
 
-    /// `channel=column[:unit]`, separated by commas. A column is a number from 1 or a header; what
-    /// follows the last colon is the unit, if it is a unit of the channel.
+    /// Parses `channel=column[:unit]`, several of them separated by commas. A column is a number
+    /// from 1 or a header. The text after the last colon is the unit if it names a unit of the
+    /// channel, and otherwise part of the header.
     fn from_str(text: &str) -> Result<Self, MapError> {
         let mut map = Self::default();
         for part in text.split(',').filter(|part| !part.trim().is_empty()) {

@@ -1,4 +1,5 @@
-//! Which column of a table holds which channel, in which unit.
+//! Decides which column of a table holds which channel and in which unit, from the mapping of the
+//! user, the headers and a row of units.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -8,43 +9,44 @@ use crate::data::spelling::{self, Meaning};
 use crate::data::{Channel, ColumnMap, ColumnRef, ColumnSource, DataError, Table};
 use crate::units::{Quantity, Unit};
 
-/// Sample values that a mapping dialog shows for a column.
+/// Number of sample values of a column that a mapping dialog shows.
 const SHOWN_SAMPLES: usize = 5;
 
-/// A column that was read, and as what.
+/// A column that was read, with the channel and the unit that it was read as.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ColumnUse {
-    /// What it holds.
+    /// The channel that the column holds.
     pub channel: Channel,
-    /// Its number, from 1.
+    /// The number of the column, counted from 1.
     pub number: usize,
-    /// Its header.
+    /// The header of the column.
     pub name: String,
-    /// The unit of its numbers.
+    /// The unit of the numbers in the column.
     pub unit: Unit,
-    /// Whether the file or the user named the unit; if not, SI was assumed.
+    /// Whether the file or the user states the unit; otherwise the SI unit was assumed.
     pub unit_is_stated: bool,
 }
 
-/// Something that does not keep a file from being read, but that a person should know.
+/// A remark on a file that was read, shown to the user.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Note {
-    /// No unit was named, so SI was assumed.
+    /// The unit of a column is not stated, so that the SI unit was assumed.
     UnitAssumed(ColumnUse),
-    /// A column that was not needed is left out, since its unit does not measure it.
+    /// A column was left out because its unit does not measure the channel. The channel is not
+    /// needed; otherwise the file is refused.
     WrongUnit {
-        /// What it was taken for.
+        /// The channel that the header names.
         channel: Channel,
-        /// Its number, from 1.
+        /// The number of the column, counted from 1.
         number: usize,
-        /// Its header.
+        /// The header of the column.
         name: String,
-        /// The unit as written.
+        /// The unit as written in the file.
         unit: String,
     },
-    /// Columns that were not recognised and are left out.
+    /// Columns whose headers name no channel were left out.
     Ignored {
-        /// Their headers.
+        /// The headers of these columns.
         names: Vec<String>,
     },
 }
@@ -70,20 +72,20 @@ impl fmt::Display for Note {
 /// A column of a file as a mapping dialog shows it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ColumnProposal {
-    /// Its number, from 1.
+    /// The number of the column, counted from 1.
     pub number: usize,
-    /// Its header, or `column 1` and so on.
+    /// The header of the column; `column 1` and so on if the file has no header.
     pub name: String,
-    /// Its first values, as written.
+    /// The first values of the column, as written in the file.
     pub samples: Vec<String>,
-    /// What it looks like; the unit is `None` if the file names none.
+    /// The channel and unit that the header suggests; the unit is `None` if the file states none.
     pub guess: Option<(Channel, Option<Unit>)>,
 }
 
-/// Looks into a file: its columns, and what they look like.
+/// Reads a file and returns its columns, with the channel that each header suggests.
 ///
 /// # Errors
-/// [`DataError`] if the file is not a table.
+/// [`DataError`] if the file cannot be read as a table.
 pub fn propose_columns(path: &Path) -> Result<Vec<ColumnProposal>, DataError> {
     let table = Table::read(path)?;
     let proposal = |(column_idx, name): (usize, &String)| ColumnProposal {
@@ -100,7 +102,7 @@ pub fn propose_columns(path: &Path) -> Result<Vec<ColumnProposal>, DataError> {
     Ok(table.header().iter().enumerate().map(proposal).collect())
 }
 
-/// The mapping that takes every guess of a dialog as it stands.
+/// The mapping that accepts the suggested channel and unit of every column.
 pub fn map_from_proposals(proposals: &[ColumnProposal]) -> ColumnMap {
     let choice = |proposal: &ColumnProposal| {
         let (channel, unit) = proposal.guess?;
@@ -110,7 +112,7 @@ pub fn map_from_proposals(proposals: &[ColumnProposal]) -> ColumnMap {
     proposals.iter().filter_map(choice).collect()
 }
 
-/// What was made of a table's columns.
+/// The columns of a table by channel, and the remarks on them.
 #[derive(Debug, Default)]
 pub(crate) struct Columns {
     pub by_channel: BTreeMap<Channel, ColumnUse>,
@@ -118,7 +120,12 @@ pub(crate) struct Columns {
 }
 
 impl Columns {
-    /// Assigns the mapped columns first, then the others by their headers.
+    /// Assigns the columns of the mapping first and then the others by their headers.
+    ///
+    /// # Errors
+    /// [`DataError::NoSuchColumn`] if the mapping names a column that the table does not have,
+    /// [`DataError::UnknownUnit`] if the unit of a mapped column does not measure its channel, and
+    /// [`DataError::AmbiguousColumn`] if two headers name the same channel.
     pub(crate) fn of(table: &Table, map: Option<&ColumnMap>) -> Result<Self, DataError> {
         let mut columns = Self::default();
         for (channel, source) in map.iter().flat_map(|map| map.iter()) {
@@ -162,7 +169,10 @@ impl Columns {
         Ok(())
     }
 
-    /// The error for a needed channel without a column: its unit is wrong, or it is not there.
+    /// Builds the error for a needed channel that no column holds: [`DataError::UnknownUnit`] if
+    /// its column was left out for its unit, and [`DataError::MissingColumn`] otherwise.
+    ///
+    /// - `needed`: all channels that are needed, in words.
     pub(crate) fn missing(
         &self,
         table: &Table,
@@ -207,7 +217,8 @@ fn column_use(channel: Channel, number: usize, name: String, unit: Option<Unit>)
     }
 }
 
-/// What a column's header says, the row of units included.
+/// The channel and unit that the header of a column names, with the unit from the row of units if
+/// the header has none.
 fn column_meaning(table: &Table, column_idx: usize) -> Meaning {
     let name = table.header().get(column_idx).map_or("", String::as_str);
     match (spelling::meaning(name), table.unit_text(column_idx)) {
@@ -263,7 +274,8 @@ fn mapped_column(
     Ok(column_use(channel, number, name, unit))
 }
 
-/// The unit that the file states for a column; the error is a unit of something else.
+/// The unit that the file states for a column, in the row of units or in the header. The error is
+/// the text of a unit that does not measure `quantity`.
 fn stated_unit(table: &Table, idx: usize, quantity: Quantity) -> Result<Option<Unit>, String> {
     if let Some(text) = table.unit_text(idx) {
         return match spelling::unit(quantity, text) {

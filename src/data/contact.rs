@@ -1,16 +1,16 @@
-//! When the vehicles touch. Separation is where the contact force vanishes; contact gaps below
-//! 25 ms belong to one pulse.
+//! The time intervals in which the vehicles touch, from the contact force. The vehicles separate
+//! where the contact force vanishes; a gap shorter than 25 ms does not divide a contact pulse.
 
 use crate::data::{ForceHistory, Sampling};
 
-/// Shortest time without contact that parts two pulses, s.
+/// Shortest time without contact that separates two pulses, s.
 pub const MIN_GAP_S: f64 = 0.025;
 
-/// Force below this share of the peak counts as none. Computed contact forces are zero outside the
-/// contact; measured ones are not.
+/// Share of the peak force up to which the force counts as zero. Computed contact forces are
+/// exactly zero outside the contact, measured forces are not.
 pub const CONTACT_SHARE_OF_PEAK: f64 = 0.01;
 
-/// Start and end of each contact pulse, s, in order; empty without force.
+/// Start and end of each contact pulse, s, in order of time; empty if the force is zero throughout.
 pub fn contact_pulses(force: &ForceHistory) -> Vec<(f64, f64)> {
     let Some((peak_n, _)) = force.peak().filter(|(peak_n, _)| *peak_n > 0.0) else {
         return Vec::new();
@@ -29,14 +29,15 @@ pub fn contact_pulses(force: &ForceHistory) -> Vec<(f64, f64)> {
     pulses
 }
 
-/// First touch and last separation, s; `None` without force.
+/// Time of the first touch and of the last separation, s; `None` if the force is zero throughout.
 pub fn contact_interval(force: &ForceHistory) -> Option<(f64, f64)> {
     let pulses = contact_pulses(force);
     Some((pulses.first()?.0, pulses.last()?.1))
 }
 
-/// The time a sample stands for; for an instant, up to its neighbours, where the force has its
-/// zero.
+/// The time interval `(start, end)` that a sample with force stands for, s. With
+/// [`Sampling::Instant`] it extends to both neighbouring samples, because the force reaches zero
+/// there.
 fn sample_interval_s(force: &ForceHistory, i: usize) -> (f64, f64) {
     let time = |i: Option<usize>| i.and_then(|i| force.time_s.get(i)).copied();
     let now = time(Some(i)).unwrap_or_default();

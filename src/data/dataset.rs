@@ -1,5 +1,5 @@
-//! A folder of cases: `cases.csv` with a row a case, and `forces/<case>.csv` or
-//! `trajectories/<case>.csv` beside it.
+//! A data set: a folder with the table `cases.csv`, which has one row per case, and one file per
+//! case, `forces/<case>.csv` or `trajectories/<case>.csv`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -13,63 +13,65 @@ use crate::data::{
 };
 use crate::jobs::{Progress, ProgressCallback};
 
-/// The table of cases in a data set's folder.
+/// Name of the table of cases in the folder of a data set.
 pub(crate) const CASES_FILE: &str = "cases.csv";
 
-/// Describes the vehicle of a trajectory data set.
+/// Name of the file that describes the vehicle of a trajectory data set.
 const VEHICLE_FILE: &str = "vehicle.toml";
 
-/// Cases that are loaded in parallel between two reports of progress.
+/// Number of cases that are loaded in parallel between two reports of progress.
 const BLOCK_CASES: usize = 64;
 
-/// What the cases of a data set are.
+/// The kind of the cases in a data set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DatasetKind {
-    /// Contact forces of collisions, world axes, means over intervals centred at the samples.
+    /// Contact forces of collisions, in world axes. A sample is the mean over an interval centred
+    /// at its instant.
     Force,
-    /// Motions after an impact, with the force in heading axes as means over the coming interval.
+    /// Motions after an impact, with the contact force in heading axes. A sample of the force is
+    /// the mean over the interval that follows its instant.
     Trajectory,
 }
 
-/// A data set.
+/// A data set that was loaded.
 #[derive(Debug)]
 pub struct Dataset {
-    /// Its folder.
+    /// Folder of the data set.
     pub root: PathBuf,
-    /// What its cases are.
+    /// Kind of the cases.
     pub kind: DatasetKind,
-    /// `vehicle.toml`, if there is one.
+    /// Path of `vehicle.toml`; `None` if the folder has no such file.
     pub vehicle_file: Option<PathBuf>,
     /// The cases that could be read, in the order of the table.
     pub cases: Vec<Case>,
-    /// What could not be read, and what is missing.
+    /// The reasons why cases, files or columns could not be read or are missing.
     pub problems: Vec<DataError>,
 }
 
-/// One case.
+/// One case of a data set.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {
-    /// Its name in the column `case`.
+    /// Name of the case in the column `case`.
     pub name: String,
-    /// What it is.
+    /// Kind of the case.
     pub kind: DatasetKind,
-    /// Its row of the table.
+    /// The row of the case in the table of cases.
     pub attributes: Attributes,
-    /// Its file.
+    /// The time series from the file of the case, SI units.
     pub series: TimeSeries,
 }
 
-/// How a long piece of work ended.
+/// The end of a long computation that can be cancelled.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome<T> {
-    /// With its result.
+    /// The computation ended with a result.
     Complete(T),
-    /// Without, as the callback asked.
+    /// The computation was cancelled by its callback and has no result.
     Cancelled,
 }
 
 impl<T> Outcome<T> {
-    /// The result, unless cancelled.
+    /// The result; `None` if the computation was cancelled.
     pub fn complete(self) -> Option<T> {
         match self {
             Self::Complete(result) => Some(result),
@@ -77,7 +79,7 @@ impl<T> Outcome<T> {
         }
     }
 
-    /// Goes on with the result, unless cancelled.
+    /// Converts the result by `go_on`; a cancelled computation stays cancelled.
     pub fn map<U>(self, go_on: impl FnOnce(T) -> U) -> Outcome<U> {
         match self {
             Self::Complete(result) => Outcome::Complete(go_on(result)),
@@ -89,7 +91,7 @@ impl<T> Outcome<T> {
 impl DatasetKind {
     pub(crate) const ALL: [Self; 2] = [Self::Force, Self::Trajectory];
 
-    /// The folder of its files.
+    /// Name of the folder that holds the files of the cases.
     pub fn folder(self) -> &'static str {
         match self {
             Self::Force => "forces",
@@ -97,7 +99,7 @@ impl DatasetKind {
         }
     }
 
-    /// What a force sample in its files stands for.
+    /// What a sample of the contact force in the files of the cases stands for.
     pub fn sampling(self) -> Sampling {
         match self {
             Self::Force => Sampling::CentredMean,
@@ -112,7 +114,8 @@ impl DatasetKind {
         }
     }
 
-    /// The kind of data set in a folder, by the folder of its files.
+    /// The kind of the data set in a folder, by the name of the subfolder that it has; `None` if
+    /// the folder is no data set. A folder with both subfolders is a force data set.
     pub fn of_folder(root: &Path) -> Option<Self> {
         let is_there = |kind: &Self| root.join(kind.folder()).is_dir();
         Self::ALL.into_iter().find(is_there)
@@ -123,18 +126,24 @@ impl Case {
     /// The contact force on the target.
     ///
     /// # Errors
-    /// [`SeriesError::Missing`] if the file has no force, as a trajectory may not.
+    /// [`SeriesError::Missing`] if the file has no complete pair of force columns, which a
+    /// trajectory may lack.
     pub fn force_history(&self) -> Result<ForceHistory, SeriesError> {
         ForceHistory::from_series(&self.series, self.kind.sampling())
     }
 }
 
 impl Dataset {
-    /// Loads a data set. Bad cases become [`Dataset::problems`] and do not stop the good ones.
+    /// Loads a data set. Cases that cannot be read are listed in [`Dataset::problems`]; the others
+    /// are loaded all the same. The cases are read in parallel and keep the order of the table.
+    ///
+    /// - `report`: called with the number of rows done after each block of cases; if it breaks, the
+    ///   result is [`Outcome::Cancelled`].
     ///
     /// # Errors
-    /// [`DataError::NotRecognised`] if the folder has neither `forces/` nor `trajectories/`;
-    /// [`DataError`] if `cases.csv` cannot be read or has no column `case`.
+    /// [`DataError::NotRecognised`] if the folder has neither `forces/` nor `trajectories/`, and
+    /// any other [`DataError`] if `cases.csv` cannot be read or has no column `case`, or if the
+    /// folder of the files cannot be listed.
     pub fn load(
         root: &Path,
         report: &mut ProgressCallback<'_>,
@@ -166,20 +175,21 @@ impl Dataset {
         Ok(Outcome::Complete(Self { root: root.to_owned(), kind, vehicle_file, cases, problems }))
     }
 
-    /// The case of this name.
+    /// The case of this name; `None` if the data set has no such case or the case could not be
+    /// read.
     pub fn case(&self, name: &str) -> Option<&Case> {
         self.cases.iter().find(|case| case.name == name)
     }
 }
 
-/// A row with a name of its own that can name a file.
+/// A row of the table of cases whose name is unique and can be the name of a file.
 struct NamedRow {
     idx: usize,
     name: String,
     attributes: Attributes,
 }
 
-/// The needed columns that the table does not have.
+/// The errors for needed columns that the table does not have.
 fn missing_attributes(table: &Table, kind: DatasetKind) -> Vec<DataError> {
     let is_missing = |name: &&&str| !table.header().iter().any(|column| column == **name);
     let missing = kind.needed_attributes().iter().filter(is_missing);
@@ -192,7 +202,11 @@ fn missing_attributes(table: &Table, kind: DatasetKind) -> Vec<DataError> {
     missing.map(problem).collect()
 }
 
-/// The rows whose name is good.
+/// The rows whose names are valid and unique. The errors for the other rows are added to
+/// `problems`.
+///
+/// # Errors
+/// [`DataError::MissingAttribute`] if the table has no column `case`.
 fn named_rows(table: &Table, problems: &mut Vec<DataError>) -> Result<Vec<NamedRow>, DataError> {
     let is_case = |name: &String| name.eq_ignore_ascii_case(CASE_COLUMN);
     let case_idx =
@@ -226,7 +240,8 @@ fn named_rows(table: &Table, problems: &mut Vec<DataError>) -> Result<Vec<NamedR
     Ok(rows)
 }
 
-/// A needed cell that is neither a number nor blank.
+/// The error for the first needed cell that holds text instead of a number; a blank cell is no
+/// error here.
 fn bad_attribute(attributes: &Attributes, kind: DatasetKind) -> Option<DataError> {
     kind.needed_attributes().iter().find_map(|name| match attributes.get(name)? {
         Value::Number(_) => None,
@@ -234,17 +249,17 @@ fn bad_attribute(attributes: &Attributes, kind: DatasetKind) -> Option<DataError
     })
 }
 
-/// Whether a case name stays inside the folder on every system.
+/// Whether a case name can be the name of a file inside the folder on every operating system.
 fn names_a_file(case: &str) -> bool {
     let is_plain = |c: char| c.is_alphanumeric() || " -_.+()".contains(c);
     !case.is_empty() && !case.starts_with('.') && case.chars().all(is_plain)
 }
 
-/// The files of the cases.
+/// The files of the cases in the folder of a data set.
 struct CaseFiles {
     folder: PathBuf,
     kind: DatasetKind,
-    /// Names without extension.
+    /// The names of the files without their extension.
     names: BTreeSet<String>,
 }
 

@@ -1,32 +1,32 @@
-//! How a text file writes a table: separator, decimal sign, comments. Found by looking, since no
-//! two programs agree.
+//! The way in which a text file writes a table: separator, decimal sign and comments. It is
+//! determined from the first lines of the file, because programs differ in it.
 
 use serde::{Deserialize, Serialize};
 
-/// What stands between two fields.
+/// The separator between two fields of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Separator {
-    /// A tab.
+    /// One tab.
     Tab,
-    /// `;`
+    /// One semicolon, `;`.
     Semicolon,
-    /// Any number of blanks and tabs.
+    /// Any number of spaces and tabs.
     Blanks,
-    /// `,`
+    /// One comma, `,`.
     Comma,
 }
 
-/// How a file writes its table.
+/// Separator and decimal sign of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Dialect {
-    /// What stands between two fields.
+    /// The separator between two fields of a line.
     pub separator: Separator,
-    /// Whether numbers are written `0,5` instead of `0.5`.
+    /// Whether the decimal sign is a comma, as in `0,5`, instead of a point.
     pub decimal_comma: bool,
 }
 
 impl Separator {
-    /// In the order in which a tie is decided.
+    /// All separators, in the order of preference if several fit equally well.
     const ALL: [Self; 4] = [Self::Tab, Self::Semicolon, Self::Blanks, Self::Comma];
 
     pub(crate) fn byte(self) -> u8 {
@@ -38,7 +38,8 @@ impl Separator {
         }
     }
 
-    /// The fields of a line, quotes not regarded.
+    /// Splits a line into its fields, without surrounding blanks and quotation marks. A separator
+    /// inside quotation marks divides a field as well.
     pub(crate) fn fields(self, line: &str) -> impl Iterator<Item = &str> {
         let separator = char::from(self.byte());
         let is_separator = move |c: char| match self {
@@ -52,19 +53,24 @@ impl Separator {
 }
 
 impl Dialect {
-    /// The separator that makes the most numbers of these lines, or, where there are no numbers,
-    /// the most fields of the first line; and the decimal sign that these numbers have.
+    /// Determines separator and decimal sign from the first lines of a table.
+    ///
+    /// The separator is the one with which most fields are numbers. At equality, in particular if
+    /// there are no numbers, it is the one with most fields in the first line. The decimal sign is
+    /// a comma if numbers with a comma occur and numbers with a point do not, and if the comma is
+    /// not the separator.
     pub(crate) fn sniff(lines: &[&str]) -> Self {
         let score = |separator: &Separator| {
             let decimal_comma = *separator != Separator::Comma;
             let fields = lines.iter().flat_map(|line| separator.fields(line));
             let numbers = fields.filter(|field| parse_number(field, decimal_comma).is_some());
             let first = lines.first().map_or(0, |line| separator.fields(line).count());
-            // Words have blanks between them, fields need not.
+            // Words contain blanks between them, so that a second field by blanks is weak evidence:
+            // blanks score less than another separator that gives two fields.
             let blanks = *separator == Separator::Blanks;
             (numbers.count(), if blanks { (2 * first.min(2)).saturating_sub(1) } else { 2 * first })
         };
-        // At a tie, `max_by_key` takes the last one.
+        // `max_by_key` returns the last of several maxima, therefore the order is reversed.
         let last_to_first = Separator::ALL.into_iter().rev();
         let separator = last_to_first.max_by_key(score).unwrap_or(Separator::Comma);
         let fields = || lines.iter().flat_map(|line| separator.fields(line));
@@ -77,13 +83,14 @@ impl Dialect {
         }
     }
 
-    /// The number in a cell, if there is a finite one.
+    /// The number in a cell; `None` if the cell does not hold a finite number.
     pub(crate) fn number(self, cell: &str) -> Option<f64> {
         parse_number(cell.trim(), self.decimal_comma)
     }
 }
 
-/// The line without its comment sign, if it is a comment.
+/// The text of a comment line without its sign (`//`, `#`, `%`, `!` or `$`); `None` if the line is
+/// no comment.
 pub(crate) fn comment(line: &str) -> Option<&str> {
     let line = line.trim_start();
     ["//", "#", "%", "!", "$"]
@@ -92,8 +99,9 @@ pub(crate) fn comment(line: &str) -> Option<&str> {
         .map(|rest| rest.trim_start_matches(['#', '%', '!', '$', '/']).trim())
 }
 
-/// A finite number; with `decimal_comma` as `0,5` or `0.5`, never with both signs. Fortran's
-/// `1.5D+03` is understood.
+/// Parses a finite number; `None` for any other text. With `decimal_comma` both `0,5` and `0.5` are
+/// read, but no number that contains both signs. The exponent of Fortran, as in `1.5D+03`, is
+/// understood.
 fn parse_number(text: &str, decimal_comma: bool) -> Option<f64> {
     let first = text.bytes().next()?;
     if !first.is_ascii_digit() && !matches!(first, b'+' | b'-' | b'.' | b',') {

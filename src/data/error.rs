@@ -1,4 +1,5 @@
-//! What is wrong with a file, and where: `file:line:column`, both from 1.
+//! The errors of reading and writing files. Their texts start with the place as `file:line:column`,
+//! with line and column counted from 1, as far as it is known.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -6,24 +7,24 @@ use std::path::{Path, PathBuf};
 use crate::data::{Channel, SeriesError, spelling};
 use crate::units::Quantity;
 
-/// Why a file could not be read or written.
+/// The reason why a file could not be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum DataError {
-    /// The operating system refused.
+    /// The operating system reports an error other than a missing file or a folder.
     #[error("{}: cannot be read or written", path.display())]
     Io {
-        /// The file or folder.
+        /// The file or folder that was to be read or written.
         path: PathBuf,
-        /// The system's reason.
+        /// The error that the operating system reports.
         source: io::Error,
     },
-    /// There is nothing at this path.
+    /// There is no file or folder at the path.
     #[error("{}: does not exist; check the name", path.display())]
     NotFound {
-        /// The path.
+        /// The path as it was given.
         path: PathBuf,
     },
-    /// A folder stands where a file was expected.
+    /// The path leads to a folder where a file was expected.
     #[error("{}: is a folder, expected a file", path.display())]
     IsDirectory {
         /// The folder.
@@ -32,151 +33,151 @@ pub enum DataError {
     /// The file has no bytes, or only blank lines and comments.
     #[error("{}: is empty, expected a header line and rows of numbers", path.display())]
     Empty {
-        /// The file.
+        /// The file that was read or written.
         path: PathBuf,
     },
-    /// The file is larger than the program reads.
+    /// The file is larger than the largest size that is read.
     #[error("{}: has {bytes} bytes, at most {limit} are read; split it or thin it out", path.display())]
     TooLarge {
-        /// The file.
+        /// The file that was read or written.
         path: PathBuf,
-        /// Its size.
+        /// The size of the file, bytes.
         bytes: u64,
-        /// The largest size that is read.
+        /// The largest size that is read, bytes.
         limit: u64,
     },
-    /// The file holds bytes that no text has.
+    /// The file contains control characters that do not occur in text.
     #[error("{}: is not text (byte {byte:#04x} at offset {offset}); export it as CSV", path.display())]
     NotText {
-        /// The file.
+        /// The file that was read or written.
         path: PathBuf,
-        /// Where the byte stands, from 0.
+        /// Offset of the first such byte, counted from 0.
         offset: usize,
-        /// The byte.
+        /// The byte at this offset.
         byte: u8,
     },
-    /// The numbers start without a line that names the columns.
+    /// No line above the numbers names the columns, and no mapping was given.
     #[error("{}:{line}: no header line names the columns; say which is which, e.g. --map {example}, or in the mapping dialog", path.display())]
     NoHeader {
-        /// The file.
+        /// The file that was read or written.
         path: PathBuf,
-        /// Line of the first numbers.
+        /// Line of the first row of numbers.
         line: u64,
-        /// A mapping in the right syntax.
+        /// An example of a mapping, in the syntax of `--map`.
         example: &'static str,
     },
-    /// No column is recognised as one that is needed.
+    /// No column holds a channel that is needed.
     #[error("{}:{line}: no column for {needed}; found {}; say which it is, e.g. --map {}=COLUMN, or in the mapping dialog",
         path.display(), list(found), channel.short_name())]
     MissingColumn {
-        /// The file.
+        /// The file that was read or written.
         path: PathBuf,
         /// Line of the header.
         line: u64,
-        /// The first missing column.
+        /// The first missing channel.
         channel: Channel,
-        /// What is needed, alternatives included.
+        /// All channels that are needed, with their alternatives, in words.
         needed: &'static str,
-        /// The header.
+        /// The headers of all columns.
         found: Vec<String>,
     },
-    /// A mapping names a column that the file does not have.
+    /// The mapping of the user names a column that the file does not have.
     #[error("{}:{line}: the mapping takes {} from column {column}, which is not in the file; found {}",
         path.display(), channel.short_name(), list(found))]
     NoSuchColumn {
-        /// The file.
+        /// The file that was read or written.
         path: PathBuf,
         /// Line of the header.
         line: u64,
-        /// The mapped channel.
+        /// The channel that is mapped.
         channel: Channel,
-        /// The column as the mapping names it.
+        /// Number or header of the column as the mapping states it.
         column: String,
-        /// The header.
+        /// The headers of all columns.
         found: Vec<String>,
     },
-    /// Two columns claim to be the same channel.
+    /// The headers of two columns name the same channel.
     #[error("{}:{line}:{column}: {name:?} and {other:?} in column {other_column} both look like {1}; choose one, e.g. --map {1}={other_column}, or in the mapping dialog",
         path.display(), channel.short_name())]
     AmbiguousColumn {
-        /// The file.
+        /// The file that was read or written.
         path: PathBuf,
         /// Line of the header.
         line: u64,
-        /// The later column's number.
+        /// Number of the later column.
         column: usize,
-        /// What both look like.
+        /// The channel that both headers name.
         channel: Channel,
-        /// The later column's header.
+        /// Header of the later column.
         name: String,
-        /// The earlier column's number.
+        /// Number of the earlier column.
         other_column: usize,
-        /// The earlier column's header.
+        /// Header of the earlier column.
         other: String,
     },
-    /// A header carries a unit that does not measure what the column holds.
+    /// The unit of a column does not measure the channel that the column holds.
     #[error("{}:{line}:{column}: {name:?} is in {unit:?}, expected a unit of {} ({}); correct the header or map the column with its unit, e.g. --map {}={column}:{}",
         path.display(), spelling::quantity_name(*quantity), spelling::symbols(*quantity), channel.short_name(), quantity.si_unit().symbol)]
     UnknownUnit {
-        /// The file.
+        /// The file that was read or written.
         path: PathBuf,
         /// Line of the header.
         line: u64,
-        /// The column's number.
+        /// Number of the column.
         column: usize,
-        /// The column's header.
+        /// Header of the column.
         name: String,
-        /// What the column was taken for.
+        /// The channel that the header or the mapping names.
         channel: Channel,
-        /// The unit as written.
+        /// The unit as written in the file.
         unit: String,
-        /// What the column should hold.
+        /// The quantity that the channel measures.
         quantity: Quantity,
     },
-    /// A cell is not a finite number.
+    /// A cell does not hold a finite number.
     #[error("{}:{line}:{column}: {name:?} is {text:?}, expected a finite number{}", path.display(), in_unit(unit))]
     Cell {
-        /// The file.
+        /// The file that was read or written.
         path: PathBuf,
         /// Line of the cell.
         line: u64,
-        /// The column's number.
+        /// Number of the column.
         column: usize,
-        /// The column's header.
+        /// Header of the column.
         name: String,
-        /// What stands there.
+        /// The text of the cell.
         text: String,
-        /// The unit of the column, empty if none is known.
+        /// The unit of the column for the message; empty if none is known.
         unit: &'static str,
     },
     /// A row has more or fewer fields than the header.
     #[error("{}:{line}: has {got} fields, the header has {expected}; complete the row or remove it", path.display())]
     RaggedRow {
-        /// The file.
+        /// The file that was read or written.
         path: PathBuf,
         /// Line of the row.
         line: u64,
-        /// Fields in the header.
+        /// Number of fields in the header.
         expected: usize,
-        /// Fields in the row.
+        /// Number of fields in the row.
         got: usize,
     },
-    /// There are too few rows to make a time series.
+    /// There are too few rows for a time series.
     #[error("{}:{line}: rows of numbers below the header: {got}, expected at least {expected}", path.display())]
     TooFewRows {
-        /// The file.
+        /// The file that was read or written.
         path: PathBuf,
         /// Line of the header.
         line: u64,
-        /// Rows that are needed.
+        /// Smallest number of rows of a time series.
         expected: usize,
-        /// Rows that are there.
+        /// Number of rows in the file.
         got: usize,
     },
-    /// A row is not later than the one before it.
+    /// The time of a row is not later than that of the row before it.
     #[error("{}:{line}:{column}: time is {after_s} s after {before_s} s in the row before, expected a later time; sort the rows and remove doubles", path.display())]
     TimeOrder {
-        /// The file.
+        /// The file that was read or written.
         path: PathBuf,
         /// Line of the row that is not later.
         line: u64,
@@ -187,102 +188,103 @@ pub enum DataError {
         /// Time in this row, s.
         after_s: f64,
     },
-    /// A value that no vehicle reaches.
+    /// A value is larger than any vehicle reaches, so that its unit is probably wrong.
     #[error("{}:{line}:{column}: {name:?} is {value:e} {unit}, beyond {limit:e} {unit}; check the unit of the column", path.display())]
     ImplausibleValue {
-        /// The file.
+        /// The file that was read or written.
         path: PathBuf,
         /// Line of the cell.
         line: u64,
-        /// The column's number.
+        /// Number of the column.
         column: usize,
-        /// The column's header.
+        /// Header of the column.
         name: String,
-        /// The value in SI units.
+        /// The value, SI units.
         value: f64,
-        /// The largest magnitude accepted, in SI units.
+        /// The largest magnitude that is accepted, SI units.
         limit: f64,
-        /// The SI unit.
+        /// Symbol of the SI unit.
         unit: &'static str,
     },
-    /// Columns that do not make a series; the readers check before, the writers' callers may not.
+    /// The columns do not form a time series. When a file is read, a wrong order of time is
+    /// reported as [`DataError::TimeOrder`] instead.
     #[error("{}: is not a time series", path.display())]
     Series {
-        /// The file.
+        /// The file that was read or written.
         path: PathBuf,
-        /// What does not fit.
+        /// The reason why the columns do not form a time series.
         source: SeriesError,
     },
-    /// A table of cases lacks a column.
+    /// A table of cases lacks a column, or a case lacks the value in it.
     #[error("{}:{line}: {name:?} is missing; add it, without it {consequence}", path.display())]
     MissingAttribute {
-        /// The table of cases.
+        /// Path of the table of cases.
         path: PathBuf,
-        /// Line of the header, or of the case whose cell is empty.
+        /// Line of the header, or of the case whose cell is blank.
         line: u64,
-        /// The column.
+        /// Name of the column.
         name: String,
-        /// What cannot be done.
+        /// What cannot be computed without it, in words.
         consequence: &'static str,
     },
-    /// Two rows have the same case name.
+    /// Two rows of the table of cases have the same case name.
     #[error("{}:{line}:{column}: case {case:?} stands in line {first_line} already; rename or remove one", path.display())]
     DuplicateCase {
-        /// The table of cases.
+        /// Path of the table of cases.
         path: PathBuf,
         /// Line of the later row.
         line: u64,
         /// Number of the column `case`.
         column: usize,
-        /// The name.
+        /// Name of the case.
         case: String,
         /// Line of the earlier row.
         first_line: u64,
     },
-    /// A case name that cannot name a file.
+    /// The name of a case cannot be the name of a file.
     #[error("{}:{line}:{column}: case {case:?} cannot name a file; use letters, digits, '-', '_' and '.'", path.display())]
     CaseName {
-        /// The table of cases.
+        /// Path of the table of cases.
         path: PathBuf,
         /// Line of the row.
         line: u64,
         /// Number of the column `case`.
         column: usize,
-        /// The name.
+        /// Name of the case.
         case: String,
     },
-    /// A row without its file.
+    /// The table of cases has a row whose file does not exist.
     #[error("{}:{line}:{column}: case {case:?} has no file {}; add the file or remove the row", path.display(), file.display())]
     CaseWithoutFile {
-        /// The table of cases.
+        /// Path of the table of cases.
         path: PathBuf,
         /// Line of the row.
         line: u64,
         /// Number of the column `case`.
         column: usize,
-        /// The name.
+        /// Name of the case.
         case: String,
-        /// The file that was looked for.
+        /// The path at which the file was expected.
         file: PathBuf,
     },
-    /// A file without a row.
+    /// The folder has a file without a row in the table of cases.
     #[error("{}: has no row in {}; add the row or remove the file", path.display(), table.display())]
     FileWithoutCase {
-        /// The file.
+        /// The file without a row.
         path: PathBuf,
-        /// The table of cases.
+        /// Path of the table of cases.
         table: PathBuf,
     },
-    /// A folder or file that is none of the kinds the program knows.
+    /// A folder or file that is of none of the kinds that can be opened.
     #[error("{}: is neither a data set (a folder with cases.csv and forces/ or trajectories/), nor a folder of data sets, nor a force, trajectory or steer file", path.display())]
     NotRecognised {
-        /// The path.
+        /// The path as it was given.
         path: PathBuf,
     },
 }
 
 impl DataError {
-    /// Whether saying which column is which, and in which unit, may help.
+    /// Whether a mapping of columns to channels and units by the user may solve the problem.
     pub fn needs_mapping(&self) -> bool {
         matches!(
             self,
@@ -294,7 +296,8 @@ impl DataError {
         )
     }
 
-    /// Wraps an error of the operating system.
+    /// Converts an error of the operating system at `path`: a missing file and a folder have
+    /// variants of their own.
     pub(crate) fn io(path: &Path, source: io::Error) -> Self {
         let path = path.to_owned();
         match source.kind() {
@@ -305,7 +308,7 @@ impl DataError {
     }
 }
 
-/// Longest header list that a message spells out.
+/// Number of names that a message lists; of further names it states the count.
 const LISTED: usize = 12;
 
 fn list(names: &[String]) -> String {

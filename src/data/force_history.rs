@@ -1,16 +1,17 @@
-//! The contact force on the target over time, as the physics wants it.
+//! The contact force on the target over time, and its impulse.
 
 use serde::{Deserialize, Serialize};
 
 use crate::data::{Channel, SeriesError, TimeSeries};
 use crate::numerics::interpolate;
 
-/// The axes in which a force history is written.
+/// The axes in which the components of a force history are given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ForceAxes {
-    /// World axes: turned into the body by the yaw angle at every evaluation.
+    /// World axes. The force is turned into body axes by the yaw angle at the instant of
+    /// evaluation.
     World,
-    /// Heading axes of the target: they turn with it.
+    /// Heading axes of the target, x forward and y left, which turn with it.
     Body,
 }
 
@@ -18,36 +19,39 @@ pub enum ForceAxes {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sampling {
-    /// The value at the sample's instant; linear in between.
+    /// The force at the instant of the sample; it varies linearly between samples.
     Instant,
-    /// The mean over an interval centred at the sample's instant.
+    /// The mean force over an interval around the instant of the sample. Its ends are midway
+    /// between neighbouring samples.
     CentredMean,
-    /// The mean over the interval from the sample's instant to the next one.
+    /// The mean force over the interval from the instant of the sample to that of the next one.
     ComingMean,
 }
 
-/// Contact force ON the target.
+/// A sampled history of the contact force ON the target.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForceHistory {
-    /// Axes of `fx_n`, `fy_n`.
+    /// The axes of `fx_n` and `fy_n`.
     pub axes: ForceAxes,
-    /// Meaning of a sample.
+    /// What one sample stands for.
     pub sampling: Sampling,
-    /// Time, s, strictly rising.
+    /// Instants of the samples, s, strictly increasing.
     pub time_s: Vec<f64>,
     /// Force along x, N.
     pub fx_n: Vec<f64>,
     /// Force along y, N.
     pub fy_n: Vec<f64>,
-    /// Yaw moment about the target's CG, N m, where the source recorded it.
+    /// Yaw moment of the contact force about the centre of gravity of the target, N m; `None` if
+    /// the source has not recorded it.
     pub mz_n_m: Option<Vec<f64>>,
 }
 
 impl ForceHistory {
-    /// Takes the force out of a series: world axes if `fx_n`, `fy_n` are there, else body axes.
+    /// Takes the force from a series: in world axes, or in body axes if the series has `fx_body_n`
+    /// but no `fx_n`.
     ///
     /// # Errors
-    /// [`SeriesError::Missing`] if neither pair is complete.
+    /// [`SeriesError::Missing`] if the series has neither pair of components completely.
     pub fn from_series(series: &TimeSeries, sampling: Sampling) -> Result<Self, SeriesError> {
         let (axes, x, y) = match (series.get(Channel::Fx), series.get(Channel::FxBody)) {
             (None, Some(_)) => (ForceAxes::Body, Channel::FxBody, Channel::FyBody),
@@ -63,10 +67,11 @@ impl ForceHistory {
         })
     }
 
-    /// The history as a series that can be written to a file.
+    /// The history as a time series, which can be written to a file.
     ///
     /// # Errors
-    /// [`SeriesError`] if the columns do not fit together.
+    /// [`SeriesError::TimeOrder`] if time does not increase, and [`SeriesError::Length`] if a
+    /// component has another number of samples.
     pub fn to_series(&self) -> Result<TimeSeries, SeriesError> {
         let [x, y] = match self.axes {
             ForceAxes::World => [Channel::Fx, Channel::Fy],
@@ -81,18 +86,20 @@ impl ForceHistory {
         Ok(series)
     }
 
-    /// Largest `|F|`, N, and its time, s. `None` for an empty history.
+    /// The largest magnitude of the sampled force, N, and its time, s; `None` for an empty history.
     pub fn peak(&self) -> Option<(f64, f64)> {
         let magnitudes = self.fx_n.iter().zip(&self.fy_n).map(|(x, y)| x.hypot(*y));
         magnitudes.zip(self.time_s.iter().copied()).max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// Impulse `P = ∫ F dt`, N s, along x and y of [`ForceHistory::axes`].
+    /// The impulse of the whole history along x and y of [`ForceHistory::axes`], N s: `P = ∫ F dt`.
     pub fn impulse_n_s(&self) -> [f64; 2] {
         self.cumulative().total_n_s()
     }
 
-    /// The impulse up to each instant, exact for what the samples mean.
+    /// The impulse up to each instant, by the integral that is exact for the meaning of the
+    /// samples: the trapezoidal rule for [`Sampling::Instant`], and the mean times the length of
+    /// the interval otherwise.
     pub fn cumulative(&self) -> CumulativeImpulse {
         let knots_s = self.knots_s();
         let integrate = |values: &[f64]| self.integrate(&knots_s, values);
@@ -104,7 +111,8 @@ impl ForceHistory {
         }
     }
 
-    /// The instants between which the samples say what the mean force is.
+    /// The ends of the intervals over which the samples give the mean force, s: one more than there
+    /// are intervals. With fewer than two samples they are the instants themselves.
     fn knots_s(&self) -> Vec<f64> {
         let time = &self.time_s;
         let (&[first, second, ..], &[.., before_last, last]) = (time.as_slice(), time.as_slice())
@@ -142,27 +150,36 @@ impl ForceHistory {
     }
 }
 
-/// Impulse from the beginning to each of a row of instants; linear in between.
+/// The impulse from the start of a force history up to each of its knots. The impulse varies
+/// linearly between knots.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CumulativeImpulse {
-    /// Instants, s, rising.
+    /// Instants of the knots, s, increasing.
     pub knots_s: Vec<f64>,
-    /// Impulse along x, N s.
+    /// Impulse along x up to each knot, N s.
     pub px_n_s: Vec<f64>,
-    /// Impulse along y, N s.
+    /// Impulse along y up to each knot, N s.
     pub py_n_s: Vec<f64>,
-    /// Angular impulse about the target's CG, N m s, where the moment is known.
+    /// Angular impulse about the centre of gravity of the target up to each knot, N m s; `None` if
+    /// the moment is not known.
     pub angular_n_m_s: Option<Vec<f64>>,
 }
 
 impl CumulativeImpulse {
-    /// Impulse of the whole history, N s.
+    /// Impulse `[x, y]` of the whole history, N s.
     pub fn total_n_s(&self) -> [f64; 2] {
         [&self.px_n_s, &self.py_n_s].map(|sum| sum.last().copied().unwrap_or(0.0))
     }
 
-    /// Mean force `[F_x, F_y]`, N, and yaw moment, N m, over `[from, to]` s, so that a simulation
-    /// receives the whole impulse whatever its step. Zero outside the history.
+    /// The mean force `[F_x, F_y]`, N, and the mean yaw moment, N m, over the interval from
+    /// `from_s` to `to_s`, s. A simulation that applies the mean over each of its steps receives
+    /// the whole impulse whatever the length of the step. The force is zero outside the history.
+    ///
+    /// ```text
+    /// F̄ = (P(to) − P(from)) / (to − from)
+    /// ```
+    ///
+    /// - `to_s`: later than `from_s`.
     pub fn mean_over(&self, from_s: f64, to_s: f64) -> ([f64; 2], Option<f64>) {
         let mean = |sum: &[f64]| {
             let at = |time| interpolate(&self.knots_s, sum, time).unwrap_or(0.0);
@@ -171,7 +188,7 @@ impl CumulativeImpulse {
         ([mean(&self.px_n_s), mean(&self.py_n_s)], self.angular_n_m_s.as_deref().map(mean))
     }
 
-    /// When the history ends, s.
+    /// The end of the history, s; −∞ for an empty history.
     pub fn end_s(&self) -> f64 {
         self.knots_s.last().copied().unwrap_or(f64::NEG_INFINITY)
     }

@@ -1,19 +1,20 @@
-//! Numbers that JSON does not have: infinite ones and NaN are written as `null`.
+//! Reading of numbers that JSON cannot represent. Infinite numbers and NaN are written as `null`,
+//! and `null` is read as NaN here.
 
 use serde::{Deserialize, Deserializer};
 
-/// For `#[serde(deserialize_with)]`: a number, NaN for `null`.
+/// Reads a number, with NaN for `null`; for use with `#[serde(deserialize_with)]`.
 ///
 /// # Errors
-/// The format's, for anything else.
+/// The error of the format if the value is neither a number nor `null`.
 pub fn null_as_nan<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
 }
 
-/// The same for several numbers.
+/// Reads `N` numbers, with NaN for each `null`; for use with `#[serde(deserialize_with)]`.
 ///
 /// # Errors
-/// The format's, for anything else.
+/// The error of the format if the value is not a list of `N` numbers or `null`.
 pub fn nulls_as_nan<'de, const N: usize, D: Deserializer<'de>>(
     from: D,
 ) -> Result<[f64; N], D::Error>

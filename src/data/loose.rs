@@ -1,4 +1,6 @@
-//! Single force, trajectory and steer files of whatever origin.
+//! Reads single files of a contact force, a motion or a steer angle over time, from any program
+//! that writes delimited text. The columns are found by their headers or by a mapping of the user
+//! and converted to SI units.
 
 use std::path::Path;
 
@@ -8,41 +10,42 @@ use crate::data::{
 };
 use crate::units::Quantity;
 
-/// Rows that a time series needs at least.
+/// Smallest number of rows of a time series.
 const MIN_ROWS: usize = 2;
 
-/// What a file of time series is about.
+/// The content of a time-series file, which decides the channels that it must have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FileKind {
-    /// Contact force: time and `fx`, `fy`, or `fx_body`, `fy_body`.
+    /// A contact force: time with `fx` and `fy`, or with `fx_body` and `fy_body`.
     Force,
-    /// Motion: time, `x` and `y`; a force beside them is welcome.
+    /// A motion: time, `x` and `y`. It may contain a contact force too.
     Trajectory,
-    /// Steering: time and `steer`, or `steer_fl` and `steer_fr`.
+    /// Steering: time with `steer`, or with `steer_fl` and `steer_fr`.
     Steer,
 }
 
-/// A file that was read, and how it was understood.
+/// A file that was read, with the interpretation of its columns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loaded {
-    /// What the file is about.
+    /// The kind of the file.
     pub kind: FileKind,
-    /// Its columns in SI units.
+    /// The columns of the file, SI units.
     pub series: TimeSeries,
-    /// Which column was taken for what, the time first.
+    /// The columns that were read, with their channels and units; the time comes first.
     pub columns: Vec<ColumnUse>,
-    /// What a person should know.
+    /// Remarks on columns that were left out or whose unit was assumed.
     pub notes: Vec<Note>,
     /// Separator and decimal sign of the file.
     pub dialect: Dialect,
-    /// Its character encoding, such as `UTF-8`.
+    /// Character encoding of the file, such as `UTF-8`.
     pub encoding: &'static str,
 }
 
 impl Loaded {
-    /// What a force sample of the file stands for. Our own finite-element files, known by the
-    /// target's velocities, hold centred means; a trajectory's heading-axis force is the mean over
-    /// the coming interval; anything else is taken as instants.
+    /// What a sample of the contact force in the file stands for. Files of the program's own
+    /// finite-element simulations, recognised by the velocity of the target, hold means over
+    /// centred intervals. A motion with a force in heading axes holds means over the coming
+    /// interval. In any other file the samples are values at an instant.
     pub fn force_sampling(&self) -> Sampling {
         if self.series.get(Channel::TargetVx).is_some() {
             Sampling::CentredMean
@@ -55,10 +58,10 @@ impl Loaded {
 }
 
 impl FileKind {
-    /// From the most to the least specific.
+    /// All kinds, the most specific first, in the order in which a file of unknown kind is tried.
     const ALL: [Self; 3] = [Self::Trajectory, Self::Force, Self::Steer];
 
-    /// The pairs of channels of which one must be complete, beside the time.
+    /// The sets of channels of which one must be complete, in addition to the time.
     fn alternatives(self) -> &'static [&'static [Channel]] {
         match self {
             Self::Force => &[&[Channel::Fx, Channel::Fy], &[Channel::FxBody, Channel::FyBody]],
@@ -83,7 +86,8 @@ impl FileKind {
         }
     }
 
-    /// The first needed channel that the columns lack, in the alternative that lacks least.
+    /// The first needed channel that no column holds, of the set of channels that lacks fewest;
+    /// `None` if none is missing.
     fn first_missing(self, columns: &Columns) -> Option<Channel> {
         let is_missing = |channel: &&Channel| !columns.by_channel.contains_key(*channel);
         let n_missing = |needed: &&&[Channel]| needed.iter().filter(is_missing).count();
@@ -95,25 +99,34 @@ impl FileKind {
 
 /// Reads a contact force: time and the force ON the target, in world or body axes.
 ///
+/// - `map`: columns that the user has chosen; the others are found by their headers.
+///
 /// # Errors
-/// [`DataError`], with the place in the file and what to do.
+/// [`DataError`] if the file cannot be read, a needed column is missing or ambiguous, its unit does
+/// not measure it, or a value is not a plausible finite number. It states the place in the file and
+/// the remedy.
 pub fn read_force_file(path: &Path, map: Option<&ColumnMap>) -> Result<Loaded, DataError> {
     read_series(path, map, FileKind::Force)
 }
 
-/// Reads a motion: time, position, and whatever else is recognised.
+/// Reads a motion: time, position, and all other channels that are recognised.
+///
+/// - `map`: columns that the user has chosen; the others are found by their headers.
 ///
 /// # Errors
-/// [`DataError`], with the place in the file and what to do.
+/// [`DataError`] as for [`read_force_file`].
 pub fn read_trajectory_file(path: &Path, map: Option<&ColumnMap>) -> Result<Loaded, DataError> {
     read_series(path, map, FileKind::Trajectory)
 }
 
-/// Reads a motion of which the heading is known too: time, position, yaw, and whatever else is
+/// Reads a motion with its heading: time, position, yaw angle, and all other channels that are
 /// recognised.
 ///
+/// - `map`: columns that the user has chosen; the others are found by their headers.
+///
 /// # Errors
-/// [`DataError`], with the place in the file and what to do.
+/// [`DataError`] as for [`read_force_file`]; [`DataError::MissingColumn`] also if there is no yaw
+/// angle.
 pub fn read_motion_log(path: &Path, map: Option<&ColumnMap>) -> Result<Loaded, DataError> {
     let table = Table::read(path)?;
     let columns = Columns::of(&table, map)?;
@@ -124,18 +137,22 @@ pub fn read_motion_log(path: &Path, map: Option<&ColumnMap>) -> Result<Loaded, D
     load(&table, columns, FileKind::Trajectory, map.is_some())
 }
 
-/// Reads road-wheel angles over time.
+/// Reads road-wheel steer angles over time.
+///
+/// - `map`: columns that the user has chosen; the others are found by their headers.
 ///
 /// # Errors
-/// [`DataError`], with the place in the file and what to do.
+/// [`DataError`] as for [`read_force_file`].
 pub fn read_steer_file(path: &Path, map: Option<&ColumnMap>) -> Result<Loaded, DataError> {
     read_series(path, map, FileKind::Steer)
 }
 
-/// Reads a file of a known kind.
+/// Reads a time-series file of a given kind.
+///
+/// - `map`: columns that the user has chosen; the others are found by their headers.
 ///
 /// # Errors
-/// [`DataError`], with the place in the file and what to do.
+/// [`DataError`] as for [`read_force_file`].
 pub fn read_series(
     path: &Path,
     map: Option<&ColumnMap>,
@@ -146,10 +163,14 @@ pub fn read_series(
     load(&table, columns, kind, map.is_some())
 }
 
-/// Reads a file of the kind that its columns make it.
+/// Reads a time-series file whose kind is determined from its columns: a motion if it has
+/// positions, otherwise a contact force, otherwise steering.
+///
+/// - `map`: columns that the user has chosen; the others are found by their headers.
 ///
 /// # Errors
-/// [`DataError`]; a file that is of no kind gives the error for a force file.
+/// [`DataError`] as for [`read_force_file`]; a file that is of no kind gives the error for a force
+/// file.
 pub fn read_any_series(path: &Path, map: Option<&ColumnMap>) -> Result<Loaded, DataError> {
     let table = Table::read(path)?;
     let columns = Columns::of(&table, map)?;
@@ -221,21 +242,24 @@ fn si_values(table: &Table, column: &ColumnUse) -> Result<Vec<f64>, DataError> {
     Ok(values)
 }
 
-/// The largest magnitude, in SI units, that is taken for real; beyond it the unit is wrong. Wide on
-/// purpose: what is merely unusual is for [`crate::data::check_series`].
+/// The largest magnitude, SI units, that is accepted for a quantity. A larger value means that the
+/// unit is wrong. The limits are wide; values that are merely unusual are flagged by
+/// [`crate::data::check_series`].
 fn largest_plausible(quantity: Quantity) -> f64 {
     match quantity {
-        // Heavy trucks against rigid barriers reach a few MN; newtons read as kN exceed this.
+        // Heavy trucks against rigid barriers reach a few MN; a force in N that is read as kN
+        // exceeds the limit.
         Quantity::Force => 2e7,
         Quantity::Moment => 1e8,
-        // Faster than any road vehicle; a test track's 200 km/h read as m/s exceeds it.
+        // No road vehicle is faster; 200 km/h on a test track that is read as m/s exceeds the
+        // limit.
         Quantity::Speed => 150.0,
         Quantity::Acceleration => 1e6,
         Quantity::AngularVelocity => 200.0,
         Quantity::Angle => 1e4,
-        // National grids count up to 10⁷ m.
+        // Coordinates of national grids reach 10⁷ m.
         Quantity::Length => 2e7,
-        // Clocks that count seconds since 1970.
+        // Some clocks count the seconds since 1970.
         Quantity::Time => 1e10,
         _ => f64::MAX,
     }

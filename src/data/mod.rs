@@ -1,4 +1,16 @@
-//! Files become checked time series in SI units here, and series become files.
+//! Reads and writes files. Everything foreign becomes checked time series in SI units here, and
+//! time series become files.
+//!
+//! - A delimited text file becomes a [`Table`], whose [`Dialect`] is determined from its first
+//!   lines; its columns become the channels of a [`TimeSeries`] by their headers or by a
+//!   [`ColumnMap`].
+//! - [`read_force_file`], [`read_trajectory_file`], [`read_motion_log`] and [`read_steer_file`]
+//!   read single files, [`Dataset`] reads a folder of cases, and [`open`](open()) decides what a
+//!   path holds.
+//! - [`ForceHistory`], [`contact_interval`] and [`check_case`] give impulse, contact and quality of
+//!   what was read.
+//! - [`TomlFile`], [`TomlTable`] and [`read_settings`] read settings; [`write_atomically`] writes
+//!   files.
 
 mod attributes;
 mod case_attributes;

@@ -1,4 +1,4 @@
-//! Opens whatever a person points at.
+//! Opens a path whose content is not known yet.
 
 use std::path::{Path, PathBuf};
 
@@ -6,16 +6,16 @@ use crate::data::dataset::CASES_FILE;
 use crate::data::{DataError, Dataset, DatasetKind, Loaded, Outcome, read_any_series};
 use crate::jobs::ProgressCallback;
 
-/// What a path turned out to be.
+/// The content of a path that was opened.
 #[derive(Debug)]
 pub enum Opened {
-    /// A folder with `cases.csv`, or this file itself.
+    /// A data set: a folder with `forces/` or `trajectories/`, or the file `cases.csv` in it.
     Dataset(Dataset),
-    /// A folder of such folders.
+    /// A folder that contains the folders of several data sets.
     Collection {
-        /// The data sets, in the order of their folders' names.
+        /// The data sets that could be loaded, in the order of the names of their folders.
         datasets: Vec<Dataset>,
-        /// Why others could not be read.
+        /// The reasons why other data sets could not be loaded.
         problems: Vec<DataError>,
     },
     /// A force, trajectory or steer file.
@@ -24,9 +24,12 @@ pub enum Opened {
 
 /// Opens a data set, a folder of data sets, or a force, trajectory or steer file.
 ///
+/// - `report`: called with the progress of loading a data set; if it breaks, the result is
+///   [`Outcome::Cancelled`].
+///
 /// # Errors
-/// [`DataError::NotRecognised`] for a folder without data sets; else why the file or the table of
-/// cases could not be read.
+/// [`DataError::NotRecognised`] for a folder without data sets, and otherwise the reason why the
+/// file or the table of cases could not be read.
 pub fn open(path: &Path, report: &mut ProgressCallback<'_>) -> Result<Outcome<Opened>, DataError> {
     if path.is_dir() {
         return open_folder(path, report);
@@ -63,7 +66,10 @@ fn open_folder(
     Ok(Outcome::Complete(Opened::Collection { datasets, problems }))
 }
 
-/// The data sets' folders in a folder, by name.
+/// The folders of data sets directly in a folder, in the order of their names.
+///
+/// # Errors
+/// [`DataError`] if the folder cannot be listed.
 fn dataset_folders(root: &Path) -> Result<Vec<PathBuf>, DataError> {
     let to_error = |source| DataError::io(root, source);
     let mut folders = Vec::new();

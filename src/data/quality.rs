@@ -1,8 +1,10 @@
-//! What looks wrong with a case, or should be known before it is used.
+//! Checks of the quality of a case. They flag what looks wrong with it and what a user should know
+//! before using it.
 //!
-//! The limits were set on the shipped data (400 cases): clean cases raise no warning. What they
-//! show at most: momentum residual 0.31 %, force before contact 3.4 % of the peak, spikes 0.24 of
-//! the peak, steps that differ by 0.4 % (rounded times).
+//! The limits were set on the shipped data (400 cases), whose clean cases raise no warning. The
+//! largest values of these cases are a momentum residual of 0.31 %, a force before contact of 3.4 %
+//! of the peak, spikes of 0.24 of the peak, and time steps that differ by 0.4 % because times are
+//! rounded.
 
 use std::fmt;
 
@@ -10,45 +12,53 @@ use crate::data::{
     Case, Channel, DatasetKind, ForceAxes, ForceHistory, Sampling, TimeSeries, contact_interval,
 };
 
-/// Momentum residual that raises a warning, as a share of the impulse.
+/// Momentum residual above which a warning is raised, as a share of the impulse.
 const MOMENTUM_RESIDUAL: f64 = 0.01;
-/// Momentum residual that is an error: mass, force or velocities are wrong.
+/// Momentum residual above which the case has an error, as a share of the impulse: mass, force or
+/// velocities are wrong.
 const MOMENTUM_RESIDUAL_ERROR: f64 = 0.1;
-/// Longest step over the median step.
+/// Ratio of the longest time step to the median step above which samples are missing.
 const SAMPLING_GAP: f64 = 5.0;
-/// Largest deviation of a step from the median step, as a share of it.
+/// Largest relative deviation of a time step from the median step that counts as uniform.
 const NON_UNIFORM: f64 = 0.01;
-/// Excess of one sample over its neighbours, as a share of the peak of the others.
+/// Excess of one sample over its neighbours above which it is a spike, as a share of the peak of
+/// the other samples.
 const SPIKE: f64 = 0.3;
-/// The same excess over its robust standard deviation.
+/// Deviation of a sample from its neighbours above which it can be a spike, in robust standard
+/// deviations.
 const SPIKE_SIGMA: f64 = 20.0;
-/// Contact samples below which a spike cannot be told from a short pulse.
+/// Smallest number of samples in contact with which spikes are looked for; with fewer, a spike
+/// cannot be distinguished from a short pulse.
 const SPIKE_MIN_SAMPLES: usize = 40;
-/// Mean force before contact as a share of the peak.
+/// Mean force before contact above which a warning is raised, as a share of the peak.
 const DRIFT: f64 = 0.05;
-/// Share of the peak at which the force has surely begun.
+/// Share of the peak above which the force has certainly begun.
 const ONSET_SHARE_OF_PEAK: f64 = 0.1;
-/// Samples before contact that a mean needs.
+/// Smallest number of samples before contact over which a mean is computed.
 const DRIFT_MIN_SAMPLES: usize = 5;
-/// Force that no car reaches, N: fixed-barrier tests at 56 km/h peak below 1 MN.
+/// Force above which the unit is doubtful, N: cars in tests against a fixed barrier at 56 km/h have
+/// peaks below 1 MN.
 const IMPLAUSIBLE_FORCE_N: f64 = 2e6;
-/// Force at the end as a share of the peak.
+/// Force at the end of the record above which the vehicles have not separated, as a share of the
+/// peak.
 const NOT_SEPARATED: f64 = 0.01;
-/// Contact that no impact takes, s: times in ms were read as s.
+/// Duration of a contact above which the unit of time is doubtful, s: no impact takes so long,
+/// times in ms were probably read as s.
 const LONG_CONTACT_S: f64 = 2.0;
-/// Standard deviation of a normal variable over its median absolute deviation.
+/// Ratio of the standard deviation of a normal variable to its median absolute deviation.
 const SIGMA_PER_MAD: f64 = 1.4826;
 
-/// What a flag is about.
+/// The property of a case that a flag concerns; it decides the unit of [`Flag::value`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FlagKind {
-    /// `|∫F dt − m ΔV| / |∫F dt|`; for trajectories, against the impulse in `cases.csv`.
+    /// Difference between the impulse and the change of momentum, `|∫F dt − m ΔV| / |∫F dt|`; for
+    /// trajectories, between the impulse and that in `cases.csv`.
     MomentumResidual,
-    /// Longest step over the median step.
+    /// Longest time step as a ratio to the median step.
     SamplingGap,
-    /// Largest deviation of a step from the median step, as a share of it.
+    /// Largest relative deviation of a time step from the median step.
     NonUniformSampling,
-    /// A single sample that stands out from its neighbours, as a share of the others' peak.
+    /// Excess of a single sample over its neighbours, as a share of the peak of the other samples.
     Spike,
     /// Mean force before contact, as a share of the peak.
     Drift,
@@ -56,17 +66,17 @@ pub enum FlagKind {
     ImplausibleForce,
     /// Duration of the contact, s.
     LongContact,
-    /// There is no force at all; the value is the peak, N.
+    /// The force is zero throughout; the value is the peak, N.
     NoForce,
-    /// Still in contact at the end: force there as a share of the peak, by the curve or by the
-    /// table of cases.
+    /// The vehicles are still in contact at the end of the record. The value is the force at the
+    /// end as a share of the peak, or 1 if only the table of cases states it.
     NotSeparated,
-    /// The bullet's corner stays caught, by the table of cases.
+    /// A corner of the bullet stays hooked to the target, as the table of cases states.
     Hooked,
 }
 
 impl FlagKind {
-    /// In a word or two, for a table.
+    /// A label of one or two words for a table.
     pub fn label(self) -> &'static str {
         match self {
             Self::MomentumResidual => "momentum",
@@ -83,37 +93,40 @@ impl FlagKind {
     }
 }
 
-/// How much a flag matters.
+/// How much a flag matters for the use of the case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// Good to know.
+    /// The user should know about it; the case can be used.
     Info,
-    /// Look at it before using the case.
+    /// The user should look at it before using the case.
     Warning,
-    /// Do not use the case before it is mended.
+    /// The case should not be used before it is corrected.
     Error,
 }
 
-/// Something found in a case.
+/// A finding about a case.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Flag {
-    /// What it is about.
+    /// The property that the flag concerns.
     pub kind: FlagKind,
-    /// How much it matters.
+    /// How much the finding matters.
     pub severity: Severity,
-    /// What was found, in the unit that [`FlagKind`] names.
+    /// The value that was found, in the unit that [`FlagKind`] states.
     pub value: f64,
-    /// What is accepted.
+    /// The largest value that is accepted, in the same unit.
     pub limit: f64,
-    /// When, s, if it happens at a time.
+    /// The time of the finding, s; `None` if it has no particular time.
     pub time_s: Option<f64>,
 }
 
-/// Checks a case of a data set.
+/// Checks a case of a data set, with the attributes from its table.
 ///
-/// Momentum: a force case is checked against `m_t_kg` and the target's velocities in its file, in
-/// world axes. For a trajectory that would count the tires' impulse too, so its force is checked
-/// against `impulse_x_n_s`, `impulse_y_n_s` of `cases.csv`, in the heading axes of both.
+/// The momentum of a force case is compared with `m_t_kg` times the change of the velocity of the
+/// target in its file, in world axes. In a trajectory this change contains the impulse of the tires
+/// too; its force is compared with `impulse_x_n_s` and `impulse_y_n_s` of `cases.csv` instead, both
+/// in heading axes.
+///
+/// - returns the findings; none if the case is without fault.
 pub fn check_case(case: &Case) -> Vec<Flag> {
     let mut flags = check_series(&case.series, case.kind.sampling());
     let attributes = &case.attributes;
@@ -142,7 +155,10 @@ pub fn check_case(case: &Case) -> Vec<Flag> {
     flags
 }
 
-/// Checks a file on its own.
+/// Checks a time series on its own: its time steps and, if it has one, its contact force.
+///
+/// - `sampling`: what a sample of the force stands for.
+/// - returns the findings; none if the series is without fault.
 pub fn check_series(series: &TimeSeries, sampling: Sampling) -> Vec<Flag> {
     let mut flags = check_sampling(series.time_s());
     if let Ok(force) = ForceHistory::from_series(series, sampling) {
@@ -152,7 +168,7 @@ pub fn check_series(series: &TimeSeries, sampling: Sampling) -> Vec<Flag> {
 }
 
 impl Flag {
-    /// A flag if the value is beyond the limit.
+    /// A flag if the value exceeds the limit.
     fn beyond(kind: FlagKind, severity: Severity, value: f64, limit: f64) -> Option<Self> {
         let flag = Self { kind, severity, value, limit, time_s: None };
         (value > limit).then_some(flag)
@@ -163,7 +179,7 @@ impl Flag {
     }
 }
 
-/// A flag that the table of cases raises.
+/// A flag for a property that holds or does not hold, without a limit.
 fn stated(kind: FlagKind, severity: Severity) -> Flag {
     Flag { kind, severity, value: 1.0, limit: 0.0, time_s: None }
 }
@@ -260,8 +276,8 @@ fn magnitudes(force: &ForceHistory) -> impl Iterator<Item = f64> + '_ {
     force.fx_n.iter().zip(&force.fy_n).map(|(x, y)| x.hypot(*y))
 }
 
-/// Mean force over the first half of the samples before the force has surely begun, as a share of
-/// the peak; 0 where there are too few of them.
+/// Mean force over the first half of the samples before the force has certainly begun, as a share
+/// of the peak; 0 if there are too few of them.
 fn drift(force: &ForceHistory, magnitude_n: &[f64], peak_n: f64) -> f64 {
     let has_begun = |n: &f64| *n > ONSET_SHARE_OF_PEAK * peak_n;
     let n_before = magnitude_n.iter().position(has_begun).unwrap_or(0) / 2;
@@ -272,11 +288,12 @@ fn drift(force: &ForceHistory, magnitude_n: &[f64], peak_n: f64) -> f64 {
     mean(&force.fx_n).hypot(mean(&force.fy_n)) / peak_n
 }
 
-/// The worst single sample that stands out from its four neighbours.
+/// The sample that deviates most from its four neighbours, if it is a spike.
 ///
-/// A sample's deviation is that from the median of its neighbours. It is a spike if this is far
-/// beyond the deviations of the whole contact (median absolute deviation), and beyond the range of
-/// the neighbours by a good part of the peak: steep but continuous curves do the first, not both.
+/// The deviation of a sample is that from the median of its neighbours. The sample is a spike if
+/// its deviation is far larger than the robust standard deviation over the whole contact (from the
+/// median absolute deviation), and larger than the range of its neighbours by a considerable share
+/// of the peak. A steep but continuous curve satisfies the first condition only.
 fn spike(force: &ForceHistory, magnitude_n: &[f64]) -> Option<Flag> {
     let mut ordered = magnitude_n.to_vec();
     ordered.sort_by(|a, b| b.total_cmp(a));
@@ -308,7 +325,8 @@ fn spike(force: &ForceHistory, magnitude_n: &[f64]) -> Option<Flag> {
     worst
 }
 
-/// Of five samples: how far the middle one is from the median of the others, and their range.
+/// For five samples: the distance of the middle one from the median of the other four, and the
+/// range of these four.
 fn deviation(samples: &[f64]) -> (f64, f64) {
     let &[a, b, middle, c, d] = samples else {
         return (0.0, 0.0);
@@ -319,7 +337,7 @@ fn deviation(samples: &[f64]) -> (f64, f64) {
     ((middle - (second + third) / 2.0).abs(), high - low)
 }
 
-/// `m ΔV` of the target over the file, N s, in world axes.
+/// The change of momentum `m ΔV` of the target from the first to the last sample, N s, world axes.
 fn momentum_change_n_s(case: &Case) -> Option<(f64, f64)> {
     let mass_kg = case.attributes.number("m_t_kg")?;
     let change = |channel| {

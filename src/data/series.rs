@@ -1,52 +1,56 @@
-//! Time series in SI units: what every reader gives and every writer takes.
+//! Time series in SI units: the result of every reader and the input of every writer.
 
 use std::collections::BTreeMap;
 
 use crate::data::Channel;
 
-/// Columns over a common, strictly rising time axis. All columns are as long as `time_s`.
+/// Columns over a common time axis that increases strictly. All columns have the length of the time
+/// axis.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TimeSeries {
     time_s: Vec<f64>,
     columns: BTreeMap<Channel, Vec<f64>>,
 }
 
-/// A column that does not fit its series.
+/// The reason why columns do not form a time series, or why a column cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SeriesError {
-    /// A column is longer or shorter than the time axis.
+    /// The column is longer or shorter than the time axis.
     #[error("column {} has {got} samples, the time axis {expected}", channel.header())]
     Length {
-        /// The column.
+        /// The channel of the column.
         channel: Channel,
-        /// Samples on the time axis.
+        /// Number of samples on the time axis.
         expected: usize,
-        /// Samples in the column.
+        /// Number of samples in the column.
         got: usize,
     },
-    /// Time does not rise.
+    /// The time does not increase.
     #[error("time does not rise at sample {sample_idx}: {before} s, then {after} s")]
     TimeOrder {
-        /// Index of the sample that is not later than the one before it.
+        /// Index of the first sample that is not later than the one before it.
         sample_idx: usize,
-        /// The earlier sample's time, s.
+        /// Time of the earlier sample, s.
         before: f64,
-        /// The later sample's time, s.
+        /// Time of the later sample, s.
         after: f64,
     },
-    /// A column that this computation needs is not there.
+    /// A column that the computation needs is missing.
     #[error("column {} is missing", channel.header())]
     Missing {
-        /// The column.
+        /// The channel of the column.
         channel: Channel,
     },
 }
 
 impl TimeSeries {
-    /// A series without columns.
+    /// Creates a series that has a time axis and no columns.
+    ///
+    /// - `time_s`: instants of the samples, s, strictly increasing.
     ///
     /// # Errors
-    /// [`SeriesError::TimeOrder`] if time does not rise strictly (NaN does not rise).
+    /// [`SeriesError::TimeOrder`] if the time does not increase strictly, or if one of several
+    /// instants is NaN.
     pub fn new(time_s: Vec<f64>) -> Result<Self, SeriesError> {
         for (i, pair) in time_s.windows(2).enumerate() {
             if pair[0].partial_cmp(&pair[1]) != Some(std::cmp::Ordering::Less) {
@@ -57,10 +61,12 @@ impl TimeSeries {
         Ok(Self { time_s, columns: BTreeMap::new() })
     }
 
-    /// Adds or replaces a column.
+    /// Adds a column or replaces the column of this channel.
+    ///
+    /// - `values`: one value per instant, in the SI unit of the channel.
     ///
     /// # Errors
-    /// [`SeriesError::Length`] if it is not as long as the time axis.
+    /// [`SeriesError::Length`] if the column does not have the length of the time axis.
     pub fn insert(&mut self, channel: Channel, values: Vec<f64>) -> Result<(), SeriesError> {
         let (expected, got) = (self.time_s.len(), values.len());
         if got != expected {
@@ -70,30 +76,30 @@ impl TimeSeries {
         Ok(())
     }
 
-    /// The time axis, s, strictly rising.
+    /// The time axis, s, strictly increasing.
     pub fn time_s(&self) -> &[f64] {
         &self.time_s
     }
 
-    /// A column, if it is there.
+    /// The column of a channel; `None` if the series does not have it.
     pub fn get(&self, channel: Channel) -> Option<&[f64]> {
         self.columns.get(&channel).map(Vec::as_slice)
     }
 
-    /// A column that must be there.
+    /// The column of a channel that the computation needs.
     ///
     /// # Errors
-    /// [`SeriesError::Missing`].
+    /// [`SeriesError::Missing`] if the series does not have it.
     pub fn require(&self, channel: Channel) -> Result<&[f64], SeriesError> {
         self.get(channel).ok_or(SeriesError::Missing { channel })
     }
 
-    /// The columns that are there, in file order, without the time axis.
+    /// Returns the channels of the columns in the order of [`Channel::ALL`], without the time axis.
     pub fn channels(&self) -> impl Iterator<Item = Channel> + '_ {
         self.columns.keys().copied()
     }
 
-    /// Number of samples.
+    /// Number of samples on the time axis.
     pub fn n_samples(&self) -> usize {
         self.time_s.len()
     }

@@ -1,4 +1,5 @@
-//! How people write column headers and units: `Fx [kN]`, `time(ms)`, `yaw_rate_deg_s`, `Fx in kN`.
+//! Recognises the spelling of column headers and units, such as `Fx [kN]`, `time(ms)`,
+//! `yaw_rate_deg_s` and `Fx in kN`.
 
 use crate::data::Channel;
 use crate::units::{Quantity, Unit};
@@ -6,18 +7,18 @@ use crate::units::{Quantity, Unit};
 const OPENING: [char; 4] = ['[', '(', '{', '<'];
 const CLOSING: [char; 4] = [']', ')', '}', '>'];
 
-/// What a header says about its column.
+/// The channel and the unit that a header names.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Meaning {
-    /// A channel; the unit is `None` if the header names none.
+    /// The header names a channel; the unit is `None` if the header names no unit.
     Channel(Channel, Option<Unit>),
-    /// A channel in a unit that does not measure it.
+    /// The header names a channel, followed by a unit that does not measure it.
     WrongUnit(Channel, String),
-    /// No channel.
+    /// The header names no channel.
     Unknown,
 }
 
-/// Reads a header: the longest beginning that names a channel, and what follows as its unit.
+/// Interprets a header: the longest beginning that names a channel, with what follows as its unit.
 pub(crate) fn meaning(header: &str) -> Meaning {
     if let Some(&own) = Channel::ALL.iter().find(|own| own.header() == header) {
         return Meaning::Channel(own, Some(own.quantity().si_unit()));
@@ -48,7 +49,8 @@ pub(crate) fn meaning(header: &str) -> Meaning {
     }
 }
 
-/// The channel with this name: ours, with or without its unit, or another program's.
+/// The channel of this name: the header of the program's own files with or without the unit, or a
+/// header that other programs use.
 pub(crate) fn channel(name: &str) -> Option<Channel> {
     let key = letters_and_digits(name);
     Channel::ALL.iter().copied().find(|channel| {
@@ -58,9 +60,10 @@ pub(crate) fn channel(name: &str) -> Option<Channel> {
     })
 }
 
-/// The unit of `quantity` that is written like this.
+/// The unit of `quantity` with this spelling; `None` if there is none.
 pub(crate) fn unit(quantity: Quantity, text: &str) -> Option<Unit> {
-    // A meganewton and a millinewton differ by nine orders of magnitude and one capital.
+    // Upper and lower case are not distinguished below. `mN` is refused, since it would be read as
+    // meganewton, nine orders of magnitude more than a millinewton.
     if text.contains("mN") {
         return None;
     }
@@ -89,9 +92,10 @@ pub(crate) fn unit(quantity: Quantity, text: &str) -> Option<Unit> {
     units.find(|unit| !key.is_empty() && unit_key(unit.symbol) == key)
 }
 
-/// The unit at the end of a header whose name need not be known: `Kraft X [kN]`.
+/// The unit at the end of a header whose name need not be that of a channel, such as `Kraft X
+/// [kN]`; `None` if the header has no unit.
 ///
-/// The error is the text of a unit that does not measure `quantity`.
+/// The error is the text of a unit in brackets that does not measure `quantity`.
 pub(crate) fn trailing_unit(header: &str, quantity: Quantity) -> Result<Option<Unit>, String> {
     let mut wrong = None;
     for (at, _) in header.match_indices(|c: char| !c.is_alphanumeric()) {
@@ -109,14 +113,15 @@ pub(crate) fn trailing_unit(header: &str, quantity: Quantity) -> Result<Option<U
     wrong.map_or(Ok(None), Err)
 }
 
-/// Whether two headers are the same but for case, blanks, signs and a unit in brackets.
+/// Whether two headers are equal apart from case, blanks, punctuation and a unit in brackets.
 pub(crate) fn same_name(left: &str, right: &str) -> bool {
     let bare = |name: &str| letters_and_digits(name.split(OPENING).next().unwrap_or(name));
     letters_and_digits(left) == letters_and_digits(right)
         || (!bare(left).is_empty() && bare(left) == bare(right))
 }
 
-/// Whether a line is a row of units, as some programs write one beneath the header.
+/// Whether a line is a row of units, which some programs write beneath the header: each of its
+/// cells that is not blank is a unit or in brackets, and there is at least one.
 pub(crate) fn is_unit_row<'a>(cells: impl Iterator<Item = &'a str>) -> bool {
     let mut any = false;
     cells.filter_map(|cell| Some((cell, unit_text(cell)?))).all(|(cell, text)| {
@@ -125,7 +130,8 @@ pub(crate) fn is_unit_row<'a>(cells: impl Iterator<Item = &'a str>) -> bool {
     }) && any
 }
 
-/// The unit in what follows a name or stands in a row of units; `None` if there is none.
+/// The text of the unit in the end of a header or in a cell of a row of units, without brackets and
+/// separators; `None` if nothing is left.
 pub(crate) fn unit_text(rest: &str) -> Option<&str> {
     let outside = |c: char| c.is_whitespace() || "_,:;/[](){}<>-".contains(c);
     let text = rest.trim_matches(outside);
@@ -133,7 +139,7 @@ pub(crate) fn unit_text(rest: &str) -> Option<&str> {
     (!text.is_empty()).then_some(text)
 }
 
-/// What a quantity is called in a message.
+/// The name of a quantity in messages.
 pub(crate) fn quantity_name(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Time => "time",
@@ -153,7 +159,7 @@ pub(crate) fn quantity_name(quantity: Quantity) -> &'static str {
     }
 }
 
-/// The symbols of a quantity's units, for a message.
+/// The symbols of all units of a quantity, for a message.
 pub(crate) fn symbols(quantity: Quantity) -> String {
     let symbols: Vec<_> = quantity.units().iter().map(|unit| unit.symbol).collect();
     symbols.join(", ")
@@ -173,7 +179,8 @@ fn letters_and_digits(text: &str) -> String {
     kept.flat_map(char::to_lowercase).collect()
 }
 
-/// One spelling for `m/s²`, `m/s^2`, `m_s2`, `m/sec2`; for `deg/s`, `°/s`, `degrees per second`.
+/// Reduces a unit to one spelling, so that `m/s²`, `m/s^2`, `m_s2` and `m/sec2` are equal, and so
+/// are `deg/s`, `°/s` and `degrees per second`.
 fn unit_key(text: &str) -> String {
     let text = text.to_lowercase();
     let text = text

@@ -1,4 +1,5 @@
-//! A text file as a table: header, units, rows of cells, and the line each came from.
+//! A delimited text file as a table: header, units and rows of cells, with the line of the file
+//! from which each row comes.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -10,13 +11,14 @@ use crate::data::dialect::{Dialect, Separator, comment};
 use crate::data::spelling::{self, Meaning};
 use crate::data::text::{Text, read_text};
 
-/// Lines that are looked at to find separator, header and units.
+/// Number of lines that are examined to find separator, header and units.
 const SNIFFED_LINES: usize = 64;
 
-/// The first column of a table of cases.
+/// The column that holds the names in a table of cases; a header with it is recognised by this
+/// name.
 pub(crate) const CASE_COLUMN: &str = "case";
 
-/// A delimited text file.
+/// A delimited text file that was read as a table.
 #[derive(Debug, Clone)]
 pub struct Table {
     path: PathBuf,
@@ -26,7 +28,7 @@ pub struct Table {
     rows: Vec<Row>,
 }
 
-/// The names of the columns.
+/// The names of the columns and where they come from.
 #[derive(Debug, Clone, Default)]
 struct Header {
     /// Line of the header, or of the first row if there is no header.
@@ -34,7 +36,7 @@ struct Header {
     /// Whether the file names its columns.
     is_written: bool,
     names: Vec<String>,
-    /// As written in a row beneath the names; empty where there is none.
+    /// The cells of a row of units beneath the names; empty if there is no such row.
     units: Vec<String>,
 }
 
@@ -44,17 +46,18 @@ struct Row {
     cells: StringRecord,
 }
 
-/// A line of the file, from 1, without comment sign.
+/// A line of the file, without the sign of a comment.
 #[derive(Clone, Copy)]
 struct Line<'a> {
+    /// Number of the line in the file, counted from 1.
     number: u64,
-    /// Offset of its first byte.
+    /// Offset of its first byte in the text.
     start: usize,
     text: &'a str,
     is_comment: bool,
 }
 
-/// A line and its fields.
+/// A line that is split into its fields.
 struct SplitLine<'a> {
     line: Line<'a>,
     cells: Vec<String>,
@@ -69,19 +72,21 @@ impl<'a> SplitLine<'a> {
         Self { line, cells, is_text }
     }
 
-    /// Whether it is a row of the table with a number in it.
+    /// Whether the line is a row of the table that contains a number: no comment, and `width`
+    /// fields.
     fn has_numbers(&self, width: usize) -> bool {
         !self.line.is_comment && !self.is_text && n_named(&self.cells) == width
     }
 }
 
 impl Table {
-    /// Reads a file: UTF-8, UTF-16 or Windows-1252; separated by comma, semicolon, tab or blanks;
-    /// with decimal point or comma; with comments, a preamble, a row of units, or none of them.
+    /// Reads a file as a table. Its encoding is UTF-8, UTF-16 or Windows-1252, its separator comma,
+    /// semicolon, tab or blanks, its decimal sign a point or a comma. Comments, text above the
+    /// header and a row of units are recognised.
     ///
     /// # Errors
-    /// [`DataError`] if it cannot be read, is no text or empty, or a row does not have the
-    /// header's number of fields.
+    /// [`DataError`] if the file cannot be read, is not text or is empty, or if a row does not have
+    /// the number of fields of the header.
     pub fn read(path: &Path) -> Result<Self, DataError> {
         Self::parse(path, &read_text(path)?)
     }
@@ -110,17 +115,17 @@ impl Table {
         Ok(table)
     }
 
-    /// The file it came from.
+    /// Path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The character encoding, such as `UTF-8`.
+    /// Character encoding of the file, such as `UTF-8`.
     pub fn encoding(&self) -> &'static str {
         self.encoding
     }
 
-    /// Separator and decimal sign.
+    /// Separator and decimal sign of the file.
     pub fn dialect(&self) -> Dialect {
         self.dialect
     }
@@ -135,42 +140,49 @@ impl Table {
         self.header.is_written
     }
 
-    /// Line of the header, from 1; of the first row if there is no header.
+    /// Line of the header, counted from 1; line of the first row if there is no header.
     pub fn header_line(&self) -> u64 {
         self.header.line
     }
 
-    /// The unit written beneath a column's name, if there is a row of units.
+    /// The unit of a column in the row of units beneath the header; `None` if there is no such row
+    /// or its cell is blank.
+    ///
+    /// - `column_idx`: index of the column, counted from 0.
     pub fn unit_text(&self, column_idx: usize) -> Option<&str> {
         let unit = self.header.units.get(column_idx)?;
         spelling::unit_text(unit)
     }
 
-    /// Number of rows.
+    /// Number of rows below the header.
     pub fn n_rows(&self) -> usize {
         self.rows.len()
     }
 
-    /// Line of a row, from 1.
+    /// Line of a row in the file, counted from 1; 0 if there is no such row.
     pub fn line(&self, row_idx: usize) -> u64 {
         self.rows.get(row_idx).map_or(0, |row| row.line)
     }
 
-    /// Text of a cell, without surrounding blanks.
+    /// Text of a cell without surrounding blanks; empty if there is no such cell. Both indices are
+    /// counted from 0.
     pub fn cell(&self, row_idx: usize, column_idx: usize) -> &str {
         let row = self.rows.get(row_idx);
         row.and_then(|row| row.cells.get(column_idx)).unwrap_or("").trim()
     }
 
-    /// The number in a cell, if there is a finite one.
+    /// The number in a cell; `None` if the cell does not hold a finite number.
     pub fn number(&self, row_idx: usize, column_idx: usize) -> Option<f64> {
         self.dialect.number(self.cell(row_idx, column_idx))
     }
 
-    /// All numbers of a column; `unit` is named in the message if one of them is none.
+    /// The numbers in all rows of a column.
+    ///
+    /// - `column_idx`: index of the column, counted from 0.
+    /// - `unit`: symbol of the unit for the error message; empty if none is known.
     ///
     /// # Errors
-    /// [`DataError::Cell`] at the first cell that is not a finite number.
+    /// [`DataError::Cell`] at the first cell that does not hold a finite number.
     pub fn numbers(&self, column_idx: usize, unit: &'static str) -> Result<Vec<f64>, DataError> {
         let number = |row_idx| {
             self.number(row_idx, column_idx).ok_or_else(|| DataError::Cell {
@@ -185,7 +197,12 @@ impl Table {
         (0..self.n_rows()).map(number).collect()
     }
 
-    /// Reads the rows from `body`, whose first line has the number `first_line`.
+    /// Reads the rows from `body`. Blank lines and comments are omitted.
+    ///
+    /// - `first_line`: number of the first line of `body` in the file, counted from 1.
+    ///
+    /// # Errors
+    /// [`DataError::RaggedRow`] if a row does not have the number of fields of the header.
     fn read_rows(&mut self, body: &str, first_line: u64) -> Result<(), DataError> {
         let spread;
         let source = match self.dialect.separator {
@@ -218,7 +235,10 @@ impl Table {
         Ok(())
     }
 
-    /// Gives a row the header's number of fields, or refuses it.
+    /// Removes empty fields that a separator at the end of the line or repeated blanks leave.
+    ///
+    /// # Errors
+    /// [`DataError::RaggedRow`] if the row then does not have the number of fields of the header.
     fn fit(&self, cells: &StringRecord, line: u64) -> Result<StringRecord, DataError> {
         let expected = self.header.names.len();
         let fitted: StringRecord = match self.dialect.separator {
@@ -233,13 +253,14 @@ impl Table {
     }
 }
 
-/// Whether the only field too many is an empty last one.
+/// Whether the row has exactly one field too many, which is empty and comes last.
 fn ends_in_separator(cells: &StringRecord, expected: usize) -> bool {
     cells.len() == expected + 1
         && cells.iter().next_back().is_some_and(|cell| cell.trim().is_empty())
 }
 
-/// The line, from 1, in which a record starts: `csv` counts from before the blank lines above it.
+/// The line of `source`, counted from 1, in which a record starts. The crate `csv` states the line
+/// before any blank lines above the record.
 fn line_of(record: &StringRecord, source: &str) -> u64 {
     let Some(position) = record.position() else {
         return 1;
@@ -249,7 +270,7 @@ fn line_of(record: &StringRecord, source: &str) -> u64 {
     position.line() + above.iter().take_while(|byte| **byte == b'\n').count() as u64
 }
 
-/// The first lines that are not blank.
+/// The first lines of a text that are not blank, at most [`SNIFFED_LINES`].
 fn first_lines(text: &str) -> Vec<Line<'_>> {
     let mut start = 0;
     let mut number = 0;
@@ -267,7 +288,7 @@ fn first_lines(text: &str) -> Vec<Line<'_>> {
     all.filter(|line| !line.text.trim().is_empty()).take(SNIFFED_LINES).collect()
 }
 
-/// Splits one line into its fields.
+/// Splits a line into its fields. A separator inside quotation marks does not divide a field.
 fn split(line: &str, separator: Separator) -> Vec<String> {
     if !line.contains('"') {
         return separator.fields(line).map(str::to_owned).collect();
@@ -283,13 +304,14 @@ fn split(line: &str, separator: Separator) -> Vec<String> {
         .buffer_capacity(line.len() + 1)
         .from_reader(line.as_bytes());
     let mut record = StringRecord::new();
-    // Reading from memory, only invalid UTF-8 could fail, and a `str` has none.
+    // Reading from memory fails for invalid UTF-8 only, which a `str` cannot contain.
     let _ = reader.read_record(&mut record);
     let kept = |cell: &&str| separator != Separator::Blanks || !cell.is_empty();
     record.iter().filter(kept).map(str::to_owned).collect()
 }
 
-/// Finds the header and the first line of the rows.
+/// Finds the header, the row of units and the first line of the rows; the latter is `None` if there
+/// is no row.
 fn find_header<'a>(lines: &[Line<'a>], dialect: Dialect) -> (Header, Option<Line<'a>>) {
     let split: Vec<SplitLine<'a>> =
         lines.iter().map(|line| SplitLine::new(*line, dialect)).collect();
@@ -320,9 +342,14 @@ fn find_header<'a>(lines: &[Line<'a>], dialect: Dialect) -> (Header, Option<Line
     (header, body.map(|line| line.line))
 }
 
-/// The first line of the table's width without a number that names a channel or `case`; else the
-/// first such line above the numbers at all; else the last line above them with several fields
-/// (whose rows are then ragged, which is reported); else, by the same rules, a comment.
+/// Chooses the header among lines that contain no number. The first rule that finds a line applies:
+///
+/// 1. the first line with the width of the table in which a field names a channel or is `case`;
+/// 2. the first line with the width of the table above the first row of numbers;
+/// 3. the last line with several fields above the first row of numbers, whose width differs from
+///    that of the rows, so that the rows are then refused.
+///
+/// If no line is found, the same rules are applied to comments.
 fn header_line<'s, 'a>(
     split: &'s [SplitLine<'a>],
     width: usize,
@@ -342,8 +369,9 @@ fn header_line<'s, 'a>(
     })
 }
 
-/// The table's width: the most frequent number of fields among lines with a number, the larger one
-/// at a tie; the first line's if no line has a number.
+/// The width of the table: the most frequent number of fields among lines that contain a number,
+/// the larger one at equal frequency. If no line contains a number, it is the number of fields of
+/// the first line.
 fn width(split: &[SplitLine<'_>]) -> usize {
     let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
     let plain = || split.iter().filter(|line| !line.line.is_comment);
@@ -355,7 +383,7 @@ fn width(split: &[SplitLine<'_>]) -> usize {
     most_frequent.map_or_else(first_width, |(width, _)| *width)
 }
 
-/// Number of fields without an empty one behind a trailing separator.
+/// Number of fields, without an empty last field that a separator at the end of the line leaves.
 fn n_named(cells: &[String]) -> usize {
     match cells.last() {
         Some(last) if last.is_empty() => cells.len() - 1,
@@ -367,7 +395,8 @@ fn is_name(cell: &str) -> bool {
     cell.eq_ignore_ascii_case(CASE_COLUMN) || spelling::meaning(cell) != Meaning::Unknown
 }
 
-/// The names of a header line; a nameless column gets its number.
+/// The names of the columns in a header line; a column without a name is called `column` and its
+/// number.
 fn named(cells: &[String]) -> Vec<String> {
     let cells = cells.iter().take(n_named(cells));
     let name = |(i, cell): (usize, &String)| match cell.as_str() {

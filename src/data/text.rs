@@ -1,4 +1,5 @@
-//! Bytes become text: size limit, binary files, encodings, line ends.
+//! Reads the bytes of a text file and converts them to text: it refuses files that are too large or
+//! binary, recognises the encoding and unifies the ends of lines.
 
 use std::fs::File;
 use std::io::Read;
@@ -8,21 +9,25 @@ use encoding_rs::{Encoding, UTF_8, WINDOWS_1252};
 
 use crate::data::DataError;
 
-/// Largest file that is read, bytes.
+/// Size of the largest file that is read, bytes.
 pub const MAX_FILE_BYTES: u64 = 512 << 20;
 
-/// Bytes looked at before the rest of a file is read.
+/// Number of bytes that are checked for binary content before the rest of the file is read.
 const FIRST_BLOCK_BYTES: u64 = 64 << 10;
 
-/// A file's text: without byte order mark, lines ending in `\n`.
+/// The text of a file, without a byte order mark, with lines that end in `\n`.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Text {
     pub text: String,
     pub encoding: &'static str,
 }
 
-/// Reads a text file in UTF-8, in UTF-16 with a byte order mark, or else in Windows-1252 (of which
-/// Latin-1's printing characters are a part).
+/// Reads a text file in UTF-8, or in UTF-16 with a byte order mark. Bytes that are neither are read
+/// as Windows-1252, which contains the printable characters of Latin-1.
+///
+/// # Errors
+/// [`DataError`] if the path cannot be read or is a folder, or if the file is too large or not
+/// text.
 pub(crate) fn read_text(path: &Path) -> Result<Text, DataError> {
     let to_error = |source| DataError::io(path, source);
     let metadata = std::fs::metadata(path).map_err(to_error)?;
@@ -60,7 +65,11 @@ fn decode(bytes: &[u8]) -> Text {
     Text { text, encoding }
 }
 
-/// Text has no control characters but tab, line ends, form feed and the end mark of DOS.
+/// Refuses bytes that contain control characters other than tab, the ends of lines, form feed and
+/// the end-of-file character of DOS. Text in UTF-16 with a byte order mark is not checked.
+///
+/// # Errors
+/// [`DataError::NotText`] at the first such byte.
 fn refuse_binary(path: &Path, bytes: &[u8]) -> Result<(), DataError> {
     if Encoding::for_bom(bytes).is_some_and(|(encoding, _)| encoding != UTF_8) {
         return Ok(());

@@ -1,10 +1,10 @@
-//! The text of a TOML file that a person writes, and what can be wrong with it.
+//! TOML files written by a user, and the errors in them with their place.
 //!
-//! A file is read in one of two ways, which share places and errors:
+//! A file is read in one of two ways, which share the errors:
 //!
-//! - [`TomlFile::to`] takes a whole file whose keys are the fields of a type;
-//! - [`TomlFile::parse`] gives a [`TomlTable`](crate::data::TomlTable), which is read key by key
-//!   where a quantity may be written in several units.
+//! - [`TomlFile::to`] reads a whole file whose keys are the fields of a type;
+//! - [`TomlFile::parse`] gives the tables of a file, which a [`TomlTable`](crate::data::TomlTable)
+//!   reads key by key where a quantity may be written in several units.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,8 @@ use serde::de::DeserializeOwned;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// A TOML file that cannot be used. All but the first read `file:line:column: …`, from 1.
+/// The reason why a TOML file is refused. All messages but that of [`TomlError::Read`] start with
+/// `file:line:column`, both counted from 1.
 #[derive(Debug, thiserror::Error)]
 pub enum TomlError {
     /// The file cannot be opened or is not text.
@@ -20,22 +21,22 @@ pub enum TomlError {
     Read {
         /// The file.
         path: PathBuf,
-        /// The operating system's reason.
+        /// The error that the operating system reports.
         source: std::io::Error,
     },
-    /// Not TOML, or not the keys and kinds of values that are expected.
+    /// The text is not TOML, or a key or the kind of a value is not the expected one.
     #[error("{}:{line}:{column}: {message}", path.display())]
     Syntax {
         /// The file.
         path: PathBuf,
-        /// Line.
+        /// Line of the error, counted from 1.
         line: usize,
-        /// Column.
+        /// Column of the error in characters, counted from 1.
         column: usize,
-        /// The parser's message.
+        /// The message of the parser.
         message: String,
     },
-    /// A value of the wrong kind or outside its range.
+    /// A value is of the wrong kind or outside its range.
     #[error("{}:{line}:{column}: {key} is {value}, expected {expected}", path.display())]
     Value {
         /// The file.
@@ -44,14 +45,14 @@ pub enum TomlError {
         line: usize,
         /// Column of the value.
         column: usize,
-        /// The key with its table.
+        /// The key, preceded by the name of its table.
         key: Box<str>,
-        /// The value as written.
+        /// The value as written in the file.
         value: Box<str>,
-        /// The range, in the key's own unit, or the kind.
+        /// The range in the unit of the key, or the expected kind, in words.
         expected: Box<str>,
     },
-    /// A key that this table does not have, most likely misspelt or in an unknown unit.
+    /// The table has no such key; the key is probably misspelt or in an unknown unit.
     #[error("{}:{line}:{column}: {key} is not known here", path.display())]
     UnknownKey {
         /// The file.
@@ -60,10 +61,10 @@ pub enum TomlError {
         line: usize,
         /// Column of the key.
         column: usize,
-        /// The key with its table.
+        /// The key, preceded by the name of its table.
         key: Box<str>,
     },
-    /// A required key that is not there.
+    /// A required key is missing.
     #[error("{}:{line}:{column}: {key} is missing", path.display())]
     MissingKey {
         /// The file.
@@ -72,10 +73,10 @@ pub enum TomlError {
         line: usize,
         /// Column of the table.
         column: usize,
-        /// The key with its table, and the keys that may be given instead.
+        /// The key, preceded by the name of its table.
         key: Box<str>,
     },
-    /// Two keys that say the same thing.
+    /// Two keys give the same quantity.
     #[error("{}:{line}:{column}: {key} and {other} say the same thing, expected one", path.display())]
     Conflict {
         /// The file.
@@ -84,19 +85,19 @@ pub enum TomlError {
         line: usize,
         /// Column of the second key.
         column: usize,
-        /// The second key with its table.
+        /// The second key, preceded by the name of its table.
         key: Box<str>,
         /// The first key.
         other: Box<str>,
     },
 }
 
-/// Name and text of a file.
+/// The path and the text of a TOML file.
 #[derive(Debug, Clone, Copy)]
 pub struct TomlFile<'a> {
-    /// Named in errors.
+    /// Path of the file, for errors.
     pub path: &'a Path,
-    /// The whole text.
+    /// The whole text of the file.
     pub text: &'a str,
 }
 
@@ -104,33 +105,36 @@ impl<'a> TomlFile<'a> {
     /// Reads the text of a file.
     ///
     /// # Errors
-    /// [`TomlError::Read`].
+    /// [`TomlError::Read`] if the file cannot be read or is not UTF-8.
     pub fn read(path: &Path) -> Result<String, TomlError> {
         std::fs::read_to_string(path)
             .map_err(|source| TomlError::Read { path: path.to_owned(), source })
     }
 
-    /// Reads a value whose fields are the keys of the file.
+    /// Parses the file into a value whose fields are the keys of the file.
     ///
     /// # Errors
-    /// [`TomlError::Syntax`] for text that is not TOML, unknown and missing keys, and values of the
-    /// wrong kind.
+    /// [`TomlError::Syntax`] if the text is not TOML, if a key is unknown to `T` or missing, or if
+    /// a value is of the wrong kind.
     pub fn to<T: DeserializeOwned>(self) -> Result<T, TomlError> {
         toml::from_str(self.text).map_err(|error| self.syntax(&error))
     }
 
-    /// Reads the tables of the file.
+    /// Parses the file into its tables, with the place of each key and value.
     ///
     /// # Errors
-    /// [`TomlError::Syntax`].
+    /// [`TomlError::Syntax`] if the text is not TOML.
     pub fn parse(self) -> Result<Spanned<DeTable<'a>>, TomlError> {
         DeTable::parse(self.text).map_err(|error| self.syntax(&error))
     }
 
-    /// The error for a number outside its range, at the place of the value.
+    /// Builds the error for a number outside its range, at the place of the value in the file.
     ///
-    /// - `key`: with its table, such as `mass.mass_kg`. A value that stands in no line of the file,
-    ///   because it was derived from others, is reported at the start of the file.
+    /// - `key`: the key, preceded by the names of its tables, such as `mass.mass_kg`. If the file
+    ///   does not contain the key because the value was derived from others, the place is the start
+    ///   of the file.
+    /// - `value`: the number, which the message shows if the file does not contain the key.
+    /// - `[low, high]`: lowest and highest accepted value.
     pub fn out_of_range(self, key: &str, value: f64, [low, high]: [f64; 2]) -> TomlError {
         let root = DeTable::parse(self.text).ok();
         let table = root.as_ref().map(Spanned::get_ref);
@@ -153,7 +157,7 @@ impl<'a> TomlFile<'a> {
         TomlError::Syntax { path, line, column, message }
     }
 
-    /// Line and column of a byte, both from 1, columns in characters.
+    /// Line and column of a byte offset, both counted from 1; columns are counted in characters.
     pub(super) fn line_column(self, at: usize) -> (usize, usize) {
         let before = self.text.get(..at).unwrap_or(self.text);
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
@@ -162,7 +166,7 @@ impl<'a> TomlFile<'a> {
     }
 }
 
-/// The value of a key with its tables, `table.key`.
+/// The value of a key that is preceded by the names of its tables, such as `table.key`.
 fn find<'t, 'a>(table: &'t DeTable<'a>, key: &str) -> Option<&'t Spanned<DeValue<'a>>> {
     match key.split_once('.') {
         None => table.iter().find(|(name, _)| *name.get_ref() == key).map(|(_, value)| value),

@@ -1,5 +1,5 @@
-//! One table of a TOML file, read key by key: the unit is part of a key's name, each number has a
-//! range, and a key that was not asked for is an error.
+//! Reads one table of a TOML file key by key. The unit is part of the name of a key, each number
+//! has a range, and a key that is never read is an error.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,8 @@ use toml::de::{DeTable, DeValue};
 use crate::data::{TomlError, TomlFile};
 use crate::units::{Quantity, Unit};
 
-/// A table, and which of its keys were read. Ranges are `[lowest, highest]` in SI units.
+/// A table of a TOML file, with the keys that have been read so far. Ranges are `[lowest,
+/// highest]`, SI units.
 #[derive(Debug)]
 pub struct TomlTable<'a> {
     file: TomlFile<'a>,
@@ -21,7 +22,9 @@ pub struct TomlTable<'a> {
 }
 
 impl<'a> TomlTable<'a> {
-    /// The top level of a file.
+    /// The table at the top level of a file.
+    ///
+    /// - `root`: the result of [`TomlFile::parse`] for this file.
     pub fn root(file: TomlFile<'a>, root: &'a Spanned<DeTable<'a>>) -> Self {
         Self::new(file, String::new(), 0, root.get_ref())
     }
@@ -30,10 +33,11 @@ impl<'a> TomlTable<'a> {
         Self { file, name, at, table, used: BTreeSet::new(), last_key: String::new() }
     }
 
-    /// A table inside this one, which must be there.
+    /// Reads a table inside this one, which is required.
     ///
     /// # Errors
-    /// [`TomlError::MissingKey`], [`TomlError::Value`].
+    /// [`TomlError::MissingKey`] if there is no such key, and [`TomlError::Value`] if it is not a
+    /// table.
     pub fn table(&mut self, key: &str) -> Result<Self, TomlError> {
         let Some((at, value)) = self.take(key) else {
             return Err(self.missing(&format!("[{key}]")));
@@ -44,10 +48,10 @@ impl<'a> TomlTable<'a> {
         Ok(Self::new(self.file, key.to_owned(), at, table))
     }
 
-    /// A text.
+    /// Reads a text; `None` if there is no such key.
     ///
     /// # Errors
-    /// [`TomlError::Value`].
+    /// [`TomlError::Value`] if the value is not a text.
     pub fn string(&mut self, key: &str) -> Result<Option<String>, TomlError> {
         let Some((_, value)) = self.take(key) else {
             return Ok(None);
@@ -58,10 +62,10 @@ impl<'a> TomlTable<'a> {
         }
     }
 
-    /// The index in `words` of the word that the key gives.
+    /// Reads one of several words and returns its index in `words`; `None` if there is no such key.
     ///
     /// # Errors
-    /// [`TomlError::Value`].
+    /// [`TomlError::Value`] if the value is not one of the words.
     pub fn choice(&mut self, key: &str, words: &[&str]) -> Result<Option<usize>, TomlError> {
         let Some((_, value)) = self.take(key) else {
             return Ok(None);
@@ -76,10 +80,14 @@ impl<'a> TomlTable<'a> {
         }
     }
 
-    /// A number in SI units from the key `BASE_UNIT`, in any unit of the quantity.
+    /// Reads a number and converts it to SI units; `None` if there is no such key. The name of the
+    /// key is `base`, an underscore and one of the units of the quantity, such as `speed_km_h`.
+    ///
+    /// - `range`: lowest and highest accepted value, SI units.
     ///
     /// # Errors
-    /// [`TomlError::Value`]; [`TomlError::Conflict`] if it is given in two units.
+    /// [`TomlError::Value`] if the value is not a number or outside the range, and
+    /// [`TomlError::Conflict`] if the number is given in two units.
     pub fn number(
         &mut self,
         base: &str,
@@ -101,10 +109,11 @@ impl<'a> TomlTable<'a> {
         Ok(found.map(|(_, si)| si))
     }
 
-    /// As [`TomlTable::number`], for a quantity that must be there.
+    /// Reads a number as [`TomlTable::number`] does, where the number is required.
     ///
     /// # Errors
-    /// As for [`TomlTable::number`]; [`TomlError::MissingKey`].
+    /// The same as for [`TomlTable::number`], and [`TomlError::MissingKey`] if the number is
+    /// missing.
     pub fn require(
         &mut self,
         base: &str,
@@ -115,10 +124,10 @@ impl<'a> TomlTable<'a> {
         self.number(base, quantity, range)?.ok_or_else(|| self.missing(&key))
     }
 
-    /// Checks that every key of the table was read.
+    /// Checks that every key of the table has been read.
     ///
     /// # Errors
-    /// [`TomlError::UnknownKey`] with the first that was not.
+    /// [`TomlError::UnknownKey`] with the first key that has not been read.
     pub fn finish(self) -> Result<(), TomlError> {
         for key in self.table.keys() {
             let name: &str = key.get_ref();
@@ -135,18 +144,19 @@ impl<'a> TomlTable<'a> {
         Ok(())
     }
 
-    /// The last key that was read and is there.
+    /// The key that was read last among those that the table has.
     pub fn last_key(&self) -> String {
         self.last_key.clone()
     }
 
-    /// The error for a key that must be there.
+    /// Builds the error for a required key that is missing, at the place of the table.
     pub fn missing(&self, key: &str) -> TomlError {
         let (line, column) = self.file.line_column(self.at);
         TomlError::MissingKey { path: self.file.path.to_owned(), line, column, key: self.full(key) }
     }
 
-    /// The error for the last key that was read, which says again what `other` says.
+    /// Builds the error for the last key that was read, which gives the same quantity as the key
+    /// `other`.
     pub fn conflict(&self, other: &str) -> TomlError {
         let here = self.table.keys().find(|key| *key.get_ref() == self.last_key);
         let at = here.map_or(self.at, |key| key.span().start);
@@ -175,7 +185,7 @@ impl<'a> TomlTable<'a> {
         unit: &Unit,
         [low, high]: [f64; 2],
     ) -> Result<f64, TomlError> {
-        // Rounding in the unit's factor must not refuse the limit itself.
+        // A limit that is written in another unit must be accepted in spite of rounding.
         let slack = 1e-12 * low.abs().max(high.abs());
         let si = parse_number(value.get_ref()).map(|number| unit.to_si(number));
         match si {
@@ -210,8 +220,8 @@ impl<'a> TomlTable<'a> {
     }
 }
 
-/// `speed` in km/h is `speed_km_h`, `yaw_inertia` in kg m² is `yaw_inertia_kg_m2`, a ratio `e` is
-/// `e` and in per cent `e_percent`.
+/// The name of a key: `speed` in km/h is `speed_km_h`, `yaw_inertia` in kg m² is
+/// `yaw_inertia_kg_m2`, a ratio `e` is `e`, or `e_percent` in per cent.
 fn key_of(base: &str, unit: &Unit) -> String {
     match unit.symbol {
         "" => base.to_owned(),

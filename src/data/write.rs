@@ -1,4 +1,4 @@
-//! Writing files so that a reader never sees half of one.
+//! Writes files in such a way that a reader never finds an incomplete file.
 
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
@@ -7,11 +7,13 @@ use tempfile::NamedTempFile;
 
 use crate::data::{Channel, DataError, TimeSeries};
 
-/// Writes into a temporary file in the same folder, then puts it in place of `path` at once; on
-/// any failure `path` stays as it was.
+/// Writes a file through a temporary file in the same folder, which replaces `path` in one step at
+/// the end. If anything fails, `path` remains as it was.
+///
+/// - `write`: writes the content.
 ///
 /// # Errors
-/// [`DataError::Io`] with the system's reason.
+/// [`DataError`] with the error of the operating system or of `write`.
 pub fn write_atomically(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -30,11 +32,12 @@ pub fn write_atomically(
     Ok(())
 }
 
-/// Writes a series with our own headers: time first, then [`Channel::ALL`]'s order, SI units, every
-/// number in the fewest digits that read back as the same number.
+/// Writes a time series as CSV with the headers of [`Channel::header`], SI units. Time is the first
+/// column, the others follow in the order of [`Channel::ALL`]. Every number has the fewest digits
+/// that give the same number when it is read.
 ///
 /// # Errors
-/// [`DataError::Io`] with the system's reason.
+/// [`DataError`] with the error of the operating system.
 pub fn write_series_csv(path: &Path, series: &TimeSeries) -> Result<(), DataError> {
     let channels: Vec<Channel> = series.channels().collect();
     let columns: Vec<&[f64]> = channels.iter().filter_map(|&channel| series.get(channel)).collect();
