@@ -1,4 +1,4 @@
-//! The figures of an [`Analysis`].
+//! The figures of an [`Analysis`]: force and motion over time, and the scene from above.
 
 use crate::analysis::Analysis;
 use crate::collision::{ChannelClass, FilterError, filter_history};
@@ -9,11 +9,15 @@ use crate::figure::{
 };
 use crate::units::UnitSystem;
 
-/// The force over time, through a channel class if one is chosen, with classic pulses over it.
-/// `None` if the case has no force.
+/// Force on the target over time, with classic pulses for comparison. `None` if the case has no
+/// force.
+///
+/// - `class`: channel frequency class with which the force is filtered; the raw force is then drawn
+///   behind it.
+/// - `pulses`: pulses to draw, by name.
 ///
 /// # Errors
-/// [`FilterError`] if the class does not fit the sampling.
+/// [`FilterError`] if the channel class does not fit the sampling of the force.
 pub fn analysis_force_figure(
     analysis: &Analysis,
     class: Option<ChannelClass>,
@@ -34,22 +38,25 @@ pub fn analysis_force_figure(
     })))
 }
 
-/// One channel over time, simulation and reference.
+/// One channel of the simulated and of the recorded motion over time.
 pub fn analysis_motion_figure(analysis: &Analysis, channel: Channel, units: UnitSystem) -> Figure {
     motion_figure((&analysis.name, channel), motions(analysis), units)
 }
 
-/// One channel at a moment, simulation and reference, in a line.
+/// One line of text with the values of a channel in the simulated and in the recorded motion.
+///
+/// - `at`: time, s, and units of the values.
 pub fn analysis_readout(analysis: &Analysis, channel: Channel, at: (f64, UnitSystem)) -> String {
     motion_readout(channel, motions(analysis), at)
 }
 
+/// The simulated and the recorded motion.
 fn motions(analysis: &Analysis) -> [Option<&TimeSeries>; 2] {
     let simulation = analysis.simulation.as_ref().map(|motion| &motion.series);
     [simulation, analysis.reference.as_ref()]
 }
 
-/// The scene from above at a moment.
+/// The scene from above: the paths of all vehicles, and their outlines at the time `time_s`, s.
 pub fn analysis_scene_figure(analysis: &Analysis, time_s: f64, units: UnitSystem) -> Figure {
     let footprint = analysis.footprint;
     let bullet = analysis.bullet.as_ref().map(|track| SceneVehicle {

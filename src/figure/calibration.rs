@@ -1,35 +1,38 @@
-//! How good predictions are: predicted against observed, and whether their spread is honest.
+//! Figures of the accuracy and calibration of predictions: predicted over observed values,
+//! histogram of the probability integral transform (PIT), and coverage of prediction intervals.
 
 use crate::figure::{Axis, Figure, FigureElement, Role};
 use crate::units::{Quantity, Unit, UnitSystem};
 
-/// A number predicted for a case, SI.
+/// An observed and a predicted value of a case, in SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ParityPoint {
-    /// What was observed.
+    /// Observed value.
     pub observed: f64,
-    /// What was predicted.
+    /// Predicted value.
     pub predicted: f64,
-    /// Interval that was predicted.
+    /// Ends of the predicted interval, if there is one.
     pub interval: Option<[f64; 2]>,
-    /// Whether the vehicles part for good: neither hooked nor in contact at the end.
+    /// Whether the vehicles separate for good: they neither hook nor are in contact at the end of
+    /// the run.
     pub is_clean: bool,
 }
 
-/// How often the intervals of a level hold what is observed.
+/// Coverage of the intervals of one level.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CoveragePoint {
-    /// Share that they should hold, 0 to 1.
+    /// Nominal level: the share of observed values that the intervals should contain, 0 to 1.
     pub level: f64,
-    /// Share that they hold, 0 to 1.
+    /// Share of observed values that the intervals contain, 0 to 1.
     pub share: f64,
     /// Standard error of `share`.
     pub standard_error: f64,
 }
 
-/// Predicted against observed with the line on which they are equal.
+/// Predicted over observed values, with the line of equality.
 ///
-/// - `interval`: what the intervals are, e.g. “90 % interval”.
+/// - `title`, `label`: title of the figure and name of the quantity.
+/// - `interval`: legend entry of the intervals, for example “90 % interval”.
 pub fn parity_figure(
     (title, label, interval): (&str, &str, &str),
     points: &[ParityPoint],
@@ -70,8 +73,11 @@ pub fn parity_figure(
     Figure { title: title.to_owned(), x, y, equal_aspect: false, log_y: false, elements }
 }
 
-/// Histogram of the probability integral transform: flat where the spread is honest, a hill where it
-/// is too wide, a bowl where it is too narrow.
+/// Histogram of the probability integral transform as a density. It is flat for a calibrated
+/// distribution, high in the middle if the predicted spread is too wide, and high at the ends if it
+/// is too narrow.
+///
+/// - `counts`: number of observed values in each of several bins of equal width from 0 to 1.
 pub fn pit_figure(title: &str, counts: &[u32]) -> Figure {
     let x = Axis::shown("Predicted probability of less", Quantity::Ratio, UnitSystem::Si);
     let y = Axis::shown("Density", Quantity::Ratio, UnitSystem::Si);
@@ -87,8 +93,10 @@ pub fn pit_figure(title: &str, counts: &[u32]) -> Figure {
     Figure { title: title.to_owned(), x, y, equal_aspect: false, log_y: false, elements }
 }
 
-/// Share of observed values inside the predicted intervals over the share that they should hold;
-/// bars of one standard error.
+/// Share of observed values inside the predicted intervals over the nominal level of the intervals,
+/// with bars of one standard error.
+///
+/// - `rows`: name, role and points of each prediction that is compared.
 pub fn coverage_figure(title: &str, rows: &[(&str, Role, Vec<CoveragePoint>)]) -> Figure {
     let percent = percent();
     let axis = |label: &str| Axis::new(label, percent);
@@ -111,6 +119,7 @@ pub fn coverage_figure(title: &str, rows: &[(&str, Role, Vec<CoveragePoint>)]) -
     Figure { title: title.to_owned(), x, y, equal_aspect: false, log_y: false, elements }
 }
 
+/// The unit per cent.
 fn percent() -> Unit {
     let units = Quantity::Ratio.units();
     *units.iter().find(|unit| unit.symbol == "%").unwrap_or(&units[0])

@@ -1,15 +1,16 @@
-//! The numbers of a figure as CSV.
+//! Export of the numbers of a figure as CSV.
 
 use std::io::Write;
 
 use crate::figure::{Figure, FigureElement};
 
-/// Writes every number of the figure: columns `series`, x and y under the axes' own names and
-/// units, one row a point, in drawing order. A band gives two series, a vertical line a row
-/// without y.
+/// Writes the numbers of a figure as CSV in drawing order. The columns are `series` and the two
+/// axes under their own labels and units; each point is a row. A band gives two series, `(low)` and
+/// `(high)`; a vertical line gives a row without y; a heat map gives a row for each cell whose
+/// value is positive, with the value in the name of the series.
 ///
 /// # Errors
-/// The writer's.
+/// [`csv::Error`] if the writer fails.
 pub fn write_figure_csv(figure: &Figure, writer: impl Write) -> Result<(), csv::Error> {
     let mut csv = csv::Writer::from_writer(writer);
     csv.write_record(["series", &figure.x.text(), &figure.y.text()])?;

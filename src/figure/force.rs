@@ -1,27 +1,27 @@
-//! The contact force over time.
+//! Figure of the contact force on the target over time.
 
 use crate::data::{ForceAxes, ForceHistory};
 use crate::figure::{Axis, Figure, FigureElement, Role};
 use crate::units::{Quantity, UnitSystem};
 
-/// What the force figure shows.
+/// Data that the force figure shows.
 #[derive(Debug, Clone, Copy)]
 pub struct ForceFigure<'a> {
     /// Name of the case.
     pub name: &'a str,
-    /// The history, filtered if a channel class was chosen.
+    /// Force on the target, filtered if a channel class was chosen.
     pub force: &'a ForceHistory,
-    /// The history before filtering, drawn behind.
+    /// Force before filtering, drawn in the background.
     pub raw: Option<&'a ForceHistory>,
-    /// Start and end of contact, s.
+    /// Times at which the contact starts and ends, s.
     pub contact_s: Option<(f64, f64)>,
-    /// Classic pulses over it, by name.
+    /// Classic pulses for comparison, by name; their resultants are drawn.
     pub pulses: &'a [(String, ForceHistory)],
-    /// Units of the axes.
+    /// System of units of the axes.
     pub units: UnitSystem,
 }
 
-/// How much is shown after contact, as a share of its duration.
+/// Time shown after the end of contact, as a share of the contact duration.
 const AFTER_CONTACT: f64 = 0.3;
 
 /// F_x, F_y and |F| over time in ms, with markers where contact starts and ends.
@@ -32,7 +32,7 @@ pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
         ForceAxes::World => "world axes",
         ForceAxes::Body => "heading axes",
     };
-    // A recording of seconds with a contact of a tenth would show a spike.
+    // In a recording of several seconds, a contact of a tenth of a second would be a mere spike.
     let end_s =
         input.contact_s.map_or(f64::INFINITY, |(start, end)| end + AFTER_CONTACT * (end - start));
     let components = |history: &ForceHistory| {
@@ -74,6 +74,7 @@ pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
     }
 }
 
+/// The unit millisecond.
 pub(super) fn milliseconds() -> crate::units::Unit {
     let units = Quantity::Time.units();
     *units.iter().find(|unit| unit.symbol == "ms").unwrap_or(&units[0])

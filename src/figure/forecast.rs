@@ -1,4 +1,5 @@
-//! A predicted force over time: bands, mean, drawn curves, and what was recorded over it.
+//! Figure of a predicted force over time: bands, mean curve, drawn curves, and curves for
+//! comparison.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,48 +9,50 @@ use crate::figure::{Axis, Band, Figure, FigureElement, LineStyle, Role, Series, 
 use crate::uncertainty::{CurveBand, ForceCurve};
 use crate::units::{Quantity, UnitSystem};
 
-/// Opacity of the widest band and of the narrowest; those between in even steps.
+/// Opacity of the widest and of the narrowest band; the opacities of the others lie between at even
+/// steps.
 const OPACITY: [f32; 2] = [0.13, 0.28];
-/// Share of the largest value above which a force counts as shown.
+/// Share of its largest value above which a curve counts as non-zero for the time axis.
 const SHOWN_SHARE: f64 = 0.03;
-/// The time axis ends at a multiple of this, s, so that it does not creep while a scenario changes.
+/// The end of the time axis is a multiple of this, s, so that the axis does not change with every
+/// small change of the scenario.
 const END_STEP_S: f64 = 0.025;
 
-/// What of a force is shown.
+/// Component of a force that a figure shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ForceComponent {
-    /// F_x.
+    /// The component along x.
     X,
-    /// F_y.
+    /// The component along y.
     Y,
-    /// `|F|`.
+    /// The magnitude.
     Magnitude,
 }
 
-/// What the figure of a predicted force shows.
+/// Data that the figure of a predicted force shows.
 #[derive(Debug, Clone, Copy)]
 pub struct ForecastFigure<'a> {
-    /// Name of the scenario.
+    /// Name of the scenario, for the title.
     pub name: &'a str,
-    /// Bands, mean and drawn curves.
+    /// Prediction with bands, mean and drawn curves.
     pub forecast: &'a ForceForecast,
-    /// Levels whose bands are shown, each 0 to 1.
+    /// Levels whose bands are shown, each 0 to 1; others are left out.
     pub levels: &'a [f64],
-    /// The recorded curve, by its name.
+    /// Name and values of the recorded force.
     pub recorded: Option<(&'a str, &'a ForceCurve)>,
-    /// What the network starts from: its centre.
+    /// Force curve of the physics and regressions, which the network corrects: its centre.
     pub physics: Option<&'a ForceCurve>,
-    /// Classic pulses.
+    /// Classic pulses with their shapes.
     pub pulses: &'a [(PulseShape, ForceCurve)],
-    /// Units of the axes.
+    /// System of units of the axes.
     pub units: UnitSystem,
 }
 
 impl ForceComponent {
-    /// All three.
+    /// All components.
     pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Magnitude];
 
-    /// As in a legend.
+    /// Name of the component in a legend.
     pub fn label(self) -> &'static str {
         match self {
             Self::X => "F_x",
@@ -58,7 +61,7 @@ impl ForceComponent {
         }
     }
 
-    /// Its values in a curve, N.
+    /// Values of the component in a force curve, N.
     pub fn of(self, curve: &ForceCurve) -> Vec<f64> {
         match self {
             Self::X => curve.fx_n.clone(),
@@ -67,6 +70,7 @@ impl ForceComponent {
         }
     }
 
+    /// Bands of the component in a prediction.
     fn bands(self, forecast: &ForceForecast) -> &[CurveBand] {
         match self {
             Self::X => &forecast.bands.fx,
@@ -75,11 +79,13 @@ impl ForceComponent {
         }
     }
 
+    /// Role that defines the colour of the component.
     fn role(self) -> Role {
         match self {
             Self::X => Role::ComponentX,
             Self::Y => Role::ComponentY,
-            // The resultant's own colour is that of the recorded curve over it.
+            // The recorded curve has the colour of the resultant, so that the bands need another
+            // one.
             Self::Magnitude => Role::Target,
         }
     }
@@ -144,6 +150,7 @@ pub fn forecast_figure(component: ForceComponent, input: &ForecastFigure<'_>) ->
     Figure { title, x, y, equal_aspect: false, log_y: false, elements }
 }
 
+/// Line style of a pulse shape.
 fn pulse_style(shape: PulseShape) -> LineStyle {
     match shape {
         PulseShape::HalfSine => LineStyle::Solid,
@@ -152,8 +159,9 @@ fn pulse_style(shape: PulseShape) -> LineStyle {
     }
 }
 
-/// Where the time axis ends: a little after the last force of all that is shown, the same for all
-/// components.
+/// End of the time axis, s, the same for all components. It lies after the last time at which the
+/// magnitude of a recorded force, a pulse or the widest band is above [`SHOWN_SHARE`] of its
+/// maximum.
 fn shown_until_s(input: &ForecastFigure<'_>) -> f64 {
     let widest = input.forecast.bands.magnitude.iter().max_by(|a, b| a.level.total_cmp(&b.level));
     let pulses = input.pulses.iter().map(|(_, curve)| curve);

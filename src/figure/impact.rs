@@ -1,4 +1,4 @@
-//! The momentum solution of a scenario, from above.
+//! Figure of the momentum solution of a scenario, from above.
 
 use crate::collision::{ImpactSolution, Scenario, ScenarioError};
 use crate::figure::{Axis, Figure, FigureElement, LineStyle, Role, vehicle_outline};
@@ -7,8 +7,9 @@ use crate::units::{Quantity, UnitSystem};
 /// Length of the longest velocity arrow and of the impulse arrow, m.
 const ARROW_LENGTH_M: f64 = 3.0;
 
-/// Both vehicles at first contact, the impulse on the target at the contact point, and the change
-/// of velocity of each vehicle at its CG. Arrows of one kind share a scale.
+/// Both vehicles at first contact with the contact surface, the impulse on the target at the
+/// contact point, and the velocity change of each vehicle at its CG. Both velocity changes have the
+/// same scale.
 ///
 /// # Errors
 /// [`ScenarioError`] if the vehicles make no contact.

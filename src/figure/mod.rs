@@ -1,5 +1,5 @@
-//! Figures as plain data: what is drawn, in which units, with which meaning of the colours. The
-//! panel on screen, the PNG and the CSV of a figure all come from the same [`Figure`].
+//! Figures as plain data: axes with units, elements to draw, and the meaning of their colours. The
+//! panel on screen, the PNG and the CSV of a figure are all made from the same [`Figure`].
 
 mod analysis;
 mod calibration;

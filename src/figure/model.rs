@@ -1,55 +1,55 @@
-//! The parts of a figure.
+//! The parts of a figure: axes, elements, and the roles that define their colours.
 
 use std::sync::Arc;
 
 use crate::units::{Quantity, Unit, UnitSystem};
 
-/// A plot: axes and what stands in them, all numbers already in the units of the axes.
+/// A plot: axes and elements, all numbers in the units of the axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
-    /// What it shows, in a line.
+    /// Title in one line.
     pub title: String,
     /// Horizontal axis.
     pub x: Axis,
     /// Vertical axis.
     pub y: Axis,
-    /// Whether a metre is as long upwards as sideways: plans, not time histories.
+    /// Whether both axes have the same scale, as a plan from above needs; false for time histories.
     pub equal_aspect: bool,
-    /// Whether the vertical axis is logarithmic: every y is positive then.
+    /// Whether the vertical axis is logarithmic; every y must then be positive.
     pub log_y: bool,
-    /// From back to front.
+    /// Elements in drawing order, from back to front.
     pub elements: Vec<FigureElement>,
 }
 
-/// Name and unit of an axis.
+/// Label and unit of an axis, and the names at its ticks if it has any.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
-    /// What runs along it.
+    /// Quantity that the axis shows.
     pub label: String,
-    /// Its unit.
+    /// Unit of the numbers along the axis.
     pub unit: Unit,
-    /// What stands at 0, 1, 2 and so on instead of numbers; none on an axis of numbers.
+    /// Names at the positions 0, 1, 2, … instead of numbers; empty for an axis of numbers.
     pub names: Vec<String>,
 }
 
 impl Axis {
-    /// An axis of numbers in a unit.
+    /// An axis of numbers in a given unit.
     pub fn new(label: impl Into<String>, unit: Unit) -> Self {
         Self { label: label.into(), unit, names: Vec::new() }
     }
 
-    /// An axis in the unit in which the quantity is shown.
+    /// An axis in the unit in which the system of units shows the quantity.
     pub fn shown(label: impl Into<String>, quantity: Quantity, units: UnitSystem) -> Self {
         Self::new(label, quantity.display_unit(units))
     }
 
-    /// An axis of names at 0, 1, 2 and so on.
+    /// An axis with names at the positions 0, 1, 2, ….
     pub fn named(label: impl Into<String>, names: Vec<String>) -> Self {
         let unit = Quantity::Ratio.display_unit(UnitSystem::Si);
         Self { names, ..Self::new(label, unit) }
     }
 
-    /// “Label [unit]”.
+    /// The text beside the axis: “Label [unit]”, without the bracket for a unit that has no symbol.
     pub fn text(&self) -> String {
         match self.unit.symbol {
             "" => self.label.clone(),
@@ -58,146 +58,148 @@ impl Axis {
     }
 }
 
-/// What a colour stands for; the theme knows the colours.
+/// Meaning of an element's colour. The theme assigns a colour to each role.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Role {
     /// The 4DOF simulation.
     Simulation,
-    /// What it is compared with.
+    /// The reference with which a result is compared, such as a recording.
     Reference,
     /// The struck vehicle.
     Target,
     /// The striking vehicle.
     Bullet,
-    /// A component along x.
+    /// The component of a vector along x.
     ComponentX,
-    /// A component along y.
+    /// The component of a vector along y.
     ComponentY,
-    /// A resultant.
+    /// The resultant of a vector.
     Resultant,
-    /// A classic pulse.
+    /// A classic force pulse, or the 4DOF model beside a forecast.
     Pulse,
-    /// What a network says, or does while it learns.
+    /// A prediction of a network, or its loss on training cases.
     Model,
-    /// The same on what it has not learned from.
+    /// A network's loss or prediction on cases that need to be told apart, such as validation
+    /// cases.
     Validation,
-    /// What stands back: raw data behind filtered, the road.
+    /// An element in the background: raw data behind filtered data, grid and help lines.
     Muted,
 }
 
-/// How a line is drawn.
+/// Style in which a line is drawn.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum LineStyle {
-    /// Full.
+    /// A continuous line.
     #[default]
     Solid,
-    /// Dashed: a reference, or a computed curve beside a measured one.
+    /// A dashed line: a reference, or a computed curve beside a measured one.
     Dashed,
-    /// Dotted: a help line.
+    /// A dotted line: an auxiliary line.
     Dotted,
 }
 
-/// A named row of points.
+/// A named sequence of points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// As in the legend; several elements of one name are switched together.
+    /// Name in the legend; elements of the same name are shown and hidden together.
     pub name: String,
     /// Meaning of the colour.
     pub role: Role,
-    /// How it is drawn.
+    /// Style of the line.
     pub style: LineStyle,
-    /// Points in the axes' units.
+    /// Points [x, y] in the units of the axes.
     pub points: Vec<[f64; 2]>,
 }
 
-/// A named area between two curves over x.
+/// A named area between two curves over x, in the units of the axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Band {
-    /// As in the legend.
+    /// Name in the legend.
     pub name: String,
     /// Meaning of the colour.
     pub role: Role,
-    /// How much of the ground it hides, 0 to 1: nested bands add up.
+    /// Opacity of the fill, 0 to 1. Where bands overlap, their opacities add up.
     pub opacity: f32,
-    /// Abscissae.
+    /// Abscissae of both curves.
     pub x: Vec<f64>,
-    /// Lower edge.
+    /// Ordinates of the lower curve.
     pub low: Vec<f64>,
-    /// Upper edge.
+    /// Ordinates of the upper curve.
     pub high: Vec<f64>,
 }
 
-/// Values at the points of a grid, shown by how much they hide the ground.
+/// Values at the points of a grid, shown by the opacity of a single colour.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeatMap {
-    /// As in the legend.
+    /// Name in the legend.
     pub name: String,
     /// Meaning of the colour.
     pub role: Role,
-    /// First point, in the axes' units.
+    /// Point of the lowest x and y, in the units of the axes.
     pub low: [f64; 2],
-    /// Between neighbouring points.
+    /// Distance between neighbouring points along x and y, in the units of the axes.
     pub step: [f64; 2],
-    /// Points along x and y.
+    /// Number of points along x and y.
     pub size: [usize; 2],
-    /// Row by row from the lowest y on, each from the lowest x on; zero is not seen.
+    /// Values row by row from the lowest y upwards, each row from the lowest x onwards. A cell of
+    /// value zero is transparent.
     pub values: Arc<Vec<f64>>,
 }
 
-/// Something in a figure.
+/// An element of a figure.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FigureElement {
-    /// Values on a grid.
+    /// Values on a grid, shown as a picture.
     HeatMap(HeatMap),
     /// A polyline.
     Line(Series),
-    /// Points without a line.
+    /// Points that are not connected.
     Points(Series),
-    /// A closed outline, filled lightly.
+    /// A closed outline with a translucent fill.
     Polygon(Series),
     /// An arrow from the first point to the second.
     Arrow(Series),
     /// An area between two curves.
     Band(Band),
-    /// A vertical line at x with a word beside it.
+    /// A vertical line with a name.
     VerticalLine {
-        /// As in the legend.
+        /// Name in the legend.
         name: String,
         /// Meaning of the colour.
         role: Role,
-        /// Where.
+        /// Position on the horizontal axis, in its unit.
         x: f64,
     },
 }
 
 impl FigureElement {
-    /// A full line.
+    /// A solid line through points.
     pub fn line(name: impl Into<String>, role: Role, points: Vec<[f64; 2]>) -> Self {
         Self::Line(Series { name: name.into(), role, style: LineStyle::Solid, points })
     }
 
-    /// A dashed line.
+    /// A dashed line through points.
     pub fn dashed(name: impl Into<String>, role: Role, points: Vec<[f64; 2]>) -> Self {
         Self::Line(Series { name: name.into(), role, style: LineStyle::Dashed, points })
     }
 
-    /// Points without a line.
+    /// Points that are not connected.
     pub fn points(name: impl Into<String>, role: Role, points: Vec<[f64; 2]>) -> Self {
         Self::Points(Series { name: name.into(), role, style: LineStyle::Solid, points })
     }
 
-    /// A closed outline.
+    /// A closed outline with a solid border.
     pub fn polygon(name: impl Into<String>, role: Role, points: Vec<[f64; 2]>) -> Self {
         Self::Polygon(Series { name: name.into(), role, style: LineStyle::Solid, points })
     }
 
-    /// An arrow.
+    /// An arrow from one point to another.
     pub fn arrow(name: impl Into<String>, role: Role, from: [f64; 2], to: [f64; 2]) -> Self {
         let (name, points) = (name.into(), vec![from, to]);
         Self::Arrow(Series { name, role, style: LineStyle::Solid, points })
     }
 
-    /// Its name in the legend.
+    /// Name of the element in the legend.
     pub fn name(&self) -> &str {
         match self {
             Self::Line(series)
@@ -210,7 +212,7 @@ impl FigureElement {
         }
     }
 
-    /// Meaning of its colour.
+    /// Meaning of the element's colour.
     pub fn role(&self) -> Role {
         match self {
             Self::Line(series)

@@ -1,4 +1,5 @@
-//! Models beside each other: errors, boxes, horizons, and what they say of one case.
+//! Figures that compare motion models: rankings by error, distributions of errors, errors by
+//! horizon, and the predictions of one case.
 
 use crate::collision::Pose;
 use crate::compare::HORIZONS_S;
@@ -8,16 +9,16 @@ use crate::numerics::quantile_of_sorted;
 use crate::response::evaluate::{ComparedModel, Comparison, MeanStd, MotionModelKind};
 use crate::units::{Quantity, Unit, UnitSystem};
 
-/// Half the height of a box, of a tick, as shares of a row.
+/// Half the height of a box and of a median tick, as shares of the height of a row.
 const BOX_HALF: f64 = 0.28;
 const TICK_HALF: f64 = 0.22;
 
-/// What a model is called, with its number of trajectories.
+/// Name of a model followed by the number of trajectories that it was fine-tuned on, if any.
 pub fn model_name(name: &str, trajectories: usize) -> String {
     if trajectories == 0 { name.to_owned() } else { format!("{name}, {trajectories}") }
 }
 
-/// The colour of a model.
+/// Role that defines the colour of a kind of model.
 fn role(kind: MotionModelKind) -> Role {
     match kind {
         MotionModelKind::Untuned => Role::Pulse,
@@ -27,9 +28,9 @@ fn role(kind: MotionModelKind) -> Role {
     }
 }
 
-/// A figure with a row a model, the first on top.
+/// A figure with one row for each model, the first model at the top.
 ///
-/// - `elements`: of a model, at the height of its row.
+/// - `elements`: elements of a model, given the y coordinate of its row.
 fn rows_figure<'a>(
     title: String,
     x: Axis,
@@ -44,14 +45,17 @@ fn rows_figure<'a>(
     Figure { title, x, y, equal_aspect: false, log_y: false, elements }
 }
 
+/// A vertical line at x through the row, which extends by `half` to either side.
 fn vertical(name: &str, role: Role, x: f64, (row, half): (f64, f64)) -> FigureElement {
     FigureElement::line(name, role, vec![[x, row - half], [x, row + half]])
 }
 
-/// Mean (point), standard deviation over the trajectories (bar) and median (tick) of a figure of each
-/// model, best mean first.
+/// Ranking of the models by an error metric, smallest mean first: mean (point), mean ± standard
+/// deviation (bar, cut at zero) and median (tick). A model whose mean or standard deviation is not
+/// finite has an empty row.
 ///
-/// - `unit`: that of the figure, and of the axis.
+/// - `unit`: unit of the metric and of the axis.
+/// - `of`: the metric of a model.
 pub fn ranking_figure(
     comparison: &Comparison,
     (title, label, unit): (&str, &str, Unit),
@@ -62,7 +66,7 @@ pub fn ranking_figure(
     let elements = |model: &ComparedModel, row: f64| {
         let MeanStd { mean, std, median } = of(model);
         if !(mean.is_finite() && std.is_finite()) {
-            return Vec::new(); // a model that leaves all numbers behind has no place here
+            return Vec::new();
         }
         let (role, name) = (role(model.kind), model_name(&model.name, model.trajectories));
         let [low, high] = [(mean - std).max(0.0), mean + std];
@@ -75,8 +79,11 @@ pub fn ranking_figure(
     rows_figure(title.to_owned(), Axis::new(label, unit), models.into_iter(), elements)
 }
 
-/// Average error over the trajectories of a cluster: box from quartile to quartile, line at the
-/// median, whiskers to the least and the largest; all choices of trajectories together.
+/// Box plot of the average error over the cases of a cluster, for each model: the box extends from
+/// the lower to the upper quartile with a line at the median, the whiskers to the smallest and the
+/// largest error. Models fine-tuned on different choices of trajectories are pooled.
+///
+/// - `cluster`: index of the cluster.
 pub fn cluster_figure(comparison: &Comparison, cluster: usize, units: UnitSystem) -> Figure {
     let unit = Quantity::Length.display_unit(units);
     let elements = |model: &ComparedModel, row: f64| {
@@ -116,7 +123,8 @@ pub fn cluster_figure(comparison: &Comparison, cluster: usize, units: UnitSystem
     rows_figure(title, x, comparison.models.iter(), elements)
 }
 
-/// Mean distance after 0.5, 1, 2 and 4 s of each model; dashed with fewer trajectories than others.
+/// Mean position error of each model at the horizons [`HORIZONS_S`]. Lines of models that were
+/// fine-tuned on fewer trajectories than others are dashed.
 pub fn horizon_figure(comparison: &Comparison, units: UnitSystem) -> Figure {
     let x = Axis::shown("Time since the impact", Quantity::Time, units);
     let y = Axis::shown("Distance, mean", Quantity::Length, units);
@@ -138,16 +146,17 @@ pub fn horizon_figure(comparison: &Comparison, units: UnitSystem) -> Figure {
     Figure { title, x, y, equal_aspect: false, log_y: false, elements }
 }
 
-/// Dashed for fewer trajectories than others have.
+/// Dashed for a model that was fine-tuned on fewer trajectories than others, else solid.
 fn style(comparison: &Comparison, trajectories: usize) -> LineStyle {
     let most = comparison.models.iter().map(|model| model.trajectories).max().unwrap_or(0);
     if trajectories == 0 || trajectories == most { LineStyle::Solid } else { LineStyle::Dashed }
 }
 
-/// What was recorded of a case and where each model says that the vehicle goes, with outlines at the
-/// end. `None` if there is no such case.
+/// Recorded path of a test case and the path that each model predicts, with vehicle outlines at the
+/// end. `None` if the comparison has no such case.
 ///
-/// - `choice`: of the trajectories that the models were fine-tuned on.
+/// - `name`: name of the case.
+/// - `choice`: number of the random choice of fine-tuning trajectories whose models are shown.
 pub fn compared_case_figure(
     comparison: &Comparison,
     (name, choice): (&str, u64),
@@ -166,7 +175,7 @@ pub fn compared_case_figure(
     };
     let mut elements = Vec::new();
     for model in comparison.cases.iter().filter(|model| model.case == name) {
-        // The untuned model has no choice.
+        // A model that was not fine-tuned does not depend on the choice.
         if model.trajectories > 0 && model.choice != choice {
             continue;
         }

@@ -1,16 +1,16 @@
-//! Time histories of the motion.
+//! Figures and readouts of the motion over time.
 
 use crate::data::{Channel, TimeSeries};
 use crate::figure::{Axis, Figure, FigureElement, LineStyle, Role, Series};
 use crate::numerics::interpolate;
 use crate::units::{Quantity, UnitSystem, significant};
 
-/// The histories that the motion panel shows, from top to bottom.
+/// Channels that the motion panel shows, from top to bottom.
 pub const MOTION_CHANNELS: [Channel; 4] =
     [Channel::Vx, Channel::Vy, Channel::YawRate, Channel::Roll];
 
-/// One channel over time: simulation full, reference dashed. A series without the channel is left
-/// out.
+/// One channel over time: the simulation as a solid, the reference as a dashed line. A motion
+/// without the channel is left out.
 pub fn motion_figure(
     (name, channel): (&str, Channel),
     [simulation, reference]: [Option<&TimeSeries>; 2],
@@ -38,7 +38,10 @@ pub fn motion_figure(
     }
 }
 
-/// The values of a channel at a moment, for a person: “v_x 31.2 · reference 30.4 km/h”.
+/// Values of a channel in both motions at a time, for example “v_x 31.2 · reference 30.4 km/h”. If
+/// neither motion has the channel, the text is its label alone.
+///
+/// - `time_s`: time of the values, s; the motions are interpolated linearly.
 pub fn motion_readout(
     channel: Channel,
     [simulation, reference]: [Option<&TimeSeries>; 2],

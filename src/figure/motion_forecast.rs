@@ -1,4 +1,4 @@
-//! Where the struck vehicle goes, with how sure that is: from above and over time.
+//! Figures of a motion forecast with its uncertainty: from above, and over time.
 
 use std::sync::Arc;
 
@@ -11,50 +11,51 @@ use crate::response::{MotionDistribution, STEP_S};
 use crate::units::{Quantity, UnitSystem};
 use crate::vehicle::VehicleState;
 
-/// How much of the ground each of [`MOTION_BAND_LEVELS`] hides.
+/// Opacity of the band at each of [`MOTION_BAND_LEVELS`].
 const BAND_OPACITIES: [f32; MOTION_BAND_LEVELS.len()] = [0.18, 0.25];
-/// How many standard deviations of all parts the surroundings of a vehicle reach.
+/// Distance from the means of all components that the view around a vehicle covers, in standard
+/// deviations.
 const SURROUNDINGS_REACH: f64 = 3.0;
-/// Component paths that are drawn.
+/// Largest number of component paths that are drawn.
 const MAX_PATHS: usize = 15;
 
-/// What is shown of a forecast.
+/// Data that the figures of a forecast show.
 #[derive(Debug, Clone, Copy)]
 pub struct MotionForecastFigure<'a> {
-    /// What it is.
+    /// Title of the figure.
     pub title: &'a str,
-    /// The forecast.
+    /// Predicted distribution of the motion.
     pub distribution: &'a MotionDistribution,
-    /// Its central path.
+    /// Central path of the forecast, one state for each instant of the distribution.
     pub central: &'a [VehicleState<f64>],
-    /// Its intervals over time.
+    /// Central intervals of the forecast over time.
     pub bands: &'a MotionBands,
-    /// Where the vehicle is likely to be.
+    /// Probability density of the vehicle's position, if it is shown.
     pub density: Option<&'a DensityMap>,
-    /// Whether the paths of components are drawn.
+    /// Whether the mean paths of mixture components are drawn.
     pub components: bool,
-    /// What was recorded, if anything was.
+    /// Recorded motion, if there is one.
     pub reference: Option<&'a TimeSeries>,
-    /// What the 4DOF model says, if it was asked.
+    /// Motion simulated with the 4DOF model, if there is one.
     pub simulation: Option<&'a TimeSeries>,
     /// Outline of the vehicle.
     pub footprint: Footprint,
-    /// The moment of the outlines, s.
+    /// Time at which outlines and readouts are given, s.
     pub time_s: f64,
-    /// Units of the axes.
+    /// System of units of the axes.
     pub units: UnitSystem,
 }
 
-/// A quantity of a forecast over time.
+/// A quantity of a forecast that is shown over time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ForecastChannel {
-    /// The channel.
+    /// Channel of the quantity in a time series.
     pub channel: Channel,
-    /// Its place in the covariance.
+    /// Index of the quantity in [`VehicleState::planar`] and in the intervals.
     axis: usize,
 }
 
-/// Those with bands, from top to bottom.
+/// Quantities for which there are intervals, from top to bottom.
 pub const FORECAST_CHANNELS: [ForecastChannel; 6] = [
     ForecastChannel { channel: Channel::X, axis: 0 },
     ForecastChannel { channel: Channel::Y, axis: 1 },
@@ -64,7 +65,8 @@ pub const FORECAST_CHANNELS: [ForecastChannel; 6] = [
     ForecastChannel { channel: Channel::YawRate, axis: 5 },
 ];
 
-/// The central path and those of components, density of the position at a moment, outlines.
+/// The forecast from above: central path, component paths, recorded and simulated path, density of
+/// the position with its regions, and vehicle outlines at the time of the figure.
 pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
     let x = Axis::shown("X, along the road", Quantity::Length, input.units);
     let y = Axis::shown("Y, to the left", Quantity::Length, input.units);
@@ -124,8 +126,8 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
     Figure { title, x, y, equal_aspect: true, log_y: false, elements }
 }
 
-/// A window about the vehicle at the moment of the figure that holds its outline and nearly all of its
-/// density: lowest and highest X and Y in the units of the axes.
+/// View around the vehicle at the time of the figure, which holds its outline and nearly all of the
+/// probability of its position: lowest and highest [x, y] in the units of the axes.
 pub fn forecast_surroundings(input: &MotionForecastFigure<'_>) -> [[f64; 2]; 2] {
     let unit = Quantity::Length.display_unit(input.units);
     let at = instant(input);
@@ -140,8 +142,8 @@ pub fn forecast_surroundings(input: &MotionForecastFigure<'_>) -> [[f64; 2]; 2] 
     [-1.0, 1.0].map(|sign| [end(0, sign), end(1, sign)])
 }
 
-/// “Y 3.2 (2.9 … 3.6)” at the moment of the figure, in the axis' unit: central path, and from where to
-/// where 90 % lie.
+/// Value on the central path and ends of the 90 % interval at the time of the figure, in the unit
+/// of the axis: “Y 3.2 (2.9 … 3.6)”.
 pub fn forecast_readout(input: &MotionForecastFigure<'_>, channel: ForecastChannel) -> String {
     let ForecastChannel { channel, axis } = channel;
     let unit = channel.quantity().display_unit(input.units);
@@ -152,18 +154,20 @@ pub fn forecast_readout(input: &MotionForecastFigure<'_>, channel: ForecastChann
     let (Some(state), Some(band)) = (input.central.get(instant(input)), band) else {
         return channel.label().to_owned();
     };
-    // Rounded first, and without the sign of a zero.
+    // The value is rounded before formatting, and adding zero removes the sign of a negative zero.
     let shown = |value: f64| format!("{:.1}", (unit.from_si(value) * 10.0).round() / 10.0 + 0.0);
     let [low, high] = band[axis][0];
     let (value, low, high) = (shown(state.planar()[axis]), shown(low), shown(high));
     format!("{} {value} ({low} … {high})", channel.label())
 }
 
+/// Index of the instant at the time of the figure, limited to the forecast.
 fn instant(input: &MotionForecastFigure<'_>) -> usize {
     let last = input.distribution.n_instants().saturating_sub(1);
     ((input.time_s.max(0.0) / STEP_S).round() as usize).min(last)
 }
 
+/// Heat map of a density; `shown` converts a point from m into the units of the axes.
 fn heat_map(map: &DensityMap, shown: &dyn Fn([f64; 2]) -> [f64; 2]) -> HeatMap {
     let grid = &map.grid;
     let low = shown(grid.low_m);
@@ -183,7 +187,8 @@ fn heat_map(map: &DensityMap, shown: &dyn Fn([f64; 2]) -> [f64; 2]) -> HeatMap {
     }
 }
 
-/// A quantity over time: bands of 50 and 90 %, mean, reference, 4DOF model.
+/// A quantity over time: central path, bands at [`MOTION_BAND_LEVELS`], recorded motion and 4DOF
+/// simulation.
 pub fn forecast_channel_figure(
     input: &MotionForecastFigure<'_>,
     channel: ForecastChannel,

@@ -1,4 +1,4 @@
-//! The scene from above: paths, vehicles to scale, headings.
+//! The scene from above: vehicle paths with heading ticks, and vehicle outlines to scale.
 
 use crate::collision::{Footprint, Pose};
 use crate::data::{Channel, TimeSeries};
@@ -6,14 +6,16 @@ use crate::figure::{Axis, Figure, FigureElement, LineStyle, Role, Series};
 use crate::numerics::interpolate;
 use crate::units::{Quantity, Unit, UnitSystem};
 
-/// Interval of the heading ticks along a path, s.
+/// Time between the heading ticks along a path, s.
 const HEADING_TICK_INTERVAL_S: f64 = 0.5;
-/// Length of a heading tick to each side of the path, m.
+/// Length of a heading tick ahead of and behind the CG, m.
 const HEADING_TICK_LENGTH_M: f64 = 1.0;
-/// Length of the chevron at the front, as a share of the vehicle's.
+/// Length of the chevron at the front, as a share of the vehicle's length.
 const CHEVRON_SHARE: f64 = 0.15;
 
-/// A vehicle from above: its footprint, and a chevron that shows which way it points.
+/// Outline of a vehicle from above, with a chevron at the front that shows its heading.
+///
+/// - `unit`: length unit of both axes.
 pub fn vehicle_outline(
     (name, role, style): (&str, Role, LineStyle),
     (footprint, pose): (&Footprint, &Pose),
@@ -33,35 +35,35 @@ pub fn vehicle_outline(
     ]
 }
 
-/// One vehicle of a scene.
+/// A vehicle in a scene.
 #[derive(Debug, Clone, Copy)]
 pub struct SceneVehicle<'a> {
-    /// As in the legend.
+    /// Name in the legend.
     pub name: &'a str,
     /// Meaning of the colour.
     pub role: Role,
-    /// How its path is drawn.
+    /// Style of the path and of the outline.
     pub style: LineStyle,
-    /// Its motion; X, Y, yaw are needed.
+    /// Motion of the vehicle; X and Y are required, and the heading is zero without yaw.
     pub motion: &'a TimeSeries,
-    /// Its outer dimensions.
+    /// Outer dimensions of the vehicle.
     pub footprint: Footprint,
 }
 
-/// What the scene shows.
+/// Data that the scene shows.
 #[derive(Debug, Clone, Copy)]
 pub struct SceneFigure<'a> {
-    /// What it is.
+    /// Title of the figure.
     pub title: &'a str,
-    /// The vehicles, from back to front.
+    /// Vehicles, from back to front.
     pub vehicles: &'a [SceneVehicle<'a>],
-    /// The moment at which the vehicles are drawn, s.
+    /// Time at which the vehicle outlines are drawn, s.
     pub time_s: f64,
-    /// Units of the axes.
+    /// System of units of the axes.
     pub units: UnitSystem,
 }
 
-/// Paths with a heading tick every half second, and the vehicles to scale at a moment.
+/// Paths of the vehicles with a heading tick every half second, and their outlines at one time.
 pub fn scene_figure(input: &SceneFigure<'_>) -> Figure {
     let x = Axis::shown("X, along the road", Quantity::Length, input.units);
     let y = Axis::shown("Y, to the left", Quantity::Length, input.units);
@@ -72,6 +74,10 @@ pub fn scene_figure(input: &SceneFigure<'_>) -> Figure {
     Figure { title: input.title.to_owned(), x, y, equal_aspect: true, log_y: false, elements }
 }
 
+/// Path, heading ticks and outline of a vehicle; nothing if its motion has no X or Y.
+///
+/// - `time_s`: time of the outline, s.
+/// - `unit`: length unit of both axes.
 fn vehicle_elements(vehicle: &SceneVehicle<'_>, time_s: f64, unit: Unit) -> Vec<FigureElement> {
     let motion = vehicle.motion;
     let (Some(x), Some(y)) = (motion.get(Channel::X), motion.get(Channel::Y)) else {
@@ -103,13 +109,15 @@ fn vehicle_elements(vehicle: &SceneVehicle<'_>, time_s: f64, unit: Unit) -> Vec<
     elements
 }
 
-/// Pose (X, Y, ψ) at a moment; without a yaw column the heading is 0.
+/// Position and heading of a motion at a time, interpolated linearly. The heading is 0 without a
+/// yaw channel; `None` without X or Y.
 pub fn pose_at(motion: &TimeSeries, time_s: f64) -> Option<Pose> {
     let at = |channel| interpolate(motion.time_s(), motion.get(channel)?, time_s);
     let yaw_rad = at(Channel::Yaw).unwrap_or(0.0);
     Some(Pose { x_m: at(Channel::X)?, y_m: at(Channel::Y)?, yaw_rad })
 }
 
+/// Points in m converted into a length unit.
 pub(super) fn shown(unit: Unit, points: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     points.into_iter().map(|point| point.map(|value| unit.from_si(value))).collect()
 }

@@ -1,28 +1,30 @@
-//! How a loss falls while a network learns.
+//! Figures of the loss and of the balance of its terms during the training of a network.
 
 use crate::figure::{Axis, Figure, FigureElement, Role};
 use crate::units::{Quantity, UnitSystem};
 
-/// Colours of several losses, one a loss; they come round again.
+/// Roles of the loss curves, in order; they repeat if there are more curves.
 const ROLES: [Role; 6] =
     [Role::Model, Role::Validation, Role::Pulse, Role::Target, Role::Reference, Role::Muted];
 
-/// One loss over the epochs.
+/// One loss term over the epochs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LossCurve {
-    /// Name of the term.
+    /// Name of the loss term.
     pub name: String,
-    /// On what is learned from, an entry an epoch.
+    /// Loss on training cases, one value for each epoch.
     pub train: Vec<f64>,
-    /// On what is kept back, an entry an epoch; none if nothing is.
+    /// Loss on validation cases, one value for each epoch; empty if there are none.
     pub validation: Vec<f64>,
 }
 
-/// Losses over the epochs, with a line at the best one. A single loss has a colour for either kind
-/// of case, several have a colour each; what is kept back is dashed.
+/// Losses over the epochs, with a vertical line at the best epoch. A single loss has one colour for
+/// training and another for validation cases; several losses have one colour each. Losses on
+/// validation cases are dashed.
 ///
-/// - `first_epoch`: number of the first entry;
-/// - `log`: whether the axis should be logarithmic; it is not where a loss is zero or less.
+/// - `first_epoch`: number of the epoch of the first value;
+/// - `log`: whether the vertical axis should be logarithmic; it is linear if any loss is not
+///   positive and finite.
 pub fn loss_figure(
     title: &str,
     curves: &[LossCurve],
@@ -66,7 +68,10 @@ pub fn loss_figure(
     Figure { title: title.to_owned(), x, y, equal_aspect: false, log_y, elements }
 }
 
-/// How much of the loss is data, and the weight of physics, over the epochs: pairs of epoch and value.
+/// Share of the data in the loss, and weight of the physics, over the epochs. The vertical axis is
+/// logarithmic if all values are positive.
+///
+/// - `balances`, `physics_weights`: points [epoch, value].
 pub fn balance_figure(balances: Vec<[f64; 2]>, physics_weights: Vec<[f64; 2]>) -> Figure {
     let mut all = balances.iter().chain(&physics_weights);
     Figure {
