@@ -79,8 +79,7 @@ pub enum Role {
     Pulse,
     /// A prediction of a network, or its loss on training cases.
     Model,
-    /// A network's loss or prediction on cases that need to be told apart, such as validation
-    /// cases.
+    /// The second of two kinds of cases or curves, such as validation cases beside training cases.
     Validation,
     /// An element in the background: raw data behind filtered data, grid and help lines.
     Muted,

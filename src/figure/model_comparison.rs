@@ -156,7 +156,7 @@ fn style(comparison: &Comparison, trajectories: usize) -> LineStyle {
 /// end. `None` if the comparison has no such case.
 ///
 /// - `name`: name of the case.
-/// - `choice`: number of the random choice of fine-tuning trajectories whose models are shown.
+/// - `choice`: seed of the choice of fine-tuning trajectories whose models are shown.
 pub fn compared_case_figure(
     comparison: &Comparison,
     (name, choice): (&str, u64),
