@@ -1,9 +1,11 @@
-//! Density of a planar mixture on a grid, on the graphics processor: the values of
-//! [`PlanarMixture::density_on`] in single precision, for maps that follow a slider.
+//! Density of a planar mixture on a grid, computed on the graphics processor: the values of
+//! [`PlanarMixture::density_on`] in single precision, for maps that are updated while a slider
+//! moves.
 //!
-//! Lengths are sent in cells of the grid, means as a whole cell and the remainder, and densities
-//! relative to the largest peak. So single precision holds far from the origin and for any spread.
-//! Values are within 1e-4 of the largest one, as long as no part is a thousand times longer than wide.
+//! Lengths are in cells of the grid, means are split into a whole cell and a remainder, and
+//! densities are relative to the largest peak, so that single precision suffices far from the
+//! origin and for any spread. Values are within 1e-4 of the largest one, as long as no part is more
+//! than a thousand times longer than wide.
 
 use std::borrow::Cow;
 use std::f64::consts::LOG2_E;
@@ -14,49 +16,49 @@ use eframe::wgpu;
 use crate::render::density_buffers::{Buffers, checked};
 use crate::uncertainty::{PlanarGrid, PlanarKernel, PlanarMixture};
 
-/// Points along a side of the tile that a workgroup computes, as in the shader.
+/// Number of points along a side of the tile that a workgroup computes, as in the shader.
 const TILE: usize = 16;
 
-/// Numbers that describe a kernel, as in the shader.
+/// Number of values that describe a kernel, as in the shader.
 const KERNEL_LEN: usize = 8;
 
-/// A density that the graphics processor cannot give.
+/// Reason for which the graphics processor cannot compute a density.
 #[derive(Debug, thiserror::Error)]
 pub enum DensityError {
-    /// No graphics driver.
+    /// No graphics driver was found.
     #[error(
         "no graphics driver is there; install one, as root on Debian or Ubuntu: \
          apt-get install --no-install-recommends mesa-vulkan-drivers libvulkan1"
     )]
     NoAdapter(#[source] wgpu::RequestAdapterError),
-    /// The driver gives no device.
+    /// The graphics driver does not provide a device.
     #[error("the graphics driver gives no device")]
     NoDevice(#[from] wgpu::RequestDeviceError),
-    /// More than the device takes.
+    /// The computation exceeds a limit of the device.
     #[error("{what} is {got}, the graphics device takes {most}")]
     Limit {
-        /// What there is too much of.
+        /// Quantity that exceeds the limit.
         what: &'static str,
-        /// How much there is.
+        /// Value of the quantity.
         got: u64,
-        /// How much there may be.
+        /// Largest permitted value.
         most: u64,
     },
-    /// Points that fall on each other, or lie nowhere.
+    /// The distance between the points of the grid is not positive and finite.
     #[error("step between points is {step_m:?} m, expected more than 0")]
     Step {
-        /// Along x and y, m.
+        /// Distance along x and y, m.
         step_m: [f64; 2],
     },
-    /// The device refuses a command.
+    /// The device rejected a command.
     #[error("the graphics device refuses a command")]
     Device(#[from] wgpu::Error),
-    /// The values do not come back.
+    /// The values could not be read from the device.
     #[error("the graphics device returns no values")]
     NoValues(#[source] Box<dyn std::error::Error + Send + Sync>),
 }
 
-/// A graphics device that is ready to compute densities; its buffers are kept between calls.
+/// A graphics device that is ready to compute densities. Its buffers are kept between calls.
 #[derive(Debug)]
 pub struct DensityGpu {
     device: wgpu::Device,
@@ -66,11 +68,11 @@ pub struct DensityGpu {
 }
 
 impl DensityGpu {
-    /// On a device that is there already, such as the window's.
+    /// Prepares the computation on an existing device, such as that of the window.
     ///
     /// # Errors
-    /// [`DensityError::Limit`] for a device that computes no tiles of 16 × 16 points, and
-    /// [`DensityError::Device`].
+    /// [`DensityError::Limit`] if a workgroup of the device is smaller than a tile of 16 × 16
+    /// points, [`DensityError::Device`] if the device rejects the shader.
     pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, DensityError> {
         let most = device.limits().max_compute_invocations_per_workgroup;
         check("the size of a workgroup", (TILE * TILE) as u64, most.into())?;
@@ -91,7 +93,7 @@ impl DensityGpu {
         Ok(Self { device, queue, pipeline, buffers: Mutex::new(None) })
     }
 
-    /// On a device of its own, without a window.
+    /// Prepares the computation on a new device, without a window.
     ///
     /// # Errors
     /// [`DensityError::NoAdapter`], [`DensityError::NoDevice`], and those of [`DensityGpu::new`].
@@ -111,7 +113,7 @@ impl DensityGpu {
         Self::new(device, queue)
     }
 
-    /// Which graphics processor it is, and whether it is a program on the processor's cores.
+    /// Name and kind of the graphics processor, which may be an emulation on the CPU.
     pub fn adapter_info(&self) -> wgpu::AdapterInfo {
         self.device.adapter_info()
     }
@@ -119,8 +121,9 @@ impl DensityGpu {
     /// Density at the points of a grid, 1/m², row by row; see [`PlanarMixture::density_on`].
     ///
     /// # Errors
-    /// [`DensityError::Step`], [`DensityError::Limit`] for more points or parts than the device takes,
-    /// [`DensityError::Device`], [`DensityError::NoValues`].
+    /// [`DensityError::Step`] for points that coincide, [`DensityError::Limit`] for more points or
+    /// parts than the device can take, [`DensityError::Device`] if it rejects a command,
+    /// [`DensityError::NoValues`] if the values cannot be read.
     pub fn density_on(
         &self,
         mixture: &PlanarMixture,
@@ -142,7 +145,7 @@ impl DensityGpu {
             .collect();
         let mut held = self.buffers.lock().unwrap_or_else(PoisonError::into_inner);
         let (device, pipeline) = (&self.device, &self.pipeline);
-        // Taken out, so that buffers are not used again after an error.
+        // The buffers are taken out of the mutex, so that they are not used again after an error.
         let buffers = held
             .take()
             .filter(|held| held.bytes().iter().zip(bytes).all(|(held, needed)| *held >= needed));
@@ -156,11 +159,11 @@ impl DensityGpu {
         Ok(values)
     }
 
-    /// Of kernels and of values.
+    /// Sizes of the kernels and of the values, bytes.
     fn bytes(&self, n_kernels: usize, n_points: usize) -> Result<[u64; 2], DensityError> {
         let limits = self.device.limits();
         let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-        // The shader counts points with 32 bits.
+        // The shader computes indices with 32 bits.
         let most = most.min(u32::MAX.into());
         let of = |n: usize, len: usize| (n as u64).saturating_mul((len * size_of::<f32>()) as u64);
         let bytes = [of(n_kernels, KERNEL_LEN), of(n_points, 1)];
@@ -169,7 +172,7 @@ impl DensityGpu {
         Ok(bytes)
     }
 
-    /// Tiles along x and y.
+    /// Numbers of tiles along x and y.
     fn tiles(&self, grid: &PlanarGrid) -> Result<[u32; 2], DensityError> {
         let tiles = grid.size.map(|n| n.div_ceil(TILE));
         let most = self.device.limits().max_compute_workgroups_per_dimension;
@@ -184,7 +187,7 @@ fn check(what: &'static str, got: u64, most: u64) -> Result<(), DensityError> {
     if got > most { Err(DensityError::Limit { what, got, most }) } else { Ok(()) }
 }
 
-/// Sides of a cell, m; a single row or column has any.
+/// Sides of a cell, m; 1 m along an axis with a single point whose step is not valid.
 fn steps_m(grid: &PlanarGrid) -> Result<[f64; 2], DensityError> {
     let fits = |axis: usize| grid.step_m[axis] > 0.0 && grid.step_m[axis].is_finite();
     if (0..2).any(|axis| grid.size[axis] > 1 && !fits(axis)) {
@@ -193,7 +196,7 @@ fn steps_m(grid: &PlanarGrid) -> Result<[f64; 2], DensityError> {
     Ok([0, 1].map(|axis| if fits(axis) { grid.step_m[axis] } else { 1.0 }))
 }
 
-/// Whether a rectangle about all that a part adds meets the grid.
+/// Whether the grid meets the rectangle outside of which a part is neglected.
 fn reaches_into(kernel: &PlanarKernel, grid: &PlanarGrid) -> bool {
     let reach_m = kernel.reach_m();
     (0..2).all(|axis| {
@@ -203,9 +206,10 @@ fn reaches_into(kernel: &PlanarKernel, grid: &PlanarGrid) -> bool {
     })
 }
 
-/// A kernel as the shader takes it: whole cells and remainder of its mean, falls, slope, peak.
+/// A kernel in the form of the shader: whole cells and remainder of its mean, decay coefficients a
+/// and d, slope and peak.
 ///
-/// - `largest`: peak of all.
+/// - `largest`: largest peak of all kernels.
 fn packed(
     kernel: &PlanarKernel,
     low_m: [f64; 2],

@@ -1,12 +1,14 @@
-// Density of a planar mixture at the points of a grid, relative to the largest peak:
+// Density of a planar mixture at the points of a grid, relative to the largest peak of a part:
 //
 //   p(i, j) = Σ_k c_k 2^−(a_k u² + d_k v²)     v = j − m_y     u = (i − m_x) − slope · v
 //
-// Lengths are in cells of the grid; a and d hold the factor ½ log₂ e. A mean is a whole cell and the
-// remainder, so that differences are exact however far the point lies from the grid's corner.
+// Lengths are in cells of the grid; a and d include the factor ½ log₂ e. Each mean is stored as a
+// whole cell and a remainder, so that differences keep their precision however far a point lies
+// from the corner of the grid.
 //
-// A workgroup owns 16 × 16 points. It takes 256 kernels at a time: each invocation loads one and
-// marks it if it reaches into the tile; then all add the marked ones up in their order.
+// A workgroup computes a tile of 16 × 16 points. It processes the kernels in chunks of 256: each
+// invocation loads one kernel and marks it if it reaches into the tile; then all invocations add
+// the marked kernels in their order.
 
 struct Grid {
     size: vec2<u32>,
@@ -16,17 +18,17 @@ struct Grid {
 struct Kernel {
     cell: vec2<f32>,
     rest: vec2<f32>,
-    // a and d.
+    // The coefficients a and d.
     fall: vec2<f32>,
     slope: f32,
-    // c over the largest c.
+    // c divided by the largest c.
     peak: f32,
 }
 
 const SIDE: u32 = 16u;
 const CHUNK: u32 = 256u;
 const N_WORDS: u32 = 8u;
-// ½ log₂ e times the square of eight standard deviations.
+// ½ log₂ e times the square of eight standard deviations, beyond which a kernel is neglected.
 const LIMIT: f32 = 46.166241;
 
 @group(0) @binding(0) var<uniform> grid: Grid;
@@ -34,15 +36,16 @@ const LIMIT: f32 = 46.166241;
 @group(0) @binding(2) var<storage, read_write> values: array<f32>;
 
 var<workgroup> chunk: array<Kernel, CHUNK>;
-// One bit for each kernel of the chunk.
+// One bit for each kernel of the chunk, set if the kernel reaches into the tile.
 var<workgroup> marks: array<atomic<u32>, N_WORDS>;
 
-// Whether a kernel comes within its reach of a tile, whose corners are low and low + 15.
+// Whether a kernel reaches into the tile whose corners are low and low + 15.
 fn reaches(kernel: Kernel, low: vec2<f32>) -> bool {
     let reach = sqrt(vec2<f32>(LIMIT) / kernel.fall);
     let near = (low - kernel.cell) - kernel.rest;
     let far = near + vec2<f32>(f32(SIDE) - 1.0);
-    // The rows of the tile that are within reach, and where x lies there, given y.
+    // Rows of the tile within reach, relative to the mean, and the centres of the kernel along x in
+    // the first and the last of them.
     let rows = vec2<f32>(max(near.y, -reach.y), min(far.y, reach.y));
     let centres = kernel.slope * rows;
     let left = min(centres.x, centres.y) - reach.x;
@@ -80,7 +83,7 @@ fn main(
             }
         }
         workgroupBarrier();
-        // A sum of its own for each chunk keeps rounding small.
+        // Each chunk is summed separately, which reduces rounding errors.
         var part = 0.0;
         for (var word = 0u; word < N_WORDS; word++) {
             var bits = atomicLoad(&marks[word]);

@@ -1,4 +1,4 @@
-//! What the density on the graphics processor is computed from and into.
+//! Buffers of the density computation on the graphics processor, and the commands that use them.
 
 use std::sync::mpsc;
 
@@ -7,22 +7,24 @@ use wgpu::BufferUsages;
 
 use crate::render::DensityError;
 
-/// Bytes of the grid's uniform: columns, rows, kernels, and a word that fills it up.
+/// Size of the grid's uniform buffer, bytes: columns, rows and kernels, and a word of padding.
 const GRID_BYTES: u64 = 16;
 
-/// Buffers of a device, each at least as large as what is sent.
+/// Buffers on a graphics device. They may be larger than the data that they hold.
 #[derive(Debug)]
 pub(super) struct Buffers {
     grid: wgpu::Buffer,
     kernels: wgpu::Buffer,
     values: wgpu::Buffer,
-    /// Where the processor reads the values.
+    /// Copy of the values that the CPU can read.
     mapped: wgpu::Buffer,
     bindings: wgpu::BindGroup,
 }
 
 impl Buffers {
-    /// - `bytes`: of kernels and of values.
+    /// Creates the buffers and binds them to the pipeline.
+    ///
+    /// - `bytes`: sizes of the kernels and of the values.
     pub(super) fn new(
         device: &wgpu::Device,
         pipeline: &wgpu::ComputePipeline,
@@ -53,15 +55,17 @@ impl Buffers {
         Self { grid, kernels, values, mapped, bindings }
     }
 
-    /// Of kernels and of values.
+    /// Sizes of the kernels' and of the values' buffers, bytes.
     pub(super) fn bytes(&self) -> [u64; 2] {
         [self.kernels.size(), self.values.size()]
     }
 
-    /// Sends kernels, computes the values and copies them to where they are read.
+    /// Sends the kernels, starts the computation, and copies the values to the buffer that the CPU
+    /// can read.
     ///
-    /// - `size`: columns, rows, kernels.
-    /// - `tiles`: along x and y.
+    /// - `size`: numbers of columns, rows and kernels.
+    /// - `tiles`: numbers of tiles along x and y.
+    /// - `kernels`: eight numbers for each kernel, as in the shader.
     pub(super) fn submit(
         &self,
         (device, queue): (&wgpu::Device, &wgpu::Queue),
@@ -85,12 +89,13 @@ impl Buffers {
         queue.submit([encoder.finish()]);
     }
 
-    /// Waits for the values.
+    /// Waits for the computation and returns its values.
     ///
-    /// - `scale`: of the values.
+    /// - `n_points`: number of values.
+    /// - `scale`: factor by which the values are multiplied.
     ///
     /// # Errors
-    /// [`DensityError::NoValues`], such as from a device that is lost.
+    /// [`DensityError::NoValues`], for example if the device was lost.
     pub(super) fn read(
         &self,
         device: &wgpu::Device,
@@ -100,7 +105,7 @@ impl Buffers {
         let bytes = (n_points * size_of::<f32>()) as u64;
         let (sender, receiver) = mpsc::channel();
         self.mapped.map_async(wgpu::MapMode::Read, 0..bytes, move |outcome| {
-            // Nobody waits any longer after an error below.
+            // The receiver no longer exists if polling has failed below.
             let _ = sender.send(outcome);
         });
         device.poll(wgpu::PollType::wait_indefinitely()).map_err(no_values)?;
@@ -119,10 +124,10 @@ fn no_values(source: impl std::error::Error + Send + Sync + 'static) -> DensityE
     DensityError::NoValues(Box::new(source))
 }
 
-/// Runs commands; what the device has against them becomes an error.
+/// Runs commands and turns an error that the device reports for them into a result.
 ///
 /// # Errors
-/// [`DensityError::Device`].
+/// [`DensityError::Device`] for an internal or a validation error or if memory is exhausted.
 pub(super) fn checked<T>(
     device: &wgpu::Device,
     commands: impl FnOnce() -> T,
@@ -130,7 +135,7 @@ pub(super) fn checked<T>(
     use wgpu::ErrorFilter::{Internal, OutOfMemory, Validation};
     let scopes = [Internal, OutOfMemory, Validation].map(|filter| device.push_error_scope(filter));
     let done = commands();
-    // The inner ones end first.
+    // The error scopes are closed in the reverse order of opening.
     let errors: Vec<_> =
         scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop())).collect();
     errors.into_iter().next().map_or(Ok(done), |error| Err(error.into()))

@@ -1,20 +1,22 @@
-//! Where a legend hides least.
+//! Placement of the legend in the corner of a plot where it hides least.
 
 use egui_plot::Corner;
 
 use crate::figure::{Figure, FigureElement, Series};
 
-/// Share of width and height that a legend may take.
+/// Share of the width and of the height of the plot that a legend is assumed to take.
 const LEGEND_SHARE: [f64; 2] = [0.4, 0.45];
-/// Segments of a line that are taken into account; of a longer line, some.
+/// Approximate number of segments of a line that are taken into account; a longer line is sampled
+/// evenly.
 const MAX_SEGMENTS: usize = 400;
-/// Points into which a segment is cut, so that long segments count along their length.
+/// Number of points into which a segment is divided, so that it counts in proportion to its length.
 const SEGMENT_POINTS: usize = 16;
-/// From the most to the least usual.
+/// Corners in order of preference.
 const CORNERS: [Corner; 4] =
     [Corner::RightTop, Corner::LeftTop, Corner::RightBottom, Corner::LeftBottom];
 
-/// The corner of a figure with the fewest points; of several, the most usual.
+/// The corner of a figure where a legend hides the fewest points; among equal corners the first in
+/// the order right top, left top, right bottom, left bottom.
 pub fn emptiest_corner(figure: &Figure) -> Corner {
     let points: Vec<[f64; 2]> = figure.elements.iter().flat_map(points).collect();
     let range = |axis: usize| {
@@ -40,6 +42,7 @@ pub fn emptiest_corner(figure: &Figure) -> Corner {
     CORNERS.into_iter().min_by_key(hidden).unwrap_or(Corner::RightTop)
 }
 
+/// Points by which an element counts in the choice of the corner.
 fn points(element: &FigureElement) -> Vec<[f64; 2]> {
     match element {
         FigureElement::Points(series) => series.points.clone(),
@@ -56,6 +59,7 @@ fn points(element: &FigureElement) -> Vec<[f64; 2]> {
     }
 }
 
+/// Points at even steps along the segments of a line.
 fn along(series: &Series) -> Vec<[f64; 2]> {
     let cut = |pair: &[[f64; 2]]| {
         let ([x0, y0], [x1, y1]) = (pair[0], pair[1]);

@@ -1,4 +1,5 @@
-//! Draws figures: one function for the panel on screen and for the picture off-screen.
+//! Drawing of figures. One function draws a figure both in the panel on screen and in a picture off
+//! screen.
 
 mod density;
 mod density_buffers;

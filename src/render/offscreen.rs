@@ -1,4 +1,4 @@
-//! Pictures without a window.
+//! Pictures of figures and user interfaces without a window.
 
 use std::path::Path;
 
@@ -9,20 +9,20 @@ use crate::data::{DataError, write_atomically};
 use crate::figure::Figure;
 use crate::render::{FigureOptions, SoftwareRenderer, figure_ui, theme};
 
-/// Passes until fonts, plot bounds and layout have settled.
+/// Number of passes after which fonts, plot bounds and layout no longer change.
 const SETTLING_PASSES: usize = 4;
 
-/// Largest side of a picture, pixels.
+/// Largest width and height of a picture, pixels.
 const MAX_SIDE_PX: u32 = 16_384;
 
-/// The ground on which a picture is drawn.
+/// Size, scale and theme of a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Canvas {
-    /// Width and height, pixels.
+    /// Width and height, pixels, 16 to 16 384 each.
     pub size_px: [u32; 2],
-    /// Pixels per point: 2 for print and slides.
+    /// Pixels per point; 2 is suitable for print and slides.
     pub scale: f32,
-    /// Dark theme.
+    /// Whether the dark theme is used.
     pub dark: bool,
 }
 
@@ -32,15 +32,15 @@ impl Default for Canvas {
     }
 }
 
-/// A picture that could not be made or saved.
+/// Reason for which a picture could not be drawn or saved.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
-    /// The size cannot be drawn.
+    /// The size of the picture is outside the permitted range.
     #[error("a picture of {width} × {height} pixels cannot be drawn; expected 16 to {MAX_SIDE_PX}")]
     Size {
-        /// Width asked for.
+        /// Width that was asked for, pixels.
         width: u32,
-        /// Height asked for.
+        /// Height that was asked for, pixels.
         height: u32,
     },
     /// The file cannot be written.
@@ -48,10 +48,10 @@ pub enum RenderError {
     Write(#[from] DataError),
 }
 
-/// Draws any user interface off-screen, on the CPU: the same pixels on every machine.
+/// Draws any user interface off screen on the CPU, which gives the same pixels on every machine.
 ///
 /// # Errors
-/// [`RenderError::Size`].
+/// [`RenderError::Size`] for a width or height outside 16 to 16 384 pixels.
 pub fn draw_offscreen(
     canvas: Canvas,
     mut ui: impl FnMut(&mut Ui),
@@ -85,10 +85,10 @@ pub fn draw_offscreen(
     Ok(image)
 }
 
-/// Draws a figure with its title.
+/// Draws a figure below its title.
 ///
 /// # Errors
-/// [`RenderError::Size`].
+/// [`RenderError::Size`] for a width or height outside 16 to 16 384 pixels.
 pub fn figure_image(figure: &Figure, canvas: Canvas) -> Result<RgbaImage, RenderError> {
     draw_offscreen(canvas, |ui| {
         let frame = egui::Frame::new().inner_margin(12.0);
@@ -99,10 +99,10 @@ pub fn figure_image(figure: &Figure, canvas: Canvas) -> Result<RgbaImage, Render
     })
 }
 
-/// Saves a picture as PNG, to a temporary name first.
+/// Saves a picture as PNG. The file is written completely or not at all.
 ///
 /// # Errors
-/// [`RenderError::Write`].
+/// [`RenderError::Write`] if the picture cannot be encoded or the file cannot be written.
 pub fn save_png(image: &RgbaImage, path: &Path) -> Result<(), RenderError> {
     let mut png = std::io::Cursor::new(Vec::new());
     let encoded = image.write_to(&mut png, image::ImageFormat::Png);

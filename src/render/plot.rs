@@ -1,4 +1,4 @@
-//! A figure in egui_plot.
+//! Draws a figure with egui_plot.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -21,29 +21,30 @@ use crate::units::significant;
 /// Opacity of the largest value of a heat map.
 const HEAT_OPACITY: f32 = 0.85;
 
-/// Least width of the vertical axis' labels, and what a character of a name takes, points.
+/// Smallest width of the labels of the vertical axis, and width of a character of a name, points.
 const LEAST_Y_AXIS_WIDTH: f32 = 44.0;
 const CHARACTER_WIDTH: f32 = 6.5;
 
-/// Names in a legend above which it is written small.
+/// Number of names in a legend above which it is written in small type.
 const LONG_LEGEND: usize = 8;
 
-/// How a figure is placed among others.
+/// Options for the placement of a figure.
 #[derive(Debug, Clone)]
 pub struct FigureOptions {
-    /// Distinguishes plots in one window; the title if empty.
+    /// Identifier that distinguishes the plots in a window; the title is used if it is empty.
     pub id: String,
-    /// Plots of one group share cursor and time axis.
+    /// Group of plots that share the cursor and the horizontal axis.
     pub link: Option<Id>,
-    /// A cursor at this x, in the axis' unit.
+    /// Position of the cursor along x, in the unit of the axis.
     pub cursor_x: Option<f64>,
-    /// Height, points; all there is if `None`.
+    /// Height of the plot, points; `None` for all the space that is available.
     pub height: Option<f32>,
-    /// Fit the view to the data again.
+    /// Whether the view is fitted to the data again.
     pub reset: bool,
-    /// The view, from lowest to highest x and y in the axes' units; what the user chooses if `None`.
+    /// View `[lowest, highest]` of [x, y] in the units of the axes; `None` leaves the view to the
+    /// user.
     pub view: Option<[[f64; 2]; 2]>,
-    /// Whether a legend says what the lines are.
+    /// Whether a legend names the elements.
     pub legend: bool,
 }
 
@@ -54,14 +55,15 @@ impl Default for FigureOptions {
     }
 }
 
-/// What the user did in a figure.
+/// Interaction of the user with a figure.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct FigureResponse {
-    /// A click or drag that sets the cursor to this x.
+    /// Position along x at which the user presses a pointer button, in the unit of the axis, to set
+    /// the cursor.
     pub picked_x: Option<f64>,
 }
 
-/// Draws a figure into the space that is left; a hover reads values in the axes' units.
+/// Draws a figure into the space that is available. Hovering shows values in the units of the axes.
 pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> FigureResponse {
     let mut plot = plot_with_axes(figure, options);
     if options.legend {
@@ -87,7 +89,7 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         plot = plot.reset();
     }
     for element in &figure.elements {
-        // egui_plot fits arrows by their origins only.
+        // egui_plot includes only the origins of arrows when it fits the view.
         if let FigureElement::Arrow(series) = element {
             for [x, y] in &series.points {
                 plot = plot.include_x(*x).include_y(*y);
@@ -112,7 +114,7 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
     FigureResponse { picked_x: response.inner }
 }
 
-/// Axes with their names and ticks, and the readout of a hover.
+/// A plot with the labels and ticks of the axes and the text shown on hovering.
 fn plot_with_axes<'a>(figure: &Figure, options: &FigureOptions) -> Plot<'a> {
     let id = if options.id.is_empty() { &figure.title } else { &options.id };
     let (x, y, log_y) = (figure.x.clone(), figure.y.clone(), figure.log_y);
@@ -121,7 +123,8 @@ fn plot_with_axes<'a>(figure: &Figure, options: &FigureOptions) -> Plot<'a> {
         let value = if log_y { 10.0_f64.powf(at.y) } else { at.y };
         let of_y = match y.names.is_empty() {
             true => format!("\n{} {}", significant(value), y.unit.symbol),
-            false => String::new(), // the name says it
+            // The name at the tick replaces the number.
+            false => String::new(),
         };
         format!("{head}{} {}{of_y}", significant(at.x), x.unit.symbol)
     };
@@ -158,7 +161,8 @@ fn plot_with_axes<'a>(figure: &Figure, options: &FigureOptions) -> Plot<'a> {
         .allow_drag(Vec2b::new(figure.equal_aspect, figure.equal_aspect))
 }
 
-/// The picture of a heat map, kept from frame to frame.
+/// The texture of a heat map, which is kept from frame to frame, and the data from which it was
+/// made.
 #[derive(Clone)]
 struct Picture {
     values: Arc<Vec<f64>>,
@@ -166,7 +170,8 @@ struct Picture {
     texture: TextureHandle,
 }
 
-/// Draws the cells of a heat map as a picture, each as opaque as the root of its value.
+/// Draws a heat map as a picture. The opacity of a cell is proportional to the square root of its
+/// value.
 fn heat_map(plot: &mut PlotUi<'_>, map: &HeatMap, color: Color32) {
     let [width, height] = map.size;
     let largest = map.values.iter().copied().fold(0.0, f64::max);
@@ -174,13 +179,13 @@ fn heat_map(plot: &mut PlotUi<'_>, map: &HeatMap, color: Color32) {
         return;
     }
     let [r, g, b, _] = color.to_array();
-    // Pictures have their first row on top.
+    // The first row of a picture is at the top.
     let rows = map.values.chunks_exact(width).rev();
     let pixel = |value: &f64| {
         let opacity = (value / largest).max(0.0).sqrt() * f64::from(HEAT_OPACITY);
         Color32::from_rgba_unmultiplied(r, g, b, (opacity * 255.0).round() as u8)
     };
-    // The texture lives as long as its handle: until another picture takes its place.
+    // The texture lives as long as its handle, which is kept until another picture replaces it.
     let id = Id::unique(("heat map", plot.response().id));
     let known: Option<Picture> = plot.ctx().data(|data| data.get_temp(id));
     let known =
@@ -197,15 +202,18 @@ fn heat_map(plot: &mut PlotUi<'_>, map: &HeatMap, color: Color32) {
     let at = PlotPoint::new(centre(0), centre(1));
     let size = [side(0) as f32, side(1) as f32];
     plot.image(PlotImage::new("", picture.texture.id(), at, size).allow_hover(false));
-    // The legend knows colours of lines only, and a line has a point at least.
+    // The legend shows colours of lines only, and a line needs at least one point.
     let point = PlotPoints::from(vec![[at.x, at.y]]);
     plot.line(Line::new(&map.name, point).stroke(Stroke::new(0.0, color)).allow_hover(false));
 }
 
+/// Number of different names in the legend of a figure.
 fn n_legend_names(figure: &Figure) -> usize {
     figure.elements.iter().map(FigureElement::name).collect::<BTreeSet<_>>().len()
 }
 
+/// Draws an element with the colours of the dark or the light theme; on a logarithmic axis y is
+/// replaced by its logarithm.
 fn draw_element<'a>(
     plot: &mut PlotUi<'a>,
     element: &'a FigureElement,

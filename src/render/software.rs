@@ -1,9 +1,12 @@
-//! Draws egui's triangles on the CPU: pictures without any graphics driver, the same on every
-//! machine. The crate `egui_software_backend` does this for older versions of egui only.
+//! Draws the triangles of egui on the CPU, which needs no graphics driver and gives the same
+//! picture on every machine. The crate `egui_software_backend` does this for older versions of egui
+//! only.
 //!
-//! Colours are premultiplied sRGB and blended in that space, textures are filtered linearly and
-//! clamped, a pixel belongs to a triangle if its centre does: what egui's own renderers do.
-//! Paint callbacks are drawn by no CPU and left out; figures use none.
+//! The rules are those of egui's own renderers: colours are premultiplied sRGB and blended in that
+//! space, textures are filtered linearly and clamped at their edges, and a pixel belongs to a
+//! triangle if its centre does.
+//!
+//! Left out: paint callbacks, which the figures do not use.
 
 use std::collections::HashMap;
 
@@ -11,14 +14,15 @@ use egui::epaint::{ClippedPrimitive, ImageDelta, Mesh, Primitive, TextureId, Ver
 use egui::{Color32, ColorImage, ImageData, Pos2, Rect, TexturesDelta};
 use image::RgbaImage;
 
-/// The textures that frames have set, and a way to draw frames with them.
+/// A renderer for frames of egui, with the textures that earlier frames have set.
 #[derive(Debug, Default)]
 pub struct SoftwareRenderer {
     textures: HashMap<TextureId, ColorImage>,
 }
 
 impl SoftwareRenderer {
-    /// Takes in new and changed textures and forgets freed ones. Leaves the delta empty.
+    /// Applies new and changed textures and removes those that are no longer used. The delta is
+    /// empty afterwards.
     #[expect(clippy::iter_over_hash_type, reason = "textures do not depend on each other")]
     pub fn update_textures(&mut self, delta: &mut TexturesDelta) {
         for (id, patches) in delta.set.drain() {
@@ -31,6 +35,7 @@ impl SoftwareRenderer {
         }
     }
 
+    /// Replaces a texture, or a rectangle of it if the patch has a position.
     fn update_texture(&mut self, id: TextureId, patch: ImageDelta) {
         let ImageData::Color(image) = patch.image;
         let Some([x0, y0]) = patch.pos else {
@@ -49,7 +54,7 @@ impl SoftwareRenderer {
         }
     }
 
-    /// Draws a frame over `background`. `size` in pixels.
+    /// Draws a frame of a given [width, height] in pixels over a background. The picture is opaque.
     pub fn draw(
         &self,
         primitives: &[ClippedPrimitive],
@@ -140,12 +145,14 @@ impl Frame {
     }
 }
 
-/// Twice the signed area of the triangle, positive clockwise on screen (y down).
+/// Twice the signed area of the triangle (`from`, `to`, `p`): positive if it is clockwise on
+/// screen, where y points down.
 fn edge(from: Pos2, to: Pos2, p: Pos2) -> f32 {
     (to.x - from.x) * (p.y - from.y) - (to.y - from.y) * (p.x - from.x)
 }
 
-/// A pixel centre on a shared edge belongs to one of the two triangles only.
+/// Whether an edge is a top or a left edge of its triangle. A pixel centre on such an edge belongs
+/// to the triangle, so that a pixel on an edge shared by two triangles is drawn once.
 fn is_top_left(from: Pos2, to: Pos2) -> bool {
     (from.y == to.y && to.x > from.x) || to.y < from.y
 }
@@ -158,7 +165,8 @@ fn mix(colors: [[f32; 4]; 3], weights: [f32; 3]) -> [f32; 4] {
     std::array::from_fn(|i| (0..3).map(|corner| colors[corner][i] * weights[corner]).sum())
 }
 
-/// Linear filtering, clamped at the edges; 0 to 255.
+/// Colour of a texture at the coordinates `uv` (0 to 1), filtered linearly and clamped at the
+/// edges; channels 0 to 255.
 fn sample(texture: &ColorImage, uv: Pos2) -> [f32; 4] {
     let [width, height] = texture.size;
     if width == 0 || height == 0 {
@@ -178,7 +186,7 @@ fn sample(texture: &ColorImage, uv: Pos2) -> [f32; 4] {
     })
 }
 
-/// Premultiplied source over destination.
+/// The colour `over` composited over `under`; both are premultiplied.
 fn blend(under: Color32, over: [f32; 4]) -> Color32 {
     let keep = 1.0 - over[3] / 255.0;
     let under = channels(under);

@@ -1,8 +1,8 @@
-//! Colours and sizes, for the light and the dark theme.
+//! Colours and line widths for the light and the dark theme.
 //!
-//! The palette is that of [`OkabeIto2008`](crate::bibliography::OkabeIto2008), whose colours stay
-//! apart for people with any of the usual colour-vision deficiencies; those too pale for a white
-//! or too dark for a black ground are shifted in lightness.
+//! The palette is that of [`OkabeIto2008`](crate::bibliography::OkabeIto2008), whose colours can be
+//! distinguished with any of the common colour-vision deficiencies. Colours that are too pale for a
+//! white background or too dark for a black one are shifted in lightness.
 
 use egui::{Color32, Visuals};
 
@@ -11,12 +11,14 @@ use crate::figure::Role;
 
 /// Width of a plotted line, points.
 pub const LINE_WIDTH: f32 = 1.8;
-/// Width of a line that stands back, points.
+/// Width of a plotted line in the background, points.
 pub const THIN_LINE_WIDTH: f32 = 1.0;
-/// Opacity of a filled outline.
+/// Opacity of the fill of an outline, 0 to 1.
 pub const FILL_OPACITY: f32 = 0.18;
 
-/// The colour of a role.
+/// Colour of a role.
+///
+/// - `dark`: whether the background is dark.
 pub fn color(role: Role, dark: bool) -> Color32 {
     let (light_ground, dark_ground) = match role {
         Role::Simulation | Role::ComponentX | Role::Model => ([0, 114, 178], [86, 180, 233]),
@@ -31,17 +33,18 @@ pub fn color(role: Role, dark: bool) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// The colour of the time cursor.
+/// Colour of the time cursor.
 pub fn cursor_color(dark: bool) -> Color32 {
     color(Role::Pulse, dark)
 }
 
-/// Width of the line of a role, points.
+/// Width of the lines of a role, points.
 pub fn line_width(role: Role) -> f32 {
     if role == Role::Muted { THIN_LINE_WIDTH } else { LINE_WIDTH }
 }
 
-/// egui's visuals with a plain ground, so that figures look the same on screen and on paper.
+/// Visuals of egui for a theme. The light theme has a plain background, so that figures look the
+/// same on screen and on paper.
 pub fn visuals(dark: bool) -> Visuals {
     if dark {
         Visuals::dark()
@@ -54,7 +57,7 @@ pub fn visuals(dark: bool) -> Visuals {
     }
 }
 
-/// Colour of a flag that only informs, warns, or reports an error.
+/// Colour of a data flag of a given severity.
 pub fn severity_color(severity: Severity, dark: bool) -> Color32 {
     let (light_ground, dark_ground) = match severity {
         Severity::Info => ([0, 114, 178], [86, 180, 233]),

@@ -1,14 +1,17 @@
-//! Long recordings, thinned for the screen only: pictures of them look the same, and a frame stays
-//! a frame. The figure keeps every point, for its CSV.
+//! Reduction of long lines to fewer points for drawing, so that a frame does not take long. The
+//! picture looks the same, since the extremes of every part of the line are kept. The figure itself
+//! keeps every point, for example for its CSV.
 
 use std::borrow::Cow;
 
-/// Above this, a line is thinned: several points for every pixel of a wide screen.
+/// Number of points above which a line is reduced: several points for every pixel of a wide screen.
 const MAX_POINTS: usize = 12_000;
-/// Parts in which a long line keeps its first, lowest, highest and last point.
+/// Number of parts into which a long line is divided; each keeps its first, lowest, highest and
+/// last point.
 const N_PARTS: usize = 3_000;
 
-/// At most [`MAX_POINTS`] of the points, in order, with the extremes of every part of the line.
+/// The points of a line if there are at most [`MAX_POINTS`], else a subset of at most this size, in
+/// order, which holds the extremes of every part of the line.
 pub fn thinned(points: &[[f64; 2]]) -> Cow<'_, [[f64; 2]]> {
     if points.len() <= MAX_POINTS {
         return Cow::Borrowed(points);
@@ -17,6 +20,7 @@ pub fn thinned(points: &[[f64; 2]]) -> Cow<'_, [[f64; 2]]> {
     Cow::Owned(points.chunks(part_length).flat_map(outline).collect())
 }
 
+/// The first, lowest, highest and last point of a part, in order and without repetition.
 fn outline(part: &[[f64; 2]]) -> impl Iterator<Item = [f64; 2]> + '_ {
     let by_height = |a: &usize, b: &usize| part[*a][1].total_cmp(&part[*b][1]);
     let lowest = (0..part.len()).min_by(by_height).unwrap_or(0);

@@ -1,20 +1,24 @@
-//! Where the ticks of an axis stand and what they say.
+//! Positions and labels of the ticks of an axis.
 
 use egui_plot::{GridInput, GridMark};
 
-/// Smallest distance of labelled ticks, in multiples of egui_plot's smallest grid spacing (8 points).
+/// Smallest distance of labelled ticks on the horizontal axis, in multiples of egui_plot's smallest
+/// grid spacing (8 points).
 pub const X_TICK_CELLS: f64 = 8.0;
-/// As [`X_TICK_CELLS`], for the vertical axis.
+/// Smallest distance of labelled ticks on the vertical axis, in the unit of [`X_TICK_CELLS`].
 pub const Y_TICK_CELLS: f64 = 4.0;
-/// Unlabelled grid lines between two ticks.
+/// Number of intervals into which grid lines without labels divide the distance between two ticks.
 const MINOR_DIVISIONS: i64 = 5;
-/// Decades that a logarithmic axis spans at least to have ticks at powers of ten; below, they stand
-/// at equal steps of the value.
+/// Smallest number of decades that a logarithmic axis must span to have ticks at powers of ten. An
+/// axis that spans less has ticks at equal steps of the value.
 const MIN_DECADES: f64 = 0.7;
-/// Ticks of a logarithmic axis shorter than that.
+/// Approximate number of ticks of a logarithmic axis that spans less than [`MIN_DECADES`].
 const FEW_TICKS: f64 = 5.0;
 
-/// Ticks at 1, 2 or 5 times a power of ten, with fainter lines between.
+/// Grid lines of a linear axis: ticks at multiples of 1, 2 or 5 times a power of ten, with fainter
+/// lines between them.
+///
+/// - `tick_cells`: smallest distance of ticks, such as [`X_TICK_CELLS`].
 pub fn grid(input: GridInput, tick_cells: f64) -> Vec<GridMark> {
     let tick = nice_step(input.base_step_size * tick_cells);
     let minor = tick / MINOR_DIVISIONS as f64;
@@ -31,8 +35,9 @@ pub fn grid(input: GridInput, tick_cells: f64) -> Vec<GridMark> {
         .collect()
 }
 
-/// Ticks of an axis that shows `log₁₀` of its values: at powers of ten, at 2 and 5 times them where
-/// there is room, with fainter lines between.
+/// Grid lines of an axis that shows `log₁₀` of its values: ticks at powers of ten, and at 2 and 5
+/// times these where there is room, with fainter lines between them. An axis of less than 0.7
+/// decades has ticks at equal steps of the value.
 pub fn log_grid(input: GridInput) -> Vec<GridMark> {
     let (low, high) = input.bounds;
     if !(low.is_finite() && high.is_finite() && high > low && high - low < 300.0) {
@@ -60,26 +65,26 @@ pub fn log_grid(input: GridInput) -> Vec<GridMark> {
     marks.filter(|mark| (low..=high).contains(&mark.value)).collect()
 }
 
-/// Ticks at 0, 1, 2 and so on, one a name.
+/// Grid lines of an axis of names, at the positions 0, 1, 2, ….
 pub fn name_grid(n_names: usize) -> Vec<GridMark> {
     (0..n_names).map(|row| GridMark { value: row as f64, step_size: 1.0 }).collect()
 }
 
-/// The name that stands at a tick.
+/// The name at a tick; empty if there is none.
 pub fn name_label(mark: GridMark, names: &[String]) -> String {
     let row = mark.value.round();
     let name = if row < 0.0 { None } else { names.get(row as usize) };
     name.cloned().unwrap_or_default()
 }
 
-/// 1, 2 or 5 times a power of ten, not less than `wanted`.
+/// The smallest number that is 1, 2 or 5 times a power of ten and not less than `wanted`.
 fn nice_step(wanted: f64) -> f64 {
     let magnitude = 10.0_f64.powf(wanted.log10().floor());
     let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * magnitude);
     steps.into_iter().find(|step| *step >= wanted).unwrap_or(wanted)
 }
 
-/// As many decimals as the distance of the ticks needs.
+/// Label of a tick of a linear axis, with as many decimals as the distance of the ticks requires.
 pub fn tick_label(mark: GridMark) -> String {
     let decimals = (-mark.step_size.log10().floor()).clamp(0.0, 9.0) as usize;
     let label = format!("{:.decimals$}", mark.value);
@@ -87,7 +92,9 @@ pub fn tick_label(mark: GridMark) -> String {
     if is_negative_zero { label.replace('-', "") } else { label }
 }
 
-/// The value behind a tick of [`log_grid`], three digits at most.
+/// Label of a tick of [`log_grid`]: the value whose logarithm the mark holds, with decimals up to
+/// its third significant digit. Values below 1e-3 and from 1e5 upwards are in scientific notation
+/// with one digit.
 pub fn log_tick_label(mark: GridMark) -> String {
     let value = 10.0_f64.powf(mark.value);
     if !(1e-3..1e5).contains(&value) {
@@ -106,7 +113,7 @@ pub fn log_tick_label(mark: GridMark) -> String {
 mod tests {
     use super::*;
 
-    /// Of the ticks at least this far apart.
+    /// Labels of the ticks of a logarithmic axis whose step size exceeds `least_step`.
     fn labels((low, high): (f64, f64), least_step: f64) -> Vec<String> {
         let bounds = (low.log10(), high.log10());
         let marks = log_grid(GridInput { bounds, base_step_size: 0.02 });
