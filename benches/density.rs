@@ -1,5 +1,6 @@
-//! How fast the density of a trajectory is computed: 512 × 512 points, 400 instants of a motion of
-//! 4 s with three components each, on the processor's cores and on the graphics processor.
+//! Measures how fast the density of a trajectory is computed on the processor's cores and on the
+//! graphics processor: 512 × 512 points, and 400 time steps of a motion of 4 s with three mixture
+//! components each.
 //!
 //! `cargo bench --bench density`
 
@@ -11,7 +12,9 @@ use impactlab::error_chain;
 use impactlab::render::DensityGpu;
 use impactlab::uncertainty::{PlanarGrid, PlanarMixture, PlanarPart};
 
+/// Number of time steps of the trajectory.
 const N_INSTANTS: usize = 400;
+/// Number of grid points in X and Y.
 const SIZE: [usize; 2] = [512, 512];
 
 fn main() {
@@ -27,7 +30,8 @@ fn main() {
     divan::main();
 }
 
-/// Along 60 m of a bend; the spread grows from 5 cm to 2.5 m, further along the path than across.
+/// Returns the mixture of a trajectory along 60 m of a bend and the grid around it. The standard
+/// deviation grows from 5 cm to 2.5 m along the path and is half of that across it.
 fn trajectory() -> (PlanarMixture, PlanarGrid) {
     let part = |i: usize| {
         let (share, component) = ((i / 3) as f64 / (N_INSTANTS - 1) as f64, (i % 3) as f64 - 1.0);

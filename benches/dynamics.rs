@@ -1,4 +1,5 @@
-//! How fast the 4DOF vehicle runs: one step, one trajectory, a thousand of them, one Jacobian.
+//! Measures the speed of the 4DOF vehicle model: one integration step, one trajectory, a thousand
+//! trajectories in parallel, and one Jacobian.
 //!
 //! `cargo bench --no-default-features --bench dynamics`
 
@@ -16,16 +17,17 @@ use impactlab::vehicle::{
 };
 use rayon::prelude::*;
 
+/// Number of trajectories that are simulated in parallel.
 const N_TRAJECTORIES: usize = 1000;
 
-/// RK4 steps of a trajectory of 4 s.
+/// Number of RK4 steps in a trajectory of 4 s.
 const N_STEPS: usize = 4000;
 
 fn main() {
     divan::main();
 }
 
-/// A car at 20 m/s in the middle of a hit against its right rear quarter.
+/// Returns the state and the input of a car at 20 m/s while a force acts on its right rear quarter.
 fn hit() -> (VehicleState<f64>, VehicleInput<f64>) {
     let state = VehicleState {
         vy_m_s: 0.5,
@@ -45,7 +47,8 @@ fn hit() -> (VehicleState<f64>, VehicleInput<f64>) {
     (state, input)
 }
 
-/// The recorded starts and forces of the shipped trajectories, again and again.
+/// Returns the recorded initial states and forces of the shipped trajectories, repeated up to
+/// [`N_TRAJECTORIES`].
 fn manoeuvres() -> Vec<Manoeuvre> {
     let mut report = |_| ControlFlow::Continue(());
     let dataset = Dataset::load(Path::new("datasets/trajectories-fea"), &mut report)
@@ -79,7 +82,7 @@ fn jacobian(bencher: Bencher<'_, '_>) {
         .bench_local(|| vehicle.jacobian(black_box(&state), black_box(&input)));
 }
 
-/// Items are RK4 steps.
+/// The items counted are RK4 steps.
 #[divan::bench]
 fn trajectory_of_4_s(bencher: Bencher<'_, '_>) {
     let vehicle = Preset::Reference.parameters();
@@ -89,7 +92,7 @@ fn trajectory_of_4_s(bencher: Bencher<'_, '_>) {
         .bench_local(|| vehicle.simulate(black_box(manoeuvre), Integrator::Rk4));
 }
 
-/// Items are trajectories of 4 s.
+/// The items counted are trajectories of 4 s.
 #[divan::bench(sample_count = 10)]
 fn thousand_trajectories_in_parallel(bencher: Bencher<'_, '_>) {
     let vehicle = Preset::Reference.parameters();

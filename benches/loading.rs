@@ -1,5 +1,6 @@
-//! How long data sets take to load: the shipped 100 force cases and 100 trajectories, and 10 000
-//! force cases made from the shipped ones, with every force scaled by a few per cent.
+//! Measures how long data sets take to load: the shipped data sets with 100 force cases and 100
+//! trajectories, and 10 000 force cases that are made from the shipped ones by scaling their forces
+//! by up to 10 %.
 
 use std::fs;
 use std::ops::ControlFlow;
@@ -13,10 +14,11 @@ use impactlab::data::{
 };
 use tempfile::TempDir;
 
-/// Cases of the generated data set.
+/// Number of cases of the generated data set.
 const N_GENERATED: usize = 10_000;
 
-/// Made by the first bench that needs it; removed at the end of `main`.
+/// Folder of the generated data set. The first benchmark that needs it creates it, and `main`
+/// removes it at the end.
 static GENERATED: Mutex<Option<TempDir>> = Mutex::new(None);
 
 fn main() {
@@ -36,7 +38,8 @@ fn load(root: &Path) -> Dataset {
     dataset.expect("it was not cancelled")
 }
 
-/// Writes the generated data set: the shipped cases in turn, each time a little stronger.
+/// Writes the generated data set, which repeats the shipped cases. The factor on the forces grows
+/// from 1 to 1.1 over the cases.
 fn generate(root: &Path) -> Result<(), Box<dyn std::error::Error>> {
     let source = load(&shipped("fea"));
     let table = fs::read_to_string(shipped("fea").join("cases.csv"))?;
@@ -54,11 +57,13 @@ fn generate(root: &Path) -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
+/// Multiplies forces and yaw moment of a series by a factor.
 fn stronger(series: &TimeSeries, factor: f64) -> Result<TimeSeries, Box<dyn std::error::Error>> {
     let mut scaled = series.clone();
     for channel in [Channel::Fx, Channel::Fy, Channel::Mz] {
         let values = series.require(channel)?.iter();
-        // Rounded to 0.01 N as in the shipped files, so that the files are as long.
+        // The values are rounded to 0.01 N as in the shipped files, so that the files have about
+        // the same size.
         let values = values.map(|value| (value * factor * 100.0).round() / 100.0);
         scaled.insert(channel, values.collect())?;
     }

@@ -1,5 +1,5 @@
-//! How long an epoch of the force network takes in the default and in the paper's sizes, and how fast
-//! the shipped model predicts.
+//! Measures the duration of an epoch of the force network in its default size, without attention
+//! and in the paper's size, and of a prediction by the shipped model.
 //!
 //! `cargo bench --no-default-features --bench networks`
 
@@ -14,7 +14,7 @@ use impactlab::force::{
 };
 use impactlab::learning::{ModelFile, TrainSettings};
 
-/// Epochs of each size; the first ones warm the caches.
+/// Number of epochs for each size, among them the first ones, which run with cold caches.
 const N_EPOCHS: usize = 20;
 
 fn main() {
@@ -32,8 +32,11 @@ fn without_attention() -> ForceConfig {
     config
 }
 
-/// Times the epochs of a training around the momentum solution, whose physics is fitted at once; the
-/// network is the same around every physics.
+/// Trains a network for some epochs and prints a row with its number of weights and the durations
+/// of its epochs.
+///
+/// The centre is the momentum solution, because its fit takes hardly any time. The network itself
+/// is the same for every centre.
 fn print_epoch(name: &str, mut config: ForceConfig) {
     config.network.centre = Centre::Momentum;
     config.training.epochs = N_EPOCHS;
@@ -56,9 +59,9 @@ fn print_epoch(name: &str, mut config: ForceConfig) {
     );
 }
 
-/// The distribution of the force history with its bands at 1 ms over 250 ms.
+/// Predicts the distribution of the force history with its bands, every 1 ms over 250 ms.
 ///
-/// - `is_open`: contact point and body are drawn from their distribution.
+/// - `is_open`: whether contact point and body are unknown and drawn from the training cases.
 #[divan::bench(args = [false, true], sample_count = 50, sample_size = 1)]
 fn force_prediction(bencher: Bencher<'_, '_>, is_open: bool) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/models/force.safetensors");

@@ -1,6 +1,6 @@
-//! How fast the shipped response network predicts: one step of a path, one step of the joint
-//! distribution, and the distribution of a motion of 4 s; three components, of a car that spins, on one
-//! core.
+//! Measures how fast the shipped response network predicts on one core: the paths of its
+//! components, one step of the joint distribution, and the distribution of a motion of 4 s. The
+//! model has three components, and the car spins.
 //!
 //! `cargo bench --no-default-features --bench response`
 
@@ -14,15 +14,15 @@ use impactlab::learning::ModelFile;
 use impactlab::response::{Predictor, ResponseCase, ResponseModel};
 use impactlab::vehicle::VehicleInput;
 
-/// Steps of 4 s.
+/// Number of steps in 4 s.
 const N_STEPS: usize = 400;
 
 fn main() {
     divan::main();
 }
 
-/// The shipped model asked about the first shipped trajectory that spins. Its force is over before
-/// its record; after the record the car goes on released.
+/// Returns the predictor of the shipped model and the first shipped trajectory in which the car
+/// spins. The record is extended to 4 s, during which the car rolls freely without a force.
 fn spinning() -> (Predictor, ResponseCase) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut report = |_| ControlFlow::Continue(());
@@ -41,7 +41,8 @@ fn spinning() -> (Predictor, ResponseCase) {
     (predictor, case)
 }
 
-/// The paths of all components, without a distribution; items are steps of one path.
+/// Computes the paths of all components without their distribution. The items counted are steps of
+/// one path.
 #[divan::bench]
 fn path_steps(bencher: Bencher<'_, '_>) {
     let (predictor, case) = spinning();
@@ -50,9 +51,9 @@ fn path_steps(bencher: Bencher<'_, '_>) {
         .bench_local(|| predictor.paths(&case.states[0], &case.inputs));
 }
 
-/// One step of the distribution of all components.
+/// Computes one step of the distribution of all components.
 ///
-/// - `is_struck`: while the contact force acts, or after.
+/// - `is_struck`: whether the contact force acts during the step.
 #[divan::bench(args = [true, false])]
 fn full_step(bencher: Bencher<'_, '_>, is_struck: bool) {
     let (predictor, case) = spinning();
@@ -61,7 +62,8 @@ fn full_step(bencher: Bencher<'_, '_>, is_struck: bool) {
     bencher.bench_local(|| predictor.motion(&case.states[0], &[input]));
 }
 
-/// Items are steps of all components.
+/// Computes the distribution of a motion of 4 s. The items counted are steps of all components
+/// together.
 #[divan::bench]
 fn motion_of_4_s(bencher: Bencher<'_, '_>) {
     let (predictor, case) = spinning();

@@ -1,5 +1,6 @@
-//! How long the window takes to draw a frame on its own cores, at rest and while a network is
-//! trained behind it: logic, layout, prediction and tessellation, without the GPU's part.
+//! Measures how long the window takes to prepare a frame on the processor, at rest and while a
+//! network is trained in the background. The time covers logic, layout, prediction and
+//! tessellation, but not the work of the graphics processor.
 //!
 //! `cargo bench --bench window`
 
@@ -12,16 +13,20 @@ use egui_kittest::Harness;
 use impactlab::app::{App, Command, Network, Pane, Source, State, TrainingCommand};
 use impactlab::learning::TrainingReport;
 
-/// The display's pace.
+/// Time between two frames of a display at 60 Hz.
 const FRAME: Duration = Duration::from_micros(16_667);
-/// A frame that takes longer makes fewer than 50 a second.
+/// Duration above which a frame counts as late: fewer than 50 frames a second are then drawn.
 const LATE: Duration = Duration::from_millis(20);
+/// Number of frames of a measurement.
 const N_FRAMES: u32 = 600;
+/// Number of changes whose answers are awaited in a measurement.
 const N_ANSWERS: u32 = 100;
 
+/// The application in a test harness.
 struct Window(Harness<'static, App>);
 
 impl Window {
+    /// Opens the window on the shipped force data.
     fn open() -> Self {
         let builder = Harness::builder().with_size([1440.0, 900.0]).with_step_dt(1.0 / 60.0);
         let paths: Vec<PathBuf> = vec!["datasets/fea".into()];
@@ -38,6 +43,7 @@ impl Window {
         self.frame();
     }
 
+    /// Draws frames until a condition on the state holds.
     fn step_until(&mut self, is_so: impl Fn(&State) -> bool) {
         while !is_so(self.state()) {
             self.frame();
@@ -45,7 +51,7 @@ impl Window {
         }
     }
 
-    /// Draws a frame; the time it takes.
+    /// Draws a frame and returns the time that it took.
     fn frame(&mut self) -> Duration {
         let started = Instant::now();
         self.0.step();
@@ -55,7 +61,9 @@ impl Window {
         started.elapsed()
     }
 
-    /// Frames at the display's pace, with a change before each.
+    /// Draws frames at the rate of the display and prints the row of their durations.
+    ///
+    /// - `change`: changes the state before each frame; its second argument rises from 0 to 1.
     fn measure(&mut self, what: &str, mut change: impl FnMut(&mut State, f64)) {
         let taken: Vec<Duration> = (0..N_FRAMES)
             .map(|i| {
@@ -70,7 +78,8 @@ impl Window {
         row(what, taken);
     }
 
-    /// From a change of the scenario to the first frame that shows its answer.
+    /// Measures the time from a change of the collision to the end of the first frame that shows
+    /// the predicted force for it, and prints the row.
     fn measure_answers(&mut self, when: &str) {
         let answers: Vec<Duration> = (0..N_ANSWERS)
             .map(|i| {
@@ -96,10 +105,13 @@ impl Window {
     }
 }
 
+/// Changes the lateral speed of the bullet, from 3 m/s to 4 m/s as `share` goes from 0 to 1.
 fn move_slider(state: &mut State, share: f64) {
     state.project.force.scenario.bullet_velocity_m_s[1] = 3.0 + share;
 }
 
+/// Prints a row with the median, the 90th and the 99th percentile of the durations in ms, and the
+/// number of late frames.
 fn row(what: &str, mut taken: Vec<Duration>) {
     taken.sort_unstable();
     let at = |share: usize| taken[(taken.len() - 1) * share / 100].as_secs_f64() * 1e3;

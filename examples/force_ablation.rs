@@ -1,7 +1,13 @@
-//! What each part of the force network is worth, and what more cases would bring: tables in
-//! Markdown, from cross-validation over the training cases of a data set. No test case is looked at.
+//! Measures what each part of the force network contributes, and what more training cases would
+//! bring.
+//!
+//! It prints two Markdown tables of errors and scores from a cross-validation over the training
+//! cases of a data set: variants of the network with one part changed, and the default network
+//! trained on different numbers of cases. The test cases of the data set are not used. The second
+//! argument, if there is one, is a data set whose cases are added for the second table.
 //!
 //! `cargo run --release --no-default-features --example force_ablation -- \
+//!
 //! datasets/fea datasets/fea-wide`
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
@@ -22,16 +28,23 @@ use impactlab::learning::{TrainSettings, TrainingSet, folds, split};
 
 type Answer<T> = Result<T, Box<dyn Error>>;
 
+/// Seed of the split, the folds, the trainings and the draws.
 const SEED: u64 = 0;
+/// Number of folds of the cross-validation.
 const N_FOLDS: usize = 3;
+/// Number of curves drawn from a prediction to compute its probabilistic scores.
 const N_DRAWS: usize = 500;
 
-/// A way to train, and the sums over the cases that it has not seen.
+/// A configuration to train, with the errors and scores over the cases on which it was tested.
 struct Variant {
     name: &'static str,
     config: ForceConfig,
+    /// Whether contact point, position and body of the bullet are withheld from the prediction,
+    /// which then knows only θ: masses, velocities and heading of the bullet.
     is_theta_alone: bool,
+    /// Errors of each case, with whether the vehicles separate without hooking.
     errors: Vec<(bool, PointErrors)>,
+    /// Probabilistic scores of each case, in the same order.
     scores: Vec<ProbabilisticScores>,
 }
 
@@ -40,6 +53,7 @@ impl Variant {
         Self { name, config, is_theta_alone: false, errors: Vec::new(), scores: Vec::new() }
     }
 
+    /// Predicts the cases with a model and appends their errors and scores.
     fn add(&mut self, model: &ForceModel, cases: &[&ForceCase]) -> Answer<()> {
         for (i, case) in cases.iter().enumerate() {
             let scenario = match self.is_theta_alone {
@@ -60,6 +74,8 @@ impl Variant {
         Ok(())
     }
 
+    /// Prints the row of the variant: point errors in %, shares of the recorded values inside the
+    /// band in %, CRPS in kN and negative log-likelihood in nats.
     fn print(&self) {
         let of = |is_all: bool, scores: &[&ProbabilisticScores]| {
             let chosen: Vec<&PointErrors> =
@@ -96,7 +112,8 @@ fn header() {
     println!("|{}", " --- |".repeat(12));
 }
 
-/// Trains every variant on the cases; those with the same physics share its fit.
+/// Trains every variant on the cases of one fold and tests it on the others. Variants with the same
+/// physics share its fit.
 fn add_fold(
     variants: &mut [Variant],
     (train, test): (Vec<ForceCase>, &[&ForceCase]),
@@ -133,19 +150,23 @@ fn load(path: &str) -> Answer<Vec<ForceCase>> {
     }
 }
 
+/// Returns the training part of the split of a data set.
 fn training_cases(path: &str, config: &ForceConfig) -> Answer<Vec<ForceCase>> {
     let cases = load(path)?;
     let parts = split(&cases, SEED, config.training.test_share);
     Ok(parts.train.iter().filter_map(|&idx| cases.get(idx).cloned()).collect())
 }
 
-/// - `n_most`: how many cases of each fold to train on.
+/// Trains and tests every variant on each fold.
+///
+/// - `n_most`: largest number of cases of a fold to train on.
 fn cross_validate(variants: &mut [Variant], cases: &[ForceCase], n_most: usize) -> Answer<()> {
     for fold in folds(cases, N_FOLDS, SEED) {
         let of = |indices: &[usize]| -> Vec<&ForceCase> {
             indices.iter().filter_map(|&idx| cases.get(idx)).collect()
         };
-        // The order of `split` is by hash, that of the files is not always random.
+        // The half of the cases that a hash selects comes first, because the order of the files is
+        // not always random.
         let order = split(&of(&fold.train), SEED, 0.5);
         let order = order.test.into_iter().chain(order.train);
         let train = of(&fold.train);
@@ -155,6 +176,7 @@ fn cross_validate(variants: &mut [Variant], cases: &[ForceCase], n_most: usize) 
     Ok(())
 }
 
+/// Returns the default network and the variants in which one part of it is changed.
 fn ablations(config: &ForceConfig) -> Vec<Variant> {
     let with = |change: fn(&mut NetworkConfig)| {
         let mut config = config.clone();
@@ -205,7 +227,7 @@ fn main() -> Answer<()> {
     header();
     variants.iter().for_each(Variant::print);
 
-    // With another data set there are enough for two folds of three to be more than 75.
+    // Only with a second data set do two of the three folds hold more than 75 cases.
     if let Some(extra) = arguments.next() {
         train.extend(load(&extra)?);
     }

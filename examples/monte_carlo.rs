@@ -1,7 +1,11 @@
-//! How well the distribution of a motion agrees with coherent draws: a table in Markdown over test
-//! trajectories of a data set.
+//! Compares the predicted distribution of a motion with motions drawn by Monte Carlo, each with one
+//! mixture component, latent factors that are constant along it, and noise in each step.
+//!
+//! It prints a Markdown table of the means and standard deviations at several times over the test
+//! trajectories of a data set. The arguments are the model, the data set and the number of draws.
 //!
 //! `cargo run --release --no-default-features --example monte_carlo -- \
+//!
 //! assets/models/response.safetensors datasets/trajectories-fea 10000`
 
 #![allow(clippy::print_stdout)]
@@ -14,15 +18,16 @@ use impactlab::data::Outcome;
 use impactlab::learning::{ModelFile, TEST_SHARE, split};
 use impactlab::response::{Predictor, ResponseCase, ResponseModel, STEP_S};
 
-/// Seed of the split that the commands have by default, and of the draws.
+/// Seed of the draws and of the split, which is the default of the commands.
 const SEED: u64 = 0;
-/// Instants that are looked at, s.
+/// Times since the start of the impact at which the distributions are compared, s.
 const INSTANTS_S: [f64; 3] = [1.0, 2.0, 3.9];
 
-/// Of a case at an instant: distance of the means over the length of the path, and ratios of the
-/// standard deviations of X, Y and heading.
+/// Agreement of the two distributions for one case at one time.
 struct Agreement {
+    /// Distance of the two mean positions, as a share of the length of the recorded path.
     mean_share: f64,
+    /// Predicted standard deviation over that of the draws, for X, Y and heading.
     ratios: [f64; 3],
 }
 
@@ -66,6 +71,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// Compares the predicted distribution of a case with `n_draws` simulated motions. Returns each
+/// time with the agreement at it.
 fn agreement(predictor: &Predictor, case: &ResponseCase, n_draws: usize) -> Vec<(f64, Agreement)> {
     let Some(initial) = case.states.first() else { return Vec::new() };
     let motion = predictor.motion(initial, &case.inputs);

@@ -1,11 +1,14 @@
-//! What each part of the response network is worth: a table in Markdown, from cross-validation over
-//! the training trajectories of a data set. No test case is looked at.
+//! Measures what each part of the response network contributes. It prints a Markdown table from a
+//! cross-validation over the training trajectories of a data set, whose test trajectories are not
+//! used.
 //!
-//! Every fold learns from the same number of trajectories, chosen by seed among those that it may
-//! see, and predicts the ones left out from their recorded forces. Pre-training takes the forces of
-//! all training trajectories, never a motion. A row is printed as soon as it is there.
+//! In every fold the network learns from the same number of trajectories, which a seed chooses
+//! among the training part of the fold, and predicts the others from their recorded forces.
+//! Pre-training uses the forces of all training trajectories, but none of their motions. Each row
+//! is printed as soon as it is known.
 //!
 //! `cargo run --release --no-default-features --example response_ablation -- \
+//!
 //! --data datasets/trajectories-fea --trajectories 20 --choices 2`
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
@@ -25,17 +28,20 @@ use impactlab::response::{
 
 type Answer<T> = Result<T, Box<dyn Error>>;
 
-/// Seed of the split that the commands have by default: its test part is left out.
+/// Seed of the split into training and test trajectories, which is the default of the commands. The
+/// test part is not used.
 const SPLIT_SEED: u64 = 0;
-/// Seed of the folds.
+/// Seed that assigns the trajectories to folds.
 const FOLD_SEED: u64 = 7;
-/// Seeds of the trainings are `choice · CHOICE_STRIDE + fold`.
+/// Factor in the seed of a training, `choice · CHOICE_STRIDE + fold`.
 const CHOICE_STRIDE: u64 = 10;
-/// Instants after the start of the impact at which the regions are looked at, s.
+/// Times after the start of the impact at which the predicted regions of the position are tested,
+/// s.
 const INSTANTS_S: [f64; 5] = [0.5, 1.0, 2.0, 3.0, 3.99];
-/// Levels of the regions.
+/// Probabilities of the predicted regions that are tested.
 const LEVELS: [f64; 2] = [0.5, 0.9];
-/// Bounds of the paper's offset of v_x, v_y, r, φ̇ per step, m/s and rad/s.
+/// Bounds of the offsets of v_x and v_y, m/s, and of r and φ̇, rad/s, in one step, for the variant
+/// with the paper's offset of the state.
 const PAPER_OFFSET: [f64; N_RESIDUAL] = [5.0, 3.0, 1.0, 0.8];
 
 #[derive(Parser)]
@@ -60,27 +66,30 @@ struct Arguments {
     only: Option<String>,
 }
 
-/// A way to train.
+/// A configuration to train.
 struct Variant {
     name: &'static str,
     config: ResponseConfig,
+    /// Whether fine-tuning starts from a pre-trained network; otherwise from random weights.
     is_pretrained: bool,
 }
 
-/// What came out for trajectories that the trainings had not seen.
+/// Results over the trajectories on which the trainings were tested.
 #[derive(Default)]
 struct Scores {
-    /// Average errors, m.
+    /// Average position error of each trajectory, m.
     errors_m: Vec<f64>,
-    /// Positions within the region of each level, and all.
+    /// Number of recorded positions inside the predicted region of each level.
     inside: [usize; LEVELS.len()],
+    /// Number of recorded positions that were tested.
     n_positions: usize,
-    /// Of all trainings, their calibration included.
+    /// Total time of all trainings, including their calibration, s.
     fine_tuning_s: f64,
     n_trainings: usize,
 }
 
 impl Scores {
+    /// Predicts a trajectory with a model and adds its error and coverage.
     fn add(&mut self, model: &ResponseModel, case: &ResponseCase) -> Answer<()> {
         let Some(initial) = case.states.first() else { return Ok(()) };
         let predictor = model.predictor(&case.vehicle)?;
@@ -99,6 +108,7 @@ impl Scores {
         Ok(())
     }
 
+    /// Prints the row of a variant.
     fn print(mut self, name: &str, pretraining_s: Option<f64>) {
         self.errors_m.sort_by(f64::total_cmp);
         let n = self.errors_m.len();
@@ -134,6 +144,7 @@ fn header() {
     println!("|{}", " --- |".repeat(9));
 }
 
+/// Returns the default network and the variants in which one part of it is changed.
 fn ablations(config: &ResponseConfig) -> Vec<Variant> {
     let with = |name, change: &dyn Fn(&mut ResponseConfig)| {
         let mut config = config.clone();
@@ -145,7 +156,9 @@ fn ablations(config: &ResponseConfig) -> Vec<Variant> {
         network.correction = Correction::StateOffset;
         network.effects = false;
         network.bound = Some(PAPER_OFFSET);
-        // An output of one changes a step by as much as it does as an acceleration.
+        // The network's output is an offset of the state in one step here, and an acceleration
+        // otherwise. Scaling the unit by the step makes an output of one change the state by the
+        // same amount.
         network.unit = network.unit.map(|unit| unit * STEP_S);
     };
     let mut fresh = with("without pre-training", &|_| ());
@@ -170,7 +183,8 @@ fn ablations(config: &ResponseConfig) -> Vec<Variant> {
     variants
 }
 
-/// What a pre-training depends on: two configurations that agree in it share the model.
+/// Returns the part of a configuration on which pre-training depends. Configurations that agree in
+/// it share the pre-trained model.
 fn pretraining_part(config: &ResponseConfig) -> ResponseConfig {
     let mut part = ResponseConfig {
         network: config.network.clone(),
@@ -191,11 +205,16 @@ fn go_on(_: &TrainingReport) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// Pre-trained models, by what they depend on and by seed, with the seconds that each took.
+/// Pre-trained models with the part of the configuration and the seed on which they depend, and the
+/// duration of each pre-training, s.
 #[derive(Default)]
 struct Pretrained(Vec<((ResponseConfig, u64), ResponseModel, f64)>);
 
 impl Pretrained {
+    /// Returns the pre-trained model of a configuration and the duration of its training, s. It is
+    /// trained the first time it is asked for.
+    ///
+    /// - `records`: forces of the trajectories, from which the simulations are generated.
     fn get(
         &mut self,
         config: &ResponseConfig,
@@ -217,7 +236,7 @@ impl Pretrained {
     }
 }
 
-/// Trains a variant on every fold and every choice, and prints its row.
+/// Trains and tests a variant on every fold for every choice of trajectories, and prints its row.
 fn cross_validate(
     variant: &Variant,
     cases: &[ResponseCase],
@@ -259,7 +278,7 @@ fn cross_validate(
     Ok(())
 }
 
-/// The 4DOF model with the data sheet alone.
+/// Prints the row of the 4DOF model with the parameters of the vehicle's data sheet.
 fn print_four_dof(cases: &[ResponseCase]) {
     let mut scores = Scores::default();
     for case in cases {
@@ -270,6 +289,7 @@ fn print_four_dof(cases: &[ResponseCase]) {
     scores.print("4DOF model, untuned", None);
 }
 
+/// Returns the training part of the split of a data set.
 fn training_cases(path: &Path) -> Answer<Vec<ResponseCase>> {
     let go_on = &mut |_: impactlab::jobs::Progress| ControlFlow::Continue(());
     let Outcome::Complete(cases) = ResponseCase::load_all(path, None, go_on)? else {

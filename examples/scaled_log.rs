@@ -1,11 +1,13 @@
-//! The workflow of a scaled vehicle: what a network learns from one log of 100 samples about the next
-//! impact of the same vehicle. A table in Markdown.
+//! Measures what the response network learns from one log of 100 samples of a scaled vehicle about
+//! the next impacts of the same vehicle. It prints a Markdown table.
 //!
-//! The vehicle is simulated: the 1:4 target with another friction, yaw inertia and tyre balance than
-//! its data sheet says. Its log has the noise of a satellite receiver and an inertial sensor. The
-//! logs and the measured forces are kept in the folder of `--out`.
+//! The vehicle is simulated. It is the 1:4 scaled target, whose friction, yaw inertia and cornering
+//! coefficients differ from those of its data sheet. Its log has noise that is typical of a
+//! satellite receiver and an inertial sensor. The logs and the forces are kept in the folder of
+//! `--out`.
 //!
-//! `cargo run --release --no-default-features --example scaled_log -- --out scaled-logs --vehicles 5`
+//! `cargo run --release --no-default-features --example scaled_log -- --out scaled-logs --vehicles
+//! 5`
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
@@ -30,20 +32,22 @@ use rand_distr::StandardNormal;
 
 type Answer<T> = Result<T, Box<dyn Error>>;
 
-/// First contact on the clock of a log, s.
+/// Time of the first contact on the clock of a log, s.
 const CONTACT_S: f64 = 0.2;
-/// Of x and y, m; of the yaw, rad; of the yaw rate, rad/s; of v_x and v_y, m/s.
+/// Channels of a log and the standard deviation of their noise: x and y in m, yaw in rad, yaw rate
+/// in rad/s, v_x and v_y in m/s.
 const NOISE: [(&[Channel], f64); 4] = [
     (&[Channel::X, Channel::Y], 0.02),
     (&[Channel::Yaw], 0.008_727),
     (&[Channel::YawRate], 0.017_453),
     (&[Channel::Vx, Channel::Vy], 0.05),
 ];
-/// What a log holds: without and with velocities.
+/// The two kinds of logs, without and with velocities: the name in the table, and the number of
+/// entries of [`NOISE`] that the log contains.
 const N_CHANNELS: [(&str, usize); 2] = [("pose, yaw rate", 3), ("and velocity", 4)];
-/// Samples of a log, as the paper fine-tunes on.
+/// Number of samples of a log, the same as in the paper's fine-tuning.
 const N_SAMPLES: usize = 100;
-/// Impacts to predict, each 4 s.
+/// Number of impacts to predict with each vehicle, of 4 s each.
 const N_NEXT: usize = 8;
 
 #[derive(Parser)]
@@ -62,7 +66,7 @@ struct Arguments {
     config: Option<PathBuf>,
 }
 
-/// Average errors over the next impacts of all vehicles, m.
+/// A row of the table: a model, and its average errors over the next impacts of all vehicles, m.
 struct Row {
     name: String,
     errors_m: Vec<f64>,
@@ -79,7 +83,7 @@ impl Row {
     }
 }
 
-/// The vehicle as it is, not as its data sheet has it.
+/// Draws the parameters of the simulated vehicle, which differ from its data sheet.
 fn true_vehicle(rng: &mut ChaCha8Rng) -> VehicleParameters {
     let mut vehicle = Preset::ScaledTarget.parameters();
     vehicle.mass.yaw_inertia_kg_m2 *= rng.random_range(0.85..1.2);
@@ -89,7 +93,8 @@ fn true_vehicle(rng: &mut ChaCha8Rng) -> VehicleParameters {
     vehicle
 }
 
-/// Speed and force of a push against the rear quarter.
+/// Draws the speed before the impact, m/s, and the contact load of a push against a rear quarter: a
+/// half-sine pulse with its yaw moment `x F_y − y F_x` about the CG.
 fn impact(rng: &mut ChaCha8Rng) -> Answer<(f64, ContactLoad)> {
     let side: f64 = if rng.random_bool(0.5) { 1.0 } else { -1.0 };
     let impulse = [rng.random_range(-10.0..30.0), side * rng.random_range(50.0..130.0)];
@@ -98,7 +103,8 @@ fn impact(rng: &mut ChaCha8Rng) -> Answer<(f64, ContactLoad)> {
     let x_m = -rng.random_range(0.55..0.75);
     let contact = ContactPoint { x_m, y_m: -0.4 * side, height_m: 0.126 };
     let mut force = pulse.to_history(1e-3)?;
-    // The car hardly turns during contact: its axes are the world's.
+    // The vehicle hardly turns during the contact, so that the body axes are taken to be those of
+    // the pulse.
     force.axes = ForceAxes::Body;
     let moment = |(fx, fy): (&f64, &f64)| contact.x_m * fy - contact.y_m * fx;
     force.mz_n_m = Some(force.fx_n.iter().zip(&force.fy_n).map(moment).collect());
@@ -106,6 +112,8 @@ fn impact(rng: &mut ChaCha8Rng) -> Answer<(f64, ContactLoad)> {
     Ok((rng.random_range(4.0..8.0), load))
 }
 
+/// Simulates the vehicle from straight driving at a speed, struck by a load, for `duration_s`
+/// seconds.
 fn drive(
     vehicle: &VehicleParameters,
     (speed_m_s, load): &(f64, ContactLoad),
@@ -117,7 +125,9 @@ fn drive(
     Ok(vehicle.simulate(&manoeuvre, Integrator::Rk4)?.series)
 }
 
-/// Every `stride`-th sample with noise, at most [`N_SAMPLES`].
+/// Takes every `stride`-th sample of a motion, at most [`N_SAMPLES`], and adds noise.
+///
+/// - `n_kinds`: number of entries of [`NOISE`] that the log contains.
 fn log(motion: &TimeSeries, stride: usize, n_kinds: usize, seed: u64) -> Answer<TimeSeries> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let time_s = motion.time_s().iter().copied().step_by(stride).take(N_SAMPLES).collect();
@@ -132,7 +142,8 @@ fn log(motion: &TimeSeries, stride: usize, n_kinds: usize, seed: u64) -> Answer<
     Ok(series)
 }
 
-/// An impact without noise, from first contact on, with the vehicle by its data sheet.
+/// Simulates another impact of the vehicle without noise, from the first contact on. The case has
+/// the vehicle of the data sheet, since a prediction does not know the true one.
 fn next_case(truth: &VehicleParameters, rng: &mut ChaCha8Rng) -> Answer<ResponseCase> {
     let (speed_m_s, mut load) = impact(rng)?;
     load.force.time_s.iter_mut().for_each(|time_s| *time_s -= CONTACT_S);
@@ -144,6 +155,7 @@ fn next_case(truth: &VehicleParameters, rng: &mut ChaCha8Rng) -> Answer<Response
     Ok(ResponseCase::of_motion("next".to_owned(), data_sheet, states, inputs))
 }
 
+/// Returns the average position error of a network on each case, m.
 fn errors_of_model(model: &ResponseModel, cases: &[ResponseCase]) -> Answer<Vec<f64>> {
     let of = |case: &ResponseCase| {
         let path = model.predictor(&case.vehicle)?.central_path(&case.states[0], &case.inputs);
@@ -152,6 +164,7 @@ fn errors_of_model(model: &ResponseModel, cases: &[ResponseCase]) -> Answer<Vec<
     cases.iter().map(of).collect()
 }
 
+/// Returns the average position error of the tuned 4DOF model on each case, m.
 fn errors_of_tuning(tuning: &Tuning, cases: &[ResponseCase]) -> Vec<f64> {
     let of = |case: &ResponseCase| {
         let vehicle = tuning.apply(&case.vehicle);
@@ -161,7 +174,7 @@ fn errors_of_tuning(tuning: &Tuning, cases: &[ResponseCase]) -> Vec<f64> {
     cases.iter().map(of).collect()
 }
 
-/// Appends to the row of this name.
+/// Appends errors to the row of this name, which is added if it is not there.
 fn add(rows: &mut Vec<Row>, name: String, errors_m: Vec<f64>) {
     match rows.iter_mut().find(|row| row.name == name) {
         Some(row) => row.errors_m.extend(errors_m),
@@ -169,7 +182,12 @@ fn add(rows: &mut Vec<Row>, name: String, errors_m: Vec<f64>) {
     }
 }
 
-/// Trains on one log, and adds how well that predicts.
+/// Tunes the 4DOF model and fine-tunes the network on one log, and adds the errors of both on the
+/// next impacts.
+///
+/// - `name`, `found`: name of the row, and the impact found in the log;
+/// - `start`, `config`, `seed`: pre-trained network, settings and seed of the fine-tuning;
+/// - `next`: impacts to predict.
 fn add_log(
     rows: &mut Vec<Row>,
     (name, found): (&str, LoggedImpact),
