@@ -28,6 +28,8 @@ use crate::vehicle::{
 const REST_SPEED_M_S: f64 = 0.3;
 /// Number of draws for the intervals of the final position.
 const N_END_DRAWS: usize = 4000;
+/// Number of draws for the area of the region of the final position, which then has an error of some
+/// 2 %.
 const N_REGION_DRAWS: usize = 10_000;
 
 /// Settings of a motion forecast.

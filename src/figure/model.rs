@@ -117,7 +117,7 @@ pub struct Band {
     pub name: String,
     /// Meaning of the colour.
     pub role: Role,
-    /// Opacity of the fill, 0 to 1. Where bands overlap, their opacities add up.
+    /// Opacity of the fill, 0 to 1. Nested bands are drawn over each other.
     pub opacity: f32,
     /// Abscissae of both curves.
     pub x: Vec<f64>,
