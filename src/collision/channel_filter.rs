@@ -1,7 +1,9 @@
-//! Channel frequency classes of crash tests: a phaseless low-pass filter.
+//! The low-pass filters of crash tests for the channel frequency classes (CFC), without phase
+//! shift.
 //!
-//! Source: [`SaeJ211`](crate::bibliography::SaeJ211), appendix C: two-pole Butterworth, run forward
-//! and backward. The standard leaves the ends open; here see [`ChannelFilter::apply`].
+//! Source: [`SaeJ211`](crate::bibliography::SaeJ211), appendix C: a two-pole Butterworth filter
+//! that is run forward and backward over the signal. The standard does not say how the ends of a
+//! signal are treated; [`ChannelFilter::apply`] describes what is done here.
 
 use std::f64::consts::{SQRT_2, TAU};
 
@@ -9,34 +11,36 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::ForceHistory;
 
-/// Design frequency of the two-pole filter over the class's number, SAE J211 appendix C: two runs
-/// then give −3 dB at 1.65 times the class.
+/// Ratio of the design frequency of the two-pole filter to the number of the class (SAE J211,
+/// appendix C). With this ratio, the two runs together give −3 dB at 1.65 times the number of the
+/// class.
 const DESIGN_RATIO: f64 = 2.0775;
 
-/// SAE J211: sampling rate at least ten times the class.
+/// Smallest ratio of the sampling rate to the number of the class (SAE J211).
 const MIN_RATE_RATIO: f64 = 10.0;
 
-/// Padding at each end, in periods of the class: the slowest pole has decayed by
-/// `exp(−2π · 2.0775 / √2 · 4) = 1e-16` there.
+/// Length of the padding at each end, in periods of the class frequency. Over this length the
+/// response of the filter decays by a factor of `exp(−2π · 2.0775 / √2 · 4) = 1e-16`.
 const PAD_PERIODS: f64 = 4.0;
 
-/// Steps may differ by this share of their mean (times are often written with few digits).
+/// Largest deviation of a time step from the mean step, as a share of the mean step. Times are
+/// often written with few digits, so steps that are meant to be equal differ a little.
 const STEP_TOLERANCE: f64 = 0.01;
 
-/// A channel frequency class.
+/// A channel frequency class (CFC) of SAE J211.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum ChannelClass {
-    /// CFC 60, −3 dB at 100 Hz: vehicle accelerations for comparison, barrier forces.
+    /// CFC 60, −3 dB at 100 Hz, for vehicle accelerations that are compared and for barrier forces.
     Cfc60,
-    /// CFC 180, −3 dB at 300 Hz: vehicle accelerations for integration.
+    /// CFC 180, −3 dB at 300 Hz, for vehicle accelerations that are integrated.
     Cfc180,
-    /// CFC 600, −3 dB at 1000 Hz: component tests.
+    /// CFC 600, −3 dB at 1000 Hz, for component tests.
     Cfc600,
-    /// CFC 1000, −3 dB at 1650 Hz: head accelerations.
+    /// CFC 1000, −3 dB at 1650 Hz, for head accelerations.
     Cfc1000,
 }
 
-/// The filter of a class at a sampling rate.
+/// The digital filter of a channel frequency class for a given sampling rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChannelFilter {
     a: [f64; 3],
@@ -44,64 +48,65 @@ pub struct ChannelFilter {
     n_pad: usize,
 }
 
-/// A signal that cannot be filtered.
+/// Reason why a signal cannot be filtered.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FilterError {
-    /// Too few samples a second.
+    /// The sampling rate is too low for the class, or the sample interval is not a positive number.
     #[error(
         "{rate_hz:.0} samples a second are too few for CFC {class_hz:.0}, expected {expected_hz:.0}"
     )]
     RateTooLow {
-        /// Samples a second.
+        /// Sampling rate of the signal, Hz.
         rate_hz: f64,
-        /// The class's number.
+        /// Number of the class, Hz.
         class_hz: f64,
-        /// The least that is needed.
+        /// Smallest permitted sampling rate, Hz.
         expected_hz: f64,
     },
-    /// Fewer than two samples, or a time that does not rise: no sampling rate.
+    /// There are fewer than two samples, or the last time does not lie after the first, so that
+    /// there is no sampling rate.
     #[error("{n_samples} samples over {duration_s} s have no sampling rate")]
     NoRate {
         /// Number of samples.
         n_samples: usize,
-        /// Last time less the first, s.
+        /// Difference between the last and the first time, s.
         duration_s: f64,
     },
-    /// Steps of different length: resample first.
+    /// The time steps are not equal. The signal has to be resampled before it is filtered.
     #[error(
         "the step before sample {sample_idx} is {step_s} s, expected {expected_s} s throughout"
     )]
     Uneven {
-        /// The sample after the step.
+        /// Index of the sample at the end of the step.
         sample_idx: usize,
-        /// The step, s.
+        /// Length of the step, s.
         step_s: f64,
-        /// The mean step, s.
+        /// Mean step, s.
         expected_s: f64,
     },
-    /// Not a number or infinite: it would spread over the whole signal.
+    /// A sample is NaN or infinite, which the filter would spread over the whole signal.
     #[error("sample {sample_idx} is {value}, expected a finite number")]
     NotFinite {
-        /// Which sample.
+        /// Index of the sample.
         sample_idx: usize,
-        /// Its value.
+        /// Value of the sample.
         value: f64,
     },
-    /// A column that does not fit the time axis.
+    /// The number of samples differs from the number of times.
     #[error("{got} samples over {expected} times")]
     Length {
-        /// Times.
+        /// Number of times.
         expected: usize,
-        /// Samples.
+        /// Number of samples.
         got: usize,
     },
 }
 
 impl ChannelClass {
-    /// All four, from the lowest.
+    /// All four classes, in the order of rising cut-off frequency.
     pub const ALL: [Self; 4] = [Self::Cfc60, Self::Cfc180, Self::Cfc600, Self::Cfc1000];
 
-    /// The class's number.
+    /// Number of the class, which is a frequency in Hz.
     pub fn class_hz(self) -> f64 {
         match self {
             Self::Cfc60 => 60.0,
@@ -111,7 +116,7 @@ impl ChannelClass {
         }
     }
 
-    /// What a plot or a table calls it.
+    /// Name of the class in plots and tables.
     pub fn label(self) -> &'static str {
         match self {
             Self::Cfc60 => "CFC 60",
@@ -123,7 +128,7 @@ impl ChannelClass {
 }
 
 impl ChannelFilter {
-    /// The filter of a class for this sample interval T.
+    /// Designs the filter of a class for a sample interval T, s.
     ///
     /// ```text
     /// ω_d = 2π · CFC · 2.0775     ω_a = tan(ω_d T/2)     D = 1 + √2 ω_a + ω_a²
@@ -132,13 +137,15 @@ impl ChannelFilter {
     /// ```
     ///
     /// # Errors
-    /// [`FilterError::RateTooLow`] below ten samples a period of the class (SAE J211), which also
-    /// keeps the design frequency well below half the sampling rate.
+    /// [`FilterError::RateTooLow`] if the sampling rate is less than ten times the number of the
+    /// class (SAE J211), or if the interval is not a positive number. The limit also keeps the
+    /// design frequency well below half the sampling rate.
     pub fn new(class: ChannelClass, sample_interval_s: f64) -> Result<Self, FilterError> {
         let class_hz = class.class_hz();
         let rate_hz = 1.0 / sample_interval_s;
         let expected_hz = MIN_RATE_RATIO * class_hz;
-        // A rate that is exact but for rounding, or for the digits of the time axis, will do.
+        // The tolerance accepts a rate that falls below the limit only because of rounding or of
+        // the few digits of a time axis.
         let enough = rate_hz >= expected_hz * (1.0 - 1e-6);
         if !(sample_interval_s > 0.0 && enough && rate_hz.is_finite()) {
             return Err(FilterError::RateTooLow { rate_hz, class_hz, expected_hz });
@@ -154,15 +161,20 @@ impl ChannelFilter {
         })
     }
 
-    /// Runs the filter forward and backward: no phase shift, gain 1 at rest.
+    /// Filters a signal forward and backward, which gives no phase shift and a gain of 1 at zero
+    /// frequency.
     ///
-    /// Each end is continued by its point reflection (`2 x₀ − x_k`), again and again if the signal
-    /// is shorter than the padding, and the filter starts settled at the outermost value. So a
-    /// constant comes back exactly, a ramp keeps its ends, and the end values are kept roughly: a
-    /// signal that is cut off in full swing is not pulled to zero.
+    /// The signal is continued at each end by its point reflection (`2 x₀ − x_k`), repeatedly if
+    /// the signal is shorter than the padding, and the filter starts in the steady state of the
+    /// outermost value. A constant signal is therefore returned exactly, a linear ramp keeps its
+    /// ends, and the end values of other signals change little: a signal that is cut off at a large
+    /// value is not drawn towards zero.
+    ///
+    /// - `samples`: values at the sample interval for which the filter was designed, in any unit.
+    /// - returns as many filtered values.
     ///
     /// # Errors
-    /// [`FilterError::NotFinite`].
+    /// [`FilterError::NotFinite`] for the first sample that is not finite.
     pub fn apply(&self, samples: &[f64]) -> Result<Vec<f64>, FilterError> {
         if let Some((sample_idx, &value)) = samples.iter().enumerate().find(|(_, x)| !x.is_finite())
         {
@@ -172,7 +184,8 @@ impl ChannelFilter {
             return Ok(Vec::new());
         };
         let pad = self.n_pad as i64;
-        // Less its first value, so that rounding scales with the signal's swing, not its level.
+        // The first value is subtracted so that rounding errors scale with the variation of the
+        // signal instead of its level.
         let mut padded: Vec<f64> =
             (-pad..n as i64 + pad).map(|i| reflected(samples, i) - first).collect();
         self.run(&mut padded);
@@ -196,10 +209,13 @@ impl ChannelFilter {
     }
 }
 
-/// Filters a column over a time axis of even steps.
+/// Filters a signal that is given over a time axis of equal steps.
+///
+/// - `time_s`: times of the samples, s, rising in steps that are equal to within 1 %.
+/// - `samples`: one value per time, in any unit.
 ///
 /// # Errors
-/// All of [`FilterError`].
+/// Any variant of [`FilterError`].
 pub fn filter_channel(
     class: ChannelClass,
     time_s: &[f64],
@@ -212,11 +228,14 @@ pub fn filter_channel(
     ChannelFilter::new(class, even_step_s(time_s)?)?.apply(samples)
 }
 
-/// Filters every component of a force history. Its impulse stays, but for what the filter smears
-/// over the ends: leave a quiet stretch before and after the pulse.
+/// Filters every component of a force history.
+///
+/// The impulse is preserved except for the part that the filter spreads beyond the ends of the
+/// history. The history should therefore contain some time without force before and after the
+/// pulse.
 ///
 /// # Errors
-/// All of [`FilterError`].
+/// Any variant of [`FilterError`].
 pub fn filter_history(
     class: ChannelClass,
     history: &ForceHistory,
@@ -232,7 +251,7 @@ pub fn filter_history(
     })
 }
 
-/// The step of an even time axis, s.
+/// Mean step of a time axis, s, after a check that all steps are equal.
 fn even_step_s(time_s: &[f64]) -> Result<f64, FilterError> {
     let n_samples = time_s.len();
     let duration_s = match time_s {
@@ -253,7 +272,8 @@ fn even_step_s(time_s: &[f64]) -> Result<f64, FilterError> {
     Ok(expected_s)
 }
 
-/// Sample `i` of a signal that is point-reflected at both ends without end. Not empty.
+/// Value at index `i` of a signal that is continued by point reflection at both ends, repeated as
+/// often as needed. The signal must not be empty.
 fn reflected(samples: &[f64], i: i64) -> f64 {
     let last = samples.len() as i64 - 1;
     if last == 0 {
@@ -279,7 +299,8 @@ mod tests {
         ChannelFilter::new(class, 1.0 / RATE_HZ).unwrap()
     }
 
-    /// Gain at a frequency, from the response to a unit impulse in the middle of a long rest.
+    /// Gain at a frequency, computed from the response to a unit impulse in the middle of a long
+    /// signal of zeros.
     fn gain(class: ChannelClass, frequency_hz: f64) -> f64 {
         let mut impulse = vec![0.0; 8001];
         impulse[4000] = 1.0;
@@ -296,9 +317,9 @@ mod tests {
         for class in ChannelClass::ALL {
             let db = |ratio: f64| 20.0 * gain(class, ratio * class.class_hz()).log10();
             assert!((gain(class, 0.0) - 1.0).abs() < 1e-12, "{class:?}");
-            // Up to the class's own frequency at most −1 dB; −3 dB at 1.65 times it (less the nearer
-            // half the sampling rate comes, −2.78 dB for CFC 1000 at 20 kHz); two poles
-            // twice then fall by 24 dB an octave.
+            // The attenuation is at most 1 dB at the class frequency and 3 dB at 1.65 times it. It
+            // is smaller near half the sampling rate: 2.78 dB for CFC 1000 at 20 kHz. Above, two
+            // runs of two poles fall by 24 dB per octave.
             assert!((-1.0..0.0).contains(&db(1.0)), "{class:?}: {} dB", db(1.0));
             assert!((db(1.65) + 3.0).abs() < 0.25, "{class:?}: {} dB", db(1.65));
             assert!(db(5.0) < -30.0, "{class:?}: {} dB", db(5.0));

@@ -1,23 +1,26 @@
-//! How uncertain restitution and friction are.
+//! The uncertainty of restitution and of the friction limit at the contact, as a distribution from
+//! which both are drawn.
 
 use serde::{Deserialize, Serialize};
 
 use crate::collision::ImpliedContact;
 
-/// Independent uniform distributions of restitution and friction limit.
+/// Independent uniform distributions of the coefficient of restitution e and of the friction limit
+/// μ_c.
 ///
-/// The default takes e from 0 to 0.3, the small values that vehicle-to-vehicle impacts at these
-/// closing speeds have ([`Brach2011`](crate::bibliography::Brach2011)), and μ_c from 0.2 to 0.6
-/// about the 0.4 that fits the shipped finite-element runs. Neither is a measurement of a vehicle:
-/// where impulses are known, [`ContactDistribution::fit`] replaces it. On those runs it finds e from
-/// 0.24 to 0.63, so the default gives impulses that are too small there (median error of the impulse
-/// vector 20 % with the medians of the default, 16 % with e = 0.3).
+/// By default e lies between 0 and 0.3, the small values that are usual for vehicle-to-vehicle
+/// impacts at these closing speeds ([`Brach2011`](crate::bibliography::Brach2011)), and μ_c between
+/// 0.2 and 0.6, around the value of 0.4 that fits the shipped finite-element runs. Neither range
+/// was measured on a vehicle. Where impulses are known, [`ContactDistribution::fit`] gives ranges
+/// that replace the default. For the finite-element runs it gives e from 0.24 to 0.63, so that the
+/// default underestimates their impulses: the median error of the impulse vector is 20 % with the
+/// medians of the default, and 16 % with e = 0.3.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ContactDistribution {
-    /// Lowest and highest restitution e.
+    /// Lowest and highest coefficient of restitution e, 0 to 1.
     pub restitution: [f64; 2],
-    /// Lowest and highest friction limit μ_c.
+    /// Lowest and highest friction limit μ_c, 0 or more.
     pub friction_limit: [f64; 2],
 }
 
@@ -28,18 +31,21 @@ impl Default for ContactDistribution {
 }
 
 impl ContactDistribution {
-    /// Restitution and friction limit at these quantiles (0 to 1 each): feed it uniform random
-    /// numbers to draw, 0.5 for the median.
+    /// Returns the coefficient of restitution and the friction limit at the given quantiles, each
+    /// from 0 to 1. Independent uniform random numbers as quantiles draw a sample; 0.5 gives the
+    /// median.
     pub fn quantile(&self, [u_restitution, u_friction]: [f64; 2]) -> (f64, f64) {
         let at = |[low, high]: [f64; 2], u: f64| low + (high - low) * u;
         (at(self.restitution, u_restitution), at(self.friction_limit, u_friction))
     }
 
-    /// The ranges that hold the middle 90 % of what known impulses imply
-    /// ([`Impact::implied_contact`](crate::collision::Impact::implied_contact)), e cut to 0 to 1.
+    /// The ranges between the 5 % and the 95 % quantile of the values that known impulses imply
+    /// ([`Impact::implied_contact`](crate::collision::Impact::implied_contact)).
     ///
-    /// μ_c comes out low where many impacts do not slide: their impulse ratio is only a lower
-    /// bound of it. `None` without samples.
+    /// The limits of e are clamped to the interval from 0 to 1. The range of μ_c is taken from the
+    /// magnitudes of the impulse ratios. It is too low if many of the impacts end without sliding,
+    /// because their impulse ratio is only a lower bound of μ_c. Returns `None` if there are no
+    /// samples.
     pub fn fit(samples: &[ImpliedContact]) -> Option<Self> {
         let middle = |of: fn(&ImpliedContact) -> f64| {
             let mut values: Vec<f64> = samples.iter().map(of).collect();

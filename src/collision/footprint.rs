@@ -1,109 +1,113 @@
-//! Contact point and contact normal from the outlines of the two vehicles.
+//! Contact point and contact normal of two vehicles from their outlines in plan view.
 //!
-//! Assumptions: a vehicle's outline is a rectangle of its outer length and width; the vehicles are
-//! at first touch or overlap a little. Rounded corners, wheels and crush are left out.
+//! Assumptions: the outline of a vehicle is a rectangle of its outer length and width; the vehicles
+//! are at first contact or overlap a little. Rounded corners, wheels and crush are left out.
 //!
-//! Source: separating axes of two rectangles, [`Gottschalk1996`](crate::bibliography::Gottschalk1996);
-//! overlap by clipping, [`SutherlandHodgman1974`](crate::bibliography::SutherlandHodgman1974).
+//! Source: the test for overlap is that of separating axes of two rectangles
+//! ([`Gottschalk1996`](crate::bibliography::Gottschalk1996)); the overlap is found by polygon
+//! clipping ([`SutherlandHodgman1974`](crate::bibliography::SutherlandHodgman1974)).
 
 use serde::{Deserialize, Serialize};
 
 use crate::vehicle::GeometryParameters;
 
-/// Vehicles further apart than this do not touch, m: poses measured from photographs or video are
-/// no better.
+/// Largest gap between the outlines at which the vehicles still count as touching, m. Poses that
+/// are measured from photographs or video are no more accurate than this.
 pub const TOUCH_TOLERANCE_M: f64 = 0.02;
 
-/// How deep two vehicles that just touch are pushed together before their overlap is cut out, m.
+/// Overlap to which vehicles that barely touch are pushed together before the polygon of their
+/// overlap is computed, m.
 const PROBE_DEPTH_M: f64 = 1e-3;
 
-/// Where a vehicle stands.
+/// Position and heading of a vehicle in world axes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
-    /// Position of the CG along the world's X axis, m.
+    /// X coordinate of the centre of gravity (CG) in world axes, m.
     pub x_m: f64,
-    /// Position of the CG along the world's Y axis, m.
+    /// Y coordinate of the CG in world axes, m.
     pub y_m: f64,
-    /// Heading (yaw ψ), rad, counter-clockwise.
+    /// Heading (yaw angle ψ) in world axes, rad, counter-clockwise positive.
     pub yaw_rad: f64,
 }
 
-/// A vehicle's outline: a rectangle along the body axes.
+/// Outline of a vehicle in plan view: a rectangle whose sides are parallel to the body axes, with
+/// the CG midway between the left and the right side.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Footprint {
-    /// Outer length, m.
+    /// Outer length of the vehicle, m, more than 0.
     pub length_m: f64,
-    /// Outer width, m.
+    /// Outer width of the vehicle, m, more than 0.
     pub width_m: f64,
-    /// From the foremost point back to the CG, m, 0 to `length_m`.
+    /// Distance from the front of the outline back to the CG, m, 0 to `length_m`.
     pub cg_from_front_m: f64,
 }
 
-/// A side of a vehicle.
+/// One of the four sides of the outline of a vehicle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
-    /// Front.
+    /// The front of the vehicle, with the outward normal along +x of the body axes.
     Front,
-    /// Left.
+    /// The left side of the vehicle, with the outward normal along +y of the body axes.
     Left,
-    /// Rear.
+    /// The rear of the vehicle, with the outward normal along −x of the body axes.
     Rear,
-    /// Right.
+    /// The right side of the vehicle, with the outward normal along −y of the body axes.
     Right,
 }
 
-/// Whose surface gives the contact normal.
+/// The side to which the contact normal is perpendicular, and the vehicle to which it belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StruckSurface {
-    /// This side of the target, struck by the bullet's corner or side.
+    /// A side of the target, which is struck by a corner or a side of the bullet.
     Target(Side),
-    /// This side of the bullet, struck by the target's corner.
+    /// A side of the bullet, into which a corner of the target penetrates.
     Bullet(Side),
 }
 
-/// Where and along which normal two vehicles touch.
+/// Contact of two vehicles: contact point, contact normal and overlap.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
-    /// Contact point, world axes, m.
+    /// Contact point in world axes, m.
     pub point_m: [f64; 2],
-    /// Angle Γ of the normal, world axes, rad, pointing INTO the target.
+    /// Angle Γ of the contact normal in world axes, rad. The normal points INTO the target.
     pub normal_angle_rad: f64,
-    /// How deep the outlines overlap along the normal, m; negative: the gap between them.
+    /// Overlap of the outlines along the normal, m. A negative value is the gap between them.
     pub depth_m: f64,
-    /// Whose side the normal stands on.
+    /// The side to which the normal is perpendicular.
     pub surface: StruckSurface,
 }
 
-/// Outlines that make no contact.
+/// Reason why no contact can be computed from two outlines.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FootprintError {
-    /// The vehicles are apart.
+    /// The outlines are further apart than [`TOUCH_TOLERANCE_M`], or have no common area.
     #[error("the vehicles are {gap_m:.3} m apart")]
     Apart {
-        /// Gap between the outlines, m.
+        /// Gap between the outlines along the axis on which they are furthest apart, m.
         gap_m: f64,
     },
-    /// An outline without area, or a CG outside it, or a pose that is not finite.
+    /// A number is out of range: an outline has no area, the CG lies outside the outline, or a pose
+    /// is not finite.
     #[error("{name} is {value}, expected {expected}")]
     Range {
-        /// Which number.
+        /// Name of the field.
         name: &'static str,
-        /// Its value, m (`yaw_rad`: rad).
+        /// Value of the field, m (`yaw_rad`: rad).
         value: f64,
-        /// The range, in words.
+        /// Description of the permitted range.
         expected: &'static str,
     },
 }
 
 impl Pose {
-    /// A point of the body in world axes, m.
+    /// Transforms a point from body axes (origin at the CG) to world axes, m.
     pub fn world_from_body(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = self.yaw_rad.sin_cos();
         [self.x_m + x * cos - y * sin, self.y_m + x * sin + y * cos]
     }
 
-    /// A point of the world in body axes, m.
+    /// Transforms a point from world axes to body axes (origin at the CG), m.
     pub fn body_from_world(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = self.yaw_rad.sin_cos();
         let (dx, dy) = (x - self.x_m, y - self.y_m);
@@ -112,10 +116,10 @@ impl Pose {
 }
 
 impl Side {
-    /// All four, counter-clockwise from the front.
+    /// All four sides, counter-clockwise from the front.
     pub const ALL: [Self; 4] = [Self::Front, Self::Left, Self::Rear, Self::Right];
 
-    /// The word for it in files.
+    /// Name of the side in scenario files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Front => "front",
@@ -125,7 +129,7 @@ impl Side {
         }
     }
 
-    /// Angle of the outward normal in body axes, rad.
+    /// Angle of the outward normal of the side in body axes, rad, counter-clockwise from +x.
     pub fn outward_angle_rad(self) -> f64 {
         let quarters = match self {
             Self::Front => 0.0,
@@ -148,10 +152,10 @@ impl From<&GeometryParameters> for Footprint {
 }
 
 impl Footprint {
-    /// Checks that the outline has an area and holds the CG.
+    /// Checks that the outline has an area and that the CG lies inside it.
     ///
     /// # Errors
-    /// [`FootprintError::Range`].
+    /// [`FootprintError::Range`] for the first field that is out of range.
     pub fn check(&self) -> Result<(), FootprintError> {
         let positive = |x: f64| x.is_finite() && x > 0.0;
         let inside = self.cg_from_front_m >= 0.0 && self.cg_from_front_m <= self.length_m;
@@ -167,8 +171,8 @@ impl Footprint {
         Ok(())
     }
 
-    /// Corners in world axes, m, counter-clockwise from the front left:
-    /// front left, rear left, rear right, front right.
+    /// Corners of the outline in world axes, m, counter-clockwise: front left, rear left, rear
+    /// right, front right.
     pub fn corners_m(&self, pose: &Pose) -> [[f64; 2]; 4] {
         let front = self.cg_from_front_m;
         let rear = front - self.length_m;
@@ -177,7 +181,7 @@ impl Footprint {
             .map(|corner| pose.world_from_body(corner))
     }
 
-    /// Middle of a side in body axes, m.
+    /// Midpoint of a side in body axes, m.
     pub fn side_middle_m(&self, side: Side) -> [f64; 2] {
         let middle = self.cg_from_front_m - self.length_m / 2.0;
         match side {
@@ -189,16 +193,21 @@ impl Footprint {
     }
 }
 
-/// Contact of two vehicles that touch or overlap a little.
+/// Finds the contact of two vehicles that touch or overlap a little.
 ///
-/// The normal stands on the side (of either vehicle) through which the overlap is shallowest; the
-/// target's in a tie. The contact point is the centroid of the overlap; outlines that barely touch
-/// (or have a gap up to [`TOUCH_TOLERANCE_M`]) are pushed together to an overlap of 1 mm for that,
-/// so two flat sides touch in the middle of what they share and a corner touches at the corner.
-/// After a deep overlap the shallowest side need not be the one that was struck first.
+/// The normal is perpendicular to that side, of either vehicle, along whose normal the overlap is
+/// smallest; if two sides are equal, a side of the target is preferred. The contact point is the
+/// centroid of the overlap. Outlines that overlap by less than 1 mm, or that have a gap up to
+/// [`TOUCH_TOLERANCE_M`], are first pushed together to an overlap of 1 mm. Two parallel sides
+/// therefore touch in the middle of their common length, and a corner touches at the corner. If the
+/// outlines overlap deeply, the side that is found need not be the one that was struck first.
+///
+/// - `target`, `bullet`: outlines; the poses are in world axes.
+/// - returns the contact in world axes.
 ///
 /// # Errors
-/// [`FootprintError::Apart`]; [`FootprintError::Range`].
+/// [`FootprintError::Apart`] if the gap is larger than [`TOUCH_TOLERANCE_M`] or the outlines have
+/// no common area; [`FootprintError::Range`] if an outline or a pose is out of range.
 pub fn find_contact(
     (target, target_pose): (&Footprint, &Pose),
     (bullet, bullet_pose): (&Footprint, &Pose),
@@ -226,7 +235,7 @@ pub fn find_contact(
     });
     let mut shallowest = by_target[0];
     for candidate in by_target.into_iter().skip(1).chain(by_bullet) {
-        // A tie up to rounding keeps the target's side.
+        // Sides of equal overlap up to rounding must not replace a side of the target.
         if candidate.0 < shallowest.0 - 1e-9 {
             shallowest = candidate;
         }
@@ -240,7 +249,7 @@ pub fn find_contact(
     let [x, y] =
         centroid(&clip(&target_m, &pushed)).ok_or(FootprintError::Apart { gap_m: -depth_m })?;
     Ok(Contact {
-        // Half of the push belongs to each vehicle.
+        // The bullet alone was pushed, but the contact point lies midway between the vehicles.
         point_m: [x - push / 2.0 * normal[0], y - push / 2.0 * normal[1]],
         normal_angle_rad: normal[1].atan2(normal[0]),
         depth_m,
@@ -248,16 +257,22 @@ pub fn find_contact(
     })
 }
 
-/// Pose of a bullet with this heading that just touches a side of the target.
+/// Computes the pose of a bullet of given heading that just touches a side of the target.
 ///
-/// The bullet's foremost point in the direction of the push (its corner; the middle of its side
-/// if that is parallel to the target's) comes to lie on the side, `offset_m` from its middle. The
-/// offset counts along the target's x axis for its left and right side and along its y axis for
-/// front and rear: a bullet at the right rear quarter has side `Right` and a negative offset.
+/// The point of the bullet that is furthest in the direction into the target lies on the struck
+/// side. It is a corner of the bullet, or the midpoint of a side of the bullet that is parallel to
+/// the struck side.
+///
+/// - `side`: struck side of the target.
+/// - `offset_m`: position of the touching point relative to the midpoint of the struck side, m,
+///   positive along the x axis of the target for its left and right side and along its y axis for
+///   its front and rear. A bullet at the right rear quarter of the target has the side
+///   [`Side::Right`] and a negative offset.
+/// - `heading_rad`: heading of the bullet in world axes, rad.
 ///
 /// # Errors
-/// [`FootprintError::Apart`] if the offset lies past the end of the side so that nothing touches;
-/// [`FootprintError::Range`].
+/// [`FootprintError::Apart`] if the offset lies so far beyond the end of the side that the outlines
+/// do not touch; [`FootprintError::Range`] if an outline or a pose is out of range.
 pub fn place_touching(
     (target, target_pose): (&Footprint, &Pose),
     (side, offset_m): (Side, f64),
@@ -292,12 +307,13 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-/// Furthest extent of the corners along a direction.
+/// Largest coordinate of the corners along a direction, m.
 fn reach(corners: &[[f64; 2]; 4], along: [f64; 2]) -> f64 {
     corners.iter().map(|&corner| dot(corner, along)).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// What two convex, counter-clockwise polygons share (Sutherland and Hodgman).
+/// Intersection of two convex polygons whose corners are in counter-clockwise order (algorithm of
+/// Sutherland and Hodgman).
 fn clip(subject: &[[f64; 2]], window: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut polygon = subject.to_vec();
     for (i, &a) in window.iter().enumerate() {
@@ -320,7 +336,7 @@ fn clip(subject: &[[f64; 2]], window: &[[f64; 2]]) -> Vec<[f64; 2]> {
     polygon
 }
 
-/// Centroid of a polygon; `None` if it has no area.
+/// Centroid of a polygon with counter-clockwise corners; `None` if it has no area.
 fn centroid(polygon: &[[f64; 2]]) -> Option<[f64; 2]> {
     let origin = *polygon.first()?;
     let (mut area, mut moment) = (0.0, [0.0; 2]);
@@ -429,8 +445,8 @@ mod tests {
             ..ProptestConfig::default()
         })]
 
-        /// Moving the whole scene moves the contact along; mirroring it mirrors the contact; the
-        /// contact point lies in both outlines.
+        /// A rigid motion of both vehicles moves the contact with them; a mirrored scene has the
+        /// same overlap; the contact point lies in both outlines.
         #[test]
         fn contacts_move_with_the_scene(
             at in (-3.0..3.0, -3.0..3.0, -4.0..4.0),
@@ -450,7 +466,7 @@ mod tests {
             let bullet = car(x, y, at.2 + scene.2);
             let other = find_contact((&CAR, &moved), (&CAR, &bullet)).unwrap();
             prop_assert!((other.depth_m - contact.depth_m).abs() < 1e-9);
-            // Two sides may be equally shallow; then rounding decides.
+            // If two sides have the same overlap, rounding decides which of them is found.
             if other.surface == contact.surface {
                 let point = moved.body_from_world(other.point_m);
                 for (got, expected) in point.into_iter().zip(contact.point_m) {

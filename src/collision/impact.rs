@@ -1,101 +1,106 @@
-//! Planar impact of two rigid bodies: impulse, velocities after it, energy.
+//! Planar impact of two rigid bodies: impulse, velocities after the impact and dissipated energy.
 //!
 //! Source: [`PitPinnPaper`](crate::bibliography::PitPinnPaper), `eq:collision_model1` to
 //! `eq:friction_coefficient2`; the no-slide solution with a friction limit is that of
 //! [`CarpenterWelcher2019`](crate::bibliography::CarpenterWelcher2019).
 //!
-//! Assumptions: the impact takes no time, so neither vehicle turns or moves during it; one contact
-//! point; no moment at the contact; tyre forces are small beside the contact force.
+//! Assumptions: the impact is instantaneous, so neither vehicle moves or turns during it; the force
+//! acts at one contact point and has no moment about it; tyre forces are negligible beside the
+//! contact force.
 //!
 //! Departures from the paper:
-//! 1. its two yaw equations carry the same sign, which breaks angular momentum; here
-//!    `I Δr = r × P` with the impulse that acts on each vehicle;
-//! 2. it always slides, `P_τ = ±μ P_n`; here the vehicles slide only if not sliding would need more
-//!    friction than there is ([`FrictionModel::Limit`]). Its form is [`FrictionModel::Paper`];
-//! 3. restitution is that of the contact points' normal velocities, where the paper leaves open
-//!    whose velocity is meant;
-//! 4. kinetic energy never grows ([`Regime::EnergyLimited`]).
+//! 1. The two yaw equations of the paper have the same sign, which violates the conservation of
+//!    angular momentum. Here `I Δr = r × P` with the impulse that acts on each vehicle.
+//! 2. In the paper the vehicles always slide, `P_τ = ±μ P_n`. Here they slide only if the solution
+//!    without sliding needs a larger impulse ratio than the friction limit
+//!    ([`FrictionModel::Limit`]). The form of the paper is [`FrictionModel::Paper`].
+//! 3. Restitution refers to the normal velocities of the contact points. The paper does not say
+//!    which velocities are meant.
+//! 4. With [`FrictionModel::Limit`] kinetic energy never grows ([`Regime::EnergyLimited`]).
 //!
-//! Validated in `tests/library/validation_collision.rs` against the published worked example and against
-//! finite-element runs.
+//! Validated in `tests/library/validation_collision.rs` against the published worked example and
+//! against finite-element runs.
 
 use serde::{Deserialize, Serialize};
 
 use crate::collision::PrincipalDirectionOfForce;
 use crate::numerics::Scalar;
 
-/// A vehicle as the impact sees it.
+/// One of the two rigid bodies of an impact, with its motion before the impact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImpactBody<T = f64> {
     /// Mass, kg, positive.
     pub mass_kg: T,
-    /// Yaw inertia about the CG, kg m², positive.
+    /// Yaw moment of inertia about the CG, kg m², positive.
     pub yaw_inertia_kg_m2: T,
-    /// Heading (yaw ψ), rad. Turns nothing but the force's direction as the occupants see it.
+    /// Heading (yaw angle ψ) in world axes, rad. It is used only for the principal direction of
+    /// force.
     pub heading_rad: f64,
-    /// Velocity of the CG before the impact, world axes, m/s.
+    /// Velocity of the CG before the impact in world axes, m/s.
     pub velocity_m_s: [T; 2],
     /// Yaw rate before the impact, rad/s.
     pub yaw_rate_rad_s: T,
-    /// From the CG to the contact point, world axes, m.
+    /// Vector from the CG to the contact point in world axes, m.
     pub contact_arm_m: [T; 2],
 }
 
-/// How friction at the contact is resolved.
+/// Model of friction at the contact.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FrictionModel {
-    /// No slide at the end of contact, unless that needs `|P_τ| > μ_c P_n`; then sliding.
+    /// The contact points do not slide at the end of the contact, unless that needs `|P_τ| > μ_c
+    /// P_n`; in that case they slide with `|P_τ| = μ_c P_n`.
     #[default]
     Limit,
-    /// The paper's ablation: always sliding, `P_τ = ±μ_c P_n`, with the sign that
-    /// [`FrictionModel::Limit`] would take (the paper gives none). Friction may reverse the sliding
-    /// that it should only stop, and kinetic energy may grow.
+    /// The model of the paper, for comparison: the contact points always slide, `P_τ = ±μ_c P_n`.
+    /// The paper gives no rule for the sign; here it is that of [`FrictionModel::Limit`]. In this
+    /// model friction may reverse the direction of sliding, which real friction can only stop, and
+    /// kinetic energy may grow.
     Paper,
 }
 
-/// The surface along which the two vehicles touch, and what it does.
+/// The contact surface between the two vehicles: its direction, restitution and friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactSurface<T = f64> {
-    /// Angle Γ of the normal in world axes, rad, pointing INTO the target: the way the bullet
-    /// pushes it.
+    /// Angle Γ of the contact normal in world axes, rad. The normal points INTO the target, which
+    /// is the direction in which the bullet pushes.
     pub normal_angle_rad: T,
     /// Coefficient of restitution e, 0 to 1.
     pub restitution: T,
-    /// Largest impulse ratio μ_c = `|P_τ| / P_n`, 0 or more.
+    /// Friction limit μ_c, the largest impulse ratio `|P_τ| / P_n`, 0 or more.
     pub friction_limit: T,
-    /// How friction is resolved.
+    /// Friction model.
     pub friction_model: FrictionModel,
 }
 
-/// An impact to be solved.
+/// A planar impact of two rigid bodies at one contact point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Impact<T = f64> {
-    /// The vehicle that is struck; the impulse acts ON it.
+    /// The vehicle that is struck. Impulses are those that act ON this vehicle.
     pub target: ImpactBody<T>,
     /// The vehicle that strikes.
     pub bullet: ImpactBody<T>,
-    /// Where they touch.
+    /// The contact surface.
     pub surface: ContactSurface<T>,
 }
 
-/// How the contact ended.
+/// State of the contact at its end, which determines the tangential impulse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Regime {
-    /// The contact points share their tangential velocity at the end.
+    /// The contact points have the same tangential velocity at the end of the contact.
     NoSlide,
-    /// They still slide: `|P_τ| = μ_c P_n`.
+    /// The contact points still slide along each other at the end: `|P_τ| = μ_c P_n`.
     Sliding,
-    /// Friction is held at the most that creates no energy (only for large restitution together
-    /// with long lever arms).
+    /// The tangential impulse is limited to the largest value that creates no kinetic energy. This
+    /// occurs only for large restitution together with long lever arms.
     EnergyLimited,
-    /// The contact points do not approach along the normal: no impulse.
+    /// The contact points do not approach each other along the normal, so there is no impulse.
     NotApproaching,
 }
 
 impl Regime {
-    /// For a person.
+    /// Description of the regime in reports and tables.
     pub fn label(self) -> &'static str {
         match self {
             Self::NoSlide => "no sliding at the end",
@@ -106,74 +111,77 @@ impl Regime {
     }
 }
 
-/// What the impact did to one vehicle.
+/// Motion of one vehicle after the impact, and its change by the impact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyAfter<T = f64> {
-    /// Velocity of the CG after the impact, world axes, m/s.
+    /// Velocity of the CG after the impact in world axes, m/s.
     pub velocity_m_s: [T; 2],
     /// Yaw rate after the impact, rad/s.
     pub yaw_rate_rad_s: T,
-    /// Change of the CG's velocity Δv, world axes, m/s.
+    /// Change Δv of the velocity of the CG in world axes, m/s.
     pub delta_v_m_s: [T; 2],
     /// Change of the yaw rate, rad/s.
     pub delta_yaw_rate_rad_s: T,
-    /// Principal direction of force on this vehicle; `None` without an impulse.
+    /// Principal direction of force on this vehicle; `None` if there is no impulse.
     pub pdof: Option<PrincipalDirectionOfForce>,
 }
 
-/// The impulse of an impact and what follows from it.
+/// Solution of an impact: the impulse and the quantities that follow from it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImpactSolution<T = f64> {
-    /// Impulse on the target, world axes, N s.
+    /// Impulse on the target in world axes, N s.
     pub impulse_n_s: [T; 2],
-    /// Its normal part `P_n`, N s, never negative in [`FrictionModel::Limit`].
+    /// Component `P_n` of the impulse along the contact normal, N s, never negative.
     pub impulse_normal_n_s: T,
-    /// Its part `P_τ` along the tangent, which lies a quarter turn to the left of the normal, N s.
+    /// Component `P_τ` of the impulse along the tangent, N s. The tangent is the normal turned by
+    /// 90° counter-clockwise.
     pub impulse_tangential_n_s: T,
-    /// How the contact ended.
+    /// State of the contact at its end.
     pub regime: Regime,
-    /// Closing velocity of the contact points before the impact: along the normal (positive:
-    /// approaching), along the tangent, m/s.
+    /// Velocity of the contact point of the bullet relative to that of the target before the
+    /// impact, `[normal, tangential]`, m/s. The normal component is positive if the points approach
+    /// each other.
     pub closing_velocity_m_s: [T; 2],
-    /// The target after the impact.
+    /// Motion of the target after the impact.
     pub target: BodyAfter<T>,
-    /// The bullet after the impact.
+    /// Motion of the bullet after the impact.
     pub bullet: BodyAfter<T>,
-    /// Kinetic energy lost, J.
+    /// Kinetic energy of both vehicles that the impact dissipates, J.
     pub dissipated_energy_j: T,
 }
 
-/// An impact that cannot be solved.
+/// Reason why an impact cannot be solved.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ImpactError {
-    /// An input outside its range.
+    /// An input is out of range or not finite.
     #[error("{of}: {name} is {value}, expected {expected}")]
     Range {
-        /// Whose input: target, bullet or contact.
+        /// The part of the impact to which the input belongs: target, bullet or contact.
         of: &'static str,
-        /// Which input.
+        /// Name of the input.
         name: &'static str,
-        /// Its value.
+        /// Value of the input, in the unit that ends its name.
         value: f64,
-        /// The range, in words.
+        /// Description of the permitted range.
         expected: &'static str,
     },
-    /// [`FrictionModel::Paper`] has no solution with a pushing normal impulse.
+    /// [`FrictionModel::Paper`] has no solution with a positive normal impulse.
     #[error("always sliding at impulse ratio {friction_limit} has no solution: the contact jams")]
     Jammed {
-        /// μ_c.
+        /// Friction limit μ_c.
         friction_limit: f64,
     },
 }
 
 impl<T: Scalar> Impact<T> {
-    /// Inverse mass at the contact point: `Δv_rel = −K P`, world axes, 1/kg.
+    /// Inverse mass matrix K at the contact point in world axes, 1/kg, `[2, 2]`. It gives the
+    /// change of the relative velocity of the contact points: `Δv_rel = −K P`.
     ///
     /// ```text
     /// K = (1/m_t + 1/m_b) 1 + r_t⊥ r_t⊥ᵀ / I_t + r_b⊥ r_b⊥ᵀ / I_b      r⊥ = (−r_y, r_x)
     /// ```
     ///
-    /// Symmetric and positive definite.
+    /// The matrix is symmetric and positive definite.
     pub fn inverse_mass_1_kg(&self) -> [[T; 2]; 2] {
         let central = self.target.mass_kg.recip() + self.bullet.mass_kg.recip();
         let mut k = [[central, T::from(0.0)], [T::from(0.0), central]];
@@ -188,17 +196,20 @@ impl<T: Scalar> Impact<T> {
         k
     }
 
-    /// Velocity of the bullet's contact point relative to the target's, world axes, m/s.
+    /// Velocity of the contact point of the bullet relative to that of the target before the
+    /// impact, in world axes, m/s.
     pub fn relative_velocity_m_s(&self) -> [T; 2] {
         let [tx, ty] = self.target.contact_velocity_m_s();
         let [bx, by] = self.bullet.contact_velocity_m_s();
         [bx - tx, by - ty]
     }
 
-    /// Solves the impact. For numbers that were checked: see [`Impact::solve`].
+    /// Solves the impact without a check of its inputs, which have to be in range; see
+    /// [`Impact::solve`] for a solution with a check.
     ///
-    /// With normal n, tangent τ and closing velocity (v_n, v_τ), restitution
-    /// `v_n' = −e v_n` holds on the line `K_nn P_n + K_nτ P_τ = (1 + e) v_n`. On it lie
+    /// With the normal n, the tangent τ and the closing velocity (v_n, v_τ), the condition of
+    /// restitution `v_n' = −e v_n` holds on the line `K_nn P_n + K_nτ P_τ = (1 + e) v_n` in the
+    /// plane of the impulse components. Three points on this line are of interest:
     ///
     /// ```text
     /// no slide      P_τ = (v_τ − K_nτ/K_nn (1 + e) v_n) / S         S = K_ττ − K_nτ²/K_nn
@@ -206,14 +217,19 @@ impl<T: Scalar> Impact<T> {
     /// energy        ΔE = ½ (1 − e²) v_n²/K_nn + (v_τ − K_nτ/K_nn v_n) P_τ − ½ S P_τ² = 0
     /// ```
     ///
-    /// and the nearest of the three to the frictionless point ends the contact. The sign s is that
-    /// of the no-slide `P_τ`: it is also the sign of the sliding velocity that would be left
-    /// without friction, so friction opposes the sliding that is left at the end, also when the
-    /// lever arms turn the initial sliding round. Between the frictionless and the no-slide point
-    /// `P_n` stays positive up to any `|P_τ|/P_n = μ_c`, so the sliding solution always exists.
+    /// The solution is the one of them that is nearest to the frictionless point `P_τ = 0`; with
+    /// [`FrictionModel::Paper`] it is always the point of sliding. The sign s is that of `P_τ`
+    /// without sliding. It is also the sign of the sliding velocity that would remain without
+    /// friction. Friction therefore opposes the sliding that remains at the end, also if the lever
+    /// arms reverse the initial sliding. On the way from the frictionless point to the no-slide
+    /// point, the ratio `|P_τ|/P_n` grows from zero while `P_n` is positive. If the no-slide point
+    /// violates the friction limit, the ratio thus reaches μ_c before, and a solution with sliding
+    /// exists.
+    ///
+    /// If the contact points do not approach each other, the impulse is zero.
     ///
     /// # Errors
-    /// [`ImpactError::Jammed`], only for [`FrictionModel::Paper`].
+    /// [`ImpactError::Jammed`], only with [`FrictionModel::Paper`].
     pub fn solve_unchecked(&self) -> Result<ImpactSolution<T>, ImpactError> {
         let normal = self.surface.normal();
         let tangent = perpendicular(normal);
@@ -235,7 +251,8 @@ impl<T: Scalar> Impact<T> {
         Ok(self.apply([line.normal_impulse_n_s(p_t), p_t], closing, regime))
     }
 
-    /// What an impulse given along normal and tangent does.
+    /// The solution that follows from an impulse on the target with the components `[P_n, P_τ]`, N
+    /// s.
     fn apply(&self, [p_n, p_t]: [T; 2], closing: [T; 2], regime: Regime) -> ImpactSolution<T> {
         let normal = self.surface.normal();
         let tangent = perpendicular(normal);
@@ -258,11 +275,12 @@ impl<T: Scalar> Impact<T> {
 }
 
 impl Impact<f64> {
-    /// Solves the impact after checking its numbers; the equations are at
+    /// Checks the inputs and solves the impact. The equations are given at
     /// [`Impact::solve_unchecked`].
     ///
     /// # Errors
-    /// [`ImpactError::Range`] names the first input outside its range; [`ImpactError::Jammed`].
+    /// [`ImpactError::Range`] names the first input that is out of range; [`ImpactError::Jammed`]
+    /// if [`FrictionModel::Paper`] has no solution.
     pub fn solve(&self) -> Result<ImpactSolution, ImpactError> {
         for (body, of) in [(&self.target, "target"), (&self.bullet, "bullet")] {
             let [vx, vy] = body.velocity_m_s;
@@ -284,15 +302,18 @@ impl Impact<f64> {
         self.solve_unchecked()
     }
 
-    /// Restitution and impulse ratio that a known impulse stands for, e.g. a measured one: the
-    /// inverse of [`Impact::solve`].
+    /// Computes the coefficient of restitution and the impulse ratio that a known impulse implies,
+    /// for instance a measured one. This is the inverse of [`Impact::solve`].
     ///
     /// ```text
     /// e = (K P)·n / v_n − 1          P_τ / P_n
     /// ```
     ///
-    /// Of `surface`, only the normal is used. `None` if the contact points do not approach or the
-    /// impulse does not push.
+    /// Only the normal of the contact surface is used.
+    ///
+    /// - `impulse_n_s`: impulse on the target in world axes, N s.
+    /// - returns `None` if the contact points do not approach each other before the impact, or if
+    ///   the normal component of the impulse is not positive.
     pub fn implied_contact(&self, impulse_n_s: [f64; 2]) -> Option<ImpliedContact> {
         let normal = self.surface.normal();
         let closing = dot(self.relative_velocity_m_s(), normal);
@@ -305,30 +326,34 @@ impl Impact<f64> {
     }
 }
 
-/// What [`Impact::implied_contact`] finds.
+/// Coefficient of restitution and impulse ratio that a known impulse implies; see
+/// [`Impact::implied_contact`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImpliedContact {
-    /// Restitution e; outside 0 to 1 if the rigid model does not fit.
+    /// Coefficient of restitution e. It lies outside the interval from 0 to 1 if the model of rigid
+    /// bodies does not fit the impulse.
     pub restitution: f64,
-    /// `P_τ / P_n`, with the sign of `P_τ`.
+    /// Impulse ratio `P_τ / P_n`, with the sign of `P_τ`.
     pub impulse_ratio: f64,
 }
 
-/// Work that the contact force does on the two vehicles' relative motion, lost by them, J.
+/// Kinetic energy that two vehicles lose in an impact, J: the work of the contact force along the
+/// relative motion of the contact points.
 ///
 /// ```text
 /// ∫ F·v_rel dt = v_rel(0)·P − ½ Pᵀ K P
 /// ```
 ///
-/// A function of the impulse alone, whatever the force's history: with rigid bodies
-/// `v_rel(t) = v_rel(0) − K ∫₀ᵗ F dt`. The paper's `½ m_eff V_rel² (1 − e²)` (`eq:physic_cons2`)
-/// is the special case of a central, normal impact.
+/// The energy depends on the impulse alone and not on the history of the force, because `v_rel(t) =
+/// v_rel(0) − K ∫₀ᵗ F dt` for rigid bodies. The paper's `½ m_eff V_rel² (1 − e²)`
+/// (`eq:physic_cons2`) is the special case of a central impact along the normal.
 ///
-/// - `relative_velocity_m_s`: bullet's contact point relative to the target's, before;
-/// - `inverse_mass_1_kg`: [`Impact::inverse_mass_1_kg`];
-/// - `impulse_n_s`: on the target.
+/// - `relative_velocity_m_s`: velocity of the contact point of the bullet relative to that of the
+///   target before the impact, m/s;
+/// - `inverse_mass_1_kg`: inverse mass matrix `[2, 2]` of [`Impact::inverse_mass_1_kg`], 1/kg;
+/// - `impulse_n_s`: impulse on the target, N s.
 ///
-/// All three in the same axes.
+/// All three arguments are in the same axes.
 pub fn contact_work_j<T: Scalar>(
     relative_velocity_m_s: [T; 2],
     inverse_mass_1_kg: [[T; 2]; 2],
@@ -339,13 +364,14 @@ pub fn contact_work_j<T: Scalar>(
 }
 
 impl<T: Scalar> ImpactBody<T> {
-    /// Velocity of the body at the contact point, world axes, m/s: `v + r × arm`.
+    /// Velocity of the contact point as a point of this body, in world axes, m/s: `v + r × arm`,
+    /// with the yaw rate r.
     pub fn contact_velocity_m_s(&self) -> [T; 2] {
         let lever = perpendicular(self.contact_arm_m);
         [0, 1].map(|i| self.velocity_m_s[i] + lever[i] * self.yaw_rate_rad_s)
     }
 
-    /// Kinetic energy `½ m v² + ½ I r²`, J.
+    /// Kinetic energy of the body before the impact, `½ m v² + ½ I r²`, J.
     pub fn kinetic_energy_j(&self) -> T {
         let translation = self.mass_kg * dot(self.velocity_m_s, self.velocity_m_s);
         (translation + self.yaw_inertia_kg_m2 * self.yaw_rate_rad_s.squared()) * 0.5
@@ -375,7 +401,8 @@ impl<T: Scalar> ContactSurface<T> {
     }
 }
 
-/// The impulses that restitution allows: `K_nn P_n + K_nτ P_τ = (1 + e) v_n`.
+/// The line of impulses that satisfy the condition of restitution: `K_nn P_n + K_nτ P_τ = (1 + e)
+/// v_n`.
 struct RestitutionLine<T> {
     k_nn: T,
     k_nt: T,
@@ -399,7 +426,8 @@ impl<T: Scalar> RestitutionLine<T> {
         let frictionless = self.normal_impulse_n_s(T::from(0.0));
         let no_slide = (v_t - self.k_nt * frictionless) / schur;
         let sign = if no_slide.re() < 0.0 { -1.0 } else { 1.0 };
-        // P_n = frictionless / (1 + s μ K_nτ/K_nn); not positive: no such point on this side.
+        // P_n = frictionless / (1 + s μ K_nτ/K_nn). If the denominator is not positive, there is no
+        // point of sliding on the side s of the frictionless point.
         let resistance = surface.friction_limit * coupling * sign + 1.0;
         let sliding = surface.friction_limit * frictionless / resistance * sign;
         if surface.friction_model == FrictionModel::Paper {
@@ -417,7 +445,8 @@ impl<T: Scalar> RestitutionLine<T> {
         let e2 = self.restitution.squared();
         let at_frictionless = (-e2 + 1.0) * v_n.squared() / self.k_nn * 0.5;
         let created = schur * p_t.squared() * 0.5 - slope * p_t - at_frictionless;
-        // Below rounding there is nothing to limit: e = 1 without friction sits exactly at zero.
+        // The tolerance covers rounding errors: with e = 1 and no friction the energy created is
+        // exactly zero.
         if created.re() > 1e-12 * (at_frictionless.re() + (slope * p_t).re().abs()) {
             let root = (slope.squared() + schur * at_frictionless * 2.0).sqrt();
             (p_t, regime) = ((slope + root * sign) / schur, Regime::EnergyLimited);
@@ -452,7 +481,7 @@ fn check(
     Err(ImpactError::Range { of, name, value, expected })
 }
 
-/// A quarter turn to the left.
+/// The vector turned by 90° counter-clockwise.
 fn perpendicular<T: Scalar>([x, y]: [T; 2]) -> [T; 2] {
     [-y, x]
 }

@@ -1,4 +1,4 @@
-//! Identities and limits of the impact solution, over random cases.
+//! Tests of the impact solution: identities and limits for random cases, and known special cases.
 
 use num_dual::Dual64;
 use proptest::prelude::*;
@@ -36,14 +36,15 @@ fn impacts(friction_model: FrictionModel) -> impl Strategy<Value = Impact> {
     })
 }
 
-/// Momentum x, y and angular momentum about the contact point, kinetic energy; before and after.
+/// Linear momentum along x and y, angular momentum about the contact point and kinetic energy of
+/// both bodies together, before and after the impact.
 fn totals(impact: &Impact, solution: &ImpactSolution) -> [[f64; 4]; 2] {
     let [target, bullet] = after(impact, solution);
     [[impact.target, impact.bullet], [target, bullet]].map(|bodies| {
         let mut sum = [0.0; 4];
         for body in bodies {
             let [px, py] = body.velocity_m_s.map(|v| body.mass_kg * v);
-            // The CG lies at minus the arm.
+            // The position of the CG relative to the contact point is the negative of the arm.
             let [x, y] = body.contact_arm_m.map(|r| -r);
             let spin = body.yaw_inertia_kg_m2 * body.yaw_rate_rad_s;
             let terms = [px, py, spin + x * py - y * px, body.kinetic_energy_j()];
@@ -62,7 +63,7 @@ fn after(impact: &Impact, solution: &ImpactSolution) -> [ImpactBody; 2] {
     [moved(impact.target, &solution.target), moved(impact.bullet, &solution.bullet)]
 }
 
-/// Closing velocity of the contact points after the impact, along normal and tangent, m/s.
+/// Relative velocity of the contact points after the impact along normal and tangent, m/s.
 fn closing_after(impact: &Impact, solution: &ImpactSolution) -> [f64; 2] {
     let [target, bullet] = after(impact, solution);
     let ([tx, ty], [bx, by]) = (target.contact_velocity_m_s(), bullet.contact_velocity_m_s());
@@ -71,7 +72,7 @@ fn closing_after(impact: &Impact, solution: &ImpactSolution) -> [f64; 2] {
     [x * cos + y * sin, y * cos - x * sin]
 }
 
-/// Sizes that rounding is measured against: momentum and energy.
+/// Momentum, N s, and energy, J, relative to which rounding errors are judged.
 fn scales(impact: &Impact) -> (f64, f64) {
     let energy = impact.target.kinetic_energy_j() + impact.bullet.kinetic_energy_j();
     let mass = impact.target.mass_kg + impact.bullet.mass_kg;
@@ -96,7 +97,8 @@ proptest! {
                 let [before, after] = totals(&impact, &solution);
                 let (momentum, energy) = scales(&impact);
                 let [px, py] = solution.impulse_n_s;
-                // The paper's model may ask for impulses far above the momentum there is.
+                // In the paper's model the impulse may be far larger than the momentum before the
+                // impact.
                 let momentum = momentum + px.hypot(py);
                 for i in 0..3 {
                     let drift = (after[i] - before[i]).abs();
@@ -134,7 +136,7 @@ proptest! {
             Regime::NoSlide => prop_assert!(after_t.abs() < 1e-9 * speed, "{after_t}"),
             Regime::Sliding => {
                 prop_assert!((p_t.abs() - bound).abs() < 1e-9 * bound, "{solution:?}");
-                // Friction opposes the sliding that is left.
+                // Friction opposes the sliding that remains at the end.
                 prop_assert!(after_t * p_t >= -1e-9 * speed * bound, "{after_t} {solution:?}");
             }
             _ => prop_assert!(solution.dissipated_energy_j < 1e-9 * energy, "{solution:?}"),
@@ -209,7 +211,7 @@ proptest! {
         let (low, middle, high) = (at(-step), at(0.0), at(step));
         prop_assume!(low.regime == high.regime && low.regime == middle.regime);
         prop_assume!(middle.regime != Regime::EnergyLimited);
-        // A case whose friction changes sign between the two steps has no derivative there.
+        // The impulse has no derivative where the friction changes its sign between the two steps.
         prop_assume!(low.impulse_tangential_n_s * high.impulse_tangential_n_s >= 0.0);
         let exact = dual(&impact).solve_unchecked().unwrap();
         for i in 0..2 {
@@ -233,7 +235,8 @@ proptest! {
     }
 }
 
-/// The same impact, to be differentiated by the bullet's velocity along X.
+/// The same impact in dual numbers, for the derivative with respect to the velocity of the bullet
+/// along X.
 fn dual(impact: &Impact) -> Impact<Dual64> {
     let body = |body: &ImpactBody| ImpactBody {
         mass_kg: body.mass_kg.into(),
@@ -257,7 +260,8 @@ fn dual(impact: &Impact) -> Impact<Dual64> {
     }
 }
 
-/// Two cars that meet with both CGs on the normal, 1000 and 3000 kg, closing at 12 m/s.
+/// A central impact (both CGs lie on the contact normal) of cars of 1000 kg and 3000 kg that
+/// approach each other at 12 m/s.
 fn central(restitution: f64) -> Impact {
     let car = |mass_kg: f64, speed: f64, arm: f64| ImpactBody {
         mass_kg,
@@ -299,7 +303,8 @@ fn the_work_of_a_force_depends_on_its_impulse_alone() {
     let impact = central(0.3);
     let k = impact.inverse_mass_1_kg();
     let v0 = impact.relative_velocity_m_s();
-    // A lopsided force history, stepped through: its own work against the closed form.
+    // The work of an asymmetric force history is integrated step by step and compared with the
+    // closed form.
     let (n, mut impulse, mut work) = (20_000, [0.0; 2], 0.0);
     for i in 0..n {
         let u = (f64::from(i) + 0.5) / f64::from(n);
@@ -314,8 +319,8 @@ fn the_work_of_a_force_depends_on_its_impulse_alone() {
     assert!((work - closed).abs() < 1e-6 * closed.abs(), "{work} {closed}");
 }
 
-/// With a perfect rebound, long lever arms and a little sliding, restitution and no slide together
-/// would create energy (the paradox of Kane and Levinson).
+/// With e = 1, long lever arms and slow sliding, restitution together with the condition of no
+/// sliding would create kinetic energy (the paradox of Kane and Levinson).
 #[test]
 fn friction_is_held_where_it_would_create_energy() {
     let mut impact = central(1.0);
@@ -332,8 +337,8 @@ fn friction_is_held_where_it_would_create_energy() {
     assert!(regimes.contains(&Regime::NoSlide), "{regimes:?}");
 }
 
-/// Where not sliding needs less than the limit, the paper's model slides on and drives the contact
-/// points apart the other way.
+/// In a case where friction below the limit suffices to stop the sliding, the paper's model applies
+/// the whole friction and reverses the direction of sliding.
 #[test]
 fn the_papers_model_always_slides() {
     let mut impact = central(0.1);

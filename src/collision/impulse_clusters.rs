@@ -1,35 +1,38 @@
-//! Clusters of collisions of similar impulse.
+//! Groups (clusters) of collisions of similar impulse, found by [`Clusters`] on standardised
+//! features of the force history. Results are reported per cluster in the comparison of models.
 
 use serde::Serialize;
 
 use crate::data::{ForceHistory, contact_interval};
 use crate::numerics::{ClusterError, Clusters, Summary};
 
-/// The features by which collisions are clustered. A mirrored collision has the same features.
+/// The features of a force history by which collisions are clustered. A collision and its mirror
+/// image have the same features.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ImpulseFeatures {
-    /// Impulse along x, N s.
+    /// Impulse along the x axis of the history, N s.
     pub impulse_x_n_s: f64,
-    /// Size of the impulse along y, N s.
+    /// Magnitude of the impulse along the y axis of the history, N s.
     pub impulse_y_n_s: f64,
-    /// Size of the impulse, N s.
+    /// Magnitude of the impulse vector, N s.
     pub impulse_n_s: f64,
-    /// Largest `|F|`, N.
+    /// Largest magnitude of the force, N.
     pub peak_n: f64,
-    /// Mean of `|F|` over the contact, N.
+    /// Mean of the magnitude of the force over the contact, N.
     pub mean_n: f64,
-    /// Standard deviation of `|F|` over the contact, N.
+    /// Standard deviation of the magnitude of the force over the contact, N.
     pub std_n: f64,
 }
 
-/// Clusters C0, C1, … by rising impulse.
+/// Clusters of collisions, numbered from 0 in the order of rising impulse.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImpulseClusters {
     clusters: Clusters,
 }
 
 impl ImpulseFeatures {
-    /// Features of a force history; `None` if all its forces are zero.
+    /// Computes the features of a force history. The contact lasts from the first to the last
+    /// contact force ([`contact_interval`]). Returns `None` if all forces are zero.
     pub fn of(history: &ForceHistory) -> Option<Self> {
         let (from_s, to_s) = contact_interval(history)?;
         let [px, py] = history.impulse_n_s();
@@ -53,12 +56,13 @@ impl ImpulseFeatures {
 }
 
 impl ImpulseClusters {
-    /// Clusters collisions.
+    /// Clusters collisions by their features; see [`Clusters::fit`] for the method and the choice
+    /// of the number of clusters.
     ///
-    /// - `seed`: of the random initial centres.
+    /// - `seed`: seed of the random initial centres; the same seed gives the same clusters.
     ///
     /// # Errors
-    /// [`ClusterError`].
+    /// [`ClusterError`] if the features cannot be clustered.
     pub fn fit(features: &[ImpulseFeatures], seed: u64) -> Result<Self, ClusterError> {
         let rows: Vec<Vec<f64>> = features.iter().map(ImpulseFeatures::row).collect();
         let clusters = Clusters::fit(&rows, seed)?;
@@ -71,17 +75,18 @@ impl ImpulseClusters {
         self.clusters.n_clusters()
     }
 
-    /// Number of the cluster of a collision.
+    /// Index of the cluster whose centre is nearest to the features of a collision.
     pub fn of(&self, features: &ImpulseFeatures) -> usize {
         self.clusters.nearest(&features.row())
     }
 
-    /// Name of a cluster in tables.
+    /// Name of a cluster in tables and figures: C0, C1, …
     pub fn label(cluster: usize) -> String {
         format!("C{cluster}")
     }
 
-    /// Impulse at the centre of a cluster, N s.
+    /// Magnitude of the impulse at the centre of a cluster, N s; `None` if there is no such
+    /// cluster.
     pub fn impulse_n_s(&self, cluster: usize) -> Option<f64> {
         self.clusters.centre(cluster)?.get(2).copied()
     }

@@ -1,5 +1,14 @@
-//! Two vehicles meet: momentum-conservation impact, contact geometry, scenarios, classic pulses, the
-//! crash-test filter, and clusters of collisions by their impulse.
+//! The collision of two vehicles.
+//!
+//! - `impact`, `pdof`: planar impact of two rigid bodies by conservation of momentum, and the
+//!   principal direction of force;
+//! - `footprint`: contact point and contact normal from the outlines of the vehicles;
+//! - `scenario` and its files: two vehicles that are about to collide, as a user describes them;
+//! - `contact_distribution`: how uncertain restitution and friction are;
+//! - [`crush`]: force over time from the crush of both vehicles;
+//! - `pulse`: classic pulse shapes that carry a given impulse;
+//! - `channel_filter`: the low-pass filter of crash tests (SAE J211);
+//! - `impulse_clusters`: groups of collisions of similar impulse.
 //!
 //! ```
 //! use impactlab::collision::{Pulse, PulseShape, Scenario};

@@ -1,28 +1,28 @@
-//! Principal direction of force, as the trade reports it.
+//! Principal direction of force (PDOF) on a vehicle, as it is reported in accident reconstruction.
 //!
-//! Source: [`SaeJ224`](crate::bibliography::SaeJ224) for the clock.
+//! Source: the clock directions are those of [`SaeJ224`](crate::bibliography::SaeJ224).
 
 use std::f64::consts::TAU;
 
-/// Where the force on a vehicle comes from, seen by its occupants: 180° from the force itself.
+/// Direction from which the collision force comes, as seen by the occupants of the vehicle:
+/// opposite to the force vector.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PrincipalDirectionOfForce {
-    /// Angle from straight ahead, CLOCKWISE seen from above, rad, in `[0, 2π)`: a quarter turn is a
-    /// force that comes from the right and pushes to the left.
+    /// Angle from straight ahead, CLOCKWISE as seen from above, rad, in `[0, 2π)`. At π/2 the force
+    /// comes from the right and pushes the vehicle to the left.
     pub angle_rad: f64,
 }
 
 impl PrincipalDirectionOfForce {
-    /// Of an impulse (or force) on a vehicle with this heading.
+    /// Computes the principal direction of force from the impulse (or the force) on a vehicle.
     ///
     /// ```text
     /// F_body = R(−ψ) F          PDOF = atan2(F_y,body, −F_x,body)
     /// ```
     ///
-    /// - `impulse`: on the vehicle, world axes, any unit;
-    /// - `heading_rad`: the vehicle's yaw ψ.
-    ///
-    /// `None` without an impulse.
+    /// - `impulse`: impulse or force on the vehicle in world axes, in any unit;
+    /// - `heading_rad`: yaw angle ψ of the vehicle, rad.
+    /// - returns `None` if the impulse is zero or not finite.
     pub fn from_impulse(impulse: [f64; 2], heading_rad: f64) -> Option<Self> {
         let [x, y] = impulse;
         let magnitude = x.hypot(y);
@@ -32,17 +32,18 @@ impl PrincipalDirectionOfForce {
         let (sin, cos) = heading_rad.sin_cos();
         let (forward, left) = (x * cos + y * sin, y * cos - x * sin);
         let angle = left.atan2(-forward).rem_euclid(TAU);
-        // `rem_euclid` of a tiny negative angle rounds to τ itself.
+        // For a tiny negative angle, `rem_euclid` rounds to 2π, which lies outside the interval.
         let angle_rad = if angle < TAU { angle } else { 0.0 };
         Some(Self { angle_rad })
     }
 
-    /// Degrees, `[0, 360)`, clockwise from straight ahead.
+    /// The angle in degrees, clockwise from straight ahead, in `[0, 360)`.
     pub fn angle_deg(self) -> f64 {
         self.angle_rad.to_degrees()
     }
 
-    /// Clock direction, 1 to 12: 12 o'clock from the front, 3 from the right, each hour ±15°.
+    /// Clock direction, 1 to 12. The force comes from the front at 12 o'clock and from the right at
+    /// 3 o'clock; each hour covers ±15°.
     pub fn clock(self) -> u8 {
         let hour = (self.angle_rad / (TAU / 12.0)).round() as u8 % 12;
         if hour == 0 { 12 } else { hour }

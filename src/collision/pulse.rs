@@ -1,9 +1,10 @@
-//! Classic pulses: force histories of a plain shape that carry a given impulse over a given time.
-//! They are the baselines of the force network and the input of a user who has nothing better.
+//! Classic pulses: force histories of a simple shape that carry a given impulse over a given
+//! duration. They are the baselines of the force network, and they serve a user who knows only the
+//! impulse.
 //!
-//! Source: textbook shapes, e.g. [`Brach2011`](crate::bibliography::Brach2011). Both components
-//! share shape and time, so the force keeps its direction. Impulse and duration are inputs; no
-//! duration is guessed here.
+//! Source: textbook shapes, e.g. [`Brach2011`](crate::bibliography::Brach2011). Both components of
+//! the force have the same shape and duration, so the force keeps its direction in world axes.
+//! Impulse and duration are inputs; the duration is not estimated here.
 
 use std::f64::consts::{PI, TAU};
 
@@ -11,21 +12,22 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::{ForceAxes, ForceHistory, Sampling};
 
-/// Shape of a pulse over `u = (t − start) / duration`, area 1.
+/// Shape of a pulse as a function of the relative time `u = (t − start) / duration`, scaled to an
+/// area of 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PulseShape {
-    /// `π/2 sin πu`.
+    /// Half a period of a sine: `π/2 sin πu`.
     HalfSine,
-    /// `1 − cos 2πu`.
+    /// A full period of a raised cosine, without kinks at the ends: `1 − cos 2πu`.
     Haversine,
-    /// `4u` up to the middle, `4(1 − u)` after it.
+    /// A symmetric triangle: `4u` for `u ≤ 1/2`, `4(1 − u)` after it.
     Triangle,
-    /// `1`.
+    /// A constant force: `1`.
     Square,
 }
 
-/// A force of fixed direction in world axes over a limited time.
+/// A force of fixed direction in world axes that acts over a limited time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pulse {
     shape: PulseShape,
@@ -34,23 +36,23 @@ pub struct Pulse {
     duration_s: f64,
 }
 
-/// A pulse or a sampling of one that makes no sense.
+/// A parameter of a pulse, or of its sampling, is out of range.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{name} is {value}, expected {expected}")]
 pub struct PulseError {
-    /// Which number.
+    /// Name of the parameter.
     pub name: &'static str,
-    /// Its value.
+    /// Value of the parameter, in the unit that ends its name.
     pub value: f64,
-    /// The range, in words.
+    /// Description of the permitted range.
     pub expected: &'static str,
 }
 
 impl PulseShape {
-    /// All four, from the roundest to the plainest.
+    /// All four shapes, in the order in which they are listed to the user.
     pub const ALL: [Self; 4] = [Self::HalfSine, Self::Haversine, Self::Triangle, Self::Square];
 
-    /// What a plot or a table calls it.
+    /// Name of the shape in plots and tables.
     pub fn label(self) -> &'static str {
         match self {
             Self::HalfSine => "half-sine",
@@ -60,7 +62,8 @@ impl PulseShape {
         }
     }
 
-    /// Height at `u`, area 1 over 0 to 1, zero outside; also the peak's ratio to the mean force.
+    /// Ratio of the force at the relative time `u` to the mean force of the pulse. Its integral
+    /// over `u` from 0 to 1 is 1; it is zero outside of this interval.
     pub fn density(self, u: f64) -> f64 {
         if !(0.0..=1.0).contains(&u) {
             return 0.0;
@@ -73,7 +76,8 @@ impl PulseShape {
         }
     }
 
-    /// Area up to `u`: 0 before the pulse, 1 after it.
+    /// Share of the impulse that has been transferred up to the relative time `u`: 0 before the
+    /// pulse, 1 after it. It is the closed-form integral of [`PulseShape::density`].
     pub fn cumulative(self, u: f64) -> f64 {
         if u <= 0.0 {
             return 0.0;
@@ -92,14 +96,14 @@ impl PulseShape {
 }
 
 impl Pulse {
-    /// A pulse that carries this impulse.
+    /// Creates a pulse that carries a given impulse.
     ///
-    /// - `impulse_n_s`: on the target, world axes, N s, any finite numbers;
-    /// - `start_s`: first contact, s, 0 or later;
-    /// - `duration_s`: s, positive.
+    /// - `impulse_n_s`: impulse on the target in world axes, N s, any finite numbers;
+    /// - `start_s`: time of first contact, s, 0 or more;
+    /// - `duration_s`: duration of the contact, s, more than 0.
     ///
     /// # Errors
-    /// [`PulseError`] names the first number out of range.
+    /// [`PulseError`] names the first parameter that is out of range or not finite.
     pub fn new(
         shape: PulseShape,
         impulse_n_s: [f64; 2],
@@ -120,7 +124,7 @@ impl Pulse {
         Ok(Self { shape, impulse_n_s, start_s, duration_s })
     }
 
-    /// Force on the target at a time, world axes, N.
+    /// Force on the target at a time, in world axes, N.
     ///
     /// ```text
     /// F(t) = P / Δt · density((t − start) / Δt)
@@ -130,28 +134,33 @@ impl Pulse {
         self.impulse_n_s.map(|p| p / self.duration_s * height)
     }
 
-    /// Impulse up to a time, in closed form, N s.
+    /// Impulse on the target from the start of the pulse up to a time, in closed form, in world
+    /// axes, N s.
     pub fn impulse_until_n_s(&self, time_s: f64) -> [f64; 2] {
         let area = self.shape.cumulative((time_s - self.start_s) / self.duration_s);
         self.impulse_n_s.map(|p| p * area)
     }
 
-    /// Largest `|F|`, N: π/2, 2, 2 and 1 times the mean force for the four shapes.
+    /// Largest magnitude of the force, N: π/2, 2, 2 and 1 times the mean force for the half-sine,
+    /// the haversine, the triangle and the square.
     pub fn peak_n(&self) -> f64 {
         let [px, py] = self.impulse_n_s;
         px.hypot(py) / self.duration_s * self.shape.density(0.5)
     }
 
-    /// When it ends, s.
+    /// Time at which the pulse ends, s.
     pub fn end_s(&self) -> f64 {
         self.start_s + self.duration_s
     }
 
-    /// Exact means over equal intervals from time 0 to the end of the pulse, stamped at the middle
-    /// of each interval, so that the history's impulse is the pulse's, whatever the interval.
+    /// Samples the pulse as a force history. Each sample is the exact mean of the force over one of
+    /// the equal intervals from time 0 to the end of the pulse, and its time is the middle of the
+    /// interval. The impulse of the history therefore equals that of the pulse for any interval.
+    ///
+    /// - `sample_interval_s`: length of an interval, s.
     ///
     /// # Errors
-    /// [`PulseError`] for an interval that is not positive or gives over a million samples.
+    /// [`PulseError`] if the interval is not positive or gives more than a million samples.
     pub fn to_history(&self, sample_interval_s: f64) -> Result<ForceHistory, PulseError> {
         let n_samples = (self.end_s() / sample_interval_s * (1.0 - 1e-12)).ceil();
         if !(sample_interval_s > 0.0 && (1.0..=1e6).contains(&n_samples)) {
@@ -163,7 +172,8 @@ impl Pulse {
         }
         let edges: Vec<f64> =
             (0..=n_samples as usize).map(|i| i as f64 * sample_interval_s).collect();
-        // The last edge lies at the end of the pulse or after it, up to rounding.
+        // The last edge may lie before the end of the pulse by a rounding error, so the whole
+        // impulse is used there.
         let until = |i: usize, axis: usize| match edges.get(i) {
             Some(&edge) if i + 1 < edges.len() => self.impulse_until_n_s(edge)[axis],
             _ => self.impulse_n_s[axis],

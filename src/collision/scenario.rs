@@ -1,7 +1,7 @@
-//! Two vehicles about to collide, as plain numbers: what a user writes in `SCENARIO.toml`, the app
-//! saves and [`Scenario::solve`] turns into an impact.
+//! A collision scenario: two vehicles that are about to collide, as plain numbers. A user writes it
+//! as a `SCENARIO.toml` file, the app saves it, and [`Scenario::solve`] computes the impact.
 //!
-//! Source of the defaults of restitution and friction: see
+//! The source of the default restitution and friction limit is given at
 //! [`ContactDistribution`](crate::collision::ContactDistribution).
 
 use std::f64::consts::FRAC_PI_2;
@@ -13,151 +13,159 @@ use crate::collision::{
     ImpactSolution, Pose, Side, find_contact, place_touching,
 };
 
-/// Restitution used where none is given, the middle of the default
+/// Coefficient of restitution that is used if none is given: the median of the default
 /// [`ContactDistribution`](crate::collision::ContactDistribution).
 pub const DEFAULT_RESTITUTION: f64 = 0.15;
 
-/// Friction limit used where none is given, the middle of the default
+/// Friction limit that is used if none is given: the median of the default
 /// [`ContactDistribution`](crate::collision::ContactDistribution).
 pub const DEFAULT_FRICTION_LIMIT: f64 = 0.4;
 
-/// One of the two vehicles.
+/// Vehicle data and motion before the impact of one of the two vehicles. The ranges are checked
+/// when a scenario is read from a file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScenarioVehicle {
-    /// Mass, kg, 1 to 1e8 (a barrier is a heavy vehicle).
+    /// Mass, kg, 1 to 1e8. A fixed barrier is represented by a very heavy vehicle.
     pub mass_kg: f64,
-    /// Yaw inertia about the CG, kg m², 0.1 to 1e10.
+    /// Yaw moment of inertia about the CG, kg m², 0.1 to 1e10.
     pub yaw_inertia_kg_m2: f64,
     /// Outer length, m, 0.1 to 100.
     pub length_m: f64,
     /// Outer width, m, 0.1 to 20.
     pub width_m: f64,
-    /// From the foremost point back to the CG, m, 0 to `length_m`.
+    /// Distance from the front of the outline back to the CG, m, 0 to `length_m`.
     pub cg_from_front_m: f64,
-    /// Heading (yaw ψ) in the world, rad, −4π to 4π.
+    /// Heading (yaw angle ψ) in world axes, rad, −4π to 4π.
     pub heading_rad: f64,
-    /// Velocity along the world's X axis, m/s, −150 to 150.
+    /// Velocity of the CG along the X axis of the world, m/s, −150 to 150.
     pub vx_m_s: f64,
-    /// Velocity along the world's Y axis, m/s, −150 to 150.
+    /// Velocity of the CG along the Y axis of the world, m/s, −150 to 150.
     pub vy_m_s: f64,
-    /// Yaw rate, rad/s, −50 to 50.
+    /// Yaw rate before the impact, rad/s, −50 to 50, counter-clockwise positive.
     pub yaw_rate_rad_s: f64,
 }
 
-/// What says where and how the vehicles touch.
+/// The way in which a scenario specifies contact point, contact normal and position of the bullet.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "from", rename_all = "snake_case")]
 pub enum ContactLocation {
-    /// The outlines of both vehicles, with the bullet's CG here.
+    /// The position of the bullet is given. Contact point and normal follow from the outlines of
+    /// both vehicles ([`find_contact`]).
     Footprints {
-        /// The bullet's CG along the world's X axis, m.
+        /// X coordinate of the CG of the bullet in world axes, m.
         bullet_x_m: f64,
-        /// The bullet's CG along the world's Y axis, m.
+        /// Y coordinate of the CG of the bullet in world axes, m.
         bullet_y_m: f64,
     },
-    /// The outlines of both vehicles, with the bullet placed so that it just touches.
+    /// The touching point on a side of the target is given. The bullet is placed so that it just
+    /// touches there ([`place_touching`]); contact point and normal follow from the outlines.
     Side {
         /// Struck side of the target.
         side: Side,
-        /// From the middle of that side along the target's x axis (left, right) or y axis (front,
-        /// rear), m.
+        /// Position of the touching point relative to the midpoint of that side, m, positive along
+        /// the x axis of the target (left and right side) or along its y axis (front and rear).
         offset_m: f64,
     },
-    /// The user.
+    /// Contact point, normal and position of the bullet are all given by the user. The outlines are
+    /// not used.
     Point {
-        /// Contact point, target's body axes from its CG, m.
+        /// Coordinate x of the contact point in body axes of the target, from its CG, m.
         x_m: f64,
-        /// Contact point, target's body axes from its CG, m.
+        /// Coordinate y of the contact point in body axes of the target, from its CG, m.
         y_m: f64,
-        /// Angle of the contact normal in the target's body axes, rad, pointing into the target.
+        /// Angle of the contact normal in body axes of the target, rad. The normal points into the
+        /// target.
         normal_rad: f64,
-        /// The bullet's CG along the world's X axis, m.
+        /// X coordinate of the CG of the bullet in world axes, m.
         bullet_x_m: f64,
-        /// The bullet's CG along the world's Y axis, m.
+        /// Y coordinate of the CG of the bullet in world axes, m.
         bullet_y_m: f64,
     },
 }
 
-/// The contact: where, and how it rebounds and rubs.
+/// The contact of a scenario: its location, restitution and friction.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ScenarioContact {
-    /// Where the vehicles touch.
+    /// Specification of contact point, contact normal and position of the bullet.
     #[serde(flatten)]
     pub location: ContactLocation,
     /// Coefficient of restitution e, 0 to 1.
     pub restitution: f64,
-    /// Friction limit μ_c, 0 to 10.
+    /// Friction limit μ_c, the largest ratio of tangential to normal impulse, 0 to 10.
     pub friction_limit: f64,
-    /// How friction is resolved.
+    /// Friction model of the contact.
     pub friction_model: FrictionModel,
 }
 
-/// Two vehicles about to collide. Read from a file by [`Scenario::load`]
-/// and [`Scenario::from_toml`], which check every range; written by [`Scenario::to_toml`].
+/// Two vehicles that are about to collide. [`Scenario::load`] and [`Scenario::from_toml`] read a
+/// scenario and check every range; [`Scenario::to_toml`] writes it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scenario {
-    /// What a list of scenarios calls it.
+    /// Name of the scenario in lists and reports; may be empty.
     pub name: String,
-    /// Where it comes from, for a person.
+    /// Origin of the data, as free text for the user; may be empty.
     pub notes: String,
-    /// The target's CG along the world's X axis, m.
+    /// X coordinate of the CG of the target in world axes, m.
     pub target_x_m: f64,
-    /// The target's CG along the world's Y axis, m.
+    /// Y coordinate of the CG of the target in world axes, m.
     pub target_y_m: f64,
     /// The vehicle that is struck.
     pub target: ScenarioVehicle,
     /// The vehicle that strikes.
     pub bullet: ScenarioVehicle,
-    /// Where and how they touch.
+    /// The contact between the two vehicles.
     pub contact: ScenarioContact,
 }
 
-/// Where a scenario's vehicles stand and touch, world axes.
+/// Poses and contact of the two vehicles of a scenario, in world axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScenarioGeometry {
-    /// The target.
+    /// Pose of the target.
     pub target: Pose,
-    /// The bullet.
+    /// Pose of the bullet.
     pub bullet: Pose,
     /// Contact point, m.
     pub contact_point_m: [f64; 2],
-    /// Angle Γ of the contact normal, rad, pointing into the target.
+    /// Angle Γ of the contact normal, rad. The normal points into the target.
     pub normal_angle_rad: f64,
-    /// How deep the outlines overlap, m (negative: a gap within the tolerance); `None` where the
-    /// user gave the contact and the outlines were not asked.
+    /// Overlap of the outlines along the normal, m; negative for a gap within the tolerance. `None`
+    /// if the user gave the contact ([`ContactLocation::Point`]), since the outlines are not used
+    /// then.
     pub overlap_m: Option<f64>,
 }
 
-/// A scenario that cannot be solved.
+/// Reason why a scenario, or a row of a table of impacts, cannot be solved.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ScenarioError {
-    /// The outlines make no contact.
+    /// The outlines make no contact, or an outline or a pose is out of range.
     #[error("the vehicles' outlines make no contact")]
     Footprint(#[from] FootprintError),
-    /// The impact has no solution.
+    /// The impact has an input out of range, or no solution.
     #[error("the impact cannot be solved")]
     Impact(#[from] ImpactError),
-    /// The user's normal points away from the target's CG: most likely turned round.
+    /// The contact normal given by the user points away from the CG of the target; most likely it
+    /// was given in the opposite direction.
     #[error(
         "the contact normal at {normal_deg:.1} deg points out of the target; \
          it is the way the bullet pushes, {:.1} deg would point inwards", normal_deg + 180.0
     )]
     NormalPointsOut {
-        /// The normal in the target's body axes, deg.
+        /// Angle of the given normal in body axes of the target, deg.
         normal_deg: f64,
     },
-    /// A contact on neither side of the target, so that "across the target" has no direction.
+    /// The contact point of an [`ImpactCase`] lies on neither side of the target, so that the
+    /// direction of the normal is undefined.
     #[error("contact_y_m is {contact_y_m}, expected a side of the target")]
     NoSide {
-        /// The contact's y in the target's body axes, m.
+        /// Coordinate y of the contact point in body axes of the target, m.
         contact_y_m: f64,
     },
 }
 
 impl ScenarioVehicle {
-    /// Its outline.
+    /// Outline of the vehicle.
     pub fn footprint(&self) -> Footprint {
         Footprint {
             length_m: self.length_m,
@@ -179,11 +187,12 @@ impl ScenarioVehicle {
 }
 
 impl Scenario {
-    /// Where the vehicles stand and touch.
+    /// Computes the poses of both vehicles, the contact point and the contact normal.
     ///
     /// # Errors
-    /// [`ScenarioError::Footprint`] if the outlines make no contact,
-    /// [`ScenarioError::NormalPointsOut`] for a user's normal that does not point into the target.
+    /// [`ScenarioError::Footprint`] if the outlines make no contact or are out of range,
+    /// [`ScenarioError::NormalPointsOut`] if a normal that the user gave points away from the CG of
+    /// the target.
     pub fn geometry(&self) -> Result<ScenarioGeometry, ScenarioError> {
         let target =
             Pose { x_m: self.target_x_m, y_m: self.target_y_m, yaw_rad: self.target.heading_rad };
@@ -223,10 +232,10 @@ impl Scenario {
         })
     }
 
-    /// The impact of the two vehicles.
+    /// The planar impact of the two vehicles, ready to be solved.
     ///
     /// # Errors
-    /// Those of [`Scenario::geometry`].
+    /// The errors of [`Scenario::geometry`].
     pub fn impact(&self) -> Result<Impact, ScenarioError> {
         let geometry = self.geometry()?;
         let point = geometry.contact_point_m;
@@ -242,48 +251,51 @@ impl Scenario {
         })
     }
 
-    /// Impulse, post-impact motion and energy.
+    /// Solves the impact for its impulse, the motion of both vehicles after it and the dissipated
+    /// energy; see [`Impact::solve`].
     ///
     /// # Errors
-    /// Those of [`Scenario::impact`] and [`Impact::solve`].
+    /// The errors of [`Scenario::impact`], and those of [`Impact::solve`] as
+    /// [`ScenarioError::Impact`].
     pub fn solve(&self) -> Result<ImpactSolution, ScenarioError> {
         Ok(self.impact()?.solve()?)
     }
 }
 
-/// One row of a table of impacts, as in the shipped finite-element cases: the target's body axes at
-/// first contact are the world axes.
+/// One row of a table of impacts, as in the shipped finite-element cases. The world axes are the
+/// body axes of the target at first contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImpactCase {
     /// Mass of the target, kg.
     pub m_t_kg: f64,
     /// Mass of the bullet, kg.
     pub m_b_kg: f64,
-    /// Velocity of the target, m/s.
+    /// Velocity `[x, y]` of the CG of the target before the impact, m/s.
     pub v_t_m_s: [f64; 2],
-    /// Velocity of the bullet, m/s.
+    /// Velocity `[x, y]` of the CG of the bullet before the impact, m/s.
     pub v_b_m_s: [f64; 2],
-    /// Heading of the bullet against the target's, rad.
+    /// Heading of the bullet relative to that of the target, rad, counter-clockwise positive.
     pub theta_b_rad: f64,
-    /// Yaw inertia of the target, kg m².
+    /// Yaw moment of inertia of the target about its CG, kg m².
     pub izz_t_kg_m2: f64,
-    /// Yaw inertia of the bullet, kg m².
+    /// Yaw moment of inertia of the bullet about its CG, kg m².
     pub izz_b_kg_m2: f64,
-    /// Contact point from the target's CG, m.
+    /// Position `[x, y]` of the contact point relative to the CG of the target, m.
     pub contact_m: [f64; 2],
-    /// The bullet's CG from the target's CG, m.
+    /// Position `[x, y]` of the CG of the bullet relative to the CG of the target, m.
     pub bullet_m: [f64; 2],
 }
 
 impl ImpactCase {
-    /// The impact with the contact point of the table and the normal across the target: ±y, into it
-    /// from the side of the contact. Neither vehicle turns before it.
+    /// The planar impact of the case. The contact normal is perpendicular to the longitudinal axis
+    /// of the target and points into it from the side of the contact point. The yaw rates before
+    /// the impact are zero.
     ///
-    /// - `restitution`: e, 0 to 1;
-    /// - `friction_limit`: μ_c, 0 or more.
+    /// - `restitution`: coefficient of restitution e, 0 to 1;
+    /// - `friction_limit`: friction limit μ_c, 0 or more.
     ///
     /// # Errors
-    /// [`ScenarioError::NoSide`] for a contact at `y = 0`.
+    /// [`ScenarioError::NoSide`] if the y coordinate of the contact point is zero or not finite.
     pub fn to_impact(
         &self,
         restitution: f64,
@@ -324,11 +336,13 @@ impl ImpactCase {
         Ok(-contact_y_m.signum() * FRAC_PI_2)
     }
 
-    /// The scenario with the same impact as [`ImpactCase::to_impact`], for showing and saving; the
-    /// outlines only serve drawing.
+    /// The scenario that gives the same impact as [`ImpactCase::to_impact`], to be shown or saved.
+    ///
+    /// - `target`, `bullet`: outlines of the vehicles; they are used for drawing only.
+    /// - `restitution`, `friction_limit`: as for [`ImpactCase::to_impact`].
     ///
     /// # Errors
-    /// [`ScenarioError::NoSide`] for a contact at `y = 0`.
+    /// [`ScenarioError::NoSide`] if the y coordinate of the contact point is zero or not finite.
     pub fn to_scenario(
         &self,
         [target, bullet]: [Footprint; 2],

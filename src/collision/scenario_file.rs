@@ -1,4 +1,4 @@
-//! `SCENARIO.toml`: reading with units in the key names.
+//! Reads scenario files (`SCENARIO.toml`), whose key names contain the units.
 //!
 //! ```toml
 //! name = "rear-quarter push"
@@ -26,8 +26,8 @@
 //! friction_model = "limit"    # optional; or "paper"
 //! ```
 //!
-//! Each quantity is given once, in any unit of [`Quantity::units`]: the key ends in the unit's
-//! symbol with `_` for `/`, `·` and blanks and digits for powers.
+//! Each quantity is given once, in any unit of [`Quantity::units`]. The key ends in the symbol of
+//! the unit, with `_` for `/`, `·` and spaces, and with digits for powers.
 
 use std::path::Path;
 
@@ -46,18 +46,19 @@ pub(super) const LOCATIONS: [&str; 3] = ["footprints", "side", "point"];
 pub(super) const FRICTION_MODELS: [&str; 2] = ["limit", "paper"];
 
 impl Scenario {
-    /// Reads a scenario file and checks every key and range.
+    /// Reads a scenario file and checks every key and every range.
     ///
     /// # Errors
-    /// [`TomlError`].
+    /// [`TomlError`] if the file cannot be read, is not valid TOML, or has a key that is missing,
+    /// unknown, contradictory or out of range. Errors in the content name line and column.
     pub fn load(path: &Path) -> Result<Self, TomlError> {
         Self::from_toml(&TomlFile::read(path)?, path)
     }
 
-    /// Reads a scenario from text; `path` only names it in errors.
+    /// Reads a scenario from the text of a file. The `path` serves only to name the file in errors.
     ///
     /// # Errors
-    /// [`TomlError`], but for [`TomlError::Read`].
+    /// The errors of [`Scenario::load`] except [`TomlError::Read`].
     pub fn from_toml(text: &str, path: &Path) -> Result<Self, TomlError> {
         let file = TomlFile { path, text };
         let root = file.parse()?;
@@ -189,7 +190,7 @@ mod tests {
         Scenario::from_toml(text, Path::new("scenario.toml"))
     }
 
-    /// What is said of the shipped scenario with one line changed.
+    /// The error message for the shipped scenario with one line replaced.
     fn refusal(line: &str, instead: &str) -> String {
         assert!(PIT.contains(line), "{line}");
         read(&PIT.replacen(line, instead, 1)).unwrap_err().to_string()

@@ -1,4 +1,4 @@
-//! Scenarios that are part of the program: `assets/scenarios/*.toml`.
+//! Scenarios that are part of the program, compiled in from `assets/scenarios/*.toml`.
 
 use std::path::Path;
 
@@ -9,16 +9,17 @@ const PIT_RIGHT_REAR: &str = include_str!("../../assets/scenarios/pit_right_rear
 const CARPENTER_WELCHER_BARRIER: &str =
     include_str!("../../assets/scenarios/carpenter_welcher_barrier.toml");
 
-/// The scenarios that come with the program: the name on the command line and the text of the file.
+/// The scenarios that come with the program: for each the name on the command line and the text of
+/// its file.
 pub const SCENARIO_PRESETS: &[(&str, &str)] =
     &[("pit-right-rear", PIT_RIGHT_REAR), ("carpenter-welcher-barrier", CARPENTER_WELCHER_BARRIER)];
 
 impl Scenario {
-    /// Reads a scenario that comes with the program, by its name, or else a file. A file with the
-    /// name of such a scenario is reached as `./NAME`.
+    /// Reads a scenario that comes with the program if the argument is its name, or else a scenario
+    /// file. A file that has the name of such a scenario can be read as `./NAME`.
     ///
     /// # Errors
-    /// [`TomlError`] as of [`Scenario::load`].
+    /// The errors of [`Scenario::load`].
     pub fn preset_or_file(name_or_file: &Path) -> Result<Self, TomlError> {
         match SCENARIO_PRESETS.iter().find(|(name, _)| Path::new(name) == name_or_file) {
             Some((_, text)) => Self::from_toml(text, name_or_file),
@@ -26,7 +27,8 @@ impl Scenario {
         }
     }
 
-    /// The example with which the window starts: a PIT at the right rear quarter.
+    /// The example scenario with which the window starts: a PIT manoeuvre in which the bullet
+    /// strikes the right rear quarter of the target.
     pub fn example() -> Self {
         match Self::from_toml(PIT_RIGHT_REAR, Path::new("pit-right-rear")) {
             Ok(scenario) => scenario,

@@ -1,12 +1,12 @@
-//! Scenarios become `SCENARIO.toml` files.
+//! Writes scenarios as `SCENARIO.toml` files.
 
 use crate::collision::scenario_file::{FRICTION_MODELS, LOCATIONS};
 use crate::collision::{ContactLocation, FrictionModel, Scenario, ScenarioVehicle};
 
 impl Scenario {
-    /// The file that [`Scenario::from_toml`] reads back to the same scenario, in SI units, keys in
-    /// reading order. Numbers are written with all their digits; one that is not finite makes a
-    /// file that is refused on reading.
+    /// Returns the text of a file from which [`Scenario::from_toml`] reads the same scenario.
+    /// Quantities are in SI units and numbers are written with all their digits. A number that is
+    /// not finite is written too, but the file is then refused on reading.
     pub fn to_toml(&self) -> String {
         let mut top = Lines::default();
         top.line("name", quoted(&self.name));
@@ -56,7 +56,8 @@ impl Lines {
     }
 
     fn number(&mut self, key: &str, value: f64) {
-        // Debug keeps the decimal point or the exponent: TOML knows integers from floats.
+        // The Debug format keeps the decimal point or the exponent, by which TOML distinguishes
+        // floats from integers.
         self.line(key, format_args!("{value:?}"));
     }
 }
