@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::analysis::Analysis;
 use crate::collision::PrincipalDirectionOfForce;
 use crate::compare::{MotionError, largest_yaw_change_rad};
-use crate::data::{Channel, SeriesError, TimeSeries, contact_interval};
+use crate::data::{Channel, ForceAxes, SeriesError, TimeSeries, contact_interval};
 use crate::numerics::interpolate;
 use crate::study::{Assumption, SimulateRequest, word};
 use crate::vehicle::MotionFlag;
@@ -65,7 +65,8 @@ pub struct ForceReport {
     pub peak_n: f64,
     /// When it is reached, s.
     pub peak_time_s: f64,
-    /// Principal direction of force, degrees clockwise from the direction of the x axis.
+    /// Principal direction of force, degrees clockwise from the struck vehicle's heading before the
+    /// impact.
     pub pdof_deg: Option<f64>,
     /// The same as an hour of the clock.
     pub pdof_clock: Option<u8>,
@@ -178,7 +179,12 @@ impl ForceReport {
         let force = analysis.force.as_ref()?;
         let interval = contact_interval(force);
         let (peak_n, peak_time_s) = force.peak()?;
-        let pdof = PrincipalDirectionOfForce::from_impulse(force.impulse_n_s(), 0.0);
+        // Heading axes turn with the vehicle already, so that its heading is zero in them.
+        let heading_rad = match (force.axes, &analysis.struck) {
+            (ForceAxes::World, Some(struck)) => struck.initial.yaw_rad,
+            (ForceAxes::World, None) | (ForceAxes::Body, _) => 0.0,
+        };
+        let pdof = PrincipalDirectionOfForce::from_impulse(force.impulse_n_s(), heading_rad);
         Some(Self {
             path: request.source.force_file().cloned(),
             sampling: word(&force.sampling),
@@ -231,5 +237,39 @@ impl EndState {
             yaw_rate_rad_s: last(Channel::YawRate)?,
             speed_m_s: vx_m_s.hypot(vy_m_s),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+    use std::path::Path;
+
+    use super::*;
+    use crate::analysis::PulseSetup;
+    use crate::collision::Scenario;
+    use crate::study::{ImpactRequest, Library, MotionSource, Question, ScenarioChoice};
+
+    const PIT: &str = include_str!("../../assets/scenarios/pit_right_rear.toml");
+
+    #[test]
+    fn the_direction_of_force_is_that_of_the_impact_whichever_way_the_vehicle_heads() {
+        for heading_deg in [0, 90, 200] {
+            let text = PIT
+                .replace("heading_deg = 0", &format!("heading_deg = {heading_deg}"))
+                .replace("heading_deg = 18", &format!("heading_deg = {}", heading_deg + 18));
+            let scenario = Scenario::from_toml(&text, Path::new("pit.toml")).unwrap();
+            let scenario = ScenarioChoice::Inline(Box::new(scenario));
+            let mut go_on = |_: crate::study::Event<'_>| ControlFlow::Continue(());
+            let library = Library::default();
+            let impact = ImpactRequest { scenario: scenario.clone(), paper: false };
+            let impact = impact.answer(&library, &mut go_on).unwrap().complete().unwrap();
+            let source = MotionSource::Scenario { scenario, pulse: PulseSetup::default() };
+            let motion = SimulateRequest::new(source).answer(&library, &mut go_on).unwrap();
+            let force = motion.complete().unwrap().report.force.unwrap();
+            let (expected, got) = (impact.report.target.pdof_deg.unwrap(), force.pdof_deg.unwrap());
+            assert!((expected - got).abs() < 1e-6, "{heading_deg}: {expected} {got}");
+            assert_eq!(force.pdof_clock, impact.report.target.pdof_clock, "{heading_deg}");
+        }
     }
 }

@@ -91,9 +91,8 @@ fn contact_text(force: &ForceReport) -> String {
     format!("{:.1} ms, from {:.1} to {:.1} ms", (end - start) * 1e3, start * 1e3, end * 1e3)
 }
 
-/// Principal direction of force: its angle, measured clockwise from the x axis of the force, and
-/// its clock direction; “none” without an impulse. Data sets and files have the x axis along the
-/// heading before the impact; a scenario has it along the X axis of the world.
+/// Principal direction of force: its angle, clockwise from the struck vehicle's heading before the
+/// impact, and its clock direction; “none” without an impulse.
 fn pdof_text(force: &ForceReport) -> String {
     match (force.pdof_deg, force.pdof_clock) {
         (Some(angle_deg), Some(clock)) => format!("{angle_deg:.0} deg, {clock} o'clock"),
