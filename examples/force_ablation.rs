@@ -7,7 +7,6 @@
 //! argument, if there is one, is a data set whose cases are added for the second table.
 //!
 //! `cargo run --release --no-default-features --example force_ablation -- \
-//!
 //! datasets/fea datasets/fea-wide`
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]

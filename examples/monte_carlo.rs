@@ -5,7 +5,6 @@
 //! trajectories of a data set. The arguments are the model, the data set and the number of draws.
 //!
 //! `cargo run --release --no-default-features --example monte_carlo -- \
-//!
 //! assets/models/response.safetensors datasets/trajectories-fea 10000`
 
 #![allow(clippy::print_stdout)]

@@ -8,7 +8,6 @@
 //! is printed as soon as it is known.
 //!
 //! `cargo run --release --no-default-features --example response_ablation -- \
-//!
 //! --data datasets/trajectories-fea --trajectories 20 --choices 2`
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]

@@ -1,4 +1,4 @@
-//! What becomes of a command when nobody reads its output any more, as after `| head -1`.
+//! Commands whose output is no longer read, as after `| head -1`, end without a panic.
 
 use std::io::{BufRead, BufReader};
 use std::process::Stdio;
@@ -7,7 +7,8 @@ use crate::program::{SCENARIO, TRAJECTORIES, closed_pipe, program};
 
 const FORCE: &str = "datasets/fea/forces/c001.csv";
 
-/// A command of each kind with much, little and no output, and its exit code when all is read.
+/// Commands of each kind with much, little and no output, and their exit codes when all output is
+/// read.
 const COMMANDS: &[(&[&str], i32)] = &[
     (&["--help"], 0),
     (&["--version"], 0),
@@ -36,7 +37,7 @@ fn no_command_panics_when_its_output_is_closed() {
         let ended = closed_out.status.code().unwrap();
         match code {
             0 => assert_eq!((ended, message.as_str()), (0, ""), "{args:?}"),
-            // A command that could not say what it found may end as if it had found nothing.
+            // A command that fails to write what it found may also exit with 0.
             _ => assert!([0, *code].contains(&ended), "{args:?}: {ended}"),
         }
 

@@ -1,4 +1,4 @@
-//! The commands without networks, help, and what all commands have in common.
+//! Tests of the commands without networks, of the help and of what all commands have in common.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,8 @@ impl Ran {
             .unwrap_or_else(|error| panic!("no JSON: {error}\n{}\n{}", self.out, self.err))
     }
 
-    /// The error, which is one line on stderr and nothing on stdout.
+    /// Returns the error message, after checking that it is a single line on stderr and that stdout
+    /// is empty.
     fn error_line(&self) -> &str {
         assert_eq!(self.code, 1, "{}{}", self.out, self.err);
         assert_eq!(self.out, "", "{}", self.err);
@@ -50,7 +51,7 @@ fn text(path: &Path) -> &str {
     path.to_str().expect("temporary paths are UTF-8")
 }
 
-/// A 4 s simulation of the reference car with these options, as JSON.
+/// Runs a simulation of 4 s of the reference car with these options and returns its JSON output.
 fn simulate(options: &[&str]) -> Value {
     let mut args = vec!["simulate", "--vehicle", "reference-2000", "--json"];
     args.extend(options);

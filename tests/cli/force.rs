@@ -1,4 +1,5 @@
-//! The commands of the force network: train, kill, resume, predict, evaluate.
+//! Tests of the commands of the force network: training, resuming after a kill, prediction and
+//! evaluation.
 
 #![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
 
@@ -47,7 +48,7 @@ fn predict(model: &Path, extra: &[&str]) -> Output {
     command.args(extra).output().unwrap()
 }
 
-/// What a prediction says, without the name of the model.
+/// Returns the JSON output of a prediction without the name of the model.
 fn answer(model: &Path) -> Value {
     let mut answer = json(&ok(predict(model, &["--body", "A"])));
     answer.as_object_mut().unwrap().remove("model");
@@ -63,7 +64,7 @@ fn train_kill_resume_predict() {
     assert_eq!(told["n_train"].as_u64().unwrap() + told["n_validation"].as_u64().unwrap(), 75);
 
     kill_at_checkpoint(&mut train(&folder, &killed), &killed);
-    // Nobody reads what it says of its progress and its result.
+    // Nobody reads the output of the resumed training, which must not stop it.
     let mut resumed = train(&folder, &killed);
     resumed.arg("--resume").stdout(closed_pipe()).stderr(closed_pipe());
     assert_eq!(resumed.status().unwrap().code(), Some(0));

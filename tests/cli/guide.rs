@@ -1,20 +1,21 @@
-//! The transcripts in README.md and `docs/guide/`: every command in them is run, and prints what
-//! they say.
+//! Runs the commands in the transcripts of README.md and `docs/guide/` and checks that they print
+//! what the documents show.
 //!
 //! A transcript is a block of the language `console`. A line that begins with `$ impactlab` is a
-//! command, which a `\` at its end continues on the next line; what follows, up to the next command,
-//! is what it prints, first to the standard output, then to the standard error. The commands of one
+//! command; a `\` at its end continues it on the next line. The lines up to the next command are
+//! what it prints, first to the standard output, then to the standard error. The commands of one
 //! document run one after the other in a folder of their own, in which `datasets`, `assets` and
 //! `docs` are those of the repository.
 //!
-//! - A line `…` stands for any number of lines, and `…` in a line for the rest of that line: it marks
-//!   what is left out or differs from run to run.
-//! - Blanks count as one. A number with a decimal point may differ by 2 in its last digit or by
-//!   0.2 %, since processors with other vector instructions round otherwise.
-//! - A PNG that a command writes has the size of the one of its name in `docs/guide/pictures`.
+//! - A line `…` stands for any number of lines, and `…` within a line for the rest of that line. It
+//!   marks what is left out or differs between runs.
+//! - Several blanks count as one. A number with a decimal point may differ by 2 in its last digit
+//!   or by 0.2 %, because processors with other vector instructions round differently.
+//! - A PNG that a command writes must have the size of the picture of its name in
+//!   `docs/guide/pictures`.
 //!
-//! `UPDATE_GUIDE=1 cargo test --release --test cli guide` writes what the commands print, whole, into
-//! the documents, where they say something else.
+//! `UPDATE_GUIDE=1 cargo test --release --test cli guide` replaces the output in the documents by
+//! what the commands print, without omissions, wherever the two differ.
 
 #![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
 
@@ -26,15 +27,15 @@ use tempfile::TempDir;
 
 use crate::program::program;
 
-/// What is left out, or may differ.
+/// Text that stands for parts that are left out or may differ.
 const ANYTHING: &str = "…";
 
-/// A command in a document, and what it prints.
+/// A command in a document, with the output that the document shows.
 #[derive(Debug, PartialEq)]
 struct Transcript {
     /// Number of the line of the command, from 1.
     line: usize,
-    /// Lines that the command takes.
+    /// Number of lines over which the command extends.
     n_lines: usize,
     args: Vec<String>,
     printed: Vec<String>,
@@ -51,7 +52,7 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The words of a command line; blanks in double quotes do not separate.
+/// Splits a command line into words. Blanks in double quotes do not separate words.
 fn words(command: &str) -> Vec<String> {
     let (mut words, mut word, mut is_quoted) = (Vec::new(), String::new(), false);
     for c in command.chars() {
@@ -156,14 +157,14 @@ fn lines_match(expected: &[String], got: &[String]) -> bool {
     }
 }
 
-/// Width and height, from the header of a PNG.
+/// Returns the bytes of width and height in the header of a PNG file.
 fn picture_size(path: &Path) -> Vec<u8> {
     let bytes = fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     assert!(bytes.starts_with(b"\x89PNG"), "{}", path.display());
     bytes[16..24].to_vec()
 }
 
-/// What the command prints.
+/// Runs the command and returns its output.
 fn run(transcript: &Transcript, folder: &Path) -> Vec<String> {
     let mut command = program();
     command.current_dir(folder).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");

@@ -1,4 +1,5 @@
-//! `impactlab fine-tune response --log`: a log of 100 samples of a simulated scaled vehicle.
+//! Tests of `impactlab fine-tune response --log` with a log of 100 samples of a simulated scaled
+//! vehicle.
 
 #![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
 
@@ -22,7 +23,8 @@ use crate::program::{TINY_RESPONSE_NETWORK, TRAJECTORIES, json, ok, program};
 
 const VEHICLE: &str = "scaled-target-100";
 const CONTACT_M: &str = "--contact=-0.7,-0.3,0.126";
-/// Of the scatter of position, m, yaw, rad, yaw rate, rad/s, velocity, m/s.
+/// Channels of the log and the standard deviation of their noise: position in m, yaw in rad, yaw
+/// rate in rad/s, velocity in m/s.
 const NOISE: [(Channel, f64); 6] = [
     (Channel::X, 0.02),
     (Channel::Y, 0.02),
@@ -50,7 +52,7 @@ fn truth() -> VehicleParameters {
     vehicle
 }
 
-/// A push of a lateral impulse against the right rear quarter.
+/// Returns a manoeuvre in which a lateral impulse acts on the right rear quarter from `start_s` on.
 fn manoeuvre(speed_m_s: f64, impulse_y_n_s: f64, start_s: f64) -> Manoeuvre {
     let pulse = Pulse::new(PulseShape::HalfSine, [10.0, impulse_y_n_s], start_s, 0.09).unwrap();
     let contact = ContactPoint { x_m: -0.7, y_m: -0.3, height_m: 0.126 };
@@ -63,7 +65,8 @@ fn manoeuvre(speed_m_s: f64, impulse_y_n_s: f64, start_s: f64) -> Manoeuvre {
     }
 }
 
-/// Writes a log of 100 samples and its force.
+/// Simulates an impact and writes its log of 100 samples with noise and its force. Returns both
+/// paths.
 fn write_log(folder: &Path, name: &str, (stride, seed): (usize, u64)) -> [PathBuf; 2] {
     let manoeuvre = manoeuvre(6.0, 90.0, 0.2);
     let motion = truth().simulate(&manoeuvre, Integrator::Rk4).unwrap().series;
@@ -97,7 +100,8 @@ fn error(command: &mut Command) -> String {
     String::from_utf8(output.stderr).unwrap()
 }
 
-/// Mean error of the next impacts of the same vehicle: untuned 4DOF model, model of the file.
+/// Returns the mean errors in other impacts of the same vehicle, of the untuned 4DOF model and of
+/// the model in the file, m.
 fn errors_m(model: &Path) -> [f64; 2] {
     let model = ResponseModel::load(model).unwrap();
     let data_sheet = Preset::ScaledTarget.parameters();
@@ -160,7 +164,8 @@ fn without_a_force_the_impulse_is_estimated_and_two_logs_are_calibrated_on() {
         let impulse_n_s = facts["impulse_n_s"][1].as_f64().unwrap();
         assert!((70.0..110.0).contains(&impulse_n_s), "{facts}");
     }
-    // One log, from a model that was calibrated: its uncertainty, nowhere below the usual one.
+    // With a single log, a model that was calibrated keeps its uncertainty, but no scale falls
+    // below its default.
     let start = folder.path().join("start");
     fs::rename(folder.path().join("model"), &start).unwrap();
     let mut command = fine_tune(folder.path());

@@ -1,6 +1,6 @@
-//! The command line as its users see it: help, exit codes, JSON keys, errors, results.
+//! Tests of the command line: help, exit codes, JSON keys, errors and results.
 //!
-//! One program: each test program of its own would link everything anew.
+//! All tests are in one program, because each test program would link all libraries again.
 
 mod closed_pipe;
 mod commands;

@@ -1,4 +1,4 @@
-//! The program under test and what it printed.
+//! Starts the program under test and reads its output.
 
 #![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
 
@@ -13,7 +13,7 @@ use serde_json::Value;
 pub const SCENARIO: &str = "assets/scenarios/pit_right_rear.toml";
 pub const TRAJECTORIES: &str = "datasets/trajectories-fea";
 
-/// Layers of a response network that is trained within seconds.
+/// Layers of a response network that is small enough to be trained within seconds.
 pub const TINY_RESPONSE_NETWORK: &str = "\
 [network]
 encoder = [8]
@@ -24,17 +24,17 @@ components = 2
 
 ";
 
-/// Longest wait for a checkpoint: only a training that hangs takes so long.
+/// Longest time to wait for a checkpoint. Only a training that hangs exceeds it.
 const PATIENCE: Duration = Duration::from_secs(3600);
 
-/// The program, in the project's folder.
+/// Returns a command that runs the program in the folder of the project.
 pub fn program() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_impactlab"));
     command.current_dir(env!("CARGO_MANIFEST_DIR"));
     command
 }
 
-/// What it printed, where it succeeded.
+/// Returns the standard output of a program, after checking that it succeeded.
 pub fn ok(output: Output) -> String {
     let text = |bytes| String::from_utf8(bytes).unwrap();
     assert!(output.status.success(), "{}", text(output.stderr));
@@ -45,12 +45,12 @@ pub fn json(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
 }
 
-/// A pipe from which nobody reads any more, as after `| head -1`.
+/// Returns the writing end of a pipe whose reading end is closed, as after `| head -1`.
 pub fn closed_pipe() -> PipeWriter {
     io::pipe().unwrap().1
 }
 
-/// Kills a training for good (no signal that could be caught) as soon as there is a checkpoint.
+/// Kills a training by a signal that cannot be caught, as soon as it has written a checkpoint.
 pub fn kill_at_checkpoint(training: &mut Command, model: &Path) {
     let mut child = training.stderr(Stdio::null()).stdout(Stdio::null()).spawn().unwrap();
     let checkpoint = PathBuf::from(format!("{}.training", model.display()));

@@ -1,5 +1,5 @@
-//! The commands of the response network: pre-train, fine-tune, kill, resume, evaluate, compare,
-//! predict.
+//! Tests of the commands of the response network: pre-training, fine-tuning, resuming after a kill,
+//! evaluation, comparison and prediction.
 
 #![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
 
@@ -51,7 +51,7 @@ fn fine_tune(place: (&Path, &Path), model: &Path) -> Command {
     command
 }
 
-/// Two tiny models, made once for all tests.
+/// Returns two tiny models, which are trained once for all tests.
 fn workplace() -> &'static Workplace {
     static PLACE: OnceLock<Workplace> = OnceLock::new();
     PLACE.get_or_init(|| {
@@ -78,7 +78,7 @@ fn evaluate(model: &Path) -> Value {
     json(&ok(command.output().unwrap()))
 }
 
-/// Without what a clock said.
+/// Returns the errors of an evaluation, without the durations, which differ between runs.
 fn errors(comparison: &Value) -> Value {
     comparison["models"][0]["average_error_m"].clone()
 }
@@ -121,7 +121,7 @@ fn evaluation_and_comparison_have_their_keys() {
     assert!(network["coverage"]["90"].as_f64().unwrap() > 0.0);
     assert!(models[0]["coverage"].is_null());
     assert!(!comparison["clusters"].as_array().unwrap().is_empty());
-    // The untuned model is the same in both.
+    // The error of the untuned 4DOF model does not depend on the tiny network.
     let untuned = models[0]["average_error_m"]["mean"].as_f64().unwrap();
     assert!((0.5..1.5).contains(&untuned), "{untuned}");
     let text = fs::read_to_string(out.join("comparison.md")).unwrap();

@@ -1,5 +1,5 @@
-//! Every kind of question, asked in the window and on the command line: both give the same report, to
-//! the last digit that is printed.
+//! Every kind of question is asked in the window and on the command line. Both must give the same
+//! report, to the last digit that is printed.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command as Program, Output};
@@ -20,7 +20,7 @@ const FORCES: &str = "datasets/fea";
 const TRAJECTORIES: &str = "datasets/trajectories-fea";
 const SCENARIO: &str = "assets/scenarios/pit_right_rear.toml";
 
-/// What a clock said, and what the command line adds about the files that it writes.
+/// Keys of durations, and of the files that only the command line writes.
 const NOT_COMPARED: [&str; 4] = ["seconds", "training_s", "time_per_step_us", "out"];
 
 const TINY_FORCE: &str = "\
@@ -57,12 +57,12 @@ iterations = 2
 particles = 4
 ";
 
-/// The command line's side of a question.
+/// A question as the command line asks it.
 struct CommandLine<'a> {
     args: &'a [&'a str],
     /// Keys of the report that only the command line prints.
     only_printed: &'a [&'a str],
-    /// Keys of the question in which the two may differ: where a training is kept, say.
+    /// Keys in which the questions of the two may differ, such as the file of a training's state.
     not_asked_alike: &'a [&'a str],
 }
 
@@ -79,8 +79,8 @@ fn printed(args: &[&str], option: &str) -> String {
     text
 }
 
-/// The lines of an indented JSON text without those of some keys, whose values are a scalar or a list
-/// of scalars.
+/// Returns the lines of an indented JSON text without those of some keys. The values of these keys
+/// must be scalars or lists of scalars.
 fn lines_without(text: &str, keys: &[&str]) -> Vec<String> {
     let mut is_in_list = false;
     let is_kept = |line: &&str| {
@@ -93,7 +93,7 @@ fn lines_without(text: &str, keys: &[&str]) -> Vec<String> {
         is_in_list = is_left_out && line.ends_with('[');
         !is_left_out
     };
-    // The comma depends on what follows.
+    // Whether a line ends in a comma depends on the line after it, which may have been removed.
     text.lines().filter(is_kept).map(|line| line.trim_end_matches(',').to_owned()).collect()
 }
 
@@ -116,7 +116,8 @@ impl<'a> CommandLine<'a> {
         Self { not_asked_alike, ..self }
     }
 
-    /// Asks and compares with what the window was told.
+    /// Asks the question on the command line and compares question and report with those of the
+    /// window.
     fn compare(self, request: impl Into<Request>, report: &impl Serialize) {
         let keys = [&NOT_COMPARED, self.only_printed].concat();
         let shown = serde_json::to_string_pretty(report).expect("JSON");
@@ -140,21 +141,21 @@ fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
     harness.state().state()
 }
 
-/// What was asked last, and its answer.
+/// Returns the question that was asked last, and its answer.
 fn latest<Q: Question>(latest: &Latest<Q>) -> (Q, &Q::Answer) {
     assert!(!latest.is_waiting());
     let answer = latest.answer.as_ref().expect("an answer");
     (latest.asked.clone().expect("a question"), answer.as_ref().expect("no problem"))
 }
 
-/// The same of what takes a while.
+/// Returns the latest question of a [`QuestionJob`] and its answer.
 fn finished<Q: Question>(job: &QuestionJob<Q>) -> (Q, &Q::Answer) {
     assert!(!job.is_running());
     let latest = job.latest.as_ref().expect("an answer");
     (latest.question.clone(), latest.answer.as_ref().expect("no problem"))
 }
 
-/// The window on a path, which is simulated.
+/// Opens the window on a path and waits until its first case has been simulated.
 fn open_on(path: &str) -> Harness<'static, App> {
     let mut harness = open(&[path]);
     step_until(&mut harness, "the data", is_idle);
@@ -197,7 +198,7 @@ fn a_scenario_is_solved_simulated_and_predicted_alike() {
     step_until(&mut harness, "the scenario", |state| {
         is_idle(state) && !state.session.impact.is_waiting()
     });
-    // The window has the scenario in memory, the command line the file.
+    // The window asks about a scenario in memory, the command line about a file.
     let (request, answer) = latest(&state(&harness).session.impact);
     CommandLine::of(&["impact", SCENARIO])
         .asks_differently(&["scenario"])
@@ -216,7 +217,7 @@ fn a_scenario_is_solved_simulated_and_predicted_alike() {
     let has_model = |state: &State| state.session.force.model.current.is_some();
     step_until(&mut harness, "the force model", has_model);
     step_until(&mut harness, "the force", is_answered);
-    // The window asks about the numbers of the collision, which the user may change.
+    // The window asks about the quantities of the collision, which the user may edit.
     let (request, answer) = latest(&state(&harness).session.force.forecast);
     CommandLine::of(&["predict", "force", "--scenario", SCENARIO])
         .asks_differently(&["collision"])
@@ -259,8 +260,8 @@ fn a_data_set_is_simulated_alike() {
     CommandLine::of(&["simulate", "--dataset", TRAJECTORIES]).compare(request, &answer.report);
 }
 
-/// Waits for the motion that the window predicts under a force, and compares it with what a command
-/// says that asks the same.
+/// Waits until the window has predicted the motion under a force, and compares the report with that
+/// of a command.
 fn compare_motion(harness: &mut Harness<'_, App>, force: ForceChoice, asks: CommandLine<'_>) {
     harness.state_mut().state_mut().project.response.forecast.force = force;
     let is_predicted = force == ForceChoice::Predicted;
@@ -294,7 +295,7 @@ fn a_motion_is_predicted_alike() {
     let given = [&of_case[..], &["--given-force"]].concat();
     compare_motion(&mut harness, ForceChoice::Given, CommandLine::of(&given));
 
-    // The window has the scenario in memory, the command line the file.
+    // The window asks about a scenario in memory, the command line about a file.
     apply(&mut harness, Command::Open(vec![SCENARIO.into()]));
     step_until(&mut harness, "the scenario", is_idle);
     let of_scenario = [&["predict", "--scenario", SCENARIO][..], &drawn].concat();

@@ -1,13 +1,15 @@
-//! The density of a planar mixture on the graphics processor is that on the processor.
+//! The density of a planar mixture must be the same on the graphics processor as on the processor.
 //!
-//! Needs a graphics driver; a program in its place will do (`mesa-vulkan-drivers`). Without one the
-//! tests say so and pass, unless `IMPACTLAB_REQUIRE_GPU` is set.
+//! The tests need a graphics driver, for which a software implementation suffices
+//! (`mesa-vulkan-drivers`). Without one they print that nothing was compared and pass, unless
+//! `IMPACTLAB_REQUIRE_GPU` is set.
 
 use impactlab::error_chain;
 use impactlab::render::{DensityError, DensityGpu};
 use impactlab::uncertainty::{PlanarGrid, PlanarMixture, PlanarPart};
 
-/// Of the largest value: single precision, with a margin for the exponential of the device.
+/// Largest difference as a share of the largest density. It allows for single precision and for the
+/// inexact exponential function of the device.
 const TOLERANCE: f64 = 1e-4;
 
 #[expect(clippy::print_stdout, reason = "a test that compares nothing says so")]
@@ -27,7 +29,8 @@ fn part(weight: f64, mean: [f64; 2], covariance: [f64; 3]) -> PlanarPart {
     PlanarPart { weight, mean, covariance }
 }
 
-/// 400 instants along 60 m of a bend with three parts each; the spread grows from 2 cm to 3 m.
+/// Returns the mixture of 400 time steps along 60 m of a bend with three parts each, whose standard
+/// deviation grows from 2 cm to 3 m.
 fn path(start_m: [f64; 2]) -> PlanarMixture {
     let of = |i: usize| {
         let (share, component) = ((i / 3) as f64 / 399.0, (i % 3) as f64 - 1.0);
@@ -77,7 +80,7 @@ fn a_motion_of_1200_parts() {
     let Some(gpu) = device() else { return };
     let mixture = path([0.0; 2]);
     let bounds = mixture.bounds(3.5).unwrap();
-    // Larger and smaller ones by turns: buffers are kept.
+    // Larger and smaller grids alternate, because the buffers are kept between calls.
     for size in [[512, 512], [200, 300], [1024, 1024], [3, 5]] {
         compare(&gpu, &mixture, &PlanarGrid::over(bounds, size));
     }

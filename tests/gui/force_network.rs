@@ -1,4 +1,4 @@
-//! The force network in the window, with a small model that is trained in a moment.
+//! Tests of the force network in the window, with a small model that is trained within seconds.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use impactlab::study::ForceEvaluation;
 use crate::harness::{apply, is_idle, open, open_with, step_until};
 use crate::pictures::save;
 
-/// Small enough for a second of training, good enough to draw.
+/// Settings of a network that is trained within a second and is good enough to be drawn.
 const SMALL: &str = "\
 [network]
 encoder_branches = [[8, 8, 8]]
@@ -46,7 +46,7 @@ impl Small {
     }
 }
 
-/// A model trained on the shipped cases, once for all tests.
+/// Returns a model that is trained on the shipped cases, once for all tests.
 fn small() -> &'static Small {
     static SMALL_MODEL: OnceLock<Small> = OnceLock::new();
     SMALL_MODEL.get_or_init(|| {
@@ -68,7 +68,7 @@ fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
     harness.state().state()
 }
 
-/// The window on the shipped force data with the small model, looking at a case.
+/// Opens the window on the shipped force data with the small model and selects a case.
 fn open_on(case: &str) -> Harness<'static, App> {
     let mut harness = open(&["datasets/fea"]);
     step_until(&mut harness, "the data", is_idle);
@@ -80,7 +80,7 @@ fn open_on(case: &str) -> Harness<'static, App> {
     harness
 }
 
-/// Whether what is shown answers what is asked.
+/// Whether the forecast that is shown answers the current question.
 fn is_forecast_current(state: &State) -> bool {
     let forecast = &state.session.force.forecast;
     let is_asked = forecast.asked.as_ref() == state.force_request().as_ref();
@@ -93,17 +93,17 @@ fn a_case_is_predicted_edited_and_left_open() {
     let recorded = state(&harness).session.force.recorded.as_ref().expect("a recorded force");
     assert_eq!(recorded.case, "c002");
     assert_eq!(state(&harness).project.force.scenario, recorded.scenario);
-    // The seed keeps it for the test.
+    // With this seed the case belongs to the test part.
     harness.get_by_label("c002, as recorded; the model has not seen it");
     harness.get_by_label("Copy table").click();
     save(&mut harness, "prediction.png");
 
-    // The next case of the table is followed.
+    // The prediction follows the selection in the case table.
     harness.key_press(egui::Key::ArrowDown);
     step_until(&mut harness, "the next case", |state| {
         state.project.force.name == "c003" && is_forecast_current(state)
     });
-    // A heavier bullet gives a larger impulse; far heavier than any of the training is said.
+    // A heavier bullet gives a larger impulse. A mass far above those of the training is reported.
     let sizes = [1600.0, 2400.0].map(|mass_kg| {
         harness.state_mut().state_mut().project.force.scenario.mass_kg[1] = mass_kg;
         step_until(&mut harness, "another forecast", is_forecast_current);
@@ -116,7 +116,7 @@ fn a_case_is_predicted_edited_and_left_open() {
     step_until(&mut harness, "a forecast far off", is_forecast_current);
     harness.get_by_label_contains("Outside the training: bullet mass [kg] is 9000");
 
-    // What is unknown is averaged over, and whole curves are drawn.
+    // An unknown contact point is averaged over, and random curves are drawn.
     apply(&mut harness, Command::PredictCase);
     harness.get_by_label("contact unknown").click();
     harness.get_by_label("Draw").click();
@@ -133,7 +133,7 @@ fn a_case_is_predicted_edited_and_left_open() {
     save(&mut harness, "prediction-dark.png");
 }
 
-/// `benches/window.rs` measures how long such frames take.
+/// The time that such frames take is measured by `benches/window.rs`.
 #[test]
 fn the_forecast_stays_while_the_scenario_changes() {
     let mut harness = open_on("c002");
@@ -182,7 +182,7 @@ fn a_model_is_trained_paused_cancelled_saved_and_there_after_a_restart() {
     harness.get_by_label("Pause").click();
     harness.run_steps(2);
     assert!(state(&harness).session.force.training.run.is_paused());
-    // The epoch under way comes to its end.
+    // A paused training first completes the current epoch.
     let is_at_rest = |state: &State| state.session.force.training.run.is_at_rest();
     step_until(&mut harness, "the end of the epoch", is_at_rest);
     let n_epochs = state(&harness).session.force.training.history.len();
@@ -202,7 +202,7 @@ fn a_model_is_trained_paused_cancelled_saved_and_there_after_a_restart() {
         let current = state(harness).session.force.model.current.as_ref().expect("a model");
         (current.name.clone(), current.is_saved)
     };
-    // A cancelled training puts nothing into use unless the user says so.
+    // The model of a cancelled training is used only when the user asks for it.
     assert_eq!(current(&harness), ("shipped".to_owned(), true));
     harness.get_by_label("Use it").click();
     harness.run_steps(2);
@@ -265,7 +265,7 @@ fn a_model_is_evaluated_beside_the_baselines() {
     harness.get_by_label("Copy as Markdown").click();
     harness.run_steps(2);
     harness.state_mut().state_mut().view.dark = true;
-    // What lies below is seen in a tall window.
+    // The tall window also shows what otherwise needs scrolling.
     harness.set_size(egui::vec2(1440.0, 1700.0));
     harness.run_steps(6);
     save(&mut harness, "evaluation-dark.png");

@@ -1,4 +1,5 @@
-//! An app in a test: its own state, no storage, pixels from the software renderer.
+//! Runs the app in a test, with its own state, without stored settings unless a file is given, and
+//! with pixels from the software renderer.
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -9,10 +10,10 @@ use image::RgbaImage;
 use impactlab::app::{App, Command, State};
 use impactlab::render::SoftwareRenderer;
 
-/// Longest wait for background work: only work that hangs takes so long.
+/// Longest time to wait for background work. Only work that hangs exceeds it.
 const PATIENCE: Duration = Duration::from_secs(3600);
 
-/// What a real window shows where nothing is painted.
+/// Colour that a real window shows where nothing is painted.
 const WINDOW_GROUND: Color32 = Color32::BLACK;
 
 #[derive(Default)]
@@ -36,7 +37,7 @@ pub fn open(paths: &[&str]) -> Harness<'static, App> {
     open_with(paths, None)
 }
 
-/// Opens the app on these paths, with its state in a file.
+/// Opens the app on these paths, with its state stored in a file, if there is one.
 pub fn open_with(paths: &[&str], state_file: Option<PathBuf>) -> Harness<'static, App> {
     let paths: Vec<PathBuf> = paths.iter().map(PathBuf::from).collect();
     Harness::builder()
@@ -46,7 +47,9 @@ pub fn open_with(paths: &[&str], state_file: Option<PathBuf>) -> Harness<'static
         .build_eframe(move |cc| App::new(cc, paths, state_file))
 }
 
-/// Steps until the state is as wanted.
+/// Draws frames until the state fulfils a condition.
+///
+/// - `what`: what is awaited, for the message if it takes too long.
 pub fn step_until(harness: &mut Harness<'_, App>, what: &str, wanted: impl Fn(&State) -> bool) {
     let start = Instant::now();
     while !wanted(harness.state().state()) {
@@ -59,14 +62,14 @@ pub fn step_until(harness: &mut Harness<'_, App>, what: &str, wanted: impl Fn(&S
     }
 }
 
-/// Whether nothing is under way.
+/// Whether the data are loaded and the selected subject has been simulated.
 pub fn is_idle(state: &State) -> bool {
     state.session.sources.iter().all(impactlab::app::Source::is_settled)
         && state.session.analysis.asked.is_some()
         && !state.session.analysis.is_waiting()
 }
 
-/// Does something as if the user had asked for it.
+/// Carries out a command as if the user had asked for it.
 pub fn apply(harness: &mut Harness<'_, App>, command: Command) {
     let context = harness.ctx.clone();
     harness.state_mut().apply(command, &context);

@@ -1,4 +1,4 @@
-//! The app, driven without a display and drawn on the CPU.
+//! Tests of the app, which is driven without a display and drawn on the CPU.
 
 mod both_faces;
 mod density_gpu;

@@ -1,5 +1,5 @@
-//! Figures of the force network, drawn from a made-up prediction: written below `target/pictures`
-//! to be looked at, and one of them pixel by pixel.
+//! Figures of the force network for an artificial prediction. They are written below
+//! `target/pictures` for inspection, and one of them is compared pixel by pixel.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -23,7 +23,7 @@ fn cases() -> Vec<ForceCase> {
     ForceCase::of_dataset(&dataset.complete().expect("nothing cancels")).0
 }
 
-/// A distribution about a curve: its height and its tilt are uncertain.
+/// Returns a distribution around a curve in which the height and the tilt are uncertain.
 fn about(curve: &ForceCurve) -> CurveMixture {
     let mut mean = curve.to_values();
     let n = mean.len();

@@ -1,4 +1,4 @@
-//! Pictures of the whole window, to be looked at: written below `target/pictures`.
+//! Pictures of the whole window, which are written below `target/pictures` for inspection.
 
 use std::path::Path;
 

@@ -1,5 +1,5 @@
-//! The response network in the window: forecasts by the shipped model, a small training, a small
-//! comparison.
+//! Tests of the response network in the window: forecasts by the shipped model, a small training
+//! and a small comparison.
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -13,7 +13,7 @@ use crate::pictures::save;
 
 const DATA: &str = "datasets/trajectories-fea";
 
-/// Seconds of training.
+/// Settings of a training that takes seconds.
 const SMALL: &str = "\
 [network]
 encoder = [8]
@@ -49,7 +49,7 @@ fn select(harness: &mut Harness<'_, App>, dataset: &str, case: &str) {
     });
 }
 
-/// Whether the density is that of the moment or window asked for.
+/// Whether the density that is shown is that of the current time or window.
 fn is_density_current(state: &State, window_s: [f64; 2]) -> bool {
     let density = state.session.response.density.ok();
     density.is_some_and(|map| {
@@ -75,7 +75,7 @@ fn a_recorded_case_is_forecast_with_density_and_bands() {
     harness.get_by_label("follow").click();
     harness.run_steps(2);
 
-    // Over a window, in the dark, in US units.
+    // The density over a window is shown in the dark theme and in US units.
     {
         let state = harness.state_mut().state_mut();
         state.view.response.density = DensityChoice::Window;
@@ -112,7 +112,8 @@ fn a_predicted_force_spreads_the_forecast_and_playing_moves_it() {
     step_until(&mut harness, "the density", |state| is_density_current(state, [time_s; 2]));
     harness.run_steps(4);
     save(&mut harness, "motion-forecast-predicted.png");
-    // A trajectory does not say how its cars met: the given force is shown, and that is said.
+    // A trajectory does not describe its collision. The given force is shown instead, and a message
+    // says so.
     select(&mut harness, DATA, "FE_c002");
     harness.get_by_label_contains("The collision is not known here");
     // The choice of force can be undone.
@@ -122,7 +123,7 @@ fn a_predicted_force_spreads_the_forecast_and_playing_moves_it() {
     assert_eq!(state(&harness).project.response.forecast.force, ForceChoice::Predicted);
 }
 
-/// `benches/window.rs` measures how long such frames take.
+/// The time that such frames take is measured by `benches/window.rs`.
 #[test]
 fn forecast_and_density_stay_while_time_runs() {
     let mut harness = open(&[DATA]);
@@ -160,7 +161,7 @@ fn a_response_model_is_trained_paused_cancelled_and_saved() {
     harness.get_by_label("Pause").click();
     harness.run_steps(2);
     assert!(state(&harness).session.response.training.run.is_paused());
-    // The epoch under way comes to its end.
+    // A paused training first completes the current epoch.
     let is_at_rest = |state: &State| state.session.response.training.run.is_at_rest();
     step_until(&mut harness, "the end of the epoch", is_at_rest);
     let paused = n_epochs(state(&harness));
@@ -178,7 +179,7 @@ fn a_response_model_is_trained_paused_cancelled_and_saved() {
     let name = |harness: &Harness<'_, App>| {
         state(harness).session.response.model.current.as_ref().expect("a model").name.clone()
     };
-    // A cancelled training puts nothing into use unless the user says so.
+    // The model of a cancelled training is used only when the user asks for it.
     assert_eq!(name(&harness), "shipped");
     harness.get_by_label("Use it").click();
     harness.run_steps(2);
@@ -187,7 +188,7 @@ fn a_response_model_is_trained_paused_cancelled_and_saved() {
     apply(&mut harness, Command::SaveModel(Network::Response, path.clone()));
     step_until(&mut harness, "the file", |state| !state.session.response.model.is_saving());
     assert_eq!(state(&harness).project.response.model.as_ref(), Some(&path));
-    // A model file is taken for the network that it says it is of.
+    // A model file is used for the network that its header names.
     apply(&mut harness, Command::UseModel(Network::Response, None));
     apply(&mut harness, Command::Open(vec![path.clone()]));
     assert_eq!(state(&harness).project.response.model.as_ref(), Some(&path));
@@ -225,7 +226,7 @@ fn models_are_compared_saved_and_opened_again() {
     let out = folder.path().join("saved");
     apply(&mut harness, Command::Compare(ComparisonCommand::Save(out.clone())));
     step_until(&mut harness, "the files", |_| out.join("comparison.md").is_file());
-    // What lies below is seen in a tall window.
+    // The tall window also shows what otherwise needs scrolling.
     apply(&mut harness, Command::Open(vec![out.join("comparison.json")]));
     step_until(&mut harness, "the file", is_over);
     harness.set_size(egui::vec2(1440.0, 2000.0));

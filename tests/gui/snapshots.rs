@@ -1,5 +1,5 @@
-//! Every kind of figure, pixel by pixel against a picture that was looked at. A wanted change is
-//! taken over with `UPDATE_SNAPSHOTS=1`.
+//! Every kind of figure is compared pixel by pixel with a picture that was inspected. After an
+//! intended change, `UPDATE_SNAPSHOTS=1` replaces the pictures.
 
 use std::ops::ControlFlow;
 use std::path::Path;

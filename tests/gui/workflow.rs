@@ -1,4 +1,4 @@
-//! What an analyst does, found by what stands on the screen.
+//! The work of an analyst in the window. The controls are found by the text on the screen.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -38,14 +38,14 @@ fn open_pick_simulate_scrub() {
     let mut harness = open(&["datasets/trajectories-fea"]);
     step_until(&mut harness, "the first case", shows("FE_c001"));
 
-    // Pick a case by its name in the table.
+    // A case is selected by its name in the table.
     harness.get_by_label("FE_c003").click();
     step_until(&mut harness, "the case that was clicked", shows("FE_c003"));
     let answer = state(&harness).analysis().unwrap();
     assert!(answer.analysis.simulation.is_some() && answer.analysis.reference.is_some());
     assert!(answer.report.error.as_ref().unwrap().average_error_m < 3.0);
 
-    // Simulate the whole data set.
+    // The whole data set is simulated.
     harness.get_by_label("Simulate all 100 cases").click();
     step_until(&mut harness, "all cases", |state| {
         let mut reports = state.session.replays.values().filter_map(ReplayStatus::report);
@@ -53,7 +53,7 @@ fn open_pick_simulate_scrub() {
     });
     harness.get_by_label("All 100 cases, average position error");
 
-    // Scrub the time by keys, play and pause.
+    // The time is moved by keys, and playback is started and stopped.
     harness.key_press(Key::ArrowRight);
     harness.step();
     assert!((state(&harness).session.time_s - 0.05).abs() < 1e-9);
@@ -115,12 +115,12 @@ fn a_bad_file_says_where_and_offers_the_mapping() {
     let report = &state(&harness).analysis().unwrap().report;
     let force = report.force.as_ref().unwrap();
     assert!((force.peak_n - 2500.0_f64.hypot(40_000.0)).abs() < 1e-6);
-    // A file says neither how fast the vehicle was nor where the force acts.
+    // A file states neither the speed of the vehicle nor the point at which the force acts.
     let assumed: Vec<&str> = report.assumptions.iter().map(|of| of.quantity.label()).collect();
     assert_eq!(assumed, ["struck vehicle", "speed before the impact", "contact point"]);
     harness.run_steps(2);
     assert!(harness.query_all_by_label_contains("assumed: contact point: x -1.5 m").count() > 0);
-    // It is said instead in the vehicle pane.
+    // The user enters both in the vehicle pane instead.
     apply(&mut harness, Command::Show(impactlab::app::Pane::Vehicle));
     harness.run_steps(2);
     assert_eq!(harness.query_all_by_label("Set").count(), 2);
@@ -175,7 +175,8 @@ fn a_scenario_is_solved_simulated_and_survives_a_kill() {
     let analysis = &state(&harness).analysis().unwrap().analysis;
     assert!(analysis.bullet.is_some() && analysis.simulation.is_some());
 
-    // A second is enough to have it on disk; the app is not closed but dropped, as by a kill.
+    // The state is on disk after about a second. The app is then dropped without being closed, as
+    // if it had been killed.
     harness.run_steps(90);
     step_until(&mut harness, "the saved state", |_| state_file.exists());
     let before = state(&harness).project.clone();

@@ -1,4 +1,5 @@
-//! Bad files: each is refused with its place and what to do, and none panics.
+//! Bad files: each is refused with a message that names the place and the remedy, and none causes a
+//! panic.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -13,7 +14,7 @@ use impactlab::data::{
 use proptest::prelude::*;
 use tempfile::TempDir;
 
-/// The message without the temporary folder.
+/// Returns the message of an error without the path of the temporary folder.
 fn message(folder: &Path, error: &DataError) -> String {
     let folder = format!("{}{}", folder.display(), std::path::MAIN_SEPARATOR);
     error.to_string().replace(&folder, "").replace('\\', "/")
@@ -23,7 +24,7 @@ fn folder() -> TempDir {
     tempfile::tempdir().unwrap()
 }
 
-/// The message for a force file with this content.
+/// Returns the message with which a force file of this content is refused.
 fn refused(content: impl AsRef<[u8]>) -> String {
     let folder = folder();
     let path = folder.path().join("f.csv");
@@ -201,7 +202,7 @@ fn huge_files_are_refused_at_once() {
     );
 }
 
-/// A data set of three good force cases.
+/// Writes a data set of three valid force cases.
 fn small_dataset() -> TempDir {
     let folder = folder();
     let header = "case,m_t_kg,m_b_kg,v_tx_m_s,v_ty_m_s,v_bx_m_s,v_by_m_s,theta_b_rad,contact_x_m,contact_y_m";
@@ -215,7 +216,7 @@ fn small_dataset() -> TempDir {
     folder
 }
 
-/// Names of the cases that were read, and the messages of the problems.
+/// Returns the names of the cases that were read, and the messages of the problems.
 fn load(root: &Path) -> (Vec<String>, Vec<String>) {
     let dataset = Dataset::load(root, &mut |_| ControlFlow::Continue(())).unwrap();
     let dataset = dataset.complete().unwrap();

@@ -1,4 +1,4 @@
-//! The same force history in every dialect that people export.
+//! The same force history in the formats in which measurement and simulation tools export it.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -25,7 +25,8 @@ fn utf16(text: &str, to_bytes: fn(u16) -> [u8; 2]) -> Vec<u8> {
     units.flat_map(to_bytes).collect()
 }
 
-/// 0, 1500, −250.5 N along x, half of it along y, at 0, 1, 2 ms.
+/// Checks the history: forces of 0, 1500 and −250.5 N along x and half of that along y, at 0, 1 and
+/// 2 ms.
 fn assert_is_the_history(loaded: &Loaded, what: &str) {
     let fx = loaded.series.require(Channel::Fx).unwrap();
     let fy = loaded.series.require(Channel::Fy).unwrap();

@@ -1,4 +1,4 @@
-//! Spoiled histories raise the flag that is meant for them, and no other.
+//! Histories with one fault each raise the flag of that fault and no other.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 

@@ -1,4 +1,5 @@
-//! The baselines of the force network on the shipped finite-element runs, test part of seed 0.
+//! The baselines of the force network on the test part, by seed 0, of the shipped finite-element
+//! runs.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -18,7 +19,8 @@ fn shipped_cases() -> Vec<ForceCase> {
     cases
 }
 
-/// The recorded curves stand in for a model: what is looked at here are the baselines.
+/// Evaluates the baselines. The recorded curves take the place of a model, which is not tested
+/// here.
 fn evaluation(columns: ColumnSet) -> Evaluation {
     let cases = shipped_cases();
     let split = split(&cases, 0, TEST_SHARE);
@@ -32,9 +34,10 @@ fn evaluation(columns: ColumnSet) -> Evaluation {
     outcome.expect("an evaluation").complete().expect("not cancelled")
 }
 
-/// Median (mean) history error in %: 40.7 (37.9) for the pulse, 55.3 (51.5) for the nearest case,
-/// 28.3 (30.6) for the Gaussian processes; 28.2 (28.9) without hooked and unseparated cases. The
-/// bounds leave a tenth for other mathematical libraries.
+/// Median (mean) history errors were 40.7 % (37.9 %) for the pulse, 55.3 % (51.5 %) for the nearest
+/// case and 28.3 % (30.6 %) for the Gaussian processes, or 28.2 % (28.9 %) without hooked and
+/// unseparated cases. The bounds are a tenth higher, because other mathematical libraries round
+/// differently.
 #[test]
 fn baselines_on_the_test_part_of_the_shipped_runs() {
     let evaluation = evaluation(ColumnSet::Theta);

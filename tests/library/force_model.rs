@@ -1,4 +1,5 @@
-//! The force network end to end, tiny: training, resuming, files, symmetry, open features.
+//! The force network from training to prediction with a tiny network: training, resuming, files,
+//! symmetry, and predictions with unknown quantities.
 
 use std::fs;
 use std::ops::ControlFlow;
@@ -47,7 +48,7 @@ fn settings(checkpoint: Option<PathBuf>) -> ForceTrainSettings {
     ForceTrainSettings { config: config(), seed: 5, checkpoint, resume: true }
 }
 
-/// Trains until an epoch is over, as if killed then.
+/// Trains until an epoch is over and stops, as if the training were killed then.
 fn train_until(epoch: usize, settings: &ForceTrainSettings) -> ForceModel {
     let model = train(set(), settings, &mut |told| match told {
         TrainingReport::Epoch(told) if told.summary.epoch == epoch => ControlFlow::Break(()),
@@ -66,7 +67,7 @@ fn model() -> &'static ForceModel {
     MODEL.get_or_init(|| train_until(EPOCHS, &settings(None)))
 }
 
-/// Without the seconds that each epoch took.
+/// Returns the losses of each epoch, without the durations, which differ between runs.
 fn losses(model: &ForceModel) -> Vec<String> {
     let history = model.record().history.iter();
     history
@@ -84,7 +85,8 @@ fn scenario() -> ForceScenario {
 fn a_killed_training_goes_on_to_the_same_weights() {
     let folder = tempfile::tempdir().unwrap();
     let checkpoint = folder.path().join("model.training");
-    // Killed after epoch 3: the checkpoint is that of epoch 2, as breaking would save epoch 3.
+    // The training is killed after epoch 3, when the checkpoint is that of epoch 2. Stopping a
+    // training saves its last epoch, so that the checkpoint of epoch 2 is put back.
     train_until(2, &settings(Some(checkpoint.clone())));
     let at_2 = fs::read(&checkpoint).unwrap();
     train_until(3, &settings(Some(checkpoint.clone())));
@@ -204,7 +206,8 @@ fn a_common_speed_changes_nothing() {
 
 #[test]
 fn what_is_left_open_widens_the_bands() {
-    // On average over the cases: a single known contact may be one of the uncertain ones.
+    // The spread is summed over the cases, because a single known contact point may be one with a
+    // wide distribution.
     let spread = |open: bool| -> f64 {
         let ask = |case: &ForceCase| {
             let known = case.scenario.clone();

@@ -1,12 +1,13 @@
-//! The layers of `src/`: a module names only what lies below it.
+//! Checks the layers of `src/`: a module refers only to modules of lower layers.
 //!
-//! Looked for are `crate::name` and `crate::{name, …}` outside comments; doc links may point up.
+//! The test searches for `crate::name` and `crate::{name, …}` outside comments. Links in comments
+//! may refer to higher layers.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// From low to high. Modules of one layer do not know each other.
+/// The layers from low to high. Modules of one layer do not refer to each other.
 const LAYERS: &[&[&str]] = &[
     &["bibliography", "units", "error_chain"],
     &["numerics", "jobs"],
@@ -24,12 +25,12 @@ const LAYERS: &[&[&str]] = &[
     &["cli", "app"],
 ];
 
-/// Pairs of one layer where the first may name the second.
+/// Pairs of modules of one layer in which the first may refer to the second.
 ///
 /// - The command line opens the window: `impactlab app`.
 const NEIGHBOURS_THAT_MAY: &[(&str, &str)] = &[("cli", "app")];
 
-/// A name where it must not be.
+/// A reference to a module that is not allowed.
 #[derive(Debug, PartialEq)]
 struct Violation {
     line: usize,
@@ -42,21 +43,21 @@ fn layer(module: &str) -> Option<usize> {
 
 fn may_name(module: &str, other: &str) -> bool {
     let lower = layer(other) < layer(module);
-    // What is no module is an item of the crate's root, such as a macro.
+    // A name that is no module is an item of the crate root, such as a macro.
     layer(other).is_none()
         || lower
         || module == other
         || NEIGHBOURS_THAT_MAY.contains(&(module, other))
 }
 
-/// The text without comments; lines keep their numbers. A `//` in a string counts as a comment,
-/// which hides no `use`.
+/// Returns the text without comments; lines keep their numbers. A `//` in a string is treated as a
+/// comment, which hides no `use`.
 fn code(text: &str) -> String {
     let code_of = |line: &str| line.split("//").next().unwrap_or_default().to_owned() + "\n";
     text.lines().map(code_of).collect()
 }
 
-/// The names that directly follow `crate::`, with their lines.
+/// Returns the names that directly follow `crate::`, with their line numbers.
 fn names_below_the_root(code: &str) -> Vec<(usize, String)> {
     const ROOT: &str = "crate::";
     let is_start = |at: usize| !code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_');
@@ -73,7 +74,7 @@ fn names_below_the_root(code: &str) -> Vec<(usize, String)> {
     names
 }
 
-/// The first names of the paths in a group, up to its closing brace.
+/// Returns the first names of the paths in a group, up to its closing brace.
 fn names_in_group(group: &str) -> Vec<&str> {
     let (mut depth, mut start, mut names) = (0, 0, Vec::new());
     for (at, c) in group.char_indices() {
@@ -110,7 +111,7 @@ fn violations(module: &str, text: &str) -> Vec<Violation> {
         .collect()
 }
 
-/// The Rust files of a folder and the folders in it.
+/// Returns the Rust files of a folder and of the folders in it.
 fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).expect("a folder of sources");
     entries
@@ -120,7 +121,7 @@ fn rust_files(folder: &Path) -> Vec<PathBuf> {
         .collect()
 }
 
-/// The module of a file below `src`: the folder, or the file's own name.
+/// Returns the module of a file below `src`: its folder, or the name of the file.
 fn module_of(file: &Path, src: &Path) -> String {
     let path = file.strip_prefix(src).expect("a file below src").with_extension("");
     let first = path.components().next().expect("a name").as_os_str();

@@ -1,6 +1,7 @@
-//! The core library through its public interface, on the shipped data and on bad input.
+//! Tests of the core library through its public interface, with the shipped data and with bad
+//! input.
 //!
-//! One program: each test program of its own would link everything anew.
+//! All tests are in one program, because each test program would link all libraries again.
 
 mod data_bad_input;
 mod data_dialects;

@@ -1,4 +1,4 @@
-//! Training, saving and asking the response network, on small made motions.
+//! Training, saving and use of the response network with short artificial motions.
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use impactlab::response::{
 };
 use impactlab::vehicle::{Preset, VehicleInput, VehicleState};
 
-/// A car that was set turning, and whose tyres differ from its data sheet.
+/// Returns the motion of a car with an initial yaw rate, whose tyres differ from its data sheet.
 fn case(yaw_rate_rad_s: f64) -> ResponseCase {
     let vehicle = Preset::Reference.parameters();
     let mut truth = vehicle.clone();
@@ -50,7 +50,8 @@ fn go_on(_: &TrainingReport) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// Average errors on a motion that is not learned from: data sheet and model, m.
+/// Returns the average errors of the data sheet's 4DOF model and of the network on a motion that
+/// was not used for training, m.
 fn errors_m(model: &ResponseModel) -> [f64; 2] {
     let unseen = case(0.6);
     let (start, inputs) = (unseen.states[0], &unseen.inputs);
@@ -103,7 +104,7 @@ fn a_saved_model_predicts_the_same_bits() {
 #[test]
 fn a_training_that_was_cut_goes_on_to_the_same_weights() {
     let whole = fine_tune(None, &set(), &settings(small()), &mut go_on).expect("a model");
-    // Cut in the first stage, between two stages, and in the last.
+    // The training is interrupted in the first stage, between two stages, and in the last.
     for cut_at in [7, 12, 16] {
         let checkpoint = scratch(&format!("cut_{cut_at}.training"));
         let mut settings = settings(small());
@@ -156,7 +157,7 @@ fn nothing_is_learned_from_nothing() {
     assert!(matches!(fitted, Err(LearningError::TooFewCases { .. })));
 }
 
-/// What ships does on its test trajectories what docs/VALIDATION.md says.
+/// The shipped model reaches the accuracy that docs/VALIDATION.md states on its test trajectories.
 #[test]
 fn the_shipped_model_keeps_its_word() {
     let model = ResponseModel::load(Path::new("assets/models/response.safetensors")).unwrap();

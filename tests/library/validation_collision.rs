@@ -1,4 +1,4 @@
-//! The collision layer against published numbers and against the shipped finite-element runs.
+//! The collision layer compared with published numbers and with the shipped finite-element runs.
 
 use std::path::Path;
 
@@ -12,9 +12,11 @@ fn unit(quantity: Quantity, symbol: &str) -> Unit {
     *quantity.units().iter().find(|unit| unit.symbol == symbol).expect("a unit of the table")
 }
 
-/// Barrier example of Carpenter and Welcher, SAE 2019-01-0422. The source's axes are x forward,
-/// y right, angles clockwise; ours are its mirror image. Its masses are weights over 32.2 ft/s²
-/// (with the standard 32.174 everything that carries the mass comes out 0.08 % larger).
+/// Barrier example of Carpenter and Welcher, SAE 2019-01-0422.
+///
+/// The source's axes are x forward and y right with angles clockwise, so that the values here are
+/// its mirror image. Its masses are weights over 32.2 ft/s². With the standard 32.174 ft/s², every
+/// quantity that is proportional to the mass is 0.08 % larger.
 #[test]
 fn carpenter_welcher_barrier() {
     let mass = unit(Quantity::Mass, "slug");
@@ -39,7 +41,8 @@ fn carpenter_welcher_barrier() {
             heading_rad: std::f64::consts::PI,
             velocity_m_s: [0.0, 0.0],
             yaw_rate_rad_s: 0.0,
-            // Heading 180°: its own axes are turned half round.
+            // The heading is 180°, so that the arm in the vehicle's own axes has the opposite
+            // signs.
             contact_arm_m: arm(-4.166667, 4.166667),
         },
         surface: ContactSurface {
@@ -59,14 +62,15 @@ fn carpenter_welcher_barrier() {
         energy.from_si(solution.dissipated_energy_j),
     ];
     let printed = [-351.773, 5936.161, -35.7275, 7.5998, -176.430, 170_421.5];
-    // Half of the last printed digit; the last digit of P_n is printed cut, not rounded.
+    // The tolerances are half of the last printed digit. The last digit of P_n is truncated in the
+    // source, not rounded.
     let tolerances = [5e-4, 1e-3, 5e-5, 5e-5, 5e-3, 0.05];
     for ((got, printed), tolerance) in got.into_iter().zip(printed).zip(tolerances) {
         assert!((got - printed).abs() < tolerance, "{got}, printed {printed}");
     }
 }
 
-/// The shipped scenario file of the same example leads to the same numbers.
+/// The shipped scenario file of the same example gives the same numbers.
 #[test]
 fn carpenter_welcher_scenario_file() {
     let solution = solve_scenario("carpenter_welcher_barrier.toml");
@@ -79,8 +83,9 @@ fn carpenter_welcher_scenario_file() {
     assert_eq!(solution.regime, Regime::NoSlide);
 }
 
-/// A PIT turns the target's tail away from the bullet: nose to the right for a push from the
-/// right at the rear; force from behind on the right.
+/// A PIT manoeuvre turns the tail of the target away from the bullet. A push from the right at the
+/// rear turns the nose to the right, and the principal direction of force is from the right and
+/// behind.
 #[test]
 fn a_pit_turns_the_target_towards_the_bullet() {
     let solution = solve_scenario("pit_right_rear.toml");
@@ -97,7 +102,7 @@ fn solve_scenario(name: &str) -> ImpactSolution {
     scenario.solve().expect(name)
 }
 
-/// A column of `cases.csv`.
+/// Reads a number from a column of `cases.csv`.
 fn cell(headers: &csv::StringRecord, row: &csv::StringRecord, name: &str) -> f64 {
     let column = headers.iter().position(|header| header == name);
     let text = column.and_then(|column| row.get(column)).expect(name);
@@ -129,9 +134,10 @@ fn finite_element_cases() -> (csv::StringRecord, Vec<csv::StringRecord>) {
 
 const OUTLINE: Footprint = Footprint { length_m: 4.8, width_m: 1.85, cg_from_front_m: 2.3 };
 
-/// The shipped finite-element runs, e = 0.3, μ_c = 0.4, normal across the target. Median error over
-/// all 100 runs: 16.3 % for the impulse vector, 12.6 % for its magnitude, 10.4 % across. The bounds
-/// leave no room beyond the next whole percent: the solution is deterministic.
+/// Momentum solution for the shipped finite-element runs with e = 0.3, μ_c = 0.4 and the normal
+/// across the target. The median errors over all 100 runs are 16.3 % for the impulse vector, 12.6 %
+/// for its magnitude and 10.4 % for its component across the target. The bounds are the next whole
+/// percent, because the solution is deterministic.
 #[test]
 fn finite_element_impulses() {
     let (headers, rows) = finite_element_cases();
@@ -157,9 +163,11 @@ fn finite_element_impulses() {
     }
 }
 
-/// What the runs that do not hook imply: 90 % of them have e between 0.24 and 0.63 and an impulse
-/// ratio between 0.06 and 0.55. The restitution is that of a rigid model with a fixed contact point,
-/// fitted to 0.1 s of contact; it is above the 0 to 0.3 that the trade uses.
+/// Restitution and impulse ratio that the runs without hooking imply. For 90 % of them, e is
+/// between 0.24 and 0.63 and the impulse ratio between 0.06 and 0.55.
+///
+/// The restitution is that of a rigid model with a fixed contact point, fitted to 0.1 s of contact.
+/// It is above the range from 0 to 0.3 that is usual in reconstruction.
 #[test]
 fn finite_element_restitution_and_friction() {
     let (headers, rows) = finite_element_cases();

@@ -1,5 +1,5 @@
-//! What the 4DOF vehicle must do whatever its parameters: symmetry, energy, rest, closed forms,
-//! exact derivatives.
+//! Properties that the 4DOF vehicle must have for all parameters: symmetry, energy, rest,
+//! closed-form solutions and exact derivatives.
 
 use impactlab::data::{ForceAxes, ForceHistory, Sampling};
 use impactlab::numerics::{Stage, rk4_step};
@@ -36,7 +36,8 @@ fn pit(fy_n: f64, contact: ContactPoint, speed_m_s: f64, duration_s: f64) -> Man
     }
 }
 
-/// Kinetic energy plus what the roll spring and the raised sprung mass hold, J.
+/// Returns the kinetic energy plus the energy stored in the roll spring and in the raised sprung
+/// mass, J.
 fn energy_j(vehicle: &VehicleParameters, x: &VehicleState<f64>) -> f64 {
     let (mass, suspension) = (&vehicle.mass, &vehicle.suspension);
     let planar = mass.mass_kg * (x.vx_m_s.powi(2) + x.vy_m_s.powi(2)) / 2.0;
@@ -79,7 +80,8 @@ fn the_kinetic_energy_never_rises_without_a_force() {
             };
             state = VehicleState::from_array(rk4_step(f, &state.to_array(), 1e-3));
             let after = planar(&state);
-            // Roll hands some energy to yaw through I_xz: that much, and no more, may come back.
+            // Roll transfers some energy to yaw through I_xz, so that the planar energy may grow by
+            // a small share of the roll energy.
             let from_roll = energy_j(&vehicle, &state) - after;
             assert!(
                 after <= before + from_roll.abs() * 0.02 + 1e-9,
@@ -139,7 +141,8 @@ fn a_free_coast_down_is_that_of_rolling_resistance() {
 
 #[test]
 fn steady_cornering_is_that_of_the_linear_bicycle() {
-    // r = v δ / (L + K v²), K = m/L (l_r/C_f − l_f/C_r), at small slip; a left turn is positive.
+    // The closed-form solution at small slip is r = v δ / (L + K v²) with K = m/L (l_r/C_f −
+    // l_f/C_r). A left turn is positive.
     let mut vehicle = Preset::Reference.parameters();
     vehicle.tires.rolling_resistance = 0.0;
     vehicle.tires.rolling_resistance_s2_m2 = 0.0;
@@ -159,7 +162,7 @@ fn steady_cornering_is_that_of_the_linear_bicycle() {
     let front = vehicle.tires.cornering_coefficient_front_per_rad * axle_load(lr);
     let rear = vehicle.tires.cornering_coefficient_rear_per_rad * axle_load(lf);
     let understeer = vehicle.mass.mass_kg / wheelbase * (lr / front - lf / rear);
-    // ε of the slip angle softens each tyre by u/(u + ε).
+    // The ε in the slip angle reduces the stiffness of each tyre by the factor u/(u + ε).
     let softened = understeer * (speed + 0.5) / speed;
     let expected = speed * steer / (wheelbase + softened * speed * speed);
     assert!(
@@ -242,7 +245,8 @@ fn the_step_of_the_reference_is_fine_enough() {
 
 #[test]
 fn the_impulse_changes_the_momentum_by_itself() {
-    // On ice: the force history's impulse over the mass is Δv, and the moment turns the car.
+    // On ice, the change of velocity is the impulse of the force history over the mass, although
+    // the moment of the force turns the car.
     let mut vehicle = Preset::Reference.parameters().with_friction(1e-9);
     vehicle.tires.rolling_resistance = 0.0;
     vehicle.tires.rolling_resistance_s2_m2 = 0.0;
@@ -268,7 +272,8 @@ proptest! {
         x in any_state(), fx in -5e4..5e4, fy in -5e4..5e4, steer in -0.5..0.5,
     ) {
         let vehicle = Preset::Reference.parameters();
-        // A wheel's own |u| has a kink at zero: stay clear of it.
+        // The equations use |u| of each wheel, which has a kink at zero. States near it are
+        // excluded.
         prop_assume!((x[0].abs() - x[3].abs() * 0.8).abs() > 0.5 && x[0].abs() > x[3].abs());
         let input = VehicleInput {
             steer_rad: steer,
@@ -287,7 +292,8 @@ proptest! {
                 let exact = jacobian[(row, column)];
                 let scale = 1.0 + exact.abs();
                 prop_assert!((value[row] - plain[row]).abs() < 1e-9 * (1.0 + plain[row].abs()));
-                // Loads clamp at zero: at that kink, and only there, the one-sided slopes differ.
+                // The vertical loads are limited at zero. Only at that kink do the one-sided slopes
+                // differ.
                 let one_sided = ((up[row] - plain[row]) / h - (plain[row] - down[row]) / h).abs();
                 prop_assert!((difference - exact).abs() < 1e-4 * scale + one_sided, "d{row}/d{column}: {exact} {difference}");
             }
