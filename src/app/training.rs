@@ -104,7 +104,7 @@ impl<A: Send + 'static> Training<A> {
 
     /// Returns the reports since the last call, and the end, if the training has ended.
     fn poll(&mut self) -> (Vec<TrainingReport>, Option<TrainingEnd<A>>) {
-        // The job is polled before the reports, so that all reports sent before its end are received.
+        // The job is polled before the reports are read, so that none that precedes its end is lost.
         let update = self.job.poll();
         let end = update.into_result("the training").map(|result| match result {
             Ok(Outcome::Complete(answer)) if self.job.is_cancelled() => {
@@ -133,8 +133,8 @@ impl<A> TrainingSlot<A> {
         self.0.is_some()
     }
 
-    /// Whether the training was asked to pause. It continues until its next report, which usually is
-    /// at the end of the current epoch.
+    /// Whether the training was asked to pause. It continues until its next report, which usually
+    /// is at the end of the current epoch.
     pub fn is_paused(&self) -> bool {
         self.0.as_ref().is_some_and(|training| training.gate.is_closed())
     }
