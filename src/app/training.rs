@@ -104,7 +104,7 @@ impl<A: Send + 'static> Training<A> {
 
     /// Returns the reports since the last call, and the end, if the training has ended.
     fn poll(&mut self) -> (Vec<TrainingReport>, Option<TrainingEnd<A>>) {
-        // The job is polled before the reports are read, so that none that precedes its end is lost.
+        // The job is polled before the reports are read, so that none before its end is lost.
         let update = self.job.poll();
         let end = update.into_result("the training").map(|result| match result {
             Ok(Outcome::Complete(answer)) if self.job.is_cancelled() => {
