@@ -1,8 +1,8 @@
-//! Plane angles.
+//! Angles in the plane.
 
 use std::f64::consts::{PI, TAU};
 
-/// The equal angle in (−π, π].
+/// The angle in (−π, π] rad that differs from `angle_rad` by whole turns.
 pub fn wrap_angle_rad(angle_rad: f64) -> f64 {
     let wrapped = angle_rad.rem_euclid(TAU);
     if wrapped > PI { wrapped - TAU } else { wrapped }

@@ -1,4 +1,4 @@
-//! k-means clusters of standardised rows, their number by the silhouette.
+//! k-means clusters of standardised rows. Their number is that with the largest mean silhouette.
 //!
 //! Source of the silhouette: [`Rousseeuw1987`](crate::bibliography::Rousseeuw1987).
 
@@ -15,65 +15,72 @@ use crate::numerics::Summary;
 /// Numbers of clusters that are tried.
 const N_CLUSTERS: std::ops::RangeInclusive<usize> = 2..=6;
 
-/// Initialisations of each.
+/// Number of random initialisations of k-means for each number of clusters.
 const N_RUNS: usize = 20;
 
-/// Iterations of each initialisation.
+/// Largest number of iterations after each initialisation.
 const MAX_ITERATIONS: u64 = 500;
 
-/// Clusters with no more than this share of the rows are merged into the nearest.
+/// Share of the rows up to which a cluster is merged into the nearest one.
 const SMALL_SHARE: f64 = 0.05;
 
-/// Clusters of rows.
+/// Clusters of rows, with the standardisation of their columns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clusters {
+    /// Mean of each column, in the unit of the rows.
     mean: Vec<f64>,
+    /// Reciprocal standard deviation of each column; 0 for a column that does not vary.
     inverse_std: Vec<f64>,
-    /// Centres, standardised.
+    /// Centres of the clusters, standardised.
     centroids: Vec<Vec<f64>>,
-    /// Cluster of each row that it was fitted to.
+    /// Index of the cluster of each row that the clusters were fitted to.
     pub members: Vec<usize>,
-    /// Mean silhouette of the rows before small clusters were merged, −1 to 1.
+    /// Mean silhouette of the rows before small clusters were merged, −1 to 1. A large value means
+    /// that the clusters are well separated.
     pub silhouette: f64,
 }
 
-/// Rows that make no clusters.
+/// The reason why rows cannot be clustered.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ClusterError {
-    /// Too few rows.
+    /// There are too few rows.
     #[error("{got} rows to cluster, expected {expected} or more")]
     TooFew {
-        /// Rows needed.
+        /// Smallest number of rows.
         expected: usize,
-        /// Rows there.
+        /// Number of rows that were given.
         got: usize,
     },
-    /// Rows of different lengths or with numbers that are not finite.
+    /// A row has another length than the first one or contains a number that is not finite.
     #[error("row {row_idx} is not {expected} finite numbers")]
     Row {
-        /// Index of the row.
+        /// Index of the row, counted from 0.
         row_idx: usize,
-        /// Numbers that a row has.
+        /// Number of values in the first row, which every row must have.
         expected: usize,
     },
-    /// The fit failed.
+    /// The k-means algorithm or its silhouette failed.
     #[error("k-means with {n_clusters} clusters failed: {reason}")]
     Fit {
-        /// Clusters asked for.
+        /// Number of clusters that was tried.
         n_clusters: usize,
-        /// What the fit says.
+        /// The message of the algorithm.
         reason: String,
     },
 }
 
 impl Clusters {
-    /// Clusters rows, with 2 to 6 clusters, as many as have the largest mean silhouette; then merges
-    /// clusters of at most 5 % of the rows into the nearest.
+    /// Clusters rows, each column standardised by its mean and standard deviation. Of 2 to 6
+    /// clusters the number with the largest mean silhouette is chosen; then clusters with at most 5
+    /// % of the rows are merged into the nearest one.
     ///
-    /// - `seed`: of the initialisations; the same rows and seed give the same clusters.
+    /// - `rows`: all of one length, with finite values.
+    /// - `seed`: seed of the random initialisations; the same rows and seed give the same clusters.
     ///
     /// # Errors
-    /// [`ClusterError`].
+    /// [`ClusterError::TooFew`] for fewer than three rows, [`ClusterError::Row`] for a row of
+    /// another length or with a value that is not finite, and [`ClusterError::Fit`] if k-means
+    /// fails.
     pub fn fit(rows: &[Vec<f64>], seed: u64) -> Result<Self, ClusterError> {
         let standardised = Self::standardisation(rows)?;
         let values: Vec<Vec<f64>> = rows.iter().map(|row| standardised.standardise(row)).collect();
@@ -92,12 +99,12 @@ impl Clusters {
         Ok(clusters)
     }
 
-    /// How many there are.
+    /// Number of clusters.
     pub fn n_clusters(&self) -> usize {
         self.centroids.len()
     }
 
-    /// Centre of a cluster in the unit of the rows.
+    /// Centre of a cluster in the unit of the rows; `None` if there is no cluster of this index.
     pub fn centre(&self, cluster: usize) -> Option<Vec<f64>> {
         let scale =
             self.inverse_std.iter().map(|inverse| if *inverse > 0.0 { 1.0 / inverse } else { 0.0 });
@@ -105,12 +112,15 @@ impl Clusters {
         Some(values.map(|((value, mean), std)| mean + std * value).collect())
     }
 
-    /// The cluster whose centre is nearest to a row.
+    /// Index of the cluster whose centre is nearest to a row, by the distance in standardised
+    /// columns.
     pub fn nearest(&self, row: &[f64]) -> usize {
         nearest(&self.centroids, &self.standardise(row), None)
     }
 
-    /// Numbers the clusters by a rising key of their centres.
+    /// Renumbers the clusters in increasing order of a key of their centres.
+    ///
+    /// - `key`: computed from the centre of a cluster in the unit of the rows.
     #[must_use]
     pub fn ordered_by(mut self, key: impl Fn(&[f64]) -> f64) -> Self {
         let keyed = (0..self.n_clusters()).filter_map(|c| Some((key(&self.centre(c)?), c)));
@@ -168,7 +178,10 @@ impl Clusters {
         })
     }
 
-    /// Merges the smallest cluster into the nearest while it is too small.
+    /// Merges the smallest cluster into the nearest one as long as it has too few rows and another
+    /// cluster is left. The centres become the means of their rows.
+    ///
+    /// - `values`: the standardised rows.
     fn merge_small(&mut self, values: &[Vec<f64>]) {
         while self.n_clusters() > 1 {
             let count = |c: usize| self.members.iter().filter(|member| **member == c).count();
@@ -201,7 +214,8 @@ impl Clusters {
     }
 }
 
-/// The centroid nearest to a row, other than `but`.
+/// Index of the centre nearest to a standardised row. The centre with the index `but` is not
+/// considered.
 fn nearest(centroids: &[Vec<f64>], row: &[f64], but: Option<usize>) -> usize {
     let square = |a: &[f64]| a.iter().zip(row).map(|(a, b)| (a - b) * (a - b)).sum::<f64>();
     let others = centroids.iter().enumerate().filter(|(c, _)| Some(*c) != but);
@@ -213,7 +227,7 @@ fn nearest(centroids: &[Vec<f64>], row: &[f64], but: Option<usize>) -> usize {
 mod tests {
     use super::*;
 
-    /// Rows about three centres, `n` about each.
+    /// Rows that scatter about three centres, `n` about each of them. The third column is constant.
     fn three(n: [usize; 3]) -> Vec<Vec<f64>> {
         let centres = [[0.0, 0.0, 7.0], [10.0, 1.0, 7.0], [0.0, 3.0, 7.0]];
         let mut rows = Vec::new();
@@ -250,7 +264,7 @@ mod tests {
     fn small_clusters_join_the_nearest() {
         let clusters = Clusters::fit(&three([40, 30, 2]), 0).unwrap();
         assert_eq!(clusters.n_clusters(), 2);
-        // In standard deviations the second centre is nearer.
+        // The second centre is the nearer one in standardised columns.
         assert_eq!(clusters.members[70], clusters.members[40]);
     }
 

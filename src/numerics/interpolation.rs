@@ -1,7 +1,11 @@
-//! Values between samples.
+//! Interpolation between samples.
 
-/// Linear interpolation of `values` over strictly rising `grid` at `at`; the end values outside.
-/// `None` if the grid is empty or `values` is shorter.
+/// Interpolates `values` over `grid` linearly at `at`. Outside the grid the first or the last value
+/// is returned.
+///
+/// - `grid`: strictly increasing.
+/// - `values`: one per point of the grid.
+/// - returns `None` if the grid is empty or a value that is needed is missing.
 ///
 /// ```
 /// # use impactlab::numerics::interpolate;

@@ -1,48 +1,59 @@
-//! Non-linear least squares.
+//! Non-linear least squares by the method of Levenberg and Marquardt.
 //!
-//! Our own forty lines: the kept crate for it is bound to another version of `nalgebra`.
+//! The method is implemented here because the maintained crate for it requires another version of
+//! `nalgebra`.
 
 use std::ops::ControlFlow;
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-/// Step of the forward differences, in units of the scaled parameters.
+/// Step of the forward differences, in units of the scale of each parameter.
 const DIFFERENCE: f64 = 1e-4;
+/// Damping λ of the first step.
 const FIRST_DAMPING: f64 = 1e-2;
+/// Damping above which no further step is tried.
 const MAX_DAMPING: f64 = 1e8;
-/// A step that lowers the cost by less than this share is the last.
+/// Relative decrease of the cost with one Jacobian below which the search ends.
 const MIN_GAIN: f64 = 1e-4;
 
-/// Steps with one Jacobian, which costs as much as a step per parameter, while they pay.
+/// Largest number of steps with one Jacobian. A Jacobian costs one evaluation of the residuals per
+/// parameter, so that it is used again while the steps lower the cost considerably.
 const STEPS_PER_JACOBIAN: usize = 3;
+/// Relative decrease of the cost by a step from which another step with the same Jacobian is tried.
 const GOOD_GAIN: f64 = 0.02;
 
-/// Where [`levenberg_marquardt`] stopped.
+/// The result of [`levenberg_marquardt`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct LeastSquares {
-    /// The parameters.
+    /// The parameters with the smallest cost that was found.
     pub parameters: Vec<f64>,
-    /// ½ ‖residuals‖² there.
+    /// Cost ½ ‖r‖² at these parameters.
     pub cost: f64,
-    /// Jacobians computed.
+    /// Number of Jacobians that were computed.
     pub n_steps: usize,
 }
 
-/// Minimises ½ ‖r(x)‖² from a start: Levenberg–Marquardt with forward differences, spread over the
-/// cores, the same numbers on any number of them.
+/// Minimises ½ ‖r(x)‖² by the method of Levenberg and Marquardt with a Jacobian J from forward
+/// differences. The columns of the Jacobian are computed in parallel; the result does not depend on
+/// the number of threads.
 ///
 /// ```text
 /// (JᵀJ + λ 1) δ = −Jᵀ r      x ← x + scale ⊙ δ if the cost falls, else λ ← 4 λ
 /// ```
 ///
+/// J is taken with respect to x / scale. λ is divided by 3 after a step that lowers the cost.
+///
 /// Source: D. Marquardt, SIAM J. Appl. Math. 11 (1963) 431–441.
 ///
-/// - `residuals`: always as many for any x; an x without a value (`None`) is refused as a step.
-/// - `scale`: about how far each parameter goes.
-/// - `max_steps`: Jacobians at most, each followed by one step or a few.
-/// - `report`: called with the cost before each; breaking ends the search where it is.
-/// - returns `None` if the start has no finite cost.
+/// - `residuals`: residuals r at given parameters, always of the same number; `None` if they have
+///   no value there, so that no step leads there.
+/// - `start`: parameters at which the search starts.
+/// - `scale`: expected change of each parameter, positive, in its own unit.
+/// - `max_steps`: largest number of Jacobians; each is followed by up to three steps.
+/// - `report`: called with the cost before each Jacobian; if it breaks, the search ends with the
+///   parameters found so far.
+/// - returns `None` if the residuals have no value or no finite cost at the start.
 pub fn levenberg_marquardt(
     residuals: &(dyn Fn(&[f64]) -> Option<Vec<f64>> + Sync),
     [start, scale]: [&[f64]; 2],

@@ -1,4 +1,6 @@
-//! Mathematics that knows no vehicle: the scalar, integration, statistics, angles.
+//! Mathematics without any knowledge of vehicles: the scalar types of the equations of motion
+//! ([`Lanes`], [`Scalar`]), steps of integration, interpolation, smoothing of measured motions,
+//! statistics, least squares, Gaussian processes, clusters and angles.
 
 mod angle;
 mod clustering;

@@ -4,17 +4,17 @@ use std::f64::consts::{PI, SQRT_2};
 
 use statrs::function::erf::{erfc, erfc_inv};
 
-/// Density `φ(z) = exp(−z²/2) / √(2π)`.
+/// Probability density at z: `φ(z) = exp(−z²/2) / √(2π)`.
 pub fn normal_density(z: f64) -> f64 {
     (-z * z / 2.0).exp() / (2.0 * PI).sqrt()
 }
 
-/// Probability `Φ(z)` of a value up to z.
+/// Probability `Φ(z)` that a standard normal variable is at most z.
 pub fn normal_cdf(z: f64) -> f64 {
     erfc(-z / SQRT_2) / 2.0
 }
 
-/// The z with `Φ(z) = probability`; infinite at 0 and 1, NaN outside.
+/// The quantile z for which `Φ(z) = probability`; −∞ at 0, +∞ at 1 and NaN outside this range.
 pub fn normal_quantile(probability: f64) -> f64 {
     -SQRT_2 * erfc_inv(2.0 * probability)
 }

@@ -1,19 +1,28 @@
-//! One step of an explicit integrator, generic over the scalar.
+//! Single steps of explicit integrators for ẋ = f(t, x), generic over the scalar type.
 
 use crate::numerics::Lanes;
 
-/// Where within a step the right-hand side is asked for.
+/// The instant within a step of length h at which the right-hand side f is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
-    /// The beginning, t.
+    /// The start of the step, t.
     Start,
-    /// The middle, t + h/2.
+    /// The middle of the step, t + h/2.
     Middle,
-    /// The end, t + h.
+    /// The end of the step, t + h.
     End,
 }
 
-/// Explicit Euler step of ẋ = f: `x + h f(x)`. First order.
+/// Takes one step of the explicit Euler method, which is of first order in h.
+///
+/// ```text
+/// x⁺ = x + h f(t, x)
+/// ```
+///
+/// - `f`: right-hand side at a stage of the step and a state.
+/// - `x`: state at the start of the step.
+/// - `h`: length of the step, in the unit of time of `f`.
+/// - returns the state at the end of the step.
 pub fn euler_step<T: Lanes, const N: usize>(
     f: impl Fn(Stage, &[T; N]) -> [T; N],
     x: &[T; N],
@@ -22,12 +31,18 @@ pub fn euler_step<T: Lanes, const N: usize>(
     advance(x, &f(Stage::Start, x), h)
 }
 
-/// Classical Runge–Kutta step of ẋ = f. Fourth order in h for a smooth f.
+/// Takes one step of the classical Runge–Kutta method, which is of fourth order in h for a smooth
+/// f.
 ///
 /// ```text
 /// k₁ = f(t, x)   k₂ = f(t + h/2, x + h/2 k₁)   k₃ = f(t + h/2, x + h/2 k₂)   k₄ = f(t + h, x + h k₃)
 /// x⁺ = x + h/6 (k₁ + 2 k₂ + 2 k₃ + k₄)
 /// ```
+///
+/// - `f`: right-hand side at a stage of the step and a state.
+/// - `x`: state at the start of the step.
+/// - `h`: length of the step, in the unit of time of `f`.
+/// - returns the state at the end of the step.
 pub fn rk4_step<T: Lanes, const N: usize>(
     f: impl Fn(Stage, &[T; N]) -> [T; N],
     x: &[T; N],

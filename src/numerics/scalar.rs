@@ -1,18 +1,19 @@
-//! The numbers that the physics is written in.
+//! The scalar types over which the equations of motion are generic.
 
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub};
 
 use num_dual::{Dual64, DualNum, DualSVec64};
 use wide::{f64x2, f64x4};
 
-/// A real number, or several side by side: what the equations of motion are written in.
+/// A real number, or several real numbers side by side (the lanes of a vector register), for which
+/// the equations of motion are written.
 ///
-/// - `f64` simulates;
-/// - a dual number of `num_dual` gives the exact Jacobian of the same lines;
-/// - `f64x2` takes two motions through them at once.
+/// - `f64` is used for simulation;
+/// - a dual number of `num_dual` gives the exact Jacobian of the same code;
+/// - `f64x2` evaluates two motions at once.
 ///
-/// There is no order, since of two numbers side by side one may be the smaller and one the larger:
-/// what depends on it is chosen for each by [`Lanes::if_less`].
+/// The numbers have no order, because one of two lanes may be less than a limit and the other one
+/// not. What depends on an order is chosen for each lane by [`Lanes::if_less`].
 pub trait Lanes:
     Copy
     + From<f64>
@@ -28,13 +29,13 @@ pub trait Lanes:
     + AddAssign
     + MulAssign
 {
-    /// |x|.
+    /// Absolute value |x|.
     fn abs(self) -> Self;
-    /// √x.
+    /// Square root √x.
     fn sqrt(self) -> Self;
-    /// 1/x.
+    /// Reciprocal 1/x.
     fn recip(self) -> Self;
-    /// eˣ.
+    /// Exponential function eˣ.
     fn exp(self) -> Self;
     /// Hyperbolic tangent.
     fn tanh(self) -> Self;
@@ -45,41 +46,42 @@ pub trait Lanes:
     /// Sine and cosine of an angle in rad.
     fn sin_cos(self) -> (Self, Self);
 
-    /// x².
+    /// Square x².
     fn squared(self) -> Self {
         self * self
     }
 
-    /// Arc tangents of four numbers, rad; in vector instructions where there are no derivatives, at
-    /// a third of the time.
+    /// Arc tangents of four numbers, rad. Types without derivatives compute them by vector
+    /// instructions, in a third of the time.
     fn atan_each(x: [Self; 4]) -> [Self; 4] {
         x.map(Self::atan)
     }
 
-    /// `then` where this number is less than the limit, `otherwise` where it is not.
+    /// For each lane, `then` where this number is less than `limit` and `otherwise` where it is
+    /// not.
     fn if_less(self, limit: Self, then: Self, otherwise: Self) -> Self;
 
-    /// Whether this number is less than the limit, for at least one of those side by side.
+    /// Whether this number is less than `limit` in at least one lane.
     fn any_less(self, limit: Self) -> bool;
 
-    /// 1 with the number's sign, without slope; 1 at 0.
+    /// The sign of the number, −1 or 1, with a derivative of zero; 1 at 0.
     fn sign(self) -> Self {
         self.if_less(Self::from(0.0), Self::from(-1.0), Self::from(1.0))
     }
 
-    /// The number, or the nearer end of the range where it lies outside.
+    /// The number, limited to the range from `low` to `high`.
     fn clamped(self, low: Self, high: Self) -> Self {
         self.if_less(low, low, high.if_less(self, high, self))
     }
 }
 
-/// One real number with or without derivatives.
+/// A single real number, with or without derivatives.
 pub trait Scalar: Lanes + PartialOrd {
-    /// Without its derivatives.
+    /// The number without its derivatives.
     fn re(self) -> f64;
 }
 
-/// What a type has from `num_dual`.
+/// The operations that are delegated to `num_dual` for a type with one lane.
 macro_rules! lanes_of_one {
     () => {
         fn abs(self) -> Self {
@@ -124,7 +126,7 @@ macro_rules! lanes_of_one {
     };
 }
 
-/// |x| with the slope of the side that x lies on.
+/// Absolute value |x|; its derivative is that of the side of zero on which x lies.
 fn magnitude<T: DualNum<Primitive = f64>>(x: T) -> T {
     x.abs()
 }
@@ -176,7 +178,7 @@ impl Lanes for f64x2 {
         Self::ONE / self
     }
 
-    // One after the other is as fast here.
+    // Here the vector instructions are not faster than one number after the other.
     fn exp(self) -> Self {
         Self::new(self.to_array().map(f64::exp))
     }

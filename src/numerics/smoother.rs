@@ -1,68 +1,73 @@
-//! A coordinate, its velocity and its acceleration from noisy samples: a Kalman filter forwards, the
-//! Rauch–Tung–Striebel smoother backwards.
+//! Estimates a coordinate, its velocity and its acceleration from noisy samples, by a Kalman filter
+//! forwards in time and the Rauch–Tung–Striebel smoother backwards.
 //!
 //! ```text
 //! x = [p, ṗ, p̈]      p⃛ = white noise of spectral density q      sample = x[order] + N(0, std²)
 //! ```
 //!
 //! Source: [`RauchTungStriebel1965`](crate::bibliography::RauchTungStriebel1965) for the smoother,
-//! [`BarShalom2001`](crate::bibliography::BarShalom2001) for the process noise of a
-//! nearly constant acceleration. Samples may come at any times; their noise is taken as white.
+//! [`BarShalom2001`](crate::bibliography::BarShalom2001) for the process noise of a nearly constant
+//! acceleration. The samples may be taken at any instants; their noise is assumed to be white.
 
 use nalgebra::{Matrix3, RowVector3, Vector3};
 
-/// A sample of a coordinate or of one of its derivatives.
+/// A measurement of a coordinate or of one of its derivatives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrackSample {
-    /// When, s.
+    /// Time of the measurement, s.
     pub time_s: f64,
-    /// 0 for the coordinate, 1 for its velocity, 2 for its acceleration.
+    /// Order of the derivative that was measured: 0 for the coordinate, 1 for the velocity, 2 for
+    /// the acceleration. A larger order counts as 2.
     pub order: usize,
-    /// What was measured.
+    /// The measured value.
     pub value: f64,
-    /// Standard deviation of the noise, positive.
+    /// Standard deviation of the noise, positive, in the unit of the value.
     pub std: f64,
 }
 
-/// Coordinate, velocity and acceleration at an instant.
+/// Estimated coordinate, velocity and acceleration at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrackPoint {
-    /// p, ṗ, p̈.
+    /// Means of p, ṗ and p̈.
     pub mean: [f64; 3],
-    /// Their standard deviations.
+    /// Standard deviations of p, ṗ and p̈.
     pub std: [f64; 3],
 }
 
-/// Samples of one coordinate, in order of time, and how lively it moves.
+/// Samples of one coordinate with the assumed noise of its third derivative.
 pub struct MeasuredTrack<'a> {
-    /// The samples; those of one instant one after the other.
+    /// The samples in order of time; several samples may have the same time.
     pub samples: &'a [TrackSample],
-    /// Spectral density q of p⃛ between two instants, (unit/s³)²·s, positive.
+    /// Spectral density q of p⃛ between two instants in s, (unit/s³)²·s, positive.
     pub density: &'a dyn Fn(f64, f64) -> f64,
-    /// Standard deviations of p, ṗ and p̈ before any sample, about the first p and two zeros.
+    /// Standard deviations of p, ṗ and p̈ at the first instant before any sample is used. Their
+    /// means are the first sample of order 0, or zero if there is none, and two zeros.
     pub prior_std: [f64; 3],
 }
 
-/// The filter at an instant: before and after the samples of that instant.
+/// State of the filter at an instant, before and after the samples of that instant were used.
 struct Node {
     time_s: f64,
-    /// From the node before.
+    /// Transition matrix from the previous node to this one.
     transition: Matrix3<f64>,
+    /// Mean and covariance before the samples of this instant.
     predicted: (Vector3<f64>, Matrix3<f64>),
+    /// Mean and covariance after the samples of this instant.
     filtered: (Vector3<f64>, Matrix3<f64>),
 }
 
 impl MeasuredTrack<'_> {
-    /// Logarithm of the probability density of the samples.
+    /// Logarithm of the probability density of all samples, by which the noise can be fitted.
     pub fn log_likelihood(&self) -> f64 {
         self.filter(&[]).1
     }
 
-    /// The track at some instants.
+    /// Estimates the state at given instants from all samples, those before and those after the
+    /// instant.
     ///
-    /// - `at_s`: s, rising.
-    ///
-    /// `None` without samples or where a number is not finite.
+    /// - `at_s`: instants, s, increasing.
+    /// - returns one point per instant, or `None` if there are no instants at all or a result is
+    ///   not finite.
     pub fn smooth(&self, at_s: &[f64]) -> Option<Vec<TrackPoint>> {
         let (nodes, likelihood) = self.filter(at_s);
         if !likelihood.is_finite() {
@@ -90,7 +95,10 @@ impl MeasuredTrack<'_> {
         (points.len() == at_s.len() && points.iter().all(is_finite)).then_some(points)
     }
 
-    /// Forwards over the instants of samples and those wanted besides.
+    /// Runs the filter forwards over the instants of the samples and those in `at_s`.
+    ///
+    /// - returns the nodes in order of time, and the logarithm of the probability density of the
+    ///   samples.
     fn filter(&self, at_s: &[f64]) -> (Vec<Node>, f64) {
         let mut samples = self.samples.iter().peekable();
         let mut wanted = at_s.iter().copied().peekable();
@@ -123,12 +131,12 @@ impl MeasuredTrack<'_> {
     }
 }
 
-/// F over a step.
+/// Transition matrix F of `[p, ṗ, p̈]` over a step with constant acceleration.
 fn transition_over(step_s: f64) -> Matrix3<f64> {
     Matrix3::new(1.0, step_s, step_s * step_s / 2.0, 0.0, 1.0, step_s, 0.0, 0.0, 1.0)
 }
 
-/// Covariance that a density of one adds over a step.
+/// Covariance that white noise of p⃛ with a spectral density of 1 adds over a step.
 fn process_noise_over(step_s: f64) -> Matrix3<f64> {
     let power = |n: i32| step_s.powi(n);
     Matrix3::new(
@@ -144,7 +152,8 @@ fn process_noise_over(step_s: f64) -> Matrix3<f64> {
     )
 }
 
-/// Takes a sample in, and gives the logarithm of its density before that.
+/// Updates mean and covariance by a sample, and returns the logarithm of the probability density of
+/// the sample before the update.
 fn update((mean, covariance): &mut (Vector3<f64>, Matrix3<f64>), sample: &TrackSample) -> f64 {
     let mut row = RowVector3::zeros();
     row[sample.order.min(2)] = 1.0;
@@ -153,7 +162,7 @@ fn update((mean, covariance): &mut (Vector3<f64>, Matrix3<f64>), sample: &TrackS
     let surprise = sample.value - (row * *mean)[0];
     let gain = *covariance * row.transpose() / spread;
     *mean += gain * surprise;
-    // Joseph's form stays positive whatever is rounded.
+    // The form of Joseph keeps the covariance positive definite in spite of rounding.
     let kept = Matrix3::identity() - gain * row;
     *covariance = kept * *covariance * kept.transpose() + gain * gain.transpose() * variance;
     -0.5 * (surprise * surprise / spread + (std::f64::consts::TAU * spread).ln())
@@ -208,7 +217,8 @@ mod tests {
 
     #[test]
     fn the_spread_is_that_of_the_errors() {
-        // Motions drawn from the model itself: errors over their deviations have a variance of one.
+        // The motions are drawn from the model itself, so that errors divided by their standard
+        // deviations must have a variance of one.
         let (density, step_s, n) = (50.0_f64, 0.02, 100);
         let root = process_noise_over(step_s).cholesky().unwrap().l() * density.sqrt();
         let mut squares = [0.0; 3];
@@ -238,7 +248,7 @@ mod tests {
                 }
             }
         }
-        // Standard error of the mean of 180 squares: about √(2/180) = 0.11.
+        // The standard error of the mean of 180 squares is about √(2/180) = 0.11.
         for square in squares.map(|sum| sum / (3.0 * n_motions as f64)) {
             assert!((square - 1.0).abs() < 0.35, "{squares:?}");
         }

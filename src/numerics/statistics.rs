@@ -1,16 +1,16 @@
-//! Figures that sum up a sample.
+//! Summary statistics and quantiles of a sample.
 
 use serde::Serialize;
 use statrs::statistics::{Data, Distribution, Max, Min, OrderStatistics};
 
-/// Mean, spread and order statistics of a sample.
+/// Mean, standard deviation and order statistics of a sample, in the unit of its values.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Summary {
-    /// Sample size.
+    /// Number of values.
     pub n: usize,
     /// Arithmetic mean.
     pub mean: f64,
-    /// Standard deviation (n − 1); 0 for a single value.
+    /// Standard deviation with the divisor n − 1; 0 for a single value.
     pub std: f64,
     /// Median.
     pub median: f64,
@@ -23,7 +23,7 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Sums up a sample; `None` if it is empty or holds a NaN.
+    /// Computes the statistics of a sample; `None` if it is empty or contains NaN.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
         let values: Vec<f64> = values.into_iter().collect();
         if values.is_empty() || values.iter().any(|value| value.is_nan()) {
@@ -43,8 +43,11 @@ impl Summary {
     }
 }
 
-/// Quantile of values in rising order, linear between neighbours: `probability` 0 is the smallest,
-/// 1 the largest. `None` without values.
+/// Quantile of values in increasing order, by linear interpolation between neighbouring values: the
+/// probability 0 gives the smallest value, 1 the largest. A probability outside this range is
+/// limited to it.
+///
+/// - returns `None` if there are no values.
 ///
 /// ```
 /// # use impactlab::numerics::quantile_of_sorted;

@@ -1,4 +1,4 @@
-//! Marginal likelihood of a Gaussian process and where it is largest.
+//! The marginal likelihood of a Gaussian process and the hyperparameters that maximise it.
 //!
 //! Source: [`RasmussenWilliams2006`](crate::bibliography::RasmussenWilliams2006), section 5.4.1.
 
@@ -10,36 +10,40 @@ use argmin::solver::linesearch::MoreThuenteLineSearch;
 use argmin::solver::quasinewton::LBFGS;
 use nalgebra::{DMatrix, Dim, Matrix, RawStorage, U1};
 
-/// Noise that is always there, a share of an output's variance: keeps the covariance regular.
+/// Variance of the noise that is always added, as a share of the variance of an output. It keeps
+/// the covariance matrix positive definite.
 const MIN_NOISE: f64 = 1e-6;
 
-/// Steps of the optimiser.
+/// Largest number of iterations of the optimiser.
 const MAX_STEPS: u64 = 60;
 
-/// Pairs of steps that the optimiser remembers.
+/// Number of past steps from which L-BFGS approximates the Hessian.
 const MEMORY: usize = 7;
 
-/// The gradient per sample at which the optimiser stops: far below what moves a prediction.
+/// Norm of the gradient of the cost per sample at which the optimiser stops. Predictions no longer
+/// change noticeably at this gradient.
 const GRADIENT_TOLERANCE: f64 = 1e-4;
 
-/// Normal priors `(mean, deviation)` of the logarithms: lengths of 2.5 standard deviations of an
-/// input, deviations of the order of the output's own. Broad: a factor of e or more either way.
+/// Normal priors `(mean, standard deviation)` of the logarithms of the hyperparameters. The lengths
+/// are about 2.5 standard deviations of an input, the other standard deviations are of the order of
+/// that of an output. The priors are broad: one standard deviation is a factor of e or more.
 const PRIOR_LENGTH: (f64, f64) = (0.916, 1.0);
 const PRIOR_SIGNAL: (f64, f64) = (0.0, 1.5);
 const PRIOR_LINEAR: (f64, f64) = (-0.5, 1.5);
 const PRIOR_NOISE: (f64, f64) = (-1.0, 1.0);
 const PRIOR_UNUSUAL: (f64, f64) = (0.0, 1.0);
 
-/// Hyperparameters besides the lengths.
+/// Number of hyperparameters besides the lengths.
 pub(super) const N_VARIANCES: usize = 4;
 
-/// `l_j`, `s_f`, `s_l`, `s_n`, `s_u` of the covariance, as natural logarithms.
+/// The hyperparameters `l_j`, `s_f`, `s_l`, `s_n` and `s_u` of the covariance, given by their
+/// natural logarithms in this order.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Hyperparameters {
     log: Vec<f64>,
-    /// `1/l_j²`.
+    /// Inverse squares of the lengths, `1/l_j²`.
     inverse_square: Vec<f64>,
-    /// `s_f²`, `s_l²`, `s_n²`, `s_u²`.
+    /// Variances `s_f²`, `s_l²`, `s_n²` and `s_u²`.
     signal: f64,
     linear: f64,
     noise: f64,
@@ -47,6 +51,8 @@ pub(super) struct Hyperparameters {
 }
 
 impl Hyperparameters {
+    /// Computes the variances from the logarithms of the lengths and of the four standard
+    /// deviations.
     pub(super) fn new(log: Vec<f64>) -> Self {
         let n_lengths = log.len().saturating_sub(N_VARIANCES);
         let variance = |idx: usize| log.get(n_lengths + idx).map_or(0.0, |log| (2.0 * log).exp());
@@ -55,7 +61,7 @@ impl Hyperparameters {
         Self { inverse_square, signal, linear, noise, unusual, log }
     }
 
-    /// Covariance of the function at two inputs.
+    /// Covariance `k(a, b)` of the function at two standardised inputs, without noise.
     pub(super) fn kernel<R: Dim, C: Dim, S, S2>(
         &self,
         a: &Matrix<f64, U1, R, S>,
@@ -73,7 +79,7 @@ impl Hyperparameters {
         self.signal * (-square / 2.0).exp() + self.linear * (dot + 1.0)
     }
 
-    /// Covariance of samples, noise included.
+    /// Covariance matrix `[samples, samples]` of the samples with their noise.
     pub(super) fn covariance(&self, inputs: &DMatrix<f64>, unusual: &[bool]) -> DMatrix<f64> {
         let rows: Vec<_> = inputs.row_iter().collect();
         let mut covariance = DMatrix::zeros(rows.len(), rows.len());
@@ -89,18 +95,18 @@ impl Hyperparameters {
         covariance
     }
 
-    /// The logarithms they were made of.
+    /// The logarithms from which the hyperparameters were made.
     pub(super) fn into_log(self) -> Vec<f64> {
         self.log
     }
 
-    /// Variance of the noise of a sample.
+    /// Variance of the noise of a usual or an unusual sample.
     pub(super) fn noise(&self, unusual: bool) -> f64 {
         MIN_NOISE + self.noise + if unusual { self.unusual } else { 0.0 }
     }
 }
 
-/// The samples, standardised.
+/// The standardised samples, for which the marginal likelihood is computed.
 pub(super) struct Likelihood {
     inputs: DMatrix<f64>,
     outputs: DMatrix<f64>,
@@ -108,7 +114,7 @@ pub(super) struct Likelihood {
     weights: Vec<f64>,
 }
 
-/// Cost and gradient at a point.
+/// Cost and gradient at a point in the space of hyperparameters.
 #[derive(Clone)]
 struct LikelihoodEvaluation {
     at: Vec<f64>,
@@ -126,8 +132,9 @@ impl Likelihood {
         Self { inputs, outputs, unusual, weights }
     }
 
-    /// The hyperparameters of largest likelihood times prior, by L-BFGS from the prior's middle. A
-    /// line search that gets no further ends it: the best point so far is taken.
+    /// Finds the hyperparameters with the largest product of likelihood and prior by L-BFGS,
+    /// starting from the means of the prior. If the line search fails, the best point found so far
+    /// is used.
     pub(super) fn maximise(self: &Likelihood) -> Hyperparameters {
         let start: Vec<f64> = self.priors().iter().map(|(mean, _)| *mean).collect();
         let best = Rc::new(RefCell::new(None::<LikelihoodEvaluation>));
@@ -144,18 +151,21 @@ impl Likelihood {
         Hyperparameters::new(best.map_or(start, |best| best.at))
     }
 
-    /// Prior of each hyperparameter.
+    /// The prior `(mean, standard deviation)` of each logarithm.
     fn priors(&self) -> Vec<(f64, f64)> {
         let lengths = std::iter::repeat_n(PRIOR_LENGTH, self.inputs.ncols());
         lengths.chain([PRIOR_SIGNAL, PRIOR_LINEAR, PRIOR_NOISE, PRIOR_UNUSUAL]).collect()
     }
 
-    /// Negative logarithm of likelihood and prior per sample, and its gradient.
+    /// The negative logarithm of likelihood and prior, divided by the number of samples, and its
+    /// gradient. The cost is infinite where the covariance matrix is not positive definite.
     ///
     /// ```text
     /// L = Σ_o w_o (½ y_oᵀ K⁻¹ y_o + ½ ln |K|) + prior      α_o = K⁻¹ y_o
     /// ∂L/∂h = ½ tr(G ∂K/∂h)                               G = Σ_o w_o (K⁻¹ − α_o α_oᵀ)
     /// ```
+    ///
+    /// Here o runs over the outputs y_o with the weights w_o.
     fn evaluate(&self, at: &[f64]) -> LikelihoodEvaluation {
         let h = Hyperparameters::new(at.to_vec());
         let n_parameters = at.len();
@@ -181,7 +191,7 @@ impl Likelihood {
         LikelihoodEvaluation { at: at.to_vec(), cost: cost / n, gradient }
     }
 
-    /// `½ tr(G ∂K/∂h)` for each logarithm h.
+    /// The derivatives `½ tr(G ∂K/∂h)` with respect to the logarithm h of each hyperparameter.
     fn trace_products(&self, outer: &DMatrix<f64>, h: &Hyperparameters) -> Vec<f64> {
         let (n, d) = self.inputs.shape();
         let mut gradient = vec![0.0; d + N_VARIANCES];
@@ -190,7 +200,7 @@ impl Likelihood {
         let mut squares = vec![0.0; d];
         for i in 0..n {
             for j in 0..=i {
-                // Off the diagonal each entry counts twice.
+                // The matrix is symmetric, so that an entry off the diagonal occurs twice.
                 let g = outer[(i, j)] * if i == j { 1.0 } else { 2.0 };
                 let (mut sum, mut dot) = (0.0, 0.0);
                 for (k, (a, b)) in rows[i].iter().zip(&rows[j]).enumerate() {
@@ -214,7 +224,8 @@ impl Likelihood {
     }
 }
 
-/// The likelihood as `argmin` wants it: cost and gradient at a point are computed together once.
+/// The likelihood in the form that `argmin` requires. Cost and gradient at a point are computed
+/// together and only once.
 struct LikelihoodProblem<'a> {
     likelihood: &'a Likelihood,
     last: RefCell<Option<LikelihoodEvaluation>>,

@@ -5,14 +5,14 @@
 //! ε ~ N(0, s_n² + s_u² [sample is unusual])
 //! ```
 //!
-//! on standardised inputs and outputs; all outputs share the hyperparameters, which maximise the
-//! marginal likelihood times a broad prior that keeps few samples from being fitted too closely.
-//! Unusual samples, those of another mode, have a noise of their own: they neither bend the function
-//! nor are dropped.
+//! Inputs and outputs are standardised. All outputs share the hyperparameters, which maximise the
+//! product of the marginal likelihood and a broad prior; the prior prevents that few samples are
+//! fitted too closely. Samples of another mode are marked as unusual and have a noise of their own:
+//! they influence the function less than the others without being discarded.
 //!
 //! Source: [`RasmussenWilliams2006`](crate::bibliography::RasmussenWilliams2006), sections 2.2 and
-//! 5.4. The crates for this either fit one output at a time, or know no noise, or hold one length for
-//! all inputs; the optimiser is that of `argmin`.
+//! 5.4. The regression is implemented here because the crates for it fit only one output at a time,
+//! have no noise, or use the same length for all inputs; the optimiser is that of `argmin`.
 
 use nalgebra::linalg::Cholesky;
 use nalgebra::{DMatrix, DVector, Dyn};
@@ -20,100 +20,106 @@ use serde::{Deserialize, Serialize};
 
 use crate::numerics::gaussian_process::likelihood::{Hyperparameters, Likelihood, N_VARIANCES};
 
-/// What a Gaussian process learns from.
+/// The samples to which a Gaussian process is fitted.
 #[derive(Debug, Clone, Copy)]
 pub struct GaussianProcessData<'a> {
-    /// Inputs, a row a sample, all of one length.
+    /// Inputs, one row per sample, all of one length.
     pub inputs: &'a [Vec<f64>],
-    /// Outputs, a row a sample, all of one length.
+    /// Outputs, one row per sample, all of one length.
     pub outputs: &'a [Vec<f64>],
-    /// Which samples are unusual; empty for none.
+    /// Whether each sample is unusual; empty if none is.
     pub unusual: &'a [bool],
-    /// How much each output counts for the hyperparameters; empty for one each.
+    /// Weight of each output in the likelihood of the hyperparameters; empty for a weight of 1
+    /// each.
     pub weights: &'a [f64],
 }
 
-/// A fitted regression. Stored without the factor of its covariance, which follows from the rest.
+/// A fitted regression. The Cholesky factor of its covariance is not stored in files, because it
+/// follows from the rest.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(into = "StoredProcess", try_from = "StoredProcess")]
 pub struct GaussianProcess {
     input_scaling: Scaling,
     output_scaling: Scaling,
-    /// Standardised, a row a sample.
+    /// Standardised inputs, one row per sample.
     inputs: DMatrix<f64>,
     unusual: Vec<bool>,
     hyperparameters: Hyperparameters,
     cholesky: Cholesky<f64, Dyn>,
-    /// `K⁻¹ y`, a column an output.
+    /// Coefficients `K⁻¹ y`, one row per sample and one column per output.
     coefficients: DMatrix<f64>,
 }
 
-/// A regression in a file.
+/// The form of a regression in a file.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StoredProcess {
     input_scaling: Scaling,
     output_scaling: Scaling,
-    /// Standardised, a row a sample.
+    /// Standardised inputs, one row per sample.
     inputs: Vec<Vec<f64>>,
     unusual: Vec<bool>,
-    /// Logarithms.
+    /// Natural logarithms of the hyperparameters.
     hyperparameters: Vec<f64>,
-    /// A row a sample.
+    /// Coefficients `K⁻¹ y`, one row per sample.
     coefficients: Vec<Vec<f64>>,
 }
 
-/// What a regression says at one input.
+/// The predicted distribution of the outputs at one input.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GaussianPrediction {
     /// Mean of each output.
     pub mean: Vec<f64>,
-    /// Standard deviation of a usual sample, noise included.
+    /// Standard deviation of each output for a usual sample, noise included.
     pub std: Vec<f64>,
-    /// Standard deviation of an unusual sample, noise included.
+    /// Standard deviation of each output for an unusual sample, noise included.
     pub std_unusual: Vec<f64>,
 }
 
-/// Samples that no regression fits.
+/// The reason why samples cannot be fitted or an input cannot be evaluated.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GaussianProcessError {
-    /// Too few samples.
+    /// There are too few samples.
     #[error("a regression on {got} samples, expected {expected} or more")]
     TooFew {
-        /// Samples needed.
+        /// Smallest number of samples.
         expected: usize,
-        /// Samples there.
+        /// Number of samples that were given.
         got: usize,
     },
-    /// Rows that do not fit together.
+    /// The lengths of rows or lists do not agree.
     #[error("{what} has {got} entries, expected {expected}")]
     Shape {
-        /// Which rows.
+        /// The rows or the list whose length is wrong, in words.
         what: &'static str,
-        /// Entries needed.
+        /// Number of entries that is expected.
         expected: usize,
-        /// Entries there.
+        /// Number of entries that was given.
         got: usize,
     },
-    /// A number that is not finite.
+    /// A sample contains a number that is not finite.
     #[error("sample {sample_idx} holds a number that is not finite")]
     NotFinite {
-        /// Index of the sample.
+        /// Index of the sample, counted from 0.
         sample_idx: usize,
     },
-    /// A covariance that is not positive definite: never for finite data.
+    /// The covariance of the samples is not positive definite. This does not occur for finite data,
+    /// because noise is always added.
     #[error("the covariance of the samples is not positive definite")]
     Covariance,
 }
 
-/// Fewest samples for a regression.
+/// Smallest number of samples of a regression.
 const MIN_SAMPLES: usize = 4;
 
 impl GaussianProcess {
-    /// Fits hyperparameters and coefficients.
+    /// Fits the hyperparameters and the coefficients to samples.
     ///
     /// # Errors
-    /// [`GaussianProcessError`].
+    /// [`GaussianProcessError::TooFew`] for fewer than four samples,
+    /// [`GaussianProcessError::Shape`] if lengths do not agree or there is no output,
+    /// [`GaussianProcessError::NotFinite`] for a value that is not finite, and
+    /// [`GaussianProcessError::Covariance`] if the covariance cannot be factorised.
     pub fn fit(data: &GaussianProcessData<'_>) -> Result<Self, GaussianProcessError> {
         let n_outputs = check(data)?;
         let usual = |sample_idx: usize| !data.unusual.get(sample_idx).copied().unwrap_or(false);
@@ -144,11 +150,13 @@ impl GaussianProcess {
         })
     }
 
-    /// Mean and spread at an input.
+    /// Predicts mean and standard deviation of the outputs at an input.
     ///
     /// ```text
     /// mean = kᵀ K⁻¹ y        variance = k(x, x) − kᵀ K⁻¹ k + noise
     /// ```
+    ///
+    /// - `input`: as long as the inputs of the samples, in their units.
     ///
     /// # Errors
     /// [`GaussianProcessError::Shape`] for an input of another length.
@@ -233,7 +241,8 @@ impl TryFrom<StoredProcess> for GaussianProcess {
     }
 }
 
-/// Mean and standard deviation of each column; what does not vary is left at zero.
+/// Mean and standard deviation of each column, by which values are standardised. The standardised
+/// value of a column that does not vary is zero.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Scaling {
@@ -242,7 +251,8 @@ struct Scaling {
 }
 
 impl Scaling {
-    /// Of the rows that `choose` takes, or of all if it takes fewer than two.
+    /// Computes them from the rows whose index `choose` accepts, or from all rows if it accepts
+    /// fewer than two.
     fn of(rows: &[Vec<f64>], choose: impl Fn(usize) -> bool) -> Self {
         let chosen: Vec<&Vec<f64>> =
             rows.iter().enumerate().filter(|(idx, _)| choose(*idx)).map(|(_, row)| row).collect();
@@ -256,7 +266,7 @@ impl Scaling {
         Self { mean, std }
     }
 
-    /// `[sample, column]`.
+    /// The standardised rows, `[sample, column]`.
     fn standardise(&self, rows: &[Vec<f64>]) -> DMatrix<f64> {
         DMatrix::from_fn(rows.len(), self.mean.len(), |i, j| {
             let (value, std) = (rows[i][j] - self.mean[j], self.std[j]);
@@ -265,7 +275,10 @@ impl Scaling {
     }
 }
 
-/// The number of outputs of good data.
+/// Checks the samples and returns the number of outputs.
+///
+/// # Errors
+/// All variants of [`GaussianProcessError`] but [`GaussianProcessError::Covariance`].
 fn check(data: &GaussianProcessData<'_>) -> Result<usize, GaussianProcessError> {
     let n = data.inputs.len();
     if n < MIN_SAMPLES {
