@@ -1,4 +1,4 @@
-//! Learns the parameters of the crush model from known force histories.
+//! Fits the parameters of the crush model to known force histories by regularised least squares.
 
 use std::ops::ControlFlow;
 
@@ -8,47 +8,55 @@ use super::law::CrushLaw;
 use super::simulate::CrushScenario;
 use crate::numerics::levenberg_marquardt;
 
-/// Neighbouring steps whose mean force is compared: what is faster is ringing of the structure.
+/// Number of consecutive time steps over which forces are averaged before they are compared. Faster
+/// variations of the force are vibrations of the structure, which the model does not represent.
 const STEPS_PER_RESIDUAL: usize = 2;
 
-/// A collision whose force history is known.
+/// A collision with a known force history.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CrushSample {
-    /// Before it.
+    /// The two vehicles at first contact.
     pub scenario: CrushScenario,
-    /// Force along x, world axes, N, one mean per step.
+    /// Force on the target along x in the axes of the scenario, N: the mean over each time step.
     pub fx_n: Vec<f64>,
-    /// Force along y, N.
+    /// Force on the target along y in the axes of the scenario, N: the mean over each time step.
     pub fy_n: Vec<f64>,
-    /// How much it counts; 1 for a full case.
+    /// Weight w of the residuals of this sample, 0 or more; 1 is the usual weight.
     pub weight: f64,
 }
 
-/// How a law is fitted.
+/// Settings of the fit of a crush law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CrushFit {
-    /// Width of a step of the histories and of the simulation, s.
+    /// Time step of the histories and of the simulation, s.
     pub dt_s: f64,
-    /// How strongly parameters are held at the prior: the residual of a parameter that is one
-    /// scale away from it.
+    /// Weight w_prior of the prior: the residual of a parameter that differs from the prior by its
+    /// scale.
     pub prior_weight: f64,
-    /// Weight of the relative error of the impulse beside that of the history.
+    /// Weight w_P of the relative error of the impulse; the relative error of the history has a
+    /// weight of 1.
     pub impulse_weight: f64,
-    /// Most steps of the search.
+    /// Largest number of steps of the Levenberg–Marquardt search.
     pub max_steps: usize,
 }
 
 impl CrushLaw {
-    /// The law, started at this prior, that minimises
+    /// Fits a law to samples by the Levenberg–Marquardt method. This law is the prior and the start
+    /// of the search. The fitted law minimises
     ///
     /// ```text
     /// Σ_cases w² ( ‖F̂ − F‖² / ‖F‖²  +  w_P² |P̂ − P|² / |P|² )  +  w_prior² Σ (p − p_prior)² / scale²
     /// ```
     ///
-    /// with the histories as means over two steps. `None` if there is no sample with a force or the
-    /// prior itself cannot be simulated.
+    /// where F are the forces of a history averaged over two consecutive steps, P is its impulse, p
+    /// are the parameters of the law and scale is the range over which a parameter is expected to
+    /// vary.
     ///
-    /// - `report`: called with each accepted cost; breaking ends the search where it is.
+    /// - `samples`: histories with a time step of [`CrushFit::dt_s`].
+    /// - `report`: called with half of this sum before each step of the search; if it breaks, the
+    ///   search ends with the parameters found so far.
+    /// - returns the fitted law; `None` if no sample has a force, or if the prior cannot simulate a
+    ///   sample.
     pub fn fit(
         &self,
         samples: &[CrushSample],
@@ -78,11 +86,11 @@ impl CrushLaw {
     }
 }
 
-/// A sample as the residuals need it.
+/// A sample with the quantities that its residuals need.
 struct Reference<'a> {
     sample: &'a CrushSample,
     settings: CrushFit,
-    /// Of the history `[x, y]`, per pair of steps.
+    /// Means of the force along `[x, y]` over pairs of consecutive steps, N.
     means: [Vec<f64>; 2],
     norm: f64,
     impulse: [f64; 2],
@@ -150,7 +158,8 @@ mod tests {
         });
         let fitted = fitted.unwrap();
         assert!(costs.last().unwrap() < &(costs[0] / 100.0), "{costs:?}");
-        // Parameters make up for each other; what counts is a collision that it has not seen.
+        // Different parameters can compensate for each other, so the fit is judged by a collision
+        // that is not among the samples.
         let unseen =
             CrushScenario { relative_velocity_m_s: [0.7, 2.6], theta_b_rad: 0.27, ..example() };
         let impulse = |law: &CrushLaw| sample(law, unseen.clone()).fy_n.iter().sum::<f64>();

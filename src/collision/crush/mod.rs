@@ -1,19 +1,22 @@
-//! Two cars that crush each other: how the contact force grows and fades while they do.
+//! The crush model: contact force over time of two vehicles whose structures crush each other.
 //!
-//! The momentum solution of [`Impact`](crate::collision::Impact) knows the impulse but no time.
-//! Here the vehicles are rigid in the plane, as there, and their skins give way where they overlap:
-//! the bullet's outline is a row of springs that crush and do not come back all the way (a Winkler
-//! foundation). Integrating the motion gives onset, duration, shape and impulse of the force at
-//! once, and conserves linear and angular momentum by construction. What the springs are like is
-//! learned from force histories ([`CrushLaw::fit`]); no network is needed for that.
+//! The momentum solution of [`Impact`](crate::collision::Impact) gives the impulse of a collision
+//! but not its course over time. The crush model takes the vehicles as rigid bodies in the plane
+//! too, but lets their outlines overlap. The front of the bullet is a row of independent springs (a
+//! Winkler foundation) that are loaded by the overlap and recover only part of their crush.
+//! Integration of the motion gives onset, duration, shape and impulse of the force together. Linear
+//! and angular momentum are conserved by construction, because both vehicles receive opposite
+//! forces at the same points. The parameters of the springs are fitted to known force histories by
+//! least squares ([`CrushLaw::fit`]), without a network.
 //!
-//! - [`CrushLaw`]: the parameters and what they mean;
-//! - [`CrushLaw::simulate`]: force over time of a [`CrushScenario`];
-//! - [`CrushLaw::fit`]: non-linear least squares on known histories.
+//! - [`CrushLaw`]: the parameters of the model and their meaning;
+//! - [`CrushLaw::simulate`]: force over time for a [`CrushScenario`];
+//! - [`CrushLaw::fit`]: non-linear least squares on known force histories.
 //!
-//! Assumptions: planar motion; the target's side is straight; springs do not feel their neighbours;
-//! tyres play no part during contact. Left out: wheels that turn, parts that tear off, height.
-//! Validated by cross-validation on the shipped finite-element runs (`docs/VALIDATION.md`).
+//! Assumptions: the motion is planar; the side of the target is straight; neighbouring springs do
+//! not influence each other; tyre forces are neglected during contact. Left out: the rotation of
+//! wheels, parts that tear off, and the height of the contact. Validated by cross-validation on the
+//! shipped finite-element runs (`docs/VALIDATION.md`).
 
 mod fit;
 mod law;

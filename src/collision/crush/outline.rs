@@ -1,77 +1,86 @@
-//! The front of the bullet in plan view, as a row of springs.
+//! The outline of the front of the bullet in plan view, and its division into the elements
+//! (springs) of the crush model.
 
 use serde::{Deserialize, Serialize};
 
-/// Slope dy/dx of the outline at which the curved corner ends and the straight front begins.
+/// Magnitude of the slope dy/dx of the outline at which the curved corner ends and the straight
+/// front begins.
 const FRONT_SLOPE: f64 = 1.2;
-/// Length of an element of the straight parts, m.
+/// Length of an element of the straight parts of the outline, m.
 const STRAIGHT_ELEMENT_M: f64 = 0.1;
 const N_SIDE: usize = 8;
 const N_CORNER: usize = 12;
 const N_FRONT: usize = 6;
 
-/// Elements of the whole outline: side, corner, front.
+/// Number of elements of the whole outline: side, corner and front.
 pub(super) const N_ELEMENTS: usize = N_SIDE + N_CORNER + N_FRONT;
-/// Stiffness factors along the outline: rear end of the side, start, middle and end of the corner,
-/// end of the front.
+/// Number of marks along the outline at which stiffness factors are given: rear end of the side;
+/// start, middle and end of the corner; inner end of the front.
 pub(super) const N_OUTLINE_FACTORS: usize = 5;
 
-/// The left front corner of a car in plan view: straight side, parabolic corner, straight front.
+/// Outline of the left front corner of a vehicle in plan view: a straight side, a parabolic corner
+/// and a straight front.
 ///
 /// ```text
 /// y(x) = y₀ − (x − x₀)² / 2R     for x ≥ x₀, until its slope reaches 1.2
 /// ```
 ///
-/// Body axes from the CG, x forward, y left. The parabola describes the points of first contact of
-/// the shipped finite-element runs to 3 mm.
+/// Coordinates are in body axes with the origin at the CG, x forward and y to the left. The
+/// parabola agrees with the points of first contact of the shipped finite-element runs to within 3
+/// mm.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Nose {
-    /// x₀: where the side begins to curve inwards, m.
+    /// x₀: coordinate x at which the side begins to curve inwards, m.
     pub corner_x_m: f64,
-    /// y₀: half the width, m.
+    /// y₀: half of the width of the vehicle, m.
     pub half_width_m: f64,
-    /// R: radius of curvature at x₀, m, positive.
+    /// R: radius of curvature of the corner at x₀, m, positive.
     pub radius_m: f64,
 }
 
 impl Default for Nose {
-    /// A mid-size car.
+    /// The outline of a mid-size car.
     fn default() -> Self {
         Self { corner_x_m: 1.7, half_width_m: 0.95, radius_m: 0.42 }
     }
 }
 
-/// One spring of the outline.
+/// One element of the outline, which acts as one spring.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SkinElement {
-    /// Position in the bullet's body axes, m.
+    /// Position of its middle in body axes of the bullet, m.
     pub position_m: [f64; 2],
-    /// Outward normal.
+    /// Outward unit normal in body axes of the bullet.
     pub normal: [f64; 2],
-    /// Length of outline that it stands for, m.
+    /// Length of the element along the outline, m.
     pub length_m: f64,
-    /// Stiffness factor.
+    /// Factor on the stiffness of the skins.
     pub factor: f64,
 }
 
 impl Nose {
-    /// Where a straight wall touches first that the bullet meets at `angle_rad` (0: parallel to its
-    /// side), body axes, m: the point with `dy/dx = −tan(angle)`.
+    /// Point of the outline that first touches a straight wall, in body axes, m: the point with
+    /// `dy/dx = −tan(angle)`.
+    ///
+    /// - `angle_rad`: angle between the longitudinal axis of the vehicle and the wall, rad; 0 if
+    ///   the wall is parallel to the side. The slope is limited to that of the corner.
     pub fn touching_point_m(&self, angle_rad: f64) -> [f64; 2] {
         let slope = angle_rad.tan().clamp(0.0, FRONT_SLOPE);
         self.corner_point_m(slope)
     }
 
-    /// The nose whose points of first contact lie closest to the given ones (least squares; the
-    /// model is linear in its parameters for x, and in y₀ and R for y). `None` below two points.
+    /// Fits the outline to points of first contact by linear least squares: the coordinates of
+    /// these points are linear in x₀, y₀ and R.
     ///
-    /// - `contacts`: angle of the wall, rad, and the point, body axes, m.
+    /// - `contacts`: for each contact the angle of the wall, rad, and the point in body axes, m.
+    /// - returns `None` for fewer than two contacts, if the parameters are not determined by the
+    ///   contacts, or if R or y₀ is not positive.
     pub fn fit(contacts: &[(f64, [f64; 2])]) -> Option<Self> {
         if contacts.len() < 2 {
             return None;
         }
-        // Unknown x₀, y₀, R: rows x = x₀ + R t and y = y₀ − R t²/2 with t = tan(angle).
+        // The equations of a contact are x = x₀ + R t and y = y₀ − R t²/2 with t = tan(angle).
         let rows = contacts.iter().flat_map(|(angle, [x, y])| {
             let t = angle.tan();
             [([1.0, 0.0, t], *x), ([0.0, 1.0, -t * t / 2.0], *y)]
@@ -94,10 +103,11 @@ impl Nose {
         [self.corner_x_m + along, self.half_width_m - along * slope / 2.0]
     }
 
-    /// The row of springs.
+    /// Divides the outline into elements, from the rear end of the side to the inner end of the
+    /// front.
     ///
     /// - `log_factors`: logarithms of the stiffness factors at the five marks of
-    ///   [`N_OUTLINE_FACTORS`], linear in between.
+    ///   [`N_OUTLINE_FACTORS`]; they are interpolated linearly in between.
     pub(super) fn elements(
         &self,
         log_factors: &[f64; N_OUTLINE_FACTORS],
