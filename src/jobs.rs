@@ -1,8 +1,10 @@
-//! Background work: a named thread, progress with an estimate of the time left, cancelling, and a
-//! panic that becomes a message. Knows no domain and no window; loading files, simulating whole
-//! datasets and training networks all run through [`Job`].
+//! Background work: a computation on a named thread, with progress, an estimate of the time left
+//! and cancelling. A panic of the computation becomes a message. This module knows neither what is
+//! computed nor the window; loading files, simulating whole data sets and training networks all run
+//! through [`Job`].
 //!
-//! A long computation takes one callback, reports through it and is told whether to go on:
+//! A long computation takes one callback, through which it reports its progress and learns whether
+//! to go on:
 //!
 //! ```
 //! use impactlab::jobs::{Job, Progress, Update};
@@ -33,55 +35,65 @@ use std::time::{Duration, Instant};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use thread_priority::{ThreadPriority, set_current_thread_priority};
 
-/// How far a computation has come.
+/// The progress of a computation.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Progress {
-    /// Units of work done.
+    /// Number of units of work that are done.
     pub done: u64,
-    /// Units of work in all; 0 while unknown.
+    /// Number of all units of work; 0 while it is unknown.
     pub total: u64,
-    /// What is being done, for a person.
+    /// Description of the current work, shown to the user.
     pub message: String,
 }
 
-/// The callback that a long computation calls: it reports, and breaks when told to.
+/// The callback that a long computation calls to report its progress. If it breaks, the computation
+/// stops as soon as possible.
 pub type ProgressCallback<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
 
 impl Progress {
-    /// `done` of `total` units, with a word on what is being done.
+    /// Progress of `done` of `total` units of work, with a description of the current work; a
+    /// `total` of 0 means that it is unknown.
     pub fn new(done: u64, total: u64, message: impl Into<String>) -> Self {
         Self { done, total, message: message.into() }
     }
 
-    /// The share done, 0 to 1; `None` while the total is unknown.
+    /// The share of the work that is done, 0 to 1; `None` while the total is unknown.
     pub fn fraction(&self) -> Option<f32> {
         (self.total > 0).then(|| (self.done as f32 / self.total as f32).min(1.0))
     }
 
-    /// The time left if the rest goes as fast as what is done: `elapsed · (total − done) / done`.
+    /// The estimated time left, if the rest of the work goes on at the same speed:
+    ///
+    /// ```text
+    /// time left = elapsed · (total − done) / done
+    /// ```
+    ///
+    /// - `elapsed`: time since the start of the computation.
+    /// - returns `None` if nothing is done yet or the total is unknown.
     pub fn time_left(&self, elapsed: Duration) -> Option<Duration> {
         let left = self.total.checked_sub(self.done)?;
         (self.done > 0).then(|| elapsed.mul_f64(left as f64 / self.done as f64))
     }
 }
 
-/// What a [`Job`] says when it is polled.
+/// The state of a [`Job`] when it is polled.
 #[derive(Debug)]
 pub enum Update<T> {
-    /// Still at work; the latest progress is in [`Job::progress`].
+    /// The computation is still running; [`Job::progress`] is its latest progress.
     Running,
-    /// The computation returned, cancelled or not: the value says which.
+    /// The computation returned this value. It returns a value after a cancellation too.
     Finished(T),
     /// The computation panicked with this message.
     Panicked(String),
-    /// The result was taken by an earlier call.
+    /// The job has ended and its result was taken by an earlier call.
     Gone,
 }
 
 impl<T> Update<Result<T, String>> {
-    /// What came out, a panic as an error; `None` while it is still at work.
+    /// The result of the computation, with a panic as an error; `None` while it is running.
     ///
-    /// - `who`: “the loader”, for the error of a result that was taken before.
+    /// - `who`: description of the job, such as “the loader”, for the error if the result was taken
+    ///   before.
     pub fn into_result(self, who: &str) -> Option<Result<T, String>> {
         match self {
             Self::Running => None,
@@ -92,12 +104,15 @@ impl<T> Update<Result<T, String>> {
     }
 }
 
+/// A message from the thread of a job.
 enum JobMessage<T> {
+    /// The computation has reported its progress.
     Progress(Progress),
+    /// The computation has ended.
     End(Update<T>),
 }
 
-/// A computation on a thread of its own. Dropping it cancels it.
+/// A computation on a thread of its own. Dropping the job cancels the computation.
 #[derive(Debug)]
 pub struct Job<T> {
     name: String,
@@ -108,8 +123,11 @@ pub struct Job<T> {
     ended: bool,
 }
 
-/// As many threads as there are cores, of the lowest priority. Where the system knows no priorities
-/// they are threads like others.
+/// Creates a pool of as many threads as there are cores, with the lowest priority. If the operating
+/// system refuses the priority, the threads have the normal one.
+///
+/// # Errors
+/// The error of the operating system if the threads cannot be started.
 fn background_threads(name: &str) -> std::io::Result<ThreadPool> {
     let name = name.to_owned();
     ThreadPoolBuilder::new()
@@ -122,11 +140,16 @@ fn background_threads(name: &str) -> std::io::Result<ThreadPool> {
 }
 
 impl<T: Send + 'static> Job<T> {
-    /// Starts `work` on a thread called `name`. `wake` is called after every report and at the
-    /// end, so that a sleeping window looks again. For what the user waits for.
+    /// Starts a computation on a new thread of normal priority, for results that the user waits
+    /// for.
+    ///
+    /// - `name`: name of the thread.
+    /// - `wake`: called after every report and at the end, so that a window that is idle polls the
+    ///   job.
+    /// - `work`: the computation, which receives the callback for its progress.
     ///
     /// # Errors
-    /// The operating system's, if it cannot start a thread.
+    /// The error of the operating system if the thread cannot be started.
     pub fn spawn(
         name: &str,
         wake: impl Fn() + Send + 'static,
@@ -135,12 +158,12 @@ impl<T: Send + 'static> Job<T> {
         Self::start(name, wake, work, |run| run())
     }
 
-    /// The same for what takes minutes: on threads of its own that come after all others where
-    /// cores are short, so that the window stays fluid. What `work` does in parallel by `rayon`
-    /// stays on them.
+    /// Starts a computation that takes minutes on threads of its own with the lowest priority, so
+    /// that the window remains responsive. What `work` computes in parallel by `rayon` runs on
+    /// these threads too. The arguments are those of [`Job::spawn`].
     ///
     /// # Errors
-    /// As for [`Job::spawn`].
+    /// The error of the operating system if the threads cannot be started.
     pub fn spawn_in_background(
         name: &str,
         wake: impl Fn() + Send + 'static,
@@ -150,6 +173,9 @@ impl<T: Send + 'static> Job<T> {
         Self::start(name, wake, work, move |run| threads.install(run))
     }
 
+    /// Starts a computation on a new thread.
+    ///
+    /// - `on_threads`: runs the computation that it is given, on the current thread or on others.
     fn start(
         name: &str,
         wake: impl Fn() + Send + 'static,
@@ -161,7 +187,8 @@ impl<T: Send + 'static> Job<T> {
         let cancelled = Arc::clone(&cancel);
         let run = move || {
             let mut report = |progress: Progress| {
-                // A dropped receiver means a dropped job, which has set the flag.
+                // Sending fails only after the job was dropped, which has set the flag that is
+                // tested below.
                 let _ = sender.send(JobMessage::Progress(progress));
                 wake();
                 if cancelled.load(Ordering::Relaxed) {
@@ -188,7 +215,7 @@ impl<T: Send + 'static> Job<T> {
         })
     }
 
-    /// Takes in what has been reported since the last call, without waiting.
+    /// Takes all messages since the last call without waiting and returns the state of the job.
     pub fn poll(&mut self) -> Update<T> {
         loop {
             match self.receiver.try_recv() {
@@ -202,7 +229,8 @@ impl<T: Send + 'static> Job<T> {
         }
     }
 
-    /// Waits for the end.
+    /// Waits until the computation ends and returns its result, or [`Update::Gone`] if an earlier
+    /// call has taken it.
     pub fn wait(&mut self) -> Update<T> {
         loop {
             match self.wait_for(Duration::from_secs(3600)) {
@@ -212,7 +240,7 @@ impl<T: Send + 'static> Job<T> {
         }
     }
 
-    /// Waits for the next report or the end, at most `timeout`.
+    /// Waits until the next report or the end of the computation, but no longer than `timeout`.
     pub fn wait_for(&mut self, timeout: Duration) -> Update<T> {
         if self.ended {
             return Update::Gone;
@@ -239,22 +267,23 @@ impl<T: Send + 'static> Job<T> {
 }
 
 impl<T> Job<T> {
-    /// The name it was started with.
+    /// The name with which the job was started.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The latest progress taken in by [`Job::poll`].
+    /// The latest progress that [`Job::poll`], [`Job::wait`] or [`Job::wait_for`] has received.
     pub fn progress(&self) -> &Progress {
         &self.progress
     }
 
-    /// Time since the start.
+    /// Time since the start of the job.
     pub fn elapsed(&self) -> Duration {
         self.started.elapsed()
     }
 
-    /// Asks the computation to stop at its next report. It still ends with a value.
+    /// Asks the computation to stop at its next report. The job still ends with the value that the
+    /// computation returns.
     pub fn cancel(&self) {
         self.cancel.store(true, Ordering::Relaxed);
     }
@@ -313,7 +342,7 @@ mod tests {
             },
         );
         drop(job);
-        // A thread that goes on for ever would hold the test up here.
+        // A computation that does not stop would block the test here.
         assert!(receiver.recv().is_ok());
     }
 

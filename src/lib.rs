@@ -1,22 +1,33 @@
-//! What happens when one vehicle hits another, and in the second after.
+//! Reconstruction of vehicle collisions: the force that acts in an impact, and the motion of the
+//! struck vehicle afterwards.
 //!
-//! Data flows one way, and each module names only those above it:
+//! Physical models (planar impact, crush, a vehicle model of four degrees of freedom with
+//! non-linear tires) compute them, and neural networks around these models predict them with their
+//! uncertainty.
 //!
-//! 1. [`bibliography`], [`units`]: sources, unit conversion;
-//! 2. [`numerics`], [`jobs`]: integration, statistics; background work;
+//! Data flows in one direction. Each module uses only modules above it in this list:
+//!
+//! 1. [`bibliography`], [`units`], [`error_chain()`]: sources, quantities and their units, errors
+//!    with their causes as one line;
+//! 2. [`numerics`], [`jobs`]: scalar types, integration and statistics; background work;
 //! 3. [`data`]: files become checked time series in SI units;
-//! 4. [`vehicle`]: the one place of the equations of motion;
-//! 5. [`collision`]: the impact itself: impulse, contact geometry, scenarios, pulses, filter;
-//! 6. [`nn`]: layers, parameters, optimiser and files of the networks;
-//! 7. [`uncertainty`]: distributions of whole force curves;
-//! 8. [`compare`]: simulation against reference;
-//! 9. [`learning`]: what the trainings of both networks share;
-//! 10. [`force`], [`response`]: the force network and its baselines; the response network;
-//! 11. [`shipped`]: the trained networks that are part of the program;
-//! 12. [`analysis`]: one case, from its file to a motion;
-//! 13. [`figure`]: what a plot shows, as plain data;
-//! 14. `render` (feature `gui`): one drawing function for the panel and the off-screen picture;
-//! 15. `cli` and `app` (feature `gui`): the command line and the window.
+//! 4. [`vehicle`]: parameters, tires and the equations of motion, which exist only here;
+//! 5. [`collision`]: the impact: impulse, contact geometry, scenarios, pulses, channel filter,
+//!    crush;
+//! 6. [`nn`], [`uncertainty`], [`compare`]: layers, parameters, optimiser and files of networks;
+//!    distributions of force curves and positions; comparison of a simulation with a reference;
+//! 7. [`learning`]: what the trainings of both networks have in common;
+//! 8. [`force`], [`response`]: the network that predicts the contact force, and the network that
+//!    predicts the motion, each with its baselines;
+//! 9. [`shipped`]: the trained networks that are part of the program;
+//! 10. [`analysis`]: one case, from its file or scenario to a motion;
+//! 11. [`study`]: every question that can be asked, as a request with a report as its answer;
+//! 12. [`figure`]: the content of a plot, as plain data;
+//! 13. `render` (feature `gui`): one drawing function for the window and for pictures without a
+//!     window;
+//! 14. [`cli`] and `app` (feature `gui`): the command line and the window.
+//!
+//! This example simulates a vehicle that drives at 20 m/s with an initial yaw rate of 2 rad/s:
 //!
 //! ```
 //! use impactlab::vehicle::{Integrator, Manoeuvre, Preset, VehicleState};

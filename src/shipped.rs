@@ -1,9 +1,9 @@
-//! The trained networks that are part of the program, so that it works from any folder.
+//! The trained networks that are part of the program, so that it works in any folder.
 //!
-//! A [`ModelSource`] names a model: the word `shipped` or `shipped-pretrained`, or a file. A file
-//! with the name of such a word is reached as `./shipped`.
+//! A [`ModelSource`] names a model: one of the words `shipped` and `shipped-pretrained`, or the
+//! path of a file. A file whose name is such a word is named with its folder, as `./shipped`.
 //!
-//! Vehicles and scenarios that are part of the program stand with their types:
+//! Vehicles and scenarios that are part of the program are defined with their types:
 //! [`Preset`](crate::vehicle::Preset), [`SCENARIO_PRESETS`](crate::collision::SCENARIO_PRESETS).
 
 use std::ffi::OsString;
@@ -16,10 +16,10 @@ use crate::force::{ForceError, ForceModel};
 use crate::learning::{LearningError, ModelFile};
 use crate::response::ResponseModel;
 
-/// The word for the model that comes with the program.
+/// The word for the trained model that is part of the program.
 const SHIPPED: &str = "shipped";
 
-/// The word for the response network that comes with the program, before any fine-tuning.
+/// The word for the response network that is part of the program, before any fine-tuning.
 const SHIPPED_PRETRAINED: &str = "shipped-pretrained";
 
 const FORCE_MODEL: &[u8] = include_bytes!("../assets/models/force.safetensors");
@@ -27,17 +27,18 @@ const RESPONSE_MODEL: &[u8] = include_bytes!("../assets/models/response.safetens
 const PRETRAINED_RESPONSE_MODEL: &[u8] =
     include_bytes!("../assets/models/response_pretrained.safetensors");
 
-/// Where a model comes from. Written as its word or as the path of its file.
+/// The source of a model. In text and files it is written as its word or as the path of its file.
 #[derive(Debug, Clone, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(from = "PathBuf", into = "PathBuf")]
 pub enum ModelSource {
-    /// The model that comes with the program, `shipped`.
+    /// The trained model that is part of the program, written `shipped`.
     #[default]
     Shipped,
-    /// The response network that comes with the program, pre-trained on simulations and not yet
-    /// fine-tuned, `shipped-pretrained`.
+    /// The response network that is part of the program, pre-trained on simulations and not yet
+    /// fine-tuned, written `shipped-pretrained`. There is no force network of this kind: loading it
+    /// as one fails.
     ShippedPretrained,
-    /// A model file.
+    /// The model in a file.
     File(PathBuf),
 }
 
@@ -45,7 +46,8 @@ impl ModelSource {
     /// Loads the force network.
     ///
     /// # Errors
-    /// [`ForceError`] if the file cannot be read or holds something else.
+    /// [`ForceError`] if the file cannot be read or is not a force network, which is always the
+    /// case for [`ModelSource::ShippedPretrained`].
     pub fn force_model(&self) -> Result<ForceModel, ForceError> {
         match self {
             Self::Shipped => ForceModel::from_bytes(FORCE_MODEL),
@@ -57,7 +59,7 @@ impl ModelSource {
     /// Loads the response network.
     ///
     /// # Errors
-    /// [`LearningError`] if the file cannot be read or holds something else.
+    /// [`LearningError`] if the file cannot be read or is not a response network.
     pub fn response_model(&self) -> Result<ResponseModel, LearningError> {
         match self {
             Self::Shipped => ResponseModel::from_bytes(RESPONSE_MODEL),
@@ -66,7 +68,7 @@ impl ModelSource {
         }
     }
 
-    /// The word or the path.
+    /// The word of a model that is part of the program, or the path of a file.
     pub fn path(&self) -> &Path {
         match self {
             Self::Shipped => Path::new(SHIPPED),

@@ -1,7 +1,8 @@
-//! Physical constants and unit conversion. SI and radians everywhere inside; other units exist
-//! only where a file is read or a number is shown.
+//! Physical constants, quantities and their units. All numbers inside the program are in SI units
+//! and radians; other units occur only where a file is read or a number is shown.
 //!
-//! Conversion factors are exact by definition: [`Nist2008`](crate::bibliography::Nist2008), table B.8.
+//! The conversion factors are exact by definition: [`Nist2008`](crate::bibliography::Nist2008),
+//! table B.8.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +19,7 @@ const SLUG_KG: f64 = POUND_FORCE_N / FOOT_M;
 const DEGREE_RAD: f64 = std::f64::consts::PI / 180.0;
 const REVOLUTION_PER_MINUTE_RAD_S: f64 = std::f64::consts::PI / 30.0;
 
-/// What a number measures.
+/// The physical quantity that a number measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Quantity {
     /// Time, s.
@@ -47,38 +48,42 @@ pub enum Quantity {
     AngularImpulse,
     /// Energy, J.
     Energy,
-    /// A pure number.
+    /// A number without a dimension, such as a coefficient or a share.
     Ratio,
 }
 
-/// The units in which a person reads and types numbers.
+/// The system of units in which the user reads and enters numbers.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum UnitSystem {
-    /// m, km/h, deg, kN, kg: the metric units of European reconstruction practice.
+    /// The metric units of European reconstruction practice: m, km/h, deg, kN, kg.
     #[default]
     Si,
-    /// ft, mph, deg, lbf, lb: US customary units.
+    /// US customary units: ft, mph, deg, lbf, lb.
     Us,
 }
 
-/// A unit of a [`Quantity`]: `value_si = value * si_per_unit`.
+/// A unit of a [`Quantity`].
+///
+/// ```text
+/// value in SI units = value · si_per_unit
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unit {
-    /// What it measures.
+    /// The quantity that the unit measures.
     pub quantity: Quantity,
-    /// As printed behind a number.
+    /// The symbol that is printed after a number; empty for a ratio that is not in per cent.
     pub symbol: &'static str,
-    /// SI units (or radians) in one of these.
+    /// The size of the unit in SI units or radians.
     pub si_per_unit: f64,
 }
 
 impl Unit {
-    /// This unit's number as an SI number.
+    /// Converts a number in this unit to SI units.
     pub fn to_si(&self, value: f64) -> f64 {
         value * self.si_per_unit
     }
 
-    /// An SI number as this unit's number.
+    /// Converts a number in SI units to this unit.
     pub fn from_si(&self, value_si: f64) -> f64 {
         value_si / self.si_per_unit
     }
@@ -103,12 +108,13 @@ impl Quantity {
         Self::Ratio,
     ];
 
-    /// The unit used inside the program and in the files it writes.
+    /// The SI unit of the quantity, which is used inside the program and in the files that it
+    /// writes.
     pub fn si_unit(self) -> Unit {
         self.units()[0]
     }
 
-    /// The unit in which the quantity is shown to a person.
+    /// The unit in which the quantity is shown to the user.
     pub fn display_unit(self, system: UnitSystem) -> Unit {
         let symbol = match (self, system) {
             (Self::Length, UnitSystem::Us) => "ft",
@@ -134,21 +140,23 @@ impl Quantity {
         *self.units().iter().find(|unit| unit.symbol == symbol).unwrap_or(&self.units()[0])
     }
 
-    /// An SI number as a person reads it: “123 kN”.
+    /// A number in SI units as text for the user, with four significant digits and the unit of
+    /// display, such as `12.35 kN`.
     pub fn shown(self, value_si: f64, system: UnitSystem) -> String {
         let unit = self.display_unit(system);
         let number = significant(unit.from_si(value_si));
         if unit.symbol.is_empty() { number } else { format!("{number} {}", unit.symbol) }
     }
 
-    /// SI numbers as a person reads them, with one unit: “(1.124, 2.810) kN s”.
+    /// The two components of a vector in SI units as text for the user with one unit, such as
+    /// `(1.124, 2.810) kN s`.
     pub fn shown_vector(self, [x_si, y_si]: [f64; 2], system: UnitSystem) -> String {
         let unit = self.display_unit(system);
         let [x, y] = [x_si, y_si].map(|value| significant(unit.from_si(value)));
         format!("({x}, {y}) {}", unit.symbol)
     }
 
-    /// Every unit of the quantity that files and people use, the SI unit first.
+    /// Every unit of the quantity that is read from files or shown, the SI unit first.
     pub fn units(self) -> &'static [Unit] {
         macro_rules! units {
             ($quantity:ident: $($symbol:literal = $si:expr),+ $(,)?) => {
@@ -184,9 +192,11 @@ impl Quantity {
     }
 }
 
-/// A number with four significant digits, without an exponent: as it stands in a readout.
+/// A number as text with four significant digits, without an exponent. All digits before the
+/// decimal point are shown, and at most six after it.
 pub fn significant(value: f64) -> String {
-    let value = value + 0.0; // no negative zero
+    // Adding zero turns a negative zero into a positive one.
+    let value = value + 0.0;
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
     }
@@ -194,7 +204,8 @@ pub fn significant(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-/// A share of 1 as percent with one decimal: `12.3 %`. Rounding leaves no negative zero.
+/// A share of 1 as text in per cent with one decimal, such as `12.3 %`. A value that rounds to zero
+/// has no sign.
 pub fn percent(share: f64) -> String {
     let tenths = (1000.0 * share).round() + 0.0;
     format!("{:.1} %", tenths / 10.0)
