@@ -1,4 +1,4 @@
-//! What can go wrong between a data set and a prediction.
+//! The errors of the force models, from the data set to the prediction.
 
 use crate::collision::ImpactError;
 use crate::force::regression::CurveFitError;
@@ -6,43 +6,43 @@ use crate::learning::LearningError;
 use crate::nn::NnError;
 use crate::uncertainty::MixtureError;
 
-/// A force model cannot be trained, opened or asked.
+/// The reason why a force model cannot be trained, read or evaluated.
 #[derive(Debug, thiserror::Error)]
 pub enum ForceError {
     /// The law of the crush model cannot be fitted.
     #[error("the crush model cannot be fitted: none of the {n_cases} cases has a force")]
     NoCrushFit {
-        /// How many cases there are.
+        /// Number of cases, none of which has a contact force.
         n_cases: usize,
     },
-    /// The bullet's body is unknown to the model.
+    /// The kind of the bullet body is unknown to the model.
     #[error("bullet body {name:?} is unknown to the model, expected one of {}", known.join(", "))]
     UnknownBody {
-        /// As asked for.
+        /// The kind that was asked for.
         name: String,
-        /// What it knows.
+        /// The kinds that the model knows.
         known: Vec<String>,
     },
-    /// A number of the scenario makes no sense.
+    /// A number of the scenario is outside its range.
     #[error("{name} is {value}, expected {expected}")]
     Scenario {
-        /// Which number.
+        /// Name of the number.
         name: &'static str,
-        /// Its value.
+        /// Value of the number.
         value: f64,
-        /// The range, in words.
+        /// The accepted range, in words.
         expected: &'static str,
     },
-    /// The regressions beside the crush model cannot be fitted or asked.
+    /// The regressions that are averaged with the crush model cannot be fitted or evaluated.
     #[error("the regressions beside the crush model fail")]
     Regression(#[from] CurveFitError),
-    /// The momentum solution has no answer.
+    /// The momentum solution of the impact does not exist.
     #[error(transparent)]
     Impact(#[from] ImpactError),
-    /// The distribution makes no sense.
+    /// The parameters of a mixture of force curves are invalid.
     #[error(transparent)]
     Mixture(#[from] MixtureError),
-    /// Settings, training, network or model file.
+    /// Settings, training, network or model file cause an error.
     #[error(transparent)]
     Learning(#[from] LearningError),
 }

@@ -1,4 +1,4 @@
-//! Cases as tensors.
+//! Converts cases to tensors for the training of the force network.
 
 use candle_core::{DType, Device, Tensor};
 
@@ -8,16 +8,24 @@ use crate::force::train::loss::Targets;
 use crate::force::{ForceCase, ForceError, NetworkConfig};
 use crate::uncertainty::CURVE_N_INSTANTS;
 
-/// All cases of a training, ready to be drawn from.
+/// All cases of a training as tensors, from which batches are selected.
 #[derive(Debug, Clone)]
 pub(crate) struct CaseTensors {
     input: NetworkInput,
     targets: Targets,
 }
 
-/// What the network sees of scenarios.
+/// Computes the inputs of the network for scenarios.
 ///
-/// - `features`: standardised, one row per centre.
+/// - `centres`, `residuals`: the physics of each scenario, and the distribution of its residuals
+///   with which the components start. The last of several components starts with the residuals of
+///   hooking cases.
+/// - `features`: standardised features, one row per centre.
+/// - `config`, `number_type`: number of components and latent factors, and number type of the
+///   tensors.
+///
+/// # Errors
+/// [`ForceError::Learning`] if a tensor operation fails.
 pub(crate) fn network_input(
     (centres, residuals): (&[CentreCurve], &ResidualModel),
     features: Vec<Vec<f32>>,
@@ -58,6 +66,11 @@ pub(crate) fn network_input(
 }
 
 impl CaseTensors {
+    /// Converts cases to tensors. The arguments are those of [`network_input`], for the same cases
+    /// in the same order.
+    ///
+    /// # Errors
+    /// [`ForceError::Learning`] if a tensor operation fails.
     pub(crate) fn new(
         cases: &[&ForceCase],
         (centres, residuals): (&[CentreCurve], &ResidualModel),
@@ -95,7 +108,10 @@ impl CaseTensors {
         Ok(Self { input, targets })
     }
 
-    /// Some of the cases, in this order.
+    /// Selects cases by their indices, in the order of the indices.
+    ///
+    /// # Errors
+    /// [`ForceError::Learning`] if a tensor operation fails.
     pub(crate) fn select(&self, indices: &[usize]) -> Result<(NetworkInput, Targets), ForceError> {
         let indices: Vec<u32> = indices.iter().map(|i| *i as u32).collect();
         let indices = Tensor::new(indices, &Device::Cpu)?;

@@ -1,5 +1,5 @@
-//! Calibration of a trained network: three factors on its variances, with which its intervals contain
-//! their nominal share of the observed values.
+//! Calibration of a trained network: three factors on its variances, with which its intervals
+//! contain their nominal share of the observed values.
 
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
@@ -13,9 +13,10 @@ use crate::uncertainty::{CURVE_INTERVAL_S, CurveComponent, CurveMixture, CurveQu
 const CALIBRATED_SHARE: f64 = 0.9;
 /// Logarithms of the smallest and largest factor.
 const MOST_EXTREME_LOG_FACTORS: [f64; 2] = [-6.0, 4.0];
+/// Number of bisection steps for a factor.
 const N_STEPS: usize = 20;
-/// Number of steps of the search by impulses and peaks, and largest factor relative to the one that is
-/// right for impulses alone.
+/// Number of steps of the search by impulses and peaks, and largest factor relative to the one that
+/// is right for impulses alone.
 const N_SHARED_STEPS: usize = 8;
 const LARGEST_SHARED: f64 = 4.0;
 /// Number of draws of a case for its peak.
@@ -60,8 +61,9 @@ impl VarianceFactors {
         let of_impulse = smallest(N_STEPS, |factor| {
             held_impulses(cases, Self { shared: factor, single: factor, duration: 1.0 })
         });
-        // Of larger factors the one with which impulses and peaks together hold what they should.
-        // More is not always better for peaks: drawn too rough they are all too high.
+        // Among this factor and larger ones, the search chooses the one with which the shares of
+        // impulses and peaks are closest to the nominal share. A larger factor is not always better
+        // for peaks: drawn curves that are too rough have peaks that are all too high.
         let shared = (0..=N_SHARED_STEPS)
             .map(|step| of_impulse * LARGEST_SHARED.powf(step as f64 / N_SHARED_STEPS as f64))
             .map(|shared| {
@@ -78,7 +80,7 @@ impl VarianceFactors {
         Self { shared, single: single(shared), duration }
     }
 
-    /// The mixture with these factors on its variances.
+    /// Multiplies the variances of a mixture by the factors.
     pub(crate) fn apply(self, mixture: CurveMixture) -> CurveMixture {
         mixture.map_components(|component| self.widen(component))
     }
@@ -96,6 +98,8 @@ impl VarianceFactors {
 
 /// The smallest factor with which intervals contain their nominal share, by bisection of its
 /// logarithm.
+///
+/// - `held`: share of the observed values inside their intervals with a given factor.
 fn smallest(n_steps: usize, held: impl Fn(f64) -> f64) -> f64 {
     let [mut low, mut high] = MOST_EXTREME_LOG_FACTORS;
     for _ in 0..n_steps {
@@ -109,11 +113,14 @@ fn smallest(n_steps: usize, held: impl Fn(f64) -> f64) -> f64 {
     high.exp()
 }
 
+/// Whether a value lies in the central interval of the nominal share, given the predicted
+/// probability of a smaller value.
 fn is_inside(probability_below: f64) -> bool {
     let tail = (1.0 - CALIBRATED_SHARE) / 2.0;
     (tail..=1.0 - tail).contains(&probability_below)
 }
 
+/// The share of `true` values; 0 if there are none.
 fn share(inside: impl Iterator<Item = bool>) -> f64 {
     let (mut n_inside, mut n) = (0_usize, 0_usize);
     for is_inside in inside {
@@ -123,13 +130,14 @@ fn share(inside: impl Iterator<Item = bool>) -> f64 {
     n_inside as f64 / n.max(1) as f64
 }
 
+/// Share of the forces F_x and F_y during contact that lie inside their intervals.
 fn held_forces(cases: &[(&ForceCase, CurveMixture)], factors: VarianceFactors) -> f64 {
     share(cases.iter().flat_map(|(case, mixture)| {
         let observed = case.curve.to_values();
         let n_instants = observed.len() / 2;
         let last_s = case.onset_s + case.curve.duration_s;
         let n_contact = ((last_s / CURVE_INTERVAL_S).ceil() as usize).min(n_instants);
-        // Every second instant: neighbours say almost the same.
+        // Every second instant is sufficient because neighbouring values are strongly correlated.
         let instants = (0..n_contact).step_by(2);
         let values: Vec<usize> = instants.flat_map(|t| [t, n_instants + t]).collect();
         let inside = move |idx: usize| {
@@ -146,6 +154,7 @@ fn held_forces(cases: &[(&ForceCase, CurveMixture)], factors: VarianceFactors) -
     }))
 }
 
+/// Share of the impulses P_x and P_y that lie inside their intervals.
 fn held_impulses(cases: &[(&ForceCase, CurveMixture)], factors: VarianceFactors) -> f64 {
     share(cases.iter().flat_map(|(case, mixture)| {
         let mixture = factors.apply(mixture.clone());
@@ -153,6 +162,7 @@ fn held_impulses(cases: &[(&ForceCase, CurveMixture)], factors: VarianceFactors)
     }))
 }
 
+/// Share of the durations that lie inside their intervals.
 fn held_durations(cases: &[(&ForceCase, CurveMixture)], factors: VarianceFactors) -> f64 {
     share(cases.iter().map(|(case, mixture)| {
         let duration_s = factors.apply(mixture.clone()).duration_s();
@@ -160,7 +170,8 @@ fn held_durations(cases: &[(&ForceCase, CurveMixture)], factors: VarianceFactors
     }))
 }
 
-/// Share of the peaks within their intervals, from the same draws for all factors.
+/// Share of the peaks that lie inside their intervals. The curves are drawn with the same random
+/// numbers for all factors.
 fn held_peaks(cases: &[(&ForceCase, CurveMixture)], factors: VarianceFactors, seed: u64) -> f64 {
     share(cases.iter().enumerate().map(|(i, (case, mixture))| {
         let mut rng: ChaCha8Rng = random_stream(seed, "calibration of peaks", i as u64);
@@ -179,8 +190,8 @@ mod tests {
     use crate::force::input::shipped;
     use crate::uncertainty::ForceCurve;
 
-    /// A mixture of one component around a haversine, and cases drawn from it with its variances
-    /// multiplied by the factors.
+    /// A mixture of one component around a haversine, and cases that are drawn from it with its
+    /// variances multiplied by the factors.
     fn cases(factors: VarianceFactors) -> Vec<(ForceCase, CurveMixture)> {
         let n = crate::uncertainty::CURVE_N_INSTANTS;
         let bump = |i: usize| (std::f64::consts::PI * (i as f64 + 0.5) / 100.0).sin().max(0.0);

@@ -1,7 +1,7 @@
-//! The loss of the force network, term by term.
+//! The terms of the loss of the force network and their weighted sum.
 //!
-//! Source: after `eq:physic_cons2` of [`PitPinnPaper`](crate::bibliography::PitPinnPaper), which has no
-//! likelihood.
+//! Source: after `eq:physic_cons2` of [`PitPinnPaper`](crate::bibliography::PitPinnPaper), which
+//! has no likelihood.
 
 use std::f64::consts::TAU;
 
@@ -14,49 +14,61 @@ use crate::force::{ForceError, LossWeights};
 use crate::nn::product;
 use crate::uncertainty::CURVE_INTERVAL_S;
 
-/// The terms of the loss as means over cases, unweighted, and their weighted sum.
+/// The terms of the loss as unweighted means over cases, and their weighted sum.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LossTerms {
-    /// The weighted sum, which is minimised.
+    /// The weighted sum of the terms, which is minimised.
     pub total: f64,
-    /// Negative log-likelihood of whole curves, per value, forces in peaks of the centre.
+    /// Negative log-likelihood of whole curves per value of the curve; forces in units of the peak
+    /// force of the centre.
     pub likelihood: f64,
-    /// ‖F̂ − F‖² / ‖F‖² of the mean curve.
+    /// Relative squared error of the mean curve, ‖F̂ − F‖² / ‖F‖².
     pub data: f64,
-    /// |P̂ − P|² / |P|².
+    /// Relative squared error of the impulse, |P̂ − P|² / |P|². It is the mean of that of the
+    /// constrained impulse and that of the mean curve.
     pub impulse: f64,
-    /// Squared error of the absorbed energy as a share of the kinetic energy of approach, and square of
-    /// a negative absorbed energy.
+    /// Squared error of the absorbed energy, relative to the kinetic energy of approach, plus the
+    /// square of a negative absorbed energy in the same unit.
     pub energy: f64,
-    /// Squared error of the duration, units of 0.1 s.
+    /// Squared error of the mean duration of the first component, in units of 0.1 s.
     pub duration: f64,
-    /// Cross entropy of hooking.
+    /// Cross-entropy of the classification as hooking or not; 0 for a mixture with a single
+    /// component.
     pub hooking: f64,
 }
 
-/// The recorded values of some cases, with which the loss compares.
+/// The recorded values of some cases, with which the output of the network is compared. Forces are
+/// in units of the peak force of the centre of each case.
 #[derive(Debug, Clone)]
 pub(crate) struct Targets {
-    /// The curves as `[F_x…, F_y…, duration]`, in peaks of the centre and 0.1 s, `[cases, values]`.
+    /// The curves as `[F_x…, F_y…, duration]`, durations in units of 0.1 s; `[cases, values]`.
     pub values: Tensor,
-    /// Impulse of the curve, peaks × s, `[cases, 2]`.
+    /// Impulse of the curve, in units of the peak force times s, `[cases, 2]`.
     pub impulse: Tensor,
-    /// 1 where the case hooks, `[cases]`.
+    /// 1 for a case with hooking and 0 for others, `[cases]`.
     pub hooked: Tensor,
-    /// Closing velocity of the contact points, m/s, `[cases, 2]`.
+    /// Velocity of the bullet's contact point relative to the target's before the impact, m/s,
+    /// `[cases, 2]`.
     pub closing: Tensor,
-    /// K times the unit of impulse, so that K P is in m/s, `[cases, 2, 2]`.
+    /// Inverse mass matrix K times the unit of the impulse, so that K P is in m/s, `[cases, 2, 2]`.
     pub inverse_mass: Tensor,
 }
 
-/// The terms as tensors, for the gradient.
+/// The terms of the loss as tensors through which gradients are computed.
 pub(crate) struct Loss {
+    /// The weighted sum of the terms.
     pub total: Tensor,
+    /// Likelihood, data, impulse, energy, duration and hooking, not weighted.
     terms: [Tensor; 6],
 }
 
 impl Loss {
+    /// Computes the terms and their weighted sum. The likelihood is always part of the sum, the
+    /// other terms if their weight is positive.
+    ///
+    /// # Errors
+    /// [`ForceError::Learning`] if a tensor operation fails.
     pub(crate) fn of(
         output: &NetworkOutput,
         targets: &Targets,
@@ -86,6 +98,9 @@ impl Loss {
     }
 
     /// The values of the terms.
+    ///
+    /// # Errors
+    /// [`ForceError::Learning`] if a tensor operation fails.
     pub(crate) fn values(&self) -> Result<LossTerms, ForceError> {
         let number = |tensor: &Tensor| -> Result<f64, ForceError> {
             Ok(tensor.to_dtype(candle_core::DType::F64)?.to_scalar::<f64>()?)
@@ -104,7 +119,7 @@ impl Loss {
 }
 
 impl LossTerms {
-    /// Name and value of each, the sum first.
+    /// Name and value of each term, with the sum first.
     pub fn named(&self) -> [(&'static str, f64); 7] {
         [
             ("total", self.total),
@@ -117,7 +132,7 @@ impl LossTerms {
         ]
     }
 
-    /// The mean over batches, each weighted by its cases.
+    /// Mean over batches, each weighted by its number of cases.
     pub(crate) fn mean(batches: &[(usize, Self)]) -> Self {
         let n: usize = batches.iter().map(|(n, _)| n).sum();
         let mean = |of: fn(&Self) -> f64| {
@@ -135,7 +150,14 @@ impl LossTerms {
     }
 }
 
-/// −ln Σ_k π_k N(y; μ_k, D_k + U_k U_kᵀ) / values, mean over cases.
+/// Negative log-likelihood of the mixture per value of the curve, as the mean over cases:
+///
+/// ```text
+/// −ln Σ_k π_k N(y; μ_k, D_k^½ R_k D_k^½ + U_k U_kᵀ) / values
+/// ```
+///
+/// D contains the variances that the factors U do not explain, and R the correlation of
+/// neighbouring instants.
 fn likelihood(output: &NetworkOutput, targets: &Targets) -> Result<Tensor, ForceError> {
     let n_values = targets.values.dim(1)? as f64;
     let log_weight = candle_nn::ops::log_softmax(&output.logits, D::Minus1)?;
@@ -143,12 +165,16 @@ fn likelihood(output: &NetworkOutput, targets: &Targets) -> Result<Tensor, Force
     Ok((joint.log_sum_exp(D::Minus1)?.mean_all()? / -n_values)?)
 }
 
-/// ln N of the values under each component, `[cases, K]`, by Woodbury's identity, with z and W the
-/// whitened residual and factors:
+/// Logarithm of the normal density of the values under each component, `[cases, K]`, by Woodbury's
+/// identity, with z and W the whitened residual and factors:
 ///
 /// ```text
 /// rᵀ Σ⁻¹ r = |z|² − vᵀ M⁻¹ v     ln |Σ| = ln |D R| + ln |M|     M = 1 + Wᵀ W,  v = Wᵀ z
 /// ```
+///
+/// D and R are those of the likelihood above.
+///
+/// - `values`: in the units of [`Targets::values`], `[cases, values]`.
 pub(crate) fn log_normal(output: &NetworkOutput, values: &Tensor) -> Result<Tensor, ForceError> {
     let residual = values.unsqueeze(1)?.broadcast_sub(&output.mean)?;
     let deviation = output.variance.sqrt()?;
@@ -173,12 +199,15 @@ pub(crate) fn log_normal(output: &NetworkOutput, values: &Tensor) -> Result<Tens
     Ok((((square + log_det)? + constant)? * -0.5)?)
 }
 
-/// Rows over their deviations to rows without correlation between neighbouring instants,
-/// `[cases, K, values, n]`; φ: `[cases, K]`.
+/// Removes the correlation of neighbouring instants from rows that were divided by their standard
+/// deviations.
 ///
 /// ```text
-/// z_i = (x_i − φ x_(i−1)) / √(1 − φ²)      z = x at the first of an axis and for the duration
+/// z_i = (x_i − φ x_(i−1)) / √(1 − φ²)      z = x for the first instant of an axis and the duration
 /// ```
+///
+/// - `rows`: x, `[cases, K, values, n]`.
+/// - `lag_correlation`: φ, `[cases, K]`.
 fn whitened(rows: &Tensor, lag_correlation: &Tensor) -> Result<Tensor, ForceError> {
     let n_instants = (rows.dim(2)? - 1) / 2;
     let phi = lag_correlation.unsqueeze(2)?.unsqueeze(3)?;
@@ -194,13 +223,16 @@ fn whitened(rows: &Tensor, lag_correlation: &Tensor) -> Result<Tensor, ForceErro
     Ok(Tensor::cat(&parts, 2)?)
 }
 
-/// `vᵀ (1 + m)⁻¹ v` and `ln |1 + m|`, both `[batch]`, of positive semidefinite `m`, `[batch, q, q]`,
-/// and `v`, `[batch, q, 1]`, by Gaussian elimination, through which gradients pass:
+/// Computes `vᵀ (1 + m)⁻¹ v` and `ln |1 + m|`, both `[batch]`, by Gaussian elimination, through
+/// which gradients are computed:
 ///
 /// ```text
 /// ⎡1 + m  v⎤   eliminating the first q rows leaves −vᵀ (1 + m)⁻¹ v in the last one,
 /// ⎣ vᵀ    0⎦   and the product of the pivots is |1 + m|
 /// ```
+///
+/// - `m`: positive semidefinite, `[batch, q, q]`.
+/// - `v`: `[batch, q, 1]`.
 fn quadratic_form_and_log_det(m: &Tensor, v: &Tensor) -> Result<(Tensor, Tensor), ForceError> {
     let (batch, q, _) = m.dims3()?;
     let one = Tensor::eye(q, m.dtype(), m.device())?.unsqueeze(0)?;
@@ -219,11 +251,12 @@ fn quadratic_form_and_log_det(m: &Tensor, v: &Tensor) -> Result<(Tensor, Tensor)
     Ok((left.flatten_all()?.neg()?, log_det))
 }
 
-/// π_k, `[cases, K, 1]`.
+/// Weights π_k of the components, `[cases, K, 1]`.
 fn weights(output: &NetworkOutput) -> Result<Tensor, ForceError> {
     Ok(candle_nn::ops::softmax(&output.logits, D::Minus1)?.unsqueeze(2)?)
 }
 
+/// Relative squared error of the forces of the mean curve.
 fn data(output: &NetworkOutput, targets: &Targets) -> Result<Tensor, ForceError> {
     let n_forces = targets.values.dim(1)? - 1;
     let mean = output.mean.broadcast_mul(&weights(output)?)?.sum(1)?.narrow(1, 0, n_forces)?;
@@ -232,7 +265,8 @@ fn data(output: &NetworkOutput, targets: &Targets) -> Result<Tensor, ForceError>
     Ok((error / (truth.sqr()?.sum(1)? + 1e-9)?)?.mean_all()?)
 }
 
-/// Of F_base: the impulse that the physics layer holds, and that of the mean curve.
+/// Relative squared error of the impulse: the mean of that of F_base, which the physics layer
+/// holds, and that of the mean curve.
 fn impulse(output: &NetworkOutput, targets: &Targets) -> Result<Tensor, ForceError> {
     let (n_cases, _, n_values) = output.mean.dims3()?;
     let n_instants = (n_values - 1) / 2;
@@ -247,8 +281,13 @@ fn impulse(output: &NetworkOutput, targets: &Targets) -> Result<Tensor, ForceErr
     Ok(((share(&output.impulse)? + share(&of_mean)?)? * 0.5)?)
 }
 
-/// Error of the energy W = v·P − ½ PᵀKP that the contact absorbs, which is compared with that of the
-/// recorded impulse and must not be negative, in units of ½ v·v / K̄.
+/// Error of the energy W that the contact absorbs, in units of ½ v·v / K̄, where K̄ is the mean of
+/// the diagonal of K. The energy is compared with that of the recorded impulse and must not be
+/// negative.
+///
+/// ```text
+/// W = v·P − ½ PᵀKP
+/// ```
 fn energy(output: &NetworkOutput, targets: &Targets) -> Result<Tensor, ForceError> {
     let work = |impulse: &Tensor| -> Result<Tensor, ForceError> {
         let velocity = product(&targets.inverse_mass, &impulse.unsqueeze(2)?)?.squeeze(2)?;
@@ -265,13 +304,15 @@ fn energy(output: &NetworkOutput, targets: &Targets) -> Result<Tensor, ForceErro
     Ok(((got - known)?.sqr()? + from_nothing)?.mean_all()?)
 }
 
+/// Squared error of the mean duration of the first component, in units of 0.1 s.
 fn duration(output: &NetworkOutput, targets: &Targets) -> Result<Tensor, ForceError> {
     let known = targets.values.narrow(1, targets.values.dim(1)? - 1, 1)?.squeeze(1)?;
     let got = (&output.duration_s / DURATION_UNIT_S)?;
     Ok((got - known)?.sqr()?.mean_all()?)
 }
 
-/// −ln π of the components of the recorded kind, hooking or not; 0 with a single component.
+/// Negative logarithm of the total weight π of the components of the recorded kind, the last
+/// component for hooking and the others for no hooking; 0 for a single component.
 fn hooking(output: &NetworkOutput, targets: &Targets) -> Result<Tensor, ForceError> {
     let k = output.logits.dim(1)?;
     if k < 2 {
@@ -353,7 +394,7 @@ mod tests {
             output.impulse = tensor(&[0.0, py], &[1, 2]);
             energy(&output, &targets).unwrap().to_scalar::<f64>().unwrap()
         };
-        // W(P) = P − P²/2 in units of ½: known at P = 1, negative beyond P = 2.
+        // W(P) = P − P²/2 in units of ½ is that of the target at P = 1 and negative for P > 2.
         assert!(at(1.0).abs() < 1e-12);
         assert!(at(0.5) > 0.0 && at(3.0) > at(2.0) + 1.0);
     }

@@ -1,4 +1,5 @@
-//! From cases to a trained model: losses, training with checkpoints, calibration, model files.
+//! Training of the force network: tensors, losses, epochs with checkpoints, calibration of the
+//! variances, and model files.
 
 mod batch;
 mod loss;

@@ -1,4 +1,4 @@
-//! A trained force network and its file.
+//! A trained force network and its model file.
 
 use std::collections::BTreeMap;
 
@@ -12,10 +12,11 @@ use crate::learning::ModelFile;
 use crate::nn::{Checkpoint, ModelKind, NnError, random_stream};
 use crate::uncertainty::{CURVE_N_INSTANTS, ForceCurve};
 
+/// Name of the tensor with the curves of the training cases in a model file.
 const CURVES: &str = "curves";
 
-/// A trained force network with all it takes to predict, and the cases it was trained on, with
-/// which the baselines are fitted and known cases recognised.
+/// A trained force network with everything that a prediction needs. It contains its training cases,
+/// to which the baselines are fitted and by which known cases are recognised.
 #[derive(Debug)]
 pub struct ForceModel {
     pub(crate) config: ForceConfig,
@@ -28,7 +29,7 @@ pub struct ForceModel {
     pub(crate) cases: Vec<ForceCase>,
 }
 
-/// A training case without its curve.
+/// The form of a training case in a model file, without its curve.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct StoredCase {
@@ -42,37 +43,40 @@ struct StoredCase {
 }
 
 impl ForceModel {
-    /// The configuration it was trained with.
+    /// The configuration with which the model was trained.
     pub fn config(&self) -> &ForceConfig {
         &self.config
     }
 
-    /// How it came to be.
+    /// The record of the training.
     pub fn record(&self) -> &ForceRecord {
         &self.record
     }
 
-    /// The training cases, validation included; forces to single precision.
+    /// The training cases, including those for validation. Forces that were read from a model file
+    /// have single precision.
     pub fn training_cases(&self) -> &[ForceCase] {
         &self.cases
     }
 
-    /// The kinds of bullet bodies it knows; a single empty name if the data had none.
+    /// The kinds of bullet bodies that the model knows; a single empty name if the training data
+    /// name none.
     pub fn bodies(&self) -> Vec<String> {
         self.centre.bodies()
     }
 
-    /// The rear axle of the target, body axes, m: contact offsets count from it.
+    /// Position of the rear axle of the target in its body axes, m, from which contact offsets are
+    /// measured.
     pub fn rear_axle_x_m(&self) -> f64 {
         self.centre.rear_axle_x_m()
     }
 
-    /// How many weights it has.
+    /// Number of parameters of the network.
     pub fn n_parameters(&self) -> usize {
         self.network.parameters().n_values()
     }
 
-    /// Whether a case was seen in training, whatever it is called now.
+    /// Whether the model was trained on a case with the same content, whatever its name.
     pub fn is_trained_on(&self, case: &ForceCase) -> bool {
         self.cases.iter().any(|known| known.digest == case.digest)
     }

@@ -1,31 +1,32 @@
-//! What a training of the force network records beside what every training does.
+//! The parts of the training record that are specific to the force network.
 
 use serde::{Deserialize, Serialize};
 
 use crate::force::train::{LossTerms, VarianceFactors};
 use crate::learning::{CaseId, EpochDetail, NamedLoss, TrainingRecord};
 
-/// What only the force network records of an epoch.
+/// The part of the record of an epoch that is specific to the force network.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ForceEpoch {
-    /// Losses over the cases learned from, while the weights changed.
+    /// Losses over the cases that the network is fitted to, computed while the weights change.
     pub train: LossTerms,
-    /// Losses over the validation cases at the end of the epoch; all zero without validation cases.
+    /// Losses over the validation cases at the end of the epoch; all are zero without validation
+    /// cases.
     pub validation: LossTerms,
 }
 
-/// What only the force network records of its training.
+/// The part of the training record that is specific to the force network.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ForceTraining {
-    /// Cases that decided when to stop. They are not among those learned from.
+    /// Cases that decide when the training stops. The network is not fitted to them.
     pub validation: Vec<CaseId>,
-    /// The epoch whose weights these are, counted from 1.
+    /// The epoch whose weights the model has, counted from 1; 0 for the weights before training.
     pub best_epoch: usize,
     /// Factors on the variances, from the calibration on training cases.
     pub variance_factors: VarianceFactors,
 }
 
-/// How a force model came to be; saved in the model.
+/// The record of how a force model was trained; it is part of the model file.
 pub type ForceRecord = TrainingRecord<ForceEpoch, ForceTraining>;
 
 impl EpochDetail for ForceEpoch {

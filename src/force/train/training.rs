@@ -1,4 +1,4 @@
-//! Trains the force network: physics first, then the network around it.
+//! Training of the force network: the physics is fitted first, then the network around it.
 
 use std::time::Instant;
 
@@ -22,27 +22,36 @@ use crate::nn::{
 };
 use crate::uncertainty::{CurveComponent, CurveMixture};
 
-/// Checkpoints of a training.
+/// Kind and version of the checkpoints of a training.
 const CHECKPOINT_KIND: ModelKind = ModelKind { name: "training of a force network", version: 1 };
-/// Fewest cases to learn from: below, a fold of the crush model has no case of each kind.
+/// Smallest number of training cases. With fewer, a fold of the crush model would not have cases of
+/// each kind.
 const LEAST_CASES: usize = 8;
-/// Contact points that stand for their distribution where a scenario leaves it open.
+/// Number of contact points that represent the distribution of contact points where a scenario
+/// leaves it open.
 const N_OPEN_CONTACTS: usize = 8;
-/// Fewest validation cases on which the spread is calibrated.
+/// Smallest number of validation cases on which the variances are calibrated.
 const LEAST_CALIBRATION_CASES: usize = 30;
 
-/// Cases to train a force network on.
+/// The cases for training and testing a force network.
 pub type ForceTrainingSet = TrainingSet<ForceCase>;
 
-/// How to train a force network.
+/// The settings of the training of a force network.
 pub type ForceTrainSettings = TrainSettings<ForceConfig>;
 
-/// Trains a model on the cases to learn from.
+/// Trains a model on the training cases of a set: fits the physics, trains the network around it,
+/// and calibrates the variances.
 ///
-/// A training that was killed goes on from its checkpoint to the same weights as if it had not been.
+/// A training that was interrupted is resumed from its checkpoint and leads to the same weights as
+/// one without interruption.
+///
+/// - `report`: called during the fits and after each epoch; if it breaks, the training ends after
+///   the current epoch with the best parameters so far.
 ///
 /// # Errors
-/// [`ForceError`].
+/// [`ForceError::Learning`] for a setting out of range, too few cases, a loss that is not finite,
+/// or a checkpoint that cannot be read or written; [`ForceError::Mixture`] if the predicted
+/// mixtures are invalid; other variants of [`ForceError`] as for [`fit_physics`].
 pub fn train(
     set: &ForceTrainingSet,
     settings: &ForceTrainSettings,
@@ -62,7 +71,7 @@ pub fn train(
             };
             let physics = fit_physics(set, settings, &mut told)?;
             if is_cut {
-                // Nothing that a later training should go on from.
+                // A later training must not be resumed from physics whose fit was interrupted.
                 file.disable();
             }
             ForceTrainingRun::around(set, settings, physics)?
@@ -71,10 +80,15 @@ pub fn train(
     search(training, set, &file, report)
 }
 
-/// [`train`] around a physics that was fitted before, by [`fit_physics`] on the same set.
+/// Trains a model as [`train`] does, around physics that [`fit_physics`] has fitted to the same
+/// set. A checkpoint is written but not read.
+///
+/// - `physics`: result of [`fit_physics`] for `set` and `settings`.
+/// - `report`: called after each epoch; if it breaks, the training ends after the current epoch
+///   with the best parameters so far.
 ///
 /// # Errors
-/// [`ForceError`].
+/// [`ForceError`] as for [`train`].
 pub fn train_around(
     physics: (CentreModel, Vec<CentreCurve>),
     set: &ForceTrainingSet,
@@ -86,11 +100,15 @@ pub fn train_around(
     search(training, set, &training_file(set, settings), report)
 }
 
-/// Fits the physics in the centre: the model, and for each training case the curve of a part of it
-/// that has not seen the case.
+/// Fits the physics on which the network is based.
+///
+/// - `report`: called during the fits; if it breaks, the fits end where they are.
+/// - returns the model of the physics and, for each training case, the curve of those parts of the
+///   model that were fitted without the case.
 ///
 /// # Errors
-/// [`ForceError`].
+/// [`ForceError::Learning`] for too few cases, [`ForceError::NoCrushFit`],
+/// [`ForceError::Regression`], [`ForceError::Impact`].
 pub fn fit_physics(
     set: &ForceTrainingSet,
     settings: &ForceTrainSettings,
@@ -104,6 +122,7 @@ pub fn fit_physics(
     CentreModel::fit(&set.train, (kind, crush), settings.seed, &mut told)
 }
 
+/// Runs the epochs that are left and builds the model.
 fn search(
     mut training: ForceTrainingRun<'_>,
     set: &ForceTrainingSet,
@@ -114,7 +133,9 @@ fn search(
     training.finish(set)
 }
 
-/// The checkpoint of a training. More epochs or more patience do not change the epochs that were.
+/// The checkpoint file of a training. The numbers of epochs, of epochs without improvement and of
+/// epochs between checkpoints are not part of its identity, because they do not change earlier
+/// epochs.
 fn training_file(
     set: &ForceTrainingSet,
     settings: &ForceTrainSettings,
@@ -126,11 +147,13 @@ fn training_file(
     TrainingFile::new(CHECKPOINT_KIND, settings, config, set.digest())
 }
 
-/// What a checkpoint holds.
+/// The content of a checkpoint.
 struct SavedForceTraining {
+    /// What the checkpoints of both networks contain.
     common: SavedTraining<ForceEpoch>,
     centre: CentreModel,
     centres: Vec<CentreCurve>,
+    /// Parameters of the network after the best epoch.
     best_parameters: NamedTensors,
     best_epoch: usize,
 }
@@ -147,24 +170,32 @@ impl SavedForceTraining {
     }
 }
 
+/// A training of the force network between two epochs.
 struct ForceTrainingRun<'a> {
     settings: &'a ForceTrainSettings,
+    /// The physics around which the network is trained.
     centre: CentreModel,
+    /// The curve of the physics for each training case.
     centres: Vec<CentreCurve>,
     residuals: ResidualModel,
     standardisation: Standardisation,
     tensors: CaseTensors,
     network: ForceNetwork,
     optimizer: AdamW,
-    /// Indices into the training cases.
+    /// Indices of the training cases that the network is fitted to.
     learned: Vec<usize>,
+    /// Indices of the training cases for validation.
     validation: Vec<usize>,
+    /// Parameters of the network after the best epoch.
     best_parameters: NamedTensors,
+    /// The best epoch, counted from 1; 0 before the first epoch.
     best_epoch: usize,
     history: Vec<EpochRecord<ForceEpoch>>,
 }
 
 impl<'a> ForceTrainingRun<'a> {
+    /// Prepares a training around the fitted physics, with the parameters of the network at their
+    /// initial values.
     fn around(
         set: &ForceTrainingSet,
         settings: &'a ForceTrainSettings,
@@ -207,6 +238,7 @@ impl<'a> ForceTrainingRun<'a> {
         })
     }
 
+    /// Prepares a training in the state of a checkpoint.
     fn resumed(
         set: &ForceTrainingSet,
         settings: &'a ForceTrainSettings,
@@ -221,6 +253,8 @@ impl<'a> ForceTrainingRun<'a> {
         Ok(training)
     }
 
+    /// Whether all epochs are done, or the validation loss has not improved for as many epochs as
+    /// the settings permit.
     fn is_over(&self) -> bool {
         let limits = self.settings.config.training;
         let done = self.history.len();
@@ -228,7 +262,11 @@ impl<'a> ForceTrainingRun<'a> {
         done >= limits.epochs || is_stuck
     }
 
-    /// One pass over the cases.
+    /// Trains the network for one epoch, on the cases that it is fitted to, in random order and in
+    /// batches.
+    ///
+    /// # Errors
+    /// [`LearningError::Diverged`] if the loss is not finite.
     fn pass(&mut self) -> Result<EpochRecord<ForceEpoch>, ForceError> {
         let started = Instant::now();
         let config = &self.settings.config;
@@ -257,7 +295,9 @@ impl<'a> ForceTrainingRun<'a> {
         Ok(EpochRecord { epoch, detail, learning_rate, gradient_norm, seconds })
     }
 
-    /// Keeps an epoch, and its weights if they are the best so far.
+    /// Adds an epoch to the history and keeps its parameters if its loss is the smallest so far.
+    /// The loss is that of the validation cases, or of the training cases if there is no validation
+    /// case.
     fn keep(&mut self, record: EpochRecord<ForceEpoch>) -> Result<(), ForceError> {
         let score = |record: &EpochRecord<ForceEpoch>| match self.validation.is_empty() {
             true => record.detail.train.total,
@@ -272,6 +312,7 @@ impl<'a> ForceTrainingRun<'a> {
         Ok(())
     }
 
+    /// Losses over the validation cases; all are zero without validation cases.
     fn validate(&self) -> Result<LossTerms, ForceError> {
         if self.validation.is_empty() {
             return Ok(LossTerms::default());
@@ -281,6 +322,7 @@ impl<'a> ForceTrainingRun<'a> {
         Loss::of(&output, &targets, &self.settings.config.loss)?.values()
     }
 
+    /// Builds the model with the parameters of the best epoch and calibrates its variances.
     fn finish(self, set: &ForceTrainingSet) -> Result<ForceModel, ForceError> {
         self.network.parameters().import(&self.best_parameters)?;
         let variance_factors = self.variance_factors(set)?;
@@ -309,9 +351,9 @@ impl<'a> ForceTrainingRun<'a> {
         })
     }
 
-    /// Calibrated on the validation cases, which the network has not been fitted to, if there are
-    /// enough of them, else on all: of the training cases the physics at least has not seen the one
-    /// through whose curve it is judged. Test cases are not touched.
+    /// Calibrates the variances on the validation cases, to which the network was not fitted, if
+    /// there are enough of them, and otherwise on all training cases. The curve of the physics for
+    /// each of them comes from parts that were fitted without the case. Test cases are not used.
     fn variance_factors(&self, set: &ForceTrainingSet) -> Result<VarianceFactors, ForceError> {
         let all: Vec<usize> = (0..self.centres.len()).collect();
         let is_enough = self.validation.len() >= LEAST_CALIBRATION_CASES;
@@ -367,7 +409,7 @@ impl EpochLoop for ForceTrainingRun<'_> {
     }
 }
 
-/// Features of a training case, whose contact and body are known.
+/// Features of a training case, whose contact point and body are known.
 fn case_features(case: &ForceCase, centre: &CentreCurve, bodies: &[String]) -> Vec<f64> {
     let name = case.scenario.bullet_body.as_deref().unwrap_or_default();
     let body_idx = bodies.iter().position(|body| body == name).unwrap_or(0);
