@@ -1,11 +1,22 @@
-//! The 4DOF vehicle as the paper prints it: an ablation, to show what the departures in
-//! `four_dof.rs`, `tire.rs` and `loads.rs` are for. Selected by [`Equations::Paper`].
+//! The equations of motion of the 4DOF vehicle exactly as the paper prints them. They serve as an
+//! ablation, which shows the effect of the corrections in `four_dof.rs`, `tire.rs` and `loads.rs`,
+//! and are selected by [`Equations::Paper`].
 //!
 //! Source: `eq:4dof` to `eq:tire_model4` of [`PitPinnPaper`](crate::bibliography::PitPinnPaper),
-//! signs included: the leading minus of the tyre force, which with its slip angle feeds energy in,
-//! and the rolling resistance, which pushes. Loads may become negative; roll feels no lateral
-//! acceleration and couples one way; front tyre forces are not turned by δ. The loop loads →
-//! forces → accelerations → loads, which the paper leaves open, is resolved as in `four_dof.rs`.
+//! with the printed signs:
+//!
+//! - The tyre force has a leading minus, which together with the printed slip angle supplies energy
+//!   to the vehicle.
+//! - The rolling resistance acts in the direction of motion.
+//! - Vertical loads may become negative.
+//! - The lateral acceleration does not enter the roll equation. Yaw influences roll by I_xz, but
+//!   roll does not influence yaw.
+//! - The front tyre forces are not rotated by the steer angle δ.
+//!
+//! Drive and brake forces and the fall of friction beyond its peak are not part of these equations;
+//! the inputs and parameters for them have no effect. The paper does not say how the loop of loads,
+//! forces, accelerations and loads is resolved; here this is done by fixed-point passes as in
+//! `four_dof.rs`.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,19 +26,20 @@ use crate::vehicle::four_dof::{LOAD_PASSES, collision_wrench};
 use crate::vehicle::loads::Wheel;
 use crate::vehicle::{VehicleEvaluation, VehicleInput, VehicleParameters, VehicleState};
 
-/// Which equations of motion.
+/// The form of the equations of motion of the 4DOF vehicle.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Equations {
-    /// The paper's, mended.
+    /// The equations of the paper with the corrections that are described in `four_dof.rs`,
+    /// `tire.rs` and `loads.rs`.
     #[default]
     Corrected,
-    /// The paper's, as printed.
+    /// The equations as the paper prints them, for comparison.
     Paper,
 }
 
 impl VehicleParameters {
-    /// The right-hand side as the paper prints it.
+    /// The right-hand side of the equations of motion as the paper prints them.
     pub(super) fn evaluate_as_printed<T: Lanes>(
         &self,
         x: &VehicleState<T>,
@@ -65,7 +77,8 @@ impl VehicleParameters {
         }
     }
 
-    /// `eq:tire_model` to `eq:tire_model3`, summed by `eq:4dof2`: `[F_x, F_y]` and M_z.
+    /// Tyre forces by `eq:tire_model` to `eq:tire_model3`, summed by `eq:4dof2`: `[F_x, F_y]`, N,
+    /// and the yaw moment M_z, N m.
     fn tires_as_printed<T: Lanes>(
         &self,
         x: &VehicleState<T>,
@@ -100,7 +113,8 @@ impl VehicleParameters {
         (force, moment)
     }
 
-    /// `eq:tire_model4`, with the share of the CORNERING stiffness as printed.
+    /// Vertical loads by `eq:tire_model4`, N, in the order of [`Wheel::ALL`]. The lateral load
+    /// transfer is divided between the axles by CORNERING stiffness, as printed.
     fn loads_as_printed<T: Lanes>(&self, [ax, ay]: [T; 2], roll_rad: T) -> [T; 4] {
         let (mass, geometry, tires) = (&self.mass, &self.geometry, &self.tires);
         let (lf, lr) = (geometry.cg_to_front_axle_m, geometry.cg_to_rear_axle_m);

@@ -1,6 +1,6 @@
-//! The 4DOF vehicle: longitudinal, lateral, yaw and roll motion under tyre and collision forces.
-//! The one place of the equations of motion; generic over the scalar, so that the same lines
-//! simulate and give exact Jacobians.
+//! The equations of motion of the 4DOF vehicle: longitudinal, lateral, yaw and roll motion under
+//! tyre and collision forces. They are written only here and are generic over the scalar type, so
+//! that the same lines serve for simulation and for exact Jacobians.
 //!
 //! ```text
 //! m (v̇_x − v_y r)   = ΣF_x,tire + F_x,coll
@@ -11,19 +11,21 @@
 //! ```
 //!
 //! Source: `eq:4dof`, `eq:4dof2` of [`PitPinnPaper`](crate::bibliography::PitPinnPaper).
-//! Assumes a rigid sprung mass on a roll axis along x, no pitch, no heave, no tyre relaxation;
-//! leaves out wheel spin, aligning moments and suspension kinematics.
+//! Assumes a rigid sprung mass on a roll axis along x, no pitch, no heave and no tyre relaxation.
+//! Wheel spin, aligning moments and suspension kinematics are left out.
 //! Validated against multibody simulations (`docs/VALIDATION.md`).
 //!
 //! Departures from the paper:
-//! - Roll feels m_s h a_y and the coupling by I_xz is symmetric: the printed equations let nothing
-//!   but the impact ever roll the body, and couple one way only.
-//! - Front tyre forces are turned by δ into body axes.
-//! - Tyres and vertical loads: see `tire.rs` and `loads.rs`.
-//! - The loop loads → tyre forces → loads is resolved by two fixed-point passes from the static
-//!   loads, so that the right-hand side stays a pure function of state and input.
+//! - The roll equation contains m_s h a_y, and the coupling of yaw and roll by I_xz acts both ways.
+//!   In the printed equations the tyre forces do not excite roll except through the yaw
+//!   acceleration, and roll does not influence yaw.
+//! - The front tyre forces are rotated by the steer angle δ into body axes.
+//! - Tyre forces and vertical loads depart from the paper as described in `tire.rs` and `loads.rs`.
+//! - Tyre forces depend on the vertical loads and these on the tyre forces. This loop is resolved
+//!   by two fixed-point passes that start from the static loads, so that the right-hand side
+//!   remains a pure function of state and input.
 //!
-//! The printed form stays selectable as an ablation: `as_printed.rs`.
+//! The printed form can be selected for comparison; see `as_printed.rs`.
 
 use nalgebra::{SMatrix, SVector};
 use num_dual::DualSVec64;
@@ -37,52 +39,55 @@ use crate::vehicle::loads::{LoadTransfer, Wheel, vertical_loads_n};
 use crate::vehicle::tire::WheelSlip;
 use crate::vehicle::{Equations, N_STATE, VehicleParameters, VehicleState};
 
-/// Passes through loads → forces → loads.
+/// Number of fixed-point passes by which vertical loads and tyre forces are made consistent.
 pub(super) const LOAD_PASSES: usize = 2;
 
-/// Where the collision force acts on the target.
+/// Point of the vehicle at which the collision force acts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ContactPoint {
-    /// Forward of the CG, m.
+    /// Coordinate x of the point in body axes, m: its distance in front of the CG.
     pub x_m: f64,
-    /// To the left of the CG, m.
+    /// Coordinate y of the point in body axes, m: its distance to the left of the CG.
     pub y_m: f64,
-    /// Above the ground, m.
+    /// Height of the point above the ground, m.
     pub height_m: f64,
 }
 
-/// Collision force ON the vehicle at an instant.
+/// Collision force that acts ON the vehicle at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CollisionForce<T> {
-    /// Force, N, in world or body axes.
+    /// Force `[F_x, F_y]` in world or body axes, N.
     pub force_n: [T; 2],
-    /// Whether `force_n` stands in world axes and is turned by ψ.
+    /// Whether `force_n` is given in world axes, so that it has to be rotated by the yaw angle ψ
+    /// into body axes.
     pub in_world_axes: bool,
-    /// Yaw moment about the CG, N m; `None`: `x_c F_y − y_c F_x` of the contact point.
+    /// Yaw moment about the CG, N m. If it is `None`, the moment `x_c F_y − y_c F_x` of the force
+    /// at the contact point is used.
     pub yaw_moment_n_m: Option<T>,
-    /// Where it acts.
+    /// Contact point.
     pub contact: ContactPoint,
 }
 
-/// Input u(t).
+/// Input u(t) of the equations of motion: steer angle, drive forces and collision force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VehicleInput<T> {
-    /// Road-wheel angle δ of the front axle, rad, positive to the left.
+    /// Steer angle δ of the front road wheels, rad, positive to the left.
     pub steer_rad: T,
-    /// Drive (positive) or brake (negative) force of the front and the rear axle, N; `None`: all
-    /// wheels roll freely.
+    /// Drive (positive) or brake (negative) force `[front axle, rear axle]`, N, of which each wheel
+    /// of the axle receives half. With `None` all wheels roll freely.
     pub axle_drive_n: Option<[T; 2]>,
-    /// Collision force; `None` without contact.
+    /// Collision force; `None` if there is no contact.
     pub collision: Option<CollisionForce<T>>,
 }
 
 impl<T: Lanes> VehicleInput<T> {
-    /// Wheel and throttle released, no contact: what follows a PIT impact.
+    /// Input after a PIT impact: steering wheel and throttle are released (δ = 0, no drive force)
+    /// and there is no contact.
     pub fn released() -> Self {
         Self { steer_rad: T::from(0.0), axle_drive_n: None, collision: None }
     }
 
-    /// The same input in another scalar.
+    /// Converts every component to another scalar type.
     pub fn map<U: Lanes>(self, convert: impl Fn(T) -> U + Copy) -> VehicleInput<U> {
         VehicleInput {
             steer_rad: convert(self.steer_rad),
@@ -97,14 +102,14 @@ impl<T: Lanes> VehicleInput<T> {
     }
 }
 
-/// What the equations of motion give at one state and input.
+/// Result of the equations of motion at one state and input.
 #[derive(Debug, Clone, Copy)]
 pub struct VehicleEvaluation<T> {
     /// Time derivative of the state.
     pub derivative: VehicleState<T>,
-    /// Acceleration of the CG along x and y of the body, m/s².
+    /// Acceleration `[a_x, a_y]` of the CG in body axes, m/s².
     pub acceleration_m_s2: [T; 2],
-    /// Vertical loads, N, in the order of [`Wheel::ALL`].
+    /// Vertical loads of the wheels, N, in the order of [`Wheel::ALL`].
     pub vertical_loads_n: [T; 4],
     /// Collision force in body axes, N.
     pub collision_force_n: [T; 2],
@@ -113,7 +118,7 @@ pub struct VehicleEvaluation<T> {
 }
 
 impl<T: Lanes> VehicleEvaluation<T> {
-    /// The same evaluation in another scalar.
+    /// Converts every component to another scalar type.
     pub(crate) fn map<U: Lanes>(self, convert: impl Fn(T) -> U + Copy) -> VehicleEvaluation<U> {
         VehicleEvaluation {
             derivative: self.derivative.map(convert),
@@ -125,7 +130,7 @@ impl<T: Lanes> VehicleEvaluation<T> {
     }
 }
 
-/// Forces and moments in body axes: `[F_x, F_y]` and `M_z` about the CG.
+/// Resultant of forces in body axes: `[F_x, F_y]`, N, and the yaw moment M_z about the CG, N m.
 #[derive(Clone, Copy)]
 pub(super) struct Wrench<T> {
     pub(super) force_n: [T; 2],
@@ -133,7 +138,8 @@ pub(super) struct Wrench<T> {
 }
 
 impl VehicleParameters {
-    /// The right-hand side f(x, u) of the equations of motion.
+    /// Evaluates the right-hand side f(x, u) of the equations of motion, in the form that
+    /// [`VehicleParameters::equations`] selects.
     pub fn evaluate<T: Lanes>(
         &self,
         x: &VehicleState<T>,
@@ -169,8 +175,9 @@ impl VehicleParameters {
         }
     }
 
-    /// The right-hand side and its Jacobian ∂f/∂x (`[8, 8]`, order of `eq:state_vector`), exact:
-    /// the same lines, run on dual numbers.
+    /// Evaluates the right-hand side f, `[8]`, and its Jacobian ∂f/∂x, `[8, 8]`, both in the order
+    /// of `eq:state_vector`. The Jacobian is exact, because the same equations are evaluated with
+    /// dual numbers.
     pub fn jacobian(
         &self,
         x: &VehicleState<f64>,
@@ -184,9 +191,12 @@ impl VehicleParameters {
         num_dual::jacobian(f, &SVector::from(x.to_array()))
     }
 
-    /// Acceleration that a further force at the ground would give: v̇_x, v̇_y, m/s², ṙ, φ̈, rad/s².
+    /// Change of the accelerations by an additional force at the ground, by the corrected equations
+    /// of motion and without its effect on the vertical loads.
     ///
-    /// - `force_n`: body axes; `yaw_moment_n_m`: about the CG.
+    /// - `force_n`: additional force in body axes, N;
+    /// - `yaw_moment_n_m`: additional yaw moment about the CG, N m;
+    /// - returns the changes of v̇_x and v̇_y, m/s², and of ṙ and φ̈, rad/s².
     pub fn acceleration_of<T: Lanes>(&self, force_n: [T; 2], yaw_moment_n_m: T) -> [T; 4] {
         let [ax, ay] = force_n.map(|force| force / self.mass.mass_kg);
         let roll_moment = ay * (self.mass.sprung_mass_kg * self.suspension.roll_arm_m);
@@ -194,9 +204,9 @@ impl VehicleParameters {
         [ax, ay, yaw, roll]
     }
 
-    /// Sum of the tyre forces, and the vertical loads under which they arise.
+    /// Resultant of the tyre forces, and the vertical loads of the wheels, N.
     ///
-    /// - `of_body`: load transfer by all but the tyre forces.
+    /// - `of_body`: load transfer by everything except the tyre forces.
     fn tire_wrench<T: Lanes>(
         &self,
         x: &VehicleState<T>,
@@ -213,7 +223,7 @@ impl VehicleParameters {
                 [along, across]
             }
         };
-        // Without drive a force goes with its load.
+        // Without a drive force, the force of a tyre is proportional to its load.
         let shares: [[T; 2]; 4] = std::array::from_fn(|i| force_n(i, T::from(1.0), T::from(0.0)));
         let forces_n = |loads_n: &[T; 4]| -> [[T; 2]; 4] {
             std::array::from_fn(|i| match u.axle_drive_n {
@@ -266,13 +276,14 @@ impl VehicleParameters {
         tires.slips(cornering_coefficients_per_rad, velocities_m_s)
     }
 
-    /// Moment of the sprung weight about the roll axis, `m_s g h sin φ`, N m.
+    /// Moment of the weight of the sprung mass about the roll axis, `m_s g h sin φ`, N m.
     pub(super) fn gravity_roll_moment_n_m<T: Lanes>(&self, roll_rad: T) -> T {
         let sprung_kg = self.mass.sprung_mass_kg;
         roll_rad.sin() * (sprung_kg * STANDARD_GRAVITY_M_S2 * self.suspension.roll_arm_m)
     }
 
-    /// Right-hand side of the roll equation without weight and collision, N m.
+    /// Right-hand side of the roll equation without the moments of weight and collision force, N m:
+    /// `m_s h a_y − K_φ φ − B φ̇`.
     fn roll_moment_n_m<T: Lanes>(&self, x: &VehicleState<T>, ay_m_s2: T) -> T {
         let suspension = &self.suspension;
         ay_m_s2 * (self.mass.sprung_mass_kg * suspension.roll_arm_m)
@@ -280,7 +291,8 @@ impl VehicleParameters {
             - x.roll_rate_rad_s * suspension.roll_damping_n_m_s_rad
     }
 
-    /// Solves the coupled yaw and roll equations for `[ṙ, φ̈]`, rad/s².
+    /// Solves the coupled yaw and roll equations for `[ṙ, φ̈]`, rad/s², from the moments about the
+    /// yaw and the roll axis, N m.
     fn solve_yaw_roll<T: Lanes>(&self, yaw_moment: T, roll_moment: T) -> [T; 2] {
         let (izz, ixx) = (self.mass.yaw_inertia_kg_m2, self.mass.roll_inertia_kg_m2);
         let ixz = self.mass.roll_yaw_product_kg_m2;
@@ -298,7 +310,8 @@ fn sum<T: Lanes>(forces_n: &[[T; 2]; 4]) -> [T; 2] {
     std::array::from_fn(|i| front_left[i] + front_right[i] + (rear_left[i] + rear_right[i]))
 }
 
-/// The collision force in body axes and its yaw moment about the CG.
+/// The collision force in body axes and its yaw moment about the CG; zero without a collision
+/// force.
 pub(super) fn collision_wrench<T: Lanes>(
     yaw_rad: T,
     collision: Option<&CollisionForce<T>>,

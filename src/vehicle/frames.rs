@@ -1,18 +1,19 @@
-//! Axes and signs, stated once ([`Iso8855`](crate::bibliography::Iso8855)).
+//! Axes and signs of the whole program, which follow [`Iso8855`](crate::bibliography::Iso8855).
 //!
-//! - World: X along the road at the start, Y to the left, Z up.
-//! - Body, at the centre of gravity (CG): x forward, y left, z up.
-//! - Yaw ψ from X to x, counter-clockwise positive. Roll φ about x, positive leans right.
+//! - World axes: X along the road at the start, Y to the left, Z up.
+//! - Body axes, with the origin at the centre of gravity (CG): x forward, y to the left, z up.
+//! - Yaw angle ψ: from X to x, counter-clockwise positive as seen from above.
+//! - Roll angle φ: about x, positive if the body leans to the right.
 
 use crate::numerics::Lanes;
 
-/// Turns a vector from world into body axes: `R(−ψ) v`.
+/// Transforms a vector from world axes to body axes: `R(−ψ) v`, with the yaw angle ψ in rad.
 pub fn body_from_world<T: Lanes>(yaw_rad: T, [x, y]: [T; 2]) -> [T; 2] {
     let (sin, cos) = yaw_rad.sin_cos();
     [cos * x + sin * y, cos * y - sin * x]
 }
 
-/// Turns a vector from body into world axes: `R(ψ) v`.
+/// Transforms a vector from body axes to world axes: `R(ψ) v`, with the yaw angle ψ in rad.
 pub fn world_from_body<T: Lanes>(yaw_rad: T, [x, y]: [T; 2]) -> [T; 2] {
     let (sin, cos) = yaw_rad.sin_cos();
     [cos * x - sin * y, sin * x + cos * y]

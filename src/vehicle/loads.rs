@@ -1,38 +1,40 @@
 //! Vertical loads of the four wheels.
 //!
 //! Source: `eq:tire_model4` of [`PitPinnPaper`](crate::bibliography::PitPinnPaper).
-//! Quasi-static: pitch and roll accelerations do not enter.
+//! The load transfer is quasi-static: pitch and roll accelerations do not enter.
 //!
 //! Departures from the paper:
-//! - Load is transferred by the forces that cause it, each at its own height: the tyre forces at
-//!   the ground and the collision force at the contact height. The paper takes the total
-//!   acceleration, so that a hard hit at CG height would lift wheels that it does not lift.
-//! - The split K_f/(K_f + K_r) is the front share of the ROLL stiffness.
-//! - Every load is ≥ 0 and their sum is m g: a wheel that lifts leaves its load to the other wheel
-//!   of the axle, an axle that lifts to the other axle.
+//! - Load is transferred by the forces that cause it, each with its own height: the tyre forces at
+//!   the ground and the collision force at the contact height. The paper uses the total
+//!   acceleration of the CG. With it, a hard impact at the height of the CG would lift wheels,
+//!   although such a force has no lever arm about the CG.
+//! - The lateral load transfer is divided between the axles by the front share K_f/(K_f + K_r) of
+//!   the ROLL stiffness.
+//! - Every load is ≥ 0 and their sum is m g. If a wheel lifts, the other wheel of the axle carries
+//!   its load; if an axle lifts, the other axle carries its load.
 
 use crate::numerics::Lanes;
 use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::VehicleParameters;
 
-/// The four wheels, in the order of every array over wheels.
+/// The four wheels. Every array over wheels is in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Wheel {
-    /// Front left.
+    /// The left wheel of the front axle.
     FrontLeft,
-    /// Front right.
+    /// The right wheel of the front axle.
     FrontRight,
-    /// Rear left.
+    /// The left wheel of the rear axle.
     RearLeft,
-    /// Rear right.
+    /// The right wheel of the rear axle.
     RearRight,
 }
 
 impl Wheel {
-    /// All wheels, in order.
+    /// All wheels, in the order of every array over wheels.
     pub const ALL: [Self; 4] = [Self::FrontLeft, Self::FrontRight, Self::RearLeft, Self::RearRight];
 
-    /// Its name.
+    /// Name of the wheel in messages.
     pub fn label(self) -> &'static str {
         match self {
             Self::FrontLeft => "front left",
@@ -42,12 +44,12 @@ impl Wheel {
         }
     }
 
-    /// Whether the wheel is steered.
+    /// Whether the wheel belongs to the front axle, whose wheels are steered.
     pub fn is_front(self) -> bool {
         matches!(self, Self::FrontLeft | Self::FrontRight)
     }
 
-    /// Its position from the CG in body axes, m.
+    /// Position of the centre of the wheel relative to the CG in body axes, m.
     pub fn position_m(self, vehicle: &VehicleParameters) -> [f64; 2] {
         let geometry = &vehicle.geometry;
         let half_track = geometry.track_width_m / 2.0;
@@ -58,27 +60,33 @@ impl Wheel {
     }
 }
 
-/// What shifts load between the wheels, as moments about the CG, N m.
+/// Moments about the CG that transfer load between the wheels, N m.
 #[derive(Debug, Clone, Copy)]
 pub struct LoadTransfer<T> {
-    /// Moment that loads the front axle: −h_cog ΣF_x,tire + (z_c − h_cog) F_x,coll.
+    /// Moment that increases the load of the front axle, N m: −h_cog ΣF_x,tire + (z_c − h_cog)
+    /// F_x,coll.
     pub to_front_n_m: T,
-    /// Moment that loads the right wheels: h_cog ΣF_y,tire − (z_c − h_cog) F_y,coll + m_s g h sin φ.
+    /// Moment that increases the loads of the right wheels, N m: h_cog ΣF_y,tire − (z_c − h_cog)
+    /// F_y,coll + m_s g h sin φ.
     pub to_right_n_m: T,
 }
 
 impl<T: Lanes> LoadTransfer<T> {
-    /// Loads at rest.
+    /// No load transfer: the static loads.
     pub fn none() -> Self {
         Self { to_front_n_m: T::from(0.0), to_right_n_m: T::from(0.0) }
     }
 }
 
-/// Vertical load of each wheel, N, in the order of [`Wheel::ALL`].
+/// Computes the vertical load of each wheel, N, in the order of [`Wheel::ALL`].
 ///
 /// ```text
-/// F_z,front = (m g l_r + M_front) / (l_f + l_r)      F_z,right − F_z,left = 2 share_axle M_right / w
+/// F_z,front = (m g l_r + M_front) / (l_f + l_r)      F_z,right − F_z,left = 2 share_axle M_right /
+/// w
 /// ```
+///
+/// The load of an axle is limited to the interval from 0 to m g, and the load of a wheel to that
+/// from 0 to the load of its axle.
 pub fn vertical_loads_n<T: Lanes>(
     vehicle: &VehicleParameters,
     transfer: LoadTransfer<T>,

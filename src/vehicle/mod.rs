@@ -1,5 +1,5 @@
-//! The vehicle: axes, parameters, tyres, vertical loads, the 4DOF equations of motion and their
-//! integration.
+//! The 4DOF vehicle model: axes, parameters, tyre forces, vertical loads, the equations of motion
+//! and their integration over time.
 
 pub mod frames;
 mod loads;

@@ -1,5 +1,5 @@
-//! The record of a multibody model (`vehicle.toml` of a trajectory dataset) and the rules that
-//! turn it into the parameters of the 4DOF vehicle.
+//! The data sheet of a multibody model (`vehicle.toml` of a trajectory data set) and the rules by
+//! which the parameters of the 4DOF vehicle are derived from it.
 
 use std::collections::BTreeMap;
 
@@ -12,18 +12,20 @@ use crate::vehicle::parameters::{
 };
 use crate::vehicle::tire::TireParameters;
 
-/// Load at which the record states tyre values, N.
+/// Vertical load at which the record states the cornering stiffnesses of the tyres, N.
 const TIRE_REFERENCE_LOAD_N: f64 = 4905.0;
 /// Air density at 15 °C and sea level, kg/m³ (ISO 2533 standard atmosphere).
 const AIR_DENSITY_KG_M3: f64 = 1.225;
-/// Height of the roll axis below the CG, m: a usual value for strut and double-wishbone axles.
+/// Height of the roll axis above the ground at the CG, m: a usual value for strut and
+/// double-wishbone axles.
 const ROLL_AXIS_HEIGHT_M: f64 = 0.10;
-/// Outer length of the body of the BMW E90 whose subsystems the model uses, m.
+/// Outer length of the body of the BMW E90, whose subsystems the multibody model uses, m.
 const OUTER_LENGTH_M: f64 = 4.52;
-/// Front axle to front end of that body, m.
+/// Distance from the front axle of that body to its front end, m.
 const FRONT_OVERHANG_M: f64 = 0.78;
 
-/// Values of a multibody model at rest, as the dataset's `vehicle.toml` states them (SI units).
+/// Values of a multibody model at rest in SI units, as the `vehicle.toml` of a trajectory data set
+/// states them.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct MultibodyRecord {
     mass: MassRecord,
@@ -91,8 +93,9 @@ struct EquivalentRecord {
 }
 
 impl MultibodyRecord {
-    /// The 4DOF vehicle that stands for the multibody model. No trajectory enters: only the data
-    /// sheet, by the rules that [`VehicleParameters::estimates`] lists.
+    /// Derives the parameters of the 4DOF vehicle that represents the multibody model. Only the
+    /// data sheet is used, by the rules that [`VehicleParameters::estimates`] lists; no parameter
+    /// is fitted to trajectories.
     pub fn parameters(&self) -> VehicleParameters {
         let Self { mass, geometry, wheel, tyre, aero, .. } = self;
         let sprung_kg = mass.total_kg - mass.unsprung_kg;

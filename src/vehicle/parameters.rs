@@ -1,4 +1,5 @@
-//! Parameters of the 4DOF vehicle: TOML files with units in the key names, range-checked on load.
+//! Parameters of the 4DOF vehicle. They are read from TOML files with units in the key names, and
+//! every value is checked against a range.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -9,35 +10,38 @@ use crate::data::{TomlError, TomlFile};
 use crate::vehicle::tire::TireParameters;
 use crate::vehicle::{Equations, MultibodyRecord};
 
-/// One vehicle. SI units; every value lies in a range that is checked on load.
+/// Parameters of one vehicle in SI units. [`VehicleParameters::load`] and
+/// [`VehicleParameters::parse`] check every value against its range.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct VehicleParameters {
-    /// What a list calls it.
+    /// Name of the vehicle in lists and reports.
     pub name: String,
-    /// Where the values come from.
+    /// Source of the values, as free text for the user.
     pub source: String,
-    /// Which equations of motion; the corrected ones unless the file says `equations = "paper"`.
+    /// Form of the equations of motion: the corrected one, unless the file says `equations =
+    /// "paper"`.
     #[serde(default, skip_serializing_if = "is_corrected")]
     pub equations: Equations,
-    /// Mass and inertia.
+    /// Masses and moments of inertia.
     pub mass: MassParameters,
-    /// Lengths.
+    /// Positions of axles and CG, and outer dimensions.
     pub geometry: GeometryParameters,
-    /// Roll of the sprung mass.
+    /// Roll axis, roll stiffness and roll damping.
     pub suspension: SuspensionParameters,
-    /// Tyres and road.
+    /// Parameters of tyres and road.
     pub tires: TireParameters,
-    /// Keys whose values are estimates, with the rule that gave them.
+    /// Estimated values: for each key of the file, such as `tires.friction`, the rule by which its
+    /// value was estimated.
     #[serde(default)]
     pub estimates: BTreeMap<String, String>,
 }
 
-/// Mass and inertia of one vehicle.
+/// Masses and moments of inertia of one vehicle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MassParameters {
-    /// Whole mass m, kg.
+    /// Total mass m, kg.
     pub mass_kg: f64,
     /// Sprung mass m_s, kg.
     pub sprung_mass_kg: f64,
@@ -49,39 +53,39 @@ pub struct MassParameters {
     pub roll_yaw_product_kg_m2: f64,
 }
 
-/// Lengths of one vehicle.
+/// Positions of axles and CG, and outer dimensions of one vehicle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GeometryParameters {
-    /// CG to front axle l_f, m.
+    /// Longitudinal distance l_f from the CG to the front axle, m.
     pub cg_to_front_axle_m: f64,
-    /// CG to rear axle l_r, m.
+    /// Longitudinal distance l_r from the CG to the rear axle, m.
     pub cg_to_rear_axle_m: f64,
-    /// Track width w, m.
+    /// Track width w of both axles, m.
     pub track_width_m: f64,
-    /// Height of the CG above the ground, m.
+    /// Height h_cog of the CG of the whole vehicle above the ground, m.
     pub cg_height_m: f64,
-    /// Outer length, m.
+    /// Outer length of the body, m.
     pub outer_length_m: f64,
-    /// Outer width, m.
+    /// Outer width of the body, m.
     pub outer_width_m: f64,
-    /// CG to the front end of the body, m.
+    /// Longitudinal distance from the CG to the front end of the body, m.
     pub cg_to_front_end_m: f64,
 }
 
-/// Roll of the sprung mass of one vehicle.
+/// Parameters of the roll motion of the sprung mass of one vehicle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SuspensionParameters {
-    /// Height of the roll axis below the CG, above the ground, m.
+    /// Height of the roll axis above the ground at the longitudinal position of the CG, m.
     pub roll_axis_height_m: f64,
-    /// Arm h from the roll axis to the CG of the sprung mass, m.
+    /// Vertical distance h from the roll axis to the CG of the sprung mass, m.
     pub roll_arm_m: f64,
-    /// Roll stiffness K_φ of both axles, N m/rad.
+    /// Roll stiffness K_φ of both axles together, N m/rad.
     pub roll_stiffness_n_m_rad: f64,
-    /// Roll damping B, N m s/rad.
+    /// Roll damping coefficient B of both axles together, N m s/rad.
     pub roll_damping_n_m_s_rad: f64,
-    /// Share of the front axle in the roll stiffness.
+    /// Share of the front axle in the roll stiffness, 0 to 1.
     pub front_roll_stiffness_share: f64,
 }
 
@@ -93,19 +97,21 @@ impl GeometryParameters {
 }
 
 impl VehicleParameters {
-    /// Reads a vehicle: our own format, or the record of a multibody model that comes with a
-    /// trajectory dataset (see [`MultibodyRecord`]).
+    /// Reads a vehicle file and checks the range of every value. The file has the format of this
+    /// type, or it is the data sheet of a multibody model that comes with a trajectory data set
+    /// (see [`MultibodyRecord`]).
     ///
     /// # Errors
-    /// [`TomlError`], naming file, line, key, value and range.
+    /// [`TomlError`] if the file cannot be read, is not valid TOML, or has a key that is missing,
+    /// unknown, of the wrong type or out of range.
     pub fn load(path: &Path) -> Result<Self, TomlError> {
         Self::parse(&TomlFile::read(path)?, path)
     }
 
-    /// Reads a vehicle from the text of a file; `path` is for messages.
+    /// Reads a vehicle from the text of a file. The `path` serves only to name the file in errors.
     ///
     /// # Errors
-    /// As [`VehicleParameters::load`].
+    /// The errors of [`VehicleParameters::load`] except [`TomlError::Read`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, TomlError> {
         let file = TomlFile { path, text };
         let table: toml::Table = file.to()?;
@@ -116,21 +122,25 @@ impl VehicleParameters {
         Ok(vehicle)
     }
 
-    /// The same vehicle on a road of this peak friction.
+    /// The same vehicle on a road with another peak friction coefficient. The value is not checked.
     pub fn with_friction(mut self, friction: f64) -> Self {
         self.tires.friction = friction;
         self
     }
 
-    /// The same vehicle under these equations of motion; an explicit choice overrides its file's.
+    /// The same vehicle with another form of the equations of motion, which replaces that of its
+    /// file.
     pub fn with_equations(mut self, equations: Equations) -> Self {
         self.equations = equations;
         self
     }
 
-    /// The same kind of vehicle with another mass: what belongs to the mass (sprung mass, roll
-    /// inertia, product of inertia, roll stiffness and damping) scales with it. Yaw inertia scales
-    /// too unless it is given.
+    /// The same vehicle with another mass. Sprung mass, roll inertia, product of inertia, roll
+    /// stiffness and roll damping are scaled in proportion to the mass. The values are not checked.
+    ///
+    /// - `mass_kg`: total mass, kg.
+    /// - `yaw_inertia_kg_m2`: yaw moment of inertia, kg m²; with `None` it is scaled in proportion
+    ///   to the mass too.
     pub fn with_mass(mut self, mass_kg: f64, yaw_inertia_kg_m2: Option<f64>) -> Self {
         let ratio = mass_kg / self.mass.mass_kg;
         let mass = &mut self.mass;
@@ -149,7 +159,7 @@ impl VehicleParameters {
         self
     }
 
-    /// Checks every value against its range.
+    /// Checks every value against its range; NaN is out of every range.
     fn check(&self, file: TomlFile<'_>) -> Result<(), TomlError> {
         let is_outside = |(_, value, [low, high]): &(_, f64, [f64; 2])| {
             !(*low..=*high).contains(value) // also for NaN
@@ -160,7 +170,8 @@ impl VehicleParameters {
         }
     }
 
-    /// Every value with its `[lowest, highest]`, wide enough for a 1:10 model and a heavy truck.
+    /// The key, the value and the permitted `[lowest, highest]` of every parameter. The ranges
+    /// include models on a scale of 1:10 and heavy trucks.
     fn ranges(&self) -> Vec<(&'static str, f64, [f64; 2])> {
         let Self { mass, geometry, suspension, tires, .. } = self;
         let coupling = (mass.yaw_inertia_kg_m2 * mass.roll_inertia_kg_m2).max(0.0).sqrt() * 0.95;

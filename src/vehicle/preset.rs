@@ -1,4 +1,4 @@
-//! Vehicles that come with the program: `assets/vehicles/*.toml`.
+//! Vehicles that are part of the program, compiled in from `assets/vehicles/*.toml`.
 
 use std::path::Path;
 
@@ -6,22 +6,22 @@ use crate::vehicle::VehicleParameters;
 
 macro_rules! presets {
     ($($(#[$doc:meta])* $variant:ident: $file:literal;)+) => {
-        /// A vehicle that comes with the program.
+        /// A vehicle whose data come with the program.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
         pub enum Preset {
             $($(#[$doc])* $variant,)+
         }
 
         impl Preset {
-            /// Every preset, in the order of lists.
+            /// All presets, in the order in which they are listed to the user.
             pub const ALL: &'static [Self] = &[$(Self::$variant),+];
 
-            /// The name on the command line: the file's name without its ending.
+            /// Name of the preset on the command line: its file name without the extension.
             pub fn id(self) -> &'static str {
                 match self { $(Self::$variant => $file),+ }
             }
 
-            /// The text of its file.
+            /// Text of the TOML file of the preset.
             pub fn text(self) -> &'static str {
                 match self {
                     $(Self::$variant => {
@@ -34,29 +34,29 @@ macro_rules! presets {
 }
 
 presets! {
-    /// The multibody car of the trajectory datasets.
+    /// The car of the multibody model that simulated the trajectory data sets, 2000 kg.
     Reference: "reference-2000";
-    /// The target of the finite-element runs.
+    /// The target of the finite-element runs, 2000 kg.
     Target: "target-2000";
-    /// The lightest bullet of the finite-element runs.
+    /// The lightest bullet of the finite-element runs, 1500 kg.
     Bullet1500: "bullet-1500";
-    /// The middle bullet of the finite-element runs.
+    /// The bullet of medium mass of the finite-element runs, 2000 kg.
     Bullet2000: "bullet-2000";
-    /// The heaviest bullet of the finite-element runs.
+    /// The heaviest bullet of the finite-element runs, 2500 kg.
     Bullet2500: "bullet-2500";
-    /// The paper's 1:4 scaled bullet.
+    /// The bullet of the paper on a scale of 1:4, 290 kg.
     ScaledBullet: "scaled-bullet-290";
-    /// The paper's 1:4 scaled target.
+    /// The target of the paper on a scale of 1:4, 100 kg.
     ScaledTarget: "scaled-target-100";
 }
 
 impl Preset {
-    /// The preset of this [`Preset::id`].
+    /// The preset with a given [`Preset::id`]; `None` if there is none.
     pub fn from_id(id: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|preset| preset.id() == id)
     }
 
-    /// Its parameters.
+    /// Parameters of the vehicle.
     pub fn parameters(self) -> VehicleParameters {
         let path = Path::new("assets/vehicles").join(self.id()).with_extension("toml");
         match VehicleParameters::parse(self.text(), &path) {

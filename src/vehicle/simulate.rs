@@ -1,8 +1,9 @@
-//! Runs the 4DOF vehicle over time.
+//! Integrates the equations of motion of the 4DOF vehicle over time.
 //!
-//! The reference is RK4 at 1 ms; the paper's explicit Euler at 10 ms stays as the named baseline.
-//! Over each step the collision force is the mean of its history over that step, so that the whole
-//! impulse arrives whatever the step; steer is taken at the stages.
+//! The reference method is the classical Runge–Kutta method with a step of 1 ms. The explicit Euler
+//! method of the paper with a step of 10 ms is available as its baseline. The collision force in a
+//! step is the mean of its history over that step, so that the whole impulse acts on the vehicle
+//! for any step. The steer angle is taken at the instants of the stages of the method.
 
 use std::fmt;
 
@@ -14,25 +15,25 @@ use crate::vehicle::{
     CollisionForce, ContactPoint, VehicleInput, VehicleParameters, VehicleState, Wheel,
 };
 
-/// Roll beyond which the roll model is not valid, rad: 15°, some three times what the reference
-/// car reaches at its limit.
+/// Roll angle beyond which the roll model is not valid, rad. It is 15°, about three times the angle
+/// that the reference car reaches at its handling limit.
 pub const ROLL_LIMIT_RAD: f64 = 0.26;
 
-/// Output interval of the trajectory datasets, s.
+/// Interval between the samples of a simulated motion, s, as in the trajectory data sets.
 pub const OUTPUT_INTERVAL_S: f64 = 0.01;
 
-/// How the equations of motion are integrated.
+/// Method by which the equations of motion are integrated.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Integrator {
-    /// Classical Runge–Kutta, 1 ms.
+    /// Classical Runge–Kutta method of order 4 with a step of 1 ms.
     #[default]
     Rk4,
-    /// The paper's baseline (`eq:baseline:4dof`): explicit Euler, 10 ms.
+    /// Explicit Euler method with a step of 10 ms, the baseline of the paper (`eq:baseline:4dof`).
     Euler,
 }
 
 impl Integrator {
-    /// Its step, s.
+    /// Time step of the method, s.
     pub fn step_s(self) -> f64 {
         match self {
             Self::Rk4 => 1e-3,
@@ -41,43 +42,44 @@ impl Integrator {
     }
 }
 
-/// A collision force history and where it acts.
+/// A collision force history and its contact point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactLoad {
-    /// The force on the vehicle.
+    /// History of the force on the vehicle.
     pub force: ForceHistory,
-    /// Where it acts.
+    /// Contact point of the force.
     pub contact: ContactPoint,
-    /// Whether the yaw moment is the history's own, where it has one, or follows from the contact
-    /// point.
+    /// Whether the yaw moment that the history contains is used. If this is false, or if the
+    /// history contains no moment, the moment follows from the force and the contact point.
     pub recorded_moment: bool,
 }
 
-/// Road-wheel angle of the front axle over time, linear between samples, held outside.
+/// Steer angle of the front road wheels over time. It is linear between samples; outside, the first
+/// or the last value holds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SteerHistory {
-    /// Time, s, strictly rising.
+    /// Times of the samples, s, strictly rising.
     pub time_s: Vec<f64>,
-    /// Road-wheel angle δ, rad, positive to the left.
+    /// Steer angle δ of the front road wheels at these times, rad, positive to the left.
     pub steer_rad: Vec<f64>,
 }
 
-/// What is simulated.
+/// The motion to be simulated: initial state, collision force, steer angle and duration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Manoeuvre {
     /// State at t = 0.
     pub initial: VehicleState<f64>,
-    /// The impact, if there is one.
+    /// Collision force; `None` if there is no impact.
     pub contact_load: Option<ContactLoad>,
-    /// Steer; straight ahead without one.
+    /// Steer angle over time; with `None` it is zero.
     pub steer: Option<SteerHistory>,
-    /// Duration, s.
+    /// Duration of the motion, s, more than 0 and at most [`MAX_DURATION_S`].
     pub duration_s: f64,
 }
 
 impl Manoeuvre {
-    /// The input over each of `n_steps` steps from t = 0: the force as its mean over the step, steer
-    /// at its beginning.
+    /// Inputs of the equations of motion for `n_steps` steps of `step_s` seconds from t = 0: the
+    /// mean of the collision force over each step, and the steer angle at the start of the step.
     pub fn inputs(&self, step_s: f64, n_steps: usize) -> Vec<VehicleInput<f64>> {
         let inputs = Inputs::new(self);
         let over = |i: usize| inputs.over(i as f64 * step_s, step_s).at(Stage::Start);
@@ -85,21 +87,23 @@ impl Manoeuvre {
     }
 }
 
-/// What happened that the model does not cover, or that the user should know.
+/// An event of a simulated motion that the model does not cover, or of which the user should know.
+/// Events are detected at the output instants only.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MotionFlag {
-    /// A wheel carries no load.
+    /// A wheel lifts off the road: its vertical load is not positive.
     WheelLift {
-        /// The first wheel to lift.
+        /// The first wheel that lifts.
         wheel: Wheel,
-        /// When, s.
+        /// First output instant at which the wheel is lifted, s.
         time_s: f64,
     },
-    /// Roll beyond [`ROLL_LIMIT_RAD`]: a rollover is not excluded, and not modelled.
+    /// The roll angle exceeds [`ROLL_LIMIT_RAD`] in magnitude. A rollover, which is not modelled,
+    /// cannot be excluded.
     RollLimit {
-        /// When, s.
+        /// First output instant at which the limit is exceeded, s.
         time_s: f64,
-        /// Roll, rad.
+        /// Roll angle at this instant, rad.
         roll_rad: f64,
     },
 }
@@ -119,44 +123,48 @@ impl fmt::Display for MotionFlag {
     }
 }
 
-/// A simulated trajectory.
+/// A simulated motion of the vehicle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
-    /// Every [`OUTPUT_INTERVAL_S`]: pose, velocities, rates, accelerations, the collision force as
-    /// means over the coming interval, steer and wheel loads, as in the trajectory datasets.
+    /// Samples every [`OUTPUT_INTERVAL_S`] with the channels of the trajectory data sets: pose,
+    /// velocities, rates, accelerations, collision force as the mean over the following interval,
+    /// steer angles and vertical loads of the wheels.
     pub series: TimeSeries,
-    /// What the user should know, in order of time.
+    /// The first wheel lift and the first excess of the roll limit, in this order, if they occur.
     pub flags: Vec<MotionFlag>,
 }
 
-/// A simulation that did not come to its end.
+/// Reason why a simulation gives no motion.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SimulationError {
-    /// The duration is not one.
+    /// The duration is out of range.
     #[error("duration is {got} s, expected more than 0 and at most {MAX_DURATION_S} s")]
     Duration {
-        /// The duration asked for, s.
+        /// The requested duration, s.
         got: f64,
     },
-    /// The state is no longer finite.
+    /// A component of the state is no longer finite.
     #[error("the motion is no longer finite at {time_s:.2} s; check force, speed and step")]
     Diverged {
-        /// When, s.
+        /// First output instant at which the state is not finite, s.
         time_s: f64,
     },
-    /// The result cannot be put together.
+    /// The samples do not form a valid time series.
     #[error(transparent)]
     Series(#[from] SeriesError),
 }
 
-/// Longest simulation, s.
+/// Longest permitted duration of a simulation, s.
 pub const MAX_DURATION_S: f64 = 3600.0;
 
 impl VehicleParameters {
-    /// Simulates a manoeuvre. Same input, same numbers.
+    /// Simulates a manoeuvre from t = 0 for its duration, rounded to a multiple of
+    /// [`OUTPUT_INTERVAL_S`]. The result is deterministic.
     ///
     /// # Errors
-    /// [`SimulationError`] for a duration that is not positive or a motion that diverges.
+    /// [`SimulationError::Duration`] if the duration is out of range, [`SimulationError::Diverged`]
+    /// if the state becomes infinite or NaN, [`SimulationError::Series`] if the samples do not form
+    /// a valid time series.
     pub fn simulate(
         &self,
         manoeuvre: &Manoeuvre,
@@ -197,16 +205,16 @@ impl VehicleParameters {
     }
 }
 
-/// Inputs of a manoeuvre, made ready for stepping.
+/// Inputs of a manoeuvre, prepared for evaluation over time steps.
 struct Inputs<'a> {
     steer: Option<&'a SteerHistory>,
     contact: Option<(CumulativeImpulse, &'a ContactLoad)>,
 }
 
-/// Inputs over one step.
+/// Inputs over one time step.
 struct StepInputs {
     step_s: f64,
-    /// Steer at the beginning, the middle and the end, rad.
+    /// Steer angle at the start, the middle and the end of the step, rad.
     steer_rad: [f64; 3],
     collision: Option<CollisionForce<f64>>,
 }
@@ -233,8 +241,8 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// None without a force, also while a record goes on with zeros: what holds for a vehicle that
-    /// nothing pushes then holds there.
+    /// Mean collision force over a step. It is `None` if neither force nor moment acts, also if the
+    /// history continues with zeros, so that rules for a vehicle without a collision force apply.
     fn collision_over(&self, start_s: f64, step_s: f64) -> Option<CollisionForce<f64>> {
         let (cumulative, load) = self.contact.as_ref()?;
         if start_s >= cumulative.end_s() {
@@ -264,7 +272,7 @@ impl StepInputs {
     }
 }
 
-/// Collects samples and flags.
+/// Collects the samples and the flags of a simulation.
 struct Recorder<'a> {
     vehicle: &'a VehicleParameters,
     time_s: Vec<f64>,
@@ -273,7 +281,7 @@ struct Recorder<'a> {
     roll: Option<MotionFlag>,
 }
 
-/// The columns of a simulated trajectory.
+/// Channels of a simulated motion, in the order in which [`Recorder::record`] lists their values.
 const RECORDED: [Channel; 20] = {
     use Channel as C;
     [

@@ -1,80 +1,91 @@
-//! Force of one tyre on the road plane.
+//! Horizontal force of the road on one tyre.
 //!
-//! Computes the lateral force and the rolling resistance of a wheel at any motion of its centre:
-//! rolling forwards or backwards, sliding sideways, at rest.
+//! Computes the lateral force, the rolling resistance and the drive or brake force of a wheel for
+//! any motion of its centre: rolling forwards or backwards, sliding sideways, or at rest.
 //! Source: simplified magic formula of [`PitPinnPaper`](crate::bibliography::PitPinnPaper),
 //! `eq:tire_model`, `eq:tire_model3`.
-//! Assumes a steady state (no relaxation length), no camber, no aligning moment, friction that
+//! Assumes a steady state (no relaxation length), no camber, no aligning moment, and friction that
 //! does not depend on the load.
 //!
 //! Departures from the paper:
-//! - The leading minus of `eq:tire_model` is dropped: with α = δ − atan(…) it would feed energy in.
-//! - The slip angle is α = −atan2(w, |u| + ε), in the wheel's own axes: right for a wheel that rolls
-//!   backwards (atan(w/u) flips, atan2(w, u) gives a full side force at α = π), and the force fades
-//!   linearly to zero as the wheel comes to rest.
+//! - The leading minus of `eq:tire_model` is omitted: with α = δ − atan(…) it would supply energy
+//!   to the vehicle.
+//! - The slip angle is α = −atan2(w, |u| + ε) in the axes of the wheel. It is also correct for a
+//!   wheel that rolls backwards, where atan(w/u) has the wrong sign and atan2(w, u) gives the full
+//!   lateral force at α = π. The force decreases linearly to zero as the wheel comes to rest.
 //! - The stiffness factor is `C = c/μ` with the cornering coefficient c (cornering stiffness over
-//!   load): the slope at zero slip is then the tyre's own, whatever the road's friction is.
+//!   vertical load). The slope at zero slip is then that of the tyre for any friction of the road.
 //! - Rolling resistance opposes the motion and vanishes at rest: −f(|u|) F_z tanh(u/u₀).
-//! - Beyond the peak the friction may fall to a sliding value (see [`TireParameters`]).
+//! - Friction may decrease from its peak to a sliding value as the slip angle grows (see
+//!   [`TireParameters`]).
 
 use serde::{Deserialize, Serialize};
 
 use crate::numerics::Lanes;
 
-/// Regularisation ε of the slip angle, m/s. At standstill the side force is a viscous one of rate
-/// c g / ε ≈ 400 1/s, which the reference step of 1 ms resolves.
+/// Regularisation ε of the slip angle, m/s. Near standstill the lateral force is proportional to
+/// the lateral velocity, which decays at a rate of c g / ε ≈ 400 1/s; the reference step of 1 ms
+/// resolves this.
 const SLIP_ANGLE_SPEED_M_S: f64 = 0.5;
 
-/// Speed u₀ below which rolling resistance fades, m/s.
+/// Speed u₀ below which the rolling resistance decreases to zero, m/s.
 const ROLLING_RESISTANCE_SPEED_M_S: f64 = 0.05;
 
-/// Slip angle over which friction falls from its peak to its sliding value, rad: some three times the
-/// slip at the peak (0.15 to 0.17 for the reference tyres), as car tyres slide fully at a slip of
-/// 0.6 to 0.8. A choice, not a fit; `docs/VALIDATION.md` says what other values give.
+/// Slip angle over which friction decreases from its peak to its sliding value, rad. It is about
+/// three times the slip angle at the peak (0.15 to 0.17 rad for the reference tyres), since car
+/// tyres slide fully at a slip of 0.6 to 0.8. The value was chosen and not fitted;
+/// `docs/VALIDATION.md` reports the results for other values.
 const SLIDING_SLIP_ANGLE_RAD: f64 = 0.5;
 
-/// Tyres of one vehicle; both axles on the same road.
+/// Parameters of the tyres of one vehicle and of the road under them. Both axles have the same
+/// friction and rolling resistance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TireParameters {
     /// Cornering coefficient c of the front tyres, 1/rad: cornering stiffness over vertical load.
     pub cornering_coefficient_front_per_rad: f64,
-    /// Cornering coefficient c of the rear tyres, 1/rad.
+    /// Cornering coefficient c of the rear tyres, 1/rad: cornering stiffness over vertical load.
     pub cornering_coefficient_rear_per_rad: f64,
-    /// Peak friction μ between tyre and road.
+    /// Peak friction coefficient μ between tyre and road.
     pub friction: f64,
-    /// Sliding friction over peak friction; 1 switches the fall beyond the peak off.
+    /// Ratio of sliding friction to peak friction. With a value of 1, friction does not decrease
+    /// beyond the peak.
     pub sliding_friction_ratio: f64,
-    /// Rolling resistance f_r0.
+    /// Constant part f_r0 of the rolling resistance coefficient f = f_r0 + f_r1 |u| + f_r2 u².
     pub rolling_resistance: f64,
-    /// Rolling resistance f_r1, s/m, times the wheel's speed.
+    /// Coefficient f_r1 of the part of f that is proportional to the speed of the wheel, s/m.
     pub rolling_resistance_s_m: f64,
-    /// Rolling resistance f_r2, s²/m², times its square; may stand for the air drag.
+    /// Coefficient f_r2 of the part of f that is proportional to the square of the speed, s²/m². It
+    /// may represent the air drag of the vehicle.
     pub rolling_resistance_s2_m2: f64,
 }
 
-/// What the motion of a wheel fixes, before its vertical load is known.
+/// Quantities of the tyre force that depend on the motion of a wheel only, and not on its vertical
+/// load.
 #[derive(Debug, Clone, Copy)]
 pub struct WheelSlip<T> {
     /// Slip angle α, rad, −π/2 to π/2.
     pub slip_angle_rad: T,
-    /// Friction μ(α) that this slip can use.
+    /// Friction coefficient μ(α) at this slip angle.
     friction: T,
-    /// `sin(atan(C α))`, −1 to 1.
+    /// Lateral force over its limit, `sin(atan(C α))`, −1 to 1.
     lateral_share: T,
-    /// Rolling resistance over load, signed against the motion.
+    /// Rolling resistance over vertical load, with a sign opposite to the motion.
     rolling_share: T,
 }
 
 impl TireParameters {
-    /// Slips of four wheels whose centres move at `[u, w]` m/s in their own axes (u along a wheel's
-    /// plane, w to the left).
+    /// Computes slip angles, friction and rolling resistance of the four wheels of a vehicle.
+    ///
+    /// - `cornering_coefficients_per_rad`: cornering coefficient c of each wheel, 1/rad.
+    /// - `velocities_m_s`: velocity `[u, w]` of the centre of each wheel in the axes of the wheel,
+    ///   m/s, with u in the plane of the wheel and w to the left.
     pub fn slips<T: Lanes>(
         &self,
         cornering_coefficients_per_rad: [f64; 4],
         velocities_m_s: [[T; 2]; 4],
     ) -> [WheelSlip<T>; 4] {
-        // −atan2(w, |u| + ε): the second argument is positive, and atan is the faster half of it.
+        // This equals −atan2(w, |u| + ε), since |u| + ε is positive; atan is faster than atan2.
         let slopes = velocities_m_s.map(|[u, w]| -w / (u.abs() + SLIP_ANGLE_SPEED_M_S));
         let slip_angles_rad = T::atan_each(slopes);
         std::array::from_fn(|i| {
@@ -83,7 +94,8 @@ impl TireParameters {
         })
     }
 
-    /// Slip of a wheel that moves at u along its plane.
+    /// Slip quantities of one wheel, from the velocity u in the plane of the wheel, m/s, and the
+    /// slip angle.
     fn slip<T: Lanes>(
         &self,
         cornering_coefficient_per_rad: f64,
@@ -104,30 +116,36 @@ impl TireParameters {
         WheelSlip {
             slip_angle_rad,
             friction: -(sliding_loss - 1.0) * self.friction,
-            // sin(atan(x)) without the detour over the angle
+            // x / √(x² + 1) equals sin(atan(x)) and needs no trigonometric functions.
             lateral_share: stiffness / (stiffness * stiffness + 1.0).sqrt(),
             rolling_share: -resistance * smooth_sign(u / ROLLING_RESISTANCE_SPEED_M_S),
         }
     }
 }
 
-/// tanh, without its detour over cosh², which overflows in the derivative from some 350 on.
+/// The hyperbolic tangent, also for large arguments: the derivative of `tanh` by dual numbers
+/// divides by cosh², which overflows from about 350 on.
 fn smooth_sign<T: Lanes>(x: T) -> T {
     let end = T::from(20.0); // tanh is 1 from here on
     if x.abs().any_less(end) { x.clamped(-end, end).tanh() } else { x.sign() }
 }
 
 impl<T: Lanes> WheelSlip<T> {
-    /// Force `[F_x, F_y]`, N, in the wheel's axes under a vertical load ≥ 0, inside the friction
-    /// circle:
+    /// Computes the force `[F_x, F_y]` of the road on the tyre in the axes of the wheel, N, which
+    /// lies inside the friction circle:
     ///
     /// ```text
-    /// F_x = clamp(F_drive − f(|u|) F_z tanh(u/u₀), ±μ F_z)     F_y = sin(atan(C α)) √((μ F_z)² − F_x²)
+    /// F_x = clamp(F_drive − f(|u|) F_z tanh(u/u₀), ±μ F_z)     F_y = sin(atan(C α)) √((μ F_z)² −
+    /// F_x²)
     /// ```
+    ///
+    /// - `vertical_load_n`: vertical load F_z, N, 0 or more.
+    /// - `drive_force_n`: drive (positive) or brake (negative) force F_drive of this wheel, N.
     pub fn force_n(&self, vertical_load_n: T, drive_force_n: T) -> [T; 2] {
         let limit = self.friction * vertical_load_n;
         let wanted = self.rolling_share * vertical_load_n + drive_force_n;
-        // Locked or spinning: nothing is left for the side. A square root of zero has no slope.
+        // If the longitudinal force reaches the limit, there is no lateral force. The root is not
+        // used there, because its derivative at zero is infinite.
         let along = wanted.abs().if_less(limit, wanted, limit * wanted.sign());
         let across = self.lateral_share * (limit * limit - wanted * wanted).sqrt();
         [along, wanted.abs().if_less(limit, across, T::from(0.0))]
