@@ -249,7 +249,8 @@ fn bad_attribute(attributes: &Attributes, kind: DatasetKind) -> Option<DataError
     })
 }
 
-/// Whether a case name can be the name of a file inside the folder on every operating system.
+/// Whether a case name can be the name of a file inside the folder: it consists of letters, digits
+/// and ` -_.+()` and does not begin with a point.
 fn names_a_file(case: &str) -> bool {
     let is_plain = |c: char| c.is_alphanumeric() || " -_.+()".contains(c);
     !case.is_empty() && !case.starts_with('.') && case.chars().all(is_plain)
