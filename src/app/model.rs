@@ -21,6 +21,12 @@ pub struct CurrentModel<M> {
     pub is_saved: bool,
 }
 
+/// A model that is being written, which need not be the one in use when it has been written.
+struct Saving<M> {
+    model: Arc<M>,
+    job: Job<Result<PathBuf, String>>,
+}
+
 /// The state of the model of one network: the model in use, the one that is being loaded or saved,
 /// and the one that a cancelled training has left.
 pub struct ModelStatus<M> {
@@ -28,7 +34,7 @@ pub struct ModelStatus<M> {
     /// means that no model has been requested yet, or that it must be read again.
     requested: Option<Option<PathBuf>>,
     job: Option<Job<Result<CurrentModel<M>, String>>>,
-    saving: Option<Job<Result<PathBuf, String>>>,
+    saving: Option<Saving<M>>,
     /// Number of models that trainings have given since the start of the program.
     n_trained: usize,
     /// The model that answers questions; `None` before the first one is loaded.
@@ -138,9 +144,9 @@ impl<M: TrainedModel> ModelStatus<M> {
         let Some(current) = &self.current else {
             return Err(format!("there is no {} to save", M::NETWORK.model()));
         };
-        let model = Arc::clone(&current.model);
-        let job = Job::spawn("save model", wake, move |_| model.write(&path).map(|()| path));
-        self.saving = Some(job.map_err(|error| error.to_string())?);
+        let (model, written) = (Arc::clone(&current.model), Arc::clone(&current.model));
+        let job = Job::spawn("save model", wake, move |_| written.write(&path).map(|()| path));
+        self.saving = Some(Saving { model, job: job.map_err(|error| error.to_string())? });
         Ok(())
     }
 
@@ -150,17 +156,27 @@ impl<M: TrainedModel> ModelStatus<M> {
     }
 
     /// Returns the path of the file that has just been written, or why it could not be; `None`
-    /// otherwise. The model in use refers to that file from then on.
-    pub fn poll_saving(&mut self, library: &Library) -> Option<Result<PathBuf, String>> {
-        let result = self.saving.as_mut()?.poll().into_result("the writer")?;
-        self.saving = None;
+    /// otherwise. If the model that was written is still in use, it is identified by that file from
+    /// then on; another model that has come into use meanwhile stays in use and unsaved.
+    ///
+    /// - `wanted`: file of the model that the project requests, which becomes the written one.
+    pub fn poll_saving(
+        &mut self,
+        library: &Library,
+        wanted: &mut Option<PathBuf>,
+    ) -> Option<Result<PathBuf, String>> {
+        let result = self.saving.as_mut()?.job.poll().into_result("the writer")?;
+        let model = self.saving.take()?.model;
         if let Ok(path) = &result {
-            self.requested = Some(Some(path.clone()));
-            if let Some(current) = &mut self.current {
-                current.choice = ModelChoice::file(path);
-                M::hold(library, current.choice.clone(), Arc::clone(&current.model));
+            let choice = ModelChoice::file(path);
+            let in_use = self.current.as_mut().filter(|of| Arc::ptr_eq(&of.model, &model));
+            if let Some(current) = in_use {
+                *wanted = Some(path.clone());
+                self.requested = Some(wanted.clone());
+                current.choice = choice.clone();
                 (current.name, current.is_saved) = (file_name(path), true);
             }
+            M::hold(library, choice, model);
         }
         Some(result)
     }
@@ -182,4 +198,42 @@ fn load<M: TrainedModel>(
 /// Returns the last component of a path, as text.
 pub fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::force::ForceModel;
+    use crate::shipped::ModelSource;
+
+    #[test]
+    fn a_model_that_comes_into_use_while_another_is_written_is_not_taken_for_the_written_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("written.safetensors");
+        let library = Arc::new(Library::default());
+        let (mut status, mut wanted) = (ModelStatus::<ForceModel>::default(), None);
+        while status.current.is_none() {
+            assert_eq!(status.update(&wanted, &library, || {}), None);
+        }
+        let written = Arc::clone(&status.current.as_ref().unwrap().model);
+        status.save(path.clone(), || {}).unwrap();
+        let trained = ModelSource::Shipped.force_model().unwrap();
+        status.take_trained(trained, "trained meanwhile".to_owned(), (&library, true));
+        let saved = loop {
+            if let Some(saved) = status.poll_saving(&library, &mut wanted) {
+                break saved;
+            }
+        };
+        assert_eq!((saved, &wanted), (Ok(path.clone()), &None));
+        let held = library.force_model(&ModelChoice::file(&path)).unwrap();
+        assert!(Arc::ptr_eq(&held, &written));
+        let current = status.current.as_ref().unwrap();
+        assert_eq!((current.name.as_str(), current.is_saved), ("trained meanwhile", false));
+
+        status.save(path.clone(), || {}).unwrap();
+        while status.poll_saving(&library, &mut wanted).is_none() {}
+        let current = status.current.as_ref().unwrap();
+        assert_eq!((current.name.as_str(), current.is_saved), ("written.safetensors", true));
+        assert_eq!(wanted, Some(path));
+    }
 }

@@ -34,10 +34,7 @@ impl State {
     pub(in crate::app) fn update_force(&mut self, context: &Context) {
         let (force, library) = (&mut self.session.force, &self.session.library);
         let problem = force.model.update(&self.project.force.model, library, wake(context));
-        let saved = force.model.poll_saving(library);
-        if let Some(Ok(path)) = &saved {
-            self.project.force.model = Some(path.clone());
-        }
+        let saved = force.model.poll_saving(library, &mut self.project.force.model);
         self.say_problem(problem);
         self.say_of_file(saved);
         self.find_recorded_case();

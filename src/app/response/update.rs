@@ -19,10 +19,7 @@ impl State {
     pub(in crate::app) fn update_response(&mut self, context: &Context) {
         let (response, library) = (&mut self.session.response, &self.session.library);
         let problem = response.model.update(&self.project.response.model, library, wake(context));
-        let saved = response.model.poll_saving(library);
-        if let Some(Ok(path)) = &saved {
-            self.project.response.model = Some(path.clone());
-        }
+        let saved = response.model.poll_saving(library, &mut self.project.response.model);
         let written = response.comparison.poll();
         self.say_problem(problem);
         self.say_of_file(saved);
