@@ -260,27 +260,33 @@ fn names_a_file(case: &str) -> bool {
 struct CaseFiles {
     folder: PathBuf,
     kind: DatasetKind,
-    /// The names of the files without their extension.
-    names: BTreeSet<String>,
+    /// The files by their names without extension; `.CSV` is an extension as `.csv` is.
+    files: BTreeMap<String, PathBuf>,
 }
 
 impl CaseFiles {
     fn list(root: &Path, kind: DatasetKind) -> Result<Self, DataError> {
         let folder = root.join(kind.folder());
         let to_error = |source| DataError::io(&folder, source);
-        let mut names = BTreeSet::new();
+        let mut files = BTreeMap::new();
         for entry in std::fs::read_dir(&folder).map_err(to_error)? {
             let path = entry.map_err(to_error)?.path();
             let is_csv = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("csv"));
             if let (true, Some(stem)) = (is_csv, path.file_stem()) {
-                names.insert(stem.to_string_lossy().into_owned());
+                let name = stem.to_string_lossy().into_owned();
+                if let Some(other) = files.insert(name, path.clone()) {
+                    let (path, other) = (path.clone().min(other.clone()), path.max(other));
+                    return Err(DataError::TwoFilesOfCase { path, other });
+                }
             }
         }
-        Ok(Self { folder, kind, names })
+        Ok(Self { folder, kind, files })
     }
 
+    /// The file of a case; the path that it should have if there is none.
     fn path(&self, case: &str) -> PathBuf {
-        self.folder.join(format!("{case}.csv"))
+        let found = self.files.get(case).cloned();
+        found.unwrap_or_else(|| self.folder.join(format!("{case}.csv")))
     }
 
     fn without_row<'a>(
@@ -289,9 +295,9 @@ impl CaseFiles {
         table: &'a Path,
     ) -> impl Iterator<Item = DataError> + 'a {
         let known: BTreeSet<&str> = rows.iter().map(|row| row.name.as_str()).collect();
-        let stray = self.names.iter().filter(move |name| !known.contains(name.as_str()));
-        stray.map(|name| DataError::FileWithoutCase {
-            path: self.path(name),
+        let stray = self.files.iter().filter(move |(name, _)| !known.contains(name.as_str()));
+        stray.map(|(_, path)| DataError::FileWithoutCase {
+            path: path.clone(),
             table: table.to_owned(),
         })
     }
@@ -301,7 +307,7 @@ impl CaseFiles {
             return Err(problem);
         }
         let file = self.path(&row.name);
-        if !self.names.contains(&row.name) {
+        if !self.files.contains_key(&row.name) {
             return Err(DataError::CaseWithoutFile {
                 path: row.attributes.path(),
                 line: row.attributes.line(),

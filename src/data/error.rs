@@ -242,7 +242,7 @@ pub enum DataError {
         first_line: u64,
     },
     /// The name of a case cannot be the name of a file.
-    #[error("{}:{line}:{column}: case {case:?} cannot name a file; use letters, digits, '-', '_' and '.'", path.display())]
+    #[error("{}:{line}:{column}: case {case:?} cannot name a file; use letters, digits, blanks and -_.+()", path.display())]
     CaseName {
         /// Path of the table of cases.
         path: PathBuf,
@@ -252,6 +252,14 @@ pub enum DataError {
         column: usize,
         /// Name of the case.
         case: String,
+    },
+    /// Two files are named after the same case, such as `c001.csv` and `c001.CSV`.
+    #[error("{}: is there beside {}; keep the file that belongs to the case", path.display(), other.display())]
+    TwoFilesOfCase {
+        /// Path of one file.
+        path: PathBuf,
+        /// Path of the other file.
+        other: PathBuf,
     },
     /// The table of cases has a row whose file does not exist.
     #[error("{}:{line}:{column}: case {case:?} has no file {}; add the file or remove the row", path.display(), file.display())]

@@ -62,9 +62,9 @@ pub(crate) fn channel(name: &str) -> Option<Channel> {
 
 /// The unit of `quantity` with this spelling; `None` if there is none.
 pub(crate) fn unit(quantity: Quantity, text: &str) -> Option<Unit> {
-    // Upper and lower case are not distinguished below. `mN` is refused, since it would be read as
-    // meganewton, nine orders of magnitude more than a millinewton.
-    if text.contains("mN") {
+    // Upper and lower case are not distinguished below. Only `MN` is a meganewton: `mN` is nine
+    // orders of magnitude less, and `mn` may be either, so that both are refused.
+    if text.to_ascii_lowercase().contains("mn") && !text.contains("MN") {
         return None;
     }
     let key = unit_key(text);
@@ -231,6 +231,7 @@ mod tests {
             ("Mz (N*m)", Channel::Mz, "N m"),
             ("Kraft X [kN]", Channel::Fx, "kN"),
             ("Fx [-]", Channel::Fx, ""),
+            ("Fx [MN]", Channel::Fx, "MN"),
         ] {
             let unit = unit(channel.quantity(), symbol);
             assert_eq!(meaning(header), Meaning::Channel(channel, unit), "{header}");
@@ -242,6 +243,8 @@ mod tests {
         for (header, channel, unit) in [
             ("Fx [m]", Channel::Fx, "m"),
             ("Fx [mN]", Channel::Fx, "mN"),
+            ("Fx [mn]", Channel::Fx, "mn"),
+            ("Mz [mNm]", Channel::Mz, "mNm"),
             ("fx_kg", Channel::Fx, "kg"),
             ("time [furlong]", Channel::Time, "furlong"),
         ] {

@@ -252,7 +252,7 @@ fn bad_cases_do_not_stop_the_good_ones() {
             |root| edit(root, "cases.csv", |text| text.replace("b,2000", "../b,2000")),
             &["a", "c"],
             &[
-                r#"cases.csv:3:1: case "../b" cannot name a file; use letters, digits, '-', '_' and '.'"#,
+                r#"cases.csv:3:1: case "../b" cannot name a file; use letters, digits, blanks and -_.+()"#,
                 "forces/b.csv: has no row in cases.csv; add the row or remove the file",
             ],
         ),
@@ -312,6 +312,21 @@ fn tables_of_cases_may_be_sparse_or_in_another_dialect() {
     assert_eq!(
         message(folder.path(), &error),
         r#"cases.csv:2: "m_b_kg" is missing; add it, without it nothing moves"#
+    );
+}
+
+#[test]
+fn files_of_cases_may_end_in_capitals_but_not_stand_there_twice() {
+    let folder = small_dataset();
+    let [small, capital] = ["csv", "CSV"].map(|end| folder.path().join(format!("forces/b.{end}")));
+    fs::rename(&small, &capital).unwrap();
+    let (names, problems) = load(folder.path());
+    assert_eq!((names, problems), (vec!["a".into(), "b".into(), "c".into()], Vec::new()));
+    fs::copy(&capital, &small).unwrap();
+    let error = open(folder.path(), &mut |_| ControlFlow::Continue(())).unwrap_err();
+    assert_eq!(
+        message(folder.path(), &error),
+        "forces/b.CSV: is there beside forces/b.csv; keep the file that belongs to the case"
     );
 }
 
