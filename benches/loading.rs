@@ -10,7 +10,7 @@ use std::sync::Mutex;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use impactlab::data::{
-    Channel, Dataset, TimeSeries, check_case, read_force_file, write_series_csv,
+    Channel, Dataset, Existing, TimeSeries, check_case, read_force_file, write_series_csv,
 };
 use tempfile::TempDir;
 
@@ -51,7 +51,11 @@ fn generate(root: &Path) -> Result<(), Box<dyn std::error::Error>> {
         let row = line.split_once(',').map_or("", |(_, row)| row);
         rows.push_str(&format!("g{i:05},{row}\n"));
         let series = stronger(&case.series, 1.0 + i as f64 * 1e-5)?;
-        write_series_csv(&root.join("forces").join(format!("g{i:05}.csv")), &series)?;
+        write_series_csv(
+            &root.join("forces").join(format!("g{i:05}.csv")),
+            Existing::Refuse,
+            &series,
+        )?;
     }
     fs::write(root.join("cases.csv"), rows)?;
     Ok(())

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use impactlab::collision::{Pulse, PulseShape};
-use impactlab::data::{Channel, ForceAxes, TimeSeries, write_series_csv};
+use impactlab::data::{Channel, Existing, ForceAxes, TimeSeries, write_series_csv};
 use impactlab::learning::{ModelFile, TrainSettings, TrainingSet};
 use impactlab::response::{
     LogSettings, LoggedImpact, MotionLog, N_RESIDUAL, ResponseCase, ResponseConfig, ResponseModel,
@@ -207,7 +207,7 @@ fn add_log(
 
 fn write(folder: &Path, name: &str, series: &TimeSeries) -> Answer<()> {
     std::fs::create_dir_all(folder)?;
-    Ok(write_series_csv(&folder.join(name), series)?)
+    Ok(write_series_csv(&folder.join(name), Existing::Replace, series)?)
 }
 
 fn main() -> Answer<()> {

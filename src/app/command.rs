@@ -12,7 +12,7 @@ use crate::app::export;
 use crate::app::network::Network;
 use crate::app::panes::{Pane, default_layout, show_pane};
 use crate::app::state::{Session, State, Subject};
-use crate::data::{ColumnMap, Severity, write_atomically};
+use crate::data::{ColumnMap, Existing, Severity, write_atomically};
 use crate::error_chain;
 use crate::figure::Figure;
 use crate::study::SimulateAnswer;
@@ -153,7 +153,12 @@ impl State {
             Command::TogglePlay => self.toggle_play(),
             Command::FitPlots => self.session.fit_plots = true,
             Command::Export(figure, path) => {
-                match export::spawn(*figure, path, self.view.dark, wake(context)) {
+                match export::spawn(
+                    *figure,
+                    (path, Existing::Replace),
+                    self.view.dark,
+                    wake(context),
+                ) {
                     Ok(job) => self.session.exports.push(job),
                     Err(error) => self.say(Severity::Error, error.to_string()),
                 }
@@ -164,7 +169,9 @@ impl State {
             },
             Command::SaveScenario(path) => {
                 let text = self.project.scenario.to_toml();
-                let written = write_atomically(&path, |out| out.write_all(text.as_bytes()));
+                let written = write_atomically(&path, Existing::Replace, |out| {
+                    out.write_all(text.as_bytes())
+                });
                 match written {
                     Ok(()) => self.say(Severity::Info, format!("{} written", path.display())),
                     Err(error) => self.say(Severity::Error, error_chain(&error)),

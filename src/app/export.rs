@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::data::write_atomically;
+use crate::data::{Existing, write_atomically};
 use crate::error_chain;
 use crate::figure::{Figure, write_figure_csv};
 use crate::jobs::Job;
@@ -11,6 +11,7 @@ use crate::render::{Canvas, figure_image, save_png};
 /// Starts writing a figure to a file: its numbers if the path ends in `.csv`, otherwise a PNG
 /// picture.
 ///
+/// - `existing`: what happens to a file that exists already;
 /// - `dark`: whether the picture has the dark theme;
 /// - `wake`: called at the end;
 /// - returns the job, whose result is the path that was written or a message for the user.
@@ -19,22 +20,22 @@ use crate::render::{Canvas, figure_image, save_png};
 /// The error of the operating system, if the thread cannot be started.
 pub fn spawn(
     figure: Figure,
-    path: PathBuf,
+    (path, existing): (PathBuf, Existing),
     dark: bool,
     wake: impl Fn() + Send + 'static,
 ) -> std::io::Result<Job<Result<PathBuf, String>>> {
-    Job::spawn("export", wake, move |_| write(&figure, &path, dark).map(|()| path))
+    Job::spawn("export", wake, move |_| write(&figure, (&path, existing), dark).map(|()| path))
 }
 
-fn write(figure: &Figure, path: &Path, dark: bool) -> Result<(), String> {
+fn write(figure: &Figure, (path, existing): (&Path, Existing), dark: bool) -> Result<(), String> {
     if path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv")) {
         let text = numbers(figure)?;
-        return write_atomically(path, |out| out.write_all(text.as_bytes()))
+        return write_atomically(path, existing, |out| out.write_all(text.as_bytes()))
             .map_err(|error| error_chain(&error));
     }
     let canvas = Canvas { dark, ..Canvas::default() };
     figure_image(figure, canvas)
-        .and_then(|image| save_png(&image, path))
+        .and_then(|image| save_png(&image, path, existing))
         .map_err(|error| error_chain(&error))
 }
 

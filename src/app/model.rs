@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::app::network::TrainedModel;
+use crate::data::Existing;
 use crate::error_chain;
 use crate::jobs::Job;
 use crate::study::{Library, ModelChoice};
@@ -145,7 +146,9 @@ impl<M: TrainedModel> ModelStatus<M> {
             return Err(format!("there is no {} to save", M::NETWORK.model()));
         };
         let (model, written) = (Arc::clone(&current.model), Arc::clone(&current.model));
-        let job = Job::spawn("save model", wake, move |_| written.write(&path).map(|()| path));
+        let job = Job::spawn("save model", wake, move |_| {
+            written.write(&path, Existing::Replace).map(|()| path)
+        });
         self.saving = Some(Saving { model, job: job.map_err(|error| error.to_string())? });
         Ok(())
     }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::data::Existing;
 use crate::error_chain;
 use crate::force::ForceModel;
 use crate::learning::{EpochRecord, EpochSummary, ModelFile};
@@ -77,9 +78,11 @@ pub trait TrainedModel: Sized + Send + Sync + 'static {
 
     /// Writes the model to a file.
     ///
+    /// - `existing`: what happens to a file that exists already.
+    ///
     /// # Errors
     /// A message for the user, if the file cannot be written.
-    fn write(&self, path: &Path) -> Result<(), String>;
+    fn write(&self, path: &Path, existing: Existing) -> Result<(), String>;
 
     /// Separates the answer of a training into the model and the report.
     fn of_answer(answer: Self::Answer) -> (Self, Self::Report);
@@ -113,8 +116,8 @@ impl TrainedModel for ForceModel {
         library.hold_force_model(choice, model);
     }
 
-    fn write(&self, path: &Path) -> Result<(), String> {
-        self.save(path).map_err(|error| error_chain(&error))
+    fn write(&self, path: &Path, existing: Existing) -> Result<(), String> {
+        self.save(path, existing).map_err(|error| error_chain(&error))
     }
 
     fn of_answer(answer: TrainForceAnswer) -> (Self, TrainForceReport) {
@@ -152,8 +155,8 @@ impl TrainedModel for ResponseModel {
         library.hold_response_model(choice, model);
     }
 
-    fn write(&self, path: &Path) -> Result<(), String> {
-        self.save(path).map_err(|error| error_chain(&error))
+    fn write(&self, path: &Path, existing: Existing) -> Result<(), String> {
+        self.save(path, existing).map_err(|error| error_chain(&error))
     }
 
     fn of_answer(answer: ResponseTrainingAnswer) -> (Self, ResponseTrainingReport) {

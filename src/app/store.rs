@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use egui::Context;
 
-use crate::data::{DataError, write_atomically};
+use crate::data::{DataError, Existing, write_atomically};
 use crate::error_chain;
 use crate::jobs::{Job, Update};
 
@@ -91,5 +91,5 @@ fn write(path: &Path, text: &str) -> Result<(), DataError> {
         // If the folder cannot be created, writing the file below fails and reports the error.
         let _ = std::fs::create_dir_all(folder);
     }
-    write_atomically(path, |out| out.write_all(text.as_bytes()))
+    write_atomically(path, Existing::Replace, |out| out.write_all(text.as_bytes()))
 }

@@ -4,6 +4,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use crate::data::write::WriteError;
 use crate::data::{Channel, SeriesError, spelling};
 use crate::units::Quantity;
 
@@ -18,6 +19,9 @@ pub enum DataError {
         /// The error that the operating system reports.
         source: io::Error,
     },
+    /// A file or folder is not written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
     /// There is no file or folder at the path.
     #[error("{}: does not exist; check the name", path.display())]
     NotFound {

@@ -9,8 +9,8 @@
 //!   path holds.
 //! - [`ForceHistory`], [`contact_interval`] and [`check_case`] give impulse, contact and quality of
 //!   what was read.
-//! - [`TomlFile`], [`TomlTable`] and [`read_settings`] read settings; [`write_atomically`] writes
-//!   files.
+//! - [`TomlFile`], [`TomlTable`] and [`read_settings`] read settings; [`mod@write`] writes files and
+//!   folders.
 
 mod attributes;
 mod case_attributes;
@@ -33,7 +33,7 @@ mod table;
 mod text;
 mod toml_file;
 mod toml_table;
-mod write;
+pub mod write;
 
 pub use attributes::{Attributes, Value};
 pub use case_attributes::{ForceAttributes, StruckSide, TrajectoryAttributes};
@@ -59,4 +59,4 @@ pub use table::Table;
 pub use text::MAX_FILE_BYTES;
 pub use toml_file::{TomlError, TomlFile};
 pub use toml_table::TomlTable;
-pub use write::{write_atomically, write_series_csv};
+pub use write::{Existing, check_target, write_atomically, write_series_csv};

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::data::Existing;
 use crate::learning::LearningError;
 use crate::nn::{Checkpoint, ModelKind};
 
@@ -27,12 +28,14 @@ pub trait ModelFile: Sized {
 
     /// Writes the model, whole or not at all.
     ///
+    /// - `existing`: what happens to a file that exists already.
+    ///
     /// # Errors
     /// As for [`ModelFile::put`], and the system's if the file cannot be written.
-    fn save(&self, path: &Path) -> Result<(), Self::Error> {
+    fn save(&self, path: &Path, existing: Existing) -> Result<(), Self::Error> {
         let mut file = Checkpoint::new(Self::KIND);
         self.put(&mut file)?;
-        Ok(file.write(path).map_err(LearningError::from)?)
+        Ok(file.write(path, existing).map_err(LearningError::from)?)
     }
 
     /// Reads a model.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
+use crate::data::Existing;
 use crate::learning::{EpochRecord, LearningError, TrainSettings};
 use crate::nn::{Checkpoint, ModelKind, NamedTensors, NnError, OptimizerState};
 
@@ -104,7 +105,7 @@ impl<C: PartialEq + Serialize + DeserializeOwned> TrainingFile<C> {
         let mut file = Checkpoint::new(self.kind);
         file.put("identity", &self.identity)?;
         put(&mut file)?;
-        Ok(file.write(path)?)
+        Ok(file.write(path, Existing::Replace)?)
     }
 }
 

@@ -12,7 +12,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
-use crate::data::{DataError, write_atomically};
+use crate::data::{DataError, Existing, write_atomically};
 use crate::nn::checkpoint_bytes::{LENGTH_BYTES, MAX_HEADER_BYTES, decode, encode, kind_in_header};
 use crate::nn::{NamedTensors, NnError};
 
@@ -98,13 +98,15 @@ impl Checkpoint {
 
     /// Writes the file whole or not at all.
     ///
+    /// - `existing`: what happens to a file that exists already.
+    ///
     /// # Errors
     /// [`NnError::File`] with the system's reason, [`NnError::NumberType`],
     /// [`NnError::EmptyTensor`], [`NnError::NonFinite`] with the first tensor that is not to be
     /// saved.
-    pub fn write(&self, path: &Path) -> Result<(), NnError> {
+    pub fn write(&self, path: &Path, existing: Existing) -> Result<(), NnError> {
         let bytes = encode(self)?;
-        Ok(write_atomically(path, |out| out.write_all(&bytes))?)
+        Ok(write_atomically(path, existing, |out| out.write_all(&bytes))?)
     }
 
     /// Reads a file that [`Checkpoint::write`] wrote.

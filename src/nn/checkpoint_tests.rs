@@ -6,6 +6,7 @@ use candle_core::{DType, Device, Tensor};
 use proptest::prelude::*;
 use safetensors::tensor::{Dtype, TensorView};
 
+use crate::data::Existing;
 use crate::error_chain;
 use crate::nn::checkpoint_bytes::{decode, encode};
 use crate::nn::gradient_check::random_tensor;
@@ -49,7 +50,7 @@ const OURS: &str = r#"{"kind":"force network","version":3,"metadata":{},"sha256"
 fn what_is_written_is_read_to_the_bit() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("model.safetensors");
-    checkpoint().write(&path).unwrap();
+    checkpoint().write(&path, Existing::Refuse).unwrap();
     let mut read = Checkpoint::read(&path, KIND).unwrap();
     assert_eq!(read.get::<u64>("seed").unwrap(), 7);
     assert_eq!(read.get::<Vec<f64>>("scale").unwrap(), [0.1 + 0.2, 1.0 / 3.0, 5e-324]);
@@ -94,7 +95,9 @@ fn a_file_that_is_no_model_is_refused_with_its_path() {
         let why = "cannot be used as a model: is not a safetensors file";
         assert_eq!(error, format!("{}: {why}", path.display()), "{text:?}");
     }
-    let error = Checkpoint::new(KIND).write(&PathBuf::from("no/such/folder/model")).unwrap_err();
+    let error = Checkpoint::new(KIND)
+        .write(&PathBuf::from("no/such/folder/model"), Existing::Refuse)
+        .unwrap_err();
     assert!(matches!(error, NnError::File(_)), "{error}");
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use egui::{Color32, Context, Pos2, RawInput, Rect, Ui, Vec2};
 use image::RgbaImage;
 
-use crate::data::{DataError, write_atomically};
+use crate::data::{DataError, Existing, write_atomically};
 use crate::figure::Figure;
 use crate::render::{FigureOptions, SoftwareRenderer, figure_ui, theme};
 
@@ -101,12 +101,14 @@ pub fn figure_image(figure: &Figure, canvas: Canvas) -> Result<RgbaImage, Render
 
 /// Saves a picture as PNG. The file is written completely or not at all.
 ///
+/// - `existing`: what happens to a file that exists already.
+///
 /// # Errors
 /// [`RenderError::Write`] if the picture cannot be encoded or the file cannot be written.
-pub fn save_png(image: &RgbaImage, path: &Path) -> Result<(), RenderError> {
+pub fn save_png(image: &RgbaImage, path: &Path, existing: Existing) -> Result<(), RenderError> {
     let mut png = std::io::Cursor::new(Vec::new());
     let encoded = image.write_to(&mut png, image::ImageFormat::Png);
-    write_atomically(path, |file| {
+    write_atomically(path, existing, |file| {
         encoded.map_err(std::io::Error::other)?;
         file.write_all(png.get_ref())
     })?;

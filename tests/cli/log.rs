@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use impactlab::collision::{Pulse, PulseShape};
-use impactlab::data::{Channel, TimeSeries, write_series_csv};
+use impactlab::data::{Channel, Existing, TimeSeries, write_series_csv};
 use impactlab::learning::ModelFile;
 use impactlab::response::{N_RESIDUAL, ResponseModel, STEP_S, average_error_m, rollout};
 use impactlab::vehicle::{
@@ -79,9 +79,9 @@ fn write_log(folder: &Path, name: &str, (stride, seed): (usize, u64)) -> [PathBu
         series.insert(channel, noisy.collect()).unwrap();
     }
     let paths = ["", "_force"].map(|end| folder.join(format!("{name}{end}.csv")));
-    write_series_csv(&paths[0], &series).unwrap();
+    write_series_csv(&paths[0], Existing::Replace, &series).unwrap();
     let force = manoeuvre.contact_load.unwrap().force.to_series().unwrap();
-    write_series_csv(&paths[1], &force).unwrap();
+    write_series_csv(&paths[1], Existing::Replace, &force).unwrap();
     paths
 }
 

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, Network, Pane, State, Subject, TrainingCommand};
-use impactlab::data::{Dataset, Severity};
+use impactlab::data::{Dataset, Existing, Severity};
 use impactlab::force::{ForceCase, ForceConfig, train};
 use impactlab::learning::{ModelFile, TrainSettings, TrainingSet};
 use impactlab::study::ForceEvaluation;
@@ -59,7 +59,7 @@ fn small() -> &'static Small {
         let config = ForceConfig::load(&small.config()).expect("a good file");
         let settings = TrainSettings { config, seed: 0, checkpoint: None, resume: false };
         let model = train(&set, &settings, &mut |_| ControlFlow::Continue(())).expect("a model");
-        model.save(&small.model()).expect("it is written");
+        model.save(&small.model(), Existing::Refuse).expect("it is written");
         small
     })
 }

@@ -6,8 +6,8 @@ use std::fs;
 
 use approx::assert_relative_eq;
 use impactlab::data::{
-    Channel, ColumnMap, FileKind, Loaded, Note, Separator, TimeSeries, map_from_proposals,
-    propose_columns, read_any_series, read_force_file, write_series_csv,
+    Channel, ColumnMap, Existing, FileKind, Loaded, Note, Separator, TimeSeries,
+    map_from_proposals, propose_columns, read_any_series, read_force_file, write_series_csv,
 };
 use proptest::prelude::*;
 
@@ -163,7 +163,7 @@ proptest! {
         }
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("f.csv");
-        write_series_csv(&path, &series).unwrap();
+        write_series_csv(&path, Existing::Replace, &series).unwrap();
         prop_assert_eq!(read_any_series(&path, None).unwrap().series, series);
     }
 }
@@ -173,7 +173,7 @@ fn a_failed_write_leaves_the_file_as_it_was() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("f.csv");
     fs::write(&path, "before").unwrap();
-    let error = impactlab::data::write_atomically(&path, |out| {
+    let error = impactlab::data::write_atomically(&path, Existing::Replace, |out| {
         out.write_all(b"half")?;
         Err(std::io::Error::other("disk full"))
     });

@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
+use impactlab::data::Existing;
 use impactlab::error_chain;
 use impactlab::force::{
     Centre, ForceCase, ForceConfig, ForceError, ForceModel, ForceScenario, ForceTrainSettings,
@@ -58,7 +59,7 @@ fn train_until(epoch: usize, settings: &ForceTrainSettings) -> ForceModel {
 }
 
 fn saved(model: &ForceModel, path: &Path) -> Vec<u8> {
-    model.save(path).expect("the model can be written");
+    model.save(path, Existing::Replace).expect("the model can be written");
     fs::read(path).expect("the model can be read")
 }
 

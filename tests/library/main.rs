@@ -7,6 +7,7 @@ mod data_bad_input;
 mod data_dialects;
 mod data_quality;
 mod data_shipped;
+mod data_writes;
 mod force_baselines;
 mod force_model;
 mod layering;

@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
+use impactlab::data::Existing;
 use impactlab::learning::{LearningError, ModelFile, TrainSettings, TrainingReport};
 use impactlab::response::evaluate::{MotionModel, evaluate_motion_model};
 use impactlab::response::{
@@ -90,7 +91,7 @@ fn what_the_data_sheet_lacks_is_learned() {
 fn a_saved_model_predicts_the_same_bits() {
     let model = fine_tune(None, &set(), &settings(small()), &mut go_on).expect("a model");
     let path = scratch("saved.safetensors");
-    model.save(&path).expect("saved");
+    model.save(&path, Existing::Replace).expect("saved");
     let again = ResponseModel::load(&path).expect("loaded");
     assert_eq!(errors_m(&model), errors_m(&again));
     assert_eq!(model.record(), again.record());

@@ -8,7 +8,7 @@ use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_settings};
 use crate::cli::options::{TrainingArgs, VehicleArg, contact_point, time_s};
 use crate::cli::text::{Trained, print_response_training};
-use crate::data::ColumnMap;
+use crate::data::{ColumnMap, Existing};
 use crate::learning::{ModelFile, TEST_SHARE};
 use crate::shipped::ModelSource;
 use crate::study::{DEFAULT_LOG_DURATION_S, FineTuneRequest, ModelChoice, MotionLogs};
@@ -132,7 +132,7 @@ fn fine_tune_response(
         return print_settings(&request.settings(&console.library)?.0, console);
     }
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
-    answer.model.save(&args.training.out)?;
+    answer.model.save(&args.training.out, Existing::Replace)?;
     let trained = Trained { model: &args.training.out, report: &answer.report };
     console.print(&trained, |out| print_response_training(out, &trained))?;
     Ok(Verdict::Clean)

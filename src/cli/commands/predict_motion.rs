@@ -11,7 +11,7 @@ use crate::cli::console::{Console, Verdict};
 use crate::cli::files::{MotionFiles, write_motion_prediction};
 use crate::cli::options::{UnitsArg, VehicleArg, window_s};
 use crate::cli::text::print_motion_prediction;
-use crate::data::write_atomically;
+use crate::data::{Existing, write_atomically};
 use crate::shipped::ModelSource;
 use crate::study::{
     DEFAULT_DRAWS, DEFAULT_DURATION_S, ForceSource, MotionSource, PredictMotionReport,
@@ -116,7 +116,9 @@ pub(in crate::cli) fn run(
     let files = write_motion_prediction(&wanted, &answer)?;
     let printed = PrintedMotion { report: &answer.report, files };
     let json = serde_json::to_vec_pretty(&printed).map_err(std::io::Error::from)?;
-    write_atomically(&args.out.join("outcome.json"), |out| out.write_all(&json))?;
+    write_atomically(&args.out.join("outcome.json"), Existing::Replace, |out| {
+        out.write_all(&json)
+    })?;
     let report = &answer.report;
     console.print(&printed, |out| print_motion_prediction(out, report, args.units.into()))?;
     Ok(Verdict::Clean)

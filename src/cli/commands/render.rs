@@ -13,7 +13,7 @@ use crate::cli::options::{
     SourceArgs, UnitsArg, VehicleArg, contact_point, size_px, speed_m_s, time_s,
 };
 use crate::collision::ChannelClass;
-use crate::data::{Channel, write_atomically};
+use crate::data::{Channel, Existing, write_atomically};
 use crate::figure::{Figure, write_figure_csv};
 use crate::study::{Drive, ImpactRequest, Library, ScenarioChoice, SimulateRequest};
 use crate::vehicle::ContactPoint;
@@ -290,7 +290,7 @@ pub(in crate::cli) fn run(
 }
 
 fn write_csv(figure: &Figure, output: &OutputArgs) -> Result<(), CliError> {
-    write_atomically(&output.out, |file| {
+    write_atomically(&output.out, Existing::Replace, |file| {
         write_figure_csv(figure, file).map_err(std::io::Error::other)
     })?;
     Ok(())
@@ -301,7 +301,7 @@ fn write_png(figure: &Figure, output: &OutputArgs) -> Result<(), CliError> {
     let canvas =
         crate::render::Canvas { size_px: output.size, scale: output.scale, dark: output.dark };
     let image = crate::render::figure_image(figure, canvas)?;
-    crate::render::save_png(&image, &output.out)?;
+    crate::render::save_png(&image, &output.out, crate::data::Existing::Replace)?;
     Ok(())
 }
 

@@ -14,7 +14,7 @@ use crate::cli::options::{
     speed_m_s, time_s, yaw_rate_rad_s,
 };
 use crate::cli::text::{print_dataset_simulation, print_simulation};
-use crate::data::{ColumnMap, DatasetKind, write_series_csv};
+use crate::data::{ColumnMap, DatasetKind, Existing, write_series_csv};
 use crate::study::{
     DEFAULT_DURATION_S, Drive, MotionSource, ScenarioChoice, SeriesFile, SimulateDatasetRequest,
     SimulateRequest,
@@ -203,7 +203,7 @@ fn simulate_one(
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
     let (report, out) = (&answer.report, args.out.as_deref());
     if let (Some(path), Some(motion)) = (out, &answer.analysis.simulation) {
-        write_series_csv(path, &motion.series)?;
+        write_series_csv(path, Existing::Replace, &motion.series)?;
     }
     let printed = PrintedSimulation { report, out };
     console.print(&printed, |text| print_simulation(text, (report, out), args.units.into()))?;
@@ -227,7 +227,11 @@ fn simulate_dataset(
     if let Some(path) = out {
         folder(path)?;
         for case in &answer.replay.cases {
-            write_series_csv(&path.join(format!("{}.csv", case.case)), &case.motion.series)?;
+            write_series_csv(
+                &path.join(format!("{}.csv", case.case)),
+                Existing::Replace,
+                &case.motion.series,
+            )?;
         }
     }
     let printed = PrintedSimulation { report, out };

@@ -8,6 +8,7 @@ use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_settings};
 use crate::cli::options::TrainingArgs;
 use crate::cli::text::{Trained, print_force_training};
+use crate::data::Existing;
 use crate::learning::ModelFile;
 use crate::study::TrainForceRequest;
 
@@ -58,7 +59,7 @@ pub(in crate::cli) fn run(
         return print_settings(&request.settings()?, console);
     }
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
-    answer.model.save(&args.training.out)?;
+    answer.model.save(&args.training.out, Existing::Replace)?;
     let trained = Trained { model: &args.training.out, report: &answer.report };
     console.print(&trained, |out| print_force_training(out, &trained))?;
     Ok(Verdict::Clean)

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::console::folder;
-use crate::data::write_atomically;
+use crate::data::{Existing, write_atomically};
 use crate::study::ForceEvaluation;
 
 /// Writes an evaluation as JSON and Markdown, or a cross-validation as JSON.
@@ -19,7 +19,9 @@ pub(in crate::cli) fn write_force_evaluation(
         ForceEvaluation::Cases(report) => {
             write_json(&path.join("evaluation.json"), report)?;
             let text = report.evaluation.to_markdown();
-            write_atomically(&path.join("evaluation.md"), |out| out.write_all(text.as_bytes()))?;
+            write_atomically(&path.join("evaluation.md"), Existing::Replace, |out| {
+                out.write_all(text.as_bytes())
+            })?;
         }
         ForceEvaluation::Folds(report) => {
             write_json(&path.join("cross_validation.json"), report)?;
@@ -29,7 +31,7 @@ pub(in crate::cli) fn write_force_evaluation(
 }
 
 fn write_json(path: &Path, value: &impl Serialize) -> Result<(), CliError> {
-    write_atomically(path, |out| {
+    write_atomically(path, Existing::Replace, |out| {
         serde_json::to_writer_pretty(&mut *out, value)?;
         writeln!(out)
     })?;

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::console::folder;
-use crate::data::{write_atomically, write_series_csv};
+use crate::data::{Existing, write_atomically, write_series_csv};
 use crate::study::{PredictForceAnswer, StudyError};
 use crate::uncertainty::{CurveBands, ForceCurve};
 
@@ -23,13 +23,13 @@ pub(in crate::cli) fn write_force_prediction(
         let path = path.join(name);
         let unwritable = |source| StudyError::Series { path: path.clone(), source };
         let series = curve.to_history().to_series().map_err(unwritable)?;
-        Ok(write_series_csv(&path, &series)?)
+        Ok(write_series_csv(&path, Existing::Replace, &series)?)
     };
     write_curve("mean.csv".to_owned(), &forecast.mean)?;
     for (i, sample) in forecast.curves.iter().enumerate() {
         write_curve(format!("sample_{:03}.csv", i + 1), sample)?;
     }
-    write_atomically(&path.join("prediction.json"), |out| {
+    write_atomically(&path.join("prediction.json"), Existing::Replace, |out| {
         serde_json::to_writer_pretty(&mut *out, report)?;
         writeln!(out)
     })?;
@@ -44,7 +44,7 @@ fn write_bands(path: &Path, mean: &ForceCurve, bands: &CurveBands) -> Result<(),
         ("fy", &mean.fy_n, &bands.fy),
         ("f", &magnitude, &bands.magnitude),
     ];
-    write_atomically(path, |out| {
+    write_atomically(path, Existing::Replace, |out| {
         write!(out, "time_s")?;
         for (name, _, bands) in &forces {
             write!(out, ",{name}_mean_n")?;

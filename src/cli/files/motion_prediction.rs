@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::analysis::{DensityMap, DensityTask, MOTION_BAND_LEVELS, MotionBands, MotionForecast};
 use crate::cli::CliError;
 use crate::cli::console::folder;
-use crate::data::write_atomically;
+use crate::data::{Existing, write_atomically};
 use crate::figure::{
     FORECAST_CHANNELS, Figure, MotionForecastFigure, forecast_channel_figure,
     forecast_scene_figure, write_figure_csv,
@@ -59,7 +59,7 @@ pub(in crate::cli) fn write_motion_prediction(
     }
     for (name, figure) in &figures {
         let csv = path(&format!("{name}.csv"));
-        write_atomically(&csv, |file| {
+        write_atomically(&csv, Existing::Replace, |file| {
             write_figure_csv(figure, file).map_err(std::io::Error::other)
         })?;
         files.push(csv);
@@ -75,7 +75,7 @@ pub(in crate::cli) fn write_motion_prediction(
 #[cfg(feature = "gui")]
 fn write_png(figure: &Figure, path: &Path) -> Result<bool, CliError> {
     let image = crate::render::figure_image(figure, crate::render::Canvas::default())?;
-    crate::render::save_png(&image, path)?;
+    crate::render::save_png(&image, path, Existing::Replace)?;
     Ok(true)
 }
 
@@ -117,13 +117,13 @@ fn write_trajectory(
         csv.write_record(&row).map_err(failed)?;
     }
     let bytes = csv.into_inner().map_err(|error| std::io::Error::other(error.to_string()))?;
-    write_atomically(path, |out| out.write_all(&bytes))?;
+    write_atomically(path, Existing::Replace, |out| out.write_all(&bytes))?;
     Ok(())
 }
 
 fn write_density(path: &Path, map: &DensityMap) -> Result<(), CliError> {
     let [width, _] = map.grid.size;
-    write_atomically(path, |out| {
+    write_atomically(path, Existing::Replace, |out| {
         writeln!(out, "x_m,y_m,density_1_m2")?;
         for (i, value) in map.values.iter().enumerate() {
             let x = map.grid.low_m[0] + (i % width) as f64 * map.grid.step_m[0];

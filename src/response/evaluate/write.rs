@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-use crate::data::{DataError, write_atomically};
+use crate::data::{DataError, Existing, write_atomically};
 use crate::response::evaluate::{Comparison, all_tables};
 
 /// All tables of a comparison as Markdown.
@@ -36,11 +36,15 @@ pub fn write_comparison(folder: &Path, comparison: &Comparison) -> Result<(), Da
     let to_error = |source: serde_json::Error| DataError::io(&file, source.into());
     // A line for each number of all paths would be long.
     let json = serde_json::to_vec(comparison).map_err(to_error)?;
-    write_atomically(&file, |out| out.write_all(&json))?;
+    write_atomically(&file, Existing::Replace, |out| out.write_all(&json))?;
     for (_, name, table) in all_tables(comparison) {
         let csv = table.to_csv();
-        write_atomically(&folder.join(name), |out| out.write_all(csv.as_bytes()))?;
+        write_atomically(&folder.join(name), Existing::Replace, |out| {
+            out.write_all(csv.as_bytes())
+        })?;
     }
     let text = to_markdown(comparison);
-    write_atomically(&folder.join("comparison.md"), |out| out.write_all(text.as_bytes()))
+    write_atomically(&folder.join("comparison.md"), Existing::Replace, |out| {
+        out.write_all(text.as_bytes())
+    })
 }
