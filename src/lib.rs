@@ -19,7 +19,7 @@
 //! 7. [`learning`]: what the trainings of both networks have in common;
 //! 8. [`force`], [`response`]: the network that predicts the contact force, and the network that
 //!    predicts the motion, each with its baselines;
-//! 9. [`shipped`]: the trained networks that are part of the program;
+//! 9. [`shipped`]: the trained networks and notices that are part of the program;
 //! 10. [`analysis`]: one case, from its file or scenario to a motion;
 //! 11. [`study`]: every question that can be asked, as a request with a report as its answer;
 //! 12. [`figure`]: the content of a plot, as plain data;

@@ -1,4 +1,5 @@
-//! The trained networks that are part of the program, so that it works in any folder.
+//! The trained networks and the notices of third parties that are part of the program, so that it
+//! works in any folder.
 //!
 //! A [`ModelSource`] names a model: one of the words `shipped` and `shipped-pretrained`, or the
 //! path of a file. A file whose name is such a word is named with its folder, as `./shipped`.
@@ -21,6 +22,10 @@ const SHIPPED: &str = "shipped";
 
 /// The word for the response network that is part of the program, before any fine-tuning.
 const SHIPPED_PRETRAINED: &str = "shipped-pretrained";
+
+/// The notices of third parties: crates and fonts that are part of the program, who has their
+/// copyright, and the texts of their licences.
+pub const LICENCES: &str = include_str!("../assets/licences.txt");
 
 const FORCE_MODEL: &[u8] = include_bytes!("../assets/models/force.safetensors");
 const RESPONSE_MODEL: &[u8] = include_bytes!("../assets/models/response.safetensors");

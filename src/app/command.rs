@@ -41,6 +41,8 @@ pub enum Command {
     OpenMapped(PathBuf, ColumnMap),
     /// Close the dialog of the columns without reading the file.
     CancelMapping,
+    /// Show the licences of third parties (`true`) or close them (`false`).
+    ShowLicences(bool),
     /// Simulate every case of the data set in this folder.
     ReplayDataset(PathBuf),
     /// Cancel the simulation of the data set in this folder.
@@ -142,6 +144,7 @@ impl State {
                 self.load(path, Some(map), context);
             }
             Command::CancelMapping => self.session.mapping = None,
+            Command::ShowLicences(shown) => self.session.shows_licences = shown,
             Command::ReplayDataset(path) => self.replay(path, context),
             Command::CancelReplay(path) => {
                 if let Some(replay) = self.session.replays.get(&path) {

@@ -36,7 +36,7 @@ pub fn menu_ui(ui: &mut Ui, state: &mut State, history: History, commands: &mut 
                 edit_item(ui, "Redo", keyboard::REDO, (history.can_redo, Command::Redo), commands);
             });
             ui.menu_button("View", |ui| view_menu_ui(ui, state, commands));
-            ui.menu_button("Help", help_menu_ui);
+            ui.menu_button("Help", |ui| help_menu_ui(ui, commands));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 for (system, label) in [(UnitSystem::Us, "US"), (UnitSystem::Si, "SI")] {
                     ui.selectable_value(&mut state.view.units, system, label)
@@ -117,7 +117,7 @@ fn view_menu_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
     ui.checkbox(&mut state.view.dark, "Dark theme");
 }
 
-fn help_menu_ui(ui: &mut Ui) {
+fn help_menu_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.strong("Keys");
     egui::Grid::new("keys").show(ui, |ui| {
         for (key, what) in keyboard::PLAIN_KEYS {
@@ -133,6 +133,9 @@ fn help_menu_ui(ui: &mut Ui) {
     ui.separator();
     ui.label(format!("impactlab {}", env!("CARGO_PKG_VERSION")));
     ui.label("The shipped data are simulations, not measurements.");
+    if ui.button("Licences…").clicked() {
+        commands.push(Command::ShowLicences(true));
+    }
 }
 
 /// Draws the status line: the work in progress with its progress bars, and the latest message.

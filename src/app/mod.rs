@@ -10,6 +10,7 @@ mod export;
 mod force;
 mod keyboard;
 mod latest;
+mod licences;
 mod menu;
 mod model;
 mod network;
@@ -203,6 +204,7 @@ impl eframe::App for App {
         menu::status_ui(ui, &self.state, &mut commands);
         self.panes_ui(ui, &mut commands);
         self.mapping_ui(ui, &mut commands);
+        self.licences_ui(ui, &mut commands);
         menu::drop_hint_ui(ui);
         for command in commands {
             self.apply(command, ui.ctx());
@@ -234,6 +236,16 @@ impl App {
             let response = modal.show(ui.ctx(), |ui| dialog.ui(ui, commands));
             if response.should_close() {
                 commands.push(Command::CancelMapping);
+            }
+        }
+    }
+
+    fn licences_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        if self.state.session.shows_licences {
+            let modal = egui::Modal::new(egui::Id::unique("licences"));
+            let response = modal.show(ui.ctx(), |ui| licences::licences_ui(ui, commands));
+            if response.should_close() {
+                commands.push(Command::ShowLicences(false));
             }
         }
     }

@@ -192,6 +192,8 @@ pub struct Session {
     pub file_dialog: Option<FileDialog>,
     /// The dialog for the columns of a file that is open.
     pub mapping: Option<MappingDialog>,
+    /// Whether the licences of third parties are shown.
+    pub shows_licences: bool,
     /// Jobs that write figures to files.
     pub exports: Vec<Job<Result<PathBuf, String>>>,
     /// The path that the user opened last. Its first case or file is selected once it is loaded.

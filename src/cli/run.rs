@@ -7,8 +7,8 @@ use clap::{Parser, Subcommand};
 
 use crate::cli::CliError;
 use crate::cli::commands::{
-    app, ask, check, compare, evaluate, fine_tune, impact, predict, render, simulate, train,
-    vehicles,
+    app, ask, check, compare, evaluate, fine_tune, impact, licences, predict, render, simulate,
+    train, vehicles,
 };
 use crate::cli::console::{Console, Verdict};
 use crate::error_chain;
@@ -54,6 +54,8 @@ enum CliCommand {
     Compare(compare::CompareArgs),
     Render(render::RenderArgs),
     Vehicles(vehicles::VehiclesArgs),
+    #[command(alias = "licenses")]
+    Licences(licences::LicencesArgs),
 }
 
 /// Runs the command in the program's arguments.
@@ -106,5 +108,6 @@ fn dispatch(command: Option<CliCommand>, console: &mut Console<'_>) -> Result<Ve
         Some(CliCommand::Predict(args)) => predict::run(&args, console),
         Some(CliCommand::Render(args)) => render::run(&args, console),
         Some(CliCommand::Vehicles(args)) => vehicles::run(&args, console),
+        Some(CliCommand::Licences(_)) => licences::run(console),
     }
 }

@@ -397,6 +397,15 @@ fn a_printed_vehicle_is_a_vehicle_file() {
 }
 
 #[test]
+fn the_licences_of_crates_and_fonts_are_printed() {
+    let notices = impactlab(&["licences"]).out;
+    for part in ["nalgebra", "Apache License", "Ubuntu-Light.ttf", "SIL OPEN FONT LICENSE"] {
+        assert!(notices.contains(part), "{part}");
+    }
+    assert_eq!(impactlab(&["licenses", "--json"]).json()["licences"], notices);
+}
+
+#[test]
 fn what_nobody_said_is_listed_as_assumed() {
     let assumed = |args: &[&str]| -> Vec<String> {
         let ran = impactlab(&[args, &["--json"]].concat());

@@ -34,6 +34,20 @@ fn shows(name: &'static str) -> impl Fn(&State) -> bool {
 }
 
 #[test]
+fn the_help_menu_shows_the_licences_of_crates_and_fonts() {
+    let mut harness = open(&[]);
+    harness.get_by_label("Help").click();
+    harness.run_steps(10);
+    harness.get_by_label("Licences…").click();
+    harness.run_steps(10);
+    assert!(state(&harness).session.shows_licences);
+    harness.get_by_label("Notices of third parties");
+    harness.get_by_label("Close").click();
+    harness.run_steps(10);
+    assert!(!state(&harness).session.shows_licences);
+}
+
+#[test]
 fn open_pick_simulate_scrub() {
     let mut harness = open(&["datasets/trajectories-fea"]);
     step_until(&mut harness, "the first case", shows("FE_c001"));

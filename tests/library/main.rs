@@ -8,6 +8,7 @@ mod data_dialects;
 mod data_quality;
 mod data_shipped;
 mod data_writes;
+mod dependencies;
 mod force_baselines;
 mod force_model;
 mod layering;

@@ -9,6 +9,7 @@ mod evaluate_force;
 mod evaluate_response;
 pub(super) mod fine_tune;
 pub(super) mod impact;
+pub(super) mod licences;
 pub(super) mod predict;
 mod predict_force;
 mod predict_motion;
