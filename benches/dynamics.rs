@@ -56,7 +56,9 @@ fn manoeuvres() -> Vec<Manoeuvre> {
         .complete()
         .expect("nobody cancels");
     let cases = dataset.cases.iter().cycle().take(N_TRAJECTORIES);
-    cases.map(|case| recorded_manoeuvre(case).expect("the shipped cases are complete")).collect()
+    let vehicle = Preset::Reference.parameters();
+    let recorded = |case| recorded_manoeuvre(case, &vehicle);
+    cases.map(|case| recorded(case).expect("the shipped cases are complete")).collect()
 }
 
 #[divan::bench]

@@ -9,7 +9,8 @@
 //!
 //! 1. [`bibliography`], [`units`], [`error_chain()`]: sources, quantities and their units, errors
 //!    with their causes as one line;
-//! 2. [`numerics`], [`jobs`]: scalar types, integration and statistics; background work;
+//! 2. [`ranges`], [`numerics`], [`jobs`]: the values that numbers may have; scalar types,
+//!    integration and statistics; background work;
 //! 3. [`data`]: files become checked time series in SI units;
 //! 4. [`vehicle`]: parameters, tires and the equations of motion, which exist only here;
 //! 5. [`collision`]: the impact: impulse, contact geometry, scenarios, pulses, channel filter,
@@ -58,6 +59,7 @@ pub mod jobs;
 pub mod learning;
 pub mod nn;
 pub mod numerics;
+pub mod ranges;
 #[cfg(feature = "gui")]
 pub mod render;
 pub mod response;

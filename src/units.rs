@@ -110,7 +110,7 @@ impl Quantity {
 
     /// The SI unit of the quantity, which is used inside the program and in the files that it
     /// writes.
-    pub fn si_unit(self) -> Unit {
+    pub const fn si_unit(self) -> Unit {
         self.units()[0]
     }
 
@@ -157,7 +157,7 @@ impl Quantity {
     }
 
     /// Every unit of the quantity that is read from files or shown, the SI unit first.
-    pub fn units(self) -> &'static [Unit] {
+    pub const fn units(self) -> &'static [Unit] {
         macro_rules! units {
             ($quantity:ident: $($symbol:literal = $si:expr),+ $(,)?) => {
                 &[$(Unit { quantity: Quantity::$quantity, symbol: $symbol, si_per_unit: $si }),+]

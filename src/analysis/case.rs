@@ -20,7 +20,7 @@ pub fn analyse_case(case: &Case, settings: &Settings) -> Result<Analysis, Analys
 /// Replays a recorded trajectory from its initial state with its recorded force and friction.
 fn analyse_trajectory_case(case: &Case, settings: &Settings) -> Result<Analysis, AnalysisError> {
     let replay = replay_case(case, &settings.target, settings.integrator)?;
-    let manoeuvre = recorded_manoeuvre(case)?;
+    let manoeuvre = recorded_manoeuvre(case, &settings.target)?;
     let friction = TrajectoryAttributes::read(&case.attributes)?.mu;
     let vehicle = settings.target.clone().with_friction(friction);
     let struck = |load: &ContactLoad| StruckVehicle {

@@ -17,6 +17,7 @@ use crate::data::{ForceAxes, ForceHistory};
 use crate::force::{ForceError, ForceModel, ForcePrediction, ForceScenario};
 use crate::learning::LearningError;
 use crate::nn::random_stream;
+use crate::ranges::{DRAWS, FORECAST_DURATION, OutOfRange};
 use crate::response::{MotionDistribution, Predictor, ResponseModel, STEP_S, weighted_mean};
 use crate::uncertainty::{ForceCurve, NormalMixture, PlanarMixture};
 use crate::vehicle::frames::body_from_world;
@@ -105,12 +106,9 @@ pub enum MotionForecastError {
     /// The response network cannot predict the motion.
     #[error(transparent)]
     Response(#[from] LearningError),
-    /// The duration of the forecast is outside the permitted range.
-    #[error("the duration is {duration_s} s, expected 0.1 to 60 s")]
-    Duration {
-        /// Duration that was asked for, s.
-        duration_s: f64,
-    },
+    /// The duration of the forecast or the number of forces is outside its range.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
     /// The predicted motion is not finite.
     #[error("the predicted motion diverges")]
     Diverged,
@@ -180,9 +178,10 @@ pub fn forecast_collision(
     struck: &StruckVehicle,
     settings: &MotionForecastSettings,
 ) -> Result<MotionForecast, MotionForecastError> {
+    DRAWS.check_count(settings.n_curves as u64)?;
     let prediction = force_model.predict(collision)?;
     let mut rng = random_stream(settings.seed, "force curves", 0);
-    let curves = prediction.mixture.sample(settings.n_curves.max(1), &mut rng);
+    let curves = prediction.mixture.sample(settings.n_curves, &mut rng);
     let heading_rad = struck.initial.yaw_rad;
     let forces: Vec<ForceHistory> =
         curves.iter().map(|curve| in_world(curve, heading_rad)).collect();
@@ -194,7 +193,7 @@ pub fn forecast_collision(
 /// Forecast of the motion after given forces, which are equally likely.
 ///
 /// # Errors
-/// [`MotionForecastError::Duration`] for a duration outside 0.1 to 60 s,
+/// [`MotionForecastError::OutOfRange`] for a duration outside [`FORECAST_DURATION`],
 /// [`MotionForecastError::Response`] if the response network refuses the vehicle,
 /// [`MotionForecastError::Diverged`] if the motion is not finite.
 pub fn forecast_forces(
@@ -203,10 +202,7 @@ pub fn forecast_forces(
     struck: &StruckVehicle,
     settings: &MotionForecastSettings,
 ) -> Result<MotionForecast, MotionForecastError> {
-    let duration_s = settings.duration_s;
-    if !(0.1..=60.0).contains(&duration_s) {
-        return Err(MotionForecastError::Duration { duration_s });
-    }
+    let duration_s = FORECAST_DURATION.check(settings.duration_s)?;
     let predictor: Predictor = response.predictor(&struck.vehicle)?;
     let of = |force: &ForceHistory| {
         let inputs = struck.inputs(force, duration_s);

@@ -151,9 +151,18 @@ mod tests {
 
     impl Question for Halve {
         type Answer = i32;
+        type Report = i32;
         const NAME: &'static str = "halve";
 
-        fn answer(
+        fn check(&self) -> Result<(), StudyError> {
+            Ok(())
+        }
+
+        fn report(answer: &i32) -> &i32 {
+            answer
+        }
+
+        fn solve(
             &self,
             _library: &Library,
             _observer: &mut Observer<'_>,

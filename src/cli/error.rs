@@ -80,6 +80,20 @@ pub enum CliError {
         /// Last sample, s.
         end_s: f64,
     },
+    /// A window of time ends after the predicted motion.
+    #[error("--window ends at {to_s} s, after the motion, which ends at {end_s} s")]
+    WindowOutside {
+        /// End of the window as given, s.
+        to_s: f64,
+        /// Last instant of the motion, s.
+        end_s: f64,
+    },
+    /// No range has such a name.
+    #[error("no range has {word:?} in its name; `impactlab ranges` lists all")]
+    NoRange {
+        /// The word that was looked for.
+        word: String,
+    },
     /// A folder cannot be made.
     #[error("{}: cannot be made", path.display())]
     Folder {

@@ -7,8 +7,8 @@ use clap::{Parser, Subcommand};
 
 use crate::cli::CliError;
 use crate::cli::commands::{
-    app, ask, check, compare, evaluate, fine_tune, impact, licences, predict, render, simulate,
-    train, vehicles,
+    app, ask, check, compare, evaluate, fine_tune, impact, licences, predict, ranges, render,
+    simulate, train, vehicles,
 };
 use crate::cli::console::{Console, Verdict};
 use crate::error_chain;
@@ -56,6 +56,7 @@ enum CliCommand {
     Vehicles(vehicles::VehiclesArgs),
     #[command(alias = "licenses")]
     Licences(licences::LicencesArgs),
+    Ranges(ranges::RangesArgs),
 }
 
 /// Runs the command in the program's arguments.
@@ -109,5 +110,6 @@ fn dispatch(command: Option<CliCommand>, console: &mut Console<'_>) -> Result<Ve
         Some(CliCommand::Render(args)) => render::run(&args, console),
         Some(CliCommand::Vehicles(args)) => vehicles::run(&args, console),
         Some(CliCommand::Licences(_)) => licences::run(console),
+        Some(CliCommand::Ranges(args)) => ranges::run(&args, console),
     }
 }

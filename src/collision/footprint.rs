@@ -9,6 +9,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::ranges::OFF_OUTLINE;
 use crate::vehicle::GeometryParameters;
 
 /// Largest gap between the outlines at which the vehicles still count as touching, m. Poses that
@@ -100,6 +101,23 @@ pub enum FootprintError {
     },
 }
 
+/// A contact point that lies off the vehicle.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error(
+    "the contact point ({x_m:.3} m, {y_m:.3} m from the CG) lies {distance_m:.3} m off the outline, \
+     expected {allowed_m:.3} m at most"
+)]
+pub struct OffOutline {
+    /// Coordinate x of the point in body axes, m.
+    pub x_m: f64,
+    /// Coordinate y of the point in body axes, m.
+    pub y_m: f64,
+    /// Distance from the outline, m.
+    pub distance_m: f64,
+    /// Largest permitted distance, m.
+    pub allowed_m: f64,
+}
+
 impl Pose {
     /// Transforms a point from body axes (origin at the CG) to world axes, m.
     pub fn world_from_body(&self, [x, y]: [f64; 2]) -> [f64; 2] {
@@ -179,6 +197,31 @@ impl Footprint {
         let side = self.width_m / 2.0;
         [[front, side], [rear, side], [rear, -side], [front, -side]]
             .map(|corner| pose.world_from_body(corner))
+    }
+
+    /// Distance of a point from the outline, m; 0 for a point inside of it.
+    ///
+    /// - `[x, y]`: the point in body axes, m.
+    pub fn distance_m(&self, [x, y]: [f64; 2]) -> f64 {
+        let ahead = (x - self.cg_from_front_m).max(self.cg_from_front_m - self.length_m - x);
+        let beside = y.abs() - self.width_m / 2.0;
+        ahead.max(0.0).hypot(beside.max(0.0))
+    }
+
+    /// Checks that a contact point lies at the vehicle: inside the outline, where crushed vehicles
+    /// touch, or outside of it by no more than a small share of the length ([`OFF_OUTLINE`]).
+    ///
+    /// - `[x_m, y_m]`: the point in body axes, m.
+    ///
+    /// # Errors
+    /// [`OffOutline`] with the distance.
+    pub fn check_contact(&self, [x_m, y_m]: [f64; 2]) -> Result<(), OffOutline> {
+        let distance_m = self.distance_m([x_m, y_m]);
+        let allowed_m = OFF_OUTLINE.high * self.length_m;
+        if distance_m <= allowed_m {
+            return Ok(());
+        }
+        Err(OffOutline { x_m, y_m, distance_m, allowed_m })
     }
 
     /// Midpoint of a side in body axes, m.

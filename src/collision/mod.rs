@@ -49,8 +49,8 @@ pub use channel_filter::{
 };
 pub use contact_distribution::ContactDistribution;
 pub use footprint::{
-    Contact, Footprint, FootprintError, Pose, Side, StruckSurface, TOUCH_TOLERANCE_M, find_contact,
-    place_touching,
+    Contact, Footprint, FootprintError, OffOutline, Pose, Side, StruckSurface, TOUCH_TOLERANCE_M,
+    find_contact, place_touching,
 };
 pub use impact::{
     BodyAfter, ContactSurface, FrictionModel, Impact, ImpactBody, ImpactError, ImpactSolution,

@@ -10,7 +10,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::collision::{
     ContactSurface, Footprint, FootprintError, FrictionModel, Impact, ImpactBody, ImpactError,
-    ImpactSolution, Pose, Side, find_contact, place_touching,
+    ImpactSolution, OffOutline, Pose, Side, find_contact, place_touching,
+};
+
+use crate::ranges::{
+    BODY_CG, BODY_LENGTH, BODY_MASS, BODY_WIDTH, BODY_YAW_INERTIA, CONTACT_COORDINATE,
+    CONTACT_OFFSET, FRICTION_LIMIT, HEADING, POSITION, RESTITUTION, Range, SPEED, YAW_RATE,
 };
 
 /// Coefficient of restitution that is used if none is given: the median of the default
@@ -155,6 +160,14 @@ pub enum ScenarioError {
         /// Angle of the given normal in body axes of the target, deg.
         normal_deg: f64,
     },
+    /// The contact point that the user gave does not lie at one of the vehicles.
+    #[error("the vehicles do not touch there: {of}")]
+    ContactOffOutline {
+        /// The vehicle: target or bullet.
+        of: &'static str,
+        /// How far the point lies off.
+        source: OffOutline,
+    },
     /// The contact point of an [`ImpactCase`] lies on neither side of the target, so that the
     /// direction of the normal is undefined.
     #[error("contact_y_m is {contact_y_m}, expected a side of the target")]
@@ -174,6 +187,21 @@ impl ScenarioVehicle {
         }
     }
 
+    /// Every number with its name and its range.
+    fn ranges(&self) -> [(&'static str, f64, Range); 9] {
+        [
+            ("mass_kg", self.mass_kg, BODY_MASS),
+            ("yaw_inertia_kg_m2", self.yaw_inertia_kg_m2, BODY_YAW_INERTIA),
+            ("length_m", self.length_m, BODY_LENGTH),
+            ("width_m", self.width_m, BODY_WIDTH),
+            ("cg_from_front_m", self.cg_from_front_m, BODY_CG.at_most(self.length_m)),
+            ("heading_rad", self.heading_rad, HEADING),
+            ("vx_m_s", self.vx_m_s, SPEED),
+            ("vy_m_s", self.vy_m_s, SPEED),
+            ("yaw_rate_rad_s", self.yaw_rate_rad_s, YAW_RATE),
+        ]
+    }
+
     fn body(&self, pose: &Pose, contact_point_m: [f64; 2]) -> ImpactBody {
         ImpactBody {
             mass_kg: self.mass_kg,
@@ -186,7 +214,52 @@ impl ScenarioVehicle {
     }
 }
 
+impl ScenarioContact {
+    /// Every number with its name and its range.
+    fn ranges(&self) -> Vec<(&'static str, f64, Range)> {
+        let mut numbers = vec![
+            ("restitution", self.restitution, RESTITUTION),
+            ("friction_limit", self.friction_limit, FRICTION_LIMIT),
+        ];
+        let mut bullet = |x_m, y_m| {
+            numbers.extend([("bullet_x_m", x_m, POSITION), ("bullet_y_m", y_m, POSITION)]);
+        };
+        match self.location {
+            ContactLocation::Footprints { bullet_x_m, bullet_y_m } => {
+                bullet(bullet_x_m, bullet_y_m);
+            }
+            ContactLocation::Side { offset_m, .. } => {
+                numbers.push(("offset_m", offset_m, CONTACT_OFFSET));
+            }
+            ContactLocation::Point { x_m, y_m, normal_rad, bullet_x_m, bullet_y_m } => {
+                bullet(bullet_x_m, bullet_y_m);
+                numbers.extend([
+                    ("x_m", x_m, CONTACT_COORDINATE),
+                    ("y_m", y_m, CONTACT_COORDINATE),
+                    ("normal_rad", normal_rad, HEADING),
+                ]);
+            }
+        }
+        numbers
+    }
+}
+
 impl Scenario {
+    /// Every number of the scenario with its name and its range.
+    pub fn ranges(&self) -> Vec<(String, f64, Range)> {
+        let mut numbers = vec![
+            ("target_x_m".to_owned(), self.target_x_m, POSITION),
+            ("target_y_m".to_owned(), self.target_y_m, POSITION),
+        ];
+        for (name, vehicle) in [("target", &self.target), ("bullet", &self.bullet)] {
+            let own = vehicle.ranges().into_iter();
+            numbers.extend(own.map(|(key, value, range)| (format!("{name}.{key}"), value, range)));
+        }
+        let own = self.contact.ranges().into_iter();
+        numbers.extend(own.map(|(key, value, range)| (format!("contact.{key}"), value, range)));
+        numbers
+    }
+
     /// Computes the poses of both vehicles, the contact point and the contact normal.
     ///
     /// # Errors
@@ -213,10 +286,19 @@ impl Scenario {
                     let normal_deg = normal_rad.to_degrees();
                     return Err(ScenarioError::NormalPointsOut { normal_deg });
                 }
+                let contact_point_m = target.world_from_body([x_m, y_m]);
+                let bullet = bullet_at(bullet_x_m, bullet_y_m);
+                for (of, outline, pose) in
+                    [("target", outlines[0], &target), ("bullet", outlines[1], &bullet)]
+                {
+                    outline
+                        .check_contact(pose.body_from_world(contact_point_m))
+                        .map_err(|source| ScenarioError::ContactOffOutline { of, source })?;
+                }
                 return Ok(ScenarioGeometry {
                     target,
-                    bullet: bullet_at(bullet_x_m, bullet_y_m),
-                    contact_point_m: target.world_from_body([x_m, y_m]),
+                    bullet,
+                    contact_point_m,
                     normal_angle_rad: target.yaw_rad + normal_rad,
                     overlap_m: None,
                 });

@@ -26,8 +26,9 @@
 //! friction_model = "limit"    # optional; or "paper"
 //! ```
 //!
-//! Each quantity is given once, in any unit of [`Quantity::units`]. The key ends in the symbol of
-//! the unit, with `_` for `/`, `·` and spaces, and with digits for powers.
+//! Each quantity is given once, in any unit of
+//! [`Quantity::units`](crate::units::Quantity::units). The key ends in the symbol of the unit, with
+//! `_` for `/`, `·` and spaces, and with digits for powers.
 
 use std::path::Path;
 
@@ -36,11 +37,10 @@ use crate::collision::{
     ScenarioContact, ScenarioVehicle, Side,
 };
 use crate::data::{TomlError, TomlFile, TomlTable};
-use crate::units::Quantity;
-
-const ANY_POSITION_M: [f64; 2] = [-1e6, 1e6];
-const ANY_ANGLE_RAD: [f64; 2] = [-4.0 * std::f64::consts::PI, 4.0 * std::f64::consts::PI];
-const ANY_SPEED_M_S: [f64; 2] = [-150.0, 150.0];
+use crate::ranges::{
+    BODY_CG, BODY_LENGTH, BODY_MASS, BODY_WIDTH, BODY_YAW_INERTIA, CONTACT_COORDINATE,
+    CONTACT_OFFSET, FRICTION_LIMIT, HEADING, POSITION, RESTITUTION, SPEED, YAW_RATE,
+};
 
 pub(super) const LOCATIONS: [&str; 3] = ["footprints", "side", "point"];
 pub(super) const FRICTION_MODELS: [&str; 2] = ["limit", "paper"];
@@ -84,25 +84,23 @@ impl Scenario {
 }
 
 fn position(section: &mut TomlTable<'_>, base: &str) -> Result<Option<f64>, TomlError> {
-    section.number(base, Quantity::Length, ANY_POSITION_M)
+    section.number(base, &POSITION)
 }
 
 fn read_vehicle(mut section: TomlTable<'_>) -> Result<ScenarioVehicle, TomlError> {
     let s = &mut section;
-    let mass_kg = s.require("mass", Quantity::Mass, [1.0, 1e8])?;
-    let inertia = (Quantity::MomentOfInertia, [0.1, 1e10]);
-    let yaw_inertia_kg_m2 = s.require("yaw_inertia", inertia.0, inertia.1)?;
-    let length_m = s.require("length", Quantity::Length, [0.1, 100.0])?;
-    let width_m = s.require("width", Quantity::Length, [0.1, 20.0])?;
-    let cg_from_front_m = s.require("cg_from_front", Quantity::Length, [0.0, length_m])?;
-    let heading = s.number("heading", Quantity::Angle, ANY_ANGLE_RAD)?;
+    let mass_kg = s.require("mass", &BODY_MASS)?;
+    let yaw_inertia_kg_m2 = s.require("yaw_inertia", &BODY_YAW_INERTIA)?;
+    let length_m = s.require("length", &BODY_LENGTH)?;
+    let width_m = s.require("width", &BODY_WIDTH)?;
+    let cg_from_front_m = s.require("cg_from_front", &BODY_CG.at_most(length_m))?;
+    let heading = s.number("heading", &HEADING)?;
     let heading_rad = heading.unwrap_or(0.0);
-    let rate = (Quantity::AngularVelocity, [-50.0, 50.0]);
-    let yaw_rate_rad_s = s.number("yaw_rate", rate.0, rate.1)?.unwrap_or(0.0);
-    let speed = s.number("speed", Quantity::Speed, ANY_SPEED_M_S)?;
+    let yaw_rate_rad_s = s.number("yaw_rate", &YAW_RATE)?.unwrap_or(0.0);
+    let speed = s.number("speed", &SPEED)?;
     let first = s.last_key();
-    let vx = s.number("vx", Quantity::Speed, ANY_SPEED_M_S)?;
-    let vy = s.number("vy", Quantity::Speed, ANY_SPEED_M_S)?;
+    let vx = s.number("vx", &SPEED)?;
+    let vy = s.number("vy", &SPEED)?;
     let [vx_m_s, vy_m_s] = match (speed, vx, vy) {
         (Some(speed), None, None) => [speed * heading_rad.cos(), speed * heading_rad.sin()],
         (None, Some(vx), Some(vy)) => [vx, vy],
@@ -130,8 +128,8 @@ fn read_location(
     bullet: &mut TomlTable<'_>,
 ) -> Result<ContactLocation, TomlError> {
     let mut bullet_at = || -> Result<(f64, f64), TomlError> {
-        let x_m = bullet.require("x", Quantity::Length, ANY_POSITION_M)?;
-        Ok((x_m, bullet.require("y", Quantity::Length, ANY_POSITION_M)?))
+        let x_m = bullet.require("x", &POSITION)?;
+        Ok((x_m, bullet.require("y", &POSITION)?))
     };
     match contact.choice("from", &LOCATIONS)?.ok_or_else(|| contact.missing("from"))? {
         0 => {
@@ -144,15 +142,15 @@ fn read_location(
             let side = idx.and_then(|idx| Side::ALL.get(idx).copied());
             Ok(ContactLocation::Side {
                 side: side.ok_or_else(|| contact.missing("side"))?,
-                offset_m: contact.require("offset", Quantity::Length, [-50.0, 50.0])?,
+                offset_m: contact.require("offset", &CONTACT_OFFSET)?,
             })
         }
         _ => {
             let (bullet_x_m, bullet_y_m) = bullet_at()?;
             Ok(ContactLocation::Point {
-                x_m: contact.require("x", Quantity::Length, [-100.0, 100.0])?,
-                y_m: contact.require("y", Quantity::Length, [-100.0, 100.0])?,
-                normal_rad: contact.require("normal", Quantity::Angle, ANY_ANGLE_RAD)?,
+                x_m: contact.require("x", &CONTACT_COORDINATE)?,
+                y_m: contact.require("y", &CONTACT_COORDINATE)?,
+                normal_rad: contact.require("normal", &HEADING)?,
                 bullet_x_m,
                 bullet_y_m,
             })
@@ -165,8 +163,8 @@ fn read_contact(
     location: ContactLocation,
 ) -> Result<ScenarioContact, TomlError> {
     let s = &mut section;
-    let restitution = s.number("restitution", Quantity::Ratio, [0.0, 1.0])?;
-    let friction_limit = s.number("friction_limit", Quantity::Ratio, [0.0, 10.0])?;
+    let restitution = s.number("restitution", &RESTITUTION)?;
+    let friction_limit = s.number("friction_limit", &FRICTION_LIMIT)?;
     let friction_model = match s.choice("friction_model", &FRICTION_MODELS)? {
         Some(1) => FrictionModel::Paper,
         _ => FrictionModel::Limit,
@@ -218,11 +216,7 @@ mod tests {
     #[test]
     fn a_refusal_names_file_place_key_value_and_range() {
         for (line, instead, expected) in [
-            (
-                "mass_kg = 2000",
-                "mass_kg = -3",
-                "7:11: target.mass_kg is -3, expected 1 to 100000000 kg",
-            ),
+            ("mass_kg = 2000", "mass_kg = -3", "7:11: target.mass_kg is -3, expected 1 to 1e8 kg"),
             (
                 "speed_km_h = 54",
                 "speed_mph = 1e3",
@@ -236,12 +230,12 @@ mod tests {
             (
                 "width_m = 1.85",
                 "width_m = nan",
-                "10:11: target.width_m is nan, expected 0.1 to 20 m",
+                "10:11: target.width_m is nan, expected 0.05 to 20 m",
             ),
             (
                 "width_m = 1.85",
                 "width_m = \"wide\"",
-                "10:11: target.width_m is \"wide\", expected 0.1 to 20 m",
+                "10:11: target.width_m is \"wide\", expected 0.05 to 20 m",
             ),
             ("length_m", "lenght_m", "6:2: target.length_m is missing"),
             ("heading_deg", "haeding_deg", "12:1: target.haeding_deg is not known here"),

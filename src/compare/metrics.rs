@@ -2,7 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::data::{Channel, SeriesError, TimeSeries, null_as_nan, nulls_as_nan};
+use crate::data::{
+    Channel, SeriesError, TimeSeries, finite_or_null, finite_or_nulls, null_as_nan, nulls_as_nan,
+};
 use crate::numerics::{interpolate, wrap_angle_rad};
 use crate::vehicle::VehicleParameters;
 
@@ -12,27 +14,28 @@ pub const HORIZONS_S: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 /// Change of yaw beyond which a motion counts as a spin, rad, as in the trajectory data sets.
 pub const SPIN_YAW_CHANGE_RAD: f64 = std::f64::consts::FRAC_PI_2;
 
-/// Errors of a predicted motion against a reference, evaluated at the reference's samples.
+/// Errors of a predicted motion against a reference, evaluated at the reference's samples. JSON has
+/// `null` for an error that is not finite, which that of a model whose motion diverges is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MotionError {
     /// Mean over the samples of the distance between the positions (X, Y), m.
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
     pub average_error_m: f64,
     /// Distance between the positions at the last sample, m.
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
     pub final_error_m: f64,
     /// Difference of yaw (prediction − reference) at the last sample, wrapped, rad.
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
     pub final_heading_error_rad: f64,
     /// Distance between the positions at each of [`HORIZONS_S`], m, linear between samples. For a
     /// horizon beyond the end of the reference it is the distance at the last sample.
-    #[serde(deserialize_with = "nulls_as_nan")]
+    #[serde(serialize_with = "finite_or_nulls", deserialize_with = "nulls_as_nan")]
     pub horizon_error_m: [f64; 4],
     /// Root mean square error of X, m.
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
     pub rmse_x_m: f64,
     /// Root mean square error of Y, m.
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
     pub rmse_y_m: f64,
     /// Root mean square error of v_x, m/s; `None` unless both motions have it.
     pub rmse_vx_m_s: Option<f64>,

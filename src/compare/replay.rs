@@ -4,6 +4,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::collision::{Footprint, OffOutline};
 use crate::compare::{
     MotionError, SPIN_YAW_CHANGE_RAD, largest_yaw_change_rad, physical_violations,
 };
@@ -49,6 +50,14 @@ pub enum ReplayError {
         case: String,
         /// The underlying error.
         source: SeriesError,
+    },
+    /// The force of the case does not act on the vehicle.
+    #[error("case {case}")]
+    Contact {
+        /// Name of the case.
+        case: String,
+        /// How far the contact point lies off.
+        source: OffOutline,
     },
     /// The simulation of the case failed.
     #[error("case {case}")]
@@ -99,12 +108,19 @@ pub struct ErrorSummary {
 /// The recorded initial state and contact force of a case as a manoeuvre of the recorded duration.
 ///
 /// # Errors
-/// [`ReplayError::Attributes`] if an attribute, [`ReplayError::Series`] if a column is missing.
-pub fn recorded_manoeuvre(case: &Case) -> Result<Manoeuvre, ReplayError> {
+/// [`ReplayError::Attributes`] if an attribute, [`ReplayError::Series`] if a column is missing,
+/// [`ReplayError::Contact`] if the force does not act on the vehicle.
+pub fn recorded_manoeuvre(
+    case: &Case,
+    vehicle: &VehicleParameters,
+) -> Result<Manoeuvre, ReplayError> {
     let attributes = TrajectoryAttributes::read(&case.attributes)?;
     let in_case = |source| ReplayError::Series { case: case.name.clone(), source };
     let [x_m, y_m] = attributes.contact_m;
     let contact = ContactPoint { x_m, y_m, height_m: attributes.contact_height_m };
+    Footprint::from(&vehicle.geometry)
+        .check_contact([x_m, y_m])
+        .map_err(|source| ReplayError::Contact { case: case.name.clone(), source })?;
     let force = case.force_history().map_err(in_case)?;
     let time_s = case.series.time_s();
     let last = time_s.last().copied().unwrap_or(0.0);
@@ -149,7 +165,7 @@ pub fn replay_case(
     integrator: Integrator,
 ) -> Result<Replay, ReplayError> {
     let in_case = |source| ReplayError::Series { case: case.name.clone(), source };
-    let manoeuvre = recorded_manoeuvre(case)?;
+    let manoeuvre = recorded_manoeuvre(case, vehicle)?;
     let friction = TrajectoryAttributes::read(&case.attributes)?.mu;
     let vehicle = vehicle.clone().with_friction(friction);
     let motion = vehicle

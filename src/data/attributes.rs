@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::data::{DataError, Table};
+use crate::data::{AttributeColumn, DataError, Table};
 
 /// The content of a cell that is not blank.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,18 +92,51 @@ impl Attributes {
     ///   the error.
     ///
     /// # Errors
-    /// [`DataError::MissingAttribute`] if the cell is blank or there is no such column, and
-    /// [`DataError::Cell`] if the cell holds text.
-    pub fn require(&self, name: &str, consequence: &'static str) -> Result<f64, DataError> {
-        match self.get(name) {
-            Some(Value::Number(number)) => Ok(*number),
-            Some(Value::Text(text)) => Err(self.not_a_number(name, text)),
-            None => Err(DataError::MissingAttribute {
+    /// [`DataError::MissingAttribute`] if there is no such column, and [`DataError::Attribute`] if
+    /// the cell is blank or holds text or a number out of range.
+    pub fn require(
+        &self,
+        column: &AttributeColumn,
+        consequence: &'static str,
+    ) -> Result<f64, DataError> {
+        if self.column(column.name) == 0 {
+            return Err(DataError::MissingAttribute {
                 path: self.path(),
                 line: self.line,
-                name: name.to_owned(),
+                name: column.name.to_owned(),
                 consequence,
-            }),
+            });
+        }
+        self.optional(column)?.ok_or_else(|| self.wrong(column, "blank".to_owned()))
+    }
+
+    /// The number in a column that a case may leave out; `None` if the cell is blank or there is no
+    /// such column.
+    ///
+    /// # Errors
+    /// [`DataError::Attribute`] if the cell holds text or a number out of range.
+    pub fn optional(&self, column: &AttributeColumn) -> Result<Option<f64>, DataError> {
+        match self.get(column.name) {
+            None => Ok(None),
+            Some(Value::Text(text)) => Err(self.wrong(column, format!("{text:?}"))),
+            Some(Value::Number(number)) => match column.range.check(*number) {
+                Ok(number) => Ok(Some(number)),
+                Err(_) => Err(self.wrong(column, column.range.shown(*number))),
+            },
+        }
+    }
+
+    /// Builds the error for a cell that does not hold what its column needs.
+    ///
+    /// - `got`: what the cell holds, in words.
+    fn wrong(&self, column: &AttributeColumn, got: String) -> DataError {
+        DataError::Attribute {
+            path: self.path(),
+            line: self.line,
+            column: self.column(column.name),
+            name: column.name.to_owned(),
+            got,
+            expected: column.range.explained(),
         }
     }
 
@@ -120,17 +153,5 @@ impl Attributes {
     /// Number of a column, counted from 1; 0 if there is no column of this name.
     pub(crate) fn column(&self, name: &str) -> usize {
         self.names.iter().position(|column| column == name).map_or(0, |idx| idx + 1)
-    }
-
-    /// Builds the error for a cell that holds text where a number is needed.
-    pub(crate) fn not_a_number(&self, name: &str, text: &str) -> DataError {
-        DataError::Cell {
-            path: self.path(),
-            line: self.line,
-            column: self.column(name),
-            name: name.to_owned(),
-            text: text.to_owned(),
-            unit: "",
-        }
     }
 }

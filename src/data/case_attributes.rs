@@ -4,9 +4,57 @@
 use serde::{Deserialize, Serialize};
 
 use crate::data::{Attributes, DataError, DatasetKind};
+use crate::ranges::{
+    BODY_MASS, BODY_YAW_INERTIA, BULLET_OFFSET, CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, HEADING,
+    ROAD_FRICTION, Range, SPEED,
+};
 
 const NO_COLLISION: &str = "the collision cannot be computed";
 const NO_MOTION: &str = "the motion cannot be simulated";
+
+/// A column of `cases.csv` from which the physics takes a number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AttributeColumn {
+    /// Header of the column.
+    pub name: &'static str,
+    /// Values that the numbers in it may have.
+    pub range: Range,
+    /// Whether the physics of a case cannot be computed without the number. In a column that is
+    /// not needed, a cell may be blank.
+    pub is_needed: bool,
+}
+
+const fn needed(name: &'static str, range: Range) -> AttributeColumn {
+    AttributeColumn { name, range, is_needed: true }
+}
+
+const fn optional(name: &'static str, range: Range) -> AttributeColumn {
+    AttributeColumn { name, range, is_needed: false }
+}
+
+const M_T: AttributeColumn = needed("m_t_kg", BODY_MASS);
+const M_B: AttributeColumn = needed("m_b_kg", BODY_MASS);
+const V_TX: AttributeColumn = needed("v_tx_m_s", SPEED);
+const V_TY: AttributeColumn = needed("v_ty_m_s", SPEED);
+const V_BX: AttributeColumn = needed("v_bx_m_s", SPEED);
+const V_BY: AttributeColumn = needed("v_by_m_s", SPEED);
+const THETA_B: AttributeColumn = needed("theta_b_rad", HEADING);
+const AT_X: AttributeColumn = needed("contact_x_m", CONTACT_X);
+const AT_Y: AttributeColumn = needed("contact_y_m", CONTACT_Y);
+const AT_Z: AttributeColumn = optional("contact_z_m", CONTACT_HEIGHT);
+const IZZ_T: AttributeColumn = optional("izz_t_kg_m2", BODY_YAW_INERTIA);
+const IZZ_B: AttributeColumn = optional("izz_b_kg_m2", BODY_YAW_INERTIA);
+const BULLET_X: AttributeColumn = optional("bullet_x0_m", BULLET_OFFSET);
+const BULLET_Y: AttributeColumn = optional("bullet_y0_m", BULLET_OFFSET);
+const SPEED_BEFORE: AttributeColumn = needed("speed_m_s", SPEED);
+const MU: AttributeColumn = needed("mu", ROAD_FRICTION);
+const HEIGHT: AttributeColumn = needed("contact_height_m", CONTACT_HEIGHT);
+
+const FORCE_COLUMNS: &[AttributeColumn] = &[
+    M_T, M_B, V_TX, V_TY, V_BX, V_BY, THETA_B, AT_X, AT_Y, AT_Z, IZZ_T, IZZ_B, BULLET_X, BULLET_Y,
+];
+
+const TRAJECTORY_COLUMNS: &[AttributeColumn] = &[SPEED_BEFORE, MU, AT_X, AT_Y, HEIGHT];
 
 /// The side of the target that is struck, as seen by its driver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -66,34 +114,22 @@ pub struct TrajectoryAttributes {
 }
 
 impl ForceAttributes {
-    /// The columns without which [`ForceAttributes::read`] fails.
-    pub const NEEDED: &'static [&'static str] = &[
-        "m_t_kg",
-        "m_b_kg",
-        "v_tx_m_s",
-        "v_ty_m_s",
-        "v_bx_m_s",
-        "v_by_m_s",
-        "theta_b_rad",
-        "contact_x_m",
-        "contact_y_m",
-    ];
-
     /// Reads the attributes of a force case from its row.
     ///
     /// # Errors
-    /// [`DataError::MissingAttribute`] if a needed column is missing or blank, and
-    /// [`DataError::Cell`] if it holds text.
+    /// [`DataError::MissingAttribute`] if a needed column is missing, and [`DataError::Attribute`]
+    /// if a cell is blank though it is needed, or holds text or a number out of range.
     pub fn read(attributes: &Attributes) -> Result<Self, DataError> {
-        let need = |name| attributes.require(name, NO_COLLISION);
+        let need = |column| attributes.require(column, NO_COLLISION);
+        let known = |column| attributes.optional(column);
         Ok(Self {
-            mass_kg: [need("m_t_kg")?, need("m_b_kg")?],
-            yaw_inertia_kg_m2: ["izz_t_kg_m2", "izz_b_kg_m2"].map(|name| attributes.number(name)),
-            target_velocity_m_s: [need("v_tx_m_s")?, need("v_ty_m_s")?],
-            bullet_velocity_m_s: [need("v_bx_m_s")?, need("v_by_m_s")?],
-            theta_b_rad: need("theta_b_rad")?,
-            contact_m: [need("contact_x_m")?, need("contact_y_m")?],
-            contact_height_m: attributes.number("contact_z_m"),
+            mass_kg: [need(&M_T)?, need(&M_B)?],
+            yaw_inertia_kg_m2: [known(&IZZ_T)?, known(&IZZ_B)?],
+            target_velocity_m_s: [need(&V_TX)?, need(&V_TY)?],
+            bullet_velocity_m_s: [need(&V_BX)?, need(&V_BY)?],
+            theta_b_rad: need(&THETA_B)?,
+            contact_m: [need(&AT_X)?, need(&AT_Y)?],
+            contact_height_m: known(&AT_Z)?,
             side: side(attributes),
             hooked: attributes.flag("hooked"),
             separated: attributes.flag("separated"),
@@ -102,22 +138,18 @@ impl ForceAttributes {
 }
 
 impl TrajectoryAttributes {
-    /// The columns without which [`TrajectoryAttributes::read`] fails.
-    pub const NEEDED: &'static [&'static str] =
-        &["speed_m_s", "mu", "contact_x_m", "contact_y_m", "contact_height_m"];
-
     /// Reads the attributes of a trajectory case from its row.
     ///
     /// # Errors
-    /// [`DataError::MissingAttribute`] if a needed column is missing or blank, and
-    /// [`DataError::Cell`] if it holds text.
+    /// [`DataError::MissingAttribute`] if a needed column is missing, and [`DataError::Attribute`]
+    /// if a cell is blank though it is needed, or holds text or a number out of range.
     pub fn read(attributes: &Attributes) -> Result<Self, DataError> {
-        let need = |name| attributes.require(name, NO_MOTION);
+        let need = |column| attributes.require(column, NO_MOTION);
         Ok(Self {
-            speed_m_s: need("speed_m_s")?,
-            mu: need("mu")?,
-            contact_m: [need("contact_x_m")?, need("contact_y_m")?],
-            contact_height_m: need("contact_height_m")?,
+            speed_m_s: need(&SPEED_BEFORE)?,
+            mu: need(&MU)?,
+            contact_m: [need(&AT_X)?, need(&AT_Y)?],
+            contact_height_m: need(&HEIGHT)?,
             side: side(attributes),
             spin: attributes.flag("spin"),
             separated: attributes.flag("fe_separated"),
@@ -126,11 +158,11 @@ impl TrajectoryAttributes {
 }
 
 impl DatasetKind {
-    /// The columns of `cases.csv` without which the physics of such a case cannot be computed.
-    pub fn needed_attributes(self) -> &'static [&'static str] {
+    /// The columns of `cases.csv` from which the physics of such a case takes numbers.
+    pub fn columns(self) -> &'static [AttributeColumn] {
         match self {
-            Self::Force => ForceAttributes::NEEDED,
-            Self::Trajectory => TrajectoryAttributes::NEEDED,
+            Self::Force => FORCE_COLUMNS,
+            Self::Trajectory => TRAJECTORY_COLUMNS,
         }
     }
 

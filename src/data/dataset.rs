@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::data::table::CASE_COLUMN;
 use crate::data::{
-    Attributes, DataError, FileKind, ForceHistory, Sampling, SeriesError, Table, TimeSeries, Value,
+    Attributes, DataError, FileKind, ForceHistory, Sampling, SeriesError, Table, TimeSeries,
     read_series,
 };
 use crate::jobs::{Progress, ProgressCallback};
@@ -191,12 +191,13 @@ struct NamedRow {
 
 /// The errors for needed columns that the table does not have.
 fn missing_attributes(table: &Table, kind: DatasetKind) -> Vec<DataError> {
-    let is_missing = |name: &&&str| !table.header().iter().any(|column| column == **name);
-    let missing = kind.needed_attributes().iter().filter(is_missing);
-    let problem = |name: &&str| DataError::MissingAttribute {
+    let is_missing = |name: &&str| !table.header().iter().any(|column| column == *name);
+    let needed = kind.columns().iter().filter(|column| column.is_needed);
+    let missing = needed.map(|column| column.name).filter(is_missing);
+    let problem = |name: &str| DataError::MissingAttribute {
         path: table.path().to_owned(),
         line: table.header_line(),
-        name: (*name).to_owned(),
+        name: name.to_owned(),
         consequence: kind.consequence(),
     };
     missing.map(problem).collect()
@@ -240,13 +241,15 @@ fn named_rows(table: &Table, problems: &mut Vec<DataError>) -> Result<Vec<NamedR
     Ok(rows)
 }
 
-/// The error for the first needed cell that holds text instead of a number; a blank cell is no
-/// error here.
+/// The error for the first cell that is blank though the physics needs it, or holds text or a
+/// number out of range. A column that the table lacks is reported once, for all cases.
 fn bad_attribute(attributes: &Attributes, kind: DatasetKind) -> Option<DataError> {
-    kind.needed_attributes().iter().find_map(|name| match attributes.get(name)? {
-        Value::Number(_) => None,
-        Value::Text(text) => Some(attributes.not_a_number(name, text)),
-    })
+    let known = kind.columns().iter().filter(|column| attributes.column(column.name) > 0);
+    let checked = known.map(|column| match column.is_needed {
+        true => attributes.require(column, kind.consequence()).err(),
+        false => attributes.optional(column).err(),
+    });
+    checked.flatten().next()
 }
 
 /// Whether a case name can be the name of a file inside the folder: it consists of letters, digits

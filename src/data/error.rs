@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::data::write::WriteError;
 use crate::data::{Channel, SeriesError, spelling};
+use crate::ranges::{OutOfRange, Range};
 use crate::units::Quantity;
 
 /// The reason why a file could not be read or written.
@@ -192,8 +193,21 @@ pub enum DataError {
         /// Time in this row, s.
         after_s: f64,
     },
-    /// A value is larger than any vehicle reaches, so that its unit is probably wrong.
-    #[error("{}:{line}:{column}: {name:?} is {value:e} {unit}, beyond {limit:e} {unit}; check the unit of the column", path.display())]
+    /// Two samples follow each other faster than any instrument or simulation records, or after a
+    /// gap longer than any record.
+    #[error("{}:{line}:{column}: {}; check the times and the unit of the column", path.display(), step)]
+    TimeStep {
+        /// The file that was read or written.
+        path: PathBuf,
+        /// Line of the later sample.
+        line: u64,
+        /// Number of the time column.
+        column: usize,
+        /// The step and its range.
+        step: OutOfRange,
+    },
+    /// A value is beyond what a vehicle reaches, so that its unit is probably wrong.
+    #[error("{}:{line}:{column}: {name:?} is {}, expected {}; check the unit of the column", path.display(), range.shown(*value), range.explained())]
     ImplausibleValue {
         /// The file that was read or written.
         path: PathBuf,
@@ -205,10 +219,8 @@ pub enum DataError {
         name: String,
         /// The value, SI units.
         value: f64,
-        /// The largest magnitude that is accepted, SI units.
-        limit: f64,
-        /// Symbol of the SI unit.
-        unit: &'static str,
+        /// The values that are accepted.
+        range: Box<Range>,
     },
     /// The columns do not form a time series. When a file is read, a wrong order of time is
     /// reported as [`DataError::TimeOrder`] instead.
@@ -219,17 +231,34 @@ pub enum DataError {
         /// The reason why the columns do not form a time series.
         source: SeriesError,
     },
-    /// A table of cases lacks a column, or a case lacks the value in it.
+    /// A table of cases lacks a column.
     #[error("{}:{line}: {name:?} is missing; add it, without it {consequence}", path.display())]
     MissingAttribute {
         /// Path of the table of cases.
         path: PathBuf,
-        /// Line of the header, or of the case whose cell is blank.
+        /// Line of the header, or of the case that is asked about.
         line: u64,
         /// Name of the column.
         name: String,
         /// What cannot be computed without it, in words.
         consequence: &'static str,
+    },
+    /// A cell of the table of cases is blank though the physics needs it, or holds text or a number
+    /// out of range.
+    #[error("{}:{line}:{column}: {name:?} is {got}, expected {expected}", path.display())]
+    Attribute {
+        /// Path of the table of cases.
+        path: PathBuf,
+        /// Line of the case.
+        line: u64,
+        /// Number of the column.
+        column: usize,
+        /// Name of the column.
+        name: String,
+        /// What the cell holds, in words.
+        got: String,
+        /// The range, and what the number means, in words.
+        expected: String,
     },
     /// Two rows of the table of cases have the same case name.
     #[error("{}:{line}:{column}: case {case:?} stands in line {first_line} already; rename or remove one", path.display())]

@@ -1,7 +1,36 @@
-//! Reading of numbers that JSON cannot represent. Infinite numbers and NaN are written as `null`,
-//! and `null` is read as NaN here.
+//! Numbers of results that may be absent because what they measure was not finite, such as the error
+//! of a model whose motion diverges. Infinite numbers and NaN are written as `null` here, and
+//! `null` is read as NaN.
+//!
+//! A field without these functions must be finite: the run layer refuses a report in which it is
+//! not.
 
-use serde::{Deserialize, Deserializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// Writes a number, with `null` for one that is not finite; for use with
+/// `#[serde(serialize_with)]`.
+///
+/// # Errors
+/// The error of the format.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+pub fn finite_or_null<S: Serializer>(value: &f64, to: S) -> Result<S::Ok, S::Error> {
+    Some(*value).filter(|value| value.is_finite()).serialize(to)
+}
+
+/// Writes numbers, with `null` for each that is not finite; for use with
+/// `#[serde(serialize_with)]`.
+///
+/// # Errors
+/// The error of the format.
+pub fn finite_or_nulls<const N: usize, S: Serializer>(
+    values: &[f64; N],
+    to: S,
+) -> Result<S::Ok, S::Error>
+where
+    [Option<f64>; N]: Serialize,
+{
+    values.map(|value| Some(value).filter(|value| value.is_finite())).serialize(to)
+}
 
 /// Reads a number, with NaN for `null`; for use with `#[serde(deserialize_with)]`.
 ///
@@ -29,12 +58,20 @@ where
 mod tests {
     use super::*;
 
-    #[derive(Deserialize)]
+    #[derive(Serialize, Deserialize)]
     struct Numbers {
-        #[serde(deserialize_with = "null_as_nan")]
+        #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
         one: f64,
-        #[serde(deserialize_with = "nulls_as_nan")]
+        #[serde(serialize_with = "finite_or_nulls", deserialize_with = "nulls_as_nan")]
         two: [f64; 2],
+    }
+
+    #[test]
+    fn numbers_that_are_not_finite_are_written_as_null() {
+        let numbers = Numbers { one: f64::INFINITY, two: [1.5, f64::NAN] };
+        assert_eq!(serde_json::to_string(&numbers).unwrap(), r#"{"one":null,"two":[1.5,null]}"#);
+        let numbers = Numbers { one: 0.5, two: [1.5, 2.5] };
+        assert_eq!(serde_json::to_string(&numbers).unwrap(), r#"{"one":0.5,"two":[1.5,2.5]}"#);
     }
 
     #[test]

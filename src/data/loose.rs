@@ -8,6 +8,10 @@ use crate::data::{
     Channel, ColumnMap, ColumnUse, Columns, DataError, Dialect, Note, Sampling, SeriesError, Table,
     TimeSeries,
 };
+use crate::ranges::{
+    ACCELERATION_SAMPLE, ANGLE_SAMPLE, ANGULAR_VELOCITY_SAMPLE, FORCE_SAMPLE, INSTANT,
+    LENGTH_SAMPLE, MOMENT_SAMPLE, Range, SPEED, STEER_ANGLE, TIME_STEP,
+};
 use crate::units::Quantity;
 
 /// Smallest number of rows of a time series.
@@ -204,6 +208,7 @@ fn load(
             Channel::Time => {
                 let time = TimeSeries::new(values);
                 series = time.map_err(|error| out_of_order(table, column, error))?;
+                check_steps(table, column, series.time_s())?;
             }
             channel => series
                 .insert(channel, values)
@@ -224,45 +229,60 @@ fn load(
 
 fn si_values(table: &Table, column: &ColumnUse) -> Result<Vec<f64>, DataError> {
     let mut values = table.numbers(column.number - 1, column.unit.symbol)?;
-    let limit = largest_plausible(column.channel.quantity());
+    let range = samples_range(column.channel);
     for (row_idx, value) in values.iter_mut().enumerate() {
         *value = column.unit.to_si(*value);
-        if value.abs() > limit {
+        if let Some(range) = range.filter(|range| !range.contains(*value)) {
             return Err(DataError::ImplausibleValue {
                 path: table.path().to_owned(),
                 line: table.line(row_idx),
                 column: column.number,
                 name: column.name.clone(),
                 value: *value,
-                limit,
-                unit: column.channel.quantity().si_unit().symbol,
+                range: Box::new(range),
             });
         }
     }
     Ok(values)
 }
 
-/// The largest magnitude, SI units, that is accepted for a quantity. A larger value means that the
-/// unit is wrong. The limits are wide; values that are merely unusual are flagged by
-/// [`crate::data::check_series`].
-fn largest_plausible(quantity: Quantity) -> f64 {
-    match quantity {
-        // Heavy trucks against rigid barriers reach a few MN; a force in N that is read as kN
-        // exceeds the limit.
-        Quantity::Force => 2e7,
-        Quantity::Moment => 1e8,
-        // No road vehicle is faster; 200 km/h on a test track that is read as m/s exceeds the
-        // limit.
-        Quantity::Speed => 150.0,
-        Quantity::Acceleration => 1e6,
-        Quantity::AngularVelocity => 200.0,
-        Quantity::Angle => 1e4,
-        // Coordinates of national grids reach 10⁷ m.
-        Quantity::Length => 2e7,
-        // Some clocks count the seconds since 1970.
-        Quantity::Time => 1e10,
-        _ => f64::MAX,
+/// Checks the time between the samples.
+fn check_steps(table: &Table, column: &ColumnUse, time_s: &[f64]) -> Result<(), DataError> {
+    for (row_idx, pair) in time_s.windows(2).enumerate() {
+        TIME_STEP.check(pair[1] - pair[0]).map_err(|step| DataError::TimeStep {
+            path: table.path().to_owned(),
+            line: table.line(row_idx + 1),
+            column: column.number,
+            step,
+        })?;
     }
+    Ok(())
+}
+
+/// The values that the samples of a channel may have; `None` for a quantity that no channel has.
+/// Values that are merely unusual are flagged by [`crate::data::check_series`].
+fn samples_range(channel: Channel) -> Option<Range> {
+    Some(match (channel, channel.quantity()) {
+        (Channel::Steer | Channel::SteerFl | Channel::SteerFr, _) => STEER_ANGLE,
+        (_, Quantity::Force) => FORCE_SAMPLE,
+        (_, Quantity::Moment) => MOMENT_SAMPLE,
+        (_, Quantity::Speed) => SPEED,
+        (_, Quantity::Acceleration) => ACCELERATION_SAMPLE,
+        (_, Quantity::AngularVelocity) => ANGULAR_VELOCITY_SAMPLE,
+        (_, Quantity::Angle) => ANGLE_SAMPLE,
+        (_, Quantity::Length) => LENGTH_SAMPLE,
+        (_, Quantity::Time) => INSTANT,
+        // No channel measures these.
+        (
+            _,
+            Quantity::Mass
+            | Quantity::MomentOfInertia
+            | Quantity::Impulse
+            | Quantity::AngularImpulse
+            | Quantity::Energy
+            | Quantity::Ratio,
+        ) => return None,
+    })
 }
 
 fn out_of_order(table: &Table, time: &ColumnUse, error: SeriesError) -> DataError {

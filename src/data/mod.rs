@@ -9,8 +9,7 @@
 //!   path holds.
 //! - [`ForceHistory`], [`contact_interval`] and [`check_case`] give impulse, contact and quality of
 //!   what was read.
-//! - [`TomlFile`], [`TomlTable`] and [`read_settings`] read settings; [`mod@write`] writes files and
-//!   folders.
+//! - [`TomlFile`] and [`TomlTable`] read settings; [`mod@write`] writes files and folders.
 
 mod attributes;
 mod case_attributes;
@@ -27,7 +26,6 @@ mod loose;
 mod open;
 mod quality;
 mod series;
-mod settings;
 mod spelling;
 mod table;
 mod text;
@@ -36,7 +34,7 @@ mod toml_table;
 pub mod write;
 
 pub use attributes::{Attributes, Value};
-pub use case_attributes::{ForceAttributes, StruckSide, TrajectoryAttributes};
+pub use case_attributes::{AttributeColumn, ForceAttributes, StruckSide, TrajectoryAttributes};
 pub use channel::Channel;
 pub use column_map::{ColumnMap, ColumnRef, ColumnSource, MapError};
 pub(crate) use columns::Columns;
@@ -46,7 +44,7 @@ pub use dataset::{Case, Dataset, DatasetKind, Outcome};
 pub use dialect::{Dialect, Separator};
 pub use error::DataError;
 pub use force_history::{CumulativeImpulse, ForceAxes, ForceHistory, Sampling};
-pub(crate) use json::{null_as_nan, nulls_as_nan};
+pub(crate) use json::{finite_or_null, finite_or_nulls, null_as_nan, nulls_as_nan};
 pub use loose::{
     FileKind, Loaded, read_any_series, read_force_file, read_motion_log, read_series,
     read_steer_file, read_trajectory_file,
@@ -54,7 +52,6 @@ pub use loose::{
 pub use open::{Opened, open};
 pub use quality::{Flag, FlagKind, Severity, check_case, check_series};
 pub use series::{SeriesError, TimeSeries};
-pub use settings::read_settings;
 pub use table::Table;
 pub use text::MAX_FILE_BYTES;
 pub use toml_file::{TomlError, TomlFile};

@@ -128,14 +128,14 @@ impl<'a> TomlFile<'a> {
         DeTable::parse(self.text).map_err(|error| self.syntax(&error))
     }
 
-    /// Builds the error for a number outside its range, at the place of the value in the file.
+    /// Builds the error for a value that is not permitted, at its place in the file.
     ///
     /// - `key`: the key, preceded by the names of its tables, such as `mass.mass_kg`. If the file
     ///   does not contain the key because the value was derived from others, the place is the start
     ///   of the file.
-    /// - `value`: the number, which the message shows if the file does not contain the key.
-    /// - `[low, high]`: lowest and highest accepted value.
-    pub fn out_of_range(self, key: &str, value: f64, [low, high]: [f64; 2]) -> TomlError {
+    /// - `value`: the value, which the message shows if the file does not contain the key.
+    /// - `expected`: the permitted values, in words.
+    pub fn wrong_value(self, key: &str, value: &str, expected: &str) -> TomlError {
         let root = DeTable::parse(self.text).ok();
         let table = root.as_ref().map(Spanned::get_ref);
         let span = table.and_then(|table| find(table, key)).map(Spanned::span);
@@ -146,8 +146,8 @@ impl<'a> TomlFile<'a> {
             line,
             column,
             key: key.into(),
-            value: written.unwrap_or_else(|| value.to_string()).into(),
-            expected: format!("{low} to {high}").into(),
+            value: written.unwrap_or_else(|| value.to_owned()).into(),
+            expected: expected.into(),
         }
     }
 

@@ -7,10 +7,10 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::data::{TomlError, TomlFile};
-use crate::units::{Quantity, Unit};
+use crate::ranges::Range;
+use crate::units::Unit;
 
-/// A table of a TOML file, with the keys that have been read so far. Ranges are `[lowest,
-/// highest]`, SI units.
+/// A table of a TOML file, with the keys that have been read so far.
 #[derive(Debug)]
 pub struct TomlTable<'a> {
     file: TomlFile<'a>,
@@ -81,21 +81,15 @@ impl<'a> TomlTable<'a> {
     }
 
     /// Reads a number and converts it to SI units; `None` if there is no such key. The name of the
-    /// key is `base`, an underscore and one of the units of the quantity, such as `speed_km_h`.
-    ///
-    /// - `range`: lowest and highest accepted value, SI units.
+    /// key is `base`, an underscore and one of the units of the range's quantity, such as
+    /// `speed_km_h`.
     ///
     /// # Errors
     /// [`TomlError::Value`] if the value is not a number or outside the range, and
     /// [`TomlError::Conflict`] if the number is given in two units.
-    pub fn number(
-        &mut self,
-        base: &str,
-        quantity: Quantity,
-        range: [f64; 2],
-    ) -> Result<Option<f64>, TomlError> {
+    pub fn number(&mut self, base: &str, range: &Range) -> Result<Option<f64>, TomlError> {
         let mut found: Option<(String, f64)> = None;
-        for unit in quantity.units() {
+        for unit in range.quantity.units() {
             let key = key_of(base, unit);
             let Some((_, value)) = self.take(&key) else {
                 continue;
@@ -114,14 +108,9 @@ impl<'a> TomlTable<'a> {
     /// # Errors
     /// The same as for [`TomlTable::number`], and [`TomlError::MissingKey`] if the number is
     /// missing.
-    pub fn require(
-        &mut self,
-        base: &str,
-        quantity: Quantity,
-        range: [f64; 2],
-    ) -> Result<f64, TomlError> {
-        let key = key_of(base, &quantity.si_unit());
-        self.number(base, quantity, range)?.ok_or_else(|| self.missing(&key))
+    pub fn require(&mut self, base: &str, range: &Range) -> Result<f64, TomlError> {
+        let key = key_of(base, &range.quantity.si_unit());
+        self.number(base, range)?.ok_or_else(|| self.missing(&key))
     }
 
     /// Checks that every key of the table has been read.
@@ -183,22 +172,11 @@ impl<'a> TomlTable<'a> {
         key: &str,
         value: &Spanned<DeValue<'_>>,
         unit: &Unit,
-        [low, high]: [f64; 2],
+        range: &Range,
     ) -> Result<f64, TomlError> {
-        // A limit that is written in another unit must be accepted in spite of rounding.
-        let slack = 1e-12 * low.abs().max(high.abs());
         let si = parse_number(value.get_ref()).map(|number| unit.to_si(number));
-        match si {
-            Some(si) if si >= low - slack && si <= high + slack => Ok(si),
-            _ => {
-                let [low, high] = [low, high].map(|si| {
-                    let shown = unit.from_si(si);
-                    (shown * 1e6).round() / 1e6
-                });
-                let expected = format!("{low} to {high} {}", unit.symbol);
-                Err(self.bad_value(key, value, expected.trim_end().to_owned()))
-            }
-        }
+        si.and_then(|si| range.rounded_into(si))
+            .ok_or_else(|| self.bad_value(key, value, range.expected(unit)))
     }
 
     fn bad_value(&self, key: &str, value: &Spanned<DeValue<'_>>, expected: String) -> TomlError {

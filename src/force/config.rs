@@ -5,7 +5,8 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::learning::{LearningError, Setting, TEST_SHARE, check_settings};
+use crate::learning::{LearningError, TEST_SHARE, check_relation, check_settings, load_settings};
+use crate::ranges::FORCE_SETTINGS;
 
 /// All settings of the force network. Settings that a TOML file leaves out keep their default.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -231,54 +232,22 @@ impl ForceConfig {
     /// # Errors
     /// [`LearningError::Toml`], [`LearningError::Setting`].
     pub fn load(path: &Path) -> Result<Self, LearningError> {
-        let config: Self = crate::data::read_settings(path)?;
-        config.check()?;
-        Ok(config)
+        load_settings(path, Self::check)
     }
 
-    /// Checks every range.
+    /// Checks every setting against [`FORCE_SETTINGS`], and what several must satisfy together.
     ///
     /// # Errors
     /// [`LearningError::Setting`] with the first setting out of range.
     pub fn check(&self) -> Result<(), LearningError> {
-        let (network, training, crush) = (&self.network, &self.training, &self.crush);
-        let even = network.position_channels.is_multiple_of(2) && network.position_channels > 0;
-        let loss = self.loss;
-        check_settings([
-            Setting::count("network.components", network.components),
-            Setting::count("network.attention_stride", network.attention_stride),
-            Setting::count("network.trunk (layers)", network.trunk.len()),
-            Setting::count("network.encoder_branches", network.encoder_branches.len()),
-            Setting::new(
-                "network.position_channels",
-                network.position_channels,
-                even,
-                "an even number above 0",
-            ),
-            Setting::up_to("network.shape_correction", network.shape_correction, 0.99, "0 to 0.99"),
-            Setting::up_to("network.impulse_correction", network.impulse_correction, 2.0, "0 to 2"),
-            Setting::up_to("network.force_correction", network.force_correction, 10.0, "0 to 10"),
-            Setting::up_to("network.component_shift", network.component_shift, 10.0, "0 to 10"),
-            Setting::up_to("network.hooking_shift", network.hooking_shift, 10.0, "0 to 10"),
-            Setting::positive("network.duration_max_s", network.duration_max_s),
-            Setting::positive("network.min_std", network.min_std),
-            Setting::up_to("loss.likelihood", loss.likelihood, 1e6, "0 to 1e6"),
-            Setting::up_to("loss.data", loss.data, 1e6, "0 to 1e6"),
-            Setting::up_to("loss.impulse", loss.impulse, 1e6, "0 to 1e6"),
-            Setting::up_to("loss.energy", loss.energy, 1e6, "0 to 1e6"),
-            Setting::up_to("loss.duration", loss.duration, 1e6, "0 to 1e6"),
-            Setting::up_to("loss.hooking", loss.hooking, 1e6, "0 to 1e6"),
-            Setting::count("training.epochs", training.epochs),
-            Setting::count("training.batch_cases", training.batch_cases),
-            Setting::positive("training.learning_rate", training.learning_rate),
-            Setting::positive("training.max_gradient_norm", training.max_gradient_norm),
-            Setting::up_to("training.validation_share", training.validation_share, 0.5, "0 to 0.5"),
-            Setting::up_to("training.test_share", training.test_share, 0.9, "0 to 0.9"),
-            Setting::count("training.checkpoint_epochs", training.checkpoint_epochs),
-            Setting::new("crush.folds", crush.folds, crush.folds >= 2, "2 or more"),
-            Setting::positive("crush.prior_weight", crush.prior_weight),
-            Setting::up_to("crush.hooked_weight", crush.hooked_weight, 1.0, "0 to 1"),
-        ])
+        check_settings(self, &FORCE_SETTINGS)?;
+        let channels = self.network.position_channels;
+        check_relation(
+            "network.position_channels",
+            channels,
+            channels.is_multiple_of(2),
+            "an even number",
+        )
     }
 }
 
@@ -305,6 +274,13 @@ mod tests {
         assert!(error.contains("c.toml:3:1: unknown field `colour`"), "{error}");
         std::fs::write(&path, "[training]\nbatch_cases = 0\n").unwrap();
         let error = ForceConfig::load(&path).unwrap_err().to_string();
-        assert_eq!(error, "training.batch_cases is 0, expected 1 or more");
+        let expected = "c.toml:2:15: training.batch_cases is 0, expected 1 to 100000";
+        assert!(error.ends_with(expected), "{error}");
+        std::fs::write(&path, "[network]\nposition_channels = 7\n").unwrap();
+        let error = ForceConfig::load(&path).unwrap_err().to_string();
+        assert!(error.ends_with("network.position_channels is 7, expected an even number"));
+        std::fs::write(&path, "[network]\ntrunk = []\n").unwrap();
+        let error = ForceConfig::load(&path).unwrap_err().to_string();
+        assert!(error.ends_with("c.toml:2:9: network.trunk is [], expected 1 to 32 of them"));
     }
 }

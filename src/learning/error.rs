@@ -20,11 +20,11 @@ pub enum LearningError {
     #[error("{name} is {value}, expected {expected}")]
     Setting {
         /// Section and name, as in the file.
-        name: &'static str,
+        name: String,
         /// Its value.
         value: String,
         /// The range, in words.
-        expected: &'static str,
+        expected: String,
     },
     /// A file of settings cannot be read.
     #[error(transparent)]

@@ -1,6 +1,7 @@
 //! What the trainings of the force network and of the response network have in common.
 //!
-//! Cases: [`TrainingCase`], [`split()`], [`TrainingSet`]. Settings: [`TrainSettings`], [`Setting`].
+//! Cases: [`TrainingCase`], [`split()`], [`TrainingSet`]. Settings: [`TrainSettings`],
+//! [`check_settings`].
 //! A training under way: [`EpochLoop`], [`TrainingReport`], [`TrainingFile`]. What it leaves behind:
 //! [`TrainingRecord`], [`ModelFile`].
 
@@ -36,7 +37,7 @@ pub use record::{EpochDetail, EpochRecord, TrainingRecord};
 pub use report::{
     EpochReport, EpochSummary, NamedLoss, PhysicsBalance, TrainingProgress, TrainingReport,
 };
-pub use setting::{Setting, check_settings};
+pub use setting::{check_relation, check_settings, load_settings};
 pub use split::{Split, TEST_SHARE, folds, split};
 pub use train_settings::TrainSettings;
 pub use training_file::{SavedTraining, TrainingFile};

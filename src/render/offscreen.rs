@@ -7,18 +7,16 @@ use image::RgbaImage;
 
 use crate::data::{DataError, Existing, write_atomically};
 use crate::figure::Figure;
+use crate::ranges::{OutOfRange, PICTURE_SIDE};
 use crate::render::{FigureOptions, SoftwareRenderer, figure_ui, theme};
 
 /// Number of passes after which fonts, plot bounds and layout no longer change.
 const SETTLING_PASSES: usize = 4;
 
-/// Largest width and height of a picture, pixels.
-const MAX_SIDE_PX: u32 = 16_384;
-
 /// Size, scale and theme of a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Canvas {
-    /// Width and height, pixels, 16 to 16 384 each.
+    /// Width and height, pixels, each in [`PICTURE_SIDE`].
     pub size_px: [u32; 2],
     /// Pixels per point; 2 is suitable for print and slides.
     pub scale: f32,
@@ -36,13 +34,8 @@ impl Default for Canvas {
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
     /// The size of the picture is outside the permitted range.
-    #[error("a picture of {width} × {height} pixels cannot be drawn; expected 16 to {MAX_SIDE_PX}")]
-    Size {
-        /// Width that was asked for, pixels.
-        width: u32,
-        /// Height that was asked for, pixels.
-        height: u32,
-    },
+    #[error(transparent)]
+    Size(#[from] OutOfRange),
     /// The file cannot be written.
     #[error(transparent)]
     Write(#[from] DataError),
@@ -51,15 +44,14 @@ pub enum RenderError {
 /// Draws any user interface off screen on the CPU, which gives the same pixels on every machine.
 ///
 /// # Errors
-/// [`RenderError::Size`] for a width or height outside 16 to 16 384 pixels.
+/// [`RenderError::Size`] for a width or height outside [`PICTURE_SIDE`].
 pub fn draw_offscreen(
     canvas: Canvas,
     mut ui: impl FnMut(&mut Ui),
 ) -> Result<RgbaImage, RenderError> {
     let [width, height] = canvas.size_px;
-    if [width, height].iter().any(|side| !(16..=MAX_SIDE_PX).contains(side)) {
-        return Err(RenderError::Size { width, height });
-    }
+    PICTURE_SIDE.check_count(u64::from(width))?;
+    PICTURE_SIDE.check_count(u64::from(height))?;
     let context = Context::default();
     context.set_visuals(theme::visuals(canvas.dark));
     let mut renderer = SoftwareRenderer::default();
@@ -88,7 +80,7 @@ pub fn draw_offscreen(
 /// Draws a figure below its title.
 ///
 /// # Errors
-/// [`RenderError::Size`] for a width or height outside 16 to 16 384 pixels.
+/// [`RenderError::Size`] for a width or height outside [`PICTURE_SIDE`].
 pub fn figure_image(figure: &Figure, canvas: Canvas) -> Result<RgbaImage, RenderError> {
     draw_offscreen(canvas, |ui| {
         let frame = egui::Frame::new().inner_margin(12.0);

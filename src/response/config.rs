@@ -4,7 +4,8 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::learning::{LearningError, Setting, check_settings};
+use crate::learning::{LearningError, check_relation, check_settings, load_settings};
+use crate::ranges::RESPONSE_SETTINGS;
 use crate::response::{Correction, EffectsConfig, TuningConfig};
 
 /// All settings of the response network and its training. Read from TOML: what a file leaves out keeps
@@ -282,60 +283,29 @@ impl ResponseConfig {
     /// # Errors
     /// [`LearningError::Toml`] with the line, [`LearningError::Setting`].
     pub fn load(path: &Path) -> Result<Self, LearningError> {
-        let config: Self = crate::data::read_settings(path)?;
-        config.check()?;
-        Ok(config)
+        load_settings(path, Self::check)
     }
 
-    /// Checks every range.
+    /// Checks every setting against [`RESPONSE_SETTINGS`], and what several must satisfy together.
     ///
     /// # Errors
     /// [`LearningError::Setting`] with the first setting out of range.
     pub fn check(&self) -> Result<(), LearningError> {
-        let Self { network, single_steps, rollouts, physics, effects, .. } = self;
-        let all_positive = |name, values: &[f64]| {
-            let is_valid = values.iter().all(|value| *value > 0.0 && value.is_finite());
-            Setting::new(name, format!("{values:?}"), is_valid, "numbers above 0")
-        };
-        let shortest = rollouts.lengths.iter().copied().min().unwrap_or(1);
+        check_settings(self, &RESPONSE_SETTINGS)?;
+        let network = &self.network;
         let heads = network.attention_heads;
         let hidden = network.encoder.last().copied().unwrap_or(0);
-        check_settings([
-            Setting::count("network.components", network.components),
-            Setting::count("network.encoder (layers)", network.encoder.len()),
-            Setting::count("network.trunk (layers)", network.trunk.len()),
-            Setting::new(
-                "network.attention_heads",
-                heads,
-                heads > 0 && hidden.is_multiple_of(heads),
-                "a divisor of the encoder's last width",
-            ),
-            Setting::new(
-                "network.effects",
-                network.effects,
-                !network.effects || network.correction == Correction::Acceleration,
-                "false where the correction is no acceleration",
-            ),
-            Setting::positive("network.min_std", network.min_std),
-            all_positive("network.bound", network.bound.as_ref().map_or(&[], |bound| bound)),
-            all_positive("network.unit", &network.unit),
-            Setting::count("single_steps.batch_instants", single_steps.batch_instants),
-            Setting::positive("single_steps.learning_rate", single_steps.learning_rate),
-            Setting::up_to("single_steps.frozen_share", single_steps.frozen_share, 1.0, "0 to 1"),
-            Setting::count("rollouts.lengths", shortest),
-            Setting::count("rollouts.batch_windows", rollouts.batch_windows),
-            Setting::count("rollouts.truncation", rollouts.truncation),
-            Setting::positive("rollouts.learning_rate", rollouts.learning_rate),
-            Setting::positive("physics.epoch_scale", physics.epoch_scale),
-            Setting::positive("physics.quality_distance", physics.quality_distance),
-            Setting::positive("effects.ridge", effects.ridge),
-            Setting::new(
-                "effects.common",
-                effects.common,
-                (0.0..1.0).contains(&effects.common),
-                "0 to below 1",
-            ),
-            Setting::positive("effects.huber", effects.huber),
-        ])
+        check_relation(
+            "network.attention_heads",
+            heads,
+            hidden.is_multiple_of(heads),
+            "a divisor of the encoder's last width",
+        )?;
+        check_relation(
+            "network.effects",
+            network.effects,
+            !network.effects || network.correction == Correction::Acceleration,
+            "false where the correction is no acceleration",
+        )
     }
 }

@@ -61,9 +61,18 @@ pub enum CheckedContent {
 
 impl Question for CheckRequest {
     type Answer = CheckAnswer;
+    type Report = CheckReport;
     const NAME: &'static str = "check";
 
-    fn answer(
+    fn check(&self) -> Result<(), StudyError> {
+        Ok(())
+    }
+
+    fn report(answer: &Self::Answer) -> &CheckReport {
+        &answer.report
+    }
+
+    fn solve(
         &self,
         _library: &Library,
         observer: &mut Observer<'_>,

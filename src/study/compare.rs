@@ -5,8 +5,10 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use crate::data::Outcome;
+use crate::ranges::{CHOICES, TRAJECTORIES, TRAJECTORY_SETS};
 use crate::response::ResponseConfig;
 use crate::response::evaluate::{Comparison, ComparisonSettings, compare_models};
+use crate::study::checks::{check, check_count};
 use crate::study::inputs::{data_name, response_cases};
 use crate::study::question::progress_of;
 use crate::study::{
@@ -102,9 +104,22 @@ impl CompareAnswer {
 
 impl Question for CompareRequest {
     type Answer = CompareAnswer;
+    type Report = CompareReport;
     const NAME: &'static str = "compare";
 
-    fn answer(
+    fn check(&self) -> Result<(), StudyError> {
+        check_count("trajectories", &TRAJECTORY_SETS, self.trajectories.len())?;
+        for n in &self.trajectories {
+            check_count("trajectories", &TRAJECTORIES, *n)?;
+        }
+        check("choices", &CHOICES, self.choices as f64)
+    }
+
+    fn report(answer: &Self::Answer) -> &CompareReport {
+        &answer.report
+    }
+
+    fn solve(
         &self,
         library: &Library,
         observer: &mut Observer<'_>,

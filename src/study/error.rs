@@ -3,17 +3,70 @@
 use std::path::PathBuf;
 
 use crate::analysis::{AnalysisError, MotionForecastError};
-use crate::collision::ScenarioError;
+use crate::collision::{OffOutline, ScenarioError};
 use crate::compare::ReplayError;
 use crate::data::{DataError, SeriesError, TomlError};
 use crate::force::{EvaluateError, ForceError};
 use crate::learning::{LearningError, LoadError};
+use crate::ranges::OutOfRange;
 use crate::response::LogError;
 use crate::vehicle::{Preset, SimulationError};
 
 /// A question that cannot be answered.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
+    /// A number of the question is out of range.
+    #[error("{field}")]
+    OutOfRange {
+        /// Where the number stands in the question.
+        field: String,
+        /// The number and its range.
+        source: OutOfRange,
+    },
+    /// A number of the report is not finite: numbers of the question that each lie in their range
+    /// do not go together.
+    #[error(
+        "{question}: {field} of the answer is {value}, which is no number to rely on; \
+         some numbers of the question do not go together"
+    )]
+    NotFinite {
+        /// What was asked.
+        question: &'static str,
+        /// Where the number stands in the report.
+        field: String,
+        /// The number.
+        value: f64,
+    },
+    /// A window of time ends before it starts.
+    #[error("window: {from_s} s to {to_s} s, expected a start that is not after the end")]
+    Window {
+        /// Start, s.
+        from_s: f64,
+        /// End, s.
+        to_s: f64,
+    },
+    /// A contact point lies off the vehicle.
+    #[error(
+        "{name}: the force does not act on {vehicle}; correct the point or take another vehicle"
+    )]
+    ContactOffVehicle {
+        /// The file, case or scenario.
+        name: String,
+        /// The vehicle.
+        vehicle: String,
+        /// How far the point lies off.
+        source: OffOutline,
+    },
+    /// More folds are asked for than there are cases.
+    #[error(
+        "cross_validate: {n_folds} folds of {n_cases} training cases, expected at most {n_cases}"
+    )]
+    TooManyFolds {
+        /// Number of folds.
+        n_folds: usize,
+        /// Number of cases that the model was trained on.
+        n_cases: usize,
+    },
     /// A file or data set cannot be read.
     #[error(transparent)]
     Data(#[from] DataError),

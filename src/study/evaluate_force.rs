@@ -13,6 +13,8 @@ use crate::force::{
 };
 use crate::jobs::Progress;
 use crate::nn::random_stream;
+use crate::ranges::FOLDS;
+use crate::study::checks::check_count;
 use crate::study::inputs::force_cases;
 use crate::study::question::progress_of;
 use crate::study::{
@@ -136,9 +138,18 @@ pub struct EvaluatedForceCases {
 
 impl Question for EvaluateForceRequest {
     type Answer = EvaluateForceAnswer;
+    type Report = ForceEvaluation;
     const NAME: &'static str = "evaluate";
 
-    fn answer(
+    fn check(&self) -> Result<(), StudyError> {
+        self.cross_validate.map_or(Ok(()), |n| check_count("cross_validate", &FOLDS, n))
+    }
+
+    fn report(answer: &Self::Answer) -> &ForceEvaluation {
+        &answer.report
+    }
+
+    fn solve(
         &self,
         library: &Library,
         observer: &mut Observer<'_>,
@@ -151,6 +162,9 @@ impl Question for EvaluateForceRequest {
         };
         if let Some(n_folds) = self.cross_validate {
             let cases = model.training_cases();
+            if n_folds > cases.len() {
+                return Err(StudyError::TooManyFolds { n_folds, n_cases: cases.len() });
+            }
             let folds = (n_folds, &settings);
             let mut report = progress_of(observer);
             let validated = cross_validate(cases, model.config(), folds, &mut report)?;

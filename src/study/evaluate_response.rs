@@ -9,8 +9,8 @@ use crate::response::evaluate::{MotionModel, evaluate_motion_model};
 use crate::response::{Correction, ResponseCase, ResponseModel};
 use crate::study::inputs::{data_name, response_cases};
 use crate::study::{
-    BadCases, CompareAnswer, EvaluatedCases, Library, ModelChoice, Observer, Question, StudyError,
-    VehicleChoice,
+    BadCases, CompareAnswer, CompareReport, EvaluatedCases, Library, ModelChoice, Observer,
+    Question, StudyError, VehicleChoice,
 };
 
 /// Asks how well a response network predicts the motions of a data set.
@@ -40,9 +40,18 @@ pub type EvaluateResponseAnswer = CompareAnswer;
 
 impl Question for EvaluateResponseRequest {
     type Answer = EvaluateResponseAnswer;
+    type Report = CompareReport;
     const NAME: &'static str = "evaluate";
 
-    fn answer(
+    fn check(&self) -> Result<(), StudyError> {
+        Ok(())
+    }
+
+    fn report(answer: &Self::Answer) -> &CompareReport {
+        &answer.report
+    }
+
+    fn solve(
         &self,
         library: &Library,
         observer: &mut Observer<'_>,

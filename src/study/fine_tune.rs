@@ -8,14 +8,16 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::Outcome;
 use crate::learning::TEST_SHARE;
+use crate::ranges::{TEST_SHARE as SHARE_OF_TEST, TRAJECTORIES};
 use crate::response::{
     ResponseConfig, ResponseModel, ResponseTrainSettings, ResponseTrainingSet, fine_tune,
 };
+use crate::study::checks::{check, check_count};
 use crate::study::inputs::{OpenVehicle, data_name, response_cases, struck_vehicle};
 use crate::study::train_response::TrainingNotes;
 use crate::study::{
     ConfigChoice, Event, Library, ModelChoice, MotionLogs, Observer, Question,
-    ResponseTrainingAnswer, StudyError, TrainingOptions, VehicleChoice,
+    ResponseTrainingAnswer, ResponseTrainingReport, StudyError, TrainingOptions, VehicleChoice,
 };
 
 /// Asks for a response network that has learned from recorded motions.
@@ -127,9 +129,22 @@ impl FineTuneRequest {
 
 impl Question for FineTuneRequest {
     type Answer = ResponseTrainingAnswer;
+    type Report = ResponseTrainingReport;
     const NAME: &'static str = "fine-tune";
 
-    fn answer(
+    fn check(&self) -> Result<(), StudyError> {
+        check("test_share", &SHARE_OF_TEST, self.test_share)?;
+        if let Some(n) = self.trajectories {
+            check_count("trajectories", &TRAJECTORIES, n)?;
+        }
+        self.logs.as_ref().map_or(Ok(()), MotionLogs::check)
+    }
+
+    fn report(answer: &Self::Answer) -> &ResponseTrainingReport {
+        &answer.report
+    }
+
+    fn solve(
         &self,
         library: &Library,
         observer: &mut Observer<'_>,

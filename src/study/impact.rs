@@ -87,9 +87,18 @@ pub struct ImpactAnswer {
 
 impl Question for ImpactRequest {
     type Answer = ImpactAnswer;
+    type Report = ImpactReport;
     const NAME: &'static str = "impact";
 
-    fn answer(
+    fn check(&self) -> Result<(), StudyError> {
+        self.scenario.check()
+    }
+
+    fn report(answer: &Self::Answer) -> &ImpactReport {
+        &answer.report
+    }
+
+    fn solve(
         &self,
         _library: &Library,
         _observer: &mut Observer<'_>,

@@ -22,7 +22,9 @@
 //! ```
 
 mod assumption;
+mod checks;
 mod error;
+mod finite;
 mod library;
 mod question;
 mod word;
@@ -54,6 +56,7 @@ pub use check_report::{
     CaseFlag, CheckReport, ColumnReport, DatasetReport, FileReport, InputFileReport, PathProblem,
     ProposedColumn, RecordedForceReport,
 };
+pub use checks::check_window;
 pub use compare::{CompareAnswer, CompareReport, CompareRequest, DEFAULT_CHOICES};
 pub use error::StudyError;
 pub use evaluate_force::{

@@ -6,8 +6,10 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::data::{ColumnMap, DataError, ForceHistory, read_any_series};
+use crate::ranges::{INSTANT, LOG_DURATION};
 use crate::response::{ForceOrigin, LogNoise, LogSettings, LoggedImpact, MotionLog, ResponseCase};
 use crate::study::StudyError;
+use crate::study::checks::{check, check_contact, check_given};
 use crate::study::simulate::acting_force;
 use crate::vehicle::{ContactLoad, ContactPoint, VehicleParameters};
 
@@ -61,6 +63,13 @@ pub struct LogReport {
 }
 
 impl MotionLogs {
+    /// Checks every number.
+    pub(super) fn check(&self) -> Result<(), StudyError> {
+        check_contact(self.contact.as_ref())?;
+        check_given("impact_s", &INSTANT, self.impact_s)?;
+        check("duration_s", &LOG_DURATION, self.duration_s)
+    }
+
     /// The logs as trajectories.
     pub(super) fn read(
         &self,

@@ -6,6 +6,8 @@ use crate::analysis::{Estimate, ForceForecast, ForecastSettings, Mode};
 use crate::collision::PrincipalDirectionOfForce;
 use crate::data::{DatasetKind, Outcome};
 use crate::force::{ForceError, ForcePrediction, ForceScenario, OutsideTraining};
+use crate::ranges::SAMPLES;
+use crate::study::checks::{check_all, check_count};
 use crate::study::simulate_dataset::take_case;
 use crate::study::{
     Assumption, Library, ModelChoice, Observer, Question, ScenarioChoice, StudyError,
@@ -147,9 +149,23 @@ impl ForceQuestion {
 
 impl Question for PredictForceRequest {
     type Answer = PredictForceAnswer;
+    type Report = PredictForceReport;
     const NAME: &'static str = "predict force";
 
-    fn answer(
+    fn check(&self) -> Result<(), StudyError> {
+        check_count("samples", &SAMPLES, self.samples)?;
+        match &self.collision {
+            ForceQuestion::Scenario(scenario) => scenario.check(),
+            ForceQuestion::Case { .. } => Ok(()),
+            ForceQuestion::Numbers { numbers, .. } => check_all(numbers.ranges()),
+        }
+    }
+
+    fn report(answer: &Self::Answer) -> &PredictForceReport {
+        &answer.report
+    }
+
+    fn solve(
         &self,
         library: &Library,
         observer: &mut Observer<'_>,

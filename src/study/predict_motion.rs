@@ -11,6 +11,8 @@ use crate::analysis::{
 };
 use crate::data::{DatasetKind, ForceHistory, Outcome};
 use crate::force::{ForceModel, ForceScenario, OutsideTraining};
+use crate::ranges::{DRAWS, FORECAST_DURATION};
+use crate::study::checks::{check, check_count};
 use crate::study::simulate_dataset::take_case;
 use crate::study::{
     AssumedQuantity, Assumption, Library, ModelChoice, MotionSource, Observer, Question,
@@ -134,9 +136,23 @@ impl PredictMotionRequest {
 
 impl Question for PredictMotionRequest {
     type Answer = PredictMotionAnswer;
+    type Report = PredictMotionReport;
     const NAME: &'static str = "predict motion";
 
-    fn answer(
+    fn check(&self) -> Result<(), StudyError> {
+        self.motion.check()?;
+        // A recorded motion has its own duration.
+        if matches!(self.motion.source, MotionSource::Scenario { .. } | MotionSource::Drive(_)) {
+            check("motion.duration_s", &FORECAST_DURATION, self.motion.duration_s)?;
+        }
+        check_count("draws", &DRAWS, self.draws)
+    }
+
+    fn report(answer: &Self::Answer) -> &PredictMotionReport {
+        &answer.report
+    }
+
+    fn solve(
         &self,
         library: &Library,
         observer: &mut Observer<'_>,

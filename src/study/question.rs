@@ -3,9 +3,12 @@
 
 use std::ops::ControlFlow;
 
+use serde::Serialize;
+
 use crate::data::Outcome;
 use crate::jobs::Progress;
 use crate::learning::TrainingReport;
+use crate::study::finite::{NotFinite, first_not_finite};
 use crate::study::{Library, StudyError};
 
 /// What happens while a question is answered.
@@ -27,10 +30,33 @@ pub trait Question: Clone + PartialEq + Send + 'static {
     /// The answer: its report, and what the report was made from.
     type Answer: Send + Sync + 'static;
 
+    /// What is told of the answer.
+    type Report: Serialize;
+
     /// What is being done, for the name of a thread.
     const NAME: &'static str;
 
-    /// Answers the question.
+    /// Checks every number of the question against the table of [`ranges`](crate::ranges), without
+    /// reading a file.
+    ///
+    /// # Errors
+    /// [`StudyError::OutOfRange`] with the first number that is out of range.
+    fn check(&self) -> Result<(), StudyError>;
+
+    /// Computes the answer of a question that was checked. [`Question::answer`] calls it.
+    ///
+    /// # Errors
+    /// [`StudyError`] says what is wrong with the question or with a file.
+    fn solve(
+        &self,
+        library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<Self::Answer>, StudyError>;
+
+    /// The report of an answer.
+    fn report(answer: &Self::Answer) -> &Self::Report;
+
+    /// Checks the question, answers it, and checks that every number of the report is finite.
     ///
     /// - `library`: models and data that are in memory already; an empty one reads everything from
     ///   files;
@@ -38,12 +64,22 @@ pub trait Question: Clone + PartialEq + Send + 'static {
     ///   [`Outcome::Cancelled`] or, for a training, with the weights so far.
     ///
     /// # Errors
-    /// [`StudyError`] says what is wrong with the question or with a file.
+    /// [`StudyError`] says what is wrong with the question or with a file;
+    /// [`StudyError::NotFinite`] which number of the report is not finite.
     fn answer(
         &self,
         library: &Library,
         observer: &mut Observer<'_>,
-    ) -> Result<Outcome<Self::Answer>, StudyError>;
+    ) -> Result<Outcome<Self::Answer>, StudyError> {
+        self.check()?;
+        let answer = self.solve(library, observer)?;
+        if let Outcome::Complete(answer) = &answer
+            && let Some(NotFinite { field, value }) = first_not_finite(Self::report(answer))
+        {
+            return Err(StudyError::NotFinite { question: Self::NAME, field, value });
+        }
+        Ok(answer)
+    }
 }
 
 /// The observer as the callback that computations take which know progress only.
@@ -51,4 +87,65 @@ pub(super) fn progress_of<'a>(
     observer: &'a mut Observer<'_>,
 ) -> impl FnMut(Progress) -> ControlFlow<()> + 'a {
     |progress| observer(Event::Progress(progress))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ranges::SPEED;
+    use crate::study::checks::check;
+
+    /// Asks for the quotient of two speeds, which each lie in their range.
+    #[derive(Clone, PartialEq)]
+    struct Ratio(f64, f64);
+
+    #[derive(Serialize)]
+    struct RatioReport {
+        speeds_m_s: [f64; 2],
+        ratio: f64,
+    }
+
+    impl Question for Ratio {
+        type Answer = RatioReport;
+        type Report = RatioReport;
+        const NAME: &'static str = "ratio";
+
+        fn check(&self) -> Result<(), StudyError> {
+            check("first", &SPEED, self.0)?;
+            check("second", &SPEED, self.1)
+        }
+
+        fn report(answer: &RatioReport) -> &RatioReport {
+            answer
+        }
+
+        fn solve(
+            &self,
+            _library: &Library,
+            _observer: &mut Observer<'_>,
+        ) -> Result<Outcome<RatioReport>, StudyError> {
+            let speeds_m_s = [self.0, self.1];
+            Ok(Outcome::Complete(RatioReport { speeds_m_s, ratio: self.0 / self.1 }))
+        }
+    }
+
+    fn answer(question: &Ratio) -> Result<f64, String> {
+        let answer = question.answer(&Library::default(), &mut |_| ControlFlow::Continue(()));
+        let report = answer.map_err(|error| crate::error_chain(&error))?.complete().unwrap();
+        Ok(report.ratio * report.speeds_m_s[1])
+    }
+
+    #[test]
+    fn a_question_is_checked_before_and_its_report_after() {
+        assert_eq!(answer(&Ratio(20.0, 10.0)), Ok(20.0));
+        let error = answer(&Ratio(20.0, 200.0)).unwrap_err();
+        assert!(error.starts_with("second: speed is 200 m/s, expected -150 to 150"), "{error}");
+        for (question, value) in [(Ratio(1.0, 0.0), "inf"), (Ratio(0.0, 0.0), "NaN")] {
+            let error = answer(&question).unwrap_err();
+            assert!(
+                error.starts_with(&format!("ratio: ratio of the answer is {value}")),
+                "{error}"
+            );
+        }
+    }
 }

@@ -24,9 +24,18 @@ pub struct RecordedForceAnswer {
 
 impl Question for RecordedForceRequest {
     type Answer = RecordedForceAnswer;
+    type Report = ();
     const NAME: &'static str = "read force";
 
-    fn answer(
+    fn check(&self) -> Result<(), StudyError> {
+        self.source.check()
+    }
+
+    fn report(_answer: &Self::Answer) -> &() {
+        &()
+    }
+
+    fn solve(
         &self,
         library: &Library,
         observer: &mut Observer<'_>,

@@ -13,6 +13,10 @@ use crate::data::{
     Channel, DatasetKind, FileKind, ForceHistory, Loaded, Outcome, Sampling, SeriesError,
     contact_interval, read_force_file, read_steer_file,
 };
+use crate::ranges::{
+    CONTACT_HEIGHT, PULSE_DURATION, ROAD_FRICTION, SIMULATED_DURATION, SPEED, YAW_RATE,
+};
+use crate::study::checks::{check, check_contact, check_given};
 use crate::study::inputs::{OpenVehicle, striking_vehicle, struck_vehicle};
 use crate::study::simulate_dataset::take_case;
 use crate::study::{
@@ -181,9 +185,20 @@ impl SimulateRequest {
 
 impl Question for SimulateRequest {
     type Answer = SimulateAnswer;
+    type Report = SimulateReport;
     const NAME: &'static str = "simulate";
 
-    fn answer(
+    fn check(&self) -> Result<(), StudyError> {
+        check_given("friction", &ROAD_FRICTION, self.friction)?;
+        check("duration_s", &SIMULATED_DURATION, self.duration_s)?;
+        self.source.check()
+    }
+
+    fn report(answer: &Self::Answer) -> &SimulateReport {
+        &answer.report
+    }
+
+    fn solve(
         &self,
         library: &Library,
         observer: &mut Observer<'_>,
@@ -226,6 +241,7 @@ impl Question for SimulateRequest {
             |source| StudyError::Analysis { name: self.source.name(), source: Box::new(source) };
         let analysis = made.map_err(failed)?;
         self.refuse_contact_outside(&analysis)?;
+        refuse_contact_off_vehicle(&analysis)?;
         let report = SimulateReport::of(self, &analysis, assumptions)
             .map_err(|source| failed(AnalysisError::Series(source)))?;
         Ok(Outcome::Complete(SimulateAnswer { report, analysis }))
@@ -241,6 +257,25 @@ impl MotionSource {
             FileKind::Trajectory => Self::Trajectory { file, contact: start.contact },
             FileKind::Force => Self::Drive(Drive { force: Some(file), ..start }),
             FileKind::Steer => Self::Drive(Drive { steer: Some(file), ..start }),
+        }
+    }
+
+    /// Checks every number of the source.
+    pub(super) fn check(&self) -> Result<(), StudyError> {
+        match self {
+            Self::Case { .. } => Ok(()),
+            Self::Trajectory { contact, .. } => check_contact(contact.as_ref()),
+            Self::Drive(drive) => {
+                check_given("speed_m_s", &SPEED, drive.speed_m_s)?;
+                check("vy_m_s", &SPEED, drive.vy_m_s)?;
+                check("yaw_rate_rad_s", &YAW_RATE, drive.yaw_rate_rad_s)?;
+                check_contact(drive.contact.as_ref())
+            }
+            Self::Scenario { scenario, pulse } => {
+                check("pulse.duration_s", &PULSE_DURATION, pulse.duration_s)?;
+                check("pulse.contact_height_m", &CONTACT_HEIGHT, pulse.contact_height_m)?;
+                scenario.check()
+            }
         }
     }
 
@@ -300,6 +335,17 @@ impl Drive {
         };
         Ok(DriveSetup { initial, load, steer, notes })
     }
+}
+
+/// Refuses a force that acts at a point far off the struck vehicle.
+fn refuse_contact_off_vehicle(analysis: &Analysis) -> Result<(), StudyError> {
+    let Some(struck) = &analysis.struck else { return Ok(()) };
+    let ContactPoint { x_m, y_m, .. } = struck.contact;
+    analysis.footprint.check_contact([x_m, y_m]).map_err(|source| StudyError::ContactOffVehicle {
+        name: analysis.name.clone(),
+        vehicle: struck.vehicle.name.clone(),
+        source,
+    })
 }
 
 /// A recorded motion; another kind of file is refused, since its speed is not known.

@@ -85,9 +85,18 @@ pub struct SimulateDatasetAnswer {
 
 impl Question for SimulateDatasetRequest {
     type Answer = SimulateDatasetAnswer;
+    type Report = SimulateDatasetReport;
     const NAME: &'static str = "simulate";
 
-    fn answer(
+    fn check(&self) -> Result<(), StudyError> {
+        Ok(())
+    }
+
+    fn report(answer: &Self::Answer) -> &SimulateDatasetReport {
+        &answer.report
+    }
+
+    fn solve(
         &self,
         library: &Library,
         observer: &mut Observer<'_>,

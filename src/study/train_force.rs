@@ -10,6 +10,8 @@ use crate::force::{
     ForceConfig, ForceModel, ForceTrainSettings, ForceTrainingSet, LossTerms, VarianceFactors,
     train,
 };
+use crate::ranges::EPOCHS;
+use crate::study::checks::check_count;
 use crate::study::inputs::{data_names, force_cases};
 use crate::study::{Assumption, Event, Library, Observer, Question, StudyError, TrainingOptions};
 
@@ -92,9 +94,18 @@ impl TrainForceRequest {
 
 impl Question for TrainForceRequest {
     type Answer = TrainForceAnswer;
+    type Report = TrainForceReport;
     const NAME: &'static str = "train";
 
-    fn answer(
+    fn check(&self) -> Result<(), StudyError> {
+        self.epochs.map_or(Ok(()), |epochs| check_count("epochs", &EPOCHS, epochs))
+    }
+
+    fn report(answer: &Self::Answer) -> &TrainForceReport {
+        &answer.report
+    }
+
+    fn solve(
         &self,
         library: &Library,
         observer: &mut Observer<'_>,

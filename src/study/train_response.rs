@@ -151,9 +151,18 @@ pub(super) struct TrainingNotes {
 
 impl Question for TrainResponseRequest {
     type Answer = ResponseTrainingAnswer;
+    type Report = ResponseTrainingReport;
     const NAME: &'static str = "train";
 
-    fn answer(
+    fn check(&self) -> Result<(), StudyError> {
+        Ok(())
+    }
+
+    fn report(answer: &Self::Answer) -> &ResponseTrainingReport {
+        &answer.report
+    }
+
+    fn solve(
         &self,
         library: &Library,
         observer: &mut Observer<'_>,

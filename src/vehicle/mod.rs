@@ -20,8 +20,8 @@ pub use multibody_record::MultibodyRecord;
 pub use parameters::{GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters};
 pub use preset::Preset;
 pub use simulate::{
-    ContactLoad, Integrator, MAX_DURATION_S, Manoeuvre, Motion, MotionFlag, OUTPUT_INTERVAL_S,
-    ROLL_LIMIT_RAD, SimulationError, SteerHistory,
+    ContactLoad, Integrator, Manoeuvre, Motion, MotionFlag, OUTPUT_INTERVAL_S, ROLL_LIMIT_RAD,
+    SimulationError, SteerHistory,
 };
 pub use state::{N_STATE, VehicleState};
 pub use tire::{TireParameters, WheelSlip};

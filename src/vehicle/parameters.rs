@@ -7,6 +7,13 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::data::{TomlError, TomlFile};
+use crate::ranges::{
+    CG_HEIGHT, CG_TO_AXLE, CG_TO_FRONT_END, CORNERING_COEFFICIENT, FRONT_ROLL_SHARE, OUTER_LENGTH,
+    OUTER_WIDTH, ROAD_FRICTION, ROLL_ARM, ROLL_AXIS_HEIGHT, ROLL_DAMPING, ROLL_INERTIA,
+    ROLL_STIFFNESS, ROLL_YAW_PRODUCT, ROLLING_RESISTANCE, ROLLING_RESISTANCE_PER_SPEED,
+    ROLLING_RESISTANCE_PER_SPEED_2, Range, SLIDING_FRICTION_RATIO, SPRUNG_MASS, TRACK_WIDTH,
+    VEHICLE_MASS, VEHICLE_YAW_INERTIA,
+};
 use crate::vehicle::tire::TireParameters;
 use crate::vehicle::{Equations, MultibodyRecord};
 
@@ -159,63 +166,63 @@ impl VehicleParameters {
         self
     }
 
-    /// Checks every value against its range; NaN is out of every range.
+    /// Checks every value against its range.
     fn check(&self, file: TomlFile<'_>) -> Result<(), TomlError> {
-        let is_outside = |(_, value, [low, high]): &(_, f64, [f64; 2])| {
-            !(*low..=*high).contains(value) // also for NaN
-        };
-        match self.ranges().into_iter().find(is_outside) {
-            Some((key, value, range)) => Err(file.out_of_range(key, value, range)),
+        match self.ranges().into_iter().find(|(_, value, range)| !range.contains(*value)) {
+            Some((key, value, range)) => {
+                Err(file.wrong_value(key, &value.to_string(), &range.expected_si()))
+            }
             None => Ok(()),
         }
     }
 
-    /// The key, the value and the permitted `[lowest, highest]` of every parameter. The ranges
-    /// include models on a scale of 1:10 and heavy trucks.
-    fn ranges(&self) -> Vec<(&'static str, f64, [f64; 2])> {
+    /// Every value with its range, which other values of the vehicle may limit further.
+    fn ranges(&self) -> Vec<(&'static str, f64, Range)> {
         let Self { mass, geometry, suspension, tires, .. } = self;
         let coupling = (mass.yaw_inertia_kg_m2 * mass.roll_inertia_kg_m2).max(0.0).sqrt() * 0.95;
+        let roll_yaw_product = ROLL_YAW_PRODUCT.within([-coupling, coupling]);
+        let sprung_mass = SPRUNG_MASS.at_most(mass.mass_kg);
+        let cg_to_front_end = CG_TO_FRONT_END.at_most(geometry.outer_length_m);
+        let [front, rear] =
+            [tires.cornering_coefficient_front_per_rad, tires.cornering_coefficient_rear_per_rad];
+        let roll_share = suspension.front_roll_stiffness_share;
         vec![
-            ("mass.mass_kg", mass.mass_kg, [1.0, 50_000.0]),
-            ("mass.sprung_mass_kg", mass.sprung_mass_kg, [0.5, mass.mass_kg]),
-            ("mass.yaw_inertia_kg_m2", mass.yaw_inertia_kg_m2, [1e-3, 1e6]),
-            ("mass.roll_inertia_kg_m2", mass.roll_inertia_kg_m2, [1e-3, 1e5]),
-            ("mass.roll_yaw_product_kg_m2", mass.roll_yaw_product_kg_m2, [-coupling, coupling]),
-            ("geometry.cg_to_front_axle_m", geometry.cg_to_front_axle_m, [0.05, 10.0]),
-            ("geometry.cg_to_rear_axle_m", geometry.cg_to_rear_axle_m, [0.05, 10.0]),
-            ("geometry.track_width_m", geometry.track_width_m, [0.05, 4.0]),
-            ("geometry.cg_height_m", geometry.cg_height_m, [0.01, 3.0]),
-            ("geometry.outer_length_m", geometry.outer_length_m, [0.1, 25.0]),
-            ("geometry.outer_width_m", geometry.outer_width_m, [0.05, 4.0]),
+            ("mass.mass_kg", mass.mass_kg, VEHICLE_MASS),
+            ("mass.sprung_mass_kg", mass.sprung_mass_kg, sprung_mass),
+            ("mass.yaw_inertia_kg_m2", mass.yaw_inertia_kg_m2, VEHICLE_YAW_INERTIA),
+            ("mass.roll_inertia_kg_m2", mass.roll_inertia_kg_m2, ROLL_INERTIA),
+            ("mass.roll_yaw_product_kg_m2", mass.roll_yaw_product_kg_m2, roll_yaw_product),
+            ("geometry.cg_to_front_axle_m", geometry.cg_to_front_axle_m, CG_TO_AXLE),
+            ("geometry.cg_to_rear_axle_m", geometry.cg_to_rear_axle_m, CG_TO_AXLE),
+            ("geometry.track_width_m", geometry.track_width_m, TRACK_WIDTH),
+            ("geometry.cg_height_m", geometry.cg_height_m, CG_HEIGHT),
+            ("geometry.outer_length_m", geometry.outer_length_m, OUTER_LENGTH),
+            ("geometry.outer_width_m", geometry.outer_width_m, OUTER_WIDTH),
+            ("geometry.cg_to_front_end_m", geometry.cg_to_front_end_m, cg_to_front_end),
+            ("suspension.roll_axis_height_m", suspension.roll_axis_height_m, ROLL_AXIS_HEIGHT),
+            ("suspension.roll_arm_m", suspension.roll_arm_m, ROLL_ARM),
             (
-                "geometry.cg_to_front_end_m",
-                geometry.cg_to_front_end_m,
-                [0.0, geometry.outer_length_m],
+                "suspension.roll_stiffness_n_m_rad",
+                suspension.roll_stiffness_n_m_rad,
+                ROLL_STIFFNESS,
             ),
-            ("suspension.roll_axis_height_m", suspension.roll_axis_height_m, [-1.0, 2.0]),
-            ("suspension.roll_arm_m", suspension.roll_arm_m, [0.0, 3.0]),
-            ("suspension.roll_stiffness_n_m_rad", suspension.roll_stiffness_n_m_rad, [1.0, 1e7]),
-            ("suspension.roll_damping_n_m_s_rad", suspension.roll_damping_n_m_s_rad, [0.0, 1e6]),
+            ("suspension.roll_damping_n_m_s_rad", suspension.roll_damping_n_m_s_rad, ROLL_DAMPING),
+            ("suspension.front_roll_stiffness_share", roll_share, FRONT_ROLL_SHARE),
+            ("tires.cornering_coefficient_front_per_rad", front, CORNERING_COEFFICIENT),
+            ("tires.cornering_coefficient_rear_per_rad", rear, CORNERING_COEFFICIENT),
+            ("tires.friction", tires.friction, ROAD_FRICTION),
+            ("tires.sliding_friction_ratio", tires.sliding_friction_ratio, SLIDING_FRICTION_RATIO),
+            ("tires.rolling_resistance", tires.rolling_resistance, ROLLING_RESISTANCE),
             (
-                "suspension.front_roll_stiffness_share",
-                suspension.front_roll_stiffness_share,
-                [0.0, 1.0],
-            ),
-            (
-                "tires.cornering_coefficient_front_per_rad",
-                tires.cornering_coefficient_front_per_rad,
-                [1.0, 60.0],
+                "tires.rolling_resistance_s_m",
+                tires.rolling_resistance_s_m,
+                ROLLING_RESISTANCE_PER_SPEED,
             ),
             (
-                "tires.cornering_coefficient_rear_per_rad",
-                tires.cornering_coefficient_rear_per_rad,
-                [1.0, 60.0],
+                "tires.rolling_resistance_s2_m2",
+                tires.rolling_resistance_s2_m2,
+                ROLLING_RESISTANCE_PER_SPEED_2,
             ),
-            ("tires.friction", tires.friction, [0.01, 2.0]),
-            ("tires.sliding_friction_ratio", tires.sliding_friction_ratio, [0.1, 1.0]),
-            ("tires.rolling_resistance", tires.rolling_resistance, [0.0, 0.5]),
-            ("tires.rolling_resistance_s_m", tires.rolling_resistance_s_m, [0.0, 0.01]),
-            ("tires.rolling_resistance_s2_m2", tires.rolling_resistance_s2_m2, [0.0, 0.001]),
         ]
     }
 }
@@ -238,7 +245,10 @@ mod tests {
     #[test]
     fn a_value_out_of_range_names_file_line_key_value_and_range() {
         let error = reference_with("mass_kg = 2000.0", "mass_kg = -3.0").unwrap_err();
-        assert_eq!(error.to_string(), "car.toml:5:11: mass.mass_kg is -3.0, expected 1 to 50000");
+        assert_eq!(
+            error.to_string(),
+            "car.toml:5:11: mass.mass_kg is -3.0, expected 1 to 50000 kg"
+        );
         assert!(reference_with("mass_kg = 2000.0", "mass_kg = nan").is_err());
     }
 

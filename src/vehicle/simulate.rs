@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::{Channel, CumulativeImpulse, ForceAxes, ForceHistory, SeriesError, TimeSeries};
 use crate::numerics::{Stage, euler_step, interpolate, rk4_step};
+use crate::ranges::{OutOfRange, SIMULATED_DURATION};
 use crate::vehicle::{
     CollisionForce, ContactPoint, VehicleInput, VehicleParameters, VehicleState, Wheel,
 };
@@ -73,7 +74,7 @@ pub struct Manoeuvre {
     pub contact_load: Option<ContactLoad>,
     /// Steer angle over time; with `None` it is zero.
     pub steer: Option<SteerHistory>,
-    /// Duration of the motion, s, more than 0 and at most [`MAX_DURATION_S`].
+    /// Duration of the motion, s, in the range [`SIMULATED_DURATION`].
     pub duration_s: f64,
 }
 
@@ -138,11 +139,8 @@ pub struct Motion {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SimulationError {
     /// The duration is out of range.
-    #[error("duration is {got} s, expected more than 0 and at most {MAX_DURATION_S} s")]
-    Duration {
-        /// The requested duration, s.
-        got: f64,
-    },
+    #[error(transparent)]
+    Duration(#[from] OutOfRange),
     /// A component of the state is no longer finite.
     #[error("the motion is no longer finite at {time_s:.2} s; check force, speed and step")]
     Diverged {
@@ -153,9 +151,6 @@ pub enum SimulationError {
     #[error(transparent)]
     Series(#[from] SeriesError),
 }
-
-/// Longest permitted duration of a simulation, s.
-pub const MAX_DURATION_S: f64 = 3600.0;
 
 impl VehicleParameters {
     /// Simulates a manoeuvre from t = 0 for its duration, rounded to a multiple of
@@ -170,10 +165,7 @@ impl VehicleParameters {
         manoeuvre: &Manoeuvre,
         integrator: Integrator,
     ) -> Result<Motion, SimulationError> {
-        let duration_s = manoeuvre.duration_s;
-        if !(duration_s > 0.0 && duration_s <= MAX_DURATION_S) {
-            return Err(SimulationError::Duration { got: duration_s });
-        }
+        let duration_s = SIMULATED_DURATION.check(manoeuvre.duration_s)?;
         let inputs = Inputs::new(manoeuvre);
         let steps_per_output = (OUTPUT_INTERVAL_S / integrator.step_s()).round() as usize;
         let n_outputs = (duration_s / OUTPUT_INTERVAL_S).round() as usize + 1;

@@ -8,4 +8,5 @@ mod force;
 mod guide;
 mod log;
 mod program;
+mod ranges;
 mod response;

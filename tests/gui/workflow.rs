@@ -207,11 +207,19 @@ fn a_scenario_is_solved_simulated_and_survives_a_kill() {
 fn a_vehicle_file_becomes_the_struck_vehicle_and_a_scenario_file_the_scenario() {
     let mut harness = open(&["datasets/fea"]);
     step_until(&mut harness, "the first case", shows("c001"));
-    apply(&mut harness, Command::Open(vec!["assets/vehicles/scaled-target-100.toml".into()]));
+    apply(&mut harness, Command::Open(vec!["assets/vehicles/target-2000.toml".into()]));
     step_until(&mut harness, "the case with the other vehicle", |state| {
         let answer = state.analysis().filter(|_| is_idle(state));
-        answer.is_some_and(|answer| answer.report.vehicle.starts_with("Scaled target"))
+        answer.is_some_and(|answer| answer.report.vehicle.starts_with("FEA target"))
     });
+    // The model car is too narrow to be struck where the full-sized one was.
+    apply(&mut harness, Command::Open(vec!["assets/vehicles/scaled-target-100.toml".into()]));
+    step_until(&mut harness, "the refusal of the vehicle", |state| {
+        let answer = state.session.analysis.answer.as_ref().filter(|_| is_idle(state));
+        let problem = answer.and_then(|answer| answer.as_ref().err());
+        problem.is_some_and(|problem| problem.contains("the force does not act on Scaled target"))
+    });
+    apply(&mut harness, Command::Open(vec!["assets/vehicles/target-2000.toml".into()]));
     apply(&mut harness, Command::Open(vec!["assets/scenarios/pit_right_rear.toml".into()]));
     step_until(&mut harness, "the scenario", shows("PIT, right rear quarter"));
     apply(&mut harness, Command::Open(vec!["Cargo.toml".into()]));

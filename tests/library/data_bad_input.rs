@@ -8,8 +8,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use impactlab::data::{
-    ColumnMap, DataError, Dataset, open, propose_columns, read_any_series, read_force_file,
-    read_steer_file, read_trajectory_file,
+    ColumnMap, DataError, Dataset, DatasetKind, open, propose_columns, read_any_series,
+    read_force_file, read_steer_file, read_trajectory_file,
 };
 use proptest::prelude::*;
 use tempfile::TempDir;
@@ -110,11 +110,11 @@ fn bad_force_files_are_refused_with_their_place() {
         ),
         (
             b"time_s,fx_n,fy_n\n0,1,1\n0.1,1e9,1\n",
-            r#"f.csv:3:2: "fx_n" is 1e9 N, beyond 2e7 N; check the unit of the column"#,
+            r#"f.csv:3:2: "fx_n" is 1e9 N, expected -2e7 to 2e7 N (heavy trucks against rigid barriers reach a few MN); check the unit of the column"#,
         ),
         (
             b"time_s,Fx [kN],fy_n\n0,1,1\n0.1,50000,1\n",
-            r#"f.csv:3:2: "Fx [kN]" is 5e7 N, beyond 2e7 N; check the unit of the column"#,
+            r#"f.csv:3:2: "Fx [kN]" is 5e7 N, expected -2e7 to 2e7 N (heavy trucks against rigid barriers reach a few MN); check the unit of the column"#,
         ),
         (
             b"time_s,Fx [m],Fy [m]\n0,1,1\n0.1,1,1\n",
@@ -266,7 +266,9 @@ fn bad_cases_do_not_stop_the_good_ones() {
         (
             |root| edit(root, "cases.csv", |text| text.replace("b,2000,1500", "b,2000,heavy")),
             &["a", "c"],
-            &[r#"cases.csv:3:3: "m_b_kg" is "heavy", expected a finite number"#],
+            &[
+                r#"cases.csv:3:3: "m_b_kg" is "heavy", expected 1 to 1e8 kg (mass in a collision; a fixed barrier is a very heavy body)"#,
+            ],
         ),
         (
             |root| edit(root, "cases.csv", |text| text.replace("m_b_kg", "bullet_mass")),
@@ -277,8 +279,10 @@ fn bad_cases_do_not_stop_the_good_ones() {
         ),
         (
             |root| edit(root, "cases.csv", |text| text.replace("b,2000", "b,")),
-            &["a", "b", "c"],
-            &[],
+            &["a", "c"],
+            &[
+                r#"cases.csv:3:2: "m_t_kg" is blank, expected 1 to 1e8 kg (mass in a collision; a fixed barrier is a very heavy body)"#,
+            ],
         ),
     ];
     for (i, (spoil, names, problems)) in cases.iter().enumerate() {
@@ -297,7 +301,7 @@ fn tables_of_cases_may_be_sparse_or_in_another_dialect() {
         "case\na\nb\nc\n",
         "case,side\na,left\nb,\nc,right\n",
         "case,side,hooked,\na,left,,\nb,,1,\nc,right,0,\n",
-        "\u{feff}case;m_t_kg;remark\r\na;1500,5;\"one; two\"\r\nb;;\r\nc;2000;x\r\n",
+        "\u{feff}case;m_t_kg;remark\r\na;1500,5;\"one; two\"\r\nb;2000;\r\nc;2000;x\r\n",
     ] {
         fs::write(folder.path().join("cases.csv"), table).unwrap();
         let (names, problems) = load(folder.path());
@@ -308,7 +312,8 @@ fn tables_of_cases_may_be_sparse_or_in_another_dialect() {
     let attributes = &dataset.case("a").unwrap().attributes;
     assert_eq!(attributes.number("m_t_kg"), Some(1500.5));
     assert_eq!(attributes.text("remark"), Some("one; two"));
-    let error = attributes.require("m_b_kg", "nothing moves").unwrap_err();
+    let mass = DatasetKind::Force.columns().iter().find(|column| column.name == "m_b_kg").unwrap();
+    let error = attributes.require(mass, "nothing moves").unwrap_err();
     assert_eq!(
         message(folder.path(), &error),
         r#"cases.csv:2: "m_b_kg" is missing; add it, without it nothing moves"#

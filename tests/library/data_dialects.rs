@@ -122,7 +122,7 @@ fn the_kind_of_a_file_is_seen_from_its_columns() {
         ("t,steer [deg]", FileKind::Steer),
         ("t,steer_fl,steer_fr", FileKind::Steer),
     ] {
-        let row = vec!["1"; header.split(',').count() - 1].join(",");
+        let row = vec!["0.5"; header.split(',').count() - 1].join(",");
         fs::write(&path, format!("{header}\n0,{row}\n1,{row}\n")).unwrap();
         assert_eq!(read_any_series(&path, None).unwrap().kind, kind, "{header}");
     }
@@ -158,7 +158,8 @@ proptest! {
             .collect();
         let mut series = TimeSeries::new(time_s).unwrap();
         for &channel in Channel::ALL.iter().filter(|channel| **channel != Channel::Time) {
-            let values = steps.iter().map(|step| step * scale / 1e5).collect();
+            // The angle of a road wheel is below 0.9 rad.
+            let values = steps.iter().map(|step| step * scale / 1.2e6).collect();
             series.insert(channel, values).unwrap();
         }
         let folder = tempfile::tempdir().unwrap();

@@ -1,5 +1,7 @@
 //! What writing a file does to what is there already: nothing that was not asked for.
 
+#![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
+
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::os::unix::ffi::OsStringExt;

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// The layers from low to high. Modules of one layer do not refer to each other.
 const LAYERS: &[&[&str]] = &[
     &["bibliography", "units", "error_chain"],
-    &["numerics", "jobs"],
+    &["ranges", "numerics", "jobs"],
     &["data"],
     &["vehicle"],
     &["collision"],

@@ -12,6 +12,7 @@ mod dependencies;
 mod force_baselines;
 mod force_model;
 mod layering;
+mod ranges;
 mod response_model;
 mod validation_collision;
 mod vehicle;

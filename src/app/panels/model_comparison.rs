@@ -10,10 +10,11 @@ use crate::app::panes::PaneContext;
 use crate::app::response::{ComparisonForm, ComparisonStatus};
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::{
-    assumptions_ui, bad_cases_ui, dataset_choice, duration_text, no_dataset_ui,
+    assumptions_ui, bad_cases_ui, count_field, dataset_choice, duration_text, no_dataset_ui,
 };
 use crate::data::{DatasetKind, Severity};
 use crate::figure::model_name;
+use crate::ranges::CHOICES;
 use crate::render::theme;
 use crate::response::evaluate::{
     Comparison, ComparisonTable, all_tables, paper_metrics, to_markdown,
@@ -65,7 +66,7 @@ fn form_ui(ui: &mut Ui, form: &mut ComparisonForm, sources: &[Source]) -> bool {
             .labelled_by(name.id)
             .on_hover_text("Numbers to fine-tune on, with commas between them");
         let name = ui.label("choices");
-        ui.add(DragValue::new(&mut form.n_choices).range(1..=20).speed(0.05))
+        count_field(ui, &mut form.n_choices, &CHOICES, 0.05)
             .labelled_by(name.id)
             .on_hover_text("Of the trajectories, for each number: how much the choice matters");
         let name = ui.label("seed");

@@ -17,12 +17,13 @@ use crate::app::response::{
     DensityChoice, ForceChoice, MotionAnswer, ResponseProject, ResponseSession, ResponseView,
 };
 use crate::app::state::{Session, View};
-use crate::app::widgets::figure_frame;
+use crate::app::widgets::{count_field, figure_frame};
 use crate::data::Severity;
 use crate::figure::{
     FORECAST_CHANNELS, MotionForecastFigure, forecast_channel_figure, forecast_readout,
     forecast_scene_figure, forecast_surroundings,
 };
+use crate::ranges::DRAWS;
 use crate::render::{FigureOptions, theme};
 use crate::response::STEP_S;
 use crate::study::PredictMotionAnswer;
@@ -138,7 +139,7 @@ fn force_ui(
     }
     ui.horizontal(|ui| {
         let name = ui.label("Force curves");
-        ui.add(DragValue::new(&mut form.n_curves).range(1..=500).speed(0.2))
+        count_field(ui, &mut form.n_curves, &DRAWS, 0.2)
             .labelled_by(name.id)
             .on_hover_text("Whole curves drawn from the predicted force, each as likely; each drives its own distribution of motions");
         let name = ui.label("Seed");
@@ -186,9 +187,13 @@ fn shown_ui(ui: &mut Ui, view: &mut ResponseView, session: &Session, commands: &
     if view.density == DensityChoice::Window {
         let end_s = session.response.forecast.ok().map_or(4.0, |answer| end_s(answer));
         ui.horizontal(|ui| {
-            for (label, value) in ["from", "to"].into_iter().zip(&mut view.window_s) {
+            let [from_s, to_s] = &mut view.window_s;
+            // The window ends with the motion, and does not end before it starts.
+            let limits = [0.0..=to_s.min(end_s), from_s.min(end_s)..=end_s];
+            for ((label, value), limits) in [("from", from_s), ("to", to_s)].into_iter().zip(limits)
+            {
                 let name = ui.label(label);
-                let field = DragValue::new(value).range(0.0..=end_s).speed(0.02).suffix(" s");
+                let field = DragValue::new(value).range(limits).speed(0.02).suffix(" s");
                 ui.add(field.max_decimals(2)).labelled_by(name.id);
             }
         });

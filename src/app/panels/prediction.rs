@@ -11,10 +11,11 @@ use crate::app::panels::prediction_form::form_ui;
 use crate::app::panels::prediction_numbers::numbers_ui;
 use crate::app::panes::PaneContext;
 use crate::app::state::View;
-use crate::app::widgets::figure_frame;
+use crate::app::widgets::{count_field, figure_frame};
 use crate::data::Severity;
 use crate::figure::{ForceComponent, ForecastFigure, forecast_figure};
 use crate::force::metrics::BAND_LEVELS;
+use crate::ranges::SAMPLES;
 use crate::render::{FigureOptions, theme};
 use crate::study::PredictForceAnswer;
 
@@ -105,8 +106,7 @@ fn choices_ui(ui: &mut Ui, view: &mut View) {
     });
     ui.horizontal_wrapped(|ui| {
         let name = ui.label("Drawn curves");
-        let n_curves = egui::DragValue::new(&mut view.n_curves).range(0..=200).speed(0.2);
-        ui.add(n_curves)
+        count_field(ui, &mut view.n_curves, &SAMPLES, 0.2)
             .labelled_by(name.id)
             .on_hover_text("Whole curves drawn from the prediction, as coherent as real ones");
         let name = ui.label("Seed");

@@ -14,8 +14,9 @@ use crate::app::state::{Project, View};
 use crate::app::widgets::{SliderRange, quantity_slider};
 use crate::data::{Severity, StruckSide};
 use crate::force::ForceScenario;
+use crate::ranges::{BODY_MASS, CONTACT_X, HEADING, SPEED};
 use crate::render::theme;
-use crate::units::{Quantity, UnitSystem, significant};
+use crate::units::{UnitSystem, significant};
 
 /// Width of a slider without its number field, points.
 const SLIDER_WIDTH: f32 = 110.0;
@@ -107,8 +108,7 @@ fn motion_ui(ui: &mut Ui, scenario: &mut ForceScenario, units: UnitSystem) {
         (0, "Target mass m_t", "Mass of the struck vehicle"),
         (1, "Bullet mass m_b", "Mass of the striking vehicle"),
     ] {
-        let (usual, possible) = (500.0..=5000.0, 50.0..=1e6);
-        let range = SliderRange { label, hint, quantity: Quantity::Mass, usual, possible };
+        let range = SliderRange { label, hint, usual: 500.0..=5000.0, possible: BODY_MASS };
         if let Some(mass_kg) = quantity_slider(ui, &range, scenario.mass_kg[vehicle], units) {
             set_mass(scenario, vehicle, mass_kg);
         }
@@ -122,8 +122,7 @@ fn motion_ui(ui: &mut Ui, scenario: &mut ForceScenario, units: UnitSystem) {
         (v_by, "Bullet v_by", "Speed of the bullet to the target's left", 10.0),
     ] {
         let usual = if most > 20.0 { 0.0..=most } else { -most..=most };
-        let possible = -70.0..=70.0;
-        let range = SliderRange { label, hint, quantity: Quantity::Speed, usual, possible };
+        let range = SliderRange { label, hint, usual, possible: SPEED };
         if let Some(speed_m_s) = quantity_slider(ui, &range, *value, units) {
             *value = speed_m_s;
         }
@@ -131,9 +130,8 @@ fn motion_ui(ui: &mut Ui, scenario: &mut ForceScenario, units: UnitSystem) {
     let range = SliderRange {
         label: "Bullet heading θ_b",
         hint: "Heading of the bullet against the target's, to the left positive",
-        quantity: Quantity::Angle,
         usual: -FRAC_PI_2..=FRAC_PI_2,
-        possible: -2.0 * FRAC_PI_2..=2.0 * FRAC_PI_2,
+        possible: HEADING,
     };
     if let Some(theta_b_rad) = quantity_slider(ui, &range, scenario.theta_b_rad, units) {
         set_bullet_heading(scenario, theta_b_rad);
@@ -161,9 +159,8 @@ fn contact_ui(ui: &mut Ui, scenario: &mut ForceScenario, units: UnitSystem) {
         let range = SliderRange {
             label: "First contact x",
             hint: "Where they first touch, along the target from its CG; the rear is negative",
-            quantity: Quantity::Length,
             usual: -3.0..=1.0,
-            possible: -20.0..=20.0,
+            possible: CONTACT_X,
         };
         if let Some(x_m) = quantity_slider(ui, &range, x_m, units) {
             set_contact_x(scenario, x_m);

@@ -10,6 +10,11 @@ use crate::app::widgets::{figure_frame, quantity_field, value_row};
 use crate::collision::{ContactLocation, PulseShape, Scenario, ScenarioVehicle, Side};
 use crate::data::Severity;
 use crate::figure::impact_figure;
+use crate::ranges::{
+    BODY_CG, BODY_LENGTH, BODY_MASS, BODY_WIDTH, BODY_YAW_INERTIA, CONTACT_COORDINATE,
+    CONTACT_HEIGHT, CONTACT_OFFSET, FRICTION_LIMIT, HEADING, POSITION, PULSE_DURATION, RESTITUTION,
+    Range, SPEED, YAW_RATE,
+};
 use crate::render::{FigureOptions, theme};
 use crate::study::{BodyReport, ImpactAnswer, ImpactReport};
 use crate::units::{Quantity, UnitSystem};
@@ -77,33 +82,27 @@ fn vehicles_form(ui: &mut Ui, project: &mut Project, units: UnitSystem) {
 fn vehicle_form(ui: &mut Ui, vehicle: &mut ScenarioVehicle, units: UnitSystem) {
     let mut speed_m_s = vehicle.vx_m_s.hypot(vehicle.vy_m_s);
     let mut course_rad = vehicle.vy_m_s.atan2(vehicle.vx_m_s);
-    let angle = std::f64::consts::PI;
-    let mut moved =
-        quantity_field(ui, "Speed", &mut speed_m_s, Quantity::Speed, (0.0..=80.0, units));
-    moved |= quantity_field(
-        ui,
-        "Course (of velocity)",
-        &mut course_rad,
-        Quantity::Angle,
-        (-angle..=angle, units),
-    );
+    // The course says which way.
+    let forwards = SPEED.within([0.0, f64::INFINITY]);
+    let mut moved = quantity_field(ui, "Speed", &mut speed_m_s, (&forwards, units));
+    moved |= quantity_field(ui, "Course (of velocity)", &mut course_rad, (&HEADING, units));
     if moved {
         vehicle.vx_m_s = speed_m_s * course_rad.cos();
         vehicle.vy_m_s = speed_m_s * course_rad.sin();
     }
     let fields = [
-        ("Heading", &mut vehicle.heading_rad, Quantity::Angle, -angle..=angle),
-        ("Yaw rate", &mut vehicle.yaw_rate_rad_s, Quantity::AngularVelocity, -10.0..=10.0),
-        ("Mass", &mut vehicle.mass_kg, Quantity::Mass, 50.0..=50_000.0),
-        ("Yaw inertia", &mut vehicle.yaw_inertia_kg_m2, Quantity::MomentOfInertia, 1.0..=500_000.0),
-        ("Length", &mut vehicle.length_m, Quantity::Length, 0.5..=25.0),
-        ("Width", &mut vehicle.width_m, Quantity::Length, 0.3..=4.0),
+        ("Heading", &mut vehicle.heading_rad, HEADING),
+        ("Yaw rate", &mut vehicle.yaw_rate_rad_s, YAW_RATE),
+        ("Mass", &mut vehicle.mass_kg, BODY_MASS),
+        ("Yaw inertia", &mut vehicle.yaw_inertia_kg_m2, BODY_YAW_INERTIA),
+        ("Length", &mut vehicle.length_m, BODY_LENGTH),
+        ("Width", &mut vehicle.width_m, BODY_WIDTH),
     ];
-    for (label, value, quantity, range) in fields {
-        quantity_field(ui, label, value, quantity, (range, units));
+    for (label, value, range) in fields {
+        quantity_field(ui, label, value, (&range, units));
     }
-    let range = (0.0..=vehicle.length_m, units);
-    quantity_field(ui, "CG behind front", &mut vehicle.cg_from_front_m, Quantity::Length, range);
+    let range = BODY_CG.at_most(vehicle.length_m);
+    quantity_field(ui, "CG behind front", &mut vehicle.cg_from_front_m, (&range, units));
 }
 
 /// Draws the fields of the contact location, restitution and friction, and of the pulse over which
@@ -115,13 +114,13 @@ fn contact_form(ui: &mut Ui, project: &mut Project, units: UnitSystem) {
             let contact = &mut project.scenario.contact;
             let pulse = &mut project.pulse;
             let fields = [
-                ("Restitution e", &mut contact.restitution, Quantity::Ratio, 0.0..=1.0),
-                ("Friction limit μ_c", &mut contact.friction_limit, Quantity::Ratio, 0.0..=2.0),
-                ("Pulse duration", &mut pulse.duration_s, Quantity::Time, 0.005..=1.0),
-                ("Height above ground", &mut pulse.contact_height_m, Quantity::Length, 0.0..=3.0),
+                ("Restitution e", &mut contact.restitution, RESTITUTION),
+                ("Friction limit μ_c", &mut contact.friction_limit, FRICTION_LIMIT),
+                ("Pulse duration", &mut pulse.duration_s, PULSE_DURATION),
+                ("Height above ground", &mut pulse.contact_height_m, CONTACT_HEIGHT),
             ];
-            for (label, value, quantity, range) in fields {
-                quantity_field(ui, label, value, quantity, (range, units));
+            for (label, value, range) in fields {
+                quantity_field(ui, label, value, (&range, units));
             }
             let name = ui.label("Pulse shape");
             ComboBox::from_id_salt("pulse shape")
@@ -140,8 +139,8 @@ fn contact_form(ui: &mut Ui, project: &mut Project, units: UnitSystem) {
 
 /// Draws the fields of the contact location, in the way in which the scenario specifies it.
 fn location_form(ui: &mut Ui, location: &mut ContactLocation, units: UnitSystem) {
-    let length = |ui: &mut Ui, label: &str, value: &mut f64| {
-        quantity_field(ui, label, value, Quantity::Length, (-20.0..=20.0, units));
+    let length = |ui: &mut Ui, label: &str, value: &mut f64, range: &Range| {
+        quantity_field(ui, label, value, (range, units));
     };
     match location {
         ContactLocation::Side { side, offset_m } => {
@@ -156,20 +155,18 @@ fn location_form(ui: &mut Ui, location: &mut ContactLocation, units: UnitSystem)
                 .response
                 .labelled_by(name.id);
             ui.end_row();
-            length(ui, "Offset from its middle", offset_m);
+            length(ui, "Offset from its middle", offset_m, &CONTACT_OFFSET);
         }
         ContactLocation::Footprints { bullet_x_m, bullet_y_m } => {
-            length(ui, "Bullet's CG, X", bullet_x_m);
-            length(ui, "Bullet's CG, Y", bullet_y_m);
+            length(ui, "Bullet's CG, X", bullet_x_m, &POSITION);
+            length(ui, "Bullet's CG, Y", bullet_y_m, &POSITION);
         }
         ContactLocation::Point { x_m, y_m, normal_rad, bullet_x_m, bullet_y_m } => {
-            length(ui, "Contact ahead of CG", x_m);
-            length(ui, "Contact left of CG", y_m);
-            let angle = std::f64::consts::TAU;
-            let range = (-angle..=angle, units);
-            quantity_field(ui, "Normal", normal_rad, Quantity::Angle, range);
-            length(ui, "Bullet's CG, X", bullet_x_m);
-            length(ui, "Bullet's CG, Y", bullet_y_m);
+            length(ui, "Contact ahead of CG", x_m, &CONTACT_COORDINATE);
+            length(ui, "Contact left of CG", y_m, &CONTACT_COORDINATE);
+            quantity_field(ui, "Normal", normal_rad, (&HEADING, units));
+            length(ui, "Bullet's CG, X", bullet_x_m, &POSITION);
+            length(ui, "Bullet's CG, Y", bullet_y_m, &POSITION);
         }
     }
 }

@@ -7,6 +7,7 @@ use crate::app::panels::training_parts::{optional_number_ui, settings_rows_ui};
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::dataset_choice;
 use crate::data::DatasetKind;
+use crate::ranges::EPOCHS;
 
 /// Draws the form and returns whether a force data set is open to train on.
 pub fn force_form_ui(ui: &mut Ui, form: &mut ForceTrainingForm, sources: &[Source]) -> bool {
@@ -25,7 +26,7 @@ pub fn force_form_ui(ui: &mut Ui, form: &mut ForceTrainingForm, sources: &[Sourc
         });
         ui.end_row();
         let name = ui.label("Epochs");
-        optional_number_ui(ui, &mut form.epochs, "as configured")
+        optional_number_ui(ui, &mut form.epochs, ("as configured", &EPOCHS))
             .labelled_by(name.id)
             .on_hover_text("At most; 0 for what the settings say. Training stops before when the validation loss stops falling");
         ui.end_row();

@@ -13,6 +13,7 @@ use crate::app::panels::training_losses::{LossView, losses_ui};
 use crate::app::training_status::TrainingStatus;
 use crate::app::widgets::{assumptions_ui, bad_cases_ui, duration_text};
 use crate::data::Severity;
+use crate::ranges::Range;
 use crate::render::theme;
 use crate::study::{Assumption, BadCases};
 
@@ -81,11 +82,17 @@ pub fn settings_rows_ui(
 /// Draws a number field whose value may be left open, and returns its response. The number 0 leaves
 /// the value open, which sets it to `None`.
 ///
-/// - `open`: text that is shown instead of the number while the value is open.
-pub fn optional_number_ui(ui: &mut Ui, value: &mut Option<usize>, open: &str) -> Response {
+/// - `open`: text that is shown instead of the number while the value is open;
+/// - `range`: the numbers that it may have otherwise.
+pub fn optional_number_ui(
+    ui: &mut Ui,
+    value: &mut Option<usize>,
+    (open, range): (&str, &Range),
+) -> Response {
+    let most = range.high as usize;
     let mut number = value.unwrap_or(0);
     let text = |n: f64, _| if n < 1.0 { open.to_owned() } else { format!("{n:.0}") };
-    let field = DragValue::new(&mut number).range(0..=100_000).speed(0.2).custom_formatter(text);
+    let field = DragValue::new(&mut number).range(0..=most).speed(0.2).custom_formatter(text);
     let response = ui.add(field);
     if response.changed() {
         *value = (number > 0).then_some(number);

@@ -6,6 +6,7 @@ use crate::app::panels::training_parts::{optional_number_ui, settings_rows_ui};
 use crate::app::response::{ResponseTrainingForm, TrainingMode};
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::dataset_choice;
+use crate::ranges::TRAJECTORIES;
 
 /// Draws the form and returns whether a data set that suits the training mode is open.
 pub fn response_form_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, sources: &[Source]) -> bool {
@@ -42,7 +43,7 @@ fn numbers_ui(ui: &mut Ui, form: &mut ResponseTrainingForm) {
     let name = ui.label("Trajectories");
     let hint = "To learn from, spinning and others as they occur; 0 for all that are not kept for the test";
     ui.add_enabled_ui(is_fine_tuning, |ui| {
-        optional_number_ui(ui, &mut form.n_trajectories, "all")
+        optional_number_ui(ui, &mut form.n_trajectories, ("all", &TRAJECTORIES))
             .labelled_by(name.id)
             .on_hover_text(hint);
     });

@@ -7,6 +7,7 @@ use crate::app::model::file_name;
 use crate::app::panes::PaneContext;
 use crate::app::state::{FileStart, Project};
 use crate::app::widgets::{quantity_field, value_row};
+use crate::ranges::{CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, SIMULATED_DURATION, SPEED};
 use crate::study::{
     ASSUMED_CONTACT, ASSUMED_SPEED_M_S, DEFAULT_BULLET, DEFAULT_VEHICLE, VehicleChoice,
 };
@@ -24,8 +25,8 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             list_ui(ui, "Equations", &mut project.equations, (&equations, equations_label));
             let integrators = [Integrator::Rk4, Integrator::Euler];
             list_ui(ui, "Integration", &mut project.integrator, (&integrators, integrator_label));
-            let range = (0.1..=30.0, view.units);
-            quantity_field(ui, "Duration", &mut project.duration_s, Quantity::Time, range);
+            let range = (&SIMULATED_DURATION, view.units);
+            quantity_field(ui, "Duration", &mut project.duration_s, range);
         });
         ui.separator();
         ui.strong("For single force files");
@@ -128,7 +129,7 @@ fn speed_ui(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
         }
         return;
     };
-    quantity_field(ui, label, speed_m_s, Quantity::Speed, (0.0..=80.0, units));
+    quantity_field(ui, label, speed_m_s, (&SPEED, units));
     if leave_open_ui(ui, "Speed not known") {
         start.speed_m_s = None;
     }
@@ -148,11 +149,11 @@ fn contact_ui(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
         return;
     };
     for (label, value, range) in [
-        ("Contact ahead of CG", x_m, -10.0..=10.0),
-        ("Contact left of CG", y_m, -3.0..=3.0),
-        ("Contact above ground", height_m, 0.0..=3.0),
+        ("Contact ahead of CG", x_m, CONTACT_X),
+        ("Contact left of CG", y_m, CONTACT_Y),
+        ("Contact above ground", height_m, CONTACT_HEIGHT),
     ] {
-        quantity_field(ui, label, value, Quantity::Length, (range, units));
+        quantity_field(ui, label, value, (&range, units));
     }
     if leave_open_ui(ui, "Contact point not known") {
         start.contact = None;

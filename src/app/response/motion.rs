@@ -7,7 +7,8 @@ use crate::analysis::{DensityMap, DensityTask, MotionBands};
 use crate::data::Outcome;
 use crate::render::DensityGpu;
 use crate::study::{
-    Library, Observer, PredictMotionAnswer, PredictMotionRequest, Question, StudyError,
+    Library, Observer, PredictMotionAnswer, PredictMotionReport, PredictMotionRequest, Question,
+    StudyError, check_window,
 };
 
 /// Number of time steps between two points of the bands over time, which makes 50 ms.
@@ -37,14 +38,23 @@ impl MotionAnswer {
 
 impl Question for MotionQuestion {
     type Answer = MotionAnswer;
+    type Report = PredictMotionReport;
     const NAME: &'static str = PredictMotionRequest::NAME;
 
-    fn answer(
+    fn check(&self) -> Result<(), StudyError> {
+        self.request.check()
+    }
+
+    fn report(answer: &Self::Answer) -> &PredictMotionReport {
+        &answer.answer.report
+    }
+
+    fn solve(
         &self,
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<MotionAnswer>, StudyError> {
-        let answered = self.request.answer(library, observer)?;
+        let answered = self.request.solve(library, observer)?;
         Ok(answered.map(|answer| {
             let bands = MotionBands::of(&answer.forecast.distribution, BAND_STRIDE);
             MotionAnswer { answer, bands }
@@ -73,11 +83,20 @@ impl PartialEq for DensityQuestion {
 
 impl Question for DensityQuestion {
     type Answer = DensityMap;
+    type Report = ();
     const NAME: &'static str = "density";
+
+    fn check(&self) -> Result<(), StudyError> {
+        check_window(self.window_s)
+    }
+
+    fn report(_answer: &Self::Answer) -> &() {
+        &()
+    }
 
     /// Computes the density on the graphics processor, or on the CPU if there is none or it reports
     /// an error.
-    fn answer(
+    fn solve(
         &self,
         _library: &Library,
         _observer: &mut Observer<'_>,

@@ -11,5 +11,7 @@ pub use assumptions::assumptions_ui;
 pub use bad_cases::bad_cases_ui;
 pub use dataset_choice::{dataset_choice, no_dataset_ui};
 pub use figure_frame::figure_frame;
-pub use quantity::{SliderRange, duration_text, quantity_field, quantity_slider, value_row};
+pub use quantity::{
+    SliderRange, count_field, duration_text, quantity_field, quantity_slider, value_row,
+};
 pub use spread_table::{SpreadRow, spread_table_ui};

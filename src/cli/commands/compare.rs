@@ -6,8 +6,9 @@ use clap::Args;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
-use crate::cli::options::{BadCasesArg, VehicleArg};
+use crate::cli::options::{BadCasesArg, VehicleArg, count};
 use crate::cli::text::print_comparison;
+use crate::ranges::{CHOICES, TRAJECTORIES};
 use crate::response::evaluate::write_comparison;
 use crate::shipped::ModelSource;
 use crate::study::{CompareRequest, DEFAULT_CHOICES, ModelChoice};
@@ -20,10 +21,10 @@ pub(in crate::cli) struct CompareArgs {
     #[arg(long, value_name = "DIR")]
     data: PathBuf,
     /// Numbers of trajectories to fine-tune on; 5,20 if not given
-    #[arg(long, value_delimiter = ',', value_name = "N,N")]
+    #[arg(long, value_delimiter = ',', value_name = "N,N", value_parser = count::<usize>(TRAJECTORIES))]
     trajectories: Vec<usize>,
     /// Choices of the trajectories for each number
-    #[arg(long, default_value_t = DEFAULT_CHOICES, value_name = "K")]
+    #[arg(long, default_value_t = DEFAULT_CHOICES, value_name = "K", value_parser = count::<u64>(CHOICES))]
     choices: u64,
     /// Seed of the split and of the first choice
     #[arg(long, default_value_t = 0)]

@@ -7,9 +7,10 @@ use clap::{Args, ValueEnum};
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::write_force_evaluation;
-use crate::cli::options::{BadCasesArg, SplitArg};
+use crate::cli::options::{BadCasesArg, SplitArg, count};
 use crate::cli::text::print_force_evaluation;
 use crate::force::ColumnSet;
+use crate::ranges::FOLDS;
 use crate::shipped::ModelSource;
 use crate::study::{EvaluateForceRequest, ForceEvaluation};
 
@@ -39,7 +40,7 @@ pub(in crate::cli) struct EvaluateForceArgs {
     columns: ColumnsArg,
     /// Instead: train anew with the model's settings in K folds of its training cases, so that no
     /// test case is looked at
-    #[arg(long, value_name = "K")]
+    #[arg(long, value_name = "K", value_parser = count::<usize>(FOLDS))]
     cross_validate: Option<usize>,
     /// Seed of folds, clusters and draws
     #[arg(long, default_value_t = 0)]

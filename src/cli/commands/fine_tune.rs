@@ -6,10 +6,11 @@ use clap::{Args, Subcommand};
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_settings};
-use crate::cli::options::{TrainingArgs, VehicleArg, contact_point, time_s};
+use crate::cli::options::{TrainingArgs, VehicleArg, contact_point, count, number};
 use crate::cli::text::{Trained, print_response_training};
 use crate::data::{ColumnMap, Existing};
 use crate::learning::{ModelFile, TEST_SHARE};
+use crate::ranges::{INSTANT, LOG_DURATION, TEST_SHARE as SHARE_OF_TEST, TRAJECTORIES};
 use crate::shipped::ModelSource;
 use crate::study::{DEFAULT_LOG_DURATION_S, FineTuneRequest, ModelChoice, MotionLogs};
 use crate::vehicle::ContactPoint;
@@ -42,13 +43,13 @@ struct FineTuneResponseArgs {
     logs: LogArgs,
     /// How many trajectories of each data set to learn from; all that are not kept for the test if not
     /// given
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = count::<usize>(TRAJECTORIES))]
     trajectories: Option<usize>,
     /// The struck vehicle: a preset or a file, instead of the data set's own
     #[arg(long, value_name = "NAME|FILE")]
     vehicle: Option<VehicleArg>,
     /// Share of the cases that is kept for the test
-    #[arg(long, default_value_t = TEST_SHARE, value_name = "SHARE")]
+    #[arg(long, default_value_t = TEST_SHARE, value_name = "SHARE", value_parser = number(SHARE_OF_TEST))]
     test_share: f64,
     /// Seed of the choice of the trajectories and of all other draws; the split's if not given
     #[arg(long)]
@@ -97,10 +98,10 @@ struct LogArgs {
     #[arg(long, value_name = "X,Y,Z", value_parser = contact_point, allow_hyphen_values = true, requires = "force")]
     contact: Option<ContactPoint>,
     /// First contact on the logs' clock, s; from the force, or from the motion, if not given
-    #[arg(long, value_name = "TIME", value_parser = time_s, requires = "log")]
+    #[arg(long, value_name = "TIME", value_parser = number(INSTANT), allow_hyphen_values = true, requires = "log")]
     impact: Option<f64>,
     /// How much of a log from the first contact on is learned from, s
-    #[arg(long, value_name = "TIME", value_parser = time_s, default_value_t = DEFAULT_LOG_DURATION_S, requires = "log")]
+    #[arg(long, value_name = "TIME", value_parser = number(LOG_DURATION), default_value_t = DEFAULT_LOG_DURATION_S, requires = "log")]
     duration: f64,
 }
 

@@ -13,6 +13,7 @@ pub(super) mod licences;
 pub(super) mod predict;
 mod predict_force;
 mod predict_motion;
+pub(super) mod ranges;
 pub(super) mod render;
 mod render_figure;
 mod render_forecast;

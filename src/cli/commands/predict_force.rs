@@ -8,8 +8,9 @@ use serde::Serialize;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::write_force_prediction;
-use crate::cli::options::UnitsArg;
+use crate::cli::options::{UnitsArg, count};
 use crate::cli::text::print_force_prediction;
+use crate::ranges::SAMPLES;
 use crate::shipped::ModelSource;
 use crate::study::{ForceQuestion, PredictForceReport, PredictForceRequest, ScenarioChoice};
 
@@ -35,7 +36,7 @@ pub(in crate::cli) struct PredictForceArgs {
     #[arg(long)]
     open_contact: bool,
     /// Whole curves to draw
-    #[arg(long, default_value_t = 0, value_name = "N")]
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = count::<usize>(SAMPLES))]
     samples: usize,
     /// Seed of the draws
     #[arg(long, default_value_t = 0)]

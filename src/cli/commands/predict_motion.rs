@@ -5,13 +5,15 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
-use crate::analysis::PulseSetup;
+use crate::analysis::{MotionForecast, PulseSetup};
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::{MotionFiles, write_motion_prediction};
-use crate::cli::options::{UnitsArg, VehicleArg, window_s};
+use crate::cli::options::{UnitsArg, VehicleArg, count, number, window_s};
 use crate::cli::text::print_motion_prediction;
 use crate::data::{Existing, write_atomically};
+use crate::ranges::{DRAWS, FORECAST_DURATION, ROAD_FRICTION};
+use crate::response::STEP_S;
 use crate::shipped::ModelSource;
 use crate::study::{
     DEFAULT_DRAWS, DEFAULT_DURATION_S, ForceSource, MotionSource, PredictMotionReport,
@@ -50,13 +52,13 @@ pub(in crate::cli) struct PredictMotionArgs {
     #[arg(long, default_value_t, value_name = "MODEL")]
     response_model: ModelSource,
     /// Friction of the road, instead of the vehicle's
-    #[arg(long, value_name = "MU")]
+    #[arg(long, value_name = "MU", value_parser = number(ROAD_FRICTION))]
     friction: Option<f64>,
     /// Force histories to draw
-    #[arg(long, default_value_t = DEFAULT_DRAWS, value_name = "N")]
+    #[arg(long, default_value_t = DEFAULT_DRAWS, value_name = "N", value_parser = count::<usize>(DRAWS))]
     draws: usize,
     /// How long, s; a recorded motion has its own duration
-    #[arg(long, default_value_t = DEFAULT_DURATION_S, value_name = "S")]
+    #[arg(long, default_value_t = DEFAULT_DURATION_S, value_name = "S", value_parser = number(FORECAST_DURATION))]
     duration: f64,
     /// Seed of the draws
     #[arg(long, default_value_t = 0)]
@@ -111,7 +113,11 @@ pub(in crate::cli) fn run(
         draws: args.draws,
         seed: args.seed,
     };
+    if args.scenario.is_some() {
+        check_window_end(args.window, args.duration)?;
+    }
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
+    check_window_end(args.window, duration_s(&answer.forecast))?;
     let wanted = MotionFiles { folder: &args.out, window_s: args.window, units: args.units.into() };
     let files = write_motion_prediction(&wanted, &answer)?;
     let printed = PrintedMotion { report: &answer.report, files };
@@ -122,6 +128,22 @@ pub(in crate::cli) fn run(
     let report = &answer.report;
     console.print(&printed, |out| print_motion_prediction(out, report, args.units.into()))?;
     Ok(Verdict::Clean)
+}
+
+/// Duration of a predicted motion, s.
+pub(super) fn duration_s(forecast: &MotionForecast) -> f64 {
+    forecast.central.len().saturating_sub(1) as f64 * STEP_S
+}
+
+/// Refuses a window of time that ends after the motion.
+///
+/// - `end_s`: last instant of the motion, s.
+pub(super) fn check_window_end(window_s: Option<[f64; 2]>, end_s: f64) -> Result<(), CliError> {
+    match window_s {
+        // The end of a recorded motion need not be a multiple of the step.
+        Some([_, to_s]) if to_s > end_s + STEP_S => Err(CliError::WindowOutside { to_s, end_s }),
+        _ => Ok(()),
+    }
 }
 
 fn source(args: &PredictMotionArgs) -> Result<MotionSource, CliError> {

@@ -9,12 +9,11 @@ use crate::cli::CliError;
 use crate::cli::commands::render_figure;
 use crate::cli::commands::render_forecast::{self, ForecastArgs};
 use crate::cli::console::{Console, Verdict, print_json};
-use crate::cli::options::{
-    SourceArgs, UnitsArg, VehicleArg, contact_point, size_px, speed_m_s, time_s,
-};
+use crate::cli::options::{SourceArgs, UnitsArg, VehicleArg, contact_point, number, size_px};
 use crate::collision::ChannelClass;
 use crate::data::{Channel, Existing, write_atomically};
 use crate::figure::{Figure, write_figure_csv};
+use crate::ranges::{INSTANT, PICTURE_SCALE, SPEED};
 use crate::study::{Drive, ImpactRequest, Library, ScenarioChoice, SimulateRequest};
 use crate::vehicle::ContactPoint;
 
@@ -78,8 +77,8 @@ pub(super) struct OutputArgs {
     #[arg(long, value_parser = size_px, default_value = "1600x1000")]
     size: [u32; 2],
     /// Pixels per point: 2 for print and slides
-    #[arg(long, value_parser = scale, default_value = "2")]
-    scale: f32,
+    #[arg(long, value_parser = number(PICTURE_SCALE), default_value = "2")]
+    scale: f64,
 }
 
 /// With what a case is simulated.
@@ -93,7 +92,7 @@ pub(super) struct VehicleArgs {
     #[arg(long, value_name = "V.toml|PRESET")]
     bullet: Option<VehicleArg>,
     /// For a single force file: forward speed at the start, as in simulate
-    #[arg(long, value_parser = speed_m_s, allow_hyphen_values = true)]
+    #[arg(long, value_parser = number(SPEED), allow_hyphen_values = true)]
     speed: Option<f64>,
     /// For a single file with a force but no mz: where the force acts, as in simulate
     #[arg(long, value_name = "X,Y,Z", value_parser = contact_point, allow_hyphen_values = true)]
@@ -145,7 +144,7 @@ struct SceneArgs {
     #[command(flatten)]
     source: SourceArgs,
     /// The moment at which the vehicles are drawn, s
-    #[arg(long, value_parser = time_s)]
+    #[arg(long, value_parser = number(INSTANT))]
     time: f64,
     #[command(flatten)]
     vehicle: VehicleArgs,
@@ -207,14 +206,6 @@ impl From<ChannelArg> for Channel {
             ChannelArg::Roll => Self::Roll,
         }
     }
-}
-
-/// A scale that can be drawn.
-fn scale(text: &str) -> Result<f32, String> {
-    let scale = text.parse::<f32>().ok();
-    scale
-        .filter(|scale| (0.25..=8.0).contains(scale))
-        .ok_or_else(|| "expected a number from 0.25 to 8".to_owned())
 }
 
 #[derive(Debug, Serialize)]
@@ -298,8 +289,11 @@ fn write_csv(figure: &Figure, output: &OutputArgs) -> Result<(), CliError> {
 
 #[cfg(feature = "gui")]
 fn write_png(figure: &Figure, output: &OutputArgs) -> Result<(), CliError> {
-    let canvas =
-        crate::render::Canvas { size_px: output.size, scale: output.scale, dark: output.dark };
+    let canvas = crate::render::Canvas {
+        size_px: output.size,
+        scale: output.scale as f32,
+        dark: output.dark,
+    };
     let image = crate::render::figure_image(figure, canvas)?;
     crate::render::save_png(&image, &output.out, crate::data::Existing::Replace)?;
     Ok(())

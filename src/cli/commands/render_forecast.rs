@@ -4,15 +4,16 @@ use clap::{Args, ValueEnum};
 
 use crate::analysis::{DensityTask, MotionBands};
 use crate::cli::CliError;
+use crate::cli::commands::predict_motion::{check_window_end, duration_s};
 use crate::cli::commands::render::{OutputArgs, VehicleArgs};
 use crate::cli::commands::render_figure::{Noted, noted};
 use crate::cli::console::Console;
-use crate::cli::options::{SourceArgs, time_s, window_s};
+use crate::cli::options::{SourceArgs, number, window_s};
 use crate::data::Channel;
 use crate::figure::{
     FORECAST_CHANNELS, MotionForecastFigure, forecast_channel_figure, forecast_scene_figure,
 };
-use crate::response::STEP_S;
+use crate::ranges::INSTANT;
 use crate::shipped::ModelSource;
 use crate::study::{ForceSource, PredictMotionRequest};
 use crate::units::UnitSystem;
@@ -29,7 +30,7 @@ pub(in crate::cli) struct ForecastArgs {
     #[arg(long, value_enum)]
     channel: Option<ForecastChannelArg>,
     /// The moment of outlines and density, s; the end if not given
-    #[arg(long, value_parser = time_s)]
+    #[arg(long, value_parser = number(INSTANT))]
     time: Option<f64>,
     /// Density over a window of time, s, instead of the moment
     #[arg(long, value_parser = window_s, value_name = "FROM,TO")]
@@ -81,7 +82,8 @@ pub(super) fn figure(
     };
     let answer = console.answer(&request)?;
     let (forecast, analysis) = (&answer.forecast, &answer.analysis);
-    let duration_s = forecast.central.len().saturating_sub(1) as f64 * STEP_S;
+    let duration_s = duration_s(forecast);
+    check_window_end(args.window, duration_s)?;
     let at_s = args.time.unwrap_or(duration_s);
     if !(0.0..=duration_s).contains(&at_s) {
         return Err(CliError::TimeOutside { time_s: at_s, start_s: 0.0, end_s: duration_s });

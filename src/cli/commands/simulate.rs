@@ -10,11 +10,11 @@ use crate::analysis::PulseSetup;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, folder};
 use crate::cli::options::{
-    EquationsArg, IntegratorArg, SamplingArg, UnitsArg, VehicleArg, contact_point, friction,
-    speed_m_s, time_s, yaw_rate_rad_s,
+    EquationsArg, IntegratorArg, SamplingArg, UnitsArg, VehicleArg, contact_point, number,
 };
 use crate::cli::text::{print_dataset_simulation, print_simulation};
 use crate::data::{ColumnMap, DatasetKind, Existing, write_series_csv};
+use crate::ranges::{ROAD_FRICTION, SIMULATED_DURATION, SPEED, YAW_RATE};
 use crate::study::{
     DEFAULT_DURATION_S, Drive, MotionSource, ScenarioChoice, SeriesFile, SimulateDatasetRequest,
     SimulateRequest,
@@ -126,13 +126,13 @@ Exit code 1 if any case failed.";
 #[derive(Debug, Args)]
 struct SingleArgs {
     /// Forward speed at the start, m/s, or with a unit: 72km/h, 45mph; 20 m/s if not given
-    #[arg(long, value_parser = speed_m_s, allow_hyphen_values = true)]
+    #[arg(long, value_parser = number(SPEED), allow_hyphen_values = true)]
     speed: Option<f64>,
     /// Leftward speed at the start, as --speed
-    #[arg(long, value_parser = speed_m_s, allow_hyphen_values = true, default_value = "0")]
+    #[arg(long, value_parser = number(SPEED), allow_hyphen_values = true, default_value = "0")]
     vy: f64,
     /// Yaw rate at the start, rad/s to the left, or with a unit: 30deg/s
-    #[arg(long, value_parser = yaw_rate_rad_s, allow_hyphen_values = true, default_value = "0")]
+    #[arg(long, value_parser = number(YAW_RATE), allow_hyphen_values = true, default_value = "0")]
     yaw_rate: f64,
     /// Road-wheel angle over time: CSV with time and steer, positive to the left
     #[arg(long, value_name = "FILE")]
@@ -156,10 +156,10 @@ struct SingleArgs {
     #[arg(long, value_name = "X,Y,Z", value_parser = contact_point, allow_hyphen_values = true)]
     contact: Option<ContactPoint>,
     /// Peak friction of the road instead of the vehicle file's
-    #[arg(long, value_parser = friction)]
+    #[arg(long, value_parser = number(ROAD_FRICTION))]
     friction: Option<f64>,
     /// Duration, s
-    #[arg(long, value_parser = time_s, default_value_t = DEFAULT_DURATION_S)]
+    #[arg(long, value_parser = number(SIMULATED_DURATION), default_value_t = DEFAULT_DURATION_S)]
     duration: f64,
 }
 

@@ -6,10 +6,11 @@ use clap::Args;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_settings};
-use crate::cli::options::TrainingArgs;
+use crate::cli::options::{TrainingArgs, count};
 use crate::cli::text::{Trained, print_force_training};
 use crate::data::Existing;
 use crate::learning::ModelFile;
+use crate::ranges::EPOCHS;
 use crate::study::TrainForceRequest;
 
 #[derive(Debug, Args)]
@@ -25,7 +26,7 @@ pub(in crate::cli) struct TrainForceArgs {
     #[arg(long, conflicts_with = "config")]
     paper: bool,
     /// Epochs at most, instead of the configured number
-    #[arg(long)]
+    #[arg(long, value_parser = count::<usize>(EPOCHS))]
     epochs: Option<usize>,
     #[command(flatten)]
     training: TrainingArgs,

@@ -1,18 +1,10 @@
 //! Numbers with units as arguments: `20`, `72km/h`, `30deg/s`.
 
-use std::ops::RangeInclusive;
-
+use crate::ranges::{
+    CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, OutOfRange, PICTURE_SIDE, Range, WINDOW,
+};
 use crate::units::Quantity;
 use crate::vehicle::ContactPoint;
-
-/// As in scenario files.
-const SPEED_RANGE_M_S: RangeInclusive<f64> = -150.0..=150.0;
-/// As in scenario files.
-const YAW_RATE_RANGE_RAD_S: RangeInclusive<f64> = -50.0..=50.0;
-/// As in vehicle files.
-const FRICTION_RANGE: RangeInclusive<f64> = 0.01..=2.0;
-/// Half the longest and widest vehicle that vehicle files allow for, and a load above it.
-const CONTACT_RANGES_M: [RangeInclusive<f64>; 3] = [-30.0..=30.0, -10.0..=10.0, 0.0..=5.0];
 
 /// An argument that is not the number it should be.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -24,44 +16,52 @@ pub(in crate::cli) enum QuantityError {
     #[error("{unit:?} is not one of the units {units}")]
     Unit { unit: String, units: String },
     /// Beyond what makes sense.
-    #[error("{value} {si} is outside {low} to {high} {si}")]
-    Range { value: f64, si: &'static str, low: f64, high: f64 },
+    #[error(transparent)]
+    Range(#[from] OutOfRange),
+    /// Not a whole number.
+    #[error("expected a whole number, {expected}")]
+    NotWhole { expected: String },
     /// Not three numbers.
     #[error("expected three numbers x,y,z in m, such as -1.5,-0.9,0.5")]
     NoPoint,
     /// Not two moments.
     #[error("expected two moments in s, such as 0,4")]
     NoWindow,
+    /// A window that ends before it starts.
+    #[error("{from_s} s to {to_s} s ends before it starts; expected the earlier moment first")]
+    WindowOrder { from_s: f64, to_s: f64 },
     /// Not a size.
     #[error("expected width x height in pixels, such as 1600x1000")]
     NoSize,
 }
 
-/// A speed, m/s unless it says otherwise.
-pub(in crate::cli) fn speed_m_s(text: &str) -> Result<f64, QuantityError> {
-    in_range(quantity(text, Quantity::Speed)?, Quantity::Speed, SPEED_RANGE_M_S)
+/// A parser of a number in a range, in SI units unless the text names another unit.
+pub(in crate::cli) fn number(
+    range: Range,
+) -> impl Fn(&str) -> Result<f64, QuantityError> + Clone + Send + Sync + 'static {
+    move |text| Ok(range.check(quantity(text, range.quantity)?)?)
 }
 
-/// A yaw rate, rad/s unless it says otherwise.
-pub(in crate::cli) fn yaw_rate_rad_s(text: &str) -> Result<f64, QuantityError> {
-    let value = quantity(text, Quantity::AngularVelocity)?;
-    in_range(value, Quantity::AngularVelocity, YAW_RATE_RANGE_RAD_S)
-}
-
-/// A duration or a moment, s unless it says otherwise.
-pub(in crate::cli) fn time_s(text: &str) -> Result<f64, QuantityError> {
-    quantity(text, Quantity::Time)
+/// A parser of a number that counts something.
+pub(in crate::cli) fn count<T: TryFrom<u64>>(
+    range: Range,
+) -> impl Fn(&str) -> Result<T, QuantityError> + Clone + Send + Sync + 'static {
+    move |text| {
+        let not_whole = || QuantityError::NotWhole { expected: range.explained() };
+        let n: u64 = text.trim().parse().or(Err(not_whole()))?;
+        range.check_count(n)?;
+        T::try_from(n).or(Err(not_whole()))
+    }
 }
 
 /// A window of time, s unless it says otherwise: `0,2`.
 pub(in crate::cli) fn window_s(text: &str) -> Result<[f64; 2], QuantityError> {
     let (from, to) = text.split_once(',').ok_or(QuantityError::NoWindow)?;
-    Ok([time_s(from)?, time_s(to)?])
-}
-
-/// Friction of the road.
-pub(in crate::cli) fn friction(text: &str) -> Result<f64, QuantityError> {
-    in_range(quantity(text, Quantity::Ratio)?, Quantity::Ratio, FRICTION_RANGE)
+    let [from_s, to_s] = [number(WINDOW)(from)?, number(WINDOW)(to)?];
+    if from_s > to_s {
+        return Err(QuantityError::WindowOrder { from_s, to_s });
+    }
+    Ok([from_s, to_s])
 }
 
 /// Where a force acts: `x,y,z`, m.
@@ -71,8 +71,8 @@ pub(in crate::cli) fn contact_point(text: &str) -> Result<ContactPoint, Quantity
     let [x_m, y_m, height_m] = numbers[..] else {
         return Err(QuantityError::NoPoint);
     };
-    for (value, range) in [x_m, y_m, height_m].into_iter().zip(CONTACT_RANGES_M) {
-        in_range(value, Quantity::Length, range)?;
+    for (value, range) in [(x_m, CONTACT_X), (y_m, CONTACT_Y), (height_m, CONTACT_HEIGHT)] {
+        range.check(value)?;
     }
     Ok(ContactPoint { x_m, y_m, height_m })
 }
@@ -80,7 +80,11 @@ pub(in crate::cli) fn contact_point(text: &str) -> Result<ContactPoint, Quantity
 /// Width and height in pixels: `1600x1000`.
 pub(in crate::cli) fn size_px(text: &str) -> Result<[u32; 2], QuantityError> {
     let (width, height) = text.split_once(['x', '×']).ok_or(QuantityError::NoSize)?;
-    let side = |text: &str| text.trim().parse().or(Err(QuantityError::NoSize));
+    let side = |text: &str| -> Result<u32, QuantityError> {
+        let side = text.trim().parse().or(Err(QuantityError::NoSize))?;
+        PICTURE_SIDE.check_count(u64::from(side))?;
+        Ok(side)
+    };
     Ok([side(width)?, side(height)?])
 }
 
@@ -116,22 +120,6 @@ fn quantity(text: &str, quantity: Quantity) -> Result<f64, QuantityError> {
         .ok_or_else(|| QuantityError::Unit { unit: unit.to_owned(), units: symbols(quantity) })
 }
 
-fn in_range(
-    value: f64,
-    quantity: Quantity,
-    range: RangeInclusive<f64>,
-) -> Result<f64, QuantityError> {
-    if range.contains(&value) {
-        return Ok(value);
-    }
-    Err(QuantityError::Range {
-        value,
-        si: quantity.si_unit().symbol,
-        low: *range.start(),
-        high: *range.end(),
-    })
-}
-
 fn symbols(quantity: Quantity) -> String {
     let symbols = quantity.units().iter().map(|unit| unit.symbol);
     symbols.filter(|symbol| !symbol.is_empty()).collect::<Vec<_>>().join(", ")
@@ -140,6 +128,7 @@ fn symbols(quantity: Quantity) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ranges::{DRAWS, INSTANT, SPEED, YAW_RATE};
 
     #[test]
     fn units_are_understood_and_si_is_assumed() {
@@ -151,12 +140,12 @@ mod tests {
             ("2e1", 20.0),
             ("2.5e-1 m/s", 0.25),
         ] {
-            let speed = speed_m_s(text).unwrap();
+            let speed = number(SPEED)(text).unwrap();
             assert!((speed - expected).abs() < 1e-12, "{text}: {speed}");
         }
-        let rate = yaw_rate_rad_s("30deg/s").unwrap();
+        let rate = number(YAW_RATE)("30deg/s").unwrap();
         assert!((rate.to_degrees() - 30.0).abs() < 1e-12);
-        assert_eq!(time_s("250ms"), Ok(0.25));
+        assert_eq!(number(INSTANT)("250ms"), Ok(0.25));
     }
 
     #[test]
@@ -167,10 +156,11 @@ mod tests {
             ("inf", "expected a number"),
             ("", "expected a number"),
             ("20 kn", "\"kn\" is not one of the units m/s"),
-            ("1e9", "outside -150 to 150 m/s"),
-            ("200m/s", "outside"),
+            ("1e9", "speed is 1e9 m/s, expected -150 to 150 m/s"),
+            ("1e999", "speed is inf m/s, expected"),
+            ("200m/s", "expected -150 to 150 m/s"),
         ] {
-            let error = speed_m_s(text).unwrap_err().to_string();
+            let error = number(SPEED)(text).unwrap_err().to_string();
             assert!(error.contains(part), "{text}: {error}");
         }
         assert_eq!(contact_point("1,2"), Err(QuantityError::NoPoint));
@@ -178,5 +168,30 @@ mod tests {
         assert_eq!(contact_point("-1.5, -0.9, 0.5").unwrap().height_m, 0.5);
         assert_eq!(size_px("1600x1000"), Ok([1600, 1000]));
         assert_eq!(size_px("1600"), Err(QuantityError::NoSize));
+        assert!(size_px("1600x1").is_err() && size_px("99999x1000").is_err());
+    }
+
+    #[test]
+    fn a_window_is_two_moments_in_their_order() {
+        assert_eq!(window_s("0,2"), Ok([0.0, 2.0]));
+        assert_eq!(window_s("500ms, 2"), Ok([0.5, 2.0]));
+        let error = window_s("5,2").unwrap_err().to_string();
+        assert_eq!(error, "5 s to 2 s ends before it starts; expected the earlier moment first");
+        assert!(window_s("-1,2").is_err() && window_s("0,1e999").is_err());
+    }
+
+    #[test]
+    fn what_counts_is_whole_and_in_its_range() {
+        assert_eq!(count::<usize>(DRAWS)("30"), Ok(30));
+        for (text, part) in [
+            ("0", "draws is 0, expected 1 to 10000"),
+            ("2000000000", "draws is 2e9, expected 1 to 10000"),
+            ("2.5", "expected a whole number, 1 to 10000"),
+            ("-3", "expected a whole number"),
+            ("99999999999999999999", "expected a whole number"),
+        ] {
+            let error = count::<usize>(DRAWS)(text).unwrap_err().to_string();
+            assert!(error.contains(part), "{text}: {error}");
+        }
     }
 }

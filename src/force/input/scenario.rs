@@ -8,6 +8,9 @@ use serde::{Deserialize, Serialize};
 use crate::collision::{Scenario, ScenarioError};
 use crate::data::{Case, DataError, ForceAttributes, StruckSide, Value};
 use crate::numerics::wrap_angle_rad;
+use crate::ranges::{
+    BODY_MASS, BODY_YAW_INERTIA, BULLET_OFFSET, CONTACT_X, CONTACT_Y, HEADING, Range, SPEED,
+};
 
 /// Two vehicles at first contact, in world axes with X along the target's heading. Neither vehicle
 /// turns before the contact.
@@ -98,6 +101,30 @@ impl ForceScenario {
             bullet_body: None,
             yaw_inertia_kg_m2: [Some(target.yaw_inertia_kg_m2), Some(bullet.yaw_inertia_kg_m2)],
         })
+    }
+
+    /// Every number of the scenario with its name and its range.
+    pub fn ranges(&self) -> Vec<(String, f64, Range)> {
+        let mut numbers = Vec::new();
+        let mut add = |name: &str, value: Option<f64>, range| {
+            numbers.extend(value.map(|value| (name.to_owned(), value, range)));
+        };
+        for (i, body) in ["target", "bullet"].into_iter().enumerate() {
+            add(&format!("mass_kg of the {body}"), Some(self.mass_kg[i]), BODY_MASS);
+            let inertia = self.yaw_inertia_kg_m2[i];
+            add(&format!("yaw_inertia_kg_m2 of the {body}"), inertia, BODY_YAW_INERTIA);
+        }
+        for (i, axis) in ["x", "y"].into_iter().enumerate() {
+            let [target, bullet] = [self.target_velocity_m_s[i], self.bullet_velocity_m_s[i]];
+            add(&format!("target_velocity_m_s, {axis}"), Some(target), SPEED);
+            add(&format!("bullet_velocity_m_s, {axis}"), Some(bullet), SPEED);
+            let range = [CONTACT_X, CONTACT_Y][i];
+            add(&format!("contact_m, {axis}"), self.contact_m.map(|at| at[i]), range);
+            let position = self.bullet_position_m.map(|at| at[i]);
+            add(&format!("bullet_position_m, {axis}"), position, BULLET_OFFSET);
+        }
+        add("theta_b_rad", Some(self.theta_b_rad), HEADING);
+        numbers
     }
 
     /// Velocity of the bullet relative to the target `v_b − v_t`, m/s.

@@ -5,7 +5,7 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use crate::compare::{MotionError, physical_violations};
-use crate::data::null_as_nan;
+use crate::data::{finite_or_null, null_as_nan};
 use crate::learning::LearningError;
 use crate::response::evaluate::MotionModel;
 use crate::response::evaluate::motion_model::PredictedMotion;
@@ -31,16 +31,16 @@ pub struct MotionCoverage {
     /// Probability level of the smallest region that holds the end.
     pub end_level: f64,
     /// Mean over time of the continuous ranked probability score of X, m.
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
     pub crps_x_m: f64,
     /// Mean over time of the continuous ranked probability score of Y, m.
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
     pub crps_y_m: f64,
     /// Mean over time of the continuous ranked probability score of the heading, rad.
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
     pub crps_yaw_rad: f64,
     /// Mean over time of the energy score of (X, Y), m.
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
     pub energy_score_m: f64,
 }
 

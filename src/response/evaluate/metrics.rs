@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::data::null_as_nan;
+use crate::data::{finite_or_null, null_as_nan};
 use crate::numerics::quantile_of_sorted;
 use crate::response::evaluate::{MotionCaseMetrics, MotionCoverage};
 
@@ -10,13 +10,13 @@ use crate::response::evaluate::{MotionCaseMetrics, MotionCoverage};
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct MeanStd {
     /// Mean.
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
     pub mean: f64,
     /// Standard deviation over the trajectories (divisor n).
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
     pub std: f64,
     /// Median.
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
     pub median: f64,
 }
 
@@ -28,7 +28,7 @@ pub struct MotionMetrics {
     /// Average error, m.
     pub average_error_m: MeanStd,
     /// 1/mean of the average error, 1/m.
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
     pub score: f64,
     /// Root mean square errors.
     pub rmse: RootMeanSquares,
@@ -86,16 +86,16 @@ pub struct CoverageMetrics {
     /// Share of the ends that lie in the 90 % regions.
     pub end_90: f64,
     /// Mean continuous ranked probability score of X, m.
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
     pub crps_x_m: f64,
     /// Mean continuous ranked probability score of Y, m.
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
     pub crps_y_m: f64,
     /// Mean continuous ranked probability score of the heading, deg.
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
     pub crps_yaw_deg: f64,
     /// Mean energy score of (X, Y), m.
-    #[serde(deserialize_with = "null_as_nan")]
+    #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
     pub energy_score_m: f64,
 }
 

@@ -66,7 +66,7 @@ impl ResponseCase {
     /// # Errors
     /// [`ResponseCaseError`].
     pub fn from_case(case: &Case, vehicle: &VehicleParameters) -> Result<Self, ResponseCaseError> {
-        let manoeuvre = recorded_manoeuvre(case)?;
+        let manoeuvre = recorded_manoeuvre(case, vehicle)?;
         let attributes = TrajectoryAttributes::read(&case.attributes).map_err(ReplayError::from)?;
         let friction = attributes.mu;
         let in_case = |source| ReplayError::Series { case: case.name.clone(), source };

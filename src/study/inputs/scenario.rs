@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::collision::{Scenario, ScenarioError};
 use crate::study::StudyError;
+use crate::study::checks::check_all;
 
 /// A scenario: a file, or one that is in memory.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -26,6 +27,15 @@ impl ScenarioChoice {
         match self {
             Self::File(path) => Ok(Scenario::preset_or_file(path)?),
             Self::Inline(scenario) => Ok(scenario.as_ref().clone()),
+        }
+    }
+
+    /// Checks every number of a scenario that stands in the question; a file is checked when it is
+    /// read.
+    pub(in crate::study) fn check(&self) -> Result<(), StudyError> {
+        match self {
+            Self::File(_) => Ok(()),
+            Self::Inline(scenario) => check_all(scenario.ranges()),
         }
     }
 

@@ -1,0 +1,182 @@
+//! The ranges of quantities that files, options, fields and questions give.
+//!
+//! Sources: dimensions and masses of road vehicles in the European Union end at 18.75 m, 2.55 m and
+//! 44 t (Directive 96/53/EC); the ranges leave room for others and, below, for models at a scale of
+//! 1:10.
+
+use std::f64::consts::PI;
+
+use crate::ranges::{Range, RangeGroup};
+use crate::units::Quantity;
+
+/// Defines ranges as constants, with their meaning as documentation, and the group that lists them.
+macro_rules! ranges {
+    (
+        $(#[$doc:meta])* $group:ident = $title:literal;
+        $($constant:ident: $name:literal = $kind:ident($($limit:expr),+), $meaning:literal;)+
+    ) => {
+        $(
+            #[doc = concat!("Range of “", $name, "”: ", $meaning, ".")]
+            pub const $constant: Range = Range::$kind($name, $($limit),+, $meaning);
+        )+
+        $(#[$doc])*
+        pub const $group: RangeGroup = RangeGroup { title: $title, ranges: &[$($constant),+] };
+    };
+}
+
+ranges! {
+    /// Motion of a vehicle, and the road.
+    MOTION = "motion and road";
+    SPEED: "speed" = real(Quantity::Speed, [-150.0, 150.0]),
+        "speed or component of a velocity; negative backwards or to the right";
+    YAW_RATE: "yaw rate" = real(Quantity::AngularVelocity, [-50.0, 50.0]),
+        "yaw rate of a vehicle, positive to the left";
+    HEADING: "angle" = real(Quantity::Angle, [-4.0 * PI, 4.0 * PI]),
+        "heading of a vehicle or direction of a contact normal";
+    POSITION: "position" = real(Quantity::Length, [-1e6, 1e6]),
+        "coordinate of a vehicle in world axes";
+    STEER_ANGLE: "steer angle" = real(Quantity::Angle, [-0.9, 0.9]),
+        "angle of a road wheel; divide a steering-wheel angle by the steering ratio first";
+    ROAD_FRICTION: "road friction" = real(Quantity::Ratio, [0.01, 2.0]),
+        "peak friction between tyre and road; 0.8 on dry asphalt, 0.1 on ice";
+}
+
+ranges! {
+    /// Instants and durations.
+    TIMES = "times";
+    INSTANT: "time" = real(Quantity::Time, [-1e10, 1e10]),
+        "instant on the clock of a file; some clocks count the seconds since 1970";
+    TIME_STEP: "time step" = real(Quantity::Time, [1e-9, 1e6]),
+        "time between two samples of a file";
+    SIMULATED_DURATION: "duration" = real(Quantity::Time, [0.01, 3600.0]),
+        "duration of a simulation";
+    FORECAST_DURATION: "duration of a forecast" = real(Quantity::Time, [0.1, 60.0]),
+        "duration of a motion that the response network predicts";
+    LOG_DURATION: "duration of a log" = real(Quantity::Time, [0.1, 600.0]),
+        "part of a log after the first contact that is learned from";
+    WINDOW: "window" = real(Quantity::Time, [0.0, 60.0]),
+        "start or end of the time over which a density is averaged";
+    PULSE_DURATION: "pulse duration" = real(Quantity::Time, [0.001, 2.0]),
+        "time over which the impulse of a scenario is spread";
+}
+
+ranges! {
+    /// The contact of two vehicles.
+    CONTACT = "contact";
+    CONTACT_X: "contact x" = real(Quantity::Length, [-30.0, 30.0]),
+        "contact point ahead of the CG, in body axes";
+    CONTACT_Y: "contact y" = real(Quantity::Length, [-10.0, 10.0]),
+        "contact point to the left of the CG, in body axes";
+    CONTACT_HEIGHT: "contact height" = real(Quantity::Length, [0.0, 5.0]),
+        "height of the contact point above the ground";
+    CONTACT_OFFSET: "contact offset" = real(Quantity::Length, [-50.0, 50.0]),
+        "touching point from the middle of the struck side";
+    CONTACT_COORDINATE: "contact coordinate" = real(Quantity::Length, [-100.0, 100.0]),
+        "contact point of a scenario from the CG of the target, in its body axes";
+    BULLET_OFFSET: "bullet position" = real(Quantity::Length, [-100.0, 100.0]),
+        "CG of the bullet from the CG of the target at first contact";
+    OFF_OUTLINE: "distance from the outline" = real(Quantity::Ratio, [0.0, 0.1]),
+        "distance of a contact point outside a vehicle, as a share of the vehicle's length";
+    RESTITUTION: "restitution" = real(Quantity::Ratio, [0.0, 1.0]),
+        "coefficient of restitution along the contact normal";
+    FRICTION_LIMIT: "friction limit" = real(Quantity::Ratio, [0.0, 10.0]),
+        "largest ratio of tangential to normal impulse between the vehicles";
+}
+
+ranges! {
+    /// Bodies that collide: vehicles, and fixed barriers as very heavy ones.
+    BODIES = "bodies of a collision";
+    BODY_MASS: "mass of a body" = real(Quantity::Mass, [1.0, 1e8]),
+        "mass in a collision; a fixed barrier is a very heavy body";
+    BODY_YAW_INERTIA: "yaw inertia of a body" = real(Quantity::MomentOfInertia, [1e-3, 1e10]),
+        "yaw moment of inertia about the CG";
+    BODY_LENGTH: "length of a body" = real(Quantity::Length, [0.1, 100.0]), "outer length";
+    BODY_WIDTH: "width of a body" = real(Quantity::Length, [0.05, 20.0]), "outer width";
+    BODY_CG: "CG of a body" = real(Quantity::Length, [0.0, 100.0]),
+        "distance from the front end back to the CG, at most the length";
+}
+
+ranges! {
+    /// The parameters of a vehicle file.
+    VEHICLE = "vehicle file";
+    VEHICLE_MASS: "mass" = real(Quantity::Mass, [1.0, 50_000.0]), "whole mass";
+    SPRUNG_MASS: "sprung mass" = real(Quantity::Mass, [0.5, 50_000.0]),
+        "sprung mass, at most the whole mass";
+    VEHICLE_YAW_INERTIA: "yaw inertia" = real(Quantity::MomentOfInertia, [1e-3, 1e6]),
+        "yaw moment of inertia about the CG";
+    ROLL_INERTIA: "roll inertia" = real(Quantity::MomentOfInertia, [1e-3, 1e5]),
+        "roll moment of inertia about the roll axis";
+    ROLL_YAW_PRODUCT: "roll-yaw product" = real(Quantity::MomentOfInertia, [-1e6, 1e6]),
+        "product of inertia, in size at most 0.95 of the geometric mean of both moments";
+    CG_TO_AXLE: "CG to axle" = real(Quantity::Length, [0.05, 10.0]),
+        "distance from the CG to an axle";
+    TRACK_WIDTH: "track width" = real(Quantity::Length, [0.05, 4.0]),
+        "distance between the wheels of an axle";
+    CG_HEIGHT: "CG height" = real(Quantity::Length, [0.01, 3.0]), "height of the CG";
+    OUTER_LENGTH: "outer length" = real(Quantity::Length, [0.1, 25.0]), "length of the body";
+    OUTER_WIDTH: "outer width" = real(Quantity::Length, [0.05, 4.0]), "width of the body";
+    CG_TO_FRONT_END: "CG to front end" = real(Quantity::Length, [0.0, 25.0]),
+        "distance from the CG to the front end, at most the outer length";
+    ROLL_AXIS_HEIGHT: "roll axis height" = real(Quantity::Length, [-1.0, 2.0]),
+        "height of the roll axis below the CG above the ground";
+    ROLL_ARM: "roll arm" = real(Quantity::Length, [0.0, 3.0]),
+        "distance from the roll axis to the CG of the sprung mass";
+    ROLL_STIFFNESS: "roll stiffness" = in_unit("N m/rad", [1.0, 1e7]),
+        "roll stiffness of both axles";
+    ROLL_DAMPING: "roll damping" = in_unit("N m s/rad", [0.0, 1e6]), "roll damping";
+    FRONT_ROLL_SHARE: "front roll stiffness share" = real(Quantity::Ratio, [0.0, 1.0]),
+        "share of the front axle in the roll stiffness";
+    CORNERING_COEFFICIENT: "cornering coefficient" = in_unit("1/rad", [1.0, 60.0]),
+        "cornering stiffness over vertical load";
+    SLIDING_FRICTION_RATIO: "sliding friction ratio" = real(Quantity::Ratio, [0.1, 1.0]),
+        "sliding friction over peak friction";
+    ROLLING_RESISTANCE: "rolling resistance" = real(Quantity::Ratio, [0.0, 0.5]),
+        "rolling resistance over vertical load";
+    ROLLING_RESISTANCE_PER_SPEED: "rolling resistance per speed" = in_unit("s/m", [0.0, 0.01]),
+        "part of the rolling resistance that grows with the speed";
+    ROLLING_RESISTANCE_PER_SPEED_2: "rolling resistance per speed²"
+        = in_unit("s²/m²", [0.0, 0.001]),
+        "part of the rolling resistance that grows with the square of the speed";
+}
+
+ranges! {
+    /// Columns of time series; speeds, times and steer angles have the ranges above. A value
+    /// outside means that its unit is wrong; values that are merely unusual are flagged by
+    /// `impactlab check`.
+    CHANNELS = "columns of time series";
+    FORCE_SAMPLE: "force" = real(Quantity::Force, [-2e7, 2e7]),
+        "heavy trucks against rigid barriers reach a few MN";
+    MOMENT_SAMPLE: "moment" = real(Quantity::Moment, [-1e8, 1e8]),
+        "moment of the contact force";
+    ACCELERATION_SAMPLE: "acceleration" = real(Quantity::Acceleration, [-1e6, 1e6]),
+        "acceleration of a vehicle";
+    ANGULAR_VELOCITY_SAMPLE: "angular velocity" = real(Quantity::AngularVelocity, [-200.0, 200.0]),
+        "rate of yaw or roll";
+    ANGLE_SAMPLE: "angle" = real(Quantity::Angle, [-1e4, 1e4]),
+        "yaw or roll, counted over whole turns";
+    LENGTH_SAMPLE: "position" = real(Quantity::Length, [-2e7, 2e7]),
+        "coordinates of national grids reach 10⁷ m";
+}
+
+ranges! {
+    /// What a question asks for.
+    QUESTIONS = "questions";
+    DRAWS: "draws" = whole([1, 10_000]), "force histories that are drawn for a forecast";
+    SAMPLES: "samples" = whole([0, 10_000]), "whole force curves that are drawn";
+    FOLDS: "folds" = whole([2, 1000]),
+        "parts of a cross-validation, at most as many as there are cases";
+    CHOICES: "choices" = whole([1, 1000]), "choices of the trajectories in a comparison";
+    TRAJECTORIES: "trajectories" = whole([1, 1_000_000]), "trajectories to learn from";
+    TRAJECTORY_SETS: "numbers of trajectories" = whole([1, 100]),
+        "how many numbers of trajectories a comparison tries";
+    EPOCHS: "epochs" = whole([1, 100_000]), "passes over the training cases";
+    TEST_SHARE: "test share" = real(Quantity::Ratio, [0.0, 0.9]),
+        "share of the cases that is kept for the test";
+}
+
+ranges! {
+    /// Pictures.
+    PICTURES = "pictures";
+    PICTURE_SIDE: "picture side" = whole([16, 16_384]), "width or height of a picture in pixels";
+    PICTURE_SCALE: "picture scale" = real(Quantity::Ratio, [0.25, 8.0]), "pixels per point";
+}
