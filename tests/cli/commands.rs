@@ -74,6 +74,7 @@ fn every_help_shows_an_example() {
         &["render", "scene"],
         &["render", "impact"],
         &["vehicles"],
+        &["ranges"],
     ] {
         let ran = impactlab(&[command, &["--help"]].concat());
         assert_eq!(ran.code, 0, "{command:?}");
