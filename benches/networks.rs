@@ -47,7 +47,8 @@ fn print_epoch(name: &str, mut config: ForceConfig) {
     let set = ForceTrainingSet::of_split("fea", &cases, 0, config.training.test_share);
     let settings = TrainSettings::unsaved(config, 0);
     let model = train(&set, &settings, &mut |_| ControlFlow::Continue(())).expect("a training");
-    let mut seconds: Vec<f64> = model.record().history.iter().map(|epoch| epoch.seconds).collect();
+    let mut seconds: Vec<f64> =
+        model.record().history.iter().filter_map(|epoch| epoch.seconds).collect();
     seconds.sort_by(f64::total_cmp);
     let ms = |idx: usize| 1e3 * seconds[idx];
     println!(

@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use crate::data::write::sha256_hex;
 use crate::force::{ForceError, ForceModel};
 use crate::learning::{LearningError, ModelFile};
 use crate::response::ResponseModel;
@@ -54,11 +55,15 @@ impl ModelSource {
     /// [`ForceError`] if the file cannot be read or is not a force network, which is always the
     /// case for [`ModelSource::ShippedPretrained`].
     pub fn force_model(&self) -> Result<ForceModel, ForceError> {
-        match self {
-            Self::Shipped => ForceModel::from_bytes(FORCE_MODEL),
-            Self::ShippedPretrained => ForceModel::from_bytes(PRETRAINED_RESPONSE_MODEL),
-            Self::File(path) => ForceModel::load(path),
-        }
+        Ok(self.force_model_with_digest()?.0)
+    }
+
+    /// Loads the force network and returns it with the SHA-256 of its file, hexadecimal.
+    ///
+    /// # Errors
+    /// As for [`ModelSource::force_model`].
+    pub fn force_model_with_digest(&self) -> Result<(ForceModel, String), ForceError> {
+        self.load(FORCE_MODEL)
     }
 
     /// Loads the response network.
@@ -66,11 +71,27 @@ impl ModelSource {
     /// # Errors
     /// [`LearningError`] if the file cannot be read or is not a response network.
     pub fn response_model(&self) -> Result<ResponseModel, LearningError> {
-        match self {
-            Self::Shipped => ResponseModel::from_bytes(RESPONSE_MODEL),
-            Self::ShippedPretrained => ResponseModel::from_bytes(PRETRAINED_RESPONSE_MODEL),
-            Self::File(path) => ResponseModel::load(path),
-        }
+        Ok(self.response_model_with_digest()?.0)
+    }
+
+    /// Loads the response network and returns it with the SHA-256 of its file, hexadecimal.
+    ///
+    /// # Errors
+    /// As for [`ModelSource::response_model`].
+    pub fn response_model_with_digest(&self) -> Result<(ResponseModel, String), LearningError> {
+        self.load(RESPONSE_MODEL)
+    }
+
+    /// Loads a network of either kind.
+    ///
+    /// - `shipped`: the file of the one that is part of the program.
+    fn load<M: ModelFile>(&self, shipped: &[u8]) -> Result<(M, String), M::Error> {
+        let bytes = match self {
+            Self::Shipped => shipped,
+            Self::ShippedPretrained => PRETRAINED_RESPONSE_MODEL,
+            Self::File(path) => return M::load_with_digest(path),
+        };
+        Ok((M::from_bytes(bytes)?, sha256_hex(bytes)))
     }
 
     /// The word of a model that is part of the program, or the path of a file.

@@ -13,6 +13,7 @@ instants stand ready as tensors, those for the physics among them.
 
 import argparse
 import csv
+import itertools
 import json
 import os
 import statistics
@@ -211,11 +212,12 @@ def ours(program, folder, n_epochs):
         command += ["--trajectories", str(N_CASES), "--config", config, "--out", out]
         one_thread = {**os.environ, "RAYON_NUM_THREADS": "1"}
         subprocess.run(command, check=True, capture_output=True, env=one_thread)
-        with out.open("rb") as file:
+        # The checkpoint has the seconds of every epoch, those of the pre-trained model as null.
+        with Path(f"{out}.training").open("rb") as file:
             header = json.loads(file.read(struct.unpack("<Q", file.read(8))[0]))
     metadata = json.loads(header["__metadata__"]["impactlab"])["metadata"]
-    history = [epoch for epoch in metadata["record"]["history"] if epoch["stage"] != "pretraining"]
-    seconds = [epoch["seconds"] for epoch in history]
+    own = [epoch["stage"] != "pretraining" for epoch in metadata["history"]]
+    seconds = list(itertools.compress(metadata["epoch_seconds"], own))
     return seconds[:n_epochs], seconds[n_epochs:]
 
 

@@ -101,7 +101,7 @@ impl<M: TrainedModel> TrainingStatus<M> {
 
     fn take(&mut self, report: TrainingReport) {
         if let TrainingReport::Epoch(epoch) = &report {
-            self.seconds.push(epoch.summary.seconds);
+            self.seconds.extend(epoch.summary.seconds);
             if epoch.training_idx == 0 {
                 self.best_epoch = epoch.best_epoch;
                 self.history.push(epoch.summary.clone());

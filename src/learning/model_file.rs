@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::data::Existing;
+use crate::data::write::sha256_hex;
 use crate::learning::LearningError;
 use crate::nn::{Checkpoint, ModelKind};
 
@@ -38,12 +39,33 @@ pub trait ModelFile: Sized {
         Ok(file.write(path, existing).map_err(LearningError::from)?)
     }
 
+    /// SHA-256 of the file that [`ModelFile::save`] writes, hexadecimal.
+    ///
+    /// # Errors
+    /// As for [`ModelFile::put`].
+    fn sha256(&self) -> Result<String, Self::Error> {
+        let mut file = Checkpoint::new(Self::KIND);
+        self.put(&mut file)?;
+        Ok(sha256_hex(&file.to_bytes().map_err(LearningError::from)?))
+    }
+
     /// Reads a model.
     ///
     /// # Errors
     /// What is wrong with the file.
     fn load(path: &Path) -> Result<Self, Self::Error> {
-        taken(Checkpoint::read(path, Self::KIND).map_err(LearningError::from)?)
+        Ok(Self::load_with_digest(path)?.0)
+    }
+
+    /// Reads a model, and gives the SHA-256 of its file, hexadecimal.
+    ///
+    /// # Errors
+    /// As for [`ModelFile::load`].
+    fn load_with_digest(path: &Path) -> Result<(Self, String), Self::Error> {
+        let read = Checkpoint::read_with_digest(path, Self::KIND);
+        let (file, sha256) = read.map_err(LearningError::from)?;
+        let model = taken::<Self>(file)?;
+        Ok((model, sha256))
     }
 
     /// Takes a model that is part of the program.

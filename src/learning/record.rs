@@ -36,8 +36,11 @@ pub struct EpochRecord<E> {
     pub learning_rate: f64,
     /// Norm of the longest gradient before clipping.
     pub gradient_norm: f64,
-    /// Duration of the epoch, s.
-    pub seconds: f64,
+    /// Duration of the epoch, s; `None` where only the model is left of the training. It is no part
+    /// of a model file, whose bytes would depend on the clock otherwise; files of earlier versions
+    /// have it. A checkpoint keeps it beside the history.
+    #[serde(default, skip_serializing)]
+    pub seconds: Option<f64>,
 }
 
 impl<E: EpochDetail> EpochRecord<E> {

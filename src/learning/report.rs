@@ -58,8 +58,8 @@ pub struct EpochSummary {
     pub learning_rate: f64,
     /// Norm of the longest gradient before clipping.
     pub gradient_norm: f64,
-    /// Duration of the epoch, s.
-    pub seconds: f64,
+    /// Duration of the epoch, s; `None` where only the model is left of the training.
+    pub seconds: Option<f64>,
 }
 
 /// A term of the loss.
@@ -154,7 +154,7 @@ mod tests {
             physics: Some(PhysicsBalance { weight: 2.0, data_share: 0.75 }),
             learning_rate: 1e-3,
             gradient_norm: 1.0,
-            seconds: 0.1,
+            seconds: Some(0.1),
         };
         let (best_epoch, training_idx, n_trainings) = (Some(7), 0, 3);
         EpochReport { summary, n_before: 5, n_epochs: 15, best_epoch, training_idx, n_trainings }

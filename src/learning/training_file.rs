@@ -9,6 +9,9 @@ use crate::data::Existing;
 use crate::learning::{EpochRecord, LearningError, TrainSettings};
 use crate::nn::{Checkpoint, ModelKind, NamedTensors, NnError, OptimizerState};
 
+/// Metadata of a checkpoint: the duration of every epoch, s, which the history leaves out.
+const EPOCH_SECONDS: &str = "epoch_seconds";
+
 /// What must be the same for a training to go on from a checkpoint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Identity<C> {
@@ -115,12 +118,23 @@ impl<E: Serialize + DeserializeOwned> SavedTraining<E> {
     /// # Errors
     /// [`NnError`] if something is missing or has another form.
     pub fn take(file: &mut Checkpoint) -> Result<Self, NnError> {
+        let mut history: Vec<EpochRecord<E>> = file.get("history")?;
+        match file.get::<Vec<Option<f64>>>(EPOCH_SECONDS) {
+            Ok(seconds) => {
+                for (epoch, seconds) in history.iter_mut().zip(seconds) {
+                    epoch.seconds = seconds;
+                }
+            }
+            // A checkpoint of an earlier version has them in the history.
+            Err(NnError::MissingMetadata { .. }) => {}
+            Err(error) => return Err(error),
+        }
         Ok(Self {
             optimizer: OptimizerState {
                 step: file.get("step")?,
                 moments: file.take_group("moments"),
             },
-            history: file.get("history")?,
+            history,
             parameters: file.take_group("parameters"),
         })
     }
@@ -132,6 +146,8 @@ impl<E: Serialize + DeserializeOwned> SavedTraining<E> {
     pub fn put(self, file: &mut Checkpoint) -> Result<(), NnError> {
         file.put("step", &self.optimizer.step)?;
         file.put("history", &self.history)?;
+        let seconds: Vec<Option<f64>> = self.history.iter().map(|epoch| epoch.seconds).collect();
+        file.put(EPOCH_SECONDS, &seconds)?;
         file.put_group("parameters", self.parameters);
         file.put_group("moments", self.optimizer.moments);
         Ok(())

@@ -12,6 +12,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
+use crate::data::write::sha256_hex;
 use crate::data::{DataError, Existing, write_atomically};
 use crate::nn::checkpoint_bytes::{LENGTH_BYTES, MAX_HEADER_BYTES, decode, encode, kind_in_header};
 use crate::nn::{NamedTensors, NnError};
@@ -105,8 +106,16 @@ impl Checkpoint {
     /// [`NnError::EmptyTensor`], [`NnError::NonFinite`] with the first tensor that is not to be
     /// saved.
     pub fn write(&self, path: &Path, existing: Existing) -> Result<(), NnError> {
-        let bytes = encode(self)?;
+        let bytes = self.to_bytes()?;
         Ok(write_atomically(path, existing, |out| out.write_all(&bytes))?)
+    }
+
+    /// The contents of the file that [`Checkpoint::write`] writes.
+    ///
+    /// # Errors
+    /// As within [`Checkpoint::write`].
+    pub fn to_bytes(&self) -> Result<Vec<u8>, NnError> {
+        encode(self)
     }
 
     /// Reads a file that [`Checkpoint::write`] wrote.
@@ -115,9 +124,18 @@ impl Checkpoint {
     /// [`NnError::File`] if it cannot be read, [`NnError::InFile`] with the reason if it is damaged
     /// or holds something else.
     pub fn read(path: &Path, kind: ModelKind) -> Result<Self, NnError> {
+        Ok(Self::read_with_digest(path, kind)?.0)
+    }
+
+    /// Reads such a file, and gives the SHA-256 of the bytes that were read, hexadecimal.
+    ///
+    /// # Errors
+    /// As for [`Checkpoint::read`].
+    pub fn read_with_digest(path: &Path, kind: ModelKind) -> Result<(Self, String), NnError> {
         let bytes = read_limited(path)?;
         let in_file = |source| NnError::InFile { path: path.to_owned(), source: Box::new(source) };
-        Self::from_bytes(&bytes, kind).map_err(in_file)
+        let file = Self::from_bytes(&bytes, kind).map_err(in_file)?;
+        Ok((file, sha256_hex(&bytes)))
     }
 
     /// Takes the contents of such a file.

@@ -9,7 +9,7 @@ use crate::data::{
     contact_interval, map_from_proposals,
 };
 use crate::error_chain;
-use crate::study::word;
+use crate::study::{Provenance, word};
 
 /// All that was found.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -24,6 +24,9 @@ pub struct CheckReport {
     pub models: Vec<InputFileReport>,
     /// What cannot be read.
     pub problems: Vec<PathProblem>,
+    /// Version of the program, seed and trained networks.
+    #[serde(flatten)]
+    pub provenance: Provenance,
 }
 
 /// A scenario or vehicle file.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use crate::data::Outcome;
+use crate::data::write::ModelDigest;
 use crate::ranges::{CHOICES, TRAJECTORIES, TRAJECTORY_SETS};
 use crate::response::ResponseConfig;
 use crate::response::evaluate::{Comparison, ComparisonSettings, compare_models};
@@ -12,8 +13,8 @@ use crate::study::checks::{check, check_count};
 use crate::study::inputs::{data_name, response_cases};
 use crate::study::question::progress_of;
 use crate::study::{
-    Assumption, BadCases, ConfigChoice, Library, ModelChoice, Observer, Question, StudyError,
-    VehicleChoice,
+    Assumption, BadCases, ConfigChoice, Library, ModelChoice, Observer, Provenance, Question,
+    StudyError, VehicleChoice,
 };
 
 /// Numbers of trajectories to fine-tune on where nobody says them.
@@ -83,6 +84,9 @@ pub struct CompareReport {
     pub left_out: Vec<String>,
     /// What was assumed.
     pub assumptions: Vec<Assumption>,
+    /// Version of the program, seed and trained networks.
+    #[serde(flatten)]
+    pub provenance: Provenance,
 }
 
 /// A finished comparison, or the evaluation of one model.
@@ -93,12 +97,14 @@ pub struct CompareAnswer {
 }
 
 impl CompareAnswer {
+    /// - `models`: the networks that were given; the comparison has the seed itself.
     pub(super) fn new(
         comparison: Comparison,
-        left_out: Vec<String>,
-        assumptions: Vec<Assumption>,
+        (left_out, assumptions): (Vec<String>, Vec<Assumption>),
+        models: impl IntoIterator<Item = ModelDigest>,
     ) -> Self {
-        Self { report: CompareReport { comparison, left_out, assumptions } }
+        let provenance = Provenance::default().with_models(models);
+        Self { report: CompareReport { comparison, left_out, assumptions, provenance } }
     }
 }
 
@@ -125,6 +131,8 @@ impl Question for CompareRequest {
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<CompareAnswer>, StudyError> {
         let start = self.model.as_ref().map(|model| library.response_model(model)).transpose()?;
+        let digest = |model| library.response_model_digest(model);
+        let digest = self.model.as_ref().map(digest).transpose()?;
         let config = match (self.config.file(), &start) {
             (Some(path), _) => ResponseConfig::load(path)?,
             (None, Some(start)) => start.config().clone(),
@@ -145,9 +153,11 @@ impl Question for CompareRequest {
         let compared = compare_models(data, start.as_deref(), &settings, &mut report)?;
         Ok(match compared {
             None => Outcome::Cancelled,
-            Some(comparison) => {
-                Outcome::Complete(CompareAnswer::new(comparison, usable.left_out, assumptions))
-            }
+            Some(comparison) => Outcome::Complete(CompareAnswer::new(
+                comparison,
+                (usable.left_out, assumptions),
+                digest,
+            )),
         })
     }
 }

@@ -18,8 +18,8 @@ use crate::study::checks::check_count;
 use crate::study::inputs::force_cases;
 use crate::study::question::progress_of;
 use crate::study::{
-    Assumption, BadCases, EvaluatedCases, Event, Library, ModelChoice, Observer, Question,
-    StudyError,
+    Assumption, BadCases, EvaluatedCases, Event, Library, ModelChoice, Observer, Provenance,
+    Question, StudyError,
 };
 use crate::uncertainty::CurveMixture;
 
@@ -106,6 +106,9 @@ pub struct EvaluateForceReport {
     pub left_out: Vec<String>,
     /// What was assumed: nothing.
     pub assumptions: Vec<Assumption>,
+    /// Version of the program, seed and trained networks.
+    #[serde(flatten)]
+    pub provenance: Provenance,
 }
 
 /// A cross-validation over the training cases of a force network.
@@ -116,6 +119,9 @@ pub struct CrossValidateForceReport {
     pub validation: CrossValidation,
     /// What was assumed: nothing.
     pub assumptions: Vec<Assumption>,
+    /// Version of the program, seed and trained networks.
+    #[serde(flatten)]
+    pub provenance: Provenance,
 }
 
 /// A finished evaluation.
@@ -155,6 +161,8 @@ impl Question for EvaluateForceRequest {
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<EvaluateForceAnswer>, StudyError> {
         let model = library.force_model(&self.model)?;
+        let digest = library.force_model_digest(&self.model)?;
+        let provenance = Provenance::of_seed(self.seed).with_models([digest]);
         let settings = EvaluationSettings {
             columns: self.columns,
             seed: self.seed,
@@ -170,7 +178,7 @@ impl Question for EvaluateForceRequest {
             let validated = cross_validate(cases, model.config(), folds, &mut report)?;
             return Ok(validated.map(|validation| {
                 let assumptions = Vec::new();
-                let report = CrossValidateForceReport { validation, assumptions };
+                let report = CrossValidateForceReport { validation, assumptions, provenance };
                 EvaluateForceAnswer { report: ForceEvaluation::Folds(report), cases: None }
             }));
         }
@@ -201,6 +209,7 @@ impl Question for EvaluateForceRequest {
             evaluation,
             left_out: usable.left_out,
             assumptions: Vec::new(),
+            provenance,
         };
         let report = ForceEvaluation::Cases(report);
         Ok(Outcome::Complete(EvaluateForceAnswer { report, cases }))

@@ -57,6 +57,7 @@ impl Question for EvaluateResponseRequest {
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<EvaluateResponseAnswer>, StudyError> {
         let model = library.response_model(&self.model)?;
+        let digest = library.response_model_digest(&self.model)?;
         let mut assumptions = Vec::new();
         let chosen = (self.data.as_path(), &self.vehicle);
         let cases = response_cases(chosen, self.bad_cases, &mut assumptions, (library, observer))?;
@@ -77,7 +78,7 @@ impl Question for EvaluateResponseRequest {
         let name = data_name(&self.data);
         let comparison =
             evaluate_motion_model((&name, &chosen), &compared, (trajectories, self.seed))?;
-        let answer = CompareAnswer::new(comparison, usable.left_out, assumptions);
+        let answer = CompareAnswer::new(comparison, (usable.left_out, assumptions), [digest]);
         Ok(Outcome::Complete(answer))
     }
 }

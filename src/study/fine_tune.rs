@@ -150,7 +150,11 @@ impl Question for FineTuneRequest {
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<ResponseTrainingAnswer>, StudyError> {
         let (config, start) = self.settings(library)?;
-        let mut notes = TrainingNotes::default();
+        let start_digest = |model| library.response_model_digest(model);
+        let mut notes = TrainingNotes {
+            start: self.model.as_ref().map(start_digest).transpose()?,
+            ..TrainingNotes::default()
+        };
         let set = self.training_set(&mut notes, (library, observer))?;
         let Outcome::Complete(set) = set else { return Ok(Outcome::Cancelled) };
         let settings = ResponseTrainSettings {
@@ -163,7 +167,7 @@ impl Question for FineTuneRequest {
         let model = fine_tune(start.as_deref(), &set, &settings, &mut |told| {
             observer(Event::Training(told))
         })?;
-        let answer = ResponseTrainingAnswer::of(model, started.elapsed().as_secs_f64(), notes);
+        let answer = ResponseTrainingAnswer::of(model, started.elapsed().as_secs_f64(), notes)?;
         Ok(Outcome::Complete(answer))
     }
 }

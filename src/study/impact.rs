@@ -6,7 +6,9 @@ use crate::collision::{
     BodyAfter, FrictionModel, ImpactSolution, PrincipalDirectionOfForce, Regime, Scenario,
 };
 use crate::data::Outcome;
-use crate::study::{Assumption, Library, Observer, Question, ScenarioChoice, StudyError};
+use crate::study::{
+    Assumption, Library, Observer, Provenance, Question, ScenarioChoice, StudyError,
+};
 
 /// Asks for impulse, velocities after the impact, delta-v, energy and direction of force.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -51,6 +53,9 @@ pub struct ImpactReport {
     pub bullet: BodyReport,
     /// What was assumed: nothing, since a scenario states everything that the solution needs.
     pub assumptions: Vec<Assumption>,
+    /// Version of the program, seed and trained networks.
+    #[serde(flatten)]
+    pub provenance: Provenance,
 }
 
 /// One vehicle after the impact, world axes.
@@ -127,6 +132,7 @@ impl Question for ImpactRequest {
             target: (&solution.target).into(),
             bullet: (&solution.bullet).into(),
             assumptions: Vec::new(),
+            provenance: Provenance::default(),
         };
         Ok(Outcome::Complete(ImpactAnswer { report, scenario, solution }))
     }

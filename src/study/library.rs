@@ -4,9 +4,12 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use crate::data::write::ModelDigest;
 use crate::data::{Dataset, Loaded, Outcome, read_any_series};
 use crate::force::ForceModel;
+use crate::learning::ModelFile;
 use crate::response::ResponseModel;
+use crate::study::provenance::{FORCE_NETWORK, RESPONSE_NETWORK};
 use crate::study::question::progress_of;
 use crate::study::{ModelChoice, Observer, SeriesFile, StudyError};
 
@@ -16,10 +19,18 @@ use crate::study::{ModelChoice, Observer, SeriesFile, StudyError};
 /// when that is, and a command lives too short to care.
 #[derive(Debug, Default)]
 pub struct Library {
-    force_models: Shelf<ModelChoice, ForceModel>,
-    response_models: Shelf<ModelChoice, ResponseModel>,
+    force_models: Shelf<ModelChoice, Held<ForceModel>>,
+    response_models: Shelf<ModelChoice, Held<ResponseModel>>,
     datasets: Shelf<PathBuf, Dataset>,
     files: Shelf<PathBuf, Loaded>,
+}
+
+/// A model and the content of its file.
+#[derive(Debug)]
+struct Held<M> {
+    model: Arc<M>,
+    /// SHA-256 of the file that was read; `None` for a model that was handed over.
+    sha256: Option<String>,
 }
 
 /// Values of one kind, shared between threads.
@@ -71,8 +82,24 @@ impl Library {
     /// # Errors
     /// [`StudyError::Force`] if it cannot be read; [`StudyError::NotHeld`].
     pub fn force_model(&self, choice: &ModelChoice) -> Result<Arc<ForceModel>, StudyError> {
+        Ok(Arc::clone(&self.held_force_model(choice)?.model))
+    }
+
+    /// The content of a force network's file: the one that was read, or the one that it would be
+    /// saved in.
+    ///
+    /// # Errors
+    /// As for [`Library::force_model`], and if the network cannot be saved.
+    pub fn force_model_digest(&self, choice: &ModelChoice) -> Result<ModelDigest, StudyError> {
+        digest(FORCE_NETWORK, choice, &*self.held_force_model(choice)?)
+    }
+
+    fn held_force_model(&self, choice: &ModelChoice) -> Result<Arc<Held<ForceModel>>, StudyError> {
         self.force_models.get_or_read(choice, || match choice {
-            ModelChoice::Source(source) => Ok(source.force_model()?),
+            ModelChoice::Source(source) => {
+                let (model, sha256) = source.force_model_with_digest()?;
+                Ok(Held { model: Arc::new(model), sha256: Some(sha256) })
+            }
             ModelChoice::Held { held } => Err(StudyError::NotHeld { name: held.clone() }),
         })
     }
@@ -82,8 +109,27 @@ impl Library {
     /// # Errors
     /// [`StudyError::Learning`] if it cannot be read; [`StudyError::NotHeld`].
     pub fn response_model(&self, choice: &ModelChoice) -> Result<Arc<ResponseModel>, StudyError> {
+        Ok(Arc::clone(&self.held_response_model(choice)?.model))
+    }
+
+    /// The content of a response network's file: the one that was read, or the one that it would
+    /// be saved in.
+    ///
+    /// # Errors
+    /// As for [`Library::response_model`], and if the network cannot be saved.
+    pub fn response_model_digest(&self, choice: &ModelChoice) -> Result<ModelDigest, StudyError> {
+        digest(RESPONSE_NETWORK, choice, &*self.held_response_model(choice)?)
+    }
+
+    fn held_response_model(
+        &self,
+        choice: &ModelChoice,
+    ) -> Result<Arc<Held<ResponseModel>>, StudyError> {
         self.response_models.get_or_read(choice, || match choice {
-            ModelChoice::Source(source) => Ok(source.response_model()?),
+            ModelChoice::Source(source) => {
+                let (model, sha256) = source.response_model_with_digest()?;
+                Ok(Held { model: Arc::new(model), sha256: Some(sha256) })
+            }
             ModelChoice::Held { held } => Err(StudyError::NotHeld { name: held.clone() }),
         })
     }
@@ -123,12 +169,12 @@ impl Library {
 
     /// Keeps a force network under what questions call it.
     pub fn hold_force_model(&self, choice: ModelChoice, model: Arc<ForceModel>) {
-        self.force_models.put(choice, model);
+        self.force_models.put(choice, Arc::new(Held { model, sha256: None }));
     }
 
     /// Keeps a response network under what questions call it.
     pub fn hold_response_model(&self, choice: ModelChoice, model: Arc<ResponseModel>) {
-        self.response_models.put(choice, model);
+        self.response_models.put(choice, Arc::new(Held { model, sha256: None }));
     }
 
     /// Keeps a data set that was opened.
@@ -150,4 +196,20 @@ impl Library {
         self.force_models.forget(&choice);
         self.response_models.forget(&choice);
     }
+}
+
+/// The content of a model's file; of one that was handed over, what its file would hold.
+fn digest<M: ModelFile>(
+    network: &'static str,
+    choice: &ModelChoice,
+    held: &Held<M>,
+) -> Result<ModelDigest, StudyError>
+where
+    StudyError: From<M::Error>,
+{
+    let sha256 = match &held.sha256 {
+        Some(sha256) => sha256.clone(),
+        None => held.model.sha256()?,
+    };
+    Ok(ModelDigest { network, name: choice.to_string(), sha256 })
 }

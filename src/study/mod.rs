@@ -26,6 +26,7 @@ mod checks;
 mod error;
 mod finite;
 mod library;
+mod provenance;
 mod question;
 mod word;
 
@@ -78,6 +79,7 @@ pub use predict_force::{
 pub use predict_motion::{
     DEFAULT_DRAWS, ForceSource, PredictMotionAnswer, PredictMotionReport, PredictMotionRequest,
 };
+pub use provenance::Provenance;
 pub use question::{Event, Observer, Question};
 pub use recorded_force::{RecordedForceAnswer, RecordedForceRequest};
 pub use request::{Report, Request};

@@ -10,7 +10,7 @@ use crate::ranges::SAMPLES;
 use crate::study::checks::{check_all, check_count};
 use crate::study::simulate_dataset::take_case;
 use crate::study::{
-    Assumption, Library, ModelChoice, Observer, Question, ScenarioChoice, StudyError,
+    Assumption, Library, ModelChoice, Observer, Provenance, Question, ScenarioChoice, StudyError,
 };
 
 /// Asks which force a collision brings about, and how sure that is.
@@ -92,6 +92,9 @@ pub struct PredictForceReport {
     pub is_body_open: bool,
     /// What was assumed: nothing, since what is open is drawn.
     pub assumptions: Vec<Assumption>,
+    /// Version of the program, seed and trained networks.
+    #[serde(flatten)]
+    pub provenance: Provenance,
 }
 
 /// An impulse with its intervals, N s.
@@ -185,7 +188,10 @@ impl Question for PredictForceRequest {
         let settings = ForecastSettings { n_curves: self.samples, seed: self.seed };
         let forecast =
             ForceForecast::of(&prediction.mixture, settings).map_err(ForceError::from)?;
-        let report = PredictForceReport::of(name, &self.model, (&prediction, &forecast));
+        let provenance =
+            Provenance::of_seed(self.seed).with_models([library.force_model_digest(&self.model)?]);
+        let mut report = PredictForceReport::of(name, &self.model, (&prediction, &forecast));
+        report.provenance = provenance;
         Ok(Outcome::Complete(PredictForceAnswer { report, collision, forecast, prediction }))
     }
 }
@@ -217,6 +223,7 @@ impl PredictForceReport {
             is_contact_open: prediction.is_contact_open,
             is_body_open: prediction.is_body_open,
             assumptions: Vec::new(),
+            provenance: Provenance::default(),
         }
     }
 }

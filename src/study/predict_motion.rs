@@ -15,8 +15,8 @@ use crate::ranges::{DRAWS, FORECAST_DURATION};
 use crate::study::checks::{check, check_count};
 use crate::study::simulate_dataset::take_case;
 use crate::study::{
-    AssumedQuantity, Assumption, Library, ModelChoice, MotionSource, Observer, Question,
-    SeriesFile, SimulateAnswer, SimulateRequest, StudyError,
+    AssumedQuantity, Assumption, Library, ModelChoice, MotionSource, Observer, Provenance,
+    Question, SeriesFile, SimulateAnswer, SimulateRequest, StudyError,
 };
 
 /// Force curves drawn from a predicted force where nobody says how many.
@@ -79,6 +79,9 @@ pub struct PredictMotionReport {
     pub outside_training: Vec<OutsideTraining>,
     /// What was assumed.
     pub assumptions: Vec<Assumption>,
+    /// Version of the program, seed and trained networks.
+    #[serde(flatten)]
+    pub provenance: Provenance,
 }
 
 /// A predicted motion.
@@ -198,7 +201,9 @@ impl Question for PredictMotionRequest {
         let forecast = forecast.map_err(failed)?;
         let mut assumptions = simulated.assumptions;
         assumptions.retain(|assumption| self.rests_on(assumption));
-        let report = self.report(&analysis.name, struck, (&forecast, assumptions));
+        let provenance = self.provenance(library)?;
+        let known = (assumptions, provenance);
+        let report = self.report(&analysis.name, struck, (&forecast, known));
         Ok(Outcome::Complete(PredictMotionAnswer { report, analysis, forecast }))
     }
 }
@@ -220,11 +225,21 @@ impl PredictMotionRequest {
         }
     }
 
+    /// The seed and the networks that answer.
+    fn provenance(&self, library: &Library) -> Result<Provenance, StudyError> {
+        let force = match &self.force {
+            ForceSource::Predicted(model) => Some(library.force_model_digest(model)?),
+            ForceSource::Given | ForceSource::File(_) => None,
+        };
+        let response = library.response_model_digest(&self.response_model)?;
+        Ok(Provenance::of_seed(self.seed).with_models(force.into_iter().chain([response])))
+    }
+
     fn report(
         &self,
         name: &str,
         struck: &StruckVehicle,
-        (forecast, assumptions): (&MotionForecast, Vec<Assumption>),
+        (forecast, (assumptions, provenance)): (&MotionForecast, (Vec<Assumption>, Provenance)),
     ) -> PredictMotionReport {
         let predicted = forecast.force.as_ref();
         PredictMotionReport {
@@ -245,6 +260,7 @@ impl PredictMotionRequest {
             hooking_probability: predicted.and_then(|force| force.hooking_probability),
             outside_training: predicted.map_or_else(Vec::new, |force| force.outside.clone()),
             assumptions,
+            provenance,
         }
     }
 }

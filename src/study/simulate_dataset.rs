@@ -10,7 +10,8 @@ use crate::error_chain;
 use crate::study::inputs::{OpenVehicle, struck_vehicle};
 use crate::study::question::progress_of;
 use crate::study::{
-    Assumption, FlagReport, Library, Observer, Question, StudyError, VehicleChoice, word,
+    Assumption, FlagReport, Library, Observer, Provenance, Question, StudyError, VehicleChoice,
+    word,
 };
 use crate::vehicle::{Equations, Integrator};
 
@@ -56,6 +57,9 @@ pub struct SimulateDatasetReport {
     pub failures: Vec<String>,
     /// What was assumed.
     pub assumptions: Vec<Assumption>,
+    /// Version of the program, seed and trained networks.
+    #[serde(flatten)]
+    pub provenance: Provenance,
 }
 
 /// One case, simulated and compared.
@@ -140,6 +144,7 @@ impl Question for SimulateDatasetRequest {
             not_spinning: summary(|replay| !replay.spin),
             failures: problems.chain(failed).collect(),
             assumptions,
+            provenance: Provenance::default(),
         };
         Ok(Outcome::Complete(SimulateDatasetAnswer { report, replay }))
     }

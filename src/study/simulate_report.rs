@@ -9,7 +9,7 @@ use crate::collision::PrincipalDirectionOfForce;
 use crate::compare::{MotionError, largest_yaw_change_rad};
 use crate::data::{Channel, ForceAxes, SeriesError, TimeSeries, contact_interval};
 use crate::numerics::interpolate;
-use crate::study::{Assumption, SimulateRequest, word};
+use crate::study::{Assumption, Provenance, SimulateRequest, word};
 use crate::vehicle::MotionFlag;
 use crate::vehicle::frames::world_from_body;
 
@@ -48,6 +48,9 @@ pub struct SimulateReport {
     pub notes: Vec<String>,
     /// What was assumed.
     pub assumptions: Vec<Assumption>,
+    /// Version of the program, seed and trained networks.
+    #[serde(flatten)]
+    pub provenance: Provenance,
 }
 
 /// The force that drives a simulation.
@@ -170,6 +173,7 @@ impl SimulateReport {
             }),
             notes: analysis.notes.clone(),
             assumptions,
+            provenance: Provenance::default(),
         })
     }
 }

@@ -13,7 +13,10 @@ use crate::force::{
 use crate::ranges::EPOCHS;
 use crate::study::checks::check_count;
 use crate::study::inputs::{data_names, force_cases};
-use crate::study::{Assumption, Event, Library, Observer, Question, StudyError, TrainingOptions};
+use crate::study::provenance::FORCE_NETWORK;
+use crate::study::{
+    Assumption, Event, Library, Observer, Provenance, Question, StudyError, TrainingOptions,
+};
 
 /// Asks for a force network that has learned from force data sets.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -65,6 +68,9 @@ pub struct TrainForceReport {
     pub left_out: Vec<String>,
     /// What was assumed: nothing, since cases and settings say everything.
     pub assumptions: Vec<Assumption>,
+    /// Version of the program, seed and trained networks.
+    #[serde(flatten)]
+    pub provenance: Provenance,
 }
 
 /// A trained force network.
@@ -133,13 +139,19 @@ impl Question for TrainForceRequest {
         let started = Instant::now();
         let model = train(&set, &settings, &mut |told| observer(Event::Training(told)))?;
         let seconds = started.elapsed().as_secs_f64();
-        let report = TrainForceReport::of(&model, seconds, usable.left_out);
+        let provenance = Provenance::of_seed(self.training.seed);
+        let provenance = provenance.with_trained(FORCE_NETWORK, &model)?;
+        let report = TrainForceReport::of(&model, seconds, (usable.left_out, provenance));
         Ok(Outcome::Complete(TrainForceAnswer { report, model }))
     }
 }
 
 impl TrainForceReport {
-    fn of(model: &ForceModel, seconds: f64, left_out: Vec<String>) -> Self {
+    fn of(
+        model: &ForceModel,
+        seconds: f64,
+        (left_out, provenance): (Vec<String>, Provenance),
+    ) -> Self {
         let record = model.record();
         let best = record.detail.best_epoch.checked_sub(1).and_then(|idx| record.history.get(idx));
         Self {
@@ -157,6 +169,7 @@ impl TrainForceReport {
             validation: best.map(|record| record.detail.validation),
             left_out,
             assumptions: Vec::new(),
+            provenance,
         }
     }
 }

@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
+use crate::data::write::ModelDigest;
 use crate::data::{DatasetKind, Outcome};
 use crate::force::ForceCase;
 use crate::learning::{TEST_SHARE, TrainingCase, split};
@@ -14,9 +15,10 @@ use crate::response::{
     ResponseTrainSettings, pretrain,
 };
 use crate::study::inputs::{OpenVehicle, data_name, force_cases, response_cases, struck_vehicle};
+use crate::study::provenance::RESPONSE_NETWORK;
 use crate::study::{
-    Assumption, Event, Library, LogReport, Observer, Question, StudyError, TrainingOptions,
-    VehicleChoice,
+    Assumption, Event, Library, LogReport, Observer, Provenance, Question, StudyError,
+    TrainingOptions, VehicleChoice,
 };
 use crate::vehicle::VehicleParameters;
 
@@ -73,6 +75,9 @@ pub struct ResponseTrainingReport {
     pub left_out: Vec<String>,
     /// What was assumed.
     pub assumptions: Vec<Assumption>,
+    /// Version of the program, seed and trained networks.
+    #[serde(flatten)]
+    pub provenance: Provenance,
 }
 
 /// A trained response network.
@@ -147,6 +152,8 @@ pub(super) struct TrainingNotes {
     pub(super) logs: Vec<LogReport>,
     pub(super) left_out: Vec<String>,
     pub(super) assumptions: Vec<Assumption>,
+    /// The network from which the training starts, if it starts from one.
+    pub(super) start: Option<ModelDigest>,
 }
 
 impl Question for TrainResponseRequest {
@@ -179,13 +186,20 @@ impl Question for TrainResponseRequest {
         let (started, name) = (Instant::now(), data_name(&self.data));
         let model =
             pretrain((&name, &records), &settings, &mut |told| observer(Event::Training(told)))?;
-        let answer = ResponseTrainingAnswer::of(model, started.elapsed().as_secs_f64(), notes);
+        let answer = ResponseTrainingAnswer::of(model, started.elapsed().as_secs_f64(), notes)?;
         Ok(Outcome::Complete(answer))
     }
 }
 
 impl ResponseTrainingAnswer {
-    pub(super) fn of(model: ResponseModel, seconds: f64, notes: TrainingNotes) -> Self {
+    pub(super) fn of(
+        model: ResponseModel,
+        seconds: f64,
+        notes: TrainingNotes,
+    ) -> Result<Self, StudyError> {
+        // The report has the seed already.
+        let provenance = Provenance::default().with_models(notes.start);
+        let provenance = provenance.with_trained(RESPONSE_NETWORK, &model)?;
         let record = model.record();
         let last = record.history.last();
         let report = ResponseTrainingReport {
@@ -205,7 +219,8 @@ impl ResponseTrainingAnswer {
             logs: notes.logs,
             left_out: notes.left_out,
             assumptions: notes.assumptions,
+            provenance,
         };
-        Self { report, model }
+        Ok(Self { report, model })
     }
 }

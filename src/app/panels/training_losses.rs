@@ -125,7 +125,9 @@ fn last_epoch_ui(ui: &mut Ui, last: &EpochSummary, best_epoch: Option<usize>) {
     }
     value_row(ui, "Learning rate", &format!("{:.2e}", last.learning_rate));
     value_row(ui, "Longest gradient", &significant(last.gradient_norm));
-    value_row(ui, "Time per epoch", &format!("{:.2} s", last.seconds));
+    if let Some(seconds) = last.seconds {
+        value_row(ui, "Time per epoch", &format!("{seconds:.2} s"));
+    }
 }
 
 /// Draws the choice of the loss terms and of the logarithmic axis.

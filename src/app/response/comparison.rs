@@ -10,7 +10,7 @@ use crate::error_chain;
 use crate::jobs::{Job, Progress};
 use crate::response::evaluate::{Comparison, write_comparison};
 use crate::study::{
-    CompareAnswer, CompareReport, CompareRequest, EvaluateResponseRequest, Library,
+    CompareAnswer, CompareReport, CompareRequest, EvaluateResponseRequest, Library, Provenance,
 };
 
 /// A comparison or an evaluation, running or finished.
@@ -125,7 +125,8 @@ impl ComparisonStatus {
             self.opening = None;
             self.shown = Some(opened.map(|comparison| {
                 let (left_out, assumptions) = (Vec::new(), Vec::new());
-                let report = CompareReport { comparison, left_out, assumptions };
+                let provenance = Provenance::default();
+                let report = CompareReport { comparison, left_out, assumptions, provenance };
                 Arc::new(CompareAnswer { report })
             }));
         }

@@ -54,7 +54,8 @@ fn training(told: &TrainingReport) -> (Progress, Option<String>) {
         TrainingReport::Epoch(told) => {
             let (epoch, n, seconds) = (told.summary.epoch, told.n_epochs, told.summary.seconds);
             let is_due = epoch.is_multiple_of(EPOCHS_PER_LINE) || epoch == 1;
-            is_due.then(|| format!("epoch {epoch} of {n}: {message} ({seconds:.2} s)"))
+            let pace = seconds.map_or(String::new(), |seconds| format!(" ({seconds:.2} s)"));
+            is_due.then(|| format!("epoch {epoch} of {n}: {message}{pace}"))
         }
     };
     (Progress::new(done as u64, total as u64, message), line)

@@ -36,6 +36,8 @@ pub struct RunRecord {
 /// A trained network by the content of its file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct ModelDigest {
+    /// Which network it is.
+    pub network: &'static str,
     /// What it was asked for by: a word, a file or what the window calls it.
     pub name: String,
     /// SHA-256 of the file, hexadecimal; of a network that stands in no file yet, of the file that

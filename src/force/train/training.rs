@@ -290,7 +290,7 @@ impl<'a> ForceTrainingRun<'a> {
         }
         let train = LossTerms::mean(&batches);
         let validation = self.validate()?;
-        let seconds = started.elapsed().as_secs_f64();
+        let seconds = Some(started.elapsed().as_secs_f64());
         let detail = ForceEpoch { train, validation };
         Ok(EpochRecord { epoch, detail, learning_rate, gradient_norm, seconds })
     }

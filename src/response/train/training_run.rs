@@ -161,7 +161,7 @@ impl<'a> TrainingRun<'a> {
         let loss = ResponseLossTerms::mean(&terms);
         let of_physics = self.settings.config.loss.physics * physics_weight * loss.physics;
         let balance = if of_physics > 0.0 { loss.data / (loss.data + of_physics) } else { 1.0 };
-        let seconds = started.elapsed().as_secs_f64();
+        let seconds = Some(started.elapsed().as_secs_f64());
         let detail = ResponseEpoch { stage, loss, physics_weight, balance };
         let record = EpochRecord { epoch, detail, learning_rate, gradient_norm, seconds };
         self.history.push(record);
