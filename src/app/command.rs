@@ -12,7 +12,7 @@ use crate::app::export;
 use crate::app::network::Network;
 use crate::app::panes::{Pane, default_layout, show_pane};
 use crate::app::state::{Session, State, Subject};
-use crate::data::{ColumnMap, Existing, Severity, write_atomically};
+use crate::data::{ColumnMap, Existing, Severity};
 use crate::error_chain;
 use crate::figure::Figure;
 use crate::study::SimulateAnswer;
@@ -62,6 +62,10 @@ pub enum Command {
     CopyNumbers(Box<Figure>),
     /// Write the scenario of the scenario pane to a TOML file.
     SaveScenario(PathBuf),
+    /// Carry out a command that writes a file or a folder, and replace what is there.
+    Replace(Box<Command>),
+    /// Close the question whether something is to be replaced, and leave it as it is.
+    KeepExisting,
     /// Predict the force of the selected case.
     PredictCase,
     /// Predict the force of the collision in the scenario pane.
@@ -155,36 +159,19 @@ impl State {
             Command::StepTime(steps) => self.step_time(steps),
             Command::TogglePlay => self.toggle_play(),
             Command::FitPlots => self.session.fit_plots = true,
-            Command::Export(figure, path) => {
-                match export::spawn(
-                    *figure,
-                    (path, Existing::Replace),
-                    self.view.dark,
-                    wake(context),
-                ) {
-                    Ok(job) => self.session.exports.push(job),
-                    Err(error) => self.say(Severity::Error, error.to_string()),
-                }
+            Command::Export(..) | Command::SaveScenario(_) | Command::SaveModel(..) => {
+                self.write(command, Existing::Refuse, context);
             }
+            Command::Replace(command) => self.write(*command, Existing::Replace, context),
+            Command::KeepExisting => self.session.replacing = None,
             Command::CopyNumbers(figure) => match export::numbers(&figure) {
                 Ok(text) => context.copy_text(text),
                 Err(error) => self.say(Severity::Error, error),
             },
-            Command::SaveScenario(path) => {
-                let text = self.project.scenario.to_toml();
-                let written = write_atomically(&path, Existing::Replace, |out| {
-                    out.write_all(text.as_bytes())
-                });
-                match written {
-                    Ok(()) => self.say(Severity::Info, format!("{} written", path.display())),
-                    Err(error) => self.say(Severity::Error, error_chain(&error)),
-                }
-            }
             Command::PredictCase => self.predict_case(),
             Command::PredictScenario => self.predict_scenario(),
             Command::UseModel(network, path) => self.use_model(network, path),
             Command::UseTrained(network) => self.use_trained(network),
-            Command::SaveModel(network, path) => self.save_model(network, path, context),
             Command::Train(Network::Force, command) => self.train_force(command, context),
             Command::Train(Network::Response, command) => self.train_response(command, context),
             Command::Compare(command) => self.compare(command, context),

@@ -1,7 +1,7 @@
 //! The native file dialogs, and the dialog in which the user assigns channels to the columns of a
 //! file.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use egui::{ComboBox, Grid, Ui};
@@ -95,18 +95,28 @@ impl FileDialog {
                 Command::Open(paths)
             }
             Purpose::SaveComparison => Command::Compare(ComparisonCommand::Save(first)),
-            Purpose::Picture(figure) => Command::Export(figure.clone(), with_ending(first, "png")),
-            Purpose::Numbers(figure) => Command::Export(figure.clone(), with_ending(first, "csv")),
-            Purpose::Scenario => Command::SaveScenario(with_ending(first, "toml")),
+            Purpose::Picture(figure) => {
+                written(&first, "png", |path| Command::Export(figure.clone(), path))
+            }
+            Purpose::Numbers(figure) => {
+                written(&first, "csv", |path| Command::Export(figure.clone(), path))
+            }
+            Purpose::Scenario => written(&first, "toml", Command::SaveScenario),
             Purpose::SaveModel(network) => {
-                Command::SaveModel(*network, with_ending(first, MODEL_ENDING))
+                written(&first, MODEL_ENDING, |path| Command::SaveModel(*network, path))
             }
         }]
     }
 }
 
-fn with_ending(path: PathBuf, ending: &str) -> PathBuf {
-    if path.extension().is_some() { path } else { path.with_extension(ending) }
+/// Returns the command that writes a file which the user has chosen in a dialog. The dialog has
+/// asked already whether that file is to be replaced, but not a file with the ending that is added
+/// to a name without one.
+fn written(chosen: &Path, ending: &str, command: impl FnOnce(PathBuf) -> Command) -> Command {
+    match chosen.extension() {
+        Some(_) => Command::Replace(Box::new(command(chosen.to_owned()))),
+        None => command(chosen.with_extension(ending)),
+    }
 }
 
 async fn ask(purpose: &Purpose) -> Vec<PathBuf> {

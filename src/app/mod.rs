@@ -18,6 +18,7 @@ mod open;
 mod panels;
 mod panes;
 mod question_job;
+mod replace;
 mod replay;
 mod requests;
 mod response;
@@ -38,7 +39,7 @@ use egui::util::undoer::Undoer;
 use egui::{Context, Ui};
 use egui_tiles::Tree;
 
-use crate::app::store::Store;
+use crate::app::store::{OpenedState, Store, open_state};
 use crate::data::Severity;
 use crate::render::{DensityGpu, theme};
 
@@ -114,20 +115,22 @@ impl App {
     /// Creates the application from the state that the last run has stored, and opens the paths as
     /// [`run`] describes.
     ///
-    /// - `state_file`: file in which the state is stored; `None` stores nothing.
+    /// - `state_file`: file in which the state is stored; `None` stores nothing. If another window
+    ///   keeps its state there, or if it was written by a later version of the program, nothing is
+    ///   stored either, and a message says so.
     pub fn new(cc: &CreationContext<'_>, paths: Vec<PathBuf>, state_file: Option<PathBuf>) -> Self {
-        let training_files =
-            TRAINING_FILES.map(|name| Some(state_file.as_ref()?.with_file_name(name)));
-        let mut store = state_file.map(Store::new);
-        let saved = store.as_mut().and_then(Store::read);
-        let restored = saved.and_then(|text| State::restore(&text));
+        let OpenedState { store, restored, message } = open_state(state_file);
+        let beside = |name| Some(store.as_ref()?.path().with_file_name(name));
+        let [force, response] = TRAINING_FILES.map(beside);
         let (mut state, last_open) = restored.unwrap_or_default();
+        if let Some(message) = message {
+            state.say(Severity::Warning, message);
+        }
         let to_open = match (paths.is_empty(), last_open.is_empty()) {
             (false, _) => paths,
             (true, false) => last_open,
             (true, true) => shipped_datasets().into_iter().collect(),
         };
-        let [force, response] = training_files;
         state.session.force.checkpoint = force;
         state.session.response.checkpoint = response;
         state.session.response.gpu = graphics_processor(cc);
@@ -205,6 +208,7 @@ impl eframe::App for App {
         self.panes_ui(ui, &mut commands);
         self.mapping_ui(ui, &mut commands);
         self.licences_ui(ui, &mut commands);
+        self.replace_ui(ui, &mut commands);
         menu::drop_hint_ui(ui);
         for command in commands {
             self.apply(command, ui.ctx());
@@ -246,6 +250,16 @@ impl App {
             let response = modal.show(ui.ctx(), |ui| licences::licences_ui(ui, commands));
             if response.should_close() {
                 commands.push(Command::ShowLicences(false));
+            }
+        }
+    }
+
+    fn replace_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        if let Some(command) = &self.state.session.replacing {
+            let modal = egui::Modal::new(egui::Id::unique("replace dialog"));
+            let response = modal.show(ui.ctx(), |ui| replace::replace_ui(ui, command, commands));
+            if response.should_close() && commands.is_empty() {
+                commands.push(Command::KeepExisting);
             }
         }
     }

@@ -137,18 +137,22 @@ impl<M: TrainedModel> ModelStatus<M> {
 
     /// Starts writing the model in use to a file.
     ///
+    /// - `existing`: what happens to a file that exists already;
     /// - `wake`: called when the file has been written.
     ///
     /// # Errors
     /// A message for the user, if there is no model or the thread cannot be started.
-    pub fn save(&mut self, path: PathBuf, wake: impl Fn() + Send + 'static) -> Result<(), String> {
+    pub fn save(
+        &mut self,
+        (path, existing): (PathBuf, Existing),
+        wake: impl Fn() + Send + 'static,
+    ) -> Result<(), String> {
         let Some(current) = &self.current else {
             return Err(format!("there is no {} to save", M::NETWORK.model()));
         };
         let (model, written) = (Arc::clone(&current.model), Arc::clone(&current.model));
-        let job = Job::spawn("save model", wake, move |_| {
-            written.write(&path, Existing::Replace).map(|()| path)
-        });
+        let job =
+            Job::spawn("save model", wake, move |_| written.write(&path, existing).map(|()| path));
         self.saving = Some(Saving { model, job: job.map_err(|error| error.to_string())? });
         Ok(())
     }
@@ -219,7 +223,7 @@ mod tests {
             assert_eq!(status.update(&wanted, &library, || {}), None);
         }
         let written = Arc::clone(&status.current.as_ref().unwrap().model);
-        status.save(path.clone(), || {}).unwrap();
+        status.save((path.clone(), Existing::Replace), || {}).unwrap();
         let trained = ModelSource::Shipped.force_model().unwrap();
         status.take_trained(trained, "trained meanwhile".to_owned(), (&library, true));
         let saved = loop {
@@ -233,7 +237,7 @@ mod tests {
         let current = status.current.as_ref().unwrap();
         assert_eq!((current.name.as_str(), current.is_saved), ("trained meanwhile", false));
 
-        status.save(path.clone(), || {}).unwrap();
+        status.save((path.clone(), Existing::Replace), || {}).unwrap();
         while status.poll_saving(&library, &mut wanted).is_none() {}
         let current = status.current.as_ref().unwrap();
         assert_eq!((current.name.as_str(), current.is_saved), ("written.safetensors", true));

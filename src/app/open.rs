@@ -11,7 +11,7 @@ use crate::app::panes::{Pane, show_pane};
 use crate::app::source::Source;
 use crate::app::state::{State, Subject};
 use crate::collision::Scenario;
-use crate::data::{ColumnMap, Severity};
+use crate::data::{ColumnMap, Existing, Severity};
 use crate::error_chain;
 use crate::learning::ModelFile;
 use crate::nn::kind_of_file;
@@ -119,10 +119,15 @@ impl State {
 
     /// Starts writing the current model of a network to a file, or tells the user why that is not
     /// possible.
-    pub(super) fn save_model(&mut self, network: Network, path: PathBuf, context: &Context) {
+    pub(super) fn save_model(
+        &mut self,
+        network: Network,
+        target: (PathBuf, Existing),
+        context: &Context,
+    ) {
         let started = match network {
-            Network::Force => self.session.force.model.save(path, wake(context)),
-            Network::Response => self.session.response.model.save(path, wake(context)),
+            Network::Force => self.session.force.model.save(target, wake(context)),
+            Network::Response => self.session.response.model.save(target, wake(context)),
         };
         if let Err(problem) = started {
             self.say(Severity::Warning, problem);

@@ -119,6 +119,7 @@ impl State {
                 bad_cases: form.bad_cases,
                 checkpoint: self.session.force.checkpoint.clone(),
                 resume: form.resume,
+                overwrite: true, // The window's own files, which nobody has named.
             },
         }
     }
@@ -137,6 +138,7 @@ impl State {
                 bad_cases: form.bad_cases,
                 checkpoint: self.session.response.checkpoint.clone(),
                 resume: form.resume,
+                overwrite: true, // The window's own files, which nobody has named.
             },
         }
     }
@@ -164,6 +166,7 @@ impl State {
                 bad_cases: form.bad_cases,
                 checkpoint: self.session.response.checkpoint.clone(),
                 resume: form.resume,
+                overwrite: true, // The window's own files, which nobody has named.
             },
             ..FineTuneRequest::default()
         })

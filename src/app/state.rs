@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::PulseSetup;
 use crate::app::case_table::CaseList;
+use crate::app::command::Command;
 use crate::app::dialogs::{FileDialog, MappingDialog};
 use crate::app::force::{ForceProject, ForceSession, ForceView};
 use crate::app::latest::Latest;
@@ -194,6 +195,8 @@ pub struct Session {
     pub mapping: Option<MappingDialog>,
     /// Whether the licences of third parties are shown.
     pub shows_licences: bool,
+    /// The command that waits for the user's answer whether it may replace what exists.
+    pub replacing: Option<Box<Command>>,
     /// Jobs that write figures to files.
     pub exports: Vec<Job<Result<PathBuf, String>>>,
     /// The path that the user opened last. Its first case or file is selected once it is loaded.
@@ -222,6 +225,33 @@ pub struct Saved {
     sources: Vec<PathBuf>,
 }
 
+/// The version in which a state was saved.
+#[derive(Deserialize)]
+struct SavedBy {
+    version: u32,
+}
+
+/// The reason why a saved state cannot be restored.
+#[derive(Debug, thiserror::Error)]
+pub enum RestoreError {
+    /// It is not what [`State::save`] writes.
+    #[error("it is damaged")]
+    Damaged(#[from] serde_json::Error),
+    /// It was saved by another version of the program.
+    #[error("it has the version {version}, expected {SAVED_VERSION}")]
+    Version {
+        /// The version in which it was saved.
+        version: u32,
+    },
+}
+
+impl RestoreError {
+    /// Whether a later version of the program has saved the state.
+    pub fn is_of_later_version(&self) -> bool {
+        matches!(self, Self::Version { version } if *version > SAVED_VERSION)
+    }
+}
+
 impl State {
     /// Returns the project, the view and the opened paths as JSON; `None` if they cannot be written
     /// as such.
@@ -236,19 +266,24 @@ impl State {
     }
 
     /// Reads the state that [`save`](Self::save) has written and returns it with the paths that
-    /// were open.
+    /// were open. A layout that lacks a pane is replaced by the default one.
     ///
-    /// Returns `None` if the text is damaged or of another version; the application then starts
-    /// with the default state. A layout that lacks a pane is replaced by the default one.
-    pub fn restore(text: &str) -> Option<(Self, Vec<PathBuf>)> {
-        let mut saved: Saved = serde_json::from_str(text).ok()?;
+    /// # Errors
+    /// [`RestoreError`] if the text is damaged or of another version; the application then starts
+    /// with the default state.
+    pub fn restore(text: &str) -> Result<(Self, Vec<PathBuf>), RestoreError> {
+        let SavedBy { version } = serde_json::from_str(text)?;
+        if version != SAVED_VERSION {
+            return Err(RestoreError::Version { version });
+        }
+        let mut saved: Saved = serde_json::from_str(text)?;
         if !is_complete(&saved.view.layout) {
             saved.view.layout = default_layout(); // It was saved before a pane was added.
         }
         let state = Self { project: saved.project, view: saved.view, session: Session::default() };
         let mut sources = saved.sources;
         sources.dedup();
-        (saved.version == SAVED_VERSION).then_some((state, sources))
+        Ok((state, sources))
     }
 
     /// Returns the latest simulation of the subject. While a newer one is awaited, it may belong to
@@ -302,7 +337,11 @@ mod tests {
     #[test]
     fn a_damaged_or_foreign_save_is_not_read() {
         let text = State::default().save().unwrap();
-        assert!(State::restore(&text[..text.len() / 2]).is_none());
-        assert!(State::restore(&text.replace("\"version\":1", "\"version\":99")).is_none());
+        let error = |text: &str| State::restore(text).err().unwrap();
+        assert!(matches!(error(&text[..text.len() / 2]), RestoreError::Damaged(_)));
+        let later = error(&text.replace("\"version\":1", "\"version\":99"));
+        assert!(later.is_of_later_version(), "{later}");
+        let earlier = error(&text.replace("\"version\":1", "\"version\":0"));
+        assert!(!earlier.is_of_later_version(), "{earlier}");
     }
 }

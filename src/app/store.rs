@@ -4,11 +4,14 @@
 //! process is killed. It is written to a temporary file that is then renamed, so that the file is
 //! never left incomplete.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use egui::Context;
 
+use crate::app::state::State;
+use crate::data::write::WriterLock;
 use crate::data::{DataError, Existing, write_atomically};
 use crate::error_chain;
 use crate::jobs::{Job, Update};
@@ -19,6 +22,8 @@ const SETTLING_TIME: Duration = Duration::from_secs(1);
 /// The file of the state, what has been written to it, and what is still to be written.
 pub struct Store {
     path: PathBuf,
+    /// Keeps other windows from storing their state in the same file.
+    _lock: WriterLock,
     /// The text that was written last, or the text of the file if nothing has been written yet.
     written: String,
     /// A newer state that has not been written, and the time since which it has not changed, in
@@ -27,16 +32,114 @@ pub struct Store {
     job: Option<Job<Result<(), DataError>>>,
 }
 
+/// What is known at the start of the program of the state that the last run has stored.
+#[derive(Default)]
+pub struct OpenedState {
+    /// Where this window stores its state; `None` if it stores nothing.
+    pub store: Option<Store>,
+    /// The state of the last run and the paths that were open; `None` if there is none that can be
+    /// restored.
+    pub restored: Option<(State, Vec<PathBuf>)>,
+    /// What the user has to know of it.
+    pub message: Option<String>,
+}
+
+/// Opens the file of the state and restores what is in it. Nothing in it is ever lost: a state that
+/// cannot be restored is renamed, and one of a later version of the program stays as it is.
+///
+/// - `path`: the file; `None` stores nothing.
+pub fn open_state(path: Option<PathBuf>) -> OpenedState {
+    let Some(path) = path else { return OpenedState::default() };
+    let store = match Store::open(path.clone()) {
+        Ok(store) => store,
+        Err(error) => {
+            let restored = std::fs::read_to_string(&path).ok();
+            let restored = restored.and_then(|text| State::restore(&text).ok());
+            let why = error_chain(&error);
+            let message = format!("what is changed in this window will not be kept ({why})");
+            return OpenedState { store: None, restored, message: Some(message) };
+        }
+    };
+    store.restore()
+}
+
 impl Store {
-    /// Returns a store that keeps the state in this file. Nothing is read or written yet.
-    pub fn new(path: PathBuf) -> Self {
-        Self { path, written: String::new(), pending: None, job: None }
+    /// Takes the file for this window. Nothing is read or written yet.
+    ///
+    /// # Errors
+    /// [`DataError`] if another window stores its state there, or if nothing can be written there.
+    fn open(path: PathBuf) -> Result<Self, DataError> {
+        if let Some(folder) = path.parent() {
+            // If the folder cannot be created, taking the lock fails and reports the error.
+            let _ = std::fs::create_dir_all(folder);
+        }
+        let lock = WriterLock::of_file(&path)?;
+        Ok(Self { path, _lock: lock, written: String::new(), pending: None, job: None })
     }
 
-    /// Reads the state that the last run has left; `None` if there is no readable file.
-    pub fn read(&mut self) -> Option<String> {
-        self.written = std::fs::read_to_string(&self.path).ok()?;
-        Some(self.written.clone())
+    /// Returns the file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Restores the state that is in the file.
+    fn restore(mut self) -> OpenedState {
+        let why = match std::fs::read_to_string(&self.path) {
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                return OpenedState { store: Some(self), ..OpenedState::default() };
+            }
+            Err(error) if error.kind() != ErrorKind::InvalidData => {
+                let message = format!(
+                    "what is changed in this window will not be kept ({}: cannot be read: {error})",
+                    self.path.display()
+                );
+                return OpenedState { message: Some(message), ..OpenedState::default() };
+            }
+            Err(error) => error_chain(&error),
+            Ok(text) => match State::restore(&text) {
+                Ok(restored) => {
+                    self.written = text;
+                    return OpenedState {
+                        store: Some(self),
+                        restored: Some(restored),
+                        message: None,
+                    };
+                }
+                Err(error) if error.is_of_later_version() => {
+                    let message = format!(
+                        "{} was stored by a later version of the program ({error}); it stays as \
+                         it is, and what is changed in this window will not be kept",
+                        self.path.display()
+                    );
+                    return OpenedState { message: Some(message), ..OpenedState::default() };
+                }
+                Err(error) => error_chain(&error),
+            },
+        };
+        self.set_aside(&why)
+    }
+
+    /// Renames the file, so that its content is kept, and says so.
+    ///
+    /// - `why`: the reason why it cannot be restored.
+    fn set_aside(self, why: &str) -> OpenedState {
+        let (path, kept) = (self.path.display(), free_name(&self.path));
+        match std::fs::rename(&self.path, &kept) {
+            Ok(()) => {
+                let message = format!(
+                    "the state of the last run cannot be restored ({why}); it is kept as {}",
+                    kept.display()
+                );
+                OpenedState { store: Some(self), restored: None, message: Some(message) }
+            }
+            Err(error) => {
+                let message = format!(
+                    "{path} cannot be restored ({why}) nor renamed ({error}); what is changed in \
+                     this window will not be kept"
+                );
+                OpenedState { message: Some(message), ..OpenedState::default() }
+            }
+        }
     }
 
     /// Receives the state of this frame and writes it in the background once it has not changed for
@@ -69,6 +172,9 @@ impl Store {
 
     /// Writes the state at the end of the program, on the calling thread.
     pub fn finish(&mut self, text: &str) {
+        if let Some(job) = &mut self.job {
+            job.wait(); // So that an older state does not replace this one.
+        }
         // The window is closed already, so that an error cannot be shown.
         let _ = write(&self.path, text);
     }
@@ -86,10 +192,19 @@ impl Store {
     }
 }
 
-fn write(path: &Path, text: &str) -> Result<(), DataError> {
-    if let Some(folder) = path.parent() {
-        // If the folder cannot be created, writing the file below fails and reports the error.
-        let _ = std::fs::create_dir_all(folder);
+/// Returns the first name `PATH.damaged-N` that is not taken.
+fn free_name(path: &Path) -> PathBuf {
+    let mut n = 1;
+    loop {
+        let mut name = path.as_os_str().to_owned();
+        name.push(format!(".damaged-{n}"));
+        if Path::new(&name).symlink_metadata().is_err() {
+            return name.into();
+        }
+        n += 1;
     }
+}
+
+fn write(path: &Path, text: &str) -> Result<(), DataError> {
     write_atomically(path, Existing::Replace, |out| out.write_all(text.as_bytes()))
 }

@@ -94,14 +94,6 @@ pub enum CliError {
         /// The word that was looked for.
         word: String,
     },
-    /// A folder cannot be made.
-    #[error("{}: cannot be made", path.display())]
-    Folder {
-        /// The folder.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
     /// An output file is of an unknown kind.
     #[error("{}: cannot be made; expected a name that ends in .png or .csv", path.display())]
     OutputKind {

@@ -175,6 +175,19 @@ impl Dataset {
         Ok(Outcome::Complete(Self { root: root.to_owned(), kind, vehicle_file, cases, problems }))
     }
 
+    /// The files from which a data set is loaded, in the order of their names. A folder that is no
+    /// data set has none.
+    pub fn files(root: &Path) -> Vec<PathBuf> {
+        let mut files = vec![root.join(CASES_FILE), root.join(VEHICLE_FILE)];
+        if let Some(kind) = DatasetKind::of_folder(root) {
+            let of_cases = std::fs::read_dir(root.join(kind.folder()));
+            files.extend(of_cases.into_iter().flatten().flatten().map(|entry| entry.path()));
+        }
+        files.retain(|file| file.is_file());
+        files.sort();
+        files
+    }
+
     /// The case of this name; `None` if the data set has no such case or the case could not be
     /// read.
     pub fn case(&self, name: &str) -> Option<&Case> {

@@ -74,6 +74,13 @@ impl CompareRequest {
     }
 }
 
+impl CompareReport {
+    /// Version of the program, seed and the networks that were given.
+    pub fn provenance_with_seed(&self) -> Provenance {
+        Provenance { seed: Some(self.comparison.seed), ..self.provenance.clone() }
+    }
+}
+
 /// A finished comparison, or the evaluation of one model.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CompareReport {

@@ -258,6 +258,15 @@ pub enum StudyError {
         /// The file or case.
         name: String,
     },
+    /// A training was begun where another one should be.
+    #[error(
+        "{}: holds a training; --resume goes on with it, --overwrite begins anew and replaces it",
+        path.display()
+    )]
+    TrainingExists {
+        /// The state of the training that is there.
+        path: PathBuf,
+    },
     /// Nothing says what should be learned from.
     #[error("nothing to learn from: say which data set with --data, or which log with --log")]
     NothingToLearnFrom,

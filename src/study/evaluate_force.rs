@@ -86,6 +86,16 @@ pub enum ForceEvaluation {
     Folds(CrossValidateForceReport),
 }
 
+impl ForceEvaluation {
+    /// Version of the program, seed and the network.
+    pub fn provenance(&self) -> &Provenance {
+        match self {
+            Self::Cases(report) => &report.provenance,
+            Self::Folds(report) => &report.provenance,
+        }
+    }
+}
+
 /// A force network on cases of a data set.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EvaluateForceReport {

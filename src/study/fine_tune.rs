@@ -149,6 +149,8 @@ impl Question for FineTuneRequest {
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<ResponseTrainingAnswer>, StudyError> {
+        // Held until the training is over.
+        let _claim = self.training.claim()?;
         let (config, start) = self.settings(library)?;
         let start_digest = |model| library.response_model_digest(model);
         let mut notes = TrainingNotes {

@@ -116,6 +116,8 @@ impl Question for TrainForceRequest {
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<TrainForceAnswer>, StudyError> {
+        // Held until the training is over.
+        let _claim = self.training.claim()?;
         let config = self.settings()?;
         let cases = force_cases(&self.data, self.training.bad_cases, (library, observer))?;
         let Outcome::Complete(mut usable) = cases else { return Ok(Outcome::Cancelled) };

@@ -174,6 +174,8 @@ impl Question for TrainResponseRequest {
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<ResponseTrainingAnswer>, StudyError> {
+        // Held until the training is over.
+        let _claim = self.training.claim()?;
         let settings = ResponseTrainSettings {
             config: self.settings()?,
             seed: self.training.seed,

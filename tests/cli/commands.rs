@@ -178,7 +178,7 @@ fn the_shipped_trajectories_are_met() {
     let case = &answer["cases"][0];
     assert!(case["case"].is_string() && case["spin"].is_boolean());
     assert!(case["final_error_m"].is_number());
-    assert_eq!(fs::read_dir(&out).unwrap().count(), 100);
+    assert_eq!(fs::read_dir(&out).unwrap().count(), 100 + 1, "and the manifest");
     let single = impactlab(&["simulate", "--dataset", TRAJECTORIES, "--case", "FE_c001"]);
     assert!(single.out.contains("FE_c001") && !single.out.contains("FE_c002"));
 }
@@ -352,7 +352,9 @@ fn figures_are_written_as_numbers() {
             "impulse on the target,",
         ),
     ] {
-        let ran = impactlab(&[&["render"], &args[..], &["--out", text(&out), "--json"]].concat());
+        let ran = impactlab(
+            &[&["render"], &args[..], &["--out", text(&out), "--overwrite", "--json"]].concat(),
+        );
         assert_eq!(ran.code, 0, "{args:?}: {}", ran.err);
         assert!(ran.json()["title"].is_string());
         let csv = fs::read_to_string(&out).unwrap();
@@ -360,7 +362,7 @@ fn figures_are_written_as_numbers() {
         assert!(csv.lines().any(|line| line.starts_with(series)), "{args:?}");
     }
     let late = ["render", "scene", TRAJECTORIES, "--case", "FE_c002", "--time", "9", "--out"];
-    let ran = impactlab(&[&late[..], &[text(&out)]].concat());
+    let ran = impactlab(&[&late[..], &[text(&out), "--overwrite"]].concat());
     assert!(ran.error_line().starts_with("--time is 9 s"), "{}", ran.err);
     let ran = impactlab(&["render", "impact", SCENARIO, "--out", "figure.gif"]);
     assert!(ran.error_line().contains(".png or .csv"), "{}", ran.err);

@@ -89,7 +89,14 @@ fn fine_tune(folder: &Path) -> Command {
     let config = folder.join("tiny.toml");
     fs::write(&config, [TINY_RESPONSE_NETWORK, EFFORT].concat()).unwrap();
     let mut command = program();
-    command.current_dir(folder).args(["fine-tune", "response", "--json", "--out", "model"]);
+    command.current_dir(folder).args([
+        "fine-tune",
+        "response",
+        "--json",
+        "--out",
+        "model",
+        "--overwrite",
+    ]);
     command.arg("--config").arg(&config);
     command
 }

@@ -10,3 +10,5 @@ mod log;
 mod program;
 mod ranges;
 mod response;
+mod writes;
+mod writes_killed;

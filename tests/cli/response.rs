@@ -245,7 +245,7 @@ fn a_forecast_is_rendered_beside_the_record() {
     let render = |extra: &[&str]| {
         let mut command = program();
         command.args(["render", "forecast", DATA, "--case", "FE_c002", "--out"]).arg(&out);
-        command.arg("--response-model").arg(&place.tuned).args(extra);
+        command.arg("--response-model").arg(&place.tuned).arg("--overwrite").args(extra);
         command.output().unwrap()
     };
     ok(render(&["--channel", "yaw"]));

@@ -281,7 +281,7 @@ fn compare_motion(harness: &mut Harness<'_, App>, force: ForceChoice, asks: Comm
 fn a_motion_is_predicted_alike() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().display().to_string();
-    let drawn = ["--draws", "3", "--seed", "7", "--out", &out];
+    let drawn = ["--draws", "3", "--seed", "7", "--out", &out, "--overwrite"];
     let few_draws = |harness: &mut Harness<'_, App>| {
         let form = &mut harness.state_mut().state_mut().project.response.forecast;
         (form.n_curves, form.seed) = (3, 7);
@@ -337,7 +337,7 @@ fn a_force_network_is_trained_and_evaluated_alike() {
     let args = ["train", "force", "--data", FORCES, "--config", &config, "--epochs", "2"];
     CommandLine::of(&[&args[..], &["--seed", "3", "--out", &model]].concat())
         .prints(&["model"])
-        .asks_differently(&["checkpoint"])
+        .asks_differently(&["checkpoint", "overwrite"])
         .compare(request, report);
 
     apply(&mut harness, Command::Open(vec![PathBuf::from(&model)]));
@@ -375,7 +375,7 @@ fn a_response_network_is_trained_fine_tuned_and_evaluated_alike() {
     let args = ["train", "response", "--data", FORCES, "--config", &config, "--seed", "1"];
     CommandLine::of(&[&args[..], &["--out", &pretrained]].concat())
         .prints(&["model"])
-        .asks_differently(&["checkpoint"])
+        .asks_differently(&["checkpoint", "overwrite"])
         .compare(request, report);
 
     let has_model = |path: String| {
@@ -399,7 +399,7 @@ fn a_response_network_is_trained_fine_tuned_and_evaluated_alike() {
     let numbers = ["--trajectories", "3", "--seed", "1", "--choice", "2", "--config", &config];
     CommandLine::of(&[&args[..], &numbers, &["--out", &tuned]].concat())
         .prints(&["model"])
-        .asks_differently(&["checkpoint"])
+        .asks_differently(&["checkpoint", "overwrite"])
         .compare(request, report);
 
     apply(&mut harness, Command::Open(vec![PathBuf::from(&tuned)]));

@@ -8,4 +8,5 @@ mod network_figures;
 mod pictures;
 mod response_network;
 mod snapshots;
+mod stored;
 mod workflow;

@@ -1,11 +1,13 @@
 //! The comparison of response models or the evaluation of one of them: computed in the background
 //! or read from a file.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
 use crate::app::question_job::QuestionJob;
+use crate::data::write::{OutputFolder, RunRecord};
+use crate::data::{DataError, Existing};
 use crate::error_chain;
 use crate::jobs::{Job, Progress};
 use crate::response::evaluate::{Comparison, write_comparison};
@@ -92,11 +94,13 @@ impl ComparisonStatus {
 
     /// Starts to write the comparison that is shown into a folder, as JSON, Markdown and tables.
     ///
+    /// - `existing`: what happens to results that the folder holds already.
+    ///
     /// # Errors
     /// A message for the user, if there is no comparison or the thread cannot be started.
     pub fn save(
         &mut self,
-        folder: PathBuf,
+        (folder, existing): (PathBuf, Existing),
         wake: impl Fn() + Send + 'static,
     ) -> Result<(), String> {
         let Some(Ok(answer)) = &self.shown else {
@@ -104,7 +108,7 @@ impl ComparisonStatus {
         };
         let answer = Arc::clone(answer);
         let job = Job::spawn("save comparison", wake, move |_| {
-            let written = write_comparison(&folder, &answer.report.comparison);
+            let written = write(&folder, existing, &answer.report);
             written.map(|()| folder).map_err(|error| error_chain(&error))
         });
         self.saving = Some(job.map_err(|error| error.to_string())?);
@@ -139,4 +143,12 @@ impl ComparisonStatus {
     pub fn report(&self) -> Option<&CompareReport> {
         self.shown.as_ref()?.as_ref().ok().map(|answer| &answer.report)
     }
+}
+
+/// Writes a comparison into a folder with a manifest.
+fn write(folder: &Path, existing: Existing, report: &CompareReport) -> Result<(), DataError> {
+    let output = OutputFolder::begin(folder, existing, &["comparison.json", "comparison.md"])?;
+    write_comparison(output.staging(), &report.comparison)?;
+    let Provenance { seed, model_digests: models, .. } = report.provenance_with_seed();
+    output.finish(RunRecord { seed, models, ..RunRecord::default() })
 }

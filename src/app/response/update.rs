@@ -5,13 +5,13 @@ use std::sync::Arc;
 
 use egui::Context;
 
-use crate::app::command::{ComparisonCommand, TrainingCommand, wake};
+use crate::app::command::{Command, ComparisonCommand, TrainingCommand, wake};
 use crate::app::response::{
     DensityChoice, DensityQuestion, MotionAnswer, MotionQuestion, TrainingMode,
 };
 use crate::app::source::{chosen_dataset, open_datasets};
 use crate::app::state::State;
-use crate::data::{DatasetKind, Severity};
+use crate::data::{DatasetKind, Existing, Severity};
 
 impl State {
     /// Receives the results of the loader, the training, the comparison and the forecast, and asks
@@ -125,9 +125,23 @@ impl State {
             ComparisonCommand::Open(path) => {
                 comparison.open(path, wake(context)).err().map(|error| error.to_string())
             }
-            ComparisonCommand::Save(folder) => comparison.save(folder, wake(context)).err(),
+            ComparisonCommand::Save(_) => {
+                return self.write(Command::Compare(command), Existing::Refuse, context);
+            }
         };
         if let Some(problem) = problem {
+            self.say(Severity::Error, problem);
+        }
+    }
+
+    /// Starts to write the comparison that is shown into a folder.
+    pub(in crate::app) fn save_comparison(
+        &mut self,
+        target: (PathBuf, Existing),
+        context: &Context,
+    ) {
+        let comparison = &mut self.session.response.comparison;
+        if let Err(problem) = comparison.save(target, wake(context)) {
             self.say(Severity::Error, problem);
         }
     }

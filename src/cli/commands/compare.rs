@@ -6,7 +6,7 @@ use clap::Args;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
-use crate::cli::options::{BadCasesArg, VehicleArg, count};
+use crate::cli::options::{BadCasesArg, OverwriteArg, VehicleArg, count};
 use crate::cli::text::print_comparison;
 use crate::ranges::{CHOICES, TRAJECTORIES};
 use crate::response::evaluate::write_comparison;
@@ -43,6 +43,8 @@ pub(in crate::cli) struct CompareArgs {
     /// Folder for comparison.json, comparison.md and the tables as CSV
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    overwrite: OverwriteArg,
 }
 
 const EXAMPLES: &str = "\
@@ -77,10 +79,13 @@ pub(in crate::cli) fn run(
         bad_cases: args.bad_cases.into(),
         ..unsaid
     };
-    let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
-    if let Some(folder) = &args.out {
-        write_comparison(folder, &answer.report.comparison)?;
-    }
+    let known = &["comparison.json", "comparison.md"][..];
+    let out = args.out.as_deref().map(|folder| (folder, args.overwrite.into(), known));
+    let answer = console.ask_into(&request, out, |output, answer| {
+        write_comparison(output.staging(), &answer.report.comparison)?;
+        Ok(answer.report.provenance_with_seed())
+    })?;
+    let Some(answer) = answer else { return Ok(Verdict::Clean) };
     console.print(&answer.report, |out| print_comparison(out, &answer.report))?;
     Ok(Verdict::Clean)
 }

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::write_force_evaluation;
-use crate::cli::options::{BadCasesArg, SplitArg, count};
+use crate::cli::options::{BadCasesArg, OverwriteArg, SplitArg, count};
 use crate::cli::text::print_force_evaluation;
 use crate::force::ColumnSet;
 use crate::ranges::FOLDS;
@@ -50,6 +50,8 @@ pub(in crate::cli) struct EvaluateForceArgs {
     /// Folder for evaluation.json and evaluation.md
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    overwrite: OverwriteArg,
 }
 
 const EXAMPLES: &str = "\
@@ -83,10 +85,16 @@ pub(in crate::cli) fn run(
         bad_cases: args.bad_cases.into(),
         for_figures: false,
     };
-    let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
-    if let Some(folder) = &args.out {
-        write_force_evaluation(folder, &answer.report)?;
-    }
+    let known = match args.cross_validate {
+        Some(_) => ["cross_validation.json"],
+        None => ["evaluation.json"],
+    };
+    let out = args.out.as_deref().map(|folder| (folder, args.overwrite.into(), &known[..]));
+    let answer = console.ask_into(&request, out, |output, answer| {
+        write_force_evaluation(output.staging(), &answer.report)?;
+        Ok(answer.report.provenance().clone())
+    })?;
+    let Some(answer) = answer else { return Ok(Verdict::Clean) };
     console.print(&answer.report, |out| print_force_evaluation(out, &answer.report))?;
     Ok(match &answer.report {
         ForceEvaluation::Cases(report) => Verdict::of(!report.evaluation.problems.is_empty()),

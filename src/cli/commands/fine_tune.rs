@@ -8,7 +8,7 @@ use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_settings};
 use crate::cli::options::{TrainingArgs, VehicleArg, contact_point, count, number};
 use crate::cli::text::{Trained, print_response_training};
-use crate::data::{ColumnMap, Existing};
+use crate::data::ColumnMap;
 use crate::learning::{ModelFile, TEST_SHARE};
 use crate::ranges::{INSTANT, LOG_DURATION, TEST_SHARE as SHARE_OF_TEST, TRAJECTORIES};
 use crate::shipped::ModelSource;
@@ -132,8 +132,9 @@ fn fine_tune_response(
     if args.training.print_config {
         return print_settings(&request.settings(&console.library)?.0, console);
     }
+    let existing = args.training.existing(console)?;
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
-    answer.model.save(&args.training.out, Existing::Replace)?;
+    answer.model.save(&args.training.out, existing)?;
     let trained = Trained { model: &args.training.out, report: &answer.report };
     console.print(&trained, |out| print_response_training(out, &trained))?;
     Ok(Verdict::Clean)

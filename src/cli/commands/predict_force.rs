@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::write_force_prediction;
-use crate::cli::options::{UnitsArg, count};
+use crate::cli::options::{OverwriteArg, UnitsArg, count};
 use crate::cli::text::print_force_prediction;
 use crate::ranges::SAMPLES;
 use crate::shipped::ModelSource;
@@ -44,6 +44,8 @@ pub(in crate::cli) struct PredictForceArgs {
     /// Folder for bands.csv, mean.csv, prediction.json and the samples
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    overwrite: OverwriteArg,
     /// Units of the text (JSON is always SI)
     #[arg(long, value_enum, default_value_t)]
     units: UnitsArg,
@@ -69,6 +71,9 @@ struct PrintedForce<'a> {
     out: Option<&'a Path>,
 }
 
+/// Files that are written whatever is predicted.
+const KNOWN_FILES: [&str; 3] = ["bands.csv", "mean.csv", "prediction.json"];
+
 /// Predicts a force.
 pub(in crate::cli) fn run(
     args: &PredictForceArgs,
@@ -82,11 +87,15 @@ pub(in crate::cli) fn run(
         samples: args.samples,
         seed: args.seed,
     };
-    let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
-    let printed = PrintedForce { report: &answer.report, out: args.out.as_deref() };
-    if let Some(folder) = &args.out {
-        write_force_prediction(folder, &answer, &printed)?;
-    }
+    let out = args.out.as_deref();
+    let into = out.map(|folder| (folder, args.overwrite.into(), &KNOWN_FILES[..]));
+    let answer = console.ask_into(&request, into, |output, answer| {
+        let printed = PrintedForce { report: &answer.report, out };
+        write_force_prediction(output.staging(), answer, &printed)?;
+        Ok(answer.report.provenance.clone())
+    })?;
+    let Some(answer) = answer else { return Ok(Verdict::Clean) };
+    let printed = PrintedForce { report: &answer.report, out };
     let report = &answer.report;
     console.print(&printed, |out| print_force_prediction(out, report, args.units.into()))?;
     Ok(Verdict::Clean)

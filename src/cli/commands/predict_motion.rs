@@ -9,7 +9,7 @@ use crate::analysis::{MotionForecast, PulseSetup};
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::{MotionFiles, write_motion_prediction};
-use crate::cli::options::{UnitsArg, VehicleArg, count, number, window_s};
+use crate::cli::options::{OverwriteArg, UnitsArg, VehicleArg, count, number, window_s};
 use crate::cli::text::print_motion_prediction;
 use crate::data::{Existing, write_atomically};
 use crate::ranges::{DRAWS, FORECAST_DURATION, ROAD_FRICTION};
@@ -69,6 +69,9 @@ pub(in crate::cli) struct PredictMotionArgs {
     /// Folder for trajectory.csv, density.csv, outcome.json, pictures and their numbers
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    /// Replace files that exist already
+    #[arg(long)]
+    overwrite: bool,
     /// Units of text and pictures (JSON and tables are always SI)
     #[arg(long, value_enum, default_value_t)]
     units: UnitsArg,
@@ -93,8 +96,11 @@ JSON: scenario, vehicle, force_model, response_model, n_forces, outcome {time_s,
 struct PrintedMotion<'a> {
     #[serde(flatten)]
     report: &'a PredictMotionReport,
-    files: Vec<PathBuf>,
+    files: &'a [PathBuf],
 }
+
+/// Files that are written whatever is predicted.
+const KNOWN_FILES: [&str; 3] = ["trajectory.csv", "density.csv", "outcome.json"];
 
 /// Predicts a motion.
 pub(in crate::cli) fn run(
@@ -116,15 +122,23 @@ pub(in crate::cli) fn run(
     if args.scenario.is_some() {
         check_window_end(args.window, args.duration)?;
     }
-    let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
-    check_window_end(args.window, duration_s(&answer.forecast))?;
-    let wanted = MotionFiles { folder: &args.out, window_s: args.window, units: args.units.into() };
-    let files = write_motion_prediction(&wanted, &answer)?;
-    let printed = PrintedMotion { report: &answer.report, files };
-    let json = serde_json::to_vec_pretty(&printed).map_err(std::io::Error::from)?;
-    write_atomically(&args.out.join("outcome.json"), Existing::Replace, |out| {
-        out.write_all(&json)
+    let mut files = Vec::new();
+    let existing = OverwriteArg::of_flag(args.overwrite).into();
+    let out = (args.out.as_path(), existing, &KNOWN_FILES[..]);
+    let answer = console.ask_into(&request, Some(out), |output, answer| {
+        check_window_end(args.window, duration_s(&answer.forecast))?;
+        let (staging, units) = (output.staging(), args.units.into());
+        let wanted = MotionFiles { folder: staging, window_s: args.window, units };
+        let names = write_motion_prediction(&wanted, answer)?;
+        files = names.iter().map(|name| output.path_of(name)).collect();
+        let printed = PrintedMotion { report: &answer.report, files: &files };
+        let json = serde_json::to_vec_pretty(&printed).map_err(std::io::Error::from)?;
+        let outcome = staging.join("outcome.json");
+        write_atomically(&outcome, Existing::Refuse, |out| out.write_all(&json))?;
+        Ok(answer.report.provenance.clone())
     })?;
+    let Some(answer) = answer else { return Ok(Verdict::Clean) };
+    let printed = PrintedMotion { report: &answer.report, files: &files };
     let report = &answer.report;
     console.print(&printed, |out| print_motion_prediction(out, report, args.units.into()))?;
     Ok(Verdict::Clean)

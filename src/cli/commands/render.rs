@@ -9,9 +9,11 @@ use crate::cli::CliError;
 use crate::cli::commands::render_figure;
 use crate::cli::commands::render_forecast::{self, ForecastArgs};
 use crate::cli::console::{Console, Verdict, print_json};
-use crate::cli::options::{SourceArgs, UnitsArg, VehicleArg, contact_point, number, size_px};
+use crate::cli::options::{
+    OverwriteArg, SourceArgs, UnitsArg, VehicleArg, contact_point, number, size_px,
+};
 use crate::collision::ChannelClass;
-use crate::data::{Channel, Existing, write_atomically};
+use crate::data::{Channel, write_atomically};
 use crate::figure::{Figure, write_figure_csv};
 use crate::ranges::{INSTANT, PICTURE_SCALE, SPEED};
 use crate::study::{Drive, ImpactRequest, Library, ScenarioChoice, SimulateRequest};
@@ -67,6 +69,8 @@ pub(super) struct OutputArgs {
     /// The file: .png for a picture, .csv for the figure's numbers
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
+    #[command(flatten)]
+    overwrite: OverwriteArg,
     /// Units of the figure
     #[arg(long, value_enum, default_value_t)]
     pub(super) units: UnitsArg,
@@ -239,6 +243,7 @@ pub(in crate::cli) fn run(
             return Err(CliError::OutputKind { path });
         }
     };
+    console.check_target(Some(&output.out), output.overwrite.into())?;
     let units = output.units.into();
     let (figure, notes) = match &args.figure {
         FigureArgs::Force(args) => {
@@ -281,7 +286,7 @@ pub(in crate::cli) fn run(
 }
 
 fn write_csv(figure: &Figure, output: &OutputArgs) -> Result<(), CliError> {
-    write_atomically(&output.out, Existing::Replace, |file| {
+    write_atomically(&output.out, output.overwrite.into(), |file| {
         write_figure_csv(figure, file).map_err(std::io::Error::other)
     })?;
     Ok(())
@@ -295,7 +300,7 @@ fn write_png(figure: &Figure, output: &OutputArgs) -> Result<(), CliError> {
         dark: output.dark,
     };
     let image = crate::render::figure_image(figure, canvas)?;
-    crate::render::save_png(&image, &output.out, crate::data::Existing::Replace)?;
+    crate::render::save_png(&image, &output.out, output.overwrite.into())?;
     Ok(())
 }
 

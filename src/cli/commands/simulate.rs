@@ -8,9 +8,10 @@ use serde::Serialize;
 
 use crate::analysis::PulseSetup;
 use crate::cli::CliError;
-use crate::cli::console::{Console, Verdict, folder};
+use crate::cli::console::{Console, Verdict};
 use crate::cli::options::{
-    EquationsArg, IntegratorArg, SamplingArg, UnitsArg, VehicleArg, contact_point, number,
+    EquationsArg, IntegratorArg, OverwriteArg, SamplingArg, UnitsArg, VehicleArg, contact_point,
+    number,
 };
 use crate::cli::text::{print_dataset_simulation, print_simulation};
 use crate::data::{ColumnMap, DatasetKind, Existing, write_series_csv};
@@ -56,6 +57,8 @@ pub(in crate::cli) struct SimulateArgs {
     /// Write the trajectory as CSV, 100 Hz (with --dataset: every trajectory, into this folder)
     #[arg(long, value_name = "PATH")]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    overwrite: OverwriteArg,
     /// Units of the text (JSON is always SI)
     #[arg(long, value_enum, default_value_t)]
     units: UnitsArg,
@@ -200,10 +203,12 @@ fn simulate_one(
         friction: args.single.friction,
         duration_s: args.single.duration,
     };
+    let existing = args.overwrite.into();
+    console.check_target(args.out.as_deref(), existing)?;
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
     let (report, out) = (&answer.report, args.out.as_deref());
     if let (Some(path), Some(motion)) = (out, &answer.analysis.simulation) {
-        write_series_csv(path, Existing::Replace, &motion.series)?;
+        write_series_csv(path, existing, &motion.series)?;
     }
     let printed = PrintedSimulation { report, out };
     console.print(&printed, |text| print_simulation(text, (report, out), args.units.into()))?;
@@ -222,18 +227,17 @@ fn simulate_dataset(
         equations: args.equations.map(Equations::from),
         integrator: args.integrator.into(),
     };
-    let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
-    let (report, out) = (&answer.report, args.out.as_deref());
-    if let Some(path) = out {
-        folder(path)?;
+    let out = args.out.as_deref();
+    let into = out.map(|folder| (folder, args.overwrite.into(), &[][..]));
+    let answer = console.ask_into(&request, into, |output, answer| {
         for case in &answer.replay.cases {
-            write_series_csv(
-                &path.join(format!("{}.csv", case.case)),
-                Existing::Replace,
-                &case.motion.series,
-            )?;
+            let path = output.staging().join(format!("{}.csv", case.case));
+            write_series_csv(&path, Existing::Refuse, &case.motion.series)?;
         }
-    }
+        Ok(answer.report.provenance.clone())
+    })?;
+    let Some(answer) = answer else { return Ok(Verdict::Clean) };
+    let report = &answer.report;
     let printed = PrintedSimulation { report, out };
     console
         .print(&printed, |text| print_dataset_simulation(text, (report, out), args.units.into()))?;

@@ -8,7 +8,6 @@ use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_settings};
 use crate::cli::options::{TrainingArgs, count};
 use crate::cli::text::{Trained, print_force_training};
-use crate::data::Existing;
 use crate::learning::ModelFile;
 use crate::ranges::EPOCHS;
 use crate::study::TrainForceRequest;
@@ -59,8 +58,9 @@ pub(in crate::cli) fn run(
     if args.training.print_config {
         return print_settings(&request.settings()?, console);
     }
+    let existing = args.training.existing(console)?;
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
-    answer.model.save(&args.training.out, Existing::Replace)?;
+    answer.model.save(&args.training.out, existing)?;
     let trained = Trained { model: &args.training.out, report: &answer.report };
     console.print(&trained, |out| print_force_training(out, &trained))?;
     Ok(Verdict::Clean)

@@ -1,14 +1,15 @@
 //! Where a command asks and prints, and how it ended.
 
-use std::fs;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::console::{print_json, under_bar};
-use crate::study::{Assumption, Library, Question, Request};
+use crate::data::write::{FileDigest, OutputFolder, RunRecord};
+use crate::data::{Existing, check_target};
+use crate::study::{Assumption, Library, Provenance, Question, Request};
 
 /// How a command that did not fail ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,6 +63,52 @@ impl Console<'_> {
         outcome.complete().ok_or(CliError::Cancelled)
     }
 
+    /// Says before the work begins what stands in the way of a file; of nothing if only the question
+    /// is to be printed.
+    pub(in crate::cli) fn check_target(
+        &self,
+        path: Option<&Path>,
+        existing: Existing,
+    ) -> Result<(), CliError> {
+        match path {
+            Some(path) if !self.print_request => Ok(check_target(path, existing)?),
+            _ => Ok(()),
+        }
+    }
+
+    /// Answers a question and writes files of the answer into a folder, which is prepared before
+    /// the work begins; `None` if only the question was to be printed.
+    ///
+    /// - `out`: the folder, if there is to be one;
+    /// - `known`: names of files that will be written;
+    /// - `write`: writes the files into the output folder's staging folder.
+    pub(in crate::cli) fn ask_into<Q>(
+        &mut self,
+        question: &Q,
+        out: Option<(&Path, Existing, &[&str])>,
+        write: impl FnOnce(&OutputFolder, &Q::Answer) -> Result<Provenance, CliError>,
+    ) -> Result<Option<Q::Answer>, CliError>
+    where
+        Q: Question + Into<Request>,
+    {
+        let Some((folder, existing, known)) = out.filter(|_| !self.print_request) else {
+            return self.ask(question);
+        };
+        let output = OutputFolder::begin(folder, existing, known)?;
+        let request: Request = question.clone().into();
+        let inputs = digests(&request.input_files());
+        let answer = self.answer(question)?;
+        let Provenance { seed, model_digests, .. } = write(&output, &answer)?;
+        output.finish(RunRecord {
+            command: std::env::args_os().map(|arg| arg.to_string_lossy().into_owned()).collect(),
+            request: serde_json::to_value(&request).map_err(io::Error::from)?,
+            seed,
+            models: model_digests,
+            inputs,
+        })?;
+        Ok(Some(answer))
+    }
+
     /// Prints a report: JSON if that was asked for, else what `text` prints.
     pub(in crate::cli) fn print(
         &mut self,
@@ -75,6 +122,12 @@ impl Console<'_> {
     }
 }
 
+/// The content of files. One that cannot be read is left out: the question that names it says why.
+fn digests(files: &[PathBuf]) -> Vec<FileDigest> {
+    let digest = |path: &PathBuf| FileDigest::of(path.to_string_lossy(), path).ok();
+    files.iter().filter_map(digest).collect()
+}
+
 /// Prints what an answer rests on that nobody said.
 pub(in crate::cli) fn print_assumptions(
     out: &mut dyn Write,
@@ -84,11 +137,6 @@ pub(in crate::cli) fn print_assumptions(
         writeln!(out, "assumed {assumption}")?;
     }
     Ok(())
-}
-
-/// Makes a folder for files.
-pub(in crate::cli) fn folder(path: &Path) -> Result<(), CliError> {
-    fs::create_dir_all(path).map_err(|source| CliError::Folder { path: path.to_owned(), source })
 }
 
 /// Prints the settings of a training as TOML.

@@ -4,6 +4,6 @@ mod command_line;
 mod output;
 mod progress;
 
-pub(super) use command_line::{Console, Verdict, folder, print_assumptions, print_settings};
+pub(super) use command_line::{Console, Verdict, print_assumptions, print_settings};
 pub(super) use output::{print_facts, print_json, print_table, shown, shown_vector};
 pub(super) use progress::under_bar;

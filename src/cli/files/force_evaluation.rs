@@ -5,21 +5,20 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::cli::CliError;
-use crate::cli::console::folder;
 use crate::data::{Existing, write_atomically};
 use crate::study::ForceEvaluation;
 
-/// Writes an evaluation as JSON and Markdown, or a cross-validation as JSON.
+/// Writes an evaluation as JSON and Markdown, or a cross-validation as JSON, into a folder that
+/// exists.
 pub(in crate::cli) fn write_force_evaluation(
     path: &Path,
     report: &ForceEvaluation,
 ) -> Result<(), CliError> {
-    folder(path)?;
     match report {
         ForceEvaluation::Cases(report) => {
             write_json(&path.join("evaluation.json"), report)?;
             let text = report.evaluation.to_markdown();
-            write_atomically(&path.join("evaluation.md"), Existing::Replace, |out| {
+            write_atomically(&path.join("evaluation.md"), Existing::Refuse, |out| {
                 out.write_all(text.as_bytes())
             })?;
         }
@@ -31,7 +30,7 @@ pub(in crate::cli) fn write_force_evaluation(
 }
 
 fn write_json(path: &Path, value: &impl Serialize) -> Result<(), CliError> {
-    write_atomically(path, Existing::Replace, |out| {
+    write_atomically(path, Existing::Refuse, |out| {
         serde_json::to_writer_pretty(&mut *out, value)?;
         writeln!(out)
     })?;

@@ -1,10 +1,9 @@
 //! The files of `impactlab predict`: tables, density map, pictures with their numbers.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::analysis::{DensityMap, DensityTask, MOTION_BAND_LEVELS, MotionBands, MotionForecast};
 use crate::cli::CliError;
-use crate::cli::console::folder;
 use crate::data::{Existing, write_atomically};
 use crate::figure::{
     FORECAST_CHANNELS, Figure, MotionForecastFigure, forecast_channel_figure,
@@ -16,7 +15,7 @@ use crate::units::UnitSystem;
 
 /// Where the files go, and what they show.
 pub(in crate::cli) struct MotionFiles<'a> {
-    /// The folder.
+    /// The folder, which exists.
     pub(in crate::cli) folder: &'a Path,
     /// Window of time of the density map, s; the end without.
     pub(in crate::cli) window_s: Option<[f64; 2]>,
@@ -24,20 +23,19 @@ pub(in crate::cli) struct MotionFiles<'a> {
     pub(in crate::cli) units: UnitSystem,
 }
 
-/// Writes tables, density map and pictures, and gives their paths.
+/// Writes tables, density map and pictures, and gives their names.
 pub(in crate::cli) fn write_motion_prediction(
     wanted: &MotionFiles<'_>,
     answer: &PredictMotionAnswer,
-) -> Result<Vec<PathBuf>, CliError> {
+) -> Result<Vec<String>, CliError> {
     let forecast = &answer.forecast;
-    folder(wanted.folder)?;
     let path = |name: &str| wanted.folder.join(name);
-    let (trajectory, map) = (path("trajectory.csv"), path("density.csv"));
+    let (trajectory, map) = ("trajectory.csv".to_owned(), "density.csv".to_owned());
     let bands = MotionBands::of(&forecast.distribution, 1);
-    write_trajectory(&trajectory, forecast, &bands)?;
+    write_trajectory(&path(&trajectory), forecast, &bands)?;
     let window_s = wanted.window_s.unwrap_or([forecast.outcome.time_s; 2]);
     let density = DensityTask::new(&forecast.distribution, window_s).on_cpu();
-    write_density(&map, &density)?;
+    write_density(&path(&map), &density)?;
     let mut files = vec![trajectory, map];
     let input = MotionForecastFigure {
         title: &answer.report.scenario,
@@ -58,13 +56,13 @@ pub(in crate::cli) fn write_motion_prediction(
         figures.push((name, forecast_channel_figure(&input, channel)));
     }
     for (name, figure) in &figures {
-        let csv = path(&format!("{name}.csv"));
-        write_atomically(&csv, Existing::Replace, |file| {
+        let csv = format!("{name}.csv");
+        write_atomically(&path(&csv), Existing::Refuse, |file| {
             write_figure_csv(figure, file).map_err(std::io::Error::other)
         })?;
         files.push(csv);
-        let png = path(&format!("{name}.png"));
-        if write_png(figure, &png)? {
+        let png = format!("{name}.png");
+        if write_png(figure, &path(&png))? {
             files.push(png);
         }
     }
@@ -75,7 +73,7 @@ pub(in crate::cli) fn write_motion_prediction(
 #[cfg(feature = "gui")]
 fn write_png(figure: &Figure, path: &Path) -> Result<bool, CliError> {
     let image = crate::render::figure_image(figure, crate::render::Canvas::default())?;
-    crate::render::save_png(&image, path, Existing::Replace)?;
+    crate::render::save_png(&image, path, Existing::Refuse)?;
     Ok(true)
 }
 
@@ -117,13 +115,13 @@ fn write_trajectory(
         csv.write_record(&row).map_err(failed)?;
     }
     let bytes = csv.into_inner().map_err(|error| std::io::Error::other(error.to_string()))?;
-    write_atomically(path, Existing::Replace, |out| out.write_all(&bytes))?;
+    write_atomically(path, Existing::Refuse, |out| out.write_all(&bytes))?;
     Ok(())
 }
 
 fn write_density(path: &Path, map: &DensityMap) -> Result<(), CliError> {
     let [width, _] = map.grid.size;
-    write_atomically(path, Existing::Replace, |out| {
+    write_atomically(path, Existing::Refuse, |out| {
         writeln!(out, "x_m,y_m,density_1_m2")?;
         for (i, value) in map.values.iter().enumerate() {
             let x = map.grid.low_m[0] + (i % width) as f64 * map.grid.step_m[0];

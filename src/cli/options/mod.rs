@@ -1,6 +1,7 @@
 //! What several commands take as options.
 
 mod choices;
+mod overwrite;
 mod quantity;
 mod source;
 mod training;
@@ -8,6 +9,7 @@ mod training;
 pub(super) use choices::{
     BadCasesArg, EquationsArg, IntegratorArg, SamplingArg, SplitArg, UnitsArg, VehicleArg,
 };
+pub(super) use overwrite::OverwriteArg;
 pub(super) use quantity::{contact_point, count, number, size_px, window_s};
 pub(super) use source::SourceArgs;
 pub(super) use training::TrainingArgs;

@@ -4,7 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use crate::cli::options::BadCasesArg;
+use crate::cli::CliError;
+use crate::cli::console::Console;
+use crate::cli::options::{BadCasesArg, OverwriteArg};
+use crate::data::{Existing, check_target};
 use crate::study::{TrainingOptions, checkpoint_beside};
 
 /// Where a model goes and how it is trained.
@@ -25,6 +28,8 @@ pub(in crate::cli) struct TrainingArgs {
     /// Go on from MODEL.training, if it is there
     #[arg(long)]
     resume: bool,
+    #[command(flatten)]
+    overwrite: OverwriteArg,
     /// Print the settings as TOML and stop
     #[arg(long)]
     pub(in crate::cli) print_config: bool,
@@ -39,6 +44,24 @@ impl TrainingArgs {
             bad_cases: self.bad_cases.into(),
             checkpoint: Some(checkpoint_beside(&self.out)),
             resume: self.resume,
+            overwrite: self.overwrite.is_given(),
         }
+    }
+
+    /// Whether the model may replace a file: the one of the training that goes on, or any where
+    /// that was said.
+    ///
+    /// # Errors
+    /// What stands in the way of the model, so that it is told before the training begins. A
+    /// training that exists and is not to go on is refused by the question itself.
+    pub(in crate::cli) fn existing(&self, console: &Console<'_>) -> Result<Existing, CliError> {
+        let existing = match checkpoint_beside(&self.out).exists() {
+            true => Existing::Replace,
+            false => self.overwrite.into(),
+        };
+        if !console.print_request {
+            check_target(&self.out, existing)?;
+        }
+        Ok(existing)
     }
 }

@@ -31,16 +31,26 @@ pub struct OutputFolder {
     started: SystemTime,
     staging: TempDir,
     lock: WriterLock,
-    _made: MadeFolder,
+    _made: MadeFolders,
 }
 
-/// A folder that was made and is removed again if it stays empty.
+/// Folders that were made, the innermost first, and are removed again if they stay empty.
 #[derive(Debug)]
-struct MadeFolder(Option<PathBuf>);
+struct MadeFolders(Vec<PathBuf>);
 
-impl Drop for MadeFolder {
+impl MadeFolders {
+    /// Makes a folder and those above it that are missing.
+    fn make(folder: &Path) -> io::Result<Self> {
+        let is_missing = |path: &&Path| !path.as_os_str().is_empty() && !path.exists();
+        let missing = folder.ancestors().take_while(is_missing).map(Path::to_owned).collect();
+        fs::create_dir_all(folder)?;
+        Ok(Self(missing))
+    }
+}
+
+impl Drop for MadeFolders {
     fn drop(&mut self) {
-        if let Some(folder) = &self.0 {
+        for folder in &self.0 {
             // Refused by the system unless the folder is empty.
             let _ = fs::remove_dir(folder);
         }
@@ -58,15 +68,13 @@ impl OutputFolder {
     /// [`WriteError`] within [`DataError::Write`]: files of an earlier run that must not be
     /// replaced, a folder that another process is writing, and the errors of the operating system.
     pub fn begin(folder: &Path, existing: Existing, known: &[&str]) -> Result<Self, DataError> {
-        let is_new = !folder.exists();
-        if !is_new && !folder.is_dir() {
+        if folder.exists() && !folder.is_dir() {
             return Err(WriteError::NotAFolder { path: folder.to_owned() }.into());
         }
         if existing == Existing::Refuse && earlier_files(folder).is_some() {
             return Err(WriteError::HoldsResults { path: folder.to_owned() }.into());
         }
-        fs::create_dir_all(folder).map_err(WriteError::io(folder))?;
-        let made = MadeFolder(is_new.then(|| folder.to_owned()));
+        let made = MadeFolders::make(folder).map_err(WriteError::io(folder))?;
         let lock = WriterLock::of_folder(folder)?;
         sweep_staging(folder);
         for name in known.iter().chain([&MANIFEST_FILE]) {

@@ -1,7 +1,6 @@
 //! A comparison as files.
 
 use std::fmt::Write;
-use std::fs;
 use std::path::Path;
 
 use crate::data::{DataError, Existing, write_atomically};
@@ -25,26 +24,25 @@ pub fn to_markdown(comparison: &Comparison) -> String {
     text
 }
 
-/// Writes `comparison.json`, `comparison.md` and each table as CSV into a folder, which is made if it
-/// is not there.
+/// Writes `comparison.json`, `comparison.md` and each table as CSV into a folder, which must exist and
+/// have no files of these names.
 ///
 /// # Errors
 /// [`DataError::Io`] with the file.
 pub fn write_comparison(folder: &Path, comparison: &Comparison) -> Result<(), DataError> {
-    fs::create_dir_all(folder).map_err(|source| DataError::io(folder, source))?;
     let file = folder.join("comparison.json");
     let to_error = |source: serde_json::Error| DataError::io(&file, source.into());
     // A line for each number of all paths would be long.
     let json = serde_json::to_vec(comparison).map_err(to_error)?;
-    write_atomically(&file, Existing::Replace, |out| out.write_all(&json))?;
+    write_atomically(&file, Existing::Refuse, |out| out.write_all(&json))?;
     for (_, name, table) in all_tables(comparison) {
         let csv = table.to_csv();
-        write_atomically(&folder.join(name), Existing::Replace, |out| {
+        write_atomically(&folder.join(name), Existing::Refuse, |out| {
             out.write_all(csv.as_bytes())
         })?;
     }
     let text = to_markdown(comparison);
-    write_atomically(&folder.join("comparison.md"), Existing::Replace, |out| {
+    write_atomically(&folder.join("comparison.md"), Existing::Refuse, |out| {
         out.write_all(text.as_bytes())
     })
 }

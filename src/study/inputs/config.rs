@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::study::BadCases;
+use crate::data::write::WriterLock;
+use crate::data::{Existing, check_target};
+use crate::study::{BadCases, StudyError};
 
 /// Where the settings of a training come from.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -47,6 +49,26 @@ pub struct TrainingOptions {
     pub checkpoint: Option<PathBuf>,
     /// Whether to go on from that state, if it is there.
     pub resume: bool,
+    /// Whether a state that is there is replaced, if it is not to go on.
+    pub overwrite: bool,
+}
+
+impl TrainingOptions {
+    /// Takes the right to write the state of the training, for as long as the result is held.
+    ///
+    /// # Errors
+    /// [`StudyError::TrainingExists`] if there is a training that is neither to go on nor to be
+    /// replaced; [`StudyError::Data`] if another process trains there, or if the file cannot be
+    /// written.
+    pub(in crate::study) fn claim(&self) -> Result<Option<WriterLock>, StudyError> {
+        let Some(path) = &self.checkpoint else { return Ok(None) };
+        check_target(path, Existing::Replace)?;
+        let lock = WriterLock::of_file(path)?;
+        if path.exists() && !self.resume && !self.overwrite {
+            return Err(StudyError::TrainingExists { path: path.clone() });
+        }
+        Ok(Some(lock))
+    }
 }
 
 /// Where a training keeps its state: beside its model, as `MODEL.training`.

@@ -4,6 +4,7 @@ mod cases;
 mod config;
 mod file;
 mod model;
+mod read_files;
 mod scenario;
 mod vehicle;
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::collision::{Scenario, ScenarioError};
+use crate::collision::{SCENARIO_PRESETS, Scenario, ScenarioError};
 use crate::study::StudyError;
 use crate::study::checks::check_all;
 
@@ -36,6 +36,17 @@ impl ScenarioChoice {
         match self {
             Self::File(_) => Ok(()),
             Self::Inline(scenario) => check_all(scenario.ranges()),
+        }
+    }
+
+    /// The scenario file; `None` for a scenario that is in memory or part of the program.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Self::File(path) => {
+                let is_preset = SCENARIO_PRESETS.iter().any(|(name, _)| Path::new(name) == path);
+                (!is_preset).then_some(path)
+            }
+            Self::Inline(_) => None,
         }
     }
 

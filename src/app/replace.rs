@@ -1,0 +1,93 @@
+//! Asks before a file or a folder of results that exists already is replaced.
+
+use std::path::Path;
+
+use egui::{Context, Ui};
+
+use crate::app::command::{Command, ComparisonCommand, wake};
+use crate::app::export;
+use crate::app::state::State;
+use crate::data::write::MANIFEST_FILE;
+use crate::data::{Existing, Severity, write_atomically};
+use crate::error_chain;
+
+impl Command {
+    /// The file or folder that the command writes; `None` for all other commands.
+    fn target(&self) -> Option<&Path> {
+        match self {
+            Self::Export(_, path)
+            | Self::SaveScenario(path)
+            | Self::SaveModel(_, path)
+            | Self::Compare(ComparisonCommand::Save(path)) => Some(path),
+            _ => None,
+        }
+    }
+
+    /// Whether the command would replace something. A folder is replaced if it holds results.
+    fn replaces_something(&self) -> bool {
+        let holds_results = |folder: &Path| {
+            [MANIFEST_FILE, "comparison.json"].iter().any(|name| folder.join(name).exists())
+        };
+        self.target().is_some_and(|path| path.is_file() || path.is_dir() && holds_results(path))
+    }
+}
+
+impl State {
+    /// Carries out a command that writes a file. If it would replace something and that was not
+    /// said to be wanted, the user is asked first.
+    pub(super) fn write(&mut self, command: Command, existing: Existing, context: &Context) {
+        self.session.replacing = None;
+        if existing == Existing::Refuse && command.replaces_something() {
+            self.session.replacing = Some(Box::new(command));
+            return;
+        }
+        match command {
+            Command::Export(figure, path) => {
+                match export::spawn(*figure, (path, existing), self.view.dark, wake(context)) {
+                    Ok(job) => self.session.exports.push(job),
+                    Err(error) => self.say(Severity::Error, error.to_string()),
+                }
+            }
+            Command::SaveScenario(path) => {
+                let text = self.project.scenario.to_toml();
+                let written =
+                    write_atomically(&path, existing, |out| out.write_all(text.as_bytes()));
+                match written {
+                    Ok(()) => self.say(Severity::Info, format!("{} written", path.display())),
+                    Err(error) => self.say(Severity::Error, error_chain(&error)),
+                }
+            }
+            Command::SaveModel(network, path) => {
+                self.save_model(network, (path, existing), context);
+            }
+            Command::Compare(ComparisonCommand::Save(folder)) => {
+                self.save_comparison((folder, existing), context);
+            }
+            other => self.apply(other, context),
+        }
+    }
+}
+
+/// Draws the question whether something is to be replaced, and adds a command when the user has
+/// answered.
+///
+/// - `command`: the command that would replace it.
+pub fn replace_ui(ui: &mut Ui, command: &Command, commands: &mut Vec<Command>) {
+    let Some(path) = command.target() else { return };
+    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    ui.heading(format!("Replace {name}?"));
+    ui.label(path.display().to_string());
+    ui.weak(match path.is_dir() {
+        true => "This folder holds results already. Other files in it stay.",
+        false => "This file exists already.",
+    });
+    ui.separator();
+    ui.horizontal(|ui| {
+        if ui.button("Replace").clicked() {
+            commands.push(Command::Replace(Box::new(command.clone())));
+        }
+        if ui.button("Keep it").clicked() {
+            commands.push(Command::KeepExisting);
+        }
+    });
+}

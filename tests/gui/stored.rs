@@ -1,0 +1,160 @@
+//! What the window writes: nothing is replaced unasked, and no stored state is lost.
+
+use std::fs;
+use std::path::Path;
+
+use egui::Key;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use impactlab::app::{App, Command, ComparisonCommand, Network, Pane, State, Subject};
+use impactlab::data::Severity;
+
+use crate::harness::{apply, is_idle, open, open_with, step_until};
+
+const SCENARIO: &str = "assets/scenarios/pit_right_rear.toml";
+
+fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
+    harness.state().state()
+}
+
+/// The messages of the status line as one text.
+fn messages(harness: &Harness<'_, App>) -> String {
+    let texts = state(harness).session.messages.iter().map(|message| message.text.clone());
+    texts.collect::<Vec<_>>().join("\n")
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn the_window_asks_before_it_replaces_a_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("scenario.toml");
+    fs::write(&path, "mine").expect("a file");
+    let mut harness = open(&[SCENARIO]);
+    step_until(&mut harness, "the scenario", is_idle);
+    let save = Command::SaveScenario(path.clone());
+
+    apply(&mut harness, save.clone());
+    harness.step();
+    harness.get_by_label("Replace scenario.toml?");
+    harness.get_by_label("Keep it").click();
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Replace scenario.toml?").is_none());
+    apply(&mut harness, save.clone());
+    harness.step();
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    assert!(state(&harness).session.replacing.is_none(), "Escape keeps it too");
+    assert_eq!(fs::read_to_string(&path).expect("a file"), "mine");
+
+    apply(&mut harness, save);
+    harness.step();
+    harness.get_by_label("Replace").click();
+    harness.run_steps(3);
+    assert!(fs::read_to_string(&path).expect("a file").contains("[target"));
+    assert!(state(&harness).session.replacing.is_none());
+
+    // A figure, a model and a folder of results are asked about alike; a new name is not.
+    step_until(&mut harness, "the models", |state| state.session.force.model.current.is_some());
+    for (name, command) in [
+        ("model", Command::SaveModel(Network::Force, folder.path().join("model"))),
+        ("results", Command::Compare(ComparisonCommand::Save(folder.path().join("results")))),
+    ] {
+        match name {
+            "results" => {
+                fs::create_dir(folder.path().join(name)).expect("a folder");
+                fs::write(folder.path().join("results/comparison.json"), "{}").expect("a file");
+            }
+            _ => fs::write(folder.path().join(name), "mine").expect("a file"),
+        }
+        apply(&mut harness, command);
+        assert!(state(&harness).session.replacing.is_some(), "{name}");
+        apply(&mut harness, Command::KeepExisting);
+    }
+    assert_eq!(fs::read_to_string(folder.path().join("model")).expect("a file"), "mine");
+    apply(&mut harness, Command::SaveScenario(folder.path().join("new.toml")));
+    assert!(folder.path().join("new.toml").exists() && state(&harness).session.replacing.is_none());
+}
+
+/// Opens the app on the example scenario and waits until its state is stored.
+fn open_and_store(state_file: &Path) -> Harness<'static, App> {
+    let mut harness = open_with(&[SCENARIO], Some(state_file.to_owned()));
+    step_until(&mut harness, "the scenario", is_idle);
+    harness.run_steps(90);
+    let file = state_file.to_owned();
+    step_until(&mut harness, "the stored state", move |_| file.exists());
+    harness
+}
+
+#[test]
+fn a_second_window_says_that_it_stores_nothing_and_stores_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let state_file = folder.path().join("state.json");
+    let first = open_and_store(&state_file);
+    let stored = fs::read_to_string(&state_file).expect("a state");
+
+    let mut second = open_with(&[], Some(state_file.clone()));
+    let text = messages(&second);
+    let who = format!("process {} is writing it", std::process::id());
+    assert!(text.contains("what is changed in this window will not be kept"), "{text}");
+    assert!(text.contains(&who) && text.contains("state.json"), "{text}");
+    assert_eq!(state(&second).project.subject, Some(Subject::Scenario), "the state is restored");
+    assert!(state(&second).session.force.checkpoint.is_none(), "nor does it share trainings");
+    second.state_mut().state_mut().project.duration_s = 1.25;
+    second.run_steps(180);
+    drop(second);
+    assert_eq!(fs::read_to_string(&state_file).expect("a state"), stored);
+
+    // When the first window is closed, the next one stores its state again.
+    drop(first);
+    assert_eq!(names(folder.path()), ["state.json"]);
+    let mut third = open_and_store(&state_file);
+    assert_eq!(messages(&third), "");
+    third.state_mut().state_mut().project.duration_s = 1.25;
+    third.run_steps(90);
+    step_until(&mut third, "the change", move |_| {
+        fs::read_to_string(&state_file).expect("a state").contains("\"duration_s\":1.25")
+    });
+}
+
+#[test]
+fn a_damaged_state_is_kept_under_another_name() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let state_file = folder.path().join("state.json");
+    for (n, damaged) in [&b"{\"version\":1,\"proj"[..], b"", b"\xff\xfe"].into_iter().enumerate() {
+        fs::write(&state_file, damaged).expect("a file");
+        let harness = open_and_store(&state_file);
+        let kept = folder.path().join(format!("state.json.damaged-{}", n + 1));
+        let text = messages(&harness);
+        assert!(text.contains("the state of the last run cannot be restored"), "{text}");
+        assert!(text.contains(&kept.display().to_string()), "{text}");
+        assert_eq!(fs::read(&kept).expect("the damaged state"), damaged);
+        assert_eq!(state(&harness).session.messages[0].severity, Severity::Warning);
+    }
+    let left = ["state.json", "state.json.damaged-1", "state.json.damaged-2"];
+    assert_eq!(names(folder.path()), [&left[..], &["state.json.damaged-3"]].concat());
+}
+
+#[test]
+fn a_state_of_a_later_version_stays_as_it_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let state_file = folder.path().join("state.json");
+    let later = "{\"version\":99,\"project\":\"of the future\"}";
+    fs::write(&state_file, later).expect("a file");
+    let mut harness = open_with(&[SCENARIO], Some(state_file.clone()));
+    step_until(&mut harness, "the scenario", is_idle);
+    let text = messages(&harness);
+    assert!(text.contains("stored by a later version of the program"), "{text}");
+    apply(&mut harness, Command::Show(Pane::Scenario));
+    harness.run_steps(180);
+    drop(harness);
+    assert_eq!(fs::read_to_string(&state_file).expect("a state"), later);
+    assert_eq!(names(folder.path()), ["state.json"]);
+}
