@@ -207,7 +207,8 @@ fn a_force_that_does_not_say_where_it_acts_replaces_no_recorded_one() {
     let text = String::from_utf8(refused.stderr).unwrap();
     assert!(!refused.status.success() && text.contains("without-moment.csv"), "{text}");
     assert!(text.contains("yaw moment"), "{text}");
-    ok(predict(Path::new("datasets/fea/forces/c001.csv"), &[]));
+    ok(predict(&without_moment, &["--contact", "-2,-0.9,0.5"]));
+    ok(predict(Path::new("datasets/fea/forces/c001.csv"), &["--overwrite"]));
 }
 
 #[test]

@@ -9,7 +9,9 @@ use crate::analysis::{MotionForecast, PulseSetup};
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::{MotionFiles, write_motion_prediction};
-use crate::cli::options::{OverwriteArg, UnitsArg, VehicleArg, count, number, window_s};
+use crate::cli::options::{
+    OverwriteArg, UnitsArg, VehicleArg, contact_point, count, number, window_s,
+};
 use crate::cli::text::print_motion_prediction;
 use crate::data::{Existing, write_atomically};
 use crate::ranges::{DRAWS, FORECAST_DURATION, ROAD_FRICTION};
@@ -19,6 +21,7 @@ use crate::study::{
     DEFAULT_DRAWS, DEFAULT_DURATION_S, ForceSource, MotionSource, PredictMotionReport,
     PredictMotionRequest, ScenarioChoice, SeriesFile, SimulateRequest,
 };
+use crate::vehicle::ContactPoint;
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
@@ -45,6 +48,11 @@ pub(in crate::cli) struct PredictMotionArgs {
     /// of the scenario
     #[arg(long, conflicts_with = "force")]
     given_force: bool,
+    /// With --trajectory: where the force acts, as in `simulate`; needed where --force names a force
+    /// without a yaw moment
+    #[arg(long, value_name = "X,Y,Z", value_parser = contact_point, allow_hyphen_values = true,
+        requires = "trajectory")]
+    contact: Option<ContactPoint>,
     /// The force network: `shipped` or a file
     #[arg(long, default_value_t, value_name = "MODEL")]
     force_model: ModelSource,
@@ -166,7 +174,8 @@ fn source(args: &PredictMotionArgs) -> Result<MotionSource, CliError> {
         return Ok(MotionSource::Scenario { scenario, pulse: PulseSetup::default() });
     }
     if let Some(path) = &args.trajectory {
-        return Ok(MotionSource::Trajectory { file: SeriesFile::new(path), contact: None });
+        let (file, contact) = (SeriesFile::new(path), args.contact);
+        return Ok(MotionSource::Trajectory { file, contact });
     }
     match (args.dataset.clone(), args.case.clone()) {
         (Some(dataset), Some(case)) => Ok(MotionSource::Case { dataset, case }),
