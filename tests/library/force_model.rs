@@ -153,7 +153,10 @@ fn a_model_says_the_same_after_a_round_trip() {
     let bytes = saved(model(), &path);
     let read = ForceModel::load(&path).unwrap();
     assert_eq!(read.predict(&scenario()).unwrap(), model().predict(&scenario()).unwrap());
-    assert_eq!(read.record(), model().record());
+    let mut record = model().record().clone();
+    // What a clock said is not part of a model.
+    record.history.iter_mut().for_each(|epoch| epoch.seconds = None);
+    assert_eq!(read.record(), &record);
     assert_eq!(saved(&ForceModel::from_bytes(&bytes).unwrap(), &path), bytes);
     assert!(set().train.iter().all(|case| read.is_trained_on(case)));
 }

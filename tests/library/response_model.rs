@@ -94,7 +94,10 @@ fn a_saved_model_predicts_the_same_bits() {
     model.save(&path, Existing::Replace).expect("saved");
     let again = ResponseModel::load(&path).expect("loaded");
     assert_eq!(errors_m(&model), errors_m(&again));
-    assert_eq!(model.record(), again.record());
+    let mut record = model.record().clone();
+    // What a clock said is not part of a model.
+    record.history.iter_mut().for_each(|epoch| epoch.seconds = None);
+    assert_eq!(&record, again.record());
     let mut bytes = std::fs::read(&path).expect("read");
     let middle = bytes.len() / 2;
     bytes[middle] ^= 1;
