@@ -1,5 +1,6 @@
 //! Which command was asked for, and how the program ends.
 
+use std::ffi::OsString;
 use std::io::{self, BufWriter, Write};
 use std::process::ExitCode;
 
@@ -10,7 +11,7 @@ use crate::cli::commands::{
     app, ask, check, compare, evaluate, fine_tune, impact, licences, predict, ranges, render,
     simulate, train, vehicles,
 };
-use crate::cli::console::{Console, Verdict};
+use crate::cli::console::{Console, Escaped, Verdict, within_line};
 use crate::error_chain;
 use crate::study::Library;
 
@@ -67,11 +68,11 @@ pub fn run() -> ExitCode {
         Ok(cli) => cli,
         Err(help_or_error) => {
             // Nobody is left to tell if the output is closed.
-            let _ = help_or_error.print();
+            let _ = print_usage(&help_or_error);
             return ExitCode::from(u8::try_from(help_or_error.exit_code()).unwrap_or(2));
         }
     };
-    let mut out = BufWriter::new(io::stdout().lock());
+    let mut out = Escaped(BufWriter::new(io::stdout().lock()));
     let mut console = Console {
         json: cli.json,
         print_request: cli.print_request,
@@ -88,10 +89,23 @@ pub fn run() -> ExitCode {
             ExitCode::SUCCESS
         }
         Err(error) => {
-            let _ = writeln!(io::stderr(), "error: {}", error_chain(&error));
+            let _ = writeln!(io::stderr(), "error: {}", within_line(&error_chain(&error)));
             ExitCode::FAILURE
         }
     }
+}
+
+/// Prints help or what is wrong with the arguments. Arguments are quoted in it, so that it has no
+/// colours if one of them could write its own.
+fn print_usage(help_or_error: &clap::Error) -> io::Result<()> {
+    let is_plain = |argument: OsString| {
+        let text = argument.to_string_lossy();
+        within_line(&text) == text
+    };
+    if std::env::args_os().all(is_plain) {
+        return help_or_error.print();
+    }
+    write!(Escaped(io::stderr()), "{}", help_or_error.render())
 }
 
 fn dispatch(command: Option<CliCommand>, console: &mut Console<'_>) -> Result<Verdict, CliError> {

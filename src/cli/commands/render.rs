@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::cli::CliError;
 use crate::cli::commands::render_figure;
 use crate::cli::commands::render_forecast::{self, ForecastArgs};
-use crate::cli::console::{Console, Verdict, print_json};
+use crate::cli::console::{Console, Verdict, print_json, shown_path};
 use crate::cli::options::{
     OverwriteArg, SourceArgs, UnitsArg, VehicleArg, contact_point, number, size_px,
 };
@@ -277,7 +277,7 @@ pub(in crate::cli) fn run(
         };
         print_json(console.out, &answer)?;
     } else {
-        writeln!(console.out, "{}: {}", output.out.display(), figure.title)?;
+        writeln!(console.out, "{}: {}", shown_path(&output.out), figure.title)?;
         for note in &notes {
             writeln!(console.out, "note: {note}")?;
         }

@@ -5,7 +5,11 @@ use std::io::{self, Write};
 use serde::Serialize;
 
 use crate::cli::CliError;
+use crate::cli::console::within_line;
 use crate::units::{Quantity, UnitSystem};
+
+/// Number of characters of a cell that are printed.
+const MAX_CELL_CHARS: usize = 200;
 
 /// Prints a value as indented JSON and a line end.
 pub(in crate::cli) fn print_json(
@@ -24,6 +28,9 @@ pub(in crate::cli) fn print_table(
     rows: &[Vec<String>],
 ) -> io::Result<()> {
     let header: Vec<String> = header.iter().map(|&name| name.to_owned()).collect();
+    let rows: Vec<Vec<String>> =
+        rows.iter().map(|row| row.iter().map(|cell| shown_cell(cell)).collect()).collect();
+    let rows = rows.as_slice();
     let columns: Vec<TextColumn> =
         (0..header.len()).map(|idx| TextColumn::of(&header, rows, idx)).collect();
     let titled = header.iter().any(|name| !name.is_empty());
@@ -39,9 +46,19 @@ pub(in crate::cli) fn print_table(
 pub(in crate::cli) fn print_facts(out: &mut dyn Write, facts: &[(&str, String)]) -> io::Result<()> {
     let width = facts.iter().map(|(name, _)| name.chars().count()).max();
     for (name, value) in facts {
-        writeln!(out, "{name:<width$}  {value}", width = width.unwrap_or(0))?;
+        let (value, width) = (within_line(value), width.unwrap_or(0));
+        writeln!(out, "{name:<width$}  {value}")?;
     }
     Ok(())
+}
+
+/// The text of a cell within its line; a long one is cut.
+fn shown_cell(cell: &str) -> String {
+    let cell = within_line(cell);
+    match cell.char_indices().nth(MAX_CELL_CHARS) {
+        None => cell.into_owned(),
+        Some((at, _)) => format!("{}…", cell.get(..at).unwrap_or_default()),
+    }
 }
 
 struct TextColumn {
@@ -97,5 +114,15 @@ mod tests {
         print_table(&mut text, &["name", "m"], &rows).unwrap();
         let expected = "name    m\na     1.5\nbcd   -10\n";
         assert_eq!(String::from_utf8(text).unwrap(), expected);
+    }
+
+    #[test]
+    fn a_cell_of_any_length_is_cut_to_what_fits() {
+        // Wider columns than 65535 characters cannot be formatted.
+        let rows = [vec!["a".repeat(70_000), "b\n".to_owned()]];
+        let mut text = Vec::new();
+        print_table(&mut text, &["name", ""], &rows).unwrap();
+        let text = String::from_utf8(text).unwrap();
+        assert_eq!(text.lines().nth(1), Some(&*format!("{}…  b\\u000a", "a".repeat(200))));
     }
 }

@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::cli::console::within_line;
 use crate::jobs::Progress;
 use crate::learning::TrainingReport;
 use crate::study::{Event, Observer};
@@ -29,11 +30,11 @@ pub(in crate::cli) fn under_bar<T>(work: impl FnOnce(&mut Observer<'_>) -> T) ->
         };
         if let (false, Some(line)) = (is_seen, line) {
             // Nobody is left to tell if standard error is closed.
-            let _ = writeln!(stderr(), "{line}");
+            let _ = writeln!(stderr(), "{}", within_line(&line));
         }
         bar.set_length(progress.total);
         bar.set_position(progress.done);
-        bar.set_message(progress.message);
+        bar.set_message(within_line(&progress.message).into_owned());
         ControlFlow::Continue(())
     });
     bar.finish_and_clear();

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::cli::console::{print_facts, print_table, shown, shown_vector};
+use crate::cli::console::{print_facts, print_table, shown, shown_path, shown_vector};
 use crate::data::Channel;
 use crate::study::{
     CaseFlag, CheckReport, ColumnReport, DatasetReport, FileReport, PathProblem, ProposedColumn,
@@ -25,7 +25,7 @@ pub(in crate::cli) fn print_check(out: &mut dyn Write, report: &CheckReport) -> 
         writeln!(out)?;
     }
     for model in &report.models {
-        writeln!(out, "{}: {}, {:?}\n", model.path.display(), model.kind, model.name)?;
+        writeln!(out, "{}: {}, {:?}\n", shown_path(&model.path), model.kind, model.name)?;
     }
     let sets = || report.datasets.iter();
     let n_problems = report.problems.len() + sets().map(|set| set.problems.len()).sum::<usize>();
@@ -54,10 +54,10 @@ fn print_dataset(out: &mut dyn Write, set: &DatasetReport) -> io::Result<()> {
     let columns: Vec<String> = set.columns.iter().map(column).collect();
     let flagged = set.n_cases - set.n_clean;
     let vehicle = set.vehicle_file.as_ref();
-    writeln!(out, "{}: {} data set", set.path.display(), set.kind)?;
+    writeln!(out, "{}: {} data set", shown_path(&set.path), set.kind)?;
     let facts = [
         ("  cases", format!("{} ({flagged} with flags)", set.n_cases)),
-        ("  vehicle", vehicle.map_or("not given".to_owned(), |path| path.display().to_string())),
+        ("  vehicle", vehicle.map_or("not given".to_owned(), |path| shown_path(path))),
         ("  columns", columns.join(", ")),
     ];
     print_facts(out, &facts)?;
@@ -69,7 +69,7 @@ fn print_dataset(out: &mut dyn Write, set: &DatasetReport) -> io::Result<()> {
 }
 
 fn print_file(out: &mut dyn Write, file: &FileReport) -> io::Result<()> {
-    writeln!(out, "{}: {} file", file.path.display(), file.kind)?;
+    writeln!(out, "{}: {} file", shown_path(&file.path), file.kind)?;
     let decimal = if file.decimal_comma { "comma" } else { "point" };
     let mut facts = vec![
         ("  samples", format!("{} from {} s to {} s", file.n_samples, file.start_s, file.end_s)),

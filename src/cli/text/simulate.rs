@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use crate::cli::console::{print_assumptions, print_facts, shown, shown_vector};
+use crate::cli::console::{print_assumptions, print_facts, shown, shown_path, shown_vector};
 use crate::study::{ForceReport, SimulateReport};
 use crate::units::{Quantity, UnitSystem};
 
@@ -44,13 +44,13 @@ pub(in crate::cli) fn print_simulation(
     }
     facts.extend(report.flags.iter().map(|flag| ("flag", flag.message.clone())));
     facts.extend(report.notes.iter().map(|note| ("note", note.clone())));
-    facts.extend(out.map(|path| ("written", path.display().to_string())));
+    facts.extend(out.map(|path| ("written", shown_path(path))));
     print_facts(text, &facts)?;
     print_assumptions(text, &report.assumptions)
 }
 
 fn force_facts(force: &ForceReport, name: &str, units: UnitSystem) -> Vec<Fact> {
-    let source = force.path.as_ref().map_or(name.to_owned(), |path| path.display().to_string());
+    let source = force.path.as_ref().map_or(name.to_owned(), |path| shown_path(path));
     let (sampling, axes) = (force.sampling.replace('_', " "), &force.axes);
     let impulse = shown_vector(Quantity::Impulse, force.impulse_n_s, ["x", "y"], units);
     let contact = force.contact_start_s.zip(force.contact_end_s);

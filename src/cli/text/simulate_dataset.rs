@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use crate::cli::console::{print_assumptions, print_table};
+use crate::cli::console::{print_assumptions, print_table, shown_path};
 use crate::numerics::Summary;
 use crate::study::{ReplayedCaseReport, SimulateDatasetReport};
 use crate::units::{Quantity, UnitSystem};
@@ -18,7 +18,7 @@ pub(in crate::cli) fn print_dataset_simulation(
 ) -> io::Result<()> {
     let length = Quantity::Length.display_unit(units);
     let degrees = Quantity::Angle.display_unit(units);
-    writeln!(out, "{}: {}, {}\n", report.dataset.display(), report.vehicle, report.integrator)?;
+    writeln!(out, "{}: {}, {}\n", shown_path(&report.dataset), report.vehicle, report.integrator)?;
     let row = |case: &ReplayedCaseReport| {
         let flags: Vec<&str> = case.flags.iter().map(|f| f.message.as_str()).collect();
         let error = &case.error;
@@ -60,7 +60,7 @@ pub(in crate::cli) fn print_dataset_simulation(
         writeln!(out, "failed: {failure}")?;
     }
     if let Some(folder) = folder {
-        writeln!(out, "written: {}", folder.display())?;
+        writeln!(out, "written: {}", shown_path(folder))?;
     }
     print_assumptions(out, &report.assumptions)
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::cli::console::{print_assumptions, print_facts};
+use crate::cli::console::{print_assumptions, print_facts, shown_path};
 use crate::force::LossTerms;
 use crate::response::{ForceOrigin, LATENT_NAMES};
 use crate::study::{LogReport, ResponseTrainingReport, TrainForceReport};
@@ -43,7 +43,7 @@ pub(in crate::cli) fn print_force_training(
         factors.shared, factors.single, factors.duration
     );
     let facts = [
-        ("model", trained.model.display().to_string()),
+        ("model", shown_path(trained.model)),
         ("data", report.data.clone()),
         ("cases", cases),
         ("weights", report.n_parameters.to_string()),
@@ -75,7 +75,7 @@ pub(in crate::cli) fn print_response_training(
     let trajectories =
         format!("{} to learn from, {} kept for the test", report.train.len(), report.n_test);
     let facts = [
-        ("model", trained.model.display().to_string()),
+        ("model", shown_path(trained.model)),
         ("data", report.data.clone()),
         ("trajectories", trajectories),
         ("simulated motions", report.n_simulated.to_string()),
@@ -116,7 +116,7 @@ fn log_line(log: &LogReport) -> String {
     let rate = noise.yaw_rate_rad_s.map(|r| format!(", yaw rate {:.2} deg/s", r.to_degrees()));
     format!(
         "{}: {contact}, {force}, {n_samples} states; noise: position {:.3} m, yaw {:.2} deg{}{}",
-        log.log.display(),
+        shown_path(&log.log),
         noise.position_m,
         noise.yaw_rad.to_degrees(),
         velocity.unwrap_or_default(),
