@@ -18,20 +18,12 @@ pub enum CliError {
     /// A question has no answer.
     #[error(transparent)]
     Study(Box<StudyError>),
-    /// A file of data cannot be written.
+    /// A file cannot be read or written.
     #[error(transparent)]
     Data(#[from] DataError),
     /// The scenario is not said.
     #[error("nothing to predict: say which scenario with --scenario FILE")]
     NothingToPredict,
-    /// A request file cannot be read.
-    #[error("{}: cannot be read", path.display())]
-    RequestFile {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: io::Error,
-    },
     /// A request file holds no request.
     #[error("{}: is no request", path.display())]
     Request {

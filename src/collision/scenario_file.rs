@@ -58,7 +58,7 @@ impl Scenario {
     /// Reads a scenario from the text of a file. The `path` serves only to name the file in errors.
     ///
     /// # Errors
-    /// The errors of [`Scenario::load`] except [`TomlError::Read`].
+    /// The errors of [`Scenario::load`] except [`TomlError::File`].
     pub fn from_toml(text: &str, path: &Path) -> Result<Self, TomlError> {
         let file = TomlFile { path, text };
         let root = file.parse()?;
@@ -268,6 +268,6 @@ mod tests {
     #[test]
     fn a_file_that_is_not_there_is_named() {
         let error = Scenario::load(Path::new("no/such/scenario.toml")).unwrap_err();
-        assert_eq!(error.to_string(), "no/such/scenario.toml: cannot be read");
+        assert_eq!(error.to_string(), "no/such/scenario.toml: does not exist; check the name");
     }
 }

@@ -1,6 +1,7 @@
 //! The attributes of one case: one row of the table of cases (`cases.csv`), with every column in
 //! the order of the file.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -28,18 +29,18 @@ impl Attributes {
     /// Takes all rows of a table, in the order of the file.
     pub(crate) fn of(table: &Table) -> Vec<Self> {
         let (path, names) = (Arc::from(table.path()), Arc::from(table.header()));
-        let value = |row, column| match (table.number(row, column), table.cell(row, column)) {
+        let value = |cell: Cow<'_, str>| match (table.dialect().number(&cell), cell) {
             (Some(number), _) => Some(Value::Number(number)),
-            (None, "") => None,
-            (None, text) => Some(Value::Text(text.to_owned())),
+            (None, cell) if cell.is_empty() => None,
+            (None, text) => Some(Value::Text(text.into_owned())),
         };
-        let row = |row_idx| Self {
+        let row = |(line, cells): (u64, Vec<Cow<'_, str>>)| Self {
             path: Arc::clone(&path),
-            line: table.line(row_idx),
+            line,
             names: Arc::clone(&names),
-            values: (0..table.header().len()).map(|column| value(row_idx, column)).collect(),
+            values: cells.into_iter().map(value).collect(),
         };
-        (0..table.n_rows()).map(row).collect()
+        table.rows().map(row).collect()
     }
 
     /// Returns the name and the content of every column in the order of the file; a blank cell is

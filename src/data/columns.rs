@@ -12,6 +12,12 @@ use crate::units::{Quantity, Unit};
 /// Number of sample values of a column that a mapping dialog shows.
 const SHOWN_SAMPLES: usize = 5;
 
+/// Number of columns without a channel that a remark names.
+const SHOWN_IGNORED: usize = 100;
+
+/// Number of characters of a header that a remark shows.
+const SHOWN_CHARS: usize = 60;
+
 /// A column that was read, with the channel and the unit that it was read as.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ColumnUse {
@@ -64,9 +70,23 @@ impl fmt::Display for Note {
                 "column {number} {name:?} is left out: {unit:?} is no unit of {}",
                 spelling::quantity_name(channel.quantity())
             ),
-            Self::Ignored { names } => write!(f, "not recognised: {}", names.join(", ")),
+            Self::Ignored { names } => {
+                let shown: Vec<&str> =
+                    names.iter().take(SHOWN_IGNORED).map(|name| beginning(name)).collect();
+                write!(f, "not recognised: {}", shown.join(", "))?;
+                match names.len().saturating_sub(SHOWN_IGNORED) {
+                    0 => Ok(()),
+                    more => write!(f, " and {more} more"),
+                }
+            }
         }
     }
+}
+
+/// The beginning of a header, as long as a remark shows it.
+fn beginning(name: &str) -> &str {
+    let end = name.char_indices().nth(SHOWN_CHARS).map(|(at, _)| at);
+    end.and_then(|end| name.get(..end)).unwrap_or(name)
 }
 
 /// A column of a file as a mapping dialog shows it.
@@ -88,12 +108,11 @@ pub struct ColumnProposal {
 /// [`DataError`] if the file cannot be read as a table.
 pub fn propose_columns(path: &Path) -> Result<Vec<ColumnProposal>, DataError> {
     let table = Table::read(path)?;
+    let rows: Vec<_> = table.rows().take(SHOWN_SAMPLES).map(|(_, cells)| cells).collect();
     let proposal = |(column_idx, name): (usize, &String)| ColumnProposal {
         number: column_idx + 1,
         name: name.clone(),
-        samples: (0..table.n_rows().min(SHOWN_SAMPLES))
-            .map(|row_idx| table.cell(row_idx, column_idx).to_owned())
-            .collect(),
+        samples: rows.iter().filter_map(|cells| Some(cells.get(column_idx)?.to_string())).collect(),
         guess: match column_meaning(&table, column_idx) {
             Meaning::Channel(channel, unit) => Some((channel, unit)),
             Meaning::WrongUnit(..) | Meaning::Unknown => None,

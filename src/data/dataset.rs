@@ -8,8 +8,8 @@ use rayon::prelude::*;
 
 use crate::data::table::CASE_COLUMN;
 use crate::data::{
-    Attributes, DataError, FileKind, ForceHistory, Sampling, SeriesError, Table, TimeSeries,
-    read_series,
+    Attributes, DataError, FileKind, ForceHistory, MAX_CASE_CELLS, MAX_CASES, MAX_DATASET_BYTES,
+    Sampling, SeriesError, Table, TimeSeries, list_folder, read_series,
 };
 use crate::jobs::{Progress, ProgressCallback};
 
@@ -141,21 +141,39 @@ impl Dataset {
     ///   result is [`Outcome::Cancelled`].
     ///
     /// # Errors
-    /// [`DataError::NotRecognised`] if the folder has neither `forces/` nor `trajectories/`, and
-    /// any other [`DataError`] if `cases.csv` cannot be read or has no column `case`, or if the
-    /// folder of the files cannot be listed.
+    /// [`DataError::NotRecognised`] if the folder has neither `forces/` nor `trajectories/`,
+    /// [`DataError::TooLarge`] if the files of the cases have more than [`MAX_DATASET_BYTES`]
+    /// together, and any other [`DataError`] if `cases.csv` cannot be read, has no column `case` or
+    /// too many cases, or if the folder of the files cannot be listed.
     pub fn load(
         root: &Path,
         report: &mut ProgressCallback<'_>,
     ) -> Result<Outcome<Self>, DataError> {
+        let mut budget = MAX_DATASET_BYTES;
+        Self::load_within(root, &mut budget, report)
+    }
+
+    /// Loads a data set whose files have at most `budget` bytes together, by which the budget is
+    /// reduced.
+    ///
+    /// # Errors
+    /// The same as for [`Dataset::load`].
+    pub(super) fn load_within(
+        root: &Path,
+        budget: &mut u64,
+        report: &mut ProgressCallback<'_>,
+    ) -> Result<Outcome<Self>, DataError> {
         let kind = DatasetKind::of_folder(root)
             .ok_or_else(|| DataError::NotRecognised { path: root.to_owned() })?;
-        let table = Table::read(&root.join(CASES_FILE))?;
+        let table = Table::read_cases(&root.join(CASES_FILE))?;
+        check_size(&table)?;
         let mut problems = missing_attributes(&table, kind);
         let rows = named_rows(&table, &mut problems)?;
         let files = CaseFiles::list(root, kind)?;
+        files.take_from(budget, &rows)?;
         problems.extend(files.without_row(&rows, table.path()));
-        let vehicle_file = Some(root.join(VEHICLE_FILE)).filter(|path| path.is_file());
+        let vehicle_file =
+            Some(root.join(VEHICLE_FILE)).filter(|path| path.is_symlink() || path.exists());
         let mut cases = Vec::with_capacity(rows.len());
         let message = format!("loading {}", root.display());
         let total = rows.len() as u64;
@@ -202,6 +220,22 @@ struct NamedRow {
     attributes: Attributes,
 }
 
+/// Refuses a table with more cases or cells than are held in memory.
+///
+/// # Errors
+/// [`DataError::TooManyCases`].
+fn check_size(table: &Table) -> Result<(), DataError> {
+    let n_rows = table.n_rows();
+    let n_cells = n_rows.saturating_mul(table.header().len());
+    let sizes = [("cases", n_rows, MAX_CASES), ("cells", n_cells, MAX_CASE_CELLS)];
+    match sizes.into_iter().find(|(_, got, limit)| got > limit) {
+        None => Ok(()),
+        Some((what, got, limit)) => {
+            Err(DataError::TooManyCases { path: table.path().to_owned(), what, got, limit })
+        }
+    }
+}
+
 /// The errors for needed columns that the table does not have.
 fn missing_attributes(table: &Table, kind: DatasetKind) -> Vec<DataError> {
     let is_missing = |name: &&str| !table.header().iter().any(|column| column == *name);
@@ -235,7 +269,7 @@ fn named_rows(table: &Table, problems: &mut Vec<DataError>) -> Result<Vec<NamedR
     let mut rows = Vec::new();
     for (row_idx, attributes) in Attributes::of(table).into_iter().enumerate() {
         let (path, line) = (|| table.path().to_owned(), attributes.line());
-        let case = table.cell(row_idx, case_idx).to_owned();
+        let case = table.cell(row_idx, case_idx).into_owned();
         if !names_a_file(&case) {
             problems.push(DataError::CaseName { path: path(), line, column, case });
         } else if let Some(&first_line) = first_lines.get(&case) {
@@ -283,10 +317,8 @@ struct CaseFiles {
 impl CaseFiles {
     fn list(root: &Path, kind: DatasetKind) -> Result<Self, DataError> {
         let folder = root.join(kind.folder());
-        let to_error = |source| DataError::io(&folder, source);
         let mut files = BTreeMap::new();
-        for entry in std::fs::read_dir(&folder).map_err(to_error)? {
-            let path = entry.map_err(to_error)?.path();
+        for path in list_folder(&folder)? {
             let is_csv = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("csv"));
             if let (true, Some(stem)) = (is_csv, path.file_stem()) {
                 let name = stem.to_string_lossy().into_owned();
@@ -303,6 +335,20 @@ impl CaseFiles {
     fn path(&self, case: &str) -> PathBuf {
         let found = self.files.get(case).cloned();
         found.unwrap_or_else(|| self.folder.join(format!("{case}.csv")))
+    }
+
+    /// Reduces `budget` by the sizes of the files of all rows, before any of them is read.
+    ///
+    /// # Errors
+    /// [`DataError::TooLarge`] if they are larger than the budget.
+    fn take_from(&self, budget: &mut u64, rows: &[NamedRow]) -> Result<(), DataError> {
+        // A file that cannot be looked at is a problem of its case, which is found when it is read.
+        let size = |path: &PathBuf| std::fs::metadata(path).map_or(0, |metadata| metadata.len());
+        let sizes = rows.iter().filter_map(|row| self.files.get(&row.name)).map(size);
+        let (bytes, limit) = (sizes.fold(0, u64::saturating_add), *budget);
+        let too_large = || DataError::TooLarge { path: self.folder.clone(), bytes, limit };
+        *budget = limit.checked_sub(bytes).ok_or_else(too_large)?;
+        Ok(())
     }
 
     fn without_row<'a>(

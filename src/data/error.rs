@@ -35,6 +35,22 @@ pub enum DataError {
         /// The folder.
         path: PathBuf,
     },
+    /// The path leads to a pipe, a socket or a device where a file was expected.
+    #[error("{}: is {kind}, expected a file", path.display())]
+    NotRegular {
+        /// The path as it was given.
+        path: PathBuf,
+        /// The kind of the file, in words.
+        kind: &'static str,
+    },
+    /// A folder has more entries than are listed.
+    #[error("{}: has more than {limit} entries; is it the right folder?", path.display())]
+    TooManyEntries {
+        /// The folder.
+        path: PathBuf,
+        /// The largest number of entries.
+        limit: usize,
+    },
     /// The file has no bytes, or only blank lines and comments.
     #[error("{}: is empty, expected a header line and rows of numbers", path.display())]
     Empty {
@@ -50,6 +66,56 @@ pub enum DataError {
         bytes: u64,
         /// The largest size that is read, bytes.
         limit: u64,
+    },
+    /// A line is longer than any that is read.
+    #[error("{}:{line}: the line has {bytes} bytes, at most {limit} are read; is it the right file?", path.display())]
+    LongLine {
+        /// The file that was read or written.
+        path: PathBuf,
+        /// The line.
+        line: u64,
+        /// Its length, bytes.
+        bytes: usize,
+        /// The largest length that is read, bytes.
+        limit: usize,
+    },
+    /// A cell is longer than any that is read.
+    #[error("{}:{line}:{column}: the cell has {bytes} bytes, at most {limit} are read; shorten it", path.display())]
+    LongCell {
+        /// The file that was read or written.
+        path: PathBuf,
+        /// Line of the cell.
+        line: u64,
+        /// Number of the column.
+        column: usize,
+        /// The length of the cell, bytes.
+        bytes: usize,
+        /// The largest length that is read, bytes.
+        limit: usize,
+    },
+    /// A line has more fields than a table has columns at most.
+    #[error("{}:{line}: has {got} columns, at most {limit} are read; remove some", path.display())]
+    TooManyColumns {
+        /// The file that was read or written.
+        path: PathBuf,
+        /// The line.
+        line: u64,
+        /// Number of its fields.
+        got: usize,
+        /// The largest number of columns.
+        limit: usize,
+    },
+    /// A table of cases has more rows than are read, or more cells.
+    #[error("{}: has {got} {what}, at most {limit} are read; split the data set", path.display())]
+    TooManyCases {
+        /// Path of the table of cases.
+        path: PathBuf,
+        /// Cases, or cells.
+        what: &'static str,
+        /// Their number in the table.
+        got: usize,
+        /// The largest number that is read.
+        limit: usize,
     },
     /// The file contains control characters that do not occur in text.
     #[error("{}: is not text (byte {byte:#04x} at offset {offset}); export it as CSV", path.display())]
@@ -102,8 +168,8 @@ pub enum DataError {
         found: Vec<String>,
     },
     /// The headers of two columns name the same channel.
-    #[error("{}:{line}:{column}: {name:?} and {other:?} in column {other_column} both look like {1}; choose one, e.g. --map {1}={other_column}, or in the mapping dialog",
-        path.display(), channel.short_name())]
+    #[error("{}:{line}:{column}: {name} and {other} in column {other_column} both look like {1}; choose one, e.g. --map {1}={other_column}, or in the mapping dialog",
+        path.display(), channel.short_name(), name = quoted(name), other = quoted(other))]
     AmbiguousColumn {
         /// The file that was read or written.
         path: PathBuf,
@@ -121,8 +187,8 @@ pub enum DataError {
         other: String,
     },
     /// The unit of a column does not measure the channel that the column holds.
-    #[error("{}:{line}:{column}: {name:?} is in {unit:?}, expected a unit of {} ({}); correct the header or map the column with its unit, e.g. --map {}={column}:{}",
-        path.display(), spelling::quantity_name(*quantity), spelling::symbols(*quantity), channel.short_name(), quantity.si_unit().symbol)]
+    #[error("{}:{line}:{column}: {name} is in {unit}, expected a unit of {} ({}); correct the header or map the column with its unit, e.g. --map {}={column}:{}",
+        path.display(), spelling::quantity_name(*quantity), spelling::symbols(*quantity), channel.short_name(), quantity.si_unit().symbol, name = quoted(name), unit = quoted(unit))]
     UnknownUnit {
         /// The file that was read or written.
         path: PathBuf,
@@ -140,7 +206,7 @@ pub enum DataError {
         quantity: Quantity,
     },
     /// A cell does not hold a finite number.
-    #[error("{}:{line}:{column}: {name:?} is {text:?}, expected a finite number{}", path.display(), in_unit(unit))]
+    #[error("{}:{line}:{column}: {name} is {text}, expected a finite number{}", path.display(), in_unit(unit), name = quoted(name), text = quoted(text))]
     Cell {
         /// The file that was read or written.
         path: PathBuf,
@@ -207,7 +273,7 @@ pub enum DataError {
         step: OutOfRange,
     },
     /// A value is beyond what a vehicle reaches, so that its unit is probably wrong.
-    #[error("{}:{line}:{column}: {name:?} is {}, expected {}; check the unit of the column", path.display(), range.shown(*value), range.explained())]
+    #[error("{}:{line}:{column}: {} is {}, expected {}; check the unit of the column", path.display(), quoted(name), range.shown(*value), range.explained())]
     ImplausibleValue {
         /// The file that was read or written.
         path: PathBuf,
@@ -245,7 +311,7 @@ pub enum DataError {
     },
     /// A cell of the table of cases is blank though the physics needs it, or holds text or a number
     /// out of range.
-    #[error("{}:{line}:{column}: {name:?} is {got}, expected {expected}", path.display())]
+    #[error("{}:{line}:{column}: {name} is {got}, expected {expected}", path.display(), name = quoted(name))]
     Attribute {
         /// Path of the table of cases.
         path: PathBuf,
@@ -261,7 +327,7 @@ pub enum DataError {
         expected: String,
     },
     /// Two rows of the table of cases have the same case name.
-    #[error("{}:{line}:{column}: case {case:?} stands in line {first_line} already; rename or remove one", path.display())]
+    #[error("{}:{line}:{column}: case {case} stands in line {first_line} already; rename or remove one", path.display(), case = quoted(case))]
     DuplicateCase {
         /// Path of the table of cases.
         path: PathBuf,
@@ -275,7 +341,7 @@ pub enum DataError {
         first_line: u64,
     },
     /// The name of a case cannot be the name of a file.
-    #[error("{}:{line}:{column}: case {case:?} cannot name a file; use letters, digits, blanks and -_.+()", path.display())]
+    #[error("{}:{line}:{column}: case {case} cannot name a file; use letters, digits, blanks and -_.+()", path.display(), case = quoted(case))]
     CaseName {
         /// Path of the table of cases.
         path: PathBuf,
@@ -295,7 +361,7 @@ pub enum DataError {
         other: PathBuf,
     },
     /// The table of cases has a row whose file does not exist.
-    #[error("{}:{line}:{column}: case {case:?} has no file {}; add the file or remove the row", path.display(), file.display())]
+    #[error("{}:{line}:{column}: case {case} has no file {}; add the file or remove the row", path.display(), file.display(), case = quoted(case))]
     CaseWithoutFile {
         /// Path of the table of cases.
         path: PathBuf,
@@ -353,12 +419,22 @@ impl DataError {
 const LISTED: usize = 12;
 
 fn list(names: &[String]) -> String {
-    let mut text: Vec<String> =
-        names.iter().take(LISTED).map(|name| format!("{name:.40?}")).collect();
+    let mut text: Vec<String> = names.iter().take(LISTED).map(|name| quoted(name)).collect();
     if names.len() > LISTED {
         text.push(format!("{} more", names.len() - LISTED));
     }
     text.join(", ")
+}
+
+/// Number of characters of a name or a text from a file that a message quotes.
+const QUOTED_CHARS: usize = 60;
+
+/// A text in quotation marks, with its control characters escaped; a long one is cut.
+pub(crate) fn quoted(text: &str) -> String {
+    match text.char_indices().nth(QUOTED_CHARS) {
+        None => format!("{text:?}"),
+        Some((at, _)) => format!("{:?}…", text.get(..at).unwrap_or_default()),
+    }
 }
 
 fn in_unit(unit: &str) -> String {

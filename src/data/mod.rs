@@ -12,6 +12,7 @@
 //! - [`TomlFile`] and [`TomlTable`] read settings; [`mod@write`] writes files and folders.
 
 mod attributes;
+mod budget;
 mod case_attributes;
 mod channel;
 mod column_map;
@@ -20,11 +21,14 @@ mod contact;
 mod dataset;
 mod dialect;
 mod error;
+mod file;
 mod force_history;
+mod header;
 mod json;
 mod loose;
 mod open;
 mod quality;
+mod rows;
 mod series;
 mod spelling;
 mod table;
@@ -34,6 +38,10 @@ mod toml_table;
 pub mod write;
 
 pub use attributes::{Attributes, Value};
+pub use budget::{
+    MAX_CASE_CELLS, MAX_CASES, MAX_CASES_BYTES, MAX_CELL_BYTES, MAX_COLUMNS, MAX_DATASET_BYTES,
+    MAX_LINE_BYTES, MAX_MODEL_BYTES, MAX_RESULTS_BYTES, MAX_SETTINGS_BYTES, MAX_TABLE_BYTES,
+};
 pub use case_attributes::{AttributeColumn, ForceAttributes, StruckSide, TrajectoryAttributes};
 pub use channel::Channel;
 pub use column_map::{ColumnMap, ColumnRef, ColumnSource, MapError};
@@ -43,6 +51,7 @@ pub use contact::{CONTACT_SHARE_OF_PEAK, MIN_GAP_S, contact_interval, contact_pu
 pub use dataset::{Case, Dataset, DatasetKind, Outcome};
 pub use dialect::{Dialect, Separator};
 pub use error::DataError;
+pub(crate) use file::{list_folder, open_file, read_bytes, read_utf8};
 pub use force_history::{CumulativeImpulse, ForceAxes, ForceHistory, Sampling};
 pub(crate) use json::{finite_or_null, finite_or_nulls, null_as_nan, nulls_as_nan};
 pub use loose::{
@@ -53,7 +62,6 @@ pub use open::{Opened, open};
 pub use quality::{Flag, FlagKind, Severity, check_case, check_series};
 pub use series::{SeriesError, TimeSeries};
 pub use table::Table;
-pub use text::MAX_FILE_BYTES;
 pub use toml_file::{TomlError, TomlFile};
 pub use toml_table::TomlTable;
 pub use write::{Existing, check_target, write_atomically, write_series_csv};

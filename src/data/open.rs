@@ -3,7 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use crate::data::dataset::CASES_FILE;
-use crate::data::{DataError, Dataset, DatasetKind, Loaded, Outcome, read_any_series};
+use crate::data::{
+    DataError, Dataset, DatasetKind, Loaded, MAX_DATASET_BYTES, Outcome, list_folder,
+    read_any_series,
+};
 use crate::jobs::ProgressCallback;
 
 /// The content of a path that was opened.
@@ -56,8 +59,9 @@ fn open_folder(
         return Err(DataError::NotRecognised { path });
     }
     let (mut datasets, mut problems) = (Vec::new(), Vec::new());
+    let mut budget = MAX_DATASET_BYTES;
     for root in roots {
-        match Dataset::load(&root, report) {
+        match Dataset::load_within(&root, &mut budget, report) {
             Ok(Outcome::Complete(dataset)) => datasets.push(dataset),
             Ok(Outcome::Cancelled) => return Ok(Outcome::Cancelled),
             Err(problem) => problems.push(problem),
@@ -71,14 +75,8 @@ fn open_folder(
 /// # Errors
 /// [`DataError`] if the folder cannot be listed.
 fn dataset_folders(root: &Path) -> Result<Vec<PathBuf>, DataError> {
-    let to_error = |source| DataError::io(root, source);
-    let mut folders = Vec::new();
-    for entry in std::fs::read_dir(root).map_err(to_error)? {
-        let path = entry.map_err(to_error)?.path();
-        if DatasetKind::of_folder(&path).is_some() {
-            folders.push(path);
-        }
-    }
+    let is_dataset = |path: &PathBuf| DatasetKind::of_folder(path).is_some();
+    let mut folders: Vec<PathBuf> = list_folder(root)?.into_iter().filter(is_dataset).collect();
     folders.sort();
     Ok(folders)
 }

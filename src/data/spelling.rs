@@ -1,11 +1,20 @@
 //! Recognises the spelling of column headers and units, such as `Fx [kN]`, `time(ms)`,
 //! `yaw_rate_deg_s` and `Fx in kN`.
 
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
 use crate::data::Channel;
 use crate::units::{Quantity, Unit};
 
 const OPENING: [char; 4] = ['[', '(', '{', '<'];
 const CLOSING: [char; 4] = [']', ')', '}', '>'];
+
+/// The longest header, bytes, that is taken for the name of a channel and its unit.
+const MAX_NAME_BYTES: usize = 128;
+
+/// The longest text, bytes, that is taken for a unit.
+const MAX_UNIT_BYTES: usize = 40;
 
 /// The channel and the unit that a header names.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,22 +32,19 @@ pub(crate) fn meaning(header: &str) -> Meaning {
     if let Some(&own) = Channel::ALL.iter().find(|own| own.header() == header) {
         return Meaning::Channel(own, Some(own.quantity().si_unit()));
     }
+    if header.len() > MAX_NAME_BYTES {
+        return Meaning::Unknown;
+    }
     let mut wrong_unit = None;
-    for (at, _) in header.rmatch_indices(|c: char| !c.is_alphanumeric()) {
-        let (name, rest) = header.split_at(at);
-        if name.rfind(OPENING) > name.rfind(CLOSING) {
-            continue;
-        }
-        let Some(channel) = channel(name) else {
-            continue;
-        };
+    for (channel, rest) in divisions(header).into_iter().rev() {
         let Some(text) = unit_text(rest) else {
             return Meaning::Channel(channel, None);
         };
-        if let Some(unit) = unit(channel.quantity(), text) {
+        let key = checked_unit_key(text);
+        if let Some(unit) = key.as_ref().and_then(|key| unit_of_key(channel.quantity(), key)) {
             return Meaning::Channel(channel, Some(unit));
         }
-        if is_bracketed(rest) || is_unit(text) {
+        if is_bracketed(rest) || key.is_some_and(|key| is_unit_key(&key)) {
             wrong_unit.get_or_insert(Meaning::WrongUnit(channel, text.to_owned()));
         }
     }
@@ -49,26 +55,63 @@ pub(crate) fn meaning(header: &str) -> Meaning {
     }
 }
 
+/// The beginnings of a header that name a channel and are followed by another character than a
+/// letter or digit, with what follows. A beginning that ends within brackets is left out.
+fn divisions(header: &str) -> Vec<(Channel, &str)> {
+    let (mut key, mut of_key, mut is_open) = (String::new(), None, false);
+    let mut found = Vec::new();
+    for (at, c) in header.char_indices() {
+        if c.is_alphanumeric() {
+            key.extend(c.to_lowercase());
+            of_key = CHANNELS.get(&key).copied();
+            continue;
+        }
+        let (name, rest) = header.split_at(at);
+        if !is_open && let Some(channel) = own_channel(name).or(of_key) {
+            found.push((channel, rest));
+        }
+        is_open = OPENING.contains(&c) || (is_open && !CLOSING.contains(&c));
+    }
+    found
+}
+
+/// The channels by the letters and digits of their names.
+static CHANNELS: LazyLock<BTreeMap<String, Channel>> = LazyLock::new(|| {
+    let mut channels = BTreeMap::new();
+    for &channel in Channel::ALL {
+        let names = channel.aliases().iter().map(|&alias| alias.to_owned());
+        for name in names.chain([letters_and_digits(channel.short_name())]) {
+            channels.entry(name).or_insert(channel);
+        }
+    }
+    channels
+});
+
+fn own_channel(name: &str) -> Option<Channel> {
+    Channel::ALL.iter().copied().find(|channel| name.eq_ignore_ascii_case(channel.header()))
+}
+
 /// The channel of this name: the header of the program's own files with or without the unit, or a
 /// header that other programs use.
 pub(crate) fn channel(name: &str) -> Option<Channel> {
-    let key = letters_and_digits(name);
-    Channel::ALL.iter().copied().find(|channel| {
-        name.eq_ignore_ascii_case(channel.header())
-            || channel.aliases().contains(&key.as_str())
-            || letters_and_digits(channel.short_name()) == key
-    })
+    own_channel(name).or_else(|| CHANNELS.get(&letters_and_digits(name)).copied())
 }
 
 /// The unit of `quantity` with this spelling; `None` if there is none.
 pub(crate) fn unit(quantity: Quantity, text: &str) -> Option<Unit> {
+    unit_of_key(quantity, &checked_unit_key(text)?)
+}
+
+/// The key of a text that may be a unit; `None` if it is too long or may be millinewtons.
+fn checked_unit_key(text: &str) -> Option<String> {
     // Upper and lower case are not distinguished below. Only `MN` is a meganewton: `mN` is nine
     // orders of magnitude less, and `mn` may be either, so that both are refused.
-    if text.to_ascii_lowercase().contains("mn") && !text.contains("MN") {
-        return None;
-    }
-    let key = unit_key(text);
-    let key = match (quantity, key.as_str()) {
+    let is_milli = text.to_ascii_lowercase().contains("mn") && !text.contains("MN");
+    (text.len() <= MAX_UNIT_BYTES && !is_milli).then(|| unit_key(text))
+}
+
+fn unit_of_key(quantity: Quantity, key: &str) -> Option<Unit> {
+    let key = match (quantity, key) {
         (Quantity::Time, "ss" | "sek") => "s",
         (Quantity::Time, "millis" | "mss") => "ms",
         (Quantity::Length, "meter" | "metre" | "meters" | "metres") => "m",
@@ -88,9 +131,17 @@ pub(crate) fn unit(quantity: Quantity, text: &str) -> Option<Unit> {
         (Quantity::Moment, "ftlb" | "ftlbs" | "lbft" | "lbsft" | "ftlbf") => "lbfft",
         (_, key) => key,
     };
-    let mut units = quantity.units().iter().copied();
-    units.find(|unit| !key.is_empty() && unit_key(unit.symbol) == key)
+    let mut units = UNITS.iter().filter(|(of, ..)| *of == quantity);
+    units.find(|(_, of, _)| !key.is_empty() && of == key).map(|(.., unit)| *unit)
 }
+
+/// All units with their keys.
+static UNITS: LazyLock<Vec<(Quantity, String, Unit)>> = LazyLock::new(|| {
+    let of = |quantity: Quantity| {
+        quantity.units().iter().map(move |unit| (quantity, unit_key(unit.symbol), *unit))
+    };
+    Quantity::ALL.into_iter().flat_map(of).collect()
+});
 
 /// The unit at the end of a header whose name need not be that of a channel, such as `Kraft X
 /// [kN]`; `None` if the header has no unit.
@@ -171,7 +222,11 @@ fn is_bracketed(text: &str) -> bool {
 }
 
 fn is_unit(text: &str) -> bool {
-    Quantity::ALL.into_iter().any(|quantity| unit(quantity, text).is_some())
+    checked_unit_key(text).is_some_and(|key| is_unit_key(&key))
+}
+
+fn is_unit_key(key: &str) -> bool {
+    Quantity::ALL.into_iter().any(|quantity| unit_of_key(quantity, key).is_some())
 }
 
 fn letters_and_digits(text: &str) -> String {

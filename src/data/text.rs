@@ -1,16 +1,12 @@
 //! Reads the bytes of a text file and converts them to text: it refuses files that are too large or
 //! binary, recognises the encoding and unifies the ends of lines.
 
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
 use encoding_rs::{Encoding, UTF_8, WINDOWS_1252};
 
-use crate::data::DataError;
-
-/// Size of the largest file that is read, bytes.
-pub const MAX_FILE_BYTES: u64 = 512 << 20;
+use crate::data::{DataError, open_file};
 
 /// Number of bytes that are checked for binary content before the rest of the file is read.
 const FIRST_BLOCK_BYTES: u64 = 64 << 10;
@@ -25,44 +21,52 @@ pub(crate) struct Text {
 /// Reads a text file in UTF-8, or in UTF-16 with a byte order mark. Bytes that are neither are read
 /// as Windows-1252, which contains the printable characters of Latin-1.
 ///
+/// - `limit`: size of the largest file that is read, bytes.
+///
 /// # Errors
-/// [`DataError`] if the path cannot be read or is a folder, or if the file is too large or not
-/// text.
-pub(crate) fn read_text(path: &Path) -> Result<Text, DataError> {
+/// [`DataError`] if the path is no regular file or cannot be read, or if the file is too large or
+/// not text.
+pub(crate) fn read_text(path: &Path, limit: u64) -> Result<Text, DataError> {
     let to_error = |source| DataError::io(path, source);
-    let metadata = std::fs::metadata(path).map_err(to_error)?;
-    if metadata.is_dir() {
-        let path = path.to_owned();
-        return Err(DataError::IsDirectory { path });
-    }
-    let mut file = File::open(path).map_err(to_error)?;
-    let mut content = Vec::new();
+    let (mut file, bytes) = open_file(path, u64::MAX)?;
+    let mut content = Vec::with_capacity(usize::try_from(bytes.min(limit)).unwrap_or(0));
     (&mut file).take(FIRST_BLOCK_BYTES).read_to_end(&mut content).map_err(to_error)?;
     refuse_binary(path, &content)?;
-    if metadata.len() > MAX_FILE_BYTES {
-        return Err(DataError::TooLarge {
-            path: path.to_owned(),
-            bytes: metadata.len(),
-            limit: MAX_FILE_BYTES,
-        });
+    if bytes > limit {
+        return Err(DataError::TooLarge { path: path.to_owned(), bytes, limit });
     }
-    file.take(MAX_FILE_BYTES).read_to_end(&mut content).map_err(to_error)?;
+    file.take(limit).read_to_end(&mut content).map_err(to_error)?;
     refuse_binary(path, &content)?;
-    Ok(decode(&content))
+    Ok(decode(content))
 }
 
-fn decode(bytes: &[u8]) -> Text {
-    let (encoding, bom) = Encoding::for_bom(bytes).unwrap_or_else(|| match str::from_utf8(bytes) {
-        Ok(_) => (UTF_8, 0),
-        Err(_) => (WINDOWS_1252, 0),
-    });
-    let (text, _) = encoding.decode_without_bom_handling(bytes.get(bom..).unwrap_or_default());
-    let text = match text.contains('\r') {
-        true => text.replace("\r\n", "\n").replace('\r', "\n"),
-        false => text.into_owned(),
+/// Text in UTF-8 is taken as it is, so that it is held once only.
+fn decode(bytes: Vec<u8>) -> Text {
+    let (encoding, bom) = Encoding::for_bom(&bytes).unwrap_or((UTF_8, 0));
+    let is_plain = encoding == UTF_8 && bom == 0;
+    let decoded = match is_plain {
+        true => String::from_utf8(bytes).map_err(|error| (WINDOWS_1252, error.into_bytes())),
+        false => Err((encoding, bytes)),
     };
-    let encoding = encoding.name();
-    Text { text, encoding }
+    match decoded {
+        Ok(text) => Text { text: with_line_feeds(text), encoding: UTF_8.name() },
+        Err((encoding, bytes)) => {
+            let rest = bytes.get(bom..).unwrap_or_default();
+            let text = encoding.decode_without_bom_handling(rest).0.into_owned();
+            drop(bytes);
+            Text { text: with_line_feeds(text), encoding: encoding.name() }
+        }
+    }
+}
+
+fn with_line_feeds(mut text: String) -> String {
+    if text.contains("\r\n") {
+        text = text.replace("\r\n", "\n");
+    }
+    if text.contains('\r') {
+        text = text.replace('\r', "\n");
+    }
+    text
 }
 
 /// Refuses bytes that contain control characters other than tab, the ends of lines, form feed and
@@ -94,7 +98,7 @@ mod tests {
             (b"a;\xb0\rb", "windows-1252"),
             (&utf16, "UTF-16LE"),
         ] {
-            let text = decode(bytes);
+            let text = decode(bytes.to_vec());
             assert_eq!((&*text.text, text.encoding), ("a;°\nb", encoding));
         }
     }

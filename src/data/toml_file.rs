@@ -12,18 +12,15 @@ use serde::de::DeserializeOwned;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// The reason why a TOML file is refused. All messages but that of [`TomlError::Read`] start with
+use crate::data::{DataError, MAX_SETTINGS_BYTES, read_utf8};
+
+/// The reason why a TOML file is refused. All messages but those of [`TomlError::File`] start with
 /// `file:line:column`, both counted from 1.
 #[derive(Debug, thiserror::Error)]
 pub enum TomlError {
-    /// The file cannot be opened or is not text.
-    #[error("{}: cannot be read", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// The error that the operating system reports.
-        source: std::io::Error,
-    },
+    /// The file cannot be opened, is too large or is not text.
+    #[error(transparent)]
+    File(Box<DataError>),
     /// The text is not TOML, or a key or the kind of a value is not the expected one.
     #[error("{}:{line}:{column}: {message}", path.display())]
     Syntax {
@@ -105,10 +102,10 @@ impl<'a> TomlFile<'a> {
     /// Reads the text of a file.
     ///
     /// # Errors
-    /// [`TomlError::Read`] if the file cannot be read or is not UTF-8.
+    /// [`TomlError::File`] if the file cannot be read, has more than [`MAX_SETTINGS_BYTES`] or is
+    /// not UTF-8.
     pub fn read(path: &Path) -> Result<String, TomlError> {
-        std::fs::read_to_string(path)
-            .map_err(|source| TomlError::Read { path: path.to_owned(), source })
+        read_utf8(path, MAX_SETTINGS_BYTES).map_err(|error| TomlError::File(Box::new(error)))
     }
 
     /// Parses the file into a value whose fields are the keys of the file.

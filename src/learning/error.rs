@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::data::TomlError;
+use crate::data::{DataError, TomlError};
 use crate::nn::NnError;
 
 /// A network cannot be trained, opened or asked.
@@ -26,16 +26,39 @@ pub enum LearningError {
         /// The range, in words.
         expected: String,
     },
+    /// Settings and sizes ask for more memory than is meant for them.
+    #[error("{what} take {gib:.1} GiB of memory, at most {limit_gib:.1} GiB are meant for it")]
+    TooMuchMemory {
+        /// The settings and sizes that are multiplied, in words.
+        what: &'static str,
+        /// The memory that they ask for, GiB.
+        gib: f64,
+        /// The largest memory, GiB.
+        limit_gib: f64,
+    },
     /// A file of settings cannot be read.
     #[error(transparent)]
     Toml(#[from] TomlError),
-    /// A file of results cannot be read.
+    /// A file cannot be opened or is too large.
+    #[error(transparent)]
+    Data(Box<DataError>),
+    /// A file of results cannot be understood.
     #[error("{}: {reason}", path.display())]
     File {
         /// The file.
         path: PathBuf,
         /// The reason, with the line.
         reason: String,
+    },
+    /// A file was read, but its contents cannot be used.
+    #[error("{}: cannot be used as {what}", path.display())]
+    InFile {
+        /// The file.
+        path: PathBuf,
+        /// What it was read as, in words.
+        what: &'static str,
+        /// The reason.
+        source: Box<dyn std::error::Error + Send + Sync>,
     },
     /// A checkpoint was written by another training.
     #[error("{}: the training to resume had another {what}", path.display())]

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::collision::Scenario;
 use crate::data::{
-    ColumnMap, DataError, Dataset, Flag, Loaded, Opened, Outcome, check_case, check_series, open,
-    propose_columns, read_any_series,
+    ColumnMap, DataError, Dataset, Flag, Loaded, Opened, Outcome, TomlFile, check_case,
+    check_series, open, propose_columns, read_any_series,
 };
 use crate::error_chain;
 use crate::study::question::progress_of;
@@ -172,7 +172,7 @@ impl CheckReport {
 
 /// Reads a scenario, known by its striking vehicle, or a vehicle.
 fn input_file(path: &Path) -> Result<InputFileReport, StudyError> {
-    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let text = TomlFile::read(path)?;
     let is_scenario = text.lines().any(|line| line.trim_start().starts_with("[bullet]"));
     let (kind, name) = if is_scenario {
         ("scenario", Scenario::load(path)?.name)

@@ -1,11 +1,10 @@
 //! Logs of single impacts as data to fine-tune on.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::data::{ColumnMap, DataError, ForceHistory, read_any_series};
+use crate::data::{ColumnMap, ForceHistory, list_folder, read_any_series};
 use crate::ranges::{INSTANT, LOG_DURATION};
 use crate::response::{ForceOrigin, LogNoise, LogSettings, LoggedImpact, MotionLog, ResponseCase};
 use crate::study::StudyError;
@@ -112,10 +111,7 @@ impl MotionLogs {
                 paths.push(path.clone());
                 continue;
             }
-            let to_error = |source| DataError::Io { path: path.clone(), source };
-            let entries = fs::read_dir(path).map_err(to_error)?;
-            let files = entries.map(|entry| entry.map(|entry| entry.path()));
-            let mut files: Vec<PathBuf> = files.collect::<Result<_, _>>().map_err(to_error)?;
+            let mut files = list_folder(path)?;
             files
                 .retain(|file| file.extension().is_some_and(|end| end.eq_ignore_ascii_case("csv")));
             if files.is_empty() {

@@ -118,7 +118,7 @@ impl VehicleParameters {
     /// Reads a vehicle from the text of a file. The `path` serves only to name the file in errors.
     ///
     /// # Errors
-    /// The errors of [`VehicleParameters::load`] except [`TomlError::Read`].
+    /// The errors of [`VehicleParameters::load`] except [`TomlError::File`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, TomlError> {
         let file = TomlFile { path, text };
         let table: toml::Table = file.to()?;
@@ -266,6 +266,6 @@ mod tests {
     #[test]
     fn a_missing_file_is_said_to_be_missing() {
         let error = VehicleParameters::load(Path::new("no/such.toml")).unwrap_err();
-        assert_eq!(error.to_string(), "no/such.toml: cannot be read");
+        assert_eq!(error.to_string(), "no/such.toml: does not exist; check the name");
     }
 }

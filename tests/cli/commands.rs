@@ -296,7 +296,7 @@ fn names_that_do_not_exist_are_errors() {
         (&["simulate", "--dataset", "datasets/fea"], "expected one of trajectories"),
         (&["simulate", "--dataset", TRAJECTORIES, "--case", "nix"], "no case \"nix\""),
         (&["vehicles", "nix"], "one of reference-2000"),
-        (&["impact", "nix.toml"], "nix.toml: cannot be read: "),
+        (&["impact", "nix.toml"], "nix.toml: does not exist; check the name"),
         (&["check", ".", "--map", "fx=1"], "--map is for single files"),
     ] {
         let ran = impactlab(args);

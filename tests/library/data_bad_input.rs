@@ -198,7 +198,7 @@ fn huge_files_are_refused_at_once() {
     );
     assert_eq!(
         sparse("long.csv", &"0.1,1,1\n".repeat(8192)),
-        "long.csv: has 2147483648 bytes, at most 536870912 are read; split it or thin it out"
+        "long.csv: has 2147483648 bytes, at most 268435456 are read; split it or thin it out"
     );
 }
 

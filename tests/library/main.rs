@@ -4,6 +4,7 @@
 //! All tests are in one program, because each test program would link all libraries again.
 
 mod data_bad_input;
+mod data_budgets;
 mod data_dialects;
 mod data_quality;
 mod data_shipped;

@@ -6,6 +6,7 @@ use clap::Args;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_json, under_bar};
+use crate::data::{MAX_SETTINGS_BYTES, read_utf8};
 use crate::study::Request;
 
 /// Answer a question that stands in a JSON file, as --print-request writes it
@@ -27,11 +28,9 @@ its model only through its own command.";
 
 /// Answers the question and prints the report.
 pub(in crate::cli) fn run(args: &AskArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
-    let path = || args.request.clone();
-    let unreadable = |source| CliError::RequestFile { path: path(), source };
-    let text = std::fs::read_to_string(&args.request).map_err(unreadable)?;
-    let request: Request =
-        serde_json::from_str(&text).map_err(|source| CliError::Request { path: path(), source })?;
+    let text = read_utf8(&args.request, MAX_SETTINGS_BYTES)?;
+    let request: Request = serde_json::from_str(&text)
+        .map_err(|source| CliError::Request { path: args.request.clone(), source })?;
     if console.print_request {
         print_json(console.out, &request)?;
         return Ok(Verdict::Clean);

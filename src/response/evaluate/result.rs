@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::collision::Footprint;
 use crate::collision::ImpulseClusters;
+use crate::data::{MAX_RESULTS_BYTES, read_bytes};
 use crate::learning::LearningError;
 use crate::response::evaluate::compare::CaseClusters;
 use crate::response::evaluate::{
@@ -191,11 +192,15 @@ impl Comparison {
     /// Reads a `comparison.json`.
     ///
     /// # Errors
-    /// [`LearningError::File`] with line and column.
+    /// [`LearningError::Data`] if the file cannot be read or has more than [`MAX_RESULTS_BYTES`],
+    /// [`LearningError::File`] with line and column if it is no comparison.
     pub fn load(path: &Path) -> Result<Self, LearningError> {
-        let wrong = |reason| LearningError::File { path: path.to_owned(), reason };
-        let bytes = std::fs::read(path).map_err(|error| wrong(error.to_string()))?;
-        serde_json::from_slice(&bytes).map_err(|error| wrong(error.to_string()))
+        let bytes = read_bytes(path, MAX_RESULTS_BYTES)
+            .map_err(|error| LearningError::Data(Box::new(error)))?;
+        serde_json::from_slice(&bytes).map_err(|error| LearningError::File {
+            path: path.to_owned(),
+            reason: error.to_string(),
+        })
     }
 }
 

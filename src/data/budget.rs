@@ -1,0 +1,36 @@
+//! The largest sizes that are read. Each is far above what a measurement, a simulation or a person
+//! writes, and low enough that reading a file takes a few seconds and a small multiple of its size
+//! in memory at most.
+
+/// Bytes of a table: a force, a motion, a steer angle.
+pub const MAX_TABLE_BYTES: u64 = 256 << 20;
+
+/// Bytes of a table of cases, `cases.csv`.
+pub const MAX_CASES_BYTES: u64 = 16 << 20;
+
+/// Bytes of the files of all cases that are loaded together.
+pub const MAX_DATASET_BYTES: u64 = 1 << 30;
+
+/// Bytes of a line of a table.
+pub const MAX_LINE_BYTES: usize = 256 << 10;
+
+/// Columns of a table.
+pub const MAX_COLUMNS: usize = 4096;
+
+/// Bytes of a cell of a table.
+pub const MAX_CELL_BYTES: usize = 4096;
+
+/// Cases of a data set, and entries of a folder.
+pub const MAX_CASES: usize = 100_000;
+
+/// Cells of a table of cases: its rows times its columns.
+pub const MAX_CASE_CELLS: usize = 4_000_000;
+
+/// Bytes of a file that a person writes: settings, vehicle, scenario, question.
+pub const MAX_SETTINGS_BYTES: u64 = 1 << 20;
+
+/// Bytes of a file of results that the program wrote itself, such as `comparison.json`.
+pub const MAX_RESULTS_BYTES: u64 = 64 << 20;
+
+/// Bytes of a model or a checkpoint. The networks here have a few megabytes.
+pub const MAX_MODEL_BYTES: u64 = 256 << 20;

@@ -1,0 +1,260 @@
+//! Finds the header of a table among its first lines: the names of the columns, a row of units
+//! beneath them, and the line at which the rows begin.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use csv::{ReaderBuilder, StringRecord, Trim};
+
+use crate::data::DataError;
+use crate::data::budget::{MAX_CELL_BYTES, MAX_COLUMNS, MAX_LINE_BYTES};
+use crate::data::dialect::{Dialect, Separator, comment};
+use crate::data::spelling::{self, Meaning};
+use crate::data::table::CASE_COLUMN;
+
+/// Number of lines that are examined to find separator, header and units.
+const SNIFFED_LINES: usize = 64;
+
+/// Number of bytes after which no further line is examined: enough for header, units and first row of
+/// the widest table.
+const SNIFFED_BYTES: usize = 4 * MAX_LINE_BYTES;
+
+/// The names of the columns and where they come from.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Header {
+    /// Line of the header, or of the first row if there is no header.
+    pub line: u64,
+    /// Whether the file names its columns.
+    pub is_written: bool,
+    pub names: Vec<String>,
+    /// The cells of a row of units beneath the names; empty if there is no such row.
+    pub units: Vec<String>,
+}
+
+/// A line of the file, without the sign of a comment.
+#[derive(Clone, Copy)]
+pub(super) struct Line<'a> {
+    /// Number of the line in the file, counted from 1.
+    pub number: u64,
+    /// Offset of its first byte in the text.
+    pub start: usize,
+    pub text: &'a str,
+    pub is_comment: bool,
+}
+
+/// A line that is split into its fields.
+struct SplitLine<'a> {
+    line: Line<'a>,
+    cells: Vec<String>,
+    /// Whether no field is a number.
+    is_text: bool,
+}
+
+impl<'a> SplitLine<'a> {
+    fn new(line: Line<'a>, dialect: Dialect) -> Self {
+        let cells = split(line.text, dialect.separator);
+        let is_text = cells.iter().all(|cell| dialect.number(cell).is_none());
+        Self { line, cells, is_text }
+    }
+
+    /// Whether the line is a row of the table that contains a number: no comment, and `width`
+    /// fields.
+    fn has_numbers(&self, width: usize) -> bool {
+        !self.line.is_comment && !self.is_text && n_named(&self.cells) == width
+    }
+}
+
+/// The first lines of a text that are not blank: at most [`SNIFFED_LINES`], and none after the first
+/// [`SNIFFED_BYTES`].
+pub(super) fn first_lines(text: &str) -> Vec<Line<'_>> {
+    let mut start = 0;
+    let mut number = 0;
+    let all = text.split_inclusive('\n').map(|line| {
+        number += 1;
+        let (at, comment) = (start, comment(line));
+        start += line.len();
+        Line {
+            number,
+            start: at,
+            text: comment.unwrap_or(line.trim_end_matches('\n')),
+            is_comment: comment.is_some(),
+        }
+    });
+    let mut examined = 0;
+    let is_within = |line: &Line<'_>| {
+        let is_within = examined < SNIFFED_BYTES;
+        examined += line.text.len();
+        is_within
+    };
+    all.filter(|line| !line.text.trim().is_empty())
+        .take(SNIFFED_LINES)
+        .take_while(is_within)
+        .collect()
+}
+
+/// Splits a line into its fields. A separator inside quotation marks does not divide a field.
+fn split(line: &str, separator: Separator) -> Vec<String> {
+    if !line.contains('"') {
+        return separator.fields(line).map(str::to_owned).collect();
+    }
+    let line = match separator {
+        Separator::Blanks => line.replace('\t', " "),
+        _ => line.to_owned(),
+    };
+    let mut reader = ReaderBuilder::new()
+        .delimiter(separator.byte())
+        .has_headers(false)
+        .trim(Trim::All)
+        .buffer_capacity(line.len() + 1)
+        .from_reader(line.as_bytes());
+    let mut record = StringRecord::new();
+    // Reading from memory fails for invalid UTF-8 only, which a `str` cannot contain.
+    let _ = reader.read_record(&mut record);
+    let kept = |cell: &&str| separator != Separator::Blanks || !cell.is_empty();
+    record.iter().filter(kept).map(str::to_owned).collect()
+}
+
+/// Checks the number and the length of the fields of the first lines.
+///
+/// # Errors
+/// [`DataError::TooManyColumns`] and [`DataError::LongCell`] at the first place beyond a limit.
+pub(super) fn check_fields(
+    path: &Path,
+    lines: &[Line<'_>],
+    separator: Separator,
+) -> Result<(), DataError> {
+    for line in lines.iter().filter(|line| !line.is_comment) {
+        let got = separator.fields(line.text).count();
+        if got > MAX_COLUMNS {
+            let (path, line, limit) = (path.to_owned(), line.number, MAX_COLUMNS);
+            return Err(DataError::TooManyColumns { path, line, got, limit });
+        }
+        check_cells(path, line.number, separator.fields(line.text))?;
+    }
+    Ok(())
+}
+
+/// Checks the length of the cells of a line.
+///
+/// # Errors
+/// [`DataError::LongCell`] at the first cell beyond the limit.
+pub(super) fn check_cells<'a>(
+    path: &Path,
+    line: u64,
+    cells: impl Iterator<Item = &'a str>,
+) -> Result<(), DataError> {
+    for (column, cell) in (1..).zip(cells) {
+        let (bytes, limit) = (cell.len(), MAX_CELL_BYTES);
+        if bytes > limit {
+            return Err(DataError::LongCell { path: path.to_owned(), line, column, bytes, limit });
+        }
+    }
+    Ok(())
+}
+
+/// Finds the header, the row of units and the first line of the rows; the latter is `None` if there
+/// is no row.
+pub(super) fn find_header<'a>(lines: &[Line<'a>], dialect: Dialect) -> (Header, Option<Line<'a>>) {
+    let split: Vec<SplitLine<'a>> =
+        lines.iter().map(|line| SplitLine::new(*line, dialect)).collect();
+    let width = width(&split);
+    let first_number = split.iter().position(|line| line.has_numbers(width));
+    let Some(names) = header_line(&split, width, first_number) else {
+        let mut plain = split.iter().filter(|line| !line.line.is_comment);
+        let first_number = first_number.and_then(|at| split.get(at));
+        let body = first_number.or_else(|| plain.next()).map(|line| line.line);
+        let line = body.map_or(1, |line| line.number);
+        return (Header::unwritten(line, width), body);
+    };
+    let mut below = split
+        .iter()
+        .filter(|line| line.line.number > names.line.number)
+        .filter(|line| !line.line.is_comment || names.line.is_comment);
+    let mut body = below.next();
+    let mut units = Vec::new();
+    if let Some(line) = body
+        && line.is_text
+        && spelling::is_unit_row(line.cells.iter().map(String::as_str))
+    {
+        units = line.cells.clone();
+        body = below.next();
+    }
+    let header =
+        Header { line: names.line.number, is_written: true, names: named(&names.cells), units };
+    (header, body.map(|line| line.line))
+}
+
+/// Chooses the header among lines that contain no number. The first rule that finds a line applies:
+///
+/// 1. the first line with the width of the table in which a field names a channel or is `case`;
+/// 2. the first line with the width of the table above the first row of numbers;
+/// 3. the last line with several fields above the first row of numbers, whose width differs from
+///    that of the rows, so that the rows are then refused.
+///
+/// If no line is found, the same rules are applied to comments.
+fn header_line<'s, 'a>(
+    split: &'s [SplitLine<'a>],
+    width: usize,
+    first_number: Option<usize>,
+) -> Option<&'s SplitLine<'a>> {
+    let above = || split.iter().take(first_number.unwrap_or(split.len()));
+    [false, true].into_iter().find_map(|is_comment| {
+        let is_candidate =
+            move |line: &&SplitLine<'_>| line.is_text && line.line.is_comment == is_comment;
+        let fits = |line: &&SplitLine<'_>| n_named(&line.cells) == width;
+        let mut fitting = split.iter().filter(is_candidate).filter(fits);
+        let has_several = |line: &&SplitLine<'_>| first_number.is_some() && line.cells.len() > 1;
+        fitting
+            .find(|line| line.cells.iter().any(|cell| is_name(cell)))
+            .or_else(|| above().filter(is_candidate).find(fits))
+            .or_else(|| above().filter(is_candidate).rfind(has_several))
+    })
+}
+
+/// The width of the table: the most frequent number of fields among lines that contain a number,
+/// the larger one at equal frequency. If no line contains a number, it is the number of fields of
+/// the first line.
+fn width(split: &[SplitLine<'_>]) -> usize {
+    let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
+    let plain = || split.iter().filter(|line| !line.line.is_comment);
+    for line in plain().filter(|line| !line.is_text) {
+        *counts.entry(n_named(&line.cells)).or_default() += 1;
+    }
+    let most_frequent = counts.iter().max_by_key(|(_, count)| **count);
+    let first_width = || plain().next().map_or(0, |line| n_named(&line.cells));
+    most_frequent.map_or_else(first_width, |(width, _)| *width)
+}
+
+/// Number of fields, without an empty last field that a separator at the end of the line leaves.
+fn n_named(cells: &[String]) -> usize {
+    match cells.last() {
+        Some(last) if last.is_empty() => cells.len() - 1,
+        _ => cells.len(),
+    }
+}
+
+fn is_name(cell: &str) -> bool {
+    cell.eq_ignore_ascii_case(CASE_COLUMN) || spelling::meaning(cell) != Meaning::Unknown
+}
+
+/// The names of the columns in a header line; a column without a name is called `column` and its
+/// number.
+fn named(cells: &[String]) -> Vec<String> {
+    let cells = cells.iter().take(n_named(cells));
+    let name = |(i, cell): (usize, &String)| match cell.as_str() {
+        "" => format!("column {}", i + 1),
+        _ => cell.clone(),
+    };
+    cells.enumerate().map(name).collect()
+}
+
+impl Header {
+    fn unwritten(line: u64, width: usize) -> Self {
+        Self {
+            line,
+            is_written: false,
+            names: named(&vec![String::new(); width + 1]),
+            units: Vec::new(),
+        }
+    }
+}
