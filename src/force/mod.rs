@@ -11,6 +11,7 @@ mod input;
 pub mod metrics;
 
 mod config;
+mod memory;
 
 mod physics;
 

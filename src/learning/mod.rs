@@ -15,6 +15,7 @@ mod load;
 
 mod training_set;
 
+mod memory;
 mod setting;
 mod train_settings;
 
@@ -32,6 +33,8 @@ pub use case::{CaseId, TrainingCase, content_digest, n_steps};
 pub use epochs::{EpochLoop, run_epochs};
 pub use error::LearningError;
 pub use load::{LoadError, cases_and_problems, check_kind, load_cases, load_dataset};
+pub use memory::MAX_MEMORY_BYTES;
+pub(crate) use memory::{check_memory, sum};
 pub use model_file::ModelFile;
 pub use record::{EpochDetail, EpochRecord, TrainingRecord};
 pub use report::{

@@ -1,5 +1,6 @@
 //! Trained models as files.
 
+use std::error::Error;
 use std::path::Path;
 
 use crate::data::Existing;
@@ -13,7 +14,7 @@ pub trait ModelFile: Sized {
     const KIND: ModelKind;
 
     /// What can go wrong with a model.
-    type Error: From<LearningError>;
+    type Error: From<LearningError> + Error + Send + Sync + 'static;
 
     /// Puts the model into a file.
     ///
@@ -52,7 +53,7 @@ pub trait ModelFile: Sized {
     /// Reads a model.
     ///
     /// # Errors
-    /// What is wrong with the file.
+    /// What is wrong with the file, whose name every error states.
     fn load(path: &Path) -> Result<Self, Self::Error> {
         Ok(Self::load_with_digest(path)?.0)
     }
@@ -64,7 +65,10 @@ pub trait ModelFile: Sized {
     fn load_with_digest(path: &Path) -> Result<(Self, String), Self::Error> {
         let read = Checkpoint::read_with_digest(path, Self::KIND);
         let (file, sha256) = read.map_err(LearningError::from)?;
-        let model = taken::<Self>(file)?;
+        let model = taken::<Self>(file).map_err(|error| {
+            let (path, source) = (path.to_owned(), Box::new(error));
+            LearningError::InFile { path, what: "a model", source }
+        })?;
         Ok((model, sha256))
     }
 

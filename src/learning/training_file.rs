@@ -1,5 +1,6 @@
 //! A training on disk, so that it survives being killed.
 
+use std::error::Error;
 use std::path::PathBuf;
 
 use serde::de::DeserializeOwned;
@@ -71,16 +72,22 @@ impl<C: PartialEq + Serialize + DeserializeOwned> TrainingFile<C> {
     /// - `take`: takes the training out of the checkpoint.
     ///
     /// # Errors
-    /// [`LearningError::OtherTraining`], [`LearningError::Network`] if the file is damaged.
-    pub fn read<T>(
+    /// [`LearningError::OtherTraining`], [`LearningError::Network`] if the file cannot be read, and
+    /// [`LearningError::InFile`] if its contents cannot be used.
+    pub fn read<T, E: From<NnError> + Error + Send + Sync + 'static>(
         &self,
-        take: impl FnOnce(&mut Checkpoint) -> Result<T, NnError>,
+        take: impl FnOnce(&mut Checkpoint) -> Result<T, E>,
     ) -> Result<Option<T>, LearningError> {
         let Some(path) = self.path.as_ref().filter(|path| self.resume && path.exists()) else {
             return Ok(None);
         };
         let mut file = Checkpoint::read(path, self.kind)?;
-        let saved: Identity<C> = file.get("identity")?;
+        let in_file = |source: Box<dyn Error + Send + Sync>| LearningError::InFile {
+            path: path.clone(),
+            what: "a training",
+            source,
+        };
+        let saved: Identity<C> = file.get("identity").map_err(|error| in_file(Box::new(error)))?;
         let differs = [
             ("configuration", saved.config != self.identity.config),
             ("seed", saved.seed != self.identity.seed),
@@ -89,8 +96,8 @@ impl<C: PartialEq + Serialize + DeserializeOwned> TrainingFile<C> {
         if let Some((what, _)) = differs.into_iter().find(|(_, differs)| *differs) {
             return Err(LearningError::OtherTraining { path: path.clone(), what });
         }
-        let training = take(&mut file)?;
-        file.check_all_taken()?;
+        let training = take(&mut file).map_err(|error| in_file(Box::new(error)))?;
+        file.check_all_taken().map_err(|error| in_file(Box::new(error)))?;
         Ok(Some(training))
     }
 

@@ -4,7 +4,6 @@
 //! and in which version, and carries a checksum: a single flipped bit is found. The same contents
 //! give the same bytes.
 
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
@@ -13,12 +12,9 @@ use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
 use crate::data::write::sha256_hex;
-use crate::data::{DataError, Existing, write_atomically};
+use crate::data::{DataError, Existing, MAX_MODEL_BYTES, open_file, read_bytes, write_atomically};
 use crate::nn::checkpoint_bytes::{LENGTH_BYTES, MAX_HEADER_BYTES, decode, encode, kind_in_header};
 use crate::nn::{NamedTensors, NnError};
-
-/// The largest file that is read; the networks here have a few megabytes.
-pub const MAX_MODEL_BYTES: u64 = 256 << 20;
 
 /// What a model file is for, so that none is mistaken for another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -132,7 +128,7 @@ impl Checkpoint {
     /// # Errors
     /// As for [`Checkpoint::read`].
     pub fn read_with_digest(path: &Path, kind: ModelKind) -> Result<(Self, String), NnError> {
-        let bytes = read_limited(path)?;
+        let bytes = read_bytes(path, MAX_MODEL_BYTES)?;
         let in_file = |source| NnError::InFile { path: path.to_owned(), source: Box::new(source) };
         let file = Self::from_bytes(&bytes, kind).map_err(in_file)?;
         Ok((file, sha256_hex(&bytes)))
@@ -156,17 +152,9 @@ impl Checkpoint {
 /// As for [`Checkpoint::read`].
 pub fn kind_of_file(path: &Path) -> Result<String, NnError> {
     let to_error = |source| DataError::io(path, source);
-    let file = File::open(path).map_err(to_error)?;
+    let (file, _) = open_file(path, MAX_MODEL_BYTES)?;
     let mut bytes = Vec::new();
     file.take(LENGTH_BYTES as u64 + MAX_HEADER_BYTES).read_to_end(&mut bytes).map_err(to_error)?;
     let in_file = |source| NnError::InFile { path: path.to_owned(), source: Box::new(source) };
     kind_in_header(&bytes).map_err(in_file)
-}
-
-/// At most one byte more than [`MAX_MODEL_BYTES`].
-fn read_limited(path: &Path) -> Result<Vec<u8>, DataError> {
-    let to_error = |source| DataError::io(path, source);
-    let (file, mut bytes) = (File::open(path).map_err(to_error)?, Vec::new());
-    file.take(MAX_MODEL_BYTES + 1).read_to_end(&mut bytes).map_err(to_error)?;
-    Ok(bytes)
 }

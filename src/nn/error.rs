@@ -186,6 +186,36 @@ pub enum NnError {
         /// The version that it has.
         got: u32,
     },
+    /// A network with more parameters than the memory is meant for, or than its file holds.
+    #[error("{name}: the network has more than {limit} {what}; reduce its layers and widths")]
+    TooManyParameters {
+        /// The parameter that is one too many or too large.
+        name: String,
+        /// Numbers, or tensors.
+        what: &'static str,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// A number in the metadata is none with which a prediction can be made.
+    #[error("{name} is {value}, expected {expected}")]
+    StoredNumber {
+        /// Its place in the metadata.
+        name: String,
+        /// Its value.
+        value: f64,
+        /// The range, in words.
+        expected: String,
+    },
+    /// A list in the metadata has more or fewer entries than the model needs.
+    #[error("{name} has {got} entries, expected {expected}")]
+    StoredLength {
+        /// Its place in the metadata.
+        name: String,
+        /// The number that is needed.
+        expected: usize,
+        /// The number that there are.
+        got: usize,
+    },
     /// A tensor with a dimension of length 0.
     #[error("the tensor {name:?} is empty: its shape is {shape:?}")]
     EmptyTensor {

@@ -9,6 +9,12 @@ use crate::nn::NnError;
 /// Tensors by name, in the order of their names.
 pub type NamedTensors = BTreeMap<String, Tensor>;
 
+/// The numbers that a network may have whose parameters are in a file: twice as many as the file has
+/// and some more, so that a file that lacks a tensor is told which.
+pub(crate) fn parameter_budget(tensors: &NamedTensors) -> usize {
+    2 * tensors.values().map(Tensor::elem_count).sum::<usize>() + 100_000
+}
+
 /// The tensor of this name, of this shape and with finite numbers.
 ///
 /// # Errors

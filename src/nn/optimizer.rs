@@ -15,7 +15,9 @@ use serde::{Deserialize, Serialize};
 use crate::nn::named_tensors::{check_no_other, find};
 use crate::nn::parameters::Parameter;
 use crate::nn::storage::number_type;
-use crate::nn::{NamedTensors, NnError, Parameters, Schedule};
+use crate::nn::{
+    Expected, NamedTensors, NnError, Parameters, Schedule, check_number, check_numbers,
+};
 
 /// The settings of [`AdamW`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -86,6 +88,9 @@ pub struct StepReport {
     /// Number of trained parameters on which the loss does not depend. They are not changed.
     pub n_without_gradient: usize,
 }
+
+/// Largest number of steps of a state that is taken over.
+const MAX_STEPS: f64 = 1e12;
 
 /// The state from which a training can be resumed to the same bits.
 #[derive(Debug, Clone)]
@@ -228,6 +233,7 @@ impl AdamW {
     /// [`NnError::MissingTensor`], [`NnError::UnexpectedTensor`], [`NnError::WrongShape`],
     /// [`NnError::NonFinite`], [`NnError::NumberType`].
     pub fn import(&mut self, state: &OptimizerState) -> Result<(), NnError> {
+        check_number("step", state.step as f64, Expected::Magnitude(MAX_STEPS))?;
         let imported = self.moments.iter().map(|moments| moments.imported(&state.moments));
         let imported = imported.collect::<Result<Vec<_>, _>>()?;
         let is_known = |tensor: &str| {
@@ -293,6 +299,9 @@ impl Moments {
             let tensor = find(tensors, name, self.first.dims())?;
             Ok(tensor.detach().to_dtype(self.first.dtype())?.contiguous()?)
         };
-        Ok(Self { name: self.name.clone(), first: value(&first)?, second: value(&second)? })
+        let (first, second_moment) = (value(&first)?, value(&second)?);
+        let squares = second_moment.flatten_all()?.to_dtype(DType::F64)?.to_vec1::<f64>()?;
+        check_numbers(&second, &squares, Expected::NotNegative)?;
+        Ok(Self { name: self.name.clone(), first, second: second_moment })
     }
 }

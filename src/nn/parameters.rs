@@ -8,6 +8,13 @@ use rand_chacha::ChaCha8Rng;
 use crate::nn::named_tensors::{check_finite, check_no_other, find};
 use crate::nn::{Init, NamedTensors, NnError};
 
+/// Numbers of all parameters of a network together. A training holds them some six times in up to 64
+/// bits, as values, gradients, moments and copies: less than a gigabyte.
+pub const MAX_PARAMETERS: usize = 16_000_000;
+
+/// Tensors of a network.
+pub const MAX_PARAMETER_TENSORS: usize = 1_000;
+
 /// Every parameter of a network, in the order in which its layers were made.
 ///
 /// The layers share these tensors, so that they compute with the values that the optimiser or
@@ -16,6 +23,8 @@ use crate::nn::{Init, NamedTensors, NnError};
 pub struct Parameters {
     number_type: DType,
     entries: Vec<Parameter>,
+    /// How many numbers may still be added.
+    n_left: usize,
 }
 
 /// A parameter and whether it is trained.
@@ -31,7 +40,13 @@ impl Parameters {
     ///
     /// - `number_type`: [`DType::F32`], or [`DType::F64`] for checks of gradients.
     pub fn new(number_type: DType) -> Self {
-        Self { number_type, entries: Vec::new() }
+        Self { number_type, entries: Vec::new(), n_left: MAX_PARAMETERS }
+    }
+
+    /// The same, for at most `n_values` numbers, such as those that a file holds.
+    #[must_use]
+    pub(crate) fn at_most(self, n_values: usize) -> Self {
+        Self { n_left: n_values.min(MAX_PARAMETERS), ..self }
     }
 
     /// The builder through which layers add their parameters, whose first values are drawn from `rng`.
@@ -69,6 +84,23 @@ impl Parameters {
     pub fn set_trained(&mut self, is_trained: impl Fn(&str) -> bool) -> usize {
         self.entries.iter_mut().for_each(|entry| entry.trained = is_trained(&entry.name));
         self.entries.iter().filter(|entry| entry.trained).count()
+    }
+
+    /// Takes the room for a parameter from what is left.
+    ///
+    /// # Errors
+    /// [`NnError::TooManyParameters`] if there is not enough.
+    fn reserve(&mut self, name: &str, shape: &[usize]) -> Result<(), NnError> {
+        let too_many =
+            |what, limit| NnError::TooManyParameters { name: name.to_owned(), what, limit };
+        if self.entries.len() >= MAX_PARAMETER_TENSORS {
+            return Err(too_many("tensors", MAX_PARAMETER_TENSORS));
+        }
+        let n_values = shape.iter().try_fold(1_usize, |n, length| n.checked_mul(*length));
+        let n_left = n_values.and_then(|n_values| self.n_left.checked_sub(n_values));
+        let limit = || self.n_values() + self.n_left;
+        self.n_left = n_left.ok_or_else(|| too_many("numbers", limit()))?;
+        Ok(())
     }
 
     /// Copies of all parameters, in their number type.
@@ -127,12 +159,13 @@ impl ParameterBuilder<'_> {
     /// Adds a parameter below this place and returns the tensor that follows its value.
     ///
     /// # Errors
-    /// [`NnError::DuplicateParameter`].
+    /// [`NnError::DuplicateParameter`], [`NnError::TooManyParameters`] before anything is allocated.
     pub fn add(&mut self, name: &str, shape: &[usize], init: Init) -> Result<Tensor, NnError> {
         let name = self.name(name);
         if self.parameters.get(&name).is_some() {
             return Err(NnError::DuplicateParameter { name });
         }
+        self.parameters.reserve(&name, shape)?;
         let values = Tensor::from_vec(init.values(shape, self.rng), shape, &Device::Cpu)?;
         let variable = Var::from_tensor(&values.to_dtype(self.parameters.number_type)?)?;
         let tensor = variable.as_tensor().clone();
@@ -206,6 +239,26 @@ mod tests {
         let expected = "holds NaN at index 1, expected finite numbers";
         assert_eq!(error, format!("the tensor \"trunk.0.bias\" {expected}"));
         assert_eq!(bits(&parameters), before);
+    }
+
+    #[test]
+    fn sizes_are_checked_before_anything_is_allocated() {
+        let mut rng = random_stream(1, "weights", 0);
+        for shape in [&[1 << 40, 1 << 40][..], &[usize::MAX, 2], &[16_000_001]] {
+            let mut parameters = Parameters::new(DType::F32);
+            let error = parameters.builder(&mut rng).add("w", shape, Init::Zero).unwrap_err();
+            let expected = "w: the network has more than 16000000 numbers";
+            assert!(error.to_string().starts_with(expected), "{shape:?}: {error}");
+        }
+        let mut parameters = Parameters::new(DType::F32).at_most(5);
+        let mut builder = parameters.builder(&mut rng);
+        builder.add("a", &[2, 2], Init::Zero).unwrap();
+        let error = builder.add("b", &[2], Init::Zero).unwrap_err().to_string();
+        assert!(error.starts_with("b: the network has more than 5 numbers"), "{error}");
+        let mut many = Parameters::new(DType::F32);
+        let mut builder = many.builder(&mut rng);
+        let error = (0..).find_map(|i| builder.at(i).add("w", &[1], Init::Zero).err()).unwrap();
+        assert!(error.to_string().contains("more than 1000 tensors"), "{error}");
     }
 
     #[test]

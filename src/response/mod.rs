@@ -2,6 +2,7 @@
 //! vehicle model.
 
 mod config;
+mod memory;
 
 mod physics;
 

@@ -13,6 +13,7 @@ mod dependencies;
 mod force_baselines;
 mod force_model;
 mod layering;
+mod model_budgets;
 mod ranges;
 mod response_model;
 mod validation_collision;

@@ -256,7 +256,7 @@ impl CrushLaw {
 
     /// All fitted parameters as a vector. The outlines of the bodies and the position of the rear
     /// axle are not fitted.
-    pub(super) fn to_vector(&self) -> Vec<f64> {
+    pub(crate) fn to_vector(&self) -> Vec<f64> {
         let mut row = Vec::new();
         for_each_parameter!(self, |value: &f64, _: f64| row.push(*value), &);
         row

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::force::physics::CentreCurve;
 use crate::force::{ForceCase, ForceScenario};
+use crate::nn::{Expected, NnError, check_length, check_number, check_numbers};
 use crate::uncertainty::CURVE_N_INSTANTS;
 
 /// Names of the scenario's features as shown to the user, with units.
@@ -22,6 +23,9 @@ const N_PHYSICS: usize = 6;
 pub(crate) const N_FEATURES: usize = N_SCENARIO + N_PHYSICS;
 /// Number of features of each instant.
 pub(crate) const N_INSTANT_FEATURES: usize = 6;
+
+/// Largest number of contact points of a model, each of which a prediction computes.
+const MAX_OPEN_CONTACTS: f64 = 100.0;
 
 /// Units in which crush depth and sliding velocity enter the network.
 const DEPTH_UNIT_M: f64 = 0.1;
@@ -103,6 +107,17 @@ pub(crate) fn instant_features(centre: &CentreCurve) -> Vec<f32> {
 }
 
 impl Standardisation {
+    /// Checks the statistics from a file.
+    ///
+    /// # Errors
+    /// [`NnError`] with the first number or list that is refused.
+    pub(crate) fn check(&self, n_bodies: usize) -> Result<(), NnError> {
+        check_length("standardisation.mean", self.mean.len(), N_FEATURES + n_bodies)?;
+        check_length("standardisation.std", self.std.len(), N_FEATURES + n_bodies)?;
+        check_length("standardisation.range", self.range.len(), N_SCENARIO)?;
+        check_numbers("standardisation.std", &self.std, Expected::Positive)
+    }
+
     /// Statistics over the training cases.
     ///
     /// - `rows`: their features, all of one length.
@@ -162,6 +177,20 @@ pub struct OpenFeatures {
 }
 
 impl OpenFeatures {
+    /// Checks the distribution from a file.
+    ///
+    /// # Errors
+    /// [`NnError`] with the first number or list that is refused.
+    pub(crate) fn check(&self, n_bodies: usize) -> Result<(), NnError> {
+        check_length("open.body", self.body.len(), n_bodies)?;
+        check_numbers("open.body", &self.body, Expected::Share)?;
+        if n_bodies > 1 {
+            check_number("open.body (sum)", self.body.iter().sum(), Expected::Positive)?;
+        }
+        let n_contacts = self.contact_m.len() as f64;
+        check_number("open.contact_m (number)", n_contacts, Expected::Magnitude(MAX_OPEN_CONTACTS))
+    }
+
     /// The distribution over the training cases: contacts at the middles of `n_contacts` equal
     /// shares of the cases ordered by x, bodies by frequency.
     pub(crate) fn of(cases: &[ForceCase], bodies: &[String], n_contacts: usize) -> Self {

@@ -159,14 +159,19 @@ impl NetworkOutput {
 impl ForceNetwork {
     /// A network with random first weights.
     ///
-    /// - `n_bodies`: number of kinds of bullet bodies.
+    /// - `n_bodies`: number of kinds of bullet bodies;
+    /// - `parameters`: the list to which its parameters are added, empty.
+    ///
+    /// # Errors
+    /// [`ForceError::Learning`] for sizes that make no layer, and for more parameters than the list
+    /// takes.
     pub(crate) fn new(
         config: &NetworkConfig,
         n_bodies: usize,
         rng: &mut ChaCha8Rng,
-        number_type: DType,
+        mut parameters: Parameters,
     ) -> Result<Self, ForceError> {
-        let mut parameters = Parameters::new(number_type);
+        let number_type = parameters.number_type();
         let layers = Layers::new(config, n_bodies, &mut parameters, rng)?;
         let positions: Vec<f64> = (0..CURVE_N_INSTANTS).map(|t| t as f64).collect();
         let position = positional_encoding(&positions, config.position_channels, number_type)?;
@@ -393,7 +398,7 @@ impl Layers {
             MultiScaleEncoder::new(&mut root.at("encoder"), n_in, &config.encoder_branches)?;
         let channels = config.attention_channels;
         let (none, width) = (Activation::None, encoder.n_out());
-        let n_instant = N_INSTANT_FEATURES + config.position_channels;
+        let n_instant = config.position_channels.saturating_add(N_INSTANT_FEATURES);
         let instant = Linear::new(&mut root.at("instant"), [n_instant, channels], none)?;
         let scenario = Linear::new(&mut root.at("scenario"), [width, channels], none)?;
         let sizes = AttentionConfig {
@@ -410,13 +415,15 @@ impl Layers {
             std::iter::once(channels + width).chain(config.trunk.iter().copied()).collect();
         let trunk = Mlp::new(&mut root.at("trunk"), &widths, Activation::Silu)?;
         let hidden = trunk.n_out();
+        // Products of sizes from a file may be too large for a number; the parameters then are too many.
         let (k, q) = (config.components, config.factors);
+        let per = |n: usize| k.saturating_mul(n);
         let zero = Init::Zero;
         let shape = Linear::with_init(&mut root.at("shape"), [hidden, 4], none, zero)?;
-        let component = Linear::with_init(&mut root.at("component"), [hidden, k * 4], none, zero)?;
-        let n_loading = k * 2 * q.max(1);
+        let component = Linear::with_init(&mut root.at("component"), [hidden, per(4)], none, zero)?;
+        let n_loading = per(q.max(1).saturating_mul(2));
         let loading = Linear::with_init(&mut root.at("loading"), [hidden, n_loading], none, zero)?;
-        let n_whole = 3 + k * (3 + q);
+        let n_whole = per(q.saturating_add(3)).saturating_add(3);
         let whole =
             Linear::with_init(&mut root.at("whole"), [hidden + width, n_whole], none, zero)?;
         Ok(Self { encoder, instant, scenario, attention, trunk, shape, component, loading, whole })
@@ -496,7 +503,8 @@ mod tests {
         let plain = NetworkConfig { attention: false, ..NetworkConfig::default() };
         for config in [NetworkConfig::default(), plain, ForceConfig::paper().network] {
             let (config, mut rng) = (narrow(config), random_stream(1, "test", 0));
-            let network = ForceNetwork::new(&config, 1, &mut rng, DType::F64).unwrap();
+            let network =
+                ForceNetwork::new(&config, 1, &mut rng, Parameters::new(DType::F64)).unwrap();
             let parameters: Vec<Var> =
                 network.parameters().iter().map(|(_, variable)| variable.clone()).collect();
             for (number, variable) in (10..).zip(&parameters) {

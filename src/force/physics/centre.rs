@@ -13,6 +13,7 @@ use crate::collision::{Impact, PulseShape};
 use crate::force::physics::committee::Committee;
 use crate::force::{Centre, CrushConfig, ForceCase, ForceError, ForceScenario, MomentumModel};
 use crate::learning::{LearningError, Split, folds};
+use crate::nn::{Expected, NnError, check_length, check_number, check_numbers};
 use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
 
 /// Yaw inertia over mass where none is known, m²: a uniform body of 4.5 m × 1.8 m has 1.96, cars
@@ -46,6 +47,27 @@ pub struct CentreCurve {
 }
 
 impl CentreCurve {
+    /// Checks a curve from a file.
+    ///
+    /// - `name`: its place in the metadata.
+    ///
+    /// # Errors
+    /// [`NnError`] with the first number or list that is refused.
+    pub(crate) fn check(&self, name: &str) -> Result<(), NnError> {
+        let lists = [
+            ("curve.fx_n", &self.curve.fx_n),
+            ("curve.fy_n", &self.curve.fy_n),
+            ("depth_m", &self.depth_m),
+            ("slip_m_s", &self.slip_m_s),
+        ];
+        for (list, values) in lists {
+            check_length(&format!("{name}.{list}"), values.len(), CURVE_N_INSTANTS)?;
+        }
+        check_number(&format!("{name}.scale_n"), self.scale_n, Expected::Positive)?;
+        let duration = format!("{name}.curve.duration_s");
+        check_number(&duration, self.curve.duration_s, Expected::NotNegative)
+    }
+
     /// Time of the first force above 1 % of the peak, s.
     pub fn onset_s(&self) -> f64 {
         let magnitude = self.curve.magnitude_n();
@@ -181,6 +203,39 @@ impl CentreModel {
         };
         let unseen = cases.iter().zip(histories).map(curve).collect::<Result<_, _>>()?;
         Ok((model, unseen))
+    }
+
+    /// Checks the physics from a file.
+    ///
+    /// # Errors
+    /// [`NnError`] with the first number or list that is refused.
+    pub(crate) fn check(&self) -> Result<(), NnError> {
+        if self.kind.has_crush() && self.laws.is_empty() {
+            return Err(NnError::StoredLength {
+                name: "centre.laws".to_owned(),
+                expected: 1,
+                got: 0,
+            });
+        }
+        let bodies = self.bodies();
+        for (i, law) in self.laws.iter().enumerate() {
+            let name = format!("centre.laws[{i}]");
+            check_length(&format!("{name}.bodies"), law.bodies.len(), bodies.len().max(1))?;
+            // Logarithms of stiffness reach 17, exponents 3 and positions a few metres.
+            check_numbers(&name, &law.to_vector(), Expected::Magnitude(50.0))?;
+            for (j, body) in law.bodies.iter().enumerate() {
+                let nose = format!("{name}.bodies[{j}].nose");
+                check_number(&format!("{nose}.radius_m"), body.nose.radius_m, Expected::Positive)?;
+                let half_width = format!("{nose}.half_width_m");
+                check_number(&half_width, body.nose.half_width_m, Expected::Positive)?;
+            }
+        }
+        if let Some(committee) = &self.committee {
+            committee.check("centre.committee")?;
+        }
+        check_number("centre.duration_s", self.duration_s, Expected::NotNegative)?;
+        check_number("centre.peak_n", self.peak_n, Expected::NotNegative)?;
+        self.momentum.check("centre.momentum")
     }
 
     /// The kinds of bullet bodies in the training cases, in the order of their index.

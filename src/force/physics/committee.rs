@@ -18,6 +18,7 @@ use crate::force::metrics::PointErrors;
 use crate::force::regression::{ColumnSet, CurveFitError, CurveRegression};
 use crate::force::{CurvePrediction, ForceCase, ForceError, ForceScenario};
 use crate::learning::Split;
+use crate::nn::{Expected, NnError, check_number};
 use crate::uncertainty::ForceCurve;
 
 /// Number of steps between the shares 0 and 1 that are tried.
@@ -71,6 +72,17 @@ impl Committee {
         let blended = crush.iter().zip(&unseen).map(|(crush, other)| blend(share, crush, other));
         let regression = regress(&cases.iter().collect::<Vec<_>>())?;
         Ok(Some((Self { regression, share }, blended.collect())))
+    }
+
+    /// Checks a committee from a file.
+    ///
+    /// - `name`: its place in the metadata.
+    ///
+    /// # Errors
+    /// [`NnError`] with the first number or list that is refused.
+    pub(super) fn check(&self, name: &str) -> Result<(), NnError> {
+        check_number(&format!("{name}.share"), self.share, Expected::Share)?;
+        self.regression.check(&format!("{name}.regression"))
     }
 
     /// The weighted mean of the regression and the crush model's curve `crush`.

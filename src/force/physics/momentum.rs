@@ -13,6 +13,7 @@ use crate::collision::{
     ContactSurface, FrictionModel, Impact, ImpactBody, ImpactError, ImpactSolution,
 };
 use crate::force::{ForceCase, ForceScenario};
+use crate::nn::{Expected, NnError, check_number, check_numbers};
 use crate::numerics::Summary;
 
 /// Parameters of the momentum solution, fitted to training cases.
@@ -35,6 +36,20 @@ pub struct MomentumModel {
 }
 
 impl MomentumModel {
+    /// Checks a model from a file.
+    ///
+    /// - `name`: its place in the metadata.
+    ///
+    /// # Errors
+    /// [`NnError::StoredNumber`].
+    pub(crate) fn check(&self, name: &str) -> Result<(), NnError> {
+        check_number(&format!("{name}.restitution"), self.restitution, Expected::Share)?;
+        let friction = format!("{name}.friction_limit");
+        check_number(&friction, self.friction_limit, Expected::NotNegative)?;
+        let inertia = format!("{name}.inertia_per_mass_m2");
+        check_numbers(&inertia, &self.inertia_per_mass_m2, Expected::Positive)
+    }
+
     /// Values without any training case, for a push on the right rear wheel by a corner of the
     /// bullet's front. They fit the shipped finite-element runs (`tests/library/validation_collision.rs`).
     pub fn prior(uses_contact: bool) -> Self {

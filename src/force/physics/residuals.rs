@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::force::ForceCase;
 use crate::force::physics::CentreCurve;
-use crate::nn::NnError;
+use crate::nn::{Expected, NnError, check_number, check_numbers};
 use crate::numerics::quantile_of_sorted;
 use crate::uncertainty::{CURVE_INTERVAL_S, CURVE_N_INSTANTS};
 
@@ -117,6 +117,12 @@ impl ResidualModel {
             if got != expected {
                 return Err(NnError::WrongShape { name: "residuals".to_owned(), expected, got });
             }
+        }
+        for (name, profiles) in [("usual", &self.usual), ("hooking", &self.hooking)] {
+            let variance = format!("residuals.{name}.variance");
+            check_numbers(&variance, &profiles.variance, Expected::Positive)?;
+            let correlation = format!("residuals.{name}.lag_correlation");
+            check_number(&correlation, profiles.lag_correlation, Expected::Share)?;
         }
         Ok(())
     }

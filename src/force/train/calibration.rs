@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 use crate::force::ForceCase;
-use crate::nn::random_stream;
+use crate::nn::{Expected, NnError, check_number, random_stream};
 use crate::numerics::normal_cdf;
 use crate::uncertainty::{CURVE_INTERVAL_S, CurveComponent, CurveMixture, CurveQuantities};
 
@@ -44,6 +44,18 @@ impl Default for VarianceFactors {
 }
 
 impl VarianceFactors {
+    /// Checks factors from a file.
+    ///
+    /// - `name`: their place in the metadata.
+    ///
+    /// # Errors
+    /// [`NnError::StoredNumber`].
+    pub(crate) fn check(&self, name: &str) -> Result<(), NnError> {
+        check_number(&format!("{name}.shared"), self.shared, Expected::Positive)?;
+        check_number(&format!("{name}.single"), self.single, Expected::Positive)?;
+        check_number(&format!("{name}.duration"), self.duration, Expected::Positive)
+    }
+
     /// The factors with which the central 90 % intervals contain 90 % of
     ///
     /// - the forces during contact, F_x and F_y (`single`),

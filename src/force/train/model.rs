@@ -9,7 +9,10 @@ use crate::force::network::{ForceNetwork, OpenFeatures, Standardisation};
 use crate::force::physics::{CentreModel, ResidualModel};
 use crate::force::{ForceCase, ForceConfig, ForceError, ForceRecord, ForceScenario};
 use crate::learning::ModelFile;
-use crate::nn::{Checkpoint, ModelKind, NnError, random_stream};
+use crate::nn::{
+    Checkpoint, Expected, ModelKind, NnError, Parameters, check_numbers, parameter_budget,
+    random_stream,
+};
 use crate::uncertainty::{CURVE_N_INSTANTS, ForceCurve};
 
 /// Name of the tensor with the curves of the training cases in a model file.
@@ -113,13 +116,24 @@ impl ModelFile for ForceModel {
         let config: ForceConfig = file.get("config")?;
         config.check()?;
         let centre: CentreModel = file.get("centre")?;
+        centre.check()?;
         let residuals: ResidualModel = file.get("residuals")?;
         residuals.check(config.network.factors)?;
         let stored: Vec<StoredCase> = file.get("cases")?;
         let n_bodies = centre.bodies().len();
+        let standardisation: Standardisation = file.get("standardisation")?;
+        standardisation.check(n_bodies)?;
+        let open: OpenFeatures = file.get("open")?;
+        open.check(n_bodies)?;
+        let n_variants = open.contact_m.len().saturating_mul(n_bodies);
+        config.network.check_memory("variants", n_variants)?;
+        let record: ForceRecord = file.get("record")?;
+        record.detail.variance_factors.check("record.variance_factors")?;
         let mut rng = random_stream(0, "force network", 0);
-        let network = ForceNetwork::new(&config.network, n_bodies, &mut rng, DType::F32)?;
-        network.parameters().import(&file.take_group("network"))?;
+        let tensors = file.take_group("network");
+        let parameters = Parameters::new(DType::F32).at_most(parameter_budget(&tensors));
+        let network = ForceNetwork::new(&config.network, n_bodies, &mut rng, parameters)?;
+        network.parameters().import(&tensors)?;
         let missing = || NnError::MissingTensor { name: format!("cases.{CURVES}") };
         let curves = file.take_group("cases").remove(CURVES).ok_or_else(missing)?;
         let expected = [stored.len(), 2 * CURVE_N_INSTANTS + 1];
@@ -130,12 +144,16 @@ impl ModelFile for ForceModel {
                 got: curves.dims().to_vec(),
             }));
         }
+        for (i, case) in stored.iter().enumerate() {
+            let name = format!("cases[{i}].scenario.mass_kg");
+            check_numbers(&name, &case.scenario.mass_kg, Expected::Positive)?;
+        }
         let rows = curves.to_dtype(DType::F64)?.to_vec2::<f64>()?;
         let cases = stored.into_iter().zip(rows).map(|(case, row)| case.with_curve(&row));
         Ok(Self {
-            standardisation: file.get("standardisation")?,
-            open: file.get("open")?,
-            record: file.get("record")?,
+            standardisation,
+            open,
+            record,
             cases: cases.collect(),
             config,
             centre,

@@ -18,7 +18,8 @@ use crate::learning::{
     TrainingFile, TrainingProgress, TrainingReport, TrainingSet, run_epochs, split,
 };
 use crate::nn::{
-    AdamW, AdamWConfig, Checkpoint, ModelKind, NamedTensors, NnError, Schedule, random_stream,
+    AdamW, AdamWConfig, Checkpoint, Expected, ModelKind, NamedTensors, NnError, Parameters,
+    Schedule, check_length, check_number, random_stream,
 };
 use crate::uncertainty::{CurveComponent, CurveMixture};
 
@@ -58,10 +59,15 @@ pub fn train(
     report: &mut TrainingProgress<'_>,
 ) -> Result<ForceModel, ForceError> {
     settings.config.check()?;
+    settings.config.check_memory(set.train.len())?;
     set.check_size(LEAST_CASES)?;
     let mut file = training_file(set, settings);
-    let training = match file.read(SavedForceTraining::take)? {
-        Some(saved) => ForceTrainingRun::resumed(set, settings, saved)?,
+    let resumed = file.read(|checkpoint| {
+        let saved = SavedForceTraining::take(checkpoint)?;
+        ForceTrainingRun::resumed(set, settings, saved)
+    })?;
+    let training = match resumed {
+        Some(training) => training,
         None => {
             let mut is_cut = false;
             let mut told = |fit: &TrainingReport| {
@@ -96,6 +102,7 @@ pub fn train_around(
     report: &mut TrainingProgress<'_>,
 ) -> Result<ForceModel, ForceError> {
     settings.config.check()?;
+    settings.config.check_memory(set.train.len())?;
     let training = ForceTrainingRun::around(set, settings, physics)?;
     search(training, set, &training_file(set, settings), report)
 }
@@ -168,6 +175,20 @@ impl SavedForceTraining {
             best_epoch: file.get("best_epoch")?,
         })
     }
+
+    /// Checks what the training divides by or counts with.
+    ///
+    /// # Errors
+    /// [`NnError`] with the first number or list that is refused.
+    fn check(&self, n_cases: usize) -> Result<(), NnError> {
+        self.centre.check()?;
+        check_length("centres", self.centres.len(), n_cases)?;
+        for (i, centre) in self.centres.iter().enumerate() {
+            centre.check(&format!("centres[{i}]"))?;
+        }
+        let n_epochs = self.common.history.len();
+        check_number("best_epoch", self.best_epoch as f64, Expected::Magnitude(n_epochs as f64))
+    }
 }
 
 /// A training of the force network between two epochs.
@@ -218,7 +239,10 @@ impl<'a> ForceTrainingRun<'a> {
         let number_type = (&config.network, DType::F32);
         let tensors = CaseTensors::new(&cases, (&centres, &residuals), rows, number_type)?;
         let mut rng = random_stream(settings.seed, "force network", 0);
-        let network = ForceNetwork::new(&config.network, bodies.len(), &mut rng, DType::F32)?;
+        let network = {
+            let parameters = Parameters::new(DType::F32);
+            ForceNetwork::new(&config.network, bodies.len(), &mut rng, parameters)?
+        };
         let optimizer = AdamW::new(optimizer_config(config), network.parameters())?;
         let best_parameters = network.parameters().export()?;
         Ok(Self {
@@ -244,6 +268,7 @@ impl<'a> ForceTrainingRun<'a> {
         settings: &'a ForceTrainSettings,
         saved: SavedForceTraining,
     ) -> Result<Self, ForceError> {
+        saved.check(set.train.len())?;
         let mut training = Self::around(set, settings, (saved.centre, saved.centres))?;
         training.network.parameters().import(&saved.common.parameters)?;
         training.optimizer.import(&saved.common.optimizer)?;

@@ -103,6 +103,24 @@ pub enum GaussianProcessError {
         /// Index of the sample, counted from 0.
         sample_idx: usize,
     },
+    /// There are more samples than the covariance of all of them is computed for.
+    #[error("a regression on {got} samples, at most {limit} are taken")]
+    TooMany {
+        /// Largest number of samples.
+        limit: usize,
+        /// Number of samples that were given.
+        got: usize,
+    },
+    /// A standard deviation in a file is negative, or a hyperparameter is out of range.
+    #[error("{what} holds {value}, expected {expected}")]
+    Stored {
+        /// The list, in words.
+        what: &'static str,
+        /// The number.
+        value: f64,
+        /// The range, in words.
+        expected: &'static str,
+    },
     /// The covariance of the samples is not positive definite. This does not occur for finite data,
     /// because noise is always added.
     #[error("the covariance of the samples is not positive definite")]
@@ -111,6 +129,12 @@ pub enum GaussianProcessError {
 
 /// Smallest number of samples of a regression.
 const MIN_SAMPLES: usize = 4;
+
+/// Largest number of samples, whose covariance takes 32 MB and a few seconds to factorise.
+const MAX_SAMPLES: usize = 2_000;
+
+/// Largest magnitude of the logarithm of a hyperparameter in a file.
+const MAX_LOG: f64 = 50.0;
 
 impl GaussianProcess {
     /// Fits the hyperparameters and the coefficients to samples.
@@ -148,6 +172,11 @@ impl GaussianProcess {
             cholesky,
             coefficients,
         })
+    }
+
+    /// Number of outputs.
+    pub fn n_outputs(&self) -> usize {
+        self.coefficients.ncols()
     }
 
     /// Predicts mean and standard deviation of the outputs at an input.
@@ -200,6 +229,28 @@ impl From<GaussianProcess> for StoredProcess {
     }
 }
 
+impl StoredProcess {
+    /// Checks what is divided by, taken the root of, or an exponent.
+    ///
+    /// # Errors
+    /// [`GaussianProcessError::Stored`].
+    fn check_numbers(&self) -> Result<(), GaussianProcessError> {
+        let refused = |value: &&f64, most: f64, least: f64| !(least..=most).contains(*value);
+        let std = self.input_scaling.std.iter().chain(&self.output_scaling.std);
+        let lists = [
+            ("the deviations", std.copied().collect(), [0.0, f64::MAX], "0 or more"),
+            ("the hyperparameters", self.hyperparameters.clone(), [-MAX_LOG, MAX_LOG], "-50 to 50"),
+        ];
+        for (what, values, [least, most], expected) in lists {
+            let values: Vec<f64> = values;
+            if let Some(&value) = values.iter().find(|value| refused(value, most, least)) {
+                return Err(GaussianProcessError::Stored { what, value, expected });
+            }
+        }
+        Ok(())
+    }
+}
+
 impl TryFrom<StoredProcess> for GaussianProcess {
     type Error = GaussianProcessError;
 
@@ -223,6 +274,7 @@ impl TryFrom<StoredProcess> for GaussianProcess {
         if let Some((what, expected, got)) = lengths.into_iter().find(|(_, a, b)| a != b) {
             return Err(GaussianProcessError::Shape { what, expected, got });
         }
+        stored.check_numbers()?;
         let matrix = |rows: &[Vec<f64>], n_columns| {
             DMatrix::from_row_iterator(rows.len(), n_columns, rows.iter().flatten().copied())
         };
@@ -283,6 +335,9 @@ fn check(data: &GaussianProcessData<'_>) -> Result<usize, GaussianProcessError> 
     let n = data.inputs.len();
     if n < MIN_SAMPLES {
         return Err(GaussianProcessError::TooFew { expected: MIN_SAMPLES, got: n });
+    }
+    if n > MAX_SAMPLES {
+        return Err(GaussianProcessError::TooMany { limit: MAX_SAMPLES, got: n });
     }
     let width = |rows: &[Vec<f64>]| rows.first().map_or(0, Vec::len);
     let (n_inputs, n_outputs) = (width(data.inputs), width(data.outputs));

@@ -58,7 +58,7 @@ impl ResponseLayers {
         let attention = Attention::new(&mut root.at("attention"), attention)?;
         let trunk =
             Mlp::new(&mut root.at("trunk"), &widths(hidden, &config.trunk), Activation::Silu)?;
-        let n_out = config.components * N_COMPONENT_NUMBERS;
+        let n_out = config.components.saturating_mul(N_COMPONENT_NUMBERS);
         let head = Linear::with_init(
             &mut root.at("head"),
             [trunk.n_out(), n_out],

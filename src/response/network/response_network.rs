@@ -22,7 +22,7 @@
 use candle_core::{D, DType, Device, Tensor};
 use rand_chacha::ChaCha8Rng;
 
-use crate::nn::{Init, NnError, Parameters};
+use crate::nn::{Init, MAX_PARAMETERS, NnError, Parameters};
 use crate::response::network::layers::ResponseLayers;
 use crate::response::{
     Correction, FEATURE_MIRROR, IS_OF_MODEL, N_EFFECTS, N_FEATURES, N_RESIDUAL, RESIDUAL_MIRROR,
@@ -89,7 +89,19 @@ impl ResponseNetwork {
         config: &ResponseNetworkConfig,
         rng: &mut ChaCha8Rng,
     ) -> Result<Self, NnError> {
-        let mut parameters = Parameters::new(DType::F64);
+        Self::within(MAX_PARAMETERS, config, rng)
+    }
+
+    /// The same, for a network of at most `n_values` parameters.
+    ///
+    /// # Errors
+    /// [`NnError`] for sizes that make no layer or more parameters.
+    pub(crate) fn within(
+        n_values: usize,
+        config: &ResponseNetworkConfig,
+        rng: &mut ChaCha8Rng,
+    ) -> Result<Self, NnError> {
+        let mut parameters = Parameters::new(DType::F64).at_most(n_values);
         let mut root = parameters.builder(rng);
         let layers = ResponseLayers::new(&mut root, config)?;
         let effects = [config.components, N_EFFECTS];

@@ -16,6 +16,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::nn::{Expected, NnError, check_number, check_numbers};
 use crate::numerics::{normal_density, normal_quantile};
 use crate::response::N_EFFECTS;
 use crate::response::physics::effects::{Direction, direction};
@@ -57,6 +58,17 @@ pub(crate) struct LatentShare {
 }
 
 impl LatentScales {
+    /// Checks scales from a file.
+    ///
+    /// # Errors
+    /// [`NnError::StoredNumber`].
+    pub(crate) fn check(&self) -> Result<(), NnError> {
+        check_numbers("latents.scales", &self.scales, Expected::NotNegative)?;
+        check_number("latents.step_noise", self.step_noise, Expected::NotNegative)?;
+        let last = (N_LATENTS - 1) as f64;
+        check_number("latents.shared_out", self.shared_out as f64, Expected::Magnitude(last))
+    }
+
     /// All scales and the step noise, multiplied by a factor.
     #[must_use]
     pub fn widened(mut self, factor: f64) -> Self {

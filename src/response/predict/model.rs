@@ -1,7 +1,7 @@
 //! A trained response network and its file.
 
 use crate::learning::{LearningError, ModelFile};
-use crate::nn::{Checkpoint, ModelKind, random_stream};
+use crate::nn::{Checkpoint, ModelKind, parameter_budget, random_stream};
 use crate::response::network::response_network::ResponseNetwork;
 use crate::response::network::vehicle_network::VehicleNetwork;
 use crate::response::{LatentScales, Predictor, ResponseCase, ResponseConfig, ResponseRecord};
@@ -105,8 +105,12 @@ impl ModelFile for ResponseModel {
         let config: ResponseConfig = file.get("config")?;
         config.check()?;
         let mut rng = random_stream(0, "response network", 0);
-        let network = ResponseNetwork::new(&config.network, &mut rng)?;
-        network.parameters().import(&file.take_group("network"))?;
-        Ok(Self { config, network, latents: file.get("latents")?, record: file.get("record")? })
+        let tensors = file.take_group("network");
+        let network =
+            ResponseNetwork::within(parameter_budget(&tensors), &config.network, &mut rng)?;
+        network.parameters().import(&tensors)?;
+        let latents: LatentScales = file.get("latents")?;
+        latents.check()?;
+        Ok(Self { config, network, latents, record: file.get("record")? })
     }
 }

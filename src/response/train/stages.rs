@@ -37,6 +37,7 @@ pub fn pretrain(
     report: &mut TrainingProgress<'_>,
 ) -> Result<ResponseModel, LearningError> {
     settings.config.check()?;
+    settings.config.check_memory()?;
     let config = &settings.config;
     let motions = simulate(records, config.pretraining.motions, true, settings.seed);
     if motions.is_empty() {
@@ -79,6 +80,7 @@ pub fn fine_tune(
     report: &mut TrainingProgress<'_>,
 ) -> Result<ResponseModel, LearningError> {
     settings.config.check()?;
+    settings.config.check_memory()?;
     let folds = calibration_folds(set, settings);
     let n_trainings = folds.len() + 1;
     let (training_idx, is_cut) = (Cell::new(0), Cell::new(false));
@@ -179,9 +181,9 @@ fn run(
     report: &mut TrainingProgress<'_>,
 ) -> Result<(ResponseNetwork, Vec<EpochRecord<ResponseEpoch>>), LearningError> {
     let file = TrainingFile::new(CHECKPOINT_KIND, settings, settings.config.clone(), data_digest);
-    if let Some(saved) = file.read(SavedTraining::take)? {
-        training = training.resumed(saved)?;
-    }
+    file.read(|checkpoint| -> Result<(), LearningError> {
+        training.resume(SavedTraining::take(checkpoint)?)
+    })?;
     run_epochs(&mut training, &file, report)?;
     Ok(training.finish())
 }

@@ -64,11 +64,11 @@ impl<'a> TrainingRun<'a> {
         Ok(Self { settings, network, data, plan, optimizer, history, n_before })
     }
 
-    /// The training from the point at which a checkpoint was written.
-    pub(super) fn resumed(
-        mut self,
+    /// Goes on from the point at which a checkpoint was written.
+    pub(super) fn resume(
+        &mut self,
         saved: SavedTraining<ResponseEpoch>,
-    ) -> Result<Self, LearningError> {
+    ) -> Result<(), LearningError> {
         self.network.parameters().import(&saved.parameters)?;
         self.history = saved.history;
         // Every stage starts with an optimiser of its own.
@@ -76,7 +76,7 @@ impl<'a> TrainingRun<'a> {
             self.optimizer = AdamW::new(self.optimizer_config(planned), self.network.parameters())?;
             self.optimizer.import(&saved.optimizer)?;
         }
-        Ok(self)
+        Ok(())
     }
 
     /// The network as it is, and every epoch.

@@ -28,6 +28,7 @@ use crate::force::regression::scales::Scales;
 use crate::force::regression::shapes::{self, Shapes};
 use crate::force::regression::{ColumnSet, CurveFitError, spread};
 use crate::force::{CurvePrediction, ForceCase, ForceScenario};
+use crate::nn::{Expected, NnError, check_number};
 use crate::numerics::GaussianPrediction;
 use crate::uncertainty::{CurveMixture, ForceCurve};
 
@@ -79,6 +80,18 @@ struct Regressed {
 }
 
 impl CurveRegression {
+    /// Checks a regression from a file.
+    ///
+    /// - `name`: its place in the metadata.
+    ///
+    /// # Errors
+    /// [`NnError`] with the first number or list that is refused.
+    pub(crate) fn check(&self, name: &str) -> Result<(), NnError> {
+        self.scales.check(&format!("{name}.scales"))?;
+        self.shapes.check(&format!("{name}.shapes"))?;
+        check_number(&format!("{name}.unusual_share"), self.unusual_share, Expected::Share)
+    }
+
     /// Chooses the options and fits the regressions.
     ///
     /// - `seed`: of the folds and of the draws for predictions.

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::force::regression::{ColumnSet, CurveFitError, FeatureMap};
 use crate::force::{ForceCase, ForceScenario, MomentumModel};
+use crate::nn::{NnError, check_length};
 use crate::numerics::{GaussianPrediction, GaussianProcess, GaussianProcessData};
 use crate::uncertainty::CURVE_INTERVAL_S;
 
@@ -18,6 +19,15 @@ pub(super) struct Scales {
 }
 
 impl Scales {
+    /// Checks the scales from a file, as [`CurveRegression::check`](super::CurveRegression::check).
+    pub(super) fn check(&self, name: &str) -> Result<(), NnError> {
+        self.momentum.check(&format!("{name}.momentum"))?;
+        for (i, regression) in self.regressions.iter().enumerate() {
+            check_length(&format!("{name}.regressions[{i}]"), regression.n_outputs(), 1)?;
+        }
+        Ok(())
+    }
+
     pub(super) fn fit(
         cases: &[&ForceCase],
         columns: ColumnSet,

@@ -5,8 +5,10 @@ use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use crate::force::ForceCase;
+use crate::force::regression::alignment::SHAPE_CELLS;
 use crate::force::regression::scales::{Scales, unusual};
 use crate::force::regression::{Alignment, CurveFitError, CurveRegressionOptions};
+use crate::nn::{Expected, NnError, check_length, check_numbers};
 use crate::numerics::{GaussianPrediction, GaussianProcess, GaussianProcessData};
 
 /// Added to onsets, which may be zero, before their logarithm is taken, s.
@@ -30,6 +32,20 @@ pub(super) struct Shapes {
 }
 
 impl Shapes {
+    /// Checks the shapes from a file, as [`CurveRegression::check`](super::CurveRegression::check).
+    pub(super) fn check(&self, name: &str) -> Result<(), NnError> {
+        let n_values = 2 * SHAPE_CELLS;
+        check_length(&format!("{name}.mean"), self.mean.len(), n_values)?;
+        check_length(&format!("{name}.residual_std"), self.residual_std.len(), n_values)?;
+        let std = format!("{name}.residual_std");
+        check_numbers(&std, &self.residual_std, Expected::NotNegative)?;
+        for (i, component) in self.components.iter().enumerate() {
+            check_length(&format!("{name}.components[{i}]"), component.len(), n_values)?;
+        }
+        check_length(&format!("{name}.length"), self.length.n_outputs(), 1)?;
+        check_length(&format!("{name}.onset"), self.onset.n_outputs(), 1)
+    }
+
     pub(super) fn fit(
         cases: &[&ForceCase],
         scales: &Scales,
