@@ -63,6 +63,14 @@ pub enum FilterError {
         /// Smallest permitted sampling rate, Hz.
         expected_hz: f64,
     },
+    /// The sampling rate is higher than that of any recorder; the time is probably in another unit.
+    #[error("{rate_hz:e} samples a second are too many, expected {limit_hz:e} or fewer")]
+    RateTooHigh {
+        /// Sampling rate of the signal, Hz.
+        rate_hz: f64,
+        /// Largest permitted sampling rate, Hz.
+        limit_hz: f64,
+    },
     /// There are fewer than two samples, or the last time does not lie after the first, so that
     /// there is no sampling rate.
     #[error("{n_samples} samples over {duration_s} s have no sampling rate")]
@@ -127,6 +135,9 @@ impl ChannelClass {
     }
 }
 
+/// Largest sampling rate, Hz. Recorders of crash tests take 10 000 to 100 000 samples a second.
+const MAX_RATE_HZ: f64 = 1e7;
+
 impl ChannelFilter {
     /// Designs the filter of a class for a sample interval T, s.
     ///
@@ -139,7 +150,8 @@ impl ChannelFilter {
     /// # Errors
     /// [`FilterError::RateTooLow`] if the sampling rate is less than ten times the number of the
     /// class (SAE J211), or if the interval is not a positive number. The limit also keeps the
-    /// design frequency well below half the sampling rate.
+    /// design frequency well below half the sampling rate. [`FilterError::RateTooHigh`] beyond
+    /// 10 MHz, whose padding would be longer than any record.
     pub fn new(class: ChannelClass, sample_interval_s: f64) -> Result<Self, FilterError> {
         let class_hz = class.class_hz();
         let rate_hz = 1.0 / sample_interval_s;
@@ -149,6 +161,9 @@ impl ChannelFilter {
         let enough = rate_hz >= expected_hz * (1.0 - 1e-6);
         if !(sample_interval_s > 0.0 && enough && rate_hz.is_finite()) {
             return Err(FilterError::RateTooLow { rate_hz, class_hz, expected_hz });
+        }
+        if rate_hz > MAX_RATE_HZ {
+            return Err(FilterError::RateTooHigh { rate_hz, limit_hz: MAX_RATE_HZ });
         }
         let w_d = TAU * class_hz * DESIGN_RATIO;
         let w_a = (w_d * sample_interval_s / 2.0).tan();

@@ -215,3 +215,39 @@ fn the_files_of_a_data_set_have_a_largest_size_together() {
         "{error}"
     );
 }
+
+/// A motion whose last instant is 9 · 10⁵ s after its first, every 10 ms of which once were allocated.
+#[test]
+fn a_motion_or_a_log_of_ten_days_is_refused() {
+    use impactlab::data::read_motion_log;
+    use impactlab::response::{LogSettings, LoggedImpact, MotionLog, ResponseCase};
+    use impactlab::vehicle::Preset;
+    let folder = tempfile::tempdir().unwrap();
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/trajectories-fea");
+    let table = fs::read_to_string(shipped.join("cases.csv")).unwrap();
+    write(&folder, "cases.csv", table.lines().take(2).collect::<Vec<_>>().join("\n"));
+    fs::create_dir(folder.path().join("trajectories")).unwrap();
+    let recorded = fs::read_to_string(shipped.join("trajectories/FE_c001.csv")).unwrap();
+    let last = recorded.lines().last().unwrap();
+    let late = format!("9e5,{}\n", last.split_once(',').unwrap().1);
+    let path = write(&folder, "trajectories/FE_c001.csv", recorded.clone() + &late);
+    let opened = open(folder.path(), &mut |_| ControlFlow::Continue(())).unwrap();
+    let Opened::Dataset(dataset) = opened.complete().unwrap() else { panic!("a data set") };
+    assert_eq!(dataset.cases.len(), 1, "{:?}", dataset.problems);
+    let vehicle = Preset::Reference.parameters();
+    let (cases, problems) = ResponseCase::of_dataset(&dataset, &vehicle);
+    assert!(cases.is_empty());
+    let message = problems[0].to_string();
+    assert_eq!(message, "case FE_c001: lasts 900000 s, expected 3600 s or less; check its time");
+    let series = read_motion_log(&path, None).unwrap().series;
+    let log = MotionLog { path, series };
+    let settings = LogSettings { vehicle, impact_s: None, duration_s: 4.0 };
+    let error = LoggedImpact::of(&log, None, &settings).unwrap_err();
+    let message = error.to_string();
+    assert!(
+        message.ends_with(
+            "FE_c001.csv: lasts 900000 s, expected 3600 s or less; check its time or cut it"
+        ),
+        "{message}"
+    );
+}

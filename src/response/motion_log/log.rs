@@ -29,6 +29,16 @@ pub enum LogError {
         /// What the log lacks.
         source: SeriesError,
     },
+    /// The log is longer than the search for an impact is meant for; its time is probably wrong.
+    #[error("{}: lasts {duration_s} s, expected {limit_s} s or less; check its time or cut it", path.display())]
+    TooLong {
+        /// The log.
+        path: PathBuf,
+        /// From the first sample to the last, s.
+        duration_s: f64,
+        /// Longest log, s.
+        limit_s: f64,
+    },
     /// The log ends too soon after the impact.
     #[error("{}: {duration_s:.3} s of motion from the first contact at {start_s} s on, expected {least_s} s or more", path.display())]
     TooShort {

@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::data::{Channel, TimeSeries, contact_interval};
+use crate::ranges::SIMULATED_DURATION;
 use crate::response::motion_log::impulse::estimated_load;
 use crate::response::motion_log::tracks::LogWindow;
 use crate::response::train::case::MIN_SAMPLES;
@@ -68,6 +69,11 @@ impl LoggedImpact {
         load: Option<ContactLoad>,
         settings: &LogSettings,
     ) -> Result<Self, LogError> {
+        let [first_s, last_s] = log.ends_s();
+        if last_s - first_s > SIMULATED_DURATION.high {
+            let (path, duration_s) = (log.path.clone(), last_s - first_s);
+            return Err(LogError::TooLong { path, duration_s, limit_s: SIMULATED_DURATION.high });
+        }
         let window: LogWindow = match &load {
             Some(load) => contact_interval(&load.force).map(|(start, end)| [start, end]),
             None => log.contact(settings.impact_s)?,

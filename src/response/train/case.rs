@@ -14,6 +14,7 @@ use crate::learning::{
     LoadError, TrainingCase, cases_and_problems, content_digest, load_cases, load_dataset, n_steps,
 };
 use crate::numerics::interpolate;
+use crate::ranges::SIMULATED_DURATION;
 use crate::response::{ImpactRecord, STEP_S};
 use crate::vehicle::{VehicleInput, VehicleParameters, VehicleState};
 
@@ -53,6 +54,16 @@ pub enum ResponseCaseError {
         /// Smallest number of samples.
         least: usize,
     },
+    /// The motion is longer than any that is simulated; its time is probably wrong.
+    #[error("case {case}: lasts {duration_s} s, expected {limit_s} s or less; check its time")]
+    TooLong {
+        /// Name of the case.
+        case: String,
+        /// From the first sample to the last, s.
+        duration_s: f64,
+        /// Longest motion, s.
+        limit_s: f64,
+    },
 }
 
 /// Smallest number of samples of a case.
@@ -69,6 +80,16 @@ impl ResponseCase {
         let manoeuvre = recorded_manoeuvre(case, vehicle)?;
         let attributes = TrajectoryAttributes::read(&case.attributes).map_err(ReplayError::from)?;
         let friction = attributes.mu;
+        if let [first_s, .., last_s] = case.series.time_s()
+            && last_s - first_s > SIMULATED_DURATION.high
+        {
+            let (duration_s, limit_s) = (last_s - first_s, SIMULATED_DURATION.high);
+            return Err(ResponseCaseError::TooLong {
+                case: case.name.clone(),
+                duration_s,
+                limit_s,
+            });
+        }
         let in_case = |source| ReplayError::Series { case: case.name.clone(), source };
         let states = states(&case.series).map_err(in_case)?;
         if states.len() < MIN_SAMPLES {
