@@ -52,7 +52,7 @@ pub use question_job::{Answered, QuestionJob};
 pub use replay::ReplayStatus;
 pub use response::{DensityChoice, ForceChoice, MotionAnswer, ResponseSession, TrainingMode};
 pub use source::{Content, Source};
-pub use state::{FileStart, Project, State, Subject, View};
+pub use state::{FileStart, Project, RestoreError, State, Subject, View};
 
 /// The icon of the window, which is also the icon of the desktop entry.
 const ICON: &[u8] = include_bytes!("../../assets/desktop/impactlab.png");
