@@ -2,6 +2,10 @@
 
 use std::error::Error;
 
+/// Longest message of one error in a chain. The parsers of TOML and JSON repeat keys and values of
+/// the file in whole, however long they are.
+const MAX_MESSAGE_BYTES: usize = 1000;
+
 /// The error and its causes in one line: `what: why: why …`.
 pub fn error_chain(error: &dyn Error) -> String {
     let mut text = one_line(&error.to_string());
@@ -15,7 +19,12 @@ pub fn error_chain(error: &dyn Error) -> String {
 }
 
 fn one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
+    let mut line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    if line.len() > MAX_MESSAGE_BYTES {
+        line.truncate(line.floor_char_boundary(MAX_MESSAGE_BYTES));
+        line.push('…');
+    }
+    line
 }
 
 #[cfg(test)]
@@ -30,5 +39,15 @@ mod tests {
     fn every_cause_stands_once_in_one_line() {
         let text = error_chain(&Outer(std::fmt::Error));
         assert_eq!(text, format!("file a b cannot be used: {}", std::fmt::Error));
+    }
+
+    #[test]
+    fn a_parser_that_repeats_a_long_key_is_cut_short() {
+        #[derive(Debug, thiserror::Error)]
+        #[error("unknown field {0}")]
+        struct Unknown(String);
+        let line = error_chain(&Unknown("é".repeat(50_000)));
+        assert!(line.starts_with("unknown field éé") && line.ends_with("é…"), "{line:.40}");
+        assert!(line.len() <= MAX_MESSAGE_BYTES + '…'.len_utf8(), "{} bytes", line.len());
     }
 }

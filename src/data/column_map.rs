@@ -7,6 +7,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use crate::data::error::quoted;
 use crate::data::{Channel, spelling};
 use crate::units::Unit;
 
@@ -51,14 +52,15 @@ pub struct ColumnMap {
 pub enum MapError {
     /// A part has no `=`, or nothing on one side of it.
     #[error(
-        "{part:?} is no mapping, expected channel=column or channel=column:unit, e.g. fx=Kraft X:kN"
+        "{} is no mapping, expected channel=column or channel=column:unit, e.g. fx=Kraft X:kN",
+        quoted(part)
     )]
     Syntax {
         /// The part of the text between two commas.
         part: String,
     },
     /// The text to the left of `=` names no channel.
-    #[error("{name:?} is no channel, expected one of {}", short_names())]
+    #[error("{} is no channel, expected one of {}", quoted(name), short_names())]
     Channel {
         /// The text to the left of `=`.
         name: String,
@@ -205,5 +207,13 @@ mod tests {
         }
         let error = "force=1".parse::<ColumnMap>().unwrap_err().to_string();
         assert!(error.starts_with(r#""force" is no channel, expected one of time, x, y, yaw"#));
+    }
+
+    #[test]
+    fn a_long_mistake_is_quoted_in_part() {
+        for text in ["x".repeat(100_000), format!("{}=1", "x".repeat(100_000))] {
+            let error = text.parse::<ColumnMap>().unwrap_err().to_string();
+            assert!(error.starts_with("\"xxxx") && error.len() < 600, "{} bytes", error.len());
+        }
     }
 }

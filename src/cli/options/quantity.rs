@@ -127,6 +127,8 @@ fn symbols(quantity: Quantity) -> String {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
     use crate::ranges::{DRAWS, INSTANT, SPEED, YAW_RATE};
 
@@ -192,6 +194,37 @@ mod tests {
         ] {
             let error = count::<usize>(DRAWS)(text).unwrap_err().to_string();
             assert!(error.contains(part), "{text}: {error}");
+        }
+    }
+
+    /// Texts like numbers with units, and any others.
+    const TEXT: &str = r"\PC{0,24}|[-+0-9.eE]{0,12} ?(km/h|mph|deg/s|ms|m/s|µs|,)?[-+0-9.eE,x]{0,12}|(nan|inf|1e999)s?";
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// `PROPTEST_CASES` says how many texts are tried.
+        #[test]
+        fn any_text_is_a_number_in_its_range_or_refused(text in TEXT) {
+            for range in [SPEED, WINDOW] {
+                if let Ok(value) = number(range)(&text) {
+                    prop_assert!(value.is_finite() && range.contains(value), "{text:?}: {value}");
+                }
+            }
+            if let Ok([from_s, to_s]) = window_s(&text) {
+                prop_assert!(from_s <= to_s && WINDOW.contains(from_s) && WINDOW.contains(to_s));
+            }
+            if let Ok(point) = contact_point(&text) {
+                let inside = CONTACT_X.contains(point.x_m) && CONTACT_HEIGHT.contains(point.height_m);
+                prop_assert!(inside, "{text:?}: {point:?}");
+            }
+            if let Ok(n) = count::<usize>(DRAWS)(&text) {
+                prop_assert!(DRAWS.contains(n as f64), "{text:?}: {n}");
+            }
+            if let Ok(size) = size_px(&text) {
+                let inside = size.iter().all(|side| PICTURE_SIDE.contains(f64::from(*side)));
+                prop_assert!(inside, "{text:?}: {size:?}");
+            }
         }
     }
 }
