@@ -3,7 +3,7 @@
 use crate::analysis::{Analysis, AnalysisError, Settings, StruckVehicle, bullet::bullet_track};
 use crate::collision::Footprint;
 use crate::compare::{recorded_manoeuvre, replay_case};
-use crate::data::{Case, DatasetKind, ForceAttributes, TrajectoryAttributes};
+use crate::data::{Case, DatasetKind, ForceAttributes, TrajectoryAttributes, check_contact_within};
 use crate::vehicle::{ContactLoad, ContactPoint, Manoeuvre, VehicleState};
 
 /// Analyses a case of a force or a trajectory data set.
@@ -48,6 +48,7 @@ fn analyse_trajectory_case(case: &Case, settings: &Settings) -> Result<Analysis,
 fn analyse_force_case(case: &Case, settings: &Settings) -> Result<Analysis, AnalysisError> {
     let attributes = ForceAttributes::read(&case.attributes)?;
     let force = case.force_history()?;
+    check_contact_within(&force, settings.duration_s)?;
     let [mass_kg, _] = attributes.mass_kg;
     let [yaw_inertia, _] = attributes.yaw_inertia_kg_m2;
     let vehicle = settings.target.clone().with_mass(mass_kg, yaw_inertia);

@@ -4,7 +4,7 @@
 use crate::analysis::{Analysis, AnalysisError, Settings, StruckVehicle};
 use crate::collision::Footprint;
 use crate::compare::{MotionError, initial_state};
-use crate::data::{ForceHistory, Loaded, SeriesError};
+use crate::data::{ForceHistory, Loaded, SeriesError, TIME_TOLERANCE_S, check_contact_within};
 use crate::vehicle::{ContactLoad, ContactPoint, Manoeuvre, Motion, SteerHistory, VehicleState};
 
 /// A force history and the point where it acts. If the history records a yaw moment, this moment is
@@ -27,6 +27,7 @@ pub struct DriveSetup {
 /// Simulates a vehicle from a given initial state under a force and a steer angle.
 ///
 /// # Errors
+/// [`AnalysisError::ContactOutside`] if the force acts outside the duration,
 /// [`AnalysisError::Simulation`] if the motion diverges.
 pub fn analyse_drive(
     name: &str,
@@ -34,6 +35,9 @@ pub fn analyse_drive(
     settings: &Settings,
 ) -> Result<Analysis, AnalysisError> {
     let DriveSetup { initial, load, steer, notes } = setup;
+    if let Some((force, _)) = &load {
+        check_contact_within(force, settings.duration_s)?;
+    }
     let simulation = simulate((initial, settings.duration_s), load.as_ref(), steer, settings)?;
     let simulation = Some(simulation);
     Ok(Analysis { simulation, notes, ..of_load(name, Some(initial), load, settings) })
@@ -46,6 +50,7 @@ pub fn analyse_drive(
 /// The steer angle is zero: changes of toe that a trajectory records are not steering.
 ///
 /// # Errors
+/// [`AnalysisError::Series`] if the recording is to be simulated and does not start at t = 0,
 /// [`AnalysisError::Simulation`] if the motion diverges.
 pub fn analyse_recording(
     name: &str,
@@ -66,12 +71,13 @@ pub fn analyse_recording(
             (Some(initial), None)
         }
         (Ok(initial), Some(_)) => {
+            file.series.check_starts_at_zero(TIME_TOLERANCE_S)?;
             let motion = simulate((initial, duration_s), load.as_ref(), None, settings)?;
             (Some(initial), Some(motion))
         }
     };
-    let between = |motion: &Motion| MotionError::between(&motion.series, &file.series).ok();
-    let error = simulation.as_ref().and_then(between);
+    let between = |motion: &Motion| MotionError::between(&motion.series, &file.series);
+    let error = simulation.as_ref().map(between).transpose()?;
     let reference = Some(file.series.clone());
     let analysis = of_load(name, initial, load, settings);
     Ok(Analysis { simulation, reference, error, notes, ..analysis })

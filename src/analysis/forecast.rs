@@ -108,10 +108,10 @@ impl Spread {
         }
     }
 
-    /// Median and intervals of draws; zeros without any.
+    /// Median and intervals of draws; NaN without any.
     pub fn of_draws(mut draws: Vec<f64>) -> Self {
         draws.sort_by(f64::total_cmp);
-        let at = |probability| quantile_of_sorted(&draws, probability).unwrap_or(0.0);
+        let at = |probability| quantile_of_sorted(&draws, probability).unwrap_or(f64::NAN);
         Self { median: at(0.5), half: [at(0.25), at(0.75)], ninety: [at(0.05), at(0.95)] }
     }
 }
@@ -133,10 +133,12 @@ impl Estimate {
         Self::of_quantiles(|probability| distribution.quantile(probability))
     }
 
-    /// Median and intervals of draws; zeros without any.
+    /// Median and intervals of draws; NaN without any.
     pub fn of_draws(mut draws: Vec<f64>) -> Self {
         draws.sort_by(f64::total_cmp);
-        Self::of_quantiles(|probability| quantile_of_sorted(&draws, probability).unwrap_or(0.0))
+        Self::of_quantiles(|probability| {
+            quantile_of_sorted(&draws, probability).unwrap_or(f64::NAN)
+        })
     }
 
     /// Ends `[low, high]` of the interval at a level; `None` if there is no interval at this level.

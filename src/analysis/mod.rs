@@ -10,11 +10,12 @@ mod forecast;
 mod motion_bands;
 mod motion_density;
 mod motion_forecast;
+mod rest;
 mod scenario;
 
 use crate::collision::{Footprint, PulseError, ScenarioError};
 use crate::compare::{MotionError, ReplayError};
-use crate::data::{DataError, ForceHistory, SeriesError, TimeSeries};
+use crate::data::{ContactOutside, DataError, ForceHistory, SeriesError, TimeSeries};
 use crate::vehicle::{Integrator, Motion, SimulationError, VehicleParameters};
 
 pub use case::analyse_case;
@@ -28,6 +29,7 @@ pub use motion_forecast::{
     MotionForecast, MotionForecastError, MotionForecastSettings, MotionOutcome, StruckVehicle,
     forecast_collision, forecast_forces,
 };
+pub use rest::{REST_SPEED_M_S, REST_YAW_RATE_RAD_S};
 pub use scenario::{PulseSetup, analyse_scenario};
 
 /// Vehicles and settings of the simulation of a case.
@@ -94,6 +96,9 @@ pub enum AnalysisError {
     /// The trajectory case cannot be replayed.
     #[error(transparent)]
     Replay(#[from] ReplayError),
+    /// The force acts outside the time of the motion.
+    #[error(transparent)]
+    ContactOutside(#[from] ContactOutside),
     /// The simulation of the motion failed.
     #[error(transparent)]
     Simulation(#[from] SimulationError),

@@ -12,21 +12,22 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::analysis::Spread;
+use crate::analysis::rest::{Pace, rest_instant};
 use crate::collision::{Scenario, ScenarioError};
-use crate::data::{ForceAxes, ForceHistory};
+use crate::data::{
+    ContactOutside, ForceAxes, ForceHistory, check_contact_within, contact_interval,
+};
 use crate::force::{ForceError, ForceModel, ForcePrediction, ForceScenario};
 use crate::learning::LearningError;
 use crate::nn::random_stream;
 use crate::ranges::{DRAWS, FORECAST_DURATION, OutOfRange};
 use crate::response::{MotionDistribution, Predictor, ResponseModel, STEP_S, weighted_mean};
-use crate::uncertainty::{ForceCurve, NormalMixture, PlanarMixture};
+use crate::uncertainty::{ForceCurve, PlanarMixture};
 use crate::vehicle::frames::body_from_world;
 use crate::vehicle::{
     ContactLoad, ContactPoint, Manoeuvre, VehicleInput, VehicleParameters, VehicleState,
 };
 
-/// Speed of the CG below which a vehicle counts as at rest, m/s.
-const REST_SPEED_M_S: f64 = 0.3;
 /// Number of draws for the intervals of the final position.
 const N_END_DRAWS: usize = 4000;
 /// Number of draws for the area of the region of the final position, which then has an error of some
@@ -75,10 +76,13 @@ pub struct MotionForecast {
 /// State of the vehicle at rest, or at the end of the forecast.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MotionOutcome {
-    /// Time from the start of the impact at which the central path comes to rest, or duration of
-    /// the forecast, s.
+    /// Time from the start of the impact at which the vehicle comes to rest, or duration of the
+    /// forecast, s.
     pub time_s: f64,
-    /// Whether the speed on the central path falls below 0.3 m/s within the forecast.
+    /// Whether the vehicle comes to rest: after the end of the force, speed and yaw rate fall below
+    /// [`REST_SPEED_M_S`](crate::analysis::REST_SPEED_M_S) and
+    /// [`REST_YAW_RATE_RAD_S`](crate::analysis::REST_YAW_RATE_RAD_S) and stay there to the end of the
+    /// forecast.
     pub is_at_rest: bool,
     /// X of the CG at that time, m.
     pub x_m: Spread,
@@ -87,8 +91,10 @@ pub struct MotionOutcome {
     /// Change of heading since the start of the impact, rad, positive to the left. It is not
     /// wrapped: a full turn counts as 2π.
     pub heading_change_rad: Spread,
-    /// Speed of the CG on the central path, m/s.
+    /// Speed of the CG, m/s: mean over the central paths under each force.
     pub speed_m_s: f64,
+    /// Size of the yaw rate, rad/s: mean over the central paths under each force.
+    pub yaw_rate_rad_s: f64,
     /// Area of the smallest region that holds the position with a probability of 90 %, m².
     pub region_90_m2: f64,
     /// Probability that the change of heading is at least 90° to either side at that time.
@@ -109,6 +115,9 @@ pub enum MotionForecastError {
     /// The duration of the forecast or the number of forces is outside its range.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
+    /// The force acts outside the time of the forecast.
+    #[error(transparent)]
+    ContactOutside(#[from] ContactOutside),
     /// The predicted motion is not finite.
     #[error("the predicted motion diverges")]
     Diverged,
@@ -170,8 +179,9 @@ impl StruckVehicle {
 ///   of the predicted force.
 ///
 /// # Errors
-/// [`MotionForecastError::Force`] if the force network refuses the collision, and the errors of
-/// [`forecast_forces`].
+/// [`MotionForecastError::Force`] if the force network refuses the collision,
+/// [`MotionForecastError::ContactOutside`] if a drawn force ends after the forecast, and the errors
+/// of [`forecast_forces`].
 pub fn forecast_collision(
     collision: &ForceScenario,
     (force_model, response): (&ForceModel, &ResponseModel),
@@ -185,6 +195,9 @@ pub fn forecast_collision(
     let heading_rad = struck.initial.yaw_rad;
     let forces: Vec<ForceHistory> =
         curves.iter().map(|curve| in_world(curve, heading_rad)).collect();
+    for force in &forces {
+        check_contact_within(force, settings.duration_s)?;
+    }
     let mut forecast = forecast_forces(&forces, response, struck, settings)?;
     forecast.force = Some(prediction);
     Ok(forecast)
@@ -215,7 +228,10 @@ pub fn forecast_forces(
         forces.par_iter().map(of).unzip();
     let central = mean_of(&paths);
     let distribution = MotionDistribution::mixed(parts);
-    let outcome = outcome(&distribution, &central, settings.seed)
+    let pace = Pace::mean_of(&paths);
+    let force_end_s = forces.iter().filter_map(contact_interval).map(|(_, end_s)| end_s);
+    let rest = rest_instant(&pace, force_end_s.fold(0.0, f64::max));
+    let outcome = outcome((&distribution, &central), (&pace, rest), settings.seed)
         .filter(|_| central.iter().all(|state| state.to_array().iter().all(|v| v.is_finite())))
         .ok_or(MotionForecastError::Diverged)?;
     Ok(MotionForecast { distribution, central, forces: forces.to_vec(), outcome, force: None })
@@ -241,16 +257,15 @@ fn mean_of(paths: &[Vec<VehicleState<f64>>]) -> Vec<VehicleState<f64>> {
 }
 
 /// Outcome of a motion; `None` for an empty motion.
+///
+/// - `rest`: the instant at which the vehicle comes to rest, if it does.
 fn outcome(
-    distribution: &MotionDistribution,
-    central: &[VehicleState<f64>],
+    (distribution, central): (&MotionDistribution, &[VehicleState<f64>]),
+    (pace, rest): (&[Pace], Option<usize>),
     seed: u64,
 ) -> Option<MotionOutcome> {
-    let speed = |state: &VehicleState<f64>| state.vx_m_s.hypot(state.vy_m_s);
-    let last = central.len().checked_sub(1)?;
-    let rest = central.iter().position(|state| speed(state) < REST_SPEED_M_S);
-    let at = rest.unwrap_or(last);
-    let (state, start) = (central.get(at)?, central.first()?);
+    let at = rest.unwrap_or(central.len().checked_sub(1)?);
+    let (pace, start) = (pace.get(at)?, central.first()?);
     let position: PlanarMixture = distribution.position(at);
     let draws = position.sample(N_END_DRAWS, seed);
     let of = |axis: usize| Spread::of_draws(draws.iter().map(|point| point[axis]).collect());
@@ -266,20 +281,12 @@ fn outcome(
         x_m: of(0),
         y_m: of(1),
         heading_change_rad: turned(Spread::of(&heading)),
-        speed_m_s: speed(state),
+        speed_m_s: pace.speed_m_s,
+        yaw_rate_rad_s: pace.yaw_rate_rad_s,
         region_90_m2: region_m2(&position, 0.9),
-        p_quarter_turn: p_turn(&heading, start.yaw_rad, FRAC_PI_2),
-        p_half_turn: p_turn(&heading, start.yaw_rad, PI),
+        p_quarter_turn: heading.p_outside(start.yaw_rad - FRAC_PI_2, start.yaw_rad + FRAC_PI_2),
+        p_half_turn: heading.p_outside(start.yaw_rad - PI, start.yaw_rad + PI),
     })
-}
-
-/// Probability that the change of heading is at least `angle_rad` to either side, 0 to 1.
-///
-/// The cumulative probability of a mixture may exceed 1 by rounding errors, which must not make
-/// this probability negative.
-fn p_turn(heading: &NormalMixture, start_rad: f64, angle_rad: f64) -> f64 {
-    let (left, right) = (start_rad + angle_rad, start_rad - angle_rad);
-    (1.0 - heading.cdf(left) + heading.cdf(right)).clamp(0.0, 1.0)
 }
 
 /// Area of the smallest region that holds the position with probability `level`, m².
@@ -300,22 +307,7 @@ fn region_m2(position: &PlanarMixture, level: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::uncertainty::{NormalPart, PlanarPart};
-
-    #[test]
-    fn the_probability_of_a_turn_that_cannot_be_is_not_below_zero() {
-        // The weights sum to slightly more than one.
-        let weights = (1..60).map(|i| f64::from(i) / 1770.0);
-        for n_parts in 2..60 {
-            let parts = weights.clone().take(n_parts);
-            let parts = parts.map(|weight| NormalPart { weight, mean: 0.1, std: 1e-3 }).collect();
-            let heading = NormalMixture::new(parts).unwrap();
-            let p = p_turn(&heading, 0.0, FRAC_PI_2);
-            assert!(p.is_sign_positive() && p < 1e-12, "{n_parts} parts: {p:e}");
-            let p = p_turn(&heading, PI, FRAC_PI_2);
-            assert!((1.0 - 1e-12..=1.0).contains(&p), "{n_parts} parts: {p}");
-        }
-    }
+    use crate::uncertainty::PlanarPart;
 
     #[test]
     fn the_region_of_a_normal_distribution_is_an_ellipse() {

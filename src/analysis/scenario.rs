@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::{Analysis, AnalysisError, Settings, StruckVehicle, VehicleTrack};
 use crate::collision::{Pose, Pulse, PulseShape, Scenario, ScenarioVehicle};
-use crate::data::ForceHistory;
+use crate::data::{ForceHistory, check_contact_within};
 use crate::vehicle::frames::body_from_world;
 use crate::vehicle::{
     ContactLoad, ContactPoint, Manoeuvre, Motion, VehicleParameters, VehicleState,
@@ -38,7 +38,8 @@ impl Default for PulseSetup {
 ///
 /// # Errors
 /// [`AnalysisError::Scenario`] if the vehicles do not meet or the collision cannot be solved,
-/// [`AnalysisError::Pulse`] if the pulse is invalid, [`AnalysisError::Simulation`] if a motion
+/// [`AnalysisError::Pulse`] if the pulse is invalid, [`AnalysisError::ContactOutside`] if it is
+/// longer than the simulation, [`AnalysisError::Simulation`] if a motion
 /// diverges.
 pub fn analyse_scenario(
     scenario: &Scenario,
@@ -53,6 +54,7 @@ pub fn analyse_scenario(
     };
     let [px, py] = solution.impulse_n_s;
     let force = history([px, py])?;
+    check_contact_within(&force, settings.duration_s)?;
     let run = |vehicle: &ScenarioVehicle, preset: &VehicleParameters, pose: &Pose, force| {
         let parameters = preset.clone().with_mass(vehicle.mass_kg, Some(vehicle.yaw_inertia_kg_m2));
         let [x_m, y_m] = pose.body_from_world(geometry.contact_point_m);

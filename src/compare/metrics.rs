@@ -27,8 +27,8 @@ pub struct MotionError {
     /// Difference of yaw (prediction − reference) at the last sample, wrapped, rad.
     #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
     pub final_heading_error_rad: f64,
-    /// Distance between the positions at each of [`HORIZONS_S`], m, linear between samples. For a
-    /// horizon beyond the end of the reference it is the distance at the last sample.
+    /// Distance between the positions at each of [`HORIZONS_S`], m, linear between samples; NaN for
+    /// a horizon more than a sample interval beyond the end of the reference.
     #[serde(serialize_with = "finite_or_nulls", deserialize_with = "nulls_as_nan")]
     pub horizon_error_m: [f64; 4],
     /// Root mean square error of X, m.
@@ -47,12 +47,20 @@ pub struct MotionError {
 
 impl MotionError {
     /// Compares `predicted` with `reference` at the times of the reference. The prediction is
-    /// interpolated linearly, and its end values are held outside of its time range.
+    /// interpolated linearly; it may end one sample interval before the reference, over which its
+    /// last value is held.
     ///
     /// # Errors
-    /// [`SeriesError::Missing`] if X, Y or yaw is missing in either.
+    /// [`SeriesError::Missing`] if X, Y or yaw is missing in either, [`SeriesError::TooShort`] if the
+    /// prediction ends earlier.
     pub fn between(predicted: &TimeSeries, reference: &TimeSeries) -> Result<Self, SeriesError> {
         let time_s = reference.time_s();
+        let (end_s, expected_s) = (end_s(predicted), end_s(reference));
+        let interval_s = last_interval_s(reference).max(last_interval_s(predicted));
+        let tolerance_s = interval_s * (1.0 + 1e-6);
+        if expected_s > end_s + tolerance_s {
+            return Err(SeriesError::TooShort { end_s, expected_s });
+        }
         let difference = |channel| -> Result<Vec<f64>, SeriesError> {
             let (predicted, grid) = (predicted.require(channel)?, predicted.time_s());
             let pairs = time_s.iter().zip(reference.require(channel)?);
@@ -63,7 +71,11 @@ impl MotionError {
         let (dx, dy) = (difference(Channel::X)?, difference(Channel::Y)?);
         let distance: Vec<f64> = dx.iter().zip(&dy).map(|(x, y)| x.hypot(*y)).collect();
         let heading = difference(Channel::Yaw)?.last().copied().unwrap_or(f64::NAN);
-        let at = |time| interpolate(time_s, &distance, time).unwrap_or(f64::NAN);
+        let at = |horizon_s: f64| {
+            let is_within = horizon_s <= expected_s + tolerance_s;
+            let found = is_within.then(|| interpolate(time_s, &distance, horizon_s)).flatten();
+            found.unwrap_or(f64::NAN)
+        };
         let optional = |channel| difference(channel).ok().map(|values| root_mean_square(&values));
         Ok(Self {
             average_error_m: distance.iter().sum::<f64>() / distance.len() as f64,
@@ -76,6 +88,19 @@ impl MotionError {
             rmse_vy_m_s: optional(Channel::Vy),
             rmse_yaw_rate_rad_s: optional(Channel::YawRate),
         })
+    }
+}
+
+/// The last instant, s; −∞ without samples.
+fn end_s(series: &TimeSeries) -> f64 {
+    series.time_s().last().copied().unwrap_or(f64::NEG_INFINITY)
+}
+
+/// Time between the last two samples, s; 0 for fewer.
+fn last_interval_s(series: &TimeSeries) -> f64 {
+    match series.time_s() {
+        [.., before, last] => last - before,
+        _ => 0.0,
     }
 }
 
@@ -154,6 +179,35 @@ mod tests {
             assert!((got - expected).abs() < 1e-12);
         }
         assert_eq!((error.rmse_x_m, error.rmse_vx_m_s), (0.0, None));
+    }
+
+    /// The first samples of a motion.
+    fn cut(motion: &TimeSeries, n_samples: usize) -> TimeSeries {
+        let mut cut = TimeSeries::new(motion.time_s()[..n_samples].to_vec()).unwrap();
+        for channel in motion.channels() {
+            cut.insert(channel, motion.get(channel).unwrap()[..n_samples].to_vec()).unwrap();
+        }
+        cut
+    }
+
+    #[test]
+    fn a_horizon_that_the_recording_does_not_reach_has_no_error() {
+        let (predicted, reference) = (motion(0.5, 0.0), motion(0.0, 0.0));
+        let error = MotionError::between(&predicted, &cut(&reference, 150)).unwrap();
+        let [half, one, two, four] = error.horizon_error_m;
+        assert!((half - 0.25).abs() < 1e-12 && (one - 0.5).abs() < 1e-12, "{half} {one}");
+        assert!(two.is_nan() && four.is_nan(), "{two} {four}");
+        // The recordings of the data sets end at 3.99 s.
+        let error = MotionError::between(&predicted, &cut(&reference, 400)).unwrap();
+        assert!((error.horizon_error_m[3] - 0.5 * 3.99).abs() < 1e-12, "{error:?}");
+    }
+
+    #[test]
+    fn a_prediction_that_ends_before_the_recording_is_no_prediction_of_it() {
+        let reference = motion(0.0, 0.0);
+        let error = MotionError::between(&cut(&reference, 300), &reference).unwrap_err();
+        assert_eq!(error, SeriesError::TooShort { end_s: 2.99, expected_s: 4.0 });
+        assert!(MotionError::between(&cut(&reference, 400), &reference).is_ok());
     }
 
     #[test]

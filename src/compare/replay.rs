@@ -9,7 +9,8 @@ use crate::compare::{
     MotionError, SPIN_YAW_CHANGE_RAD, largest_yaw_change_rad, physical_violations,
 };
 use crate::data::{
-    Case, Channel, DataError, Outcome, SeriesError, TimeSeries, TrajectoryAttributes,
+    Case, Channel, DataError, Outcome, SeriesError, TIME_TOLERANCE_S, TimeSeries,
+    TrajectoryAttributes,
 };
 use crate::jobs::{Progress, ProgressCallback};
 use crate::numerics::Summary;
@@ -89,8 +90,9 @@ pub struct ErrorSummary {
     pub final_error_m: Summary,
     /// Absolute value of the wrapped heading error at the last sample, rad.
     pub final_heading_error_rad: Summary,
-    /// Distance between the positions at each of [`HORIZONS_S`](crate::compare::HORIZONS_S), m.
-    pub horizon_error_m: [Summary; 4],
+    /// Distance between the positions at each of [`HORIZONS_S`](crate::compare::HORIZONS_S), m, over
+    /// the cases that last as long.
+    pub horizon_error_m: [Option<Summary>; 4],
     /// Root mean square error of X, m.
     pub rmse_x_m: Summary,
     /// Root mean square error of Y, m.
@@ -108,8 +110,9 @@ pub struct ErrorSummary {
 /// The recorded initial state and contact force of a case as a manoeuvre of the recorded duration.
 ///
 /// # Errors
-/// [`ReplayError::Attributes`] if an attribute, [`ReplayError::Series`] if a column is missing,
-/// [`ReplayError::Contact`] if the force does not act on the vehicle.
+/// [`ReplayError::Attributes`] if an attribute, [`ReplayError::Series`] if a column is missing or the
+/// recording does not start at t = 0, [`ReplayError::Contact`] if the force does not act on the
+/// vehicle.
 pub fn recorded_manoeuvre(
     case: &Case,
     vehicle: &VehicleParameters,
@@ -122,6 +125,7 @@ pub fn recorded_manoeuvre(
         .check_contact([x_m, y_m])
         .map_err(|source| ReplayError::Contact { case: case.name.clone(), source })?;
     let force = case.force_history().map_err(in_case)?;
+    case.series.check_starts_at_zero(TIME_TOLERANCE_S).map_err(in_case)?;
     let time_s = case.series.time_s();
     let last = time_s.last().copied().unwrap_or(0.0);
     Ok(Manoeuvre {
@@ -218,13 +222,16 @@ impl ErrorSummary {
         let known =
             |figure: fn(&MotionError) -> Option<f64>| Summary::of(errors().filter_map(figure));
         let average_error_m = of(&|error| error.average_error_m)?;
-        let horizon = |index: usize| of(&|error| error.horizon_error_m[index]);
+        let horizon = |index: usize| {
+            let reached = errors().map(|error| error.horizon_error_m[index]);
+            Summary::of(reached.filter(|distance_m| !distance_m.is_nan()))
+        };
         Some(Self {
             average_error_m,
             score_1_m: 1.0 / average_error_m.mean,
             final_error_m: of(&|error| error.final_error_m)?,
             final_heading_error_rad: of(&|error| error.final_heading_error_rad.abs())?,
-            horizon_error_m: [horizon(0)?, horizon(1)?, horizon(2)?, horizon(3)?],
+            horizon_error_m: std::array::from_fn(horizon),
             rmse_x_m: of(&|error| error.rmse_x_m)?,
             rmse_y_m: of(&|error| error.rmse_y_m)?,
             rmse_vx_m_s: known(|error| error.rmse_vx_m_s),

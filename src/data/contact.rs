@@ -10,6 +10,41 @@ pub const MIN_GAP_S: f64 = 0.025;
 /// exactly zero outside the contact, measured forces are not.
 pub const CONTACT_SHARE_OF_PEAK: f64 = 0.01;
 
+/// Times are written with few digits: a contact that leaves the time of a motion by less is not cut.
+pub const TIME_TOLERANCE_S: f64 = 1e-3;
+
+/// A contact that lies partly or wholly outside the time of a motion, so that a part of its impulse
+/// would be lost.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error(
+    "contact from {start_s} s to {end_s} s, expected between 0 s and the end at {duration_s} s; \
+     shift the time column or change the duration"
+)]
+pub struct ContactOutside {
+    /// First touch, s.
+    pub start_s: f64,
+    /// Last separation, s.
+    pub end_s: f64,
+    /// Duration of the motion, s.
+    pub duration_s: f64,
+}
+
+/// Checks that the contact lies within a motion from t = 0 to `duration_s`. Samples of a measured
+/// force that count as zero ([`CONTACT_SHARE_OF_PEAK`]) may lie outside.
+///
+/// # Errors
+/// [`ContactOutside`].
+pub fn check_contact_within(force: &ForceHistory, duration_s: f64) -> Result<(), ContactOutside> {
+    match contact_interval(force) {
+        Some((start_s, end_s))
+            if start_s < -TIME_TOLERANCE_S || end_s > duration_s + TIME_TOLERANCE_S =>
+        {
+            Err(ContactOutside { start_s, end_s, duration_s })
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Start and end of each contact pulse, s, in order of time; empty if the force is zero throughout.
 pub fn contact_pulses(force: &ForceHistory) -> Vec<(f64, f64)> {
     let Some((peak_n, _)) = force.peak().filter(|(peak_n, _)| *peak_n > 0.0) else {
@@ -85,6 +120,25 @@ mod tests {
         }
         assert_eq!(contact_interval(&history(Sampling::Instant, &[0.0; 4])), None);
         assert_eq!(contact_interval(&history(Sampling::Instant, &[])), None);
+    }
+
+    #[test]
+    fn a_contact_that_is_cut_at_either_end_is_refused() {
+        let force = history(Sampling::Instant, &[0.0, 5.0, 9.0, 5.0, 0.0]);
+        let shifted = |by_s: f64| {
+            let time_s = force.time_s.iter().map(|t| t + by_s).collect();
+            check_contact_within(&ForceHistory { time_s, ..force.clone() }, 1.0)
+        };
+        assert_eq!(shifted(0.0), Ok(()));
+        assert_eq!(shifted(0.96), Ok(()));
+        for by_s in [-0.5, -0.02, 0.98, 3.0] {
+            let outside = shifted(by_s).unwrap_err();
+            assert!((outside.start_s - by_s).abs() < 1e-12, "{by_s}: {outside}");
+        }
+        // Noise before the contact is no contact.
+        let mut early = history(Sampling::Instant, &[0.01, 0.01, 0.0, 5.0, 9.0, 5.0, 0.0]);
+        early.time_s.iter_mut().for_each(|t| *t -= 0.015);
+        assert_eq!(check_contact_within(&early, 1.0), Ok(()));
     }
 
     #[test]

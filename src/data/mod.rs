@@ -47,7 +47,10 @@ pub use channel::Channel;
 pub use column_map::{ColumnMap, ColumnRef, ColumnSource, MapError};
 pub(crate) use columns::Columns;
 pub use columns::{ColumnProposal, ColumnUse, Note, map_from_proposals, propose_columns};
-pub use contact::{CONTACT_SHARE_OF_PEAK, MIN_GAP_S, contact_interval, contact_pulses};
+pub use contact::{
+    CONTACT_SHARE_OF_PEAK, ContactOutside, MIN_GAP_S, TIME_TOLERANCE_S, check_contact_within,
+    contact_interval, contact_pulses,
+};
 pub use dataset::{Case, Dataset, DatasetKind, Outcome};
 pub use dialect::{Dialect, Separator};
 pub use error::DataError;

@@ -35,6 +35,25 @@ pub enum SeriesError {
         /// Time of the later sample, s.
         after: f64,
     },
+    /// A recorded motion does not start at t = 0, where its impact begins.
+    #[error(
+        "the recording starts at {start_s} s, expected 0 s, when the impact begins; shift the time \
+         column"
+    )]
+    Start {
+        /// Time of the first sample, s.
+        start_s: f64,
+    },
+    /// A predicted motion ends before the motion that it is compared with.
+    #[error(
+        "the prediction ends at {end_s} s, expected the end of the reference at {expected_s} s"
+    )]
+    TooShort {
+        /// Last instant of the prediction, s.
+        end_s: f64,
+        /// Last instant of the reference, s.
+        expected_s: f64,
+    },
     /// A column that the computation needs is missing.
     #[error("column {} is missing", channel.header())]
     Missing {
@@ -79,6 +98,18 @@ impl TimeSeries {
     /// The time axis, s, strictly increasing.
     pub fn time_s(&self) -> &[f64] {
         &self.time_s
+    }
+
+    /// Checks that the time starts at 0 to within a tolerance, so that the clock of a motion that is
+    /// computed from the first sample on is that of the recording.
+    ///
+    /// # Errors
+    /// [`SeriesError::Start`].
+    pub fn check_starts_at_zero(&self, tolerance_s: f64) -> Result<(), SeriesError> {
+        match self.time_s.first() {
+            Some(&start_s) if start_s.abs() > tolerance_s => Err(SeriesError::Start { start_s }),
+            _ => Ok(()),
+        }
     }
 
     /// The column of a channel; `None` if the series does not have it.

@@ -148,6 +148,12 @@ impl<'a> TomlFile<'a> {
         }
     }
 
+    /// Whether the file has a key, preceded by the names of its tables, such as `mass.mass_kg`.
+    pub fn contains(self, key: &str) -> bool {
+        let root = DeTable::parse(self.text);
+        root.is_ok_and(|root| find(root.get_ref(), key).is_some())
+    }
+
     fn syntax(self, error: &toml::de::Error) -> TomlError {
         let (line, column) = self.line_column(error.span().map_or(0, |span| span.start));
         let (path, message) = (self.path.to_owned(), error.message().to_owned());

@@ -76,7 +76,10 @@ impl ForceModel {
             })
             .collect();
         let k = self.config.network.components;
+        // The weights come from a softmax in f32, so that they sum to one to 1e-7 only.
+        let total: f64 = components.iter().map(|c| c.weight).sum();
         let hooking = components.iter().skip(k - 1).step_by(k).map(|c| c.weight).sum::<f64>();
+        let hooking = (hooking / total).clamp(0.0, 1.0);
         let mean = mean_curve(&centres, &variants);
         let momentum = [0, 1].map(|axis| {
             let part =

@@ -1,4 +1,4 @@
-//! What an answer rests on that nobody said.
+//! What an answer rests on that nobody said, and what was said that it does not rest on.
 
 use std::fmt;
 
@@ -22,9 +22,16 @@ pub enum AssumedQuantity {
     ContactHeight,
     /// Shape and duration of a pulse that carries a known impulse.
     Pulse,
+    /// Yaw rate, roll angle or roll rate at the start of a recorded motion.
+    StartOfRecord,
+    /// Road-wheel angle before or after its recording.
+    Steer,
+    /// Not a value that was assumed, but one that was given and is not used.
+    NotUsed,
 }
 
-/// A value that the question left open and the program chose.
+/// A value that the question left open and the program chose, or one that the question gives and the
+/// answer does not depend on ([`AssumedQuantity::NotUsed`]).
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Assumption {
     /// What was assumed.
@@ -45,6 +52,9 @@ impl AssumedQuantity {
             Self::ContactPoint => "contact point",
             Self::ContactHeight => "height of the contact",
             Self::Pulse => "force over time",
+            Self::StartOfRecord => "start of the recorded motion",
+            Self::Steer => "steer angle",
+            Self::NotUsed => "not used",
         }
     }
 }
@@ -69,6 +79,10 @@ impl Assumption {
 
 impl fmt::Display for Assumption {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {} ({})", self.quantity.label(), self.value, self.reason)
+        let Self { quantity, value, reason } = self;
+        match quantity {
+            AssumedQuantity::NotUsed => write!(f, "not used: {value} ({reason})"),
+            quantity => write!(f, "assumed {}: {value} ({reason})", quantity.label()),
+        }
     }
 }

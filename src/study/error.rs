@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use crate::analysis::{AnalysisError, MotionForecastError};
 use crate::collision::{OffOutline, ScenarioError};
 use crate::compare::ReplayError;
-use crate::data::{DataError, SeriesError, TomlError};
+use crate::data::{ContactOutside, DataError, SeriesError, TomlError};
 use crate::force::{EvaluateError, ForceError};
 use crate::learning::{LearningError, LoadError};
 use crate::ranges::OutOfRange;
@@ -219,20 +219,13 @@ pub enum StudyError {
         /// The force file.
         path: PathBuf,
     },
-    /// The contact lies outside the simulated time.
-    #[error(
-        "{name}: contact from {start_s} s to {end_s} s, expected between 0 s and the end at \
-         {duration_s} s; shift the time column or change --duration"
-    )]
+    /// The contact lies outside the time of the motion.
+    #[error("{name}: {outside}")]
     ContactOutside {
         /// The force file, case or scenario.
         name: String,
-        /// First touch, s.
-        start_s: f64,
-        /// Last separation, s.
-        end_s: f64,
-        /// Duration of the simulation, s.
-        duration_s: f64,
+        /// When the vehicles touch, and the duration of the motion.
+        outside: ContactOutside,
     },
     /// A recorded motion has the friction of its own case.
     #[error(
@@ -266,6 +259,22 @@ pub enum StudyError {
     TrainingExists {
         /// The state of the training that is there.
         path: PathBuf,
+    },
+    /// The vehicles turn so fast before the impact that a force network, which knows no turning
+    /// vehicles, does not answer the question.
+    #[error(
+        "{name}: the vehicles turn before the impact, which moves the points of contact with \
+         {turning_m_s:.1} m/s against each other, beside {moving_m_s:.1} m/s by their velocities; the \
+         force network knows vehicles that do not turn, expected less than half as much; the momentum \
+         solution takes it in: --given-force, or impactlab simulate"
+    )]
+    TurningVehicles {
+        /// The scenario.
+        name: String,
+        /// Speed of one point of contact against the other by turning, m/s.
+        turning_m_s: f64,
+        /// Speed of one vehicle against the other, m/s.
+        moving_m_s: f64,
     },
     /// Nothing says what should be learned from.
     #[error("nothing to learn from: say which data set with --data, or which log with --log")]

@@ -17,6 +17,7 @@ use crate::ranges::FOLDS;
 use crate::study::checks::check_count;
 use crate::study::inputs::force_cases;
 use crate::study::question::progress_of;
+use crate::study::unused::not_used;
 use crate::study::{
     Assumption, BadCases, EvaluatedCases, Event, Library, ModelChoice, Observer, Provenance,
     Question, StudyError,
@@ -127,7 +128,7 @@ pub struct CrossValidateForceReport {
     /// The metrics over all folds, and of each fold.
     #[serde(flatten)]
     pub validation: CrossValidation,
-    /// What was assumed: nothing.
+    /// What was given and is not used.
     pub assumptions: Vec<Assumption>,
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
@@ -187,7 +188,9 @@ impl Question for EvaluateForceRequest {
             let mut report = progress_of(observer);
             let validated = cross_validate(cases, model.config(), folds, &mut report)?;
             return Ok(validated.map(|validation| {
-                let assumptions = Vec::new();
+                let what = format!("data set {}", self.data.display());
+                let reason = "a cross-validation uses the training cases that the model holds";
+                let assumptions = vec![not_used(what, reason)];
                 let report = CrossValidateForceReport { validation, assumptions, provenance };
                 EvaluateForceAnswer { report: ForceEvaluation::Folds(report), cases: None }
             }));

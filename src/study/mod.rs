@@ -48,6 +48,7 @@ mod simulate_dataset;
 mod simulate_report;
 mod train_force;
 mod train_response;
+mod unused;
 
 mod request;
 

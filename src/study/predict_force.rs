@@ -9,6 +9,7 @@ use crate::force::{ForceError, ForcePrediction, ForceScenario, OutsideTraining};
 use crate::ranges::SAMPLES;
 use crate::study::checks::{check_all, check_count};
 use crate::study::simulate_dataset::take_case;
+use crate::study::unused::{by_force_network, not_used};
 use crate::study::{
     Assumption, Library, ModelChoice, Observer, Provenance, Question, ScenarioChoice, StudyError,
 };
@@ -90,7 +91,7 @@ pub struct PredictForceReport {
     pub is_contact_open: bool,
     /// Whether the bullet's body is open and drawn from that of the training cases.
     pub is_body_open: bool,
-    /// What was assumed: nothing, since what is open is drawn.
+    /// What was given and is not used. Nothing is assumed, since what is open is drawn.
     pub assumptions: Vec<Assumption>,
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
@@ -123,16 +124,26 @@ pub struct PredictForceAnswer {
     pub prediction: ForcePrediction,
 }
 
+/// A collision as a force network is asked about it.
+struct AskedCollision {
+    name: String,
+    numbers: ForceScenario,
+    /// What the network does not use of what the question says.
+    unused: Vec<Assumption>,
+}
+
 impl ForceQuestion {
     /// What the network is asked, and what the collision is called.
     fn numbers(
         &self,
         library: &Library,
         observer: &mut Observer<'_>,
-    ) -> Result<Outcome<(String, ForceScenario)>, StudyError> {
-        Ok(Outcome::Complete(match self {
+    ) -> Result<Outcome<AskedCollision>, StudyError> {
+        let mut unused = Vec::new();
+        let (name, numbers) = match self {
             Self::Scenario(choice) => {
                 let scenario = choice.load()?;
+                unused = by_force_network(choice, &scenario)?;
                 let numbers = ForceScenario::from_scenario(&scenario);
                 (scenario.name, numbers.map_err(|source| choice.unsolved(source))?)
             }
@@ -146,7 +157,8 @@ impl ForceQuestion {
                 (case.clone(), ForceScenario::from_case(take_case(&dataset, case)?)?)
             }
             Self::Numbers { name, numbers } => (name.clone(), numbers.as_ref().clone()),
-        }))
+        };
+        Ok(Outcome::Complete(AskedCollision { name, numbers, unused }))
     }
 }
 
@@ -175,11 +187,17 @@ impl Question for PredictForceRequest {
     ) -> Result<Outcome<PredictForceAnswer>, StudyError> {
         let model = library.force_model(&self.model)?;
         let numbers = self.collision.numbers(library, observer)?;
-        let Outcome::Complete((name, mut collision)) = numbers else {
+        let Outcome::Complete(AskedCollision { name, numbers: mut collision, mut unused }) =
+            numbers
+        else {
             return Ok(Outcome::Cancelled);
         };
-        if self.body.is_some() {
-            collision.bullet_body.clone_from(&self.body);
+        if let Some(body) = &self.body {
+            collision.bullet_body = Some(body.clone());
+            if model.bodies().len() == 1 {
+                let reason = "the cases that the force network has learned from have one kind";
+                unused.push(not_used(format!("kind of bullet body, {body}"), reason));
+            }
         }
         if self.open_contact {
             (collision.contact_m, collision.bullet_position_m) = (None, None);
@@ -192,6 +210,7 @@ impl Question for PredictForceRequest {
             Provenance::of_seed(self.seed).with_models([library.force_model_digest(&self.model)?]);
         let mut report = PredictForceReport::of(name, &self.model, (&prediction, &forecast));
         report.provenance = provenance;
+        report.assumptions = unused;
         Ok(Outcome::Complete(PredictForceAnswer { report, collision, forecast, prediction }))
     }
 }

@@ -9,11 +9,12 @@ use crate::analysis::{
     Analysis, MotionForecast, MotionForecastSettings, MotionOutcome, StruckVehicle,
     forecast_collision, forecast_forces,
 };
-use crate::data::{DatasetKind, ForceHistory, Outcome};
+use crate::data::{DatasetKind, ForceHistory, Outcome, check_contact_within};
 use crate::force::{ForceModel, ForceScenario, OutsideTraining};
 use crate::ranges::{DRAWS, FORECAST_DURATION};
 use crate::study::checks::{check, check_count};
 use crate::study::simulate_dataset::take_case;
+use crate::study::unused::{by_force_network, by_forecast};
 use crate::study::{
     AssumedQuantity, Assumption, Library, ModelChoice, MotionSource, Observer, Provenance,
     Question, SeriesFile, SimulateAnswer, SimulateRequest, StudyError,
@@ -164,6 +165,12 @@ impl Question for PredictMotionRequest {
             return Ok(Outcome::Cancelled);
         };
         let SimulateAnswer { report: simulated, analysis } = simulated;
+        let mut unused = by_forecast(self);
+        if let (ForceSource::Predicted(_), MotionSource::Scenario { scenario, .. }) =
+            (&self.force, &self.motion.source)
+        {
+            unused.extend(by_force_network(scenario, &scenario.load()?)?);
+        }
         let name = || self.motion.source.name();
         let (Some(struck), Some(own_force)) = (&analysis.struck, &analysis.force) else {
             return Err(StudyError::NoForce { name: name() });
@@ -187,6 +194,9 @@ impl Question for PredictMotionRequest {
                 if force.mz_n_m.is_none() && !has_contact {
                     return Err(StudyError::NoYawMoment { path: path.clone() });
                 }
+                check_contact_within(&force, settings.duration_s).map_err(|outside| {
+                    StudyError::ContactOutside { name: path.display().to_string(), outside }
+                })?;
                 forecast_forces(&[force], &model, struck, &settings)
             }
             ForceSource::Predicted(choice) => {
@@ -201,6 +211,7 @@ impl Question for PredictMotionRequest {
         let forecast = forecast.map_err(failed)?;
         let mut assumptions = simulated.assumptions;
         assumptions.retain(|assumption| self.rests_on(assumption));
+        assumptions.extend(unused);
         let provenance = self.provenance(library)?;
         let known = (assumptions, provenance);
         let report = self.report(&analysis.name, struck, (&forecast, known));

@@ -10,8 +10,8 @@ use crate::analysis::{
     analyse_recording, analyse_scenario,
 };
 use crate::data::{
-    Channel, DatasetKind, FileKind, ForceHistory, Loaded, Outcome, Sampling, SeriesError,
-    contact_interval, read_force_file, read_steer_file,
+    Case, Channel, ContactOutside, DatasetKind, FileKind, ForceAttributes, ForceHistory, Loaded,
+    Outcome, Sampling, SeriesError, TIME_TOLERANCE_S, read_force_file, read_steer_file,
 };
 use crate::ranges::{
     CONTACT_HEIGHT, PULSE_DURATION, ROAD_FRICTION, SIMULATED_DURATION, SPEED, YAW_RATE,
@@ -19,6 +19,7 @@ use crate::ranges::{
 use crate::study::checks::{check, check_contact, check_given};
 use crate::study::inputs::{OpenVehicle, striking_vehicle, struck_vehicle};
 use crate::study::simulate_dataset::take_case;
+use crate::study::unused::by_simulation;
 use crate::study::{
     AssumedQuantity, Assumption, Library, Observer, Question, ScenarioChoice, SeriesFile,
     SimulateReport, StudyError, VehicleChoice, word,
@@ -32,9 +33,6 @@ pub const ASSUMED_SPEED_M_S: f64 = 20.0;
 
 /// Where a force acts where nothing says it: the right rear quarter of a car, where a PIT begins.
 pub const ASSUMED_CONTACT: ContactPoint = ContactPoint { x_m: -1.5, y_m: -0.9, height_m: 0.52 };
-
-/// Times are written with few digits; a contact that leaves the simulated time by less does no harm.
-const TIME_TOLERANCE_S: f64 = 1e-3;
 
 /// Asks where the struck vehicle goes, by the 4DOF model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -168,18 +166,12 @@ impl SimulateRequest {
         Ok(Settings { target, bullet, integrator, duration_s })
     }
 
-    fn refuse_contact_outside(&self, analysis: &Analysis) -> Result<(), StudyError> {
-        let interval = analysis.force.as_ref().and_then(contact_interval);
-        let (None, Some((start_s, end_s))) = (&analysis.reference, interval) else { return Ok(()) };
-        let duration_s = self.duration_s;
-        if start_s < -TIME_TOLERANCE_S || end_s > duration_s + TIME_TOLERANCE_S {
-            let name = match self.source.force_file() {
-                Some(path) => path.display().to_string(),
-                None => analysis.name.clone(),
-            };
-            return Err(StudyError::ContactOutside { name, start_s, end_s, duration_s });
-        }
-        Ok(())
+    fn contact_outside(&self, outside: ContactOutside) -> StudyError {
+        let name = match self.source.force_file() {
+            Some(path) => path.display().to_string(),
+            None => self.source.name(),
+        };
+        StudyError::ContactOutside { name, outside }
     }
 }
 
@@ -213,14 +205,22 @@ impl Question for SimulateRequest {
                 if let (DatasetKind::Trajectory, Some(_)) = (case.kind, self.friction) {
                     return Err(StudyError::FrictionOfCase { case: case.name.clone() });
                 }
+                assumptions.extend(by_simulation(self, case.kind == DatasetKind::Trajectory));
+                if case.kind == DatasetKind::Force {
+                    assumptions.extend(contact_height_assumption(case)?);
+                }
                 let own = OpenVehicle::OfDataset(dataset.vehicle_file.as_deref());
                 analyse_case(case, &self.settings(&own, &mut assumptions)?)
             }
             MotionSource::Trajectory { file, contact } => {
                 let settings = self.settings(&OpenVehicle::Unknown, &mut assumptions)?;
                 let loaded = trajectory(library, file)?;
-                let force = ForceHistory::from_series(&loaded.series, loaded.force_sampling());
-                let load = force.ok().map(|force| {
+                assumptions.extend(by_simulation(self, true));
+                let force = recorded_force(&loaded, file)?;
+                if force.is_some() {
+                    assumptions.extend(start_of_record(&loaded));
+                }
+                let load = force.map(|force| {
                     let vehicle = &settings.target;
                     acting_force(force, (*contact, vehicle), &mut assumptions)
                 });
@@ -228,7 +228,8 @@ impl Question for SimulateRequest {
             }
             MotionSource::Drive(drive) => {
                 let settings = self.settings(&OpenVehicle::Unknown, &mut assumptions)?;
-                let setup = drive.setup(&settings.target, library, &mut assumptions)?;
+                assumptions.extend(by_simulation(self, false));
+                let setup = drive.setup(&settings, library, &mut assumptions)?;
                 analyse_drive(&drive.name(), setup, &settings)
             }
             MotionSource::Scenario { scenario, pulse } => {
@@ -237,10 +238,11 @@ impl Question for SimulateRequest {
                 analyse_scenario(&scenario.load()?, pulse, &settings)
             }
         };
-        let failed =
-            |source| StudyError::Analysis { name: self.source.name(), source: Box::new(source) };
+        let failed = |source| match source {
+            AnalysisError::ContactOutside(outside) => self.contact_outside(outside),
+            source => StudyError::Analysis { name: self.source.name(), source: Box::new(source) },
+        };
         let analysis = made.map_err(failed)?;
-        self.refuse_contact_outside(&analysis)?;
         refuse_contact_off_vehicle(&analysis)?;
         let report = SimulateReport::of(self, &analysis, assumptions)
             .map_err(|source| failed(AnalysisError::Series(source)))?;
@@ -307,7 +309,7 @@ impl Drive {
 
     fn setup(
         &self,
-        vehicle: &VehicleParameters,
+        settings: &Settings,
         library: &Library,
         assumptions: &mut Vec<Assumption>,
     ) -> Result<DriveSetup, StudyError> {
@@ -323,11 +325,13 @@ impl Drive {
                 let loaded = library.series(file)?;
                 notes.extend(loaded.notes.iter().map(ToString::to_string));
                 let force = force_of(&loaded, self.sampling, file)?;
-                Some(acting_force(force, (self.contact, vehicle), assumptions))
+                Some(acting_force(force, (self.contact, &settings.target), assumptions))
             }
             None => None,
         };
         let steer = self.steer.as_ref().map(steer_history).transpose()?;
+        let held = steer.as_ref().and_then(|steer| held_steer(steer, settings.duration_s));
+        assumptions.extend(held);
         let initial = VehicleState {
             vy_m_s: self.vy_m_s,
             yaw_rate_rad_s: self.yaw_rate_rad_s,
@@ -359,6 +363,18 @@ fn trajectory(library: &Library, file: &SeriesFile) -> Result<Arc<Loaded>, Study
         got: format!("a {} file", word(&loaded.kind)),
         expected: "a trajectory; `impactlab simulate --out FILE.csv` makes one",
     })
+}
+
+/// The force of a recorded motion; `None` if it records none. One component alone is no force.
+fn recorded_force(loaded: &Loaded, file: &SeriesFile) -> Result<Option<ForceHistory>, StudyError> {
+    let components = [Channel::Fx, Channel::Fy, Channel::FxBody, Channel::FyBody];
+    if components.iter().all(|component| loaded.series.get(*component).is_none()) {
+        return Ok(None);
+    }
+    match ForceHistory::from_series(&loaded.series, loaded.force_sampling()) {
+        Ok(force) => Ok(Some(force)),
+        Err(source) => Err(StudyError::Series { path: file.path.clone(), source }),
+    }
 }
 
 /// The force of a file, under its own meaning of a sample or a given one.
@@ -399,6 +415,45 @@ pub(super) fn acting_force(
                   --contact";
     assumptions.push(Assumption::contact_point(ASSUMED_CONTACT, reason));
     (force, ASSUMED_CONTACT)
+}
+
+/// What stands for the steer angle where its recording does not reach.
+fn held_steer(steer: &SteerHistory, duration_s: f64) -> Option<Assumption> {
+    let (&start_s, &end_s) = (steer.time_s.first()?, steer.time_s.last()?);
+    let (&first_rad, &last_rad) = (steer.steer_rad.first()?, steer.steer_rad.last()?);
+    let mut held = Vec::new();
+    if start_s > TIME_TOLERANCE_S && first_rad != 0.0 {
+        held.push(format!("{first_rad} rad before {start_s} s"));
+    }
+    if end_s < duration_s - TIME_TOLERANCE_S && last_rad != 0.0 {
+        held.push(format!("{last_rad} rad after {end_s} s"));
+    }
+    let reason = "the recording of the steer angle does not reach further; its ends are held";
+    let is_held = !held.is_empty();
+    is_held.then(|| Assumption::new(AssumedQuantity::Steer, held.join(", "), reason))
+}
+
+/// What stands for the rates and the roll with which a recorded motion starts, if it does not say
+/// them.
+fn start_of_record(loaded: &Loaded) -> Option<Assumption> {
+    let is_missing = |channel: &Channel| loaded.series.get(*channel).is_none();
+    let missing = [Channel::YawRate, Channel::Roll, Channel::RollRate].into_iter();
+    let zeros: Vec<String> =
+        missing.filter(is_missing).map(|channel| format!("{} = 0", channel.header())).collect();
+    let is_assumed = !zeros.is_empty();
+    is_assumed.then(|| {
+        let reason = "the file does not record them";
+        Assumption::new(AssumedQuantity::StartOfRecord, zeros.join(", "), reason)
+    })
+}
+
+/// What stands for the contact height of a force case that does not state it.
+fn contact_height_assumption(case: &Case) -> Result<Option<Assumption>, StudyError> {
+    let is_known = ForceAttributes::read(&case.attributes)?.contact_height_m.is_some();
+    Ok((!is_known).then(|| {
+        let reason = "the case does not say how high the vehicles touch";
+        Assumption::new(AssumedQuantity::ContactHeight, "that of the CG", reason)
+    }))
 }
 
 /// What the pulse of a scenario adds to what the momentum solution says.

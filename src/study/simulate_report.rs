@@ -105,7 +105,7 @@ pub struct EndState {
 /// A [`MotionFlag`] for machines and, as `message`, for a person.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FlagReport {
-    /// `wheel_lift` or `roll_limit`.
+    /// `wheel_lift`, `roll_limit` or `energy_gain`.
     pub kind: &'static str,
     /// When it is first raised, s.
     pub time_s: f64,
@@ -135,6 +135,9 @@ impl From<&MotionFlag> for FlagReport {
                 roll_rad: Some(*roll_rad),
                 message,
             },
+            MotionFlag::EnergyGain { time_s } => {
+                Self { kind: "energy_gain", time_s: *time_s, wheel: None, roll_rad: None, message }
+            }
         }
     }
 }

@@ -189,7 +189,8 @@ impl CurveMixture {
             };
             let factors = component.factors.column_iter();
             let shared: f64 = factors.map(|column| dot(&mut column.iter()).powi(2)).sum();
-            let own = component.own_variance_of(&c);
+            // A quadratic form of a covariance: below zero by rounding errors alone.
+            let own = component.own_variance_of(&c).max(0.0);
             NormalPart {
                 weight: component.weight,
                 mean: dot(&mut component.mean.iter()),

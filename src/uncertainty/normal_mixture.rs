@@ -34,14 +34,17 @@ impl NormalMixture {
     ///
     /// # Errors
     /// [`MixtureError::Empty`], [`MixtureError::Weight`] or [`MixtureError::NoWeight`] for the
-    /// weights, [`MixtureError::Variance`] for a mean that is not finite or a standard deviation
-    /// that is not a positive finite number.
+    /// weights, [`MixtureError::NotFinite`] for a mean that is not finite, and
+    /// [`MixtureError::Variance`] for a standard deviation that is not a positive finite number.
     pub fn new(mut parts: Vec<NormalPart>) -> Result<Self, MixtureError> {
         let weights: Vec<f64> = parts.iter().map(|part| part.weight).collect();
         let sum = MixtureError::check_weights(&weights)?;
         for (component, part) in parts.iter_mut().enumerate() {
             part.weight /= sum;
-            if !(part.std > 0.0 && part.std.is_finite() && part.mean.is_finite()) {
+            if !part.mean.is_finite() {
+                return Err(MixtureError::NotFinite { component, what: "mean" });
+            }
+            if !(part.std > 0.0 && part.std.is_finite()) {
                 let (value_idx, variance) = (0, part.std * part.std);
                 return Err(MixtureError::Variance { component, value_idx, variance });
             }
@@ -75,18 +78,27 @@ impl NormalMixture {
         self.sum(|part| normal_density((value - part.mean) / part.std) / part.std)
     }
 
-    /// Cumulative distribution function: the probability of a value up to this one.
+    /// Cumulative distribution function: the probability of a value up to this one, 0 to 1. The sum
+    /// over the parts, whose weights sum to one but for rounding errors, is limited to that.
     pub fn cdf(&self, value: f64) -> f64 {
-        self.sum(|part| normal_cdf((value - part.mean) / part.std))
+        self.sum(|part| normal_cdf((value - part.mean) / part.std)).clamp(0.0, 1.0)
+    }
+
+    /// Probability of a value outside the interval from `low` to `high`, 0 to 1.
+    pub fn p_outside(&self, low: f64, high: f64) -> f64 {
+        (1.0 - self.cdf(high) + self.cdf(low)).clamp(0.0, 1.0)
     }
 
     /// The value below which the quantity lies with a given probability, to 1e-12 of the
     /// probability. The value lies between the smallest and the largest quantile of the parts, and
     /// is found by Newton's method, which bisection keeps between these bounds.
     ///
-    /// - `probability`: strictly between 0 and 1.
+    /// - `probability`: 0 to 1, at which the quantile is infinite; beyond, and for NaN, it is NaN.
     pub fn quantile(&self, probability: f64) -> f64 {
         let z = normal_quantile(probability);
+        if !z.is_finite() {
+            return z;
+        }
         let ends = self.parts.iter().map(|part| part.mean + z * part.std);
         let (mut low, mut high) = ends
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), end| {
@@ -144,6 +156,8 @@ fn mean_distance(mean: f64, std: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
     fn mixture(parts: &[[f64; 3]]) -> NormalMixture {
@@ -186,6 +200,58 @@ mod tests {
                 .sum();
             let score = two.crps(observed);
             assert!((score - integral).abs() < 1e-5, "{observed}: {score}, integral {integral}");
+        }
+    }
+
+    #[test]
+    fn the_probability_of_what_cannot_be_is_not_below_zero() {
+        // The weights sum to slightly more than one.
+        let weights = (1..60).map(|i| f64::from(i) / 1770.0);
+        for n_parts in 2..60 {
+            let parts = weights.clone().take(n_parts);
+            let parts = parts.map(|weight| NormalPart { weight, mean: 0.1, std: 1e-3 }).collect();
+            let heading = NormalMixture::new(parts).unwrap();
+            let p = heading.p_outside(-1.5, 1.5);
+            assert!(p.is_sign_positive() && p < 1e-12, "{n_parts} parts: {p:e}");
+            let p = heading.p_outside(1.5, 4.5);
+            assert!((1.0 - 1e-12..=1.0).contains(&p), "{n_parts} parts: {p}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_finite_is_called_by_its_name() {
+        let part = |mean, std| NormalMixture::new(vec![NormalPart { weight: 1.0, mean, std }]);
+        for mean in [f64::NAN, f64::INFINITY] {
+            let error = part(mean, 1.0).unwrap_err();
+            assert_eq!(error, MixtureError::NotFinite { component: 0, what: "mean" });
+        }
+        for std in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
+            assert!(matches!(part(0.0, std), Err(MixtureError::Variance { .. })), "{std}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn probabilities_are_probabilities_and_quantiles_are_numbers(
+            parts in prop::collection::vec((1e-12..1.0_f64, -1e3..1e3_f64, -9.0..9.0_f64), 1..40),
+            values in prop::array::uniform4(-2e3..2e3_f64),
+        ) {
+            let part = |&(weight, mean, log_std): &(f64, f64, f64)| {
+                NormalPart { weight, mean, std: log_std.exp() }
+            };
+            let mixture = NormalMixture::new(parts.iter().map(part).collect()).unwrap();
+            let is_probability = |p: f64| (0.0..=1.0).contains(&p) && p.is_sign_positive();
+            for value in values.into_iter().chain([f64::NEG_INFINITY, f64::INFINITY]) {
+                prop_assert!(is_probability(mixture.cdf(value)), "{value}");
+                prop_assert!(is_probability(mixture.p_outside(value, value.abs())), "{value}");
+            }
+            prop_assert!(mixture.std() > 0.0, "{}", mixture.std());
+            let mut before = f64::NEG_INFINITY;
+            for probability in [0.0, 1e-9, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0 - 1e-9, 1.0] {
+                let value = mixture.quantile(probability);
+                prop_assert!(!value.is_nan() && value >= before, "{probability}: {value} {before}");
+                before = value;
+            }
         }
     }
 

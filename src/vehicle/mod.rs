@@ -1,6 +1,7 @@
 //! The 4DOF vehicle model: axes, parameters, tyre forces, vertical loads, the equations of motion
 //! and their integration over time.
 
+mod energy;
 pub mod frames;
 mod loads;
 mod multibody_record;
@@ -12,8 +13,10 @@ mod tire;
 mod as_printed;
 mod four_dof;
 mod simulate;
+mod stability;
 
 pub use as_printed::Equations;
+pub use energy::MAX_ENERGY_GAIN;
 pub use four_dof::{CollisionForce, ContactPoint, VehicleEvaluation, VehicleInput};
 pub use loads::Wheel;
 pub use multibody_record::MultibodyRecord;
@@ -23,5 +26,6 @@ pub use simulate::{
     ContactLoad, Integrator, Manoeuvre, Motion, MotionFlag, OUTPUT_INTERVAL_S, ROLL_LIMIT_RAD,
     SimulationError, SteerHistory,
 };
+pub use stability::VehicleMismatch;
 pub use state::{N_STATE, VehicleState};
 pub use tire::{TireParameters, WheelSlip};

@@ -141,6 +141,32 @@ impl MultibodyRecord {
         }
     }
 
+    /// The key of the record from which a parameter of the 4DOF vehicle follows, or the one of several
+    /// that a wrong value most likely comes from; `None` for a constant.
+    pub(super) fn origin(parameter: &str) -> Option<&'static str> {
+        Some(match parameter {
+            "mass.mass_kg" => "mass.total",
+            "mass.sprung_mass_kg" => "mass.unsprung_and_links",
+            "mass.yaw_inertia_kg_m2" => "mass.Izz",
+            "mass.roll_inertia_kg_m2" => "mass.Ixx",
+            "mass.roll_yaw_product_kg_m2" => "mass.Ixz",
+            "geometry.cg_to_front_axle_m" | "geometry.cg_to_front_end_m" => "geometry.lf",
+            "geometry.cg_to_rear_axle_m" => "geometry.lr",
+            "geometry.track_width_m" => "geometry.track_front",
+            "geometry.cg_height_m" | "suspension.roll_arm_m" => "geometry.cg_height",
+            "geometry.outer_width_m" => "geometry.half_width",
+            "suspension.roll_stiffness_n_m_rad" => "equivalent.roll_gradient_deg_per_g",
+            "suspension.roll_damping_n_m_s_rad" => "equivalent.roll_damping_fit",
+            "suspension.front_roll_stiffness_share" => "suspension.spring_front",
+            "tires.cornering_coefficient_front_per_rad" => "tyre.cornering_stiffness_front",
+            "tires.cornering_coefficient_rear_per_rad" => "tyre.cornering_stiffness_rear",
+            "tires.sliding_friction_ratio" => "tyre.sliding_over_peak",
+            "tires.rolling_resistance" => "tyre.rolling_resistance",
+            "tires.rolling_resistance_s2_m2" => "aero.CdA",
+            _ => return None,
+        })
+    }
+
     fn suspension_parameters(&self, sprung_kg: f64, roll_arm_m: f64) -> SuspensionParameters {
         let (springs, geometry) = (&self.suspension, &self.geometry);
         let axle_stiffness = |spring: f64, track: f64, bar: f64| spring * track * track / 2.0 + bar;

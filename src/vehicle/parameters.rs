@@ -15,7 +15,7 @@ use crate::ranges::{
     VEHICLE_MASS, VEHICLE_YAW_INERTIA,
 };
 use crate::vehicle::tire::TireParameters;
-use crate::vehicle::{Equations, MultibodyRecord};
+use crate::vehicle::{Equations, MultibodyRecord, VehicleMismatch};
 
 /// Parameters of one vehicle in SI units. [`VehicleParameters::load`] and
 /// [`VehicleParameters::parse`] check every value against its range.
@@ -123,9 +123,12 @@ impl VehicleParameters {
         let file = TomlFile { path, text };
         let table: toml::Table = file.to()?;
         let is_multibody = table.get("mass").is_some_and(|mass| mass.get("total").is_some());
-        let vehicle: Self =
-            if is_multibody { file.to::<MultibodyRecord>()?.parameters() } else { file.to()? };
-        vehicle.check(file)?;
+        let (vehicle, origin): (Self, Origin) = if is_multibody {
+            (file.to::<MultibodyRecord>()?.parameters(), MultibodyRecord::origin)
+        } else {
+            (file.to()?, |_| None)
+        };
+        vehicle.check(file, origin)?;
         Ok(vehicle)
     }
 
@@ -166,14 +169,25 @@ impl VehicleParameters {
         self
     }
 
-    /// Checks every value against its range.
-    fn check(&self, file: TomlFile<'_>) -> Result<(), TomlError> {
-        match self.ranges().into_iter().find(|(_, value, range)| !range.contains(*value)) {
-            Some((key, value, range)) => {
-                Err(file.wrong_value(key, &value.to_string(), &range.expected_si()))
+    /// Checks every value against its range and against the other values.
+    fn check(&self, file: TomlFile<'_>, origin: Origin) -> Result<(), TomlError> {
+        let refused = |key: &str, value: f64, expected: &str| {
+            let is_written = |record_key: &&str| file.contains(record_key);
+            match origin(key).filter(is_written) {
+                None => file.wrong_value(key, &value.to_string(), expected),
+                Some(record_key) => file.wrong_value(
+                    record_key,
+                    &value.to_string(),
+                    &format!("a value with which {key} is {expected}; now it is {value}"),
+                ),
             }
-            None => Ok(()),
+        };
+        let is_outside = |(_, value, range): &(_, f64, Range)| !range.contains(*value);
+        if let Some((key, value, range)) = self.ranges().into_iter().find(is_outside) {
+            return Err(refused(key, value, &range.expected_si()));
         }
+        self.check_relations()
+            .map_err(|VehicleMismatch { key, value, expected }| refused(key, value, &expected))
     }
 
     /// Every value with its range, which other values of the vehicle may limit further.
@@ -227,6 +241,9 @@ impl VehicleParameters {
     }
 }
 
+/// The key of a file from which a parameter follows; `None` where the parameter is the key.
+type Origin = fn(&str) -> Option<&'static str>;
+
 fn is_corrected(equations: &Equations) -> bool {
     *equations == Equations::Corrected
 }
@@ -250,6 +267,98 @@ mod tests {
             "car.toml:5:11: mass.mass_kg is -3.0, expected 1 to 50000 kg"
         );
         assert!(reference_with("mass_kg = 2000.0", "mass_kg = nan").is_err());
+    }
+
+    /// The reference car with its mass in another notation.
+    fn reference_with_mass_written(as_text: &str) -> Result<VehicleParameters, TomlError> {
+        let text = Preset::Reference.text();
+        let (head, rest) = text.split_once("[mass]\n").unwrap();
+        let (_, tail) = rest.split_once("\n\n").unwrap();
+        VehicleParameters::parse(&format!("{head}{as_text}\n\n{tail}"), Path::new("car.toml"))
+    }
+
+    #[test]
+    fn a_wrong_value_is_found_in_inline_tables_and_behind_dotted_keys() {
+        let others = "sprung_mass_kg = 1642.6, yaw_inertia_kg_m2 = 3961.6, \
+                      roll_inertia_kg_m2 = 1126.03, roll_yaw_product_kg_m2 = 134.4";
+        let inline = |mass: &str| format!("mass = {{ mass_kg = {mass}, {others} }}");
+        let dotted =
+            |mass: &str| format!("mass.mass_kg = {mass}\nmass.{}", others.replace(", ", "\nmass."));
+        for (written, column) in [(inline("-1"), 20), (dotted("-1"), 16)] {
+            let error = reference_with_mass_written(&written).unwrap_err().to_string();
+            let place = format!("car.toml:4:{column}: mass.mass_kg is -1, ");
+            assert!(error.starts_with(&place), "{error}");
+        }
+        for (written, column) in [
+            (inline("\"heavy\""), 20),
+            (dotted("\"heavy\""), 16),
+            (inline("[1, 2]"), 20),
+            (dotted("{ kg = 1 }"), 16),
+        ] {
+            let error = reference_with_mass_written(&written).unwrap_err().to_string();
+            assert!(error.starts_with(&format!("car.toml:4:{column}: ")), "{error}");
+        }
+        for written in [
+            inline("2000").replace("sprung", "sprang"),
+            dotted("2000").replace(".sprung", ".sprang"),
+        ] {
+            let error = reference_with_mass_written(&written).unwrap_err().to_string();
+            let line = if written.contains('\n') { 5 } else { 4 };
+            assert!(error.starts_with(&format!("car.toml:{line}:")), "{error}");
+            assert!(error.contains("sprang_mass_kg"), "{error}");
+        }
+        for written in ["mass = [1, 2]", "mass = 3"] {
+            let error = reference_with_mass_written(written).unwrap_err().to_string();
+            assert!(error.starts_with("car.toml:4:8: "), "{error}");
+        }
+        let missing = inline("2000").replace("mass_kg = 2000, ", "");
+        let error = reference_with_mass_written(&missing).unwrap_err().to_string();
+        assert!(error.starts_with("car.toml:4:"), "{error}");
+        assert!(reference_with_mass_written(&inline("2000")).is_ok());
+        assert!(reference_with_mass_written(&dotted("2000")).is_ok());
+    }
+
+    #[test]
+    fn a_wrong_value_of_a_multibody_record_is_found_in_the_record() {
+        let path = Path::new("datasets/trajectories-fea/vehicle.toml");
+        let text = TomlFile::read(path).unwrap();
+        let line_of = |key: &str| text.lines().position(|line| line.starts_with(key)).unwrap() + 1;
+        for (key, value, parameter) in [
+            ("total = ", "-3.0", "mass.mass_kg"),
+            ("Izz = ", "nan", "mass.yaw_inertia_kg_m2"),
+            ("track_front = ", "90.0", "geometry.track_width_m"),
+            ("half_width = ", "0.0", "geometry.outer_width_m"),
+            ("cg_height = ", "0.1", "suspension.roll_arm_m"),
+            ("roll_damping_fit = ", "-1.0", "suspension.roll_damping_n_m_s_rad"),
+            ("sliding_over_peak = ", "3.0", "tires.sliding_friction_ratio"),
+        ] {
+            let line = text.lines().nth(line_of(key) - 1).unwrap();
+            let wrong = text.replace(line, &format!("{key}{value}"));
+            let error = VehicleParameters::parse(&wrong, path).unwrap_err().to_string();
+            let place = format!("{}:{}:{}: ", path.display(), line_of(key), key.len() + 1);
+            assert!(error.starts_with(&place), "{error}, expected {place}");
+            assert!(error.contains(parameter) && error.contains(value), "{error}");
+        }
+    }
+
+    #[test]
+    fn parameters_that_do_not_go_together_are_refused_by_both_names() {
+        for (old, new, others) in [
+            ("yaw_inertia_kg_m2 = 3961.6", "yaw_inertia_kg_m2 = 20.0", "mass.mass_kg"),
+            ("roll_inertia_kg_m2 = 1126.03", "roll_inertia_kg_m2 = 300.0", "suspension.roll_arm_m"),
+            ("roll_stiffness_n_m_rad = 93268.9", "roll_stiffness_n_m_rad = 7000.0", "roll_arm_m"),
+            ("roll_damping_n_m_s_rad = 19000.0", "roll_damping_n_m_s_rad = 1e6", ""),
+        ] {
+            let result = reference_with(old, new);
+            if others.is_empty() {
+                assert!(result.is_ok(), "{new}");
+                continue;
+            }
+            let error = result.unwrap_err().to_string();
+            let (key, _) = new.split_once(' ').unwrap();
+            assert!(error.contains(key) && error.contains(others), "{error}");
+            assert!(error.starts_with("car.toml:") && !error.contains(":1:1:"), "{error}");
+        }
     }
 
     #[test]

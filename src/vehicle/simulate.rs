@@ -12,8 +12,10 @@ use serde::{Deserialize, Serialize};
 use crate::data::{Channel, CumulativeImpulse, ForceAxes, ForceHistory, SeriesError, TimeSeries};
 use crate::numerics::{Stage, euler_step, interpolate, rk4_step};
 use crate::ranges::{OutOfRange, SIMULATED_DURATION};
+use crate::vehicle::energy::{EnergyWatch, MAX_ENERGY_GAIN};
 use crate::vehicle::{
-    CollisionForce, ContactPoint, VehicleInput, VehicleParameters, VehicleState, Wheel,
+    CollisionForce, ContactPoint, Equations, VehicleInput, VehicleMismatch, VehicleParameters,
+    VehicleState, Wheel,
 };
 
 /// Roll angle beyond which the roll model is not valid, rad. It is 15°, about three times the angle
@@ -107,6 +109,13 @@ pub enum MotionFlag {
         /// Roll angle at this instant, rad.
         roll_rad: f64,
     },
+    /// The energy of the vehicle has grown by more than [`MAX_ENERGY_GAIN`] without a force. Only
+    /// the baselines are let go on with it: the equations of motion as printed in the paper, and
+    /// Euler's method.
+    EnergyGain {
+        /// First output instant at which it has, s.
+        time_s: f64,
+    },
 }
 
 impl fmt::Display for MotionFlag {
@@ -120,6 +129,12 @@ impl fmt::Display for MotionFlag {
                 "roll of {:.1} deg at {time_s:.2} s is beyond the model; a rollover is not excluded",
                 roll_rad.to_degrees()
             ),
+            Self::EnergyGain { time_s } => write!(
+                f,
+                "energy: at {time_s:.2} s the vehicle has gained more than {:.0} % of its energy \
+                 although nothing pushes it",
+                100.0 * MAX_ENERGY_GAIN
+            ),
         }
     }
 }
@@ -131,7 +146,8 @@ pub struct Motion {
     /// velocities, rates, accelerations, collision force as the mean over the following interval,
     /// steer angles and vertical loads of the wheels.
     pub series: TimeSeries,
-    /// The first wheel lift and the first excess of the roll limit, in this order, if they occur.
+    /// The first wheel lift, the first excess of the roll limit and the first gain of energy, in
+    /// this order, if they occur.
     pub flags: Vec<MotionFlag>,
 }
 
@@ -147,6 +163,20 @@ pub enum SimulationError {
         /// First output instant at which the state is not finite, s.
         time_s: f64,
     },
+    /// The vehicle gains energy without a force, so that its motion is wrong.
+    #[error(
+        "at {time_s:.2} s the vehicle has gained {:.1} % of its energy although nothing pushes it: \
+         its parameters are outside what the model can follow", 100.0 * share
+    )]
+    EnergyGain {
+        /// First output instant at which the gain exceeds [`MAX_ENERGY_GAIN`], s.
+        time_s: f64,
+        /// The gain as a share of the energy at the end of the force, or at the start.
+        share: f64,
+    },
+    /// Two parameters of the vehicle do not go together.
+    #[error(transparent)]
+    Vehicle(#[from] VehicleMismatch),
     /// The samples do not form a valid time series.
     #[error(transparent)]
     Series(#[from] SeriesError),
@@ -156,34 +186,64 @@ impl VehicleParameters {
     /// Simulates a manoeuvre from t = 0 for its duration, rounded to a multiple of
     /// [`OUTPUT_INTERVAL_S`]. The result is deterministic.
     ///
+    /// The steps of [`Integrator::Rk4`] are divided where the vehicle has faster modes than they
+    /// follow; ordinary vehicles have none.
+    ///
     /// # Errors
-    /// [`SimulationError::Duration`] if the duration is out of range, [`SimulationError::Diverged`]
-    /// if the state becomes infinite or NaN, [`SimulationError::Series`] if the samples do not form
-    /// a valid time series.
+    /// [`SimulationError::Duration`] if the duration is out of range, [`SimulationError::Vehicle`]
+    /// if two parameters do not go together, [`SimulationError::Diverged`] if the state becomes
+    /// infinite or NaN, [`SimulationError::EnergyGain`] if the energy grows without a force,
+    /// [`SimulationError::Series`] if the samples do not form a valid time series.
     pub fn simulate(
         &self,
         manoeuvre: &Manoeuvre,
         integrator: Integrator,
     ) -> Result<Motion, SimulationError> {
         let duration_s = SIMULATED_DURATION.check(manoeuvre.duration_s)?;
+        self.check_relations()?;
         let inputs = Inputs::new(manoeuvre);
-        let steps_per_output = (OUTPUT_INTERVAL_S / integrator.step_s()).round() as usize;
+        let (step_s, steps_per_output) = self.steps(integrator);
         let n_outputs = (duration_s / OUTPUT_INTERVAL_S).round() as usize + 1;
         let mut recorder = Recorder::new(self, n_outputs);
+        let mut energy = EnergyWatch::default();
+        let is_baseline = integrator == Integrator::Euler || self.equations == Equations::Paper;
         let mut state = manoeuvre.initial.to_array();
         for output in 0..n_outputs {
             let time_s = output as f64 * OUTPUT_INTERVAL_S;
             if !state.iter().all(|value| value.is_finite()) {
                 return Err(SimulationError::Diverged { time_s });
             }
-            let coming = inputs.over(time_s, OUTPUT_INTERVAL_S).at(Stage::Start);
-            recorder.record(time_s, &VehicleState::from_array(state), &coming);
+            let (now, coming) = (
+                VehicleState::from_array(state),
+                inputs.over(time_s, OUTPUT_INTERVAL_S).at(Stage::Start),
+            );
+            recorder.record(time_s, &now, &coming);
+            let share = energy.gain(self, &now, coming.collision.is_some());
+            let is_kept = share <= MAX_ENERGY_GAIN; // not where it is NaN
+            if !is_kept {
+                if !is_baseline {
+                    return Err(SimulationError::EnergyGain { time_s, share });
+                }
+                recorder.energy.get_or_insert(MotionFlag::EnergyGain { time_s });
+            }
             for step in 0..steps_per_output {
-                let start_s = time_s + step as f64 * integrator.step_s();
-                state = self.step(&state, &inputs.over(start_s, integrator.step_s()), integrator);
+                let start_s = time_s + step as f64 * step_s;
+                state = self.step(&state, &inputs.over(start_s, step_s), integrator);
             }
         }
         recorder.finish()
+    }
+
+    /// Length of the steps of an integrator for this vehicle, s, and how many make an output
+    /// interval.
+    fn steps(&self, integrator: Integrator) -> (f64, usize) {
+        let step_s = integrator.step_s();
+        let n_substeps = match integrator {
+            Integrator::Rk4 => self.substeps(step_s),
+            Integrator::Euler => 1,
+        };
+        let per_output = (OUTPUT_INTERVAL_S / step_s).round() as usize;
+        (step_s / n_substeps as f64, per_output * n_substeps)
     }
 
     fn step(&self, state: &[f64; 8], inputs: &StepInputs, integrator: Integrator) -> [f64; 8] {
@@ -271,6 +331,7 @@ struct Recorder<'a> {
     columns: Vec<(Channel, Vec<f64>)>,
     lift: Option<MotionFlag>,
     roll: Option<MotionFlag>,
+    energy: Option<MotionFlag>,
 }
 
 /// Channels of a simulated motion, in the order in which [`Recorder::record`] lists their values.
@@ -304,7 +365,14 @@ impl<'a> Recorder<'a> {
     fn new(vehicle: &'a VehicleParameters, n_samples: usize) -> Self {
         let column = |channel| (channel, Vec::with_capacity(n_samples));
         let columns = RECORDED.map(column).into();
-        Self { vehicle, time_s: Vec::with_capacity(n_samples), columns, lift: None, roll: None }
+        Self {
+            vehicle,
+            time_s: Vec::with_capacity(n_samples),
+            columns,
+            lift: None,
+            roll: None,
+            energy: None,
+        }
     }
 
     fn record(&mut self, time_s: f64, x: &VehicleState<f64>, u: &VehicleInput<f64>) {
@@ -356,6 +424,9 @@ impl<'a> Recorder<'a> {
         for (channel, column) in self.columns {
             series.insert(channel, column)?;
         }
-        Ok(Motion { series, flags: self.lift.into_iter().chain(self.roll).collect() })
+        Ok(Motion {
+            series,
+            flags: self.lift.into_iter().chain(self.roll).chain(self.energy).collect(),
+        })
     }
 }

@@ -26,10 +26,10 @@ use crate::numerics::Lanes;
 /// Regularisation ε of the slip angle, m/s. Near standstill the lateral force is proportional to
 /// the lateral velocity, which decays at a rate of c g / ε ≈ 400 1/s; the reference step of 1 ms
 /// resolves this.
-const SLIP_ANGLE_SPEED_M_S: f64 = 0.5;
+pub(super) const SLIP_ANGLE_SPEED_M_S: f64 = 0.5;
 
 /// Speed u₀ below which the rolling resistance decreases to zero, m/s.
-const ROLLING_RESISTANCE_SPEED_M_S: f64 = 0.05;
+pub(super) const ROLLING_RESISTANCE_SPEED_M_S: f64 = 0.05;
 
 /// Slip angle over which friction decreases from its peak to its sliding value, rad. It is about
 /// three times the slip angle at the peak (0.15 to 0.17 rad for the reference tyres), since car

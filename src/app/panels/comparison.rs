@@ -91,7 +91,8 @@ fn error_rows(error: &MotionError, units: UnitSystem) -> Vec<(String, String)> {
     for (label, value, quantity) in optional {
         rows.extend(value.map(|value| (label.to_owned(), quantity.shown(value, units))));
     }
-    for (horizon, value) in HORIZONS_S.iter().zip(error.horizon_error_m) {
+    let reached = HORIZONS_S.iter().zip(error.horizon_error_m).filter(|(_, error)| !error.is_nan());
+    for (horizon, value) in reached {
         rows.push((format!("Position error at {horizon} s"), length(value)));
     }
     rows

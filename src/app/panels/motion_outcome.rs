@@ -7,8 +7,8 @@ use crate::app::response::MotionAnswer;
 use crate::app::widgets::{SpreadRow, assumptions_ui, spread_table_ui, value_row};
 use crate::units::{Quantity, UnitSystem, percent};
 
-/// Draws the time at which the vehicle comes to rest on the central path (or at which the forecast
-/// ends), the assumptions, and the state of the vehicle at that time.
+/// Draws the time at which the vehicle comes to rest (or at which the forecast ends), the
+/// assumptions, and the state of the vehicle at that time.
 pub fn outcome_ui(ui: &mut Ui, answer: &MotionAnswer, units: UnitSystem) {
     let report = &answer.answer.report;
     let outcome = &report.outcome;
@@ -16,7 +16,10 @@ pub fn outcome_ui(ui: &mut Ui, answer: &MotionAnswer, units: UnitSystem) {
         true => format!("At rest after {:.2} s", outcome.time_s),
         false => format!("After {:.2} s, still moving", outcome.time_s),
     };
-    ui.strong(when).on_hover_text("On the central path: nothing about the vehicle uncertain");
+    ui.strong(when).on_hover_text(
+        "At rest: after the force, speed and yaw rate stay below 0.3 m/s and 0.1 rad/s to the end \
+         of the forecast. Mean over the force curves, nothing about the vehicle uncertain",
+    );
     let unit = |quantity: Quantity| quantity.display_unit(units);
     let row =
         |label, quantity, spread, hint| SpreadRow { label, unit: unit(quantity), spread, hint };
@@ -34,6 +37,7 @@ pub fn outcome_ui(ui: &mut Ui, answer: &MotionAnswer, units: UnitSystem) {
     spread_table_ui(ui, &report.scenario, &rows);
     Grid::new("motion outcome").num_columns(2).show(ui, |ui| {
         value_row(ui, "Speed", &Quantity::Speed.shown(outcome.speed_m_s, units));
+        value_row(ui, "Yaw rate", &Quantity::AngularVelocity.shown(outcome.yaw_rate_rad_s, units));
         value_row(ui, "90 % region of the CG", &format!("{:.1} m²", outcome.region_90_m2));
         value_row(ui, "P(quarter turn or more)", &percent(outcome.p_quarter_turn));
         value_row(ui, "P(half turn or more)", &percent(outcome.p_half_turn));

@@ -7,16 +7,22 @@ use crate::study::{AssumedQuantity, Assumption};
 /// Lists the assumptions, one wrapped line each. Hovering over a line shows the reason and the
 /// place in the window where the user can set the value. An empty list draws nothing.
 pub fn assumptions_ui(ui: &mut Ui, assumptions: &[Assumption]) {
-    for Assumption { quantity, value, reason } in assumptions {
-        let text = format!("assumed: {}: {value}", quantity.label());
+    for assumption in assumptions {
+        let Assumption { quantity, value, reason } = assumption;
+        let text = match quantity {
+            AssumedQuantity::NotUsed => format!("not used: {value}"),
+            quantity => format!("assumed: {}: {value}", quantity.label()),
+        };
         let label = egui::Label::new(RichText::new(text).italics()).wrap();
-        ui.add(label).on_hover_text(format!("{reason}\n{}", place(*quantity)));
+        let hint = place(*quantity).map_or(String::new(), |place| format!("\n{place}"));
+        ui.add(label).on_hover_text(format!("{reason}{hint}"));
     }
 }
 
-/// The place in the window where the user sets the quantity instead of having it assumed.
-fn place(quantity: AssumedQuantity) -> &'static str {
-    match quantity {
+/// The place in the window where the user sets the quantity instead of having it assumed; `None` for
+/// what only a file says.
+fn place(quantity: AssumedQuantity) -> Option<&'static str> {
+    Some(match quantity {
         AssumedQuantity::Vehicle
         | AssumedQuantity::Bullet
         | AssumedQuantity::Speed
@@ -24,5 +30,8 @@ fn place(quantity: AssumedQuantity) -> &'static str {
         AssumedQuantity::ContactHeight | AssumedQuantity::Pulse => {
             "In this window: Contact in the Scenario pane"
         }
-    }
+        AssumedQuantity::StartOfRecord | AssumedQuantity::Steer | AssumedQuantity::NotUsed => {
+            return None;
+        }
+    })
 }

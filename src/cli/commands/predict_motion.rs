@@ -96,7 +96,7 @@ scene.png and one picture per quantity, each with its numbers as CSV beside it (
   build with the window).
 
 JSON: scenario, vehicle, force_model, response_model, n_forces, outcome {time_s, is_at_rest, x_m, y_m,
-  heading_change_rad (median, half, ninety), speed_m_s, region_90_m2, p_quarter_turn, p_half_turn},
+  heading_change_rad (median, half, ninety), speed_m_s, yaw_rate_rad_s, region_90_m2, p_quarter_turn, p_half_turn},
   hooking_probability, outside_training, assumptions [{quantity, value, reason}], files";
 
 /// The report, and which files were written.

@@ -19,7 +19,7 @@ pub(super) type Noted = (Figure, Vec<String>);
 
 /// Notes and assumptions as lines.
 pub(super) fn noted(notes: &[String], assumptions: &[Assumption]) -> Vec<String> {
-    let assumed = assumptions.iter().map(|assumption| format!("assumed {assumption}"));
+    let assumed = assumptions.iter().map(ToString::to_string);
     notes.iter().cloned().chain(assumed).collect()
 }
 

@@ -134,7 +134,7 @@ pub(in crate::cli) fn print_assumptions(
     assumptions: &[Assumption],
 ) -> io::Result<()> {
     for assumption in assumptions {
-        writeln!(out, "assumed {assumption}")?;
+        writeln!(out, "{assumption}")?;
     }
     Ok(())
 }

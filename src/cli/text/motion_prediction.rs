@@ -25,7 +25,7 @@ pub(in crate::cli) fn print_motion_prediction(
     };
     let when = match outcome.is_at_rest {
         true => format!("at rest after {:.2} s", outcome.time_s),
-        false => format!("after {:.2} s", outcome.time_s),
+        false => format!("after {:.2} s, still moving", outcome.time_s),
     };
     let mut facts = vec![
         ("scenario", report.scenario.clone()),
@@ -33,6 +33,7 @@ pub(in crate::cli) fn print_motion_prediction(
         ("forces", format!("{}, each as likely", report.n_forces)),
         ("end", when),
         ("speed", shown(Quantity::Speed, outcome.speed_m_s, units)),
+        ("yaw rate", shown(Quantity::AngularVelocity, outcome.yaw_rate_rad_s, units)),
         ("X", spread(Quantity::Length, &outcome.x_m)),
         ("Y", spread(Quantity::Length, &outcome.y_m)),
         ("heading change", spread(Quantity::Angle, &outcome.heading_change_rad)),

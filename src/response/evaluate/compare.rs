@@ -9,6 +9,7 @@ use crate::learning::{LearningError, TEST_SHARE, TrainSettings, TrainingReport, 
 use crate::response::evaluate::{
     ComparedCase, Comparison, MotionCaseMetrics, MotionModel, path_of,
 };
+use crate::response::train::check_start;
 use crate::response::{
     ImpactRecord, ResponseCase, ResponseConfig, ResponseModel, ResponseTrainingSet, Tuning,
     fine_tune, pretrain,
@@ -42,7 +43,11 @@ pub fn compare_models(
     report: &mut ProgressCallback<'_>,
 ) -> Result<Option<Comparison>, LearningError> {
     let all = TrainingSet::of_split(name, cases, settings.seed, TEST_SHARE);
-    all.check_size(1)?;
+    // What cannot be trained is said before the hours that the trainings take.
+    all.check_size(settings.trajectories.iter().copied().max().unwrap_or(1).max(1))?;
+    if let Some(start) = start {
+        check_start(start, &settings.config, settings.seed)?;
+    }
     let test: Vec<&ResponseCase> =
         cases.iter().filter(|case| all.test.iter().any(|id| id.digest == case.digest)).collect();
     let clusters = clusters(&test, settings.seed);

@@ -107,14 +107,14 @@ impl MeanStd {
         Self { mean: mean * factor, std: std * factor, median: median * factor }
     }
 
-    /// The statistics of values; all zero without any.
+    /// The statistics of values; NaN without any.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
         let mut values: Vec<f64> = values.into_iter().collect();
         values.sort_by(f64::total_cmp);
-        let n = values.len().max(1) as f64;
+        let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
         let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / n;
-        let median = quantile_of_sorted(&values, 0.5).unwrap_or(0.0);
+        let median = quantile_of_sorted(&values, 0.5).unwrap_or(f64::NAN);
         Self { mean, std: variance.sqrt(), median }
     }
 }
@@ -143,7 +143,11 @@ impl MotionMetrics {
             final_heading_error_deg: over(&|case| {
                 case.error.final_heading_error_rad.to_degrees().abs()
             }),
-            horizon_error_m: std::array::from_fn(|i| over(&|case| case.error.horizon_error_m[i])),
+            horizon_error_m: std::array::from_fn(|i| {
+                // NaN where a recording does not last as long.
+                let errors = cases.iter().map(|case| case.error.horizon_error_m[i]);
+                MeanStd::of(errors.filter(|error| !error.is_nan()))
+            }),
             violations: cases.iter().map(|case| case.violations).sum(),
             time_per_step_us: over(&|case| case.time_per_step_us).median,
             coverage: CoverageMetrics::of(cases),

@@ -192,6 +192,11 @@ fn number(value: f64) -> String {
     format!("{value:.3}")
 }
 
+/// Empty where no trajectory has the value.
 fn mean_std(value: MeanStd) -> String {
-    format!("{:.3} ± {:.3}", value.mean, value.std)
+    if value.mean.is_nan() {
+        String::new()
+    } else {
+        format!("{:.3} ± {:.3}", value.mean, value.std)
+    }
 }

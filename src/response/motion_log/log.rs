@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::collision::PulseError;
-use crate::data::{ColumnMap, DataError, SeriesError, TimeSeries, read_motion_log};
+use crate::data::{ColumnMap, ContactOutside, DataError, SeriesError, TimeSeries, read_motion_log};
 
 /// A log as it was read.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,6 +62,19 @@ pub enum LogError {
         from_s: f64,
         /// The log's last instant, s.
         to_s: f64,
+    },
+    /// A part of the force acts before or after the motion that is learned from.
+    #[error(
+        "{}: the motion from {start_s} s on, counted from there, does not hold the whole force: {outside}",
+        path.display()
+    )]
+    ForceOutside {
+        /// The log.
+        path: PathBuf,
+        /// Where the motion begins on the log's clock, s.
+        start_s: f64,
+        /// When the force acts, counted from there, and how long the motion is.
+        outside: ContactOutside,
     },
     /// The numbers make no motion.
     #[error("{}: no motion goes through the samples; check units and signs", path.display())]

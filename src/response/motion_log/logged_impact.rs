@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::data::{Channel, TimeSeries, contact_interval};
+use crate::data::{Channel, TIME_TOLERANCE_S, TimeSeries, check_contact_within, contact_interval};
 use crate::ranges::SIMULATED_DURATION;
 use crate::response::motion_log::impulse::estimated_load;
 use crate::response::motion_log::tracks::LogWindow;
@@ -13,9 +13,6 @@ use crate::response::{LogError, LogNoise, MotionLog, N_RESIDUAL, ResponseCase, S
 use crate::vehicle::{
     ContactLoad, Manoeuvre, SteerHistory, VehicleInput, VehicleParameters, VehicleState,
 };
-
-/// Times are written with few digits.
-const TIME_TOLERANCE_S: f64 = 1e-3;
 
 /// Settings for reading a log.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,6 +92,12 @@ impl LoggedImpact {
                 )
             }
         };
+        if let Some(load) = &load {
+            let duration_s = STEP_S * states.len().saturating_sub(1) as f64;
+            check_contact_within(&load.force, duration_s).map_err(|outside| {
+                LogError::ForceOutside { path: log.path.clone(), start_s, outside }
+            })?;
+        }
         let impulse_n_s = load.as_ref().map_or([0.0; 2], |load| load.force.impulse_n_s());
         let manoeuvre = Manoeuvre {
             initial: states.first().copied().unwrap_or_default(),

@@ -109,9 +109,11 @@ fn step_from<T: Lanes>(
     residual: [T; N_RESIDUAL],
 ) -> VehicleState<T> {
     let [ax, ay, yaw, roll] = residual;
-    let f = |stage, x: &[T; 8]| {
-        let mut rate = match stage {
-            Stage::Start => now.derivative,
+    // Without a force the energy of the planar motion is bounded below, and that of the roll here.
+    let n_substeps = vehicle.roll_substeps(STEP_S);
+    let derivative = |substep, stage, x: &[T; 8]| {
+        let mut rate = match (substep, stage) {
+            (0, Stage::Start) => now.derivative,
             _ => vehicle.evaluate(&VehicleState::from_array(*x), u).derivative,
         };
         rate.vx_m_s += ax;
@@ -120,7 +122,11 @@ fn step_from<T: Lanes>(
         rate.roll_rate_rad_s += roll;
         rate.to_array()
     };
-    let next = VehicleState::from_array(rk4_step(f, &x.to_array(), STEP_S));
+    let next = (0..n_substeps).fold(x.to_array(), |x, substep| {
+        let f = |stage, x: &[T; 8]| derivative(substep, stage, x);
+        rk4_step(f, &x, STEP_S / n_substeps as f64)
+    });
+    let next = VehicleState::from_array(next);
     let drives = u
         .axle_drive_n
         .is_some_and(|axles_n| axles_n.iter().any(|force| T::from(0.0).any_less(*force)));
@@ -183,6 +189,21 @@ mod tests {
             let next = step(&vehicle, &x, &VehicleInput::released(), a);
             let [before, after] = [&x, &next].map(|x| planar_energy_j(&vehicle, x));
             prop_assert!(after <= before * (1.0 + 1e-12), "{before} {after}");
+        }
+
+        #[test]
+        fn a_stiff_or_strongly_damped_roll_does_not_diverge(
+            stiffness in 1.0..300.0_f64, damping in 0.0..300.0_f64, roll in -0.2..0.2_f64,
+        ) {
+            let mut vehicle = Preset::Reference.parameters();
+            vehicle.suspension.roll_stiffness_n_m_rad *= stiffness;
+            vehicle.suspension.roll_damping_n_m_s_rad *= damping;
+            let mut x = VehicleState { roll_rad: roll, ..state(0.0, 0.0, 0.0) };
+            let before = vehicle.energy_j(&x);
+            for _ in 0..100 {
+                x = step(&vehicle, &x, &VehicleInput::released(), [0.0; 4]);
+                prop_assert!(vehicle.energy_j(&x) <= before * (1.0 + 1e-9), "{x:?}");
+            }
         }
 
         #[test]

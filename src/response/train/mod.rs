@@ -19,4 +19,5 @@ mod stages;
 pub use case::{ResponseCase, ResponseCaseError};
 pub use record::{ResponseEpoch, ResponseRecord, ResponseStage, ResponseTraining};
 pub use simulated::ImpactRecord;
+pub(crate) use stages::check_start;
 pub use stages::{ResponseTrainSettings, ResponseTrainingSet, fine_tune, pretrain};

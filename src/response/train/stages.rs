@@ -129,6 +129,19 @@ fn calibration_folds(set: &ResponseTrainingSet, settings: &ResponseTrainSettings
     }
 }
 
+/// Checks that a network of this configuration can start from the weights of a model.
+///
+/// # Errors
+/// [`LearningError::Network`] for layers of other sizes.
+pub(crate) fn check_start(
+    start: &ResponseModel,
+    config: &ResponseConfig,
+    seed: u64,
+) -> Result<(), LearningError> {
+    let network = fresh_network(&ResponseTrainSettings::unsaved(config.clone(), seed))?;
+    Ok(network.parameters().import(&start.network().parameters().export()?)?)
+}
+
 fn fine_tune_once(
     start: Option<&ResponseModel>,
     set: &ResponseTrainingSet,

@@ -1,0 +1,62 @@
+//! The mechanical energy of the 4DOF vehicle, which nothing but a force, a drive or work on the roll
+//! model may increase.
+
+use crate::units::STANDARD_GRAVITY_M_S2;
+use crate::vehicle::{VehicleParameters, VehicleState};
+
+impl VehicleParameters {
+    /// Kinetic energy and potential of roll, J; zero for an upright vehicle at rest.
+    ///
+    /// ```text
+    /// E = m (v_x² + v_y²)/2 + I_zz r²/2 + I_xz r φ̇ + I_xx φ̇²/2 + K_φ φ²/2 − m_s g h (1 − cos φ)
+    /// ```
+    pub fn energy_j(&self, x: &VehicleState<f64>) -> f64 {
+        let (mass, suspension) = (&self.mass, &self.suspension);
+        let (yaw_rate, roll_rate) = (x.yaw_rate_rad_s, x.roll_rate_rad_s);
+        let speed_squared = x.vx_m_s * x.vx_m_s + x.vy_m_s * x.vy_m_s;
+        let kinetic = mass.mass_kg * speed_squared
+            + mass.yaw_inertia_kg_m2 * yaw_rate * yaw_rate
+            + 2.0 * mass.roll_yaw_product_kg_m2 * yaw_rate * roll_rate
+            + mass.roll_inertia_kg_m2 * roll_rate * roll_rate;
+        let weight_moment = mass.sprung_mass_kg * STANDARD_GRAVITY_M_S2 * suspension.roll_arm_m;
+        // 1 − cos φ = 2 sin²(φ/2), which does not lose its digits at a small roll angle.
+        let lowered = 2.0 * (x.roll_rad / 2.0).sin().powi(2);
+        let springs = suspension.roll_stiffness_n_m_rad * x.roll_rad * x.roll_rad / 2.0;
+        kinetic / 2.0 + springs - weight_moment * lowered
+    }
+}
+
+/// Growth of the energy without a force beyond which a motion is wrong, as a share of the energy at
+/// the end of the force. The roll model takes some energy from the tyres that it does not take from
+/// the planar motion, since a wheel is not moved sideways by roll; of ordinary vehicles, that is less
+/// than a tenth of this.
+pub const MAX_ENERGY_GAIN: f64 = 0.01;
+
+/// Speed of a vehicle whose energy is too small to grow, m/s.
+const NEGLIGIBLE_SPEED_M_S: f64 = 1e-3;
+
+/// The energy of a vehicle along its motion, while nothing pushes it.
+#[derive(Debug, Default)]
+pub(super) struct EnergyWatch {
+    /// Energy at the end of the force and the lowest since then, J; `None` before the first sample
+    /// and while a force acts.
+    released: Option<(f64, f64)>,
+}
+
+impl EnergyWatch {
+    /// Growth above the lowest energy since the force has ended, as a share of the energy at its end.
+    ///
+    /// - `is_pushed`: whether a force acts over the interval that begins.
+    pub(super) fn gain(
+        &mut self,
+        vehicle: &VehicleParameters,
+        x: &VehicleState<f64>,
+        is_pushed: bool,
+    ) -> f64 {
+        let energy_j = vehicle.energy_j(x);
+        let negligible_j = vehicle.mass.mass_kg * NEGLIGIBLE_SPEED_M_S.powi(2) / 2.0;
+        let (released_j, lowest_j) = self.released.unwrap_or((energy_j, energy_j));
+        self.released = (!is_pushed).then_some((released_j, lowest_j.min(energy_j)));
+        (energy_j - lowest_j) / (released_j + negligible_j)
+    }
+}
