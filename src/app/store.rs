@@ -12,7 +12,7 @@ use egui::Context;
 
 use crate::app::state::State;
 use crate::data::write::WriterLock;
-use crate::data::{DataError, Existing, write_atomically};
+use crate::data::{DataError, Existing, MAX_RESULTS_BYTES, read_utf8, write_atomically};
 use crate::error_chain;
 use crate::jobs::{Job, Update};
 
@@ -53,7 +53,7 @@ pub fn open_state(path: Option<PathBuf>) -> OpenedState {
     let store = match Store::open(path.clone()) {
         Ok(store) => store,
         Err(error) => {
-            let restored = std::fs::read_to_string(&path).ok();
+            let restored = read_utf8(&path, MAX_RESULTS_BYTES).ok();
             let restored = restored.and_then(|text| State::restore(&text).ok());
             let why = error_chain(&error);
             let message = format!("what is changed in this window will not be kept ({why})");
@@ -84,18 +84,18 @@ impl Store {
 
     /// Restores the state that is in the file.
     fn restore(mut self) -> OpenedState {
-        let why = match std::fs::read_to_string(&self.path) {
-            Err(error) if error.kind() == ErrorKind::NotFound => {
+        let why = match read_utf8(&self.path, MAX_RESULTS_BYTES) {
+            Err(DataError::NotFound { .. }) => {
                 return OpenedState { store: Some(self), ..OpenedState::default() };
             }
-            Err(error) if error.kind() != ErrorKind::InvalidData => {
-                let message = format!(
-                    "what is changed in this window will not be kept ({}: cannot be read: {error})",
-                    self.path.display()
-                );
+            Err(DataError::Io { source, .. }) if source.kind() == ErrorKind::InvalidData => {
+                error_chain(&source)
+            }
+            Err(error) => {
+                let why = error_chain(&error);
+                let message = format!("what is changed in this window will not be kept ({why})");
                 return OpenedState { message: Some(message), ..OpenedState::default() };
             }
-            Err(error) => error_chain(&error),
             Ok(text) => match State::restore(&text) {
                 Ok(restored) => {
                     self.written = text;

@@ -96,7 +96,7 @@ fn deep_nesting_and_large_settings_are_refused() {
                 "--data",
                 "datasets/fea",
                 "--out",
-                "/nowhere",
+                text(&folder.path().join("model.safetensors")),
                 "--config",
                 text(&path),
             ],
@@ -118,7 +118,8 @@ fn pipes_block_no_command() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("pipe");
     assert!(Command::new("mkfifo").arg(&path).status().unwrap().success());
-    let pipe = text(&path);
+    let (pipe, out) = (text(&path), folder.path().join("out"));
+    let out = text(&out);
     for args in [
         &["ask", pipe][..],
         &["impact", pipe],
@@ -126,8 +127,8 @@ fn pipes_block_no_command() {
         &["simulate", "--vehicle", "reference-2000", "--force", pipe],
         &["simulate", "--vehicle", "reference-2000", "--steer", pipe],
         &["predict", "force", "--scenario", "pit-right-rear", "--model", pipe],
-        &["predict", "--scenario", "pit-right-rear", "--out", "/nowhere", "--response-model", pipe],
-        &["train", "force", "--data", "datasets/fea", "--out", "/nowhere", "--config", pipe],
+        &["predict", "--scenario", "pit-right-rear", "--out", out, "--response-model", pipe],
+        &["train", "force", "--data", "datasets/fea", "--out", out, "--config", pipe],
     ] {
         assert_eq!(refused(args), format!("{pipe}: is a pipe, expected a file"), "{args:?}");
     }

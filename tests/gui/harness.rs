@@ -11,7 +11,7 @@ use impactlab::app::{App, Command, State};
 use impactlab::render::SoftwareRenderer;
 
 /// Longest time to wait for background work. Only work that hangs exceeds it.
-const PATIENCE: Duration = Duration::from_secs(3600);
+const PATIENCE: Duration = Duration::from_secs(600);
 
 /// Colour that a real window shows where nothing is painted.
 const WINDOW_GROUND: Color32 = Color32::BLACK;

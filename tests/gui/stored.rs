@@ -158,3 +158,19 @@ fn a_state_of_a_later_version_stays_as_it_is() {
     assert_eq!(fs::read_to_string(&state_file).expect("a state"), later);
     assert_eq!(names(folder.path()), ["state.json"]);
 }
+
+#[test]
+fn a_state_that_is_no_file_or_too_large_blocks_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let pipe = folder.path().join("pipe");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status().expect("mkfifo");
+    assert!(made.success());
+    let large = folder.path().join("large");
+    fs::File::create(&large).and_then(|file| file.set_len(1 << 40)).expect("a sparse file");
+    for (path, what) in [(pipe, "is a pipe"), (large, "bytes, at most")] {
+        let harness = open_with(&[], Some(path));
+        let text = messages(&harness);
+        assert!(text.contains("will not be kept") && text.contains(what), "{text}");
+    }
+    assert_eq!(names(folder.path()), ["large", "pipe"]);
+}
