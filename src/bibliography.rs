@@ -17,6 +17,10 @@ sources! {
     /// M. Carpenter, J. Welcher, *Planar impact with the no-slide condition and a friction limit*,
     /// SAE Technical Paper 2019-01-0422, 2019. Worked barrier example.
     CarpenterWelcher2019;
+    /// Transport Canada, *Canadian Vehicle Specifications*: outer dimensions, wheelbases and tracks of
+    /// vehicles sold in Canada, as served by the vPIC interface of the NHTSA and collected, rounded to
+    /// 1 cm, in the public repository `shifter907/allcarsdb` (`data/body_configs.csv`).
+    Cvs2024;
     /// T. Gneiting, A. E. Raftery, *Strictly proper scoring rules, prediction, and estimation*,
     /// Journal of the American Statistical Association 102(477), 2007. Continuous ranked
     /// probability score, energy score.
@@ -32,15 +36,34 @@ sources! {
     /// verification*, Quarterly Journal of the Royal Meteorological Society 132, 2006. The score of a
     /// mixture of normals in closed form.
     Grimit2006;
+    /// G. J. Heydinger, R. A. Bixel, W. R. Garrott, M. Pyne, J. G. Howe, D. A. Guenther, *Measured
+    /// vehicle inertial parameters: NHTSA's data through November 1998*, SAE Technical Paper
+    /// 1999-01-1336, 1999. Measured masses, CG heights and moments of inertia of light vehicles. Its
+    /// numbers are used as [`KktseInertia2020`] evaluates them.
+    Heydinger1999;
     /// ISO 8855:2011, *Road vehicles: Vehicle dynamics and road-holding ability: Vocabulary*. Axes
     /// and signs.
     Iso8855;
+    /// kktse.github.io, *Cornering compliances of a typical road vehicle*, 2019. Cornering compliance
+    /// of both axles of one car, identified on the road.
+    KktseCornering2019;
+    /// kktse.github.io, *Estimating vehicle inertia and centre-of-gravity height using the NHTSA light
+    /// vehicle inertial parameter database*, 2020. Medians, quartiles and extremes of dynamic indices
+    /// and stability factors over the unballasted vehicles of [`Heydinger1999`].
+    KktseInertia2020;
+    /// National Highway Traffic Safety Administration, *New Car Assessment Program: rollover
+    /// resistance measurements*, model year 2004. Tracks, wheelbases, weights and CG of vehicles on
+    /// scales and tilt table, with the weight of a driver; as collected in the public repository
+    /// `kktse/stunning-octo-doodle-ncap`.
+    Ncap2004;
     /// A. Thompson, B. N. Taylor, *Guide for the Use of the International System of Units (SI)*,
     /// NIST Special Publication 811, 2008. Conversion factors.
     Nist2008;
     /// M. Okabe, K. Ito, *Color universal design: how to make figures and presentations that are
     /// friendly to colorblind people*, 2008.
     OkabeIto2008;
+    /// comma.ai, *opendbc*: kerb weights of car models, `opendbc/car/*/values.py`, MIT licence.
+    Opendbc2025;
     /// Y. Jiang, J. Wang, D. Li, *Physics-Informed Neural Network Modeling of Vehicle Collision
     /// Dynamics in Precision Immobilization Technique Maneuvers*, Zhejiang University. “The paper”
     /// in doc comments: its two physics-informed networks, from the scenario of a collision to the

@@ -12,6 +12,7 @@ mod motion_density;
 mod motion_forecast;
 mod rest;
 mod scenario;
+mod vehicle_draws;
 
 use crate::collision::{Footprint, PulseError, ScenarioError};
 use crate::compare::{MotionError, ReplayError};
@@ -31,6 +32,7 @@ pub use motion_forecast::{
 };
 pub use rest::{REST_SPEED_M_S, REST_YAW_RATE_RAD_S};
 pub use scenario::{PulseSetup, analyse_scenario};
+pub use vehicle_draws::{Sensitivity, VehicleDraws};
 
 /// Vehicles and settings of the simulation of a case.
 #[derive(Debug, Clone, PartialEq)]

@@ -103,6 +103,20 @@ impl<'a> TomlTable<'a> {
         Ok(found.map(|(_, si)| si))
     }
 
+    /// Reads a number whose key has its unit in it, and no other; `None` if there is no such key.
+    ///
+    /// # Errors
+    /// [`TomlError::Value`] if the value is not a number or outside the range.
+    pub fn plain(&mut self, key: &str, range: &Range) -> Result<Option<f64>, TomlError> {
+        let Some((_, value)) = self.take(key) else {
+            return Ok(None);
+        };
+        match parse_number(value.get_ref()).filter(|number| range.contains(*number)) {
+            Some(number) => Ok(Some(number)),
+            None => Err(self.bad_value(key, value, range.expected_si())),
+        }
+    }
+
     /// Reads a number as [`TomlTable::number`] does, where the number is required.
     ///
     /// # Errors
@@ -156,6 +170,17 @@ impl<'a> TomlTable<'a> {
             column,
             key: self.full(&self.last_key),
             other: other.into(),
+        }
+    }
+
+    /// Builds the error for the value that was read last, which is not permitted.
+    ///
+    /// - `expected`: the permitted values, in words.
+    pub fn refuse_last(&self, expected: &str) -> TomlError {
+        let entry = self.table.iter().find(|(key, _)| *key.get_ref() == self.last_key);
+        match entry {
+            Some((_, value)) => self.bad_value(&self.last_key, value, expected.to_owned()),
+            None => self.missing(&self.last_key),
         }
     }
 

@@ -140,6 +140,25 @@ ranges! {
 }
 
 ranges! {
+    /// What a data sheet states beside the parameters of a vehicle file.
+    DATA_SHEET = "data sheet of a car";
+    WHEELBASE: "wheelbase" = real(Quantity::Length, [0.1, 20.0]), "distance between the axles";
+    FRONT_OVERHANG: "front overhang" = real(Quantity::Length, [0.0, 5.0]),
+        "distance from the front axle to the front end";
+    FRONT_LOAD_SHARE: "front share" = real(Quantity::Ratio, [0.2, 0.85]),
+        "share of the front axle in the weight";
+    STATIC_STABILITY_FACTOR: "static stability factor" = real(Quantity::Ratio, [0.5, 3.0]),
+        "half the track over the height of the CG";
+    WHEEL_RADIUS: "wheel radius" = real(Quantity::Length, [0.03, 1.0]),
+        "rolling radius of the wheels";
+    ROLL_GRADIENT: "roll gradient" = in_unit("deg/g", [0.5, 30.0]),
+        "steady roll angle over lateral acceleration";
+    ROLL_DAMPING_RATIO: "roll damping ratio" = real(Quantity::Ratio, [0.0, 3.0]),
+        "damping ratio of the roll motion";
+    DRAG_AREA: "drag area" = in_unit("m²", [0.0, 15.0]), "drag coefficient times frontal area";
+}
+
+ranges! {
     /// Columns of time series; speeds, times and steer angles have the ranges above. A value
     /// outside means that its unit is wrong; values that are merely unusual are flagged by
     /// `impactlab check`.

@@ -1,8 +1,8 @@
 //! The list of all ranges.
 
 use crate::ranges::{
-    BODIES, CHANNELS, CONTACT, FORCE_SETTINGS, MOTION, PICTURES, QUESTIONS, RESPONSE_SETTINGS,
-    Range, TIMES, VEHICLE,
+    BODIES, CHANNELS, CONTACT, DATA_SHEET, FORCE_SETTINGS, MOTION, PICTURES, QUESTIONS,
+    RESPONSE_SETTINGS, Range, TIMES, VEHICLE,
 };
 
 /// Ranges that belong together.
@@ -21,6 +21,7 @@ pub const TABLE: &[RangeGroup] = &[
     CONTACT,
     BODIES,
     VEHICLE,
+    DATA_SHEET,
     CHANNELS,
     QUESTIONS,
     PICTURES,

@@ -4,7 +4,8 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::vehicle::ContactPoint;
+use crate::vehicle::sheet::Estimate;
+use crate::vehicle::{ContactPoint, VehicleParameters};
 
 /// What was assumed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -14,6 +15,10 @@ pub enum AssumedQuantity {
     Vehicle,
     /// The striking vehicle.
     Bullet,
+    /// A parameter of the struck vehicle that its data sheet does not state.
+    VehicleParameter,
+    /// Parameters of the striking vehicle that its data sheet does not state.
+    BulletParameter,
     /// Speed of the struck vehicle before the impact.
     Speed,
     /// Where the force acts on the struck vehicle.
@@ -48,6 +53,8 @@ impl AssumedQuantity {
         match self {
             Self::Vehicle => "struck vehicle",
             Self::Bullet => "striking vehicle",
+            Self::VehicleParameter => "parameter of the vehicle",
+            Self::BulletParameter => "parameters of the striking vehicle",
             Self::Speed => "speed before the impact",
             Self::ContactPoint => "contact point",
             Self::ContactHeight => "height of the contact",
@@ -68,6 +75,29 @@ impl Assumption {
         Self { quantity, value: value.into(), reason: reason.into() }
     }
 
+    /// Each parameter that was estimated because the data sheet of a vehicle does not state it.
+    pub(super) fn estimates(vehicle: &VehicleParameters) -> Vec<Self> {
+        let sheet = vehicle.sheet.as_ref();
+        let estimates = sheet.map_or_else(Vec::new, |sheet| sheet.estimates());
+        estimates.iter().map(Self::estimate).collect()
+    }
+
+    fn estimate(estimate: &Estimate) -> Self {
+        let Estimate { quantity, unit, median, ninety: [low, high], rule, source } = estimate;
+        let [median, low, high] = [*median, *low, *high].map(three_digits);
+        let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+        let value = format!("{} {median}{unit}, 90 %: {low} to {high}", quantity.label());
+        Self::new(AssumedQuantity::VehicleParameter, value, format!("{rule}; {source}"))
+    }
+
+    /// That the parameters of a vehicle are estimates of which only the medians are used.
+    pub(super) fn medians(quantity: AssumedQuantity, vehicle: &VehicleParameters) -> Option<Self> {
+        let n = vehicle.sheet.as_ref()?.estimated().count();
+        let value = format!("{n} of {}, at their medians", vehicle.name);
+        let reason = "its data sheet does not state them; impactlab vehicles lists the rules";
+        (n > 0).then(|| Self::new(quantity, value, reason))
+    }
+
     /// The contact point that stands for an unknown one.
     pub(super) fn contact_point(contact: ContactPoint, reason: &str) -> Self {
         let ContactPoint { x_m, y_m, height_m } = contact;
@@ -83,6 +113,37 @@ impl fmt::Display for Assumption {
         match quantity {
             AssumedQuantity::NotUsed => write!(f, "not used: {value} ({reason})"),
             quantity => write!(f, "assumed {}: {value} ({reason})", quantity.label()),
+        }
+    }
+}
+
+/// A number with three digits.
+fn three_digits(value: f64) -> String {
+    let size = value.abs();
+    let decimals = if size < 1e-9 { 0 } else { (2 - size.log10().floor() as i32).clamp(0, 6) };
+    let rounded = format!("{value:.*}", decimals as usize);
+    match decimals {
+        0 => format!("{:.0}", value),
+        _ => rounded.trim_end_matches('0').trim_end_matches('.').to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn estimates_are_told_with_three_digits() {
+        for (value, expected) in [
+            (2451.7, "2452"),
+            (0.6049, "0.605"),
+            (0.0110, "0.011"),
+            (0.0, "0"),
+            (-74.25, "-74.2"),
+            (5.7, "5.7"),
+            (12.34, "12.3"),
+        ] {
+            assert_eq!(three_digits(value), expected);
         }
     }
 }

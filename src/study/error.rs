@@ -144,8 +144,12 @@ pub enum StudyError {
     /// A vehicle or scenario file cannot be read.
     #[error(transparent)]
     TomlFile(#[from] TomlError),
-    /// A vehicle is neither a preset nor a file.
-    #[error("{name:?} is no vehicle; expected a vehicle file or one of {}", presets.join(", "))]
+    /// A vehicle is neither a preset, nor one of the library, nor a file.
+    #[error(
+        "{name:?} is no vehicle; expected a vehicle file, a vehicle of the library (impactlab \
+         vehicles lists them), or one of {}",
+        presets.join(", ")
+    )]
     UnknownVehicle {
         /// As given.
         name: String,

@@ -16,8 +16,9 @@ use crate::study::checks::{check, check_count};
 use crate::study::inputs::{OpenVehicle, data_name, response_cases, struck_vehicle};
 use crate::study::train_response::TrainingNotes;
 use crate::study::{
-    ConfigChoice, Event, Library, ModelChoice, MotionLogs, Observer, Question,
-    ResponseTrainingAnswer, ResponseTrainingReport, StudyError, TrainingOptions, VehicleChoice,
+    AssumedQuantity, Assumption, ConfigChoice, Event, Library, ModelChoice, MotionLogs, Observer,
+    Question, ResponseTrainingAnswer, ResponseTrainingReport, StudyError, TrainingOptions,
+    VehicleChoice,
 };
 
 /// Asks for a response network that has learned from recorded motions.
@@ -98,6 +99,8 @@ impl FineTuneRequest {
         if let Some(logs) = &self.logs {
             let vehicle =
                 struck_vehicle(&self.vehicle, &OpenVehicle::Unknown, &mut notes.assumptions)?;
+            let medians = Assumption::medians(AssumedQuantity::VehicleParameter, &vehicle);
+            notes.assumptions.extend(medians);
             let (train, reports) = logs.read(vehicle)?;
             notes.logs = reports;
             let names: Vec<&str> = train.iter().map(|case| case.name.as_str()).collect();

@@ -230,7 +230,7 @@ impl PredictMotionRequest {
     /// Whether the motion of the struck vehicle depends on what was assumed for the simulation.
     fn rests_on(&self, assumption: &Assumption) -> bool {
         match assumption.quantity {
-            AssumedQuantity::Bullet => false,
+            AssumedQuantity::Bullet | AssumedQuantity::BulletParameter => false,
             AssumedQuantity::Pulse => self.force == ForceSource::Given,
             _ => true,
         }

@@ -162,6 +162,7 @@ impl SimulateRequest {
         let mut unused = Vec::new();
         let assumed = if has_bullet { assumptions } else { &mut unused };
         let bullet = striking_vehicle(&self.bullet, assumed)?;
+        assumed.extend(Assumption::medians(AssumedQuantity::BulletParameter, &bullet));
         let (integrator, duration_s) = (self.integrator, self.duration_s);
         Ok(Settings { target, bullet, integrator, duration_s })
     }
@@ -244,6 +245,7 @@ impl Question for SimulateRequest {
         };
         let analysis = made.map_err(failed)?;
         refuse_contact_off_vehicle(&analysis)?;
+        assumptions.extend(Assumption::estimates(&analysis.vehicle));
         let report = SimulateReport::of(self, &analysis, assumptions)
             .map_err(|source| failed(AnalysisError::Series(source)))?;
         Ok(Outcome::Complete(SimulateAnswer { report, analysis }))

@@ -10,8 +10,8 @@ use crate::error_chain;
 use crate::study::inputs::{OpenVehicle, struck_vehicle};
 use crate::study::question::progress_of;
 use crate::study::{
-    Assumption, FlagReport, Library, Observer, Provenance, Question, StudyError, VehicleChoice,
-    word,
+    AssumedQuantity, Assumption, FlagReport, Library, Observer, Provenance, Question, StudyError,
+    VehicleChoice, word,
 };
 use crate::vehicle::{Equations, Integrator};
 
@@ -118,6 +118,7 @@ impl Question for SimulateDatasetRequest {
         let mut assumptions = Vec::new();
         let own = OpenVehicle::OfDataset(dataset.vehicle_file.as_deref());
         let vehicle = struck_vehicle(&self.vehicle, &own, &mut assumptions)?;
+        assumptions.extend(Assumption::medians(AssumedQuantity::VehicleParameter, &vehicle));
         let vehicle = match self.equations {
             Some(equations) => vehicle.with_equations(equations),
             None => vehicle,

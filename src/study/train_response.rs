@@ -17,8 +17,8 @@ use crate::response::{
 use crate::study::inputs::{OpenVehicle, data_name, force_cases, response_cases, struck_vehicle};
 use crate::study::provenance::RESPONSE_NETWORK;
 use crate::study::{
-    Assumption, Event, Library, LogReport, Observer, Provenance, Question, StudyError,
-    TrainingOptions, VehicleChoice,
+    AssumedQuantity, Assumption, Event, Library, LogReport, Observer, Provenance, Question,
+    StudyError, TrainingOptions, VehicleChoice,
 };
 use crate::vehicle::VehicleParameters;
 
@@ -121,6 +121,8 @@ impl TrainResponseRequest {
         }
         let vehicle =
             struck_vehicle(&self.vehicle, &OpenVehicle::OfDataset(None), &mut notes.assumptions)?;
+        let medians = Assumption::medians(AssumedQuantity::VehicleParameter, &vehicle);
+        notes.assumptions.extend(medians);
         let cases = force_cases(&self.data, self.training.bad_cases, (library, observer))?;
         Ok(cases.map(|usable| {
             notes.left_out = usable.left_out;

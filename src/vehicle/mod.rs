@@ -7,6 +7,7 @@ mod loads;
 mod multibody_record;
 mod parameters;
 mod preset;
+pub mod sheet;
 mod state;
 mod tire;
 
@@ -21,7 +22,8 @@ pub use four_dof::{CollisionForce, ContactPoint, VehicleEvaluation, VehicleInput
 pub use loads::Wheel;
 pub use multibody_record::MultibodyRecord;
 pub use parameters::{GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters};
-pub use preset::Preset;
+pub use preset::{Preset, built_in_vehicle};
+pub use sheet::{DataSheet, LibraryVehicle};
 pub use simulate::{
     ContactLoad, Integrator, Manoeuvre, Motion, MotionFlag, OUTPUT_INTERVAL_S, ROLL_LIMIT_RAD,
     SimulationError, SteerHistory,

@@ -138,6 +138,7 @@ impl MultibodyRecord {
                 rolling_resistance_s2_m2: drag_over_weight,
             },
             estimates: estimates(),
+            sheet: None,
         }
     }
 

@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
@@ -14,8 +15,9 @@ use crate::ranges::{
     ROLLING_RESISTANCE_PER_SPEED_2, Range, SLIDING_FRICTION_RATIO, SPRUNG_MASS, TRACK_WIDTH,
     VEHICLE_MASS, VEHICLE_YAW_INERTIA,
 };
+use crate::vehicle::sheet::SheetQuantity;
 use crate::vehicle::tire::TireParameters;
-use crate::vehicle::{Equations, MultibodyRecord, VehicleMismatch};
+use crate::vehicle::{DataSheet, Equations, MultibodyRecord, VehicleMismatch};
 
 /// Parameters of one vehicle in SI units. [`VehicleParameters::load`] and
 /// [`VehicleParameters::parse`] check every value against its range.
@@ -42,6 +44,10 @@ pub struct VehicleParameters {
     /// value was estimated.
     #[serde(default)]
     pub estimates: BTreeMap<String, String>,
+    /// The data sheet from which the parameters follow, if they do: it says how uncertain each
+    /// estimate is, and what else changes with the mass. It is not part of a full vehicle file.
+    #[serde(skip)]
+    pub sheet: Option<Arc<DataSheet>>,
 }
 
 /// Masses and moments of inertia of one vehicle.
@@ -105,8 +111,8 @@ impl GeometryParameters {
 
 impl VehicleParameters {
     /// Reads a vehicle file and checks the range of every value. The file has the format of this
-    /// type, or it is the data sheet of a multibody model that comes with a trajectory data set
-    /// (see [`MultibodyRecord`]).
+    /// type, or it is a data sheet with what is known of a car (see [`DataSheet`]), or the data sheet
+    /// of a multibody model that comes with a trajectory data set (see [`MultibodyRecord`]).
     ///
     /// # Errors
     /// [`TomlError`] if the file cannot be read, is not valid TOML, or has a key that is missing,
@@ -125,6 +131,8 @@ impl VehicleParameters {
         let is_multibody = table.get("mass").is_some_and(|mass| mass.get("total").is_some());
         let (vehicle, origin): (Self, Origin) = if is_multibody {
             (file.to::<MultibodyRecord>()?.parameters(), MultibodyRecord::origin)
+        } else if table.contains_key("data_sheet") {
+            (DataSheet::from_toml(file)?.vehicle(), DataSheet::origin)
         } else {
             (file.to()?, |_| None)
         };
@@ -135,6 +143,10 @@ impl VehicleParameters {
     /// The same vehicle on a road with another peak friction coefficient. The value is not checked.
     pub fn with_friction(mut self, friction: f64) -> Self {
         self.tires.friction = friction;
+        if let Some(sheet) = &mut self.sheet {
+            Arc::make_mut(sheet).set(SheetQuantity::Friction, friction);
+            self.estimates.remove("tires.friction");
+        }
         self
     }
 
@@ -145,13 +157,22 @@ impl VehicleParameters {
         self
     }
 
-    /// The same vehicle with another mass. Sprung mass, roll inertia, product of inertia, roll
-    /// stiffness and roll damping are scaled in proportion to the mass. The values are not checked.
+    /// The same vehicle with another mass. Where the parameters follow from a data sheet, those that
+    /// were estimated from the mass follow it. Otherwise sprung mass, roll inertia, product of
+    /// inertia, roll stiffness and roll damping are scaled in proportion to the mass. The values are
+    /// not checked.
     ///
     /// - `mass_kg`: total mass, kg.
     /// - `yaw_inertia_kg_m2`: yaw moment of inertia, kg m²; with `None` it is scaled in proportion
-    ///   to the mass too.
+    ///   to the mass too, unless a data sheet states it.
     pub fn with_mass(mut self, mass_kg: f64, yaw_inertia_kg_m2: Option<f64>) -> Self {
+        if let Some(sheet) = &self.sheet {
+            let mut sheet = DataSheet::clone(sheet).with(SheetQuantity::Mass, mass_kg);
+            if let Some(inertia) = yaw_inertia_kg_m2 {
+                sheet.set(SheetQuantity::YawInertia, inertia);
+            }
+            return sheet.vehicle().with_equations(self.equations);
+        }
         let ratio = mass_kg / self.mass.mass_kg;
         let mass = &mut self.mass;
         mass.yaw_inertia_kg_m2 = yaw_inertia_kg_m2.unwrap_or(mass.yaw_inertia_kg_m2 * ratio);
@@ -167,6 +188,24 @@ impl VehicleParameters {
             *value *= ratio;
         }
         self
+    }
+
+    /// The same vehicle with the estimates of its data sheet away from their medians; unchanged if it
+    /// has no data sheet.
+    ///
+    /// - `latents`: for each estimate, in the order of [`DataSheet::estimated`], by how many standard
+    ///   deviations.
+    pub fn drawn(&self, latents: &[f64]) -> Self {
+        match &self.sheet {
+            Some(sheet) => sheet.at(latents).vehicle().with_equations(self.equations),
+            None => self.clone(),
+        }
+    }
+
+    /// Whether every value lies in its range, and all go together.
+    pub(super) fn is_consistent(&self) -> bool {
+        self.ranges().iter().all(|(_, value, range)| range.contains(*value))
+            && self.check_relations().is_ok()
     }
 
     /// Checks every value against its range and against the other values.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::vehicle::VehicleParameters;
+use crate::vehicle::{LibraryVehicle, VehicleParameters};
 
 macro_rules! presets {
     ($($(#[$doc:meta])* $variant:ident: $file:literal;)+) => {
@@ -64,6 +64,13 @@ impl Preset {
             Err(error) => unreachable!("a shipped vehicle is bad (a test reads them all): {error}"),
         }
     }
+}
+
+/// Parameters of a vehicle that comes with the program, a preset or one of the library, by its id;
+/// `None` if there is none.
+pub fn built_in_vehicle(id: &str) -> Option<VehicleParameters> {
+    let preset = Preset::from_id(id).map(Preset::parameters);
+    preset.or_else(|| LibraryVehicle::from_id(id).map(LibraryVehicle::parameters))
 }
 
 #[cfg(test)]

@@ -12,7 +12,10 @@ use crate::study::{
     ASSUMED_CONTACT, ASSUMED_SPEED_M_S, DEFAULT_BULLET, DEFAULT_VEHICLE, VehicleChoice,
 };
 use crate::units::{Quantity, UnitSystem};
-use crate::vehicle::{ContactPoint, Equations, Integrator, Preset, VehicleParameters};
+use crate::vehicle::{
+    ContactPoint, Equations, Integrator, LibraryVehicle, Preset, VehicleParameters,
+    built_in_vehicle,
+};
 
 /// Draws the choice of the vehicles, the equations and the integrator, the start of single force
 /// files, and, if the struck vehicle is a preset, its parameters.
@@ -35,10 +38,10 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             contact_ui(ui, &mut project.file_start, view.units);
         });
         if let VehicleChoice::Preset(id) = &project.vehicle
-            && let Some(preset) = Preset::from_id(id)
+            && let Some(vehicle) = built_in_vehicle(id)
         {
             ui.separator();
-            parameters_ui(ui, &preset.parameters());
+            parameters_ui(ui, &vehicle);
         }
     });
 }
@@ -53,7 +56,8 @@ fn choice_ui(ui: &mut Ui, project: &mut Project) {
     vehicle_choice_ui(ui, ("Striking vehicle", hint), (&mut project.bullet, &open));
 }
 
-/// Draws a row of a two-column grid with the choice of a vehicle among the presets.
+/// Draws a row of a two-column grid with the choice of a vehicle among those that come with the
+/// program.
 ///
 /// - `open`: text that tells which vehicle is used if the user chooses none.
 fn vehicle_choice_ui(
@@ -71,9 +75,9 @@ fn vehicle_choice_ui(
         .selected_text(label)
         .show_ui(ui, |ui| {
             ui.selectable_value(choice, VehicleChoice::Automatic, open);
-            for preset in Preset::ALL {
-                let value = VehicleChoice::Preset(preset.id().to_owned());
-                ui.selectable_value(choice, value, preset.id());
+            let presets = Preset::ALL.iter().map(|preset| preset.id());
+            for id in presets.chain(LibraryVehicle::ALL.iter().map(|vehicle| vehicle.id())) {
+                ui.selectable_value(choice, VehicleChoice::Preset(id.to_owned()), id);
             }
         })
         .response

@@ -30,6 +30,9 @@ fn place(quantity: AssumedQuantity) -> Option<&'static str> {
         AssumedQuantity::ContactHeight | AssumedQuantity::Pulse => {
             "In this window: Contact in the Scenario pane"
         }
+        AssumedQuantity::VehicleParameter | AssumedQuantity::BulletParameter => {
+            "A data sheet that states it: open the file, or drop it here"
+        }
         AssumedQuantity::StartOfRecord | AssumedQuantity::Steer | AssumedQuantity::NotUsed => {
             return None;
         }

@@ -6,27 +6,39 @@ use serde::Serialize;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_json, print_table};
 use crate::study::StudyError;
-use crate::vehicle::Preset;
+use crate::vehicle::sheet::Estimate;
+use crate::vehicle::{LibraryVehicle, Preset, VehicleParameters};
 
 /// List the vehicles that come with the program, or print one as a file to save and edit
+///
+/// The presets are the vehicles of the data sets. The library holds the data sheets of ordinary
+/// vehicles: what a sheet does not state is estimated by rule, with its scatter. Either serves as
+/// --vehicle; a file of your own needs no more than mass, length and width, or the class.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct VehiclesArgs {
     /// Print this vehicle's file
     #[arg(value_name = "ID")]
     id: Option<String>,
+    /// With ID: what its data sheet does not state, with median, 90 % range, rule and source
+    #[arg(long, requires = "id")]
+    estimates: bool,
 }
 
 const EXAMPLES: &str = "\
 Examples:
   impactlab vehicles
   impactlab vehicles reference-2000 > my-car.toml
+  impactlab vehicles ford-explorer-2004 --estimates
 
-JSON: {\"vehicles\": [{id, name, source, mass_kg, n_estimates}]}; with ID all parameters";
+JSON: {\"vehicles\": [{id, kind, name, source, mass_kg, n_estimates}]}; with ID all parameters, and
+  data_sheet_estimates [{quantity, unit, median, ninety, rule, source}]";
 
 #[derive(Debug, Serialize)]
 struct Listed {
     id: &'static str,
+    /// `preset` or `library`.
+    kind: &'static str,
     name: String,
     source: String,
     mass_kg: f64,
@@ -44,45 +56,81 @@ pub(in crate::cli) fn run(
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
     match &args.id {
-        Some(id) => print_one(id, console)?,
+        Some(id) => print_one(id, args.estimates, console)?,
         None => print_list(console)?,
     }
     Ok(Verdict::Clean)
 }
 
-fn print_one(id: &str, console: &mut Console<'_>) -> Result<(), CliError> {
-    let preset = Preset::from_id(id).ok_or_else(|| StudyError::unknown_vehicle(id))?;
+/// All parameters of a vehicle, and how uncertain those are that its data sheet does not state.
+#[derive(Debug, Serialize)]
+struct PrintedVehicle<'a> {
+    #[serde(flatten)]
+    parameters: &'a VehicleParameters,
+    data_sheet_estimates: &'a [Estimate],
+}
+
+fn print_one(id: &str, estimates: bool, console: &mut Console<'_>) -> Result<(), CliError> {
+    let preset = Preset::from_id(id).map(|preset| (preset.parameters(), preset.text()));
+    let library = || {
+        let vehicle = LibraryVehicle::from_id(id)?;
+        Some((vehicle.parameters(), vehicle.text()))
+    };
+    let (parameters, text) =
+        preset.or_else(library).ok_or_else(|| StudyError::unknown_vehicle(id))?;
+    let data_sheet_estimates =
+        parameters.sheet.as_ref().map_or_else(Vec::new, |sheet| sheet.estimates());
     if console.json {
-        return print_json(console.out, &preset.parameters());
+        let (parameters, data_sheet_estimates) = (&parameters, data_sheet_estimates.as_slice());
+        return print_json(console.out, &PrintedVehicle { parameters, data_sheet_estimates });
     }
-    write!(console.out, "{}", preset.text())?;
+    if !estimates {
+        write!(console.out, "{text}")?;
+        return Ok(());
+    }
+    let row = |estimate: &Estimate| {
+        let Estimate { quantity, unit, median, ninety: [low, high], rule, source } = estimate;
+        let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
+        vec![
+            format!("{}{unit}", quantity.label()),
+            format!("{median:.4}"),
+            format!("{low:.4} to {high:.4}"),
+            (*rule).to_owned(),
+            (*source).to_owned(),
+        ]
+    };
+    let rows: Vec<_> = data_sheet_estimates.iter().map(row).collect();
+    print_table(console.out, &["quantity", "median", "90 %", "rule", "source"], &rows)?;
     Ok(())
 }
 
 fn print_list(console: &mut Console<'_>) -> Result<(), CliError> {
-    let listed = |preset: &Preset| {
-        let vehicle = preset.parameters();
-        Listed {
-            id: preset.id(),
-            mass_kg: vehicle.mass.mass_kg,
-            n_estimates: vehicle.estimates.len(),
-            name: vehicle.name,
-            source: vehicle.source,
-        }
+    let listed = |id, kind, vehicle: VehicleParameters| Listed {
+        id,
+        kind,
+        mass_kg: vehicle.mass.mass_kg,
+        n_estimates: vehicle.estimates.len(),
+        name: vehicle.name,
+        source: vehicle.source,
     };
-    let vehicles: Vec<Listed> = Preset::ALL.iter().map(listed).collect();
+    let presets = Preset::ALL.iter().map(|vehicle| (vehicle.id(), "preset", vehicle.parameters()));
+    let library =
+        LibraryVehicle::ALL.iter().map(|vehicle| (vehicle.id(), "library", vehicle.parameters()));
+    let all = presets.chain(library);
+    let vehicles: Vec<Listed> = all.map(|(id, kind, vehicle)| listed(id, kind, vehicle)).collect();
     if console.json {
         return print_json(console.out, &List { vehicles });
     }
     let row = |vehicle: &Listed| {
         vec![
             vehicle.id.to_owned(),
+            vehicle.kind.to_owned(),
             format!("{:.0}", vehicle.mass_kg),
             vehicle.n_estimates.to_string(),
             vehicle.name.clone(),
         ]
     };
     let rows: Vec<_> = vehicles.iter().map(row).collect();
-    print_table(console.out, &["id", "mass [kg]", "estimates", "name"], &rows)?;
+    print_table(console.out, &["id", "kind", "mass [kg]", "estimates", "name"], &rows)?;
     Ok(())
 }

@@ -11,7 +11,7 @@ use crate::force::ForceCase;
 use crate::learning::{cases_and_problems, check_kind, load_cases};
 use crate::response::ResponseCase;
 use crate::study::inputs::{OpenVehicle, struck_vehicle};
-use crate::study::{Assumption, Library, Observer, StudyError, VehicleChoice};
+use crate::study::{AssumedQuantity, Assumption, Library, Observer, StudyError, VehicleChoice};
 
 /// What happens to cases of a data set that cannot be used.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -78,6 +78,7 @@ pub(in crate::study) fn response_cases(
     check_kind(&dataset, DatasetKind::Trajectory)?;
     let own = OpenVehicle::OfDataset(dataset.vehicle_file.as_deref());
     let vehicle = struck_vehicle(choice, &own, assumptions)?;
+    assumptions.extend(Assumption::medians(AssumedQuantity::VehicleParameter, &vehicle));
     let from_case = |case: &Case| ResponseCase::from_case(case, &vehicle);
     usable(&dataset, bad_cases, from_case).map(Outcome::Complete)
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::study::{AssumedQuantity, Assumption, StudyError};
-use crate::vehicle::{Preset, VehicleParameters};
+use crate::vehicle::{Preset, VehicleParameters, built_in_vehicle};
 
 /// The struck vehicle where neither the question nor the data set says which it is: the car that
 /// the shipped response network has learned.
@@ -21,16 +21,16 @@ pub enum VehicleChoice {
     /// an assumption.
     #[default]
     Automatic,
-    /// A vehicle that comes with the program, by its id.
+    /// A vehicle that comes with the program, a preset or one of the library, by its id.
     Preset(String),
     /// A vehicle file.
     File(PathBuf),
 }
 
 impl VehicleChoice {
-    /// What a person typed: the id of a preset, else a file.
+    /// What a person typed: the id of a vehicle that comes with the program, else a file.
     pub fn named(name: &str) -> Self {
-        match Preset::from_id(name) {
+        match built_in_vehicle(name) {
             Some(_) => Self::Preset(name.to_owned()),
             None => Self::File(PathBuf::from(name)),
         }
@@ -40,8 +40,8 @@ impl VehicleChoice {
     fn chosen(&self) -> Result<Option<VehicleParameters>, StudyError> {
         match self {
             Self::Automatic => Ok(None),
-            Self::Preset(id) => match Preset::from_id(id) {
-                Some(preset) => Ok(Some(preset.parameters())),
+            Self::Preset(id) => match built_in_vehicle(id) {
+                Some(vehicle) => Ok(Some(vehicle)),
                 None => Err(StudyError::unknown_vehicle(id)),
             },
             Self::File(path) if path.exists() => Ok(Some(VehicleParameters::load(path)?)),

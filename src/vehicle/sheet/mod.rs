@@ -1,0 +1,16 @@
+//! The data sheet of any car: what an analyst knows of it, published rules with their scatter for
+//! what nobody knows, and the parameters of the 4DOF vehicle that follow, with their uncertainty.
+
+mod quantity;
+mod rules;
+
+mod data_sheet;
+mod derive;
+mod file;
+
+mod library;
+
+pub use data_sheet::{DataSheet, Estimate};
+pub use library::LibraryVehicle;
+pub use quantity::{Drive, SheetQuantity, VehicleClass};
+pub use rules::{Rule, Scatter};
