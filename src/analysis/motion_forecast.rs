@@ -11,8 +11,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::analysis::Spread;
 use crate::analysis::rest::{Pace, rest_instant};
+use crate::analysis::{Sensitivity, Spread, VehicleDraws};
 use crate::collision::{Scenario, ScenarioError};
 use crate::data::{
     ContactOutside, ForceAxes, ForceHistory, check_contact_within, contact_interval,
@@ -39,6 +39,9 @@ const N_REGION_DRAWS: usize = 10_000;
 pub struct MotionForecastSettings {
     /// Number of whole force curves that are drawn; at least one is drawn.
     pub n_curves: usize,
+    /// Number of vehicles that are drawn from what the data sheet of the struck vehicle leaves open;
+    /// with 0 all estimates are at their medians.
+    pub n_vehicles: usize,
     /// Duration of the forecast from the start of the impact, s, 0.1 to 60.
     pub duration_s: f64,
     /// Seed of all random draws.
@@ -71,6 +74,10 @@ pub struct MotionForecast {
     pub outcome: MotionOutcome,
     /// The prediction of the force network, if the force was predicted.
     pub force: Option<ForcePrediction>,
+    /// Number of vehicles that were drawn; 0 if the struck vehicle has no estimates.
+    pub n_vehicles: usize,
+    /// Which estimates of the vehicle the end of the motion depends on; empty if none was drawn.
+    pub sensitivity: Vec<Sensitivity>,
 }
 
 /// State of the vehicle at rest, or at the end of the forecast.
@@ -205,6 +212,9 @@ pub fn forecast_collision(
 
 /// Forecast of the motion after given forces, which are equally likely.
 ///
+/// Vehicles that are drawn take the forces in turn, so that each part of the mixture has a force and a
+/// vehicle of its own.
+///
 /// # Errors
 /// [`MotionForecastError::OutOfRange`] for a duration outside [`FORECAST_DURATION`],
 /// [`MotionForecastError::Response`] if the response network refuses the vehicle,
@@ -216,16 +226,20 @@ pub fn forecast_forces(
     settings: &MotionForecastSettings,
 ) -> Result<MotionForecast, MotionForecastError> {
     let duration_s = FORECAST_DURATION.check(settings.duration_s)?;
-    let predictor: Predictor = response.predictor(&struck.vehicle)?;
-    let of = |force: &ForceHistory| {
+    let draws = drawn_vehicles(struck, settings, forces.len());
+    let predictors = predictors(response, struck, draws.as_ref())?;
+    let n_parts = forces.len().max(predictors.len());
+    let of = |part: usize| {
+        let (force, predictor) =
+            (forces.get(part % forces.len())?, predictors.get(part % predictors.len())?);
         let inputs = struck.inputs(force, duration_s);
-        (
-            predictor.motion(&struck.initial, &inputs),
-            predictor.central_path(&struck.initial, &inputs),
-        )
+        let motion = predictor.motion(&struck.initial, &inputs);
+        Some((motion, predictor.central_path(&struck.initial, &inputs)))
     };
+    let parts: Vec<(MotionDistribution, Vec<VehicleState<f64>>)> =
+        (0..n_parts).into_par_iter().filter_map(of).collect();
     let (parts, paths): (Vec<MotionDistribution>, Vec<Vec<VehicleState<f64>>>) =
-        forces.par_iter().map(of).unzip();
+        parts.into_iter().unzip();
     let central = mean_of(&paths);
     let distribution = MotionDistribution::mixed(parts);
     let pace = Pace::mean_of(&paths);
@@ -234,7 +248,48 @@ pub fn forecast_forces(
     let outcome = outcome((&distribution, &central), (&pace, rest), settings.seed)
         .filter(|_| central.iter().all(|state| state.to_array().iter().all(|v| v.is_finite())))
         .ok_or(MotionForecastError::Diverged)?;
-    Ok(MotionForecast { distribution, central, forces: forces.to_vec(), outcome, force: None })
+    let sensitivity = draws.as_ref().map_or_else(Vec::new, |draws| {
+        let end = |path: &Vec<VehicleState<f64>>| {
+            path.last().map(|state| [state.x_m, state.y_m, state.yaw_rad])
+        };
+        draws.sensitivities(&paths.iter().map(end).collect::<Vec<_>>())
+    });
+    Ok(MotionForecast {
+        distribution,
+        central,
+        forces: forces.to_vec(),
+        outcome,
+        force: None,
+        n_vehicles: draws.map_or(0, |draws| draws.len()),
+        sensitivity,
+    })
+}
+
+/// The draws of what the data sheet of the vehicle leaves open, at least one for each force; `None` if
+/// it leaves nothing open or no draws are asked for.
+fn drawn_vehicles(
+    struck: &StruckVehicle,
+    settings: &MotionForecastSettings,
+    n_forces: usize,
+) -> Option<VehicleDraws> {
+    let sheet = struck.vehicle.sheet.as_ref().filter(|_| settings.n_vehicles > 0)?;
+    let draws = VehicleDraws::of(sheet, settings.n_vehicles.max(n_forces), settings.seed);
+    (!draws.is_empty()).then_some(draws)
+}
+
+/// The network for each vehicle that was drawn, or for the one that is known.
+fn predictors(
+    response: &ResponseModel,
+    struck: &StruckVehicle,
+    draws: Option<&VehicleDraws>,
+) -> Result<Vec<Predictor>, MotionForecastError> {
+    let vehicles = match draws {
+        Some(draws) => draws.vehicles(&struck.vehicle),
+        None => vec![struck.vehicle.clone()],
+    };
+    let made: Result<Vec<Predictor>, LearningError> =
+        vehicles.par_iter().map(|vehicle| response.predictor(vehicle)).collect();
+    Ok(made?)
 }
 
 /// Rotates a curve from axes along the target's initial heading into world axes.

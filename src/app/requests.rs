@@ -12,10 +12,11 @@ use crate::app::source::{Content, OpenDataset, Source};
 use crate::app::state::{FileStart, State, Subject};
 use crate::shipped::ModelSource;
 use crate::study::{
-    CompareRequest, ConfigChoice, Drive, EvaluateForceRequest, EvaluateResponseRequest,
-    FineTuneRequest, ForceQuestion, ForceSource, ImpactRequest, ModelChoice, MotionSource,
-    PredictForceRequest, PredictMotionRequest, ScenarioChoice, SeriesFile, SimulateDatasetRequest,
-    SimulateRequest, TrainForceRequest, TrainResponseRequest, TrainingOptions,
+    CompareRequest, ConfigChoice, DEFAULT_DRAWS, Drive, EvaluateForceRequest,
+    EvaluateResponseRequest, FineTuneRequest, ForceQuestion, ForceSource, ImpactRequest,
+    ModelChoice, MotionSource, PredictForceRequest, PredictMotionRequest, ScenarioChoice,
+    SeriesFile, SimulateDatasetRequest, SimulateRequest, TrainForceRequest, TrainResponseRequest,
+    TrainingOptions,
 };
 
 impl State {
@@ -81,7 +82,7 @@ impl State {
             _ => ForceSource::Given,
         };
         Some(PredictMotionRequest {
-            motion: self.simulate_request()?,
+            motion: SimulateRequest { vehicle_draws: DEFAULT_DRAWS, ..self.simulate_request()? },
             force,
             response_model: choice(self.session.response.model.current.as_ref())?,
             draws: form.n_curves,

@@ -181,6 +181,8 @@ ranges! {
     /// What a question asks for.
     QUESTIONS = "questions";
     DRAWS: "draws" = whole([1, 10_000]), "force histories that are drawn for a forecast";
+    VEHICLE_DRAWS: "vehicle draws" = whole([0, 10_000]),
+        "vehicles that are drawn from the estimates of a data sheet; 0 takes their medians";
     SAMPLES: "samples" = whole([0, 10_000]), "whole force curves that are drawn";
     FOLDS: "folds" = whole([2, 1000]),
         "parts of a cross-validation, at most as many as there are cases";

@@ -49,6 +49,7 @@ mod simulate_report;
 mod train_force;
 mod train_response;
 mod unused;
+mod vehicle_uncertainty;
 
 mod request;
 
@@ -85,8 +86,8 @@ pub use question::{Event, Observer, Question};
 pub use recorded_force::{RecordedForceAnswer, RecordedForceRequest};
 pub use request::{Report, Request};
 pub use simulate::{
-    ASSUMED_CONTACT, ASSUMED_SPEED_M_S, DEFAULT_DURATION_S, Drive, MotionSource, SimulateAnswer,
-    SimulateRequest,
+    ASSUMED_CONTACT, ASSUMED_SPEED_M_S, DEFAULT_DURATION_S, DEFAULT_VEHICLE_DRAWS, Drive,
+    MotionSource, SimulateAnswer, SimulateRequest,
 };
 pub use simulate_dataset::{
     ReplayedCaseReport, SimulateDatasetAnswer, SimulateDatasetReport, SimulateDatasetRequest,
@@ -94,4 +95,5 @@ pub use simulate_dataset::{
 pub use simulate_report::{EndState, FlagReport, ForceReport, SimulateReport};
 pub use train_force::{TrainForceAnswer, TrainForceReport, TrainForceRequest};
 pub use train_response::{ResponseTrainingAnswer, ResponseTrainingReport, TrainResponseRequest};
+pub use vehicle_uncertainty::VehicleUncertainty;
 pub(crate) use word::word;

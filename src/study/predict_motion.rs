@@ -6,7 +6,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{
-    Analysis, MotionForecast, MotionForecastSettings, MotionOutcome, StruckVehicle,
+    Analysis, MotionForecast, MotionForecastSettings, MotionOutcome, Sensitivity, StruckVehicle,
     forecast_collision, forecast_forces,
 };
 use crate::data::{DatasetKind, ForceHistory, Outcome, check_contact_within};
@@ -72,8 +72,12 @@ pub struct PredictMotionReport {
     pub response_model: String,
     /// Forces that drive the motion, each as likely as the others.
     pub n_forces: usize,
+    /// Vehicles that were drawn from what the data sheet leaves open; 0 if it leaves nothing open.
+    pub n_vehicles: usize,
     /// How the motion ends.
     pub outcome: MotionOutcome,
+    /// Which estimates of the vehicle the end depends on, the one that moves it most first.
+    pub sensitivity: Vec<Sensitivity>,
     /// Probability that the bullet's corner stays caught, of a predicted force.
     pub hooking_probability: Option<f64>,
     /// Where the collision lies outside what the force network has learned from.
@@ -100,7 +104,10 @@ impl PredictMotionRequest {
     /// A forecast in which nothing is said but the source and which force drives it.
     pub fn new(source: MotionSource, force: ForceSource) -> Self {
         Self {
-            motion: SimulateRequest::new(source),
+            motion: SimulateRequest {
+                vehicle_draws: DEFAULT_DRAWS,
+                ..SimulateRequest::new(source)
+            },
             force,
             response_model: ModelChoice::default(),
             draws: DEFAULT_DRAWS,
@@ -161,7 +168,9 @@ impl Question for PredictMotionRequest {
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<PredictMotionAnswer>, StudyError> {
-        let Outcome::Complete(simulated) = self.motion.answer(library, observer)? else {
+        // The vehicles are drawn for the forecast, not for the simulation beside it.
+        let simulation = SimulateRequest { vehicle_draws: 0, ..self.motion.clone() };
+        let Outcome::Complete(simulated) = simulation.answer(library, observer)? else {
             return Ok(Outcome::Cancelled);
         };
         let SimulateAnswer { report: simulated, analysis } = simulated;
@@ -179,6 +188,7 @@ impl Question for PredictMotionRequest {
         let model = library.response_model(&self.response_model)?;
         let settings = MotionForecastSettings {
             n_curves: self.draws,
+            n_vehicles: self.motion.vehicle_draws,
             duration_s: simulated.duration_s,
             seed: self.seed,
         };
@@ -267,7 +277,9 @@ impl PredictMotionRequest {
             },
             response_model: self.response_model.to_string(),
             n_forces: forecast.forces.len(),
+            n_vehicles: forecast.n_vehicles,
             outcome: forecast.outcome.clone(),
+            sensitivity: forecast.sensitivity.clone(),
             hooking_probability: predicted.and_then(|force| force.hooking_probability),
             outside_training: predicted.map_or_else(Vec::new, |force| force.outside.clone()),
             assumptions,

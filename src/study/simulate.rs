@@ -14,15 +14,17 @@ use crate::data::{
     Outcome, Sampling, SeriesError, TIME_TOLERANCE_S, read_force_file, read_steer_file,
 };
 use crate::ranges::{
-    CONTACT_HEIGHT, PULSE_DURATION, ROAD_FRICTION, SIMULATED_DURATION, SPEED, YAW_RATE,
+    CONTACT_HEIGHT, PULSE_DURATION, ROAD_FRICTION, SIMULATED_DURATION, SPEED, VEHICLE_DRAWS,
+    YAW_RATE,
 };
-use crate::study::checks::{check, check_contact, check_given};
+use crate::study::checks::{check, check_contact, check_count, check_given};
 use crate::study::inputs::{OpenVehicle, striking_vehicle, struck_vehicle};
 use crate::study::simulate_dataset::take_case;
 use crate::study::unused::by_simulation;
+use crate::study::vehicle_uncertainty::vehicle_uncertainty;
 use crate::study::{
-    AssumedQuantity, Assumption, Library, Observer, Question, ScenarioChoice, SeriesFile,
-    SimulateReport, StudyError, VehicleChoice, word,
+    AssumedQuantity, Assumption, Library, Observer, Provenance, Question, ScenarioChoice,
+    SeriesFile, SimulateReport, StudyError, VehicleChoice, word,
 };
 use crate::vehicle::{
     ContactPoint, Equations, Integrator, SteerHistory, VehicleParameters, VehicleState,
@@ -57,6 +59,19 @@ pub struct SimulateRequest {
     /// Duration, s; a recorded motion has its own.
     #[serde(default = "default_duration_s")]
     pub duration_s: f64,
+    /// How many vehicles are drawn from what the data sheet of the struck vehicle leaves open.
+    #[serde(default = "default_vehicle_draws")]
+    pub vehicle_draws: usize,
+    /// Seed of these draws.
+    #[serde(default)]
+    pub seed: u64,
+}
+
+/// Vehicles that are drawn where nobody says how many.
+pub const DEFAULT_VEHICLE_DRAWS: usize = 100;
+
+fn default_vehicle_draws() -> usize {
+    DEFAULT_VEHICLE_DRAWS
 }
 
 /// Duration of a simulation where nobody says it, s: that of the trajectory data sets.
@@ -137,6 +152,8 @@ impl SimulateRequest {
             integrator: Integrator::default(),
             friction: None,
             duration_s: DEFAULT_DURATION_S,
+            vehicle_draws: DEFAULT_VEHICLE_DRAWS,
+            seed: 0,
         }
     }
 
@@ -176,6 +193,9 @@ impl SimulateRequest {
     }
 }
 
+/// Makes the analysis with given vehicles and settings.
+type Analyse<'a> = dyn Fn(&Settings) -> Result<Analysis, AnalysisError> + Sync + 'a;
+
 impl Question for SimulateRequest {
     type Answer = SimulateAnswer;
     type Report = SimulateReport;
@@ -184,6 +204,7 @@ impl Question for SimulateRequest {
     fn check(&self) -> Result<(), StudyError> {
         check_given("friction", &ROAD_FRICTION, self.friction)?;
         check("duration_s", &SIMULATED_DURATION, self.duration_s)?;
+        check_count("vehicle_draws", &VEHICLE_DRAWS, self.vehicle_draws)?;
         self.source.check()
     }
 
@@ -197,7 +218,7 @@ impl Question for SimulateRequest {
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<SimulateAnswer>, StudyError> {
         let mut assumptions = Vec::new();
-        let made = match &self.source {
+        let (settings, analyse): (Settings, Box<Analyse<'_>>) = match &self.source {
             MotionSource::Case { dataset, case } => {
                 let Outcome::Complete(dataset) = library.dataset(dataset, observer)? else {
                     return Ok(Outcome::Cancelled);
@@ -211,7 +232,8 @@ impl Question for SimulateRequest {
                     assumptions.extend(contact_height_assumption(case)?);
                 }
                 let own = OpenVehicle::OfDataset(dataset.vehicle_file.as_deref());
-                analyse_case(case, &self.settings(&own, &mut assumptions)?)
+                let (settings, case) = (self.settings(&own, &mut assumptions)?, case.clone());
+                (settings, Box::new(move |settings| analyse_case(&case, settings)))
             }
             MotionSource::Trajectory { file, contact } => {
                 let settings = self.settings(&OpenVehicle::Unknown, &mut assumptions)?;
@@ -225,29 +247,42 @@ impl Question for SimulateRequest {
                     let vehicle = &settings.target;
                     acting_force(force, (*contact, vehicle), &mut assumptions)
                 });
-                analyse_recording(&file.title(), &loaded, load, &settings)
+                let title = file.title();
+                let analyse = move |settings: &Settings| {
+                    analyse_recording(&title, &loaded, load.clone(), settings)
+                };
+                (settings, Box::new(analyse))
             }
             MotionSource::Drive(drive) => {
                 let settings = self.settings(&OpenVehicle::Unknown, &mut assumptions)?;
                 assumptions.extend(by_simulation(self, false));
                 let setup = drive.setup(&settings, library, &mut assumptions)?;
-                analyse_drive(&drive.name(), setup, &settings)
+                let name = drive.name();
+                let analyse =
+                    move |settings: &Settings| analyse_drive(&name, setup.clone(), settings);
+                (settings, Box::new(analyse))
             }
             MotionSource::Scenario { scenario, pulse } => {
                 assumptions.extend(pulse_assumptions(pulse));
                 let settings = self.settings(&OpenVehicle::Unknown, &mut assumptions)?;
-                analyse_scenario(&scenario.load()?, pulse, &settings)
+                let scenario = scenario.load()?;
+                (settings, Box::new(move |settings| analyse_scenario(&scenario, pulse, settings)))
             }
         };
         let failed = |source| match source {
             AnalysisError::ContactOutside(outside) => self.contact_outside(outside),
             source => StudyError::Analysis { name: self.source.name(), source: Box::new(source) },
         };
-        let analysis = made.map_err(failed)?;
+        let analysis = analyse(&settings).map_err(failed)?;
         refuse_contact_off_vehicle(&analysis)?;
         assumptions.extend(Assumption::estimates(&analysis.vehicle));
-        let report = SimulateReport::of(self, &analysis, assumptions)
+        let mut report = SimulateReport::of(self, &analysis, assumptions)
             .map_err(|source| failed(AnalysisError::Series(source)))?;
+        let asked = (self.vehicle_draws, self.seed);
+        report.uncertainty = vehicle_uncertainty(asked, (&settings, &analysis), &analyse);
+        if report.uncertainty.is_some() {
+            report.provenance = Provenance::of_seed(self.seed);
+        }
         Ok(Outcome::Complete(SimulateAnswer { report, analysis }))
     }
 }

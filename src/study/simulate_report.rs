@@ -9,7 +9,7 @@ use crate::collision::PrincipalDirectionOfForce;
 use crate::compare::{MotionError, largest_yaw_change_rad};
 use crate::data::{Channel, ForceAxes, SeriesError, TimeSeries, contact_interval};
 use crate::numerics::interpolate;
-use crate::study::{Assumption, Provenance, SimulateRequest, word};
+use crate::study::{Assumption, Provenance, SimulateRequest, VehicleUncertainty, word};
 use crate::vehicle::MotionFlag;
 use crate::vehicle::frames::world_from_body;
 
@@ -42,6 +42,8 @@ pub struct SimulateReport {
     pub largest_yaw_change_rad: Option<f64>,
     /// How far the simulation lies from the recorded motion, where there is one.
     pub error: Option<MotionError>,
+    /// How the end varies with what the data sheet of the struck vehicle leaves open.
+    pub uncertainty: Option<VehicleUncertainty>,
     /// Wheel lift and roll beyond the limit.
     pub flags: Vec<FlagReport>,
     /// What a person should know about how this was made.
@@ -171,6 +173,7 @@ impl SimulateReport {
             distance_m: series.map(distance_m).transpose()?,
             largest_yaw_change_rad: series.map(largest_yaw_change_rad).transpose()?,
             error: analysis.error.clone(),
+            uncertainty: None,
             flags: motion.map_or_else(Vec::new, |motion| {
                 motion.flags.iter().map(FlagReport::from).collect()
             }),
@@ -228,7 +231,7 @@ fn distance_m(series: &TimeSeries) -> Result<f64, SeriesError> {
 }
 
 impl EndState {
-    fn of(series: &TimeSeries) -> Result<Self, SeriesError> {
+    pub(super) fn of(series: &TimeSeries) -> Result<Self, SeriesError> {
         let last = |channel| -> Result<f64, SeriesError> {
             let values = series.require(channel)?;
             Ok(values.last().copied().unwrap_or(f64::NAN))

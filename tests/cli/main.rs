@@ -6,6 +6,7 @@ mod answers;
 mod budgets;
 mod closed_pipe;
 mod commands;
+mod data_sheets;
 mod force;
 mod guide;
 mod log;

@@ -14,7 +14,7 @@ use crate::cli::options::{
 };
 use crate::cli::text::print_motion_prediction;
 use crate::data::{Existing, write_atomically};
-use crate::ranges::{DRAWS, FORECAST_DURATION, ROAD_FRICTION};
+use crate::ranges::{DRAWS, FORECAST_DURATION, ROAD_FRICTION, VEHICLE_DRAWS};
 use crate::response::STEP_S;
 use crate::shipped::ModelSource;
 use crate::study::{
@@ -65,6 +65,10 @@ pub(in crate::cli) struct PredictMotionArgs {
     /// Force histories to draw
     #[arg(long, default_value_t = DEFAULT_DRAWS, value_name = "N", value_parser = count::<usize>(DRAWS))]
     draws: usize,
+    /// Vehicles to draw from what the data sheet of the struck vehicle leaves open, at least one for
+    /// each force; 0 takes the medians alone
+    #[arg(long, default_value_t = DEFAULT_DRAWS, value_name = "N", value_parser = count::<usize>(VEHICLE_DRAWS))]
+    vehicle_draws: usize,
     /// How long, s; a recorded motion has its own duration
     #[arg(long, default_value_t = DEFAULT_DURATION_S, value_name = "S", value_parser = number(FORECAST_DURATION))]
     duration: f64,
@@ -95,8 +99,9 @@ trajectory.csv: time, central path (nothing uncertain), mean, standard deviation
 scene.png and one picture per quantity, each with its numbers as CSV beside it (pictures need the
   build with the window).
 
-JSON: scenario, vehicle, force_model, response_model, n_forces, outcome {time_s, is_at_rest, x_m, y_m,
+JSON: scenario, vehicle, force_model, response_model, n_forces, n_vehicles, outcome {time_s, is_at_rest, x_m, y_m,
   heading_change_rad (median, half, ninety), speed_m_s, yaw_rate_rad_s, region_90_m2, p_quarter_turn, p_half_turn},
+  sensitivity [{quantity, label, position_share, heading_share}] of a vehicle with a data sheet,
   hooking_probability, outside_training, assumptions [{quantity, value, reason}], files";
 
 /// The report, and which files were written.
@@ -120,6 +125,7 @@ pub(in crate::cli) fn run(
             vehicle: VehicleArg::choice(&args.vehicle),
             friction: args.friction,
             duration_s: args.duration,
+            vehicle_draws: args.vehicle_draws,
             ..SimulateRequest::new(source(args)?)
         },
         force: force_source(args),

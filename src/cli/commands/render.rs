@@ -114,6 +114,7 @@ impl VehicleArgs {
         Ok(SimulateRequest {
             vehicle: VehicleArg::choice(&self.vehicle),
             bullet: VehicleArg::choice(&self.bullet),
+            vehicle_draws: 0,
             ..SimulateRequest::new(source.motion_source(library, start)?)
         })
     }

@@ -11,14 +11,14 @@ use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::options::{
     EquationsArg, IntegratorArg, OverwriteArg, SamplingArg, UnitsArg, VehicleArg, contact_point,
-    number,
+    count, number,
 };
 use crate::cli::text::{print_dataset_simulation, print_simulation};
 use crate::data::{ColumnMap, DatasetKind, Existing, write_series_csv};
-use crate::ranges::{ROAD_FRICTION, SIMULATED_DURATION, SPEED, YAW_RATE};
+use crate::ranges::{ROAD_FRICTION, SIMULATED_DURATION, SPEED, VEHICLE_DRAWS, YAW_RATE};
 use crate::study::{
-    DEFAULT_DURATION_S, Drive, MotionSource, ScenarioChoice, SeriesFile, SimulateDatasetRequest,
-    SimulateRequest,
+    DEFAULT_DURATION_S, DEFAULT_VEHICLE_DRAWS, Drive, MotionSource, ScenarioChoice, SeriesFile,
+    SimulateDatasetRequest, SimulateRequest,
 };
 use crate::vehicle::{ContactPoint, Equations};
 
@@ -115,7 +115,9 @@ JSON, one vehicle: vehicle, equations, integrator, friction, duration_s, force {
   delta_v_magnitude_m_s over the contact (null without), end {x_m, y_m, yaw_rad, roll_rad,
   vx_m_s, vy_m_s, yaw_rate_rad_s, speed_m_s}, distance_m, largest_yaw_change_rad,
   flags [{kind, time_s, wheel, roll_rad, message}], error (against a record), notes, assumptions
-  [{quantity, value, reason}], out
+  [{quantity, value, reason}], out; for a vehicle of which only a data sheet is known uncertainty
+  {n_draws, n_failed, x_m, y_m, yaw_rad, speed_m_s: each {median, half [2], ninety [2]},
+  sensitivity [{quantity, label, position_share, heading_share}]}
 
 JSON, data set: dataset, vehicle, equations, integrator, cases [{case, spin, average_error_m, final_error_m,
   final_heading_error_rad, horizon_error_m (at 0.5, 1, 2, 4 s), rmse_*, flags}], overall, spinning
@@ -164,6 +166,14 @@ struct SingleArgs {
     /// Duration, s
     #[arg(long, value_parser = number(SIMULATED_DURATION), default_value_t = DEFAULT_DURATION_S)]
     duration: f64,
+    /// Vehicles to draw from what the data sheet of the struck vehicle leaves open; 0 takes the
+    /// medians alone
+    #[arg(long, value_name = "N", default_value_t = DEFAULT_VEHICLE_DRAWS,
+        value_parser = count::<usize>(VEHICLE_DRAWS))]
+    vehicle_draws: usize,
+    /// Seed of these draws
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
 }
 
 /// A report, and where the motions were written.
@@ -202,6 +212,8 @@ fn simulate_one(
         integrator: args.integrator.into(),
         friction: args.single.friction,
         duration_s: args.single.duration,
+        vehicle_draws: args.single.vehicle_draws,
+        seed: args.single.seed,
     };
     let existing = args.overwrite.into();
     console.check_target(args.out.as_deref(), existing)?;

@@ -5,6 +5,7 @@ mod comparison;
 mod force_evaluation;
 mod force_prediction;
 mod motion_prediction;
+mod sensitivity;
 mod simulate;
 mod simulate_dataset;
 mod training;

@@ -4,6 +4,7 @@ use std::io::{self, Write};
 
 use crate::analysis::Spread;
 use crate::cli::console::{print_assumptions, print_facts, shown};
+use crate::cli::text::sensitivity::print_sensitivity;
 use crate::study::PredictMotionReport;
 use crate::units::{Quantity, UnitSystem, percent};
 
@@ -52,6 +53,10 @@ pub(in crate::cli) fn print_motion_prediction(
         );
         facts.push(("outside training", value));
     }
+    if report.n_vehicles > 0 {
+        facts.push(("vehicles", format!("{} drawn from the data sheet", report.n_vehicles)));
+    }
     print_facts(out, &facts)?;
+    print_sensitivity(out, &report.sensitivity)?;
     print_assumptions(out, &report.assumptions)
 }

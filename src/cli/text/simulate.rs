@@ -3,8 +3,12 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use crate::cli::console::{print_assumptions, print_facts, shown, shown_path, shown_vector};
-use crate::study::{ForceReport, SimulateReport};
+use crate::analysis::Spread;
+use crate::cli::console::{
+    print_assumptions, print_facts, print_table, shown, shown_path, shown_vector,
+};
+use crate::cli::text::sensitivity::print_sensitivity;
+use crate::study::{ForceReport, SimulateReport, VehicleUncertainty};
 use crate::units::{Quantity, UnitSystem};
 
 /// A name and a value.
@@ -46,7 +50,34 @@ pub(in crate::cli) fn print_simulation(
     facts.extend(report.notes.iter().map(|note| ("note", note.clone())));
     facts.extend(out.map(|path| ("written", shown_path(path))));
     print_facts(text, &facts)?;
+    if let Some(uncertainty) = &report.uncertainty {
+        print_uncertainty(text, uncertainty, units)?;
+    }
     print_assumptions(text, &report.assumptions)
+}
+
+/// Prints how the end varies with what the data sheet leaves open, and what it depends on most.
+fn print_uncertainty(
+    text: &mut dyn Write,
+    uncertainty: &VehicleUncertainty,
+    units: UnitSystem,
+) -> io::Result<()> {
+    let VehicleUncertainty { n_draws, n_failed, x_m, y_m, yaw_rad, speed_m_s, sensitivity } =
+        uncertainty;
+    let row = |name: &str, quantity, spread: &Spread| {
+        let [low, high] = spread.ninety.map(|value| shown(quantity, value, units));
+        vec![name.to_owned(), shown(quantity, spread.median, units), format!("{low} to {high}")]
+    };
+    let rows = [
+        row("end, X", Quantity::Length, x_m),
+        row("end, Y", Quantity::Length, y_m),
+        row("final heading", Quantity::Angle, yaw_rad),
+        row("final speed", Quantity::Speed, speed_m_s),
+    ];
+    let failed = if *n_failed > 0 { format!(", {n_failed} left out") } else { String::new() };
+    writeln!(text, "\nover {n_draws} vehicles drawn from the data sheet{failed}")?;
+    print_table(text, &["", "median", "90 %"], &rows)?;
+    print_sensitivity(text, sensitivity)
 }
 
 fn force_facts(force: &ForceReport, name: &str, units: UnitSystem) -> Vec<Fact> {

@@ -1,0 +1,117 @@
+//! Tests of vehicles of which only a data sheet is known: files, library, uncertainty.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::program::{SCENARIO, program};
+
+/// Standard output of a command that must succeed.
+fn out(args: &[&str]) -> String {
+    let output = program().args(args).output().expect("the program can be started");
+    let err = String::from_utf8(output.stderr).expect("UTF-8");
+    assert_eq!(output.status.code(), Some(0), "{args:?}: {err}");
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+fn json(args: &[&str]) -> Value {
+    serde_json::from_str(&out(&[args, &["--json"]].concat())).expect("the output is JSON")
+}
+
+fn sheet(folder: &TempDir, lines: &str) -> String {
+    let path = folder.path().join("car.toml");
+    fs::write(&path, format!("name = \"my car\"\n\n[data_sheet]\n{lines}\n"))
+        .expect("a temporary folder can be written");
+    path.to_str().expect("temporary paths are UTF-8").to_owned()
+}
+
+#[test]
+fn the_library_is_listed_printed_and_read_back() {
+    let list = json(&["vehicles"]);
+    let vehicles = list["vehicles"].as_array().unwrap();
+    let library: Vec<&Value> = vehicles.iter().filter(|v| v["kind"] == "library").collect();
+    assert_eq!(library.len(), 34);
+    let folder = TempDir::new().unwrap();
+    for vehicle in library.iter().take(6) {
+        let id = vehicle["id"].as_str().unwrap();
+        let file = folder.path().join("car.toml");
+        fs::write(&file, out(&["vehicles", id])).unwrap();
+        let speed = ["simulate", "--speed", "10", "--vehicle-draws", "5", "--vehicle"];
+        let by_name = json(&[&speed[..], &[id]].concat());
+        assert_eq!(by_name, json(&[&speed[..], &[file.to_str().unwrap()]].concat()), "{id}");
+        let estimates = &json(&["vehicles", id])["data_sheet_estimates"];
+        assert!(estimates.as_array().unwrap().iter().all(|e| e["source"].is_string()), "{id}");
+    }
+    let told = out(&["vehicles", "ford-explorer-2004", "--estimates"]);
+    assert!(told.contains("yaw inertia [kg m²]") && told.contains("Heydinger 1999"), "{told}");
+}
+
+#[test]
+fn a_sheet_is_read_wherever_a_vehicle_file_is() {
+    let folder = TempDir::new().unwrap();
+    let car = sheet(&folder, "mass_lb = 3300\nlength_in = 182\nwidth_in = 71");
+    let checked = out(&["check", &car]);
+    assert!(checked.contains("my car"), "{checked}");
+    let motion = json(&["simulate", "--scenario", SCENARIO, "--vehicle", &car]);
+    assert_eq!(motion["vehicle"], "my car");
+    let assumed = motion["assumptions"].as_array().unwrap();
+    let estimates: Vec<&Value> =
+        assumed.iter().filter(|a| a["quantity"] == "vehicle_parameter").collect();
+    assert!(estimates.len() > 15, "{assumed:?}");
+    assert!(estimates.iter().all(|a| a["value"].as_str().unwrap().contains("90 %: ")));
+    let file = folder.path().join("wrong.toml");
+    fs::write(&file, "[data_sheet]\nclass = \"car\"\nmass_lb = -3\n").unwrap();
+    let refused = program().args(["simulate", "--speed", "9", "--vehicle"]).arg(&file).output();
+    let refused = refused.unwrap();
+    assert_eq!(refused.status.code(), Some(1));
+    let line = String::from_utf8(refused.stderr).unwrap();
+    assert!(line.contains("wrong.toml:3:11: data_sheet.mass_lb is -3, expected 2.2"), "{line}");
+}
+
+#[test]
+fn the_draws_of_a_simulation_follow_their_seed_and_are_told() {
+    let args = ["simulate", "--scenario", SCENARIO, "--vehicle", "toyota-corolla-2020"];
+    let with = |more: &[&str]| json(&[&args[..], more].concat())["uncertainty"].clone();
+    let draws = ["--vehicle-draws", "40"];
+    assert_eq!(with(&draws), with(&draws));
+    let other = with(&[&draws[..], &["--seed", "1"]].concat());
+    assert_ne!(with(&draws)["x_m"], other["x_m"]);
+    assert_eq!(with(&["--vehicle-draws", "0"]), Value::Null);
+    let told = out(&args);
+    assert!(told.contains("over 100 vehicles drawn from the data sheet"), "{told}");
+    assert!(told.contains("estimate") && told.contains("position"), "{told}");
+}
+
+#[test]
+fn a_forecast_is_wider_where_the_vehicle_is_not_known() {
+    let folder = TempDir::new().unwrap();
+    let predict = |draws: &str| {
+        let into = folder.path().join(draws);
+        let into: &Path = &into;
+        json(&[
+            "predict",
+            "--scenario",
+            SCENARIO,
+            "--given-force",
+            "--vehicle",
+            "generic-car",
+            "--vehicle-draws",
+            draws,
+            "--duration",
+            "2",
+            "--out",
+            into.to_str().unwrap(),
+        ])
+    };
+    let (known, drawn) = (predict("0"), predict("30"));
+    assert_eq!((&known["n_vehicles"], &drawn["n_vehicles"]), (&0.into(), &30.into()));
+    assert_eq!(known["sensitivity"], Value::Array(Vec::new()));
+    let width = |report: &Value, key: &str| {
+        let ninety = &report["outcome"][key]["ninety"];
+        ninety[1].as_f64().unwrap() - ninety[0].as_f64().unwrap()
+    };
+    assert!(width(&drawn, "x_m") > width(&known, "x_m"), "{drawn} {known}");
+    assert!(drawn["sensitivity"][0]["position_share"].as_f64().unwrap() > 0.0, "{drawn}");
+}
