@@ -184,7 +184,7 @@ fn draw_manoeuvre(
     let is_struck = rng.random_bool(0.5);
     let contact_load = is_struck.then(|| draw_load(rng, vehicle));
     let released_s = if is_struck { FORCE_S } else { 0.0 };
-    (Manoeuvre { initial, contact_load, steer: None, duration_s }, released_s)
+    (Manoeuvre { initial, contact_load, duration_s, ..Manoeuvre::default() }, released_s)
 }
 
 fn draw_load(rng: &mut ChaCha8Rng, vehicle: &VehicleParameters) -> ContactLoad {

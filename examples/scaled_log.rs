@@ -121,7 +121,7 @@ fn drive(
 ) -> Answer<TimeSeries> {
     let initial = VehicleState::driving_straight(*speed_m_s);
     let contact_load = Some(load.clone());
-    let manoeuvre = Manoeuvre { initial, contact_load, steer: None, duration_s };
+    let manoeuvre = Manoeuvre { initial, contact_load, duration_s, ..Manoeuvre::default() };
     Ok(vehicle.simulate(&manoeuvre, Integrator::Rk4)?.series)
 }
 
@@ -148,7 +148,8 @@ fn next_case(truth: &VehicleParameters, rng: &mut ChaCha8Rng) -> Answer<Response
     let (speed_m_s, mut load) = impact(rng)?;
     load.force.time_s.iter_mut().for_each(|time_s| *time_s -= CONTACT_S);
     let initial = VehicleState::driving_straight(speed_m_s);
-    let manoeuvre = Manoeuvre { initial, contact_load: Some(load), steer: None, duration_s: 4.0 };
+    let manoeuvre =
+        Manoeuvre { initial, contact_load: Some(load), duration_s: 4.0, ..Manoeuvre::default() };
     let inputs = manoeuvre.inputs(STEP_S, 400);
     let states = rollout(truth, initial, &inputs, |_, _| [0.0; N_RESIDUAL]);
     let data_sheet = Preset::ScaledTarget.parameters();

@@ -21,6 +21,9 @@ sources! {
     /// vehicles sold in Canada, as served by the vPIC interface of the NHTSA and collected, rounded to
     /// 1 cm, in the public repository `shifter907/allcarsdb` (`data/body_configs.csv`).
     Cvs2024;
+    /// T. D. Gillespie, *Fundamentals of Vehicle Dynamics*, SAE International, 1992. Braking
+    /// performance and the distribution of braking forces: chapter 3.
+    Gillespie1992;
     /// T. Gneiting, A. E. Raftery, *Strictly proper scoring rules, prediction, and estimation*,
     /// Journal of the American Statistical Association 102(477), 2007. Continuous ranked
     /// probability score, energy score.

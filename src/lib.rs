@@ -35,9 +35,8 @@
 //!
 //! let manoeuvre = Manoeuvre {
 //!     initial: VehicleState { yaw_rate_rad_s: 2.0, ..VehicleState::driving_straight(20.0) },
-//!     contact_load: None,
-//!     steer: None,
 //!     duration_s: 4.0,
+//!     ..Manoeuvre::default()
 //! };
 //! let motion = Preset::Reference.parameters().simulate(&manoeuvre, Integrator::Rk4)?;
 //! assert_eq!(motion.series.n_samples(), 401);

@@ -79,9 +79,8 @@ fn append_coasting(
     let recorded_end_s = series.time_s().last().copied().unwrap_or(0.0);
     let manoeuvre = Manoeuvre {
         initial: recorded.end,
-        contact_load: None,
-        steer: None,
         duration_s: (settings.duration_s - recorded_end_s).max(OUTPUT_INTERVAL_S),
+        ..Manoeuvre::default()
     };
     let coasting = vehicle.simulate(&manoeuvre, settings.integrator)?.series;
     let later = coasting.time_s().iter().skip(1).map(|t| t + recorded_end_s);

@@ -27,6 +27,7 @@ fn analyse_trajectory_case(case: &Case, settings: &Settings) -> Result<Analysis,
         vehicle: vehicle.clone(),
         initial: manoeuvre.initial,
         contact: load.contact,
+        controls: manoeuvre.controls.clone(),
     };
     Ok(Analysis {
         name: case.name.clone(),
@@ -58,11 +59,13 @@ fn analyse_force_case(case: &Case, settings: &Settings) -> Result<Analysis, Anal
     let contact = ContactPoint { x_m, y_m, height_m };
     let load = ContactLoad { force: force.clone(), contact, recorded_moment: true };
     let initial = VehicleState { vx_m_s, vy_m_s, ..VehicleState::default() };
+    let controls = settings.ending.controls(&vehicle);
     let manoeuvre = Manoeuvre {
         initial,
         contact_load: Some(load),
-        steer: None,
+        controls: controls.clone(),
         duration_s: settings.duration_s,
+        ends_at_rest: settings.ends_at_rest,
     };
     let mut notes = Vec::new();
     if attributes.separated == Some(false) {
@@ -74,7 +77,7 @@ fn analyse_force_case(case: &Case, settings: &Settings) -> Result<Analysis, Anal
         simulation: Some(vehicle.simulate(&manoeuvre, settings.integrator)?),
         vehicle: vehicle.clone(),
         force: Some(force),
-        struck: Some(StruckVehicle { vehicle, initial, contact }),
+        struck: Some(StruckVehicle { vehicle, initial, contact, controls }),
         reference: None,
         bullet: bullet_track(case, &attributes, settings)?,
         error: None,
@@ -90,14 +93,16 @@ mod tests {
     use super::*;
     use crate::data::{Channel, Dataset};
     use crate::vehicle::frames::world_from_body;
-    use crate::vehicle::{Integrator, Preset};
+    use crate::vehicle::{Ending, Integrator, Preset};
 
     fn settings(target: Preset) -> Settings {
         Settings {
             target: target.parameters(),
             bullet: Preset::Bullet2000.parameters(),
             integrator: Integrator::Rk4,
+            ending: Ending::default(),
             duration_s: 4.0,
+            ends_at_rest: false,
         }
     }
 

@@ -5,7 +5,9 @@ use crate::analysis::{Analysis, AnalysisError, Settings, StruckVehicle};
 use crate::collision::Footprint;
 use crate::compare::{MotionError, initial_state};
 use crate::data::{ForceHistory, Loaded, SeriesError, TIME_TOLERANCE_S, check_contact_within};
-use crate::vehicle::{ContactLoad, ContactPoint, Manoeuvre, Motion, SteerHistory, VehicleState};
+use crate::vehicle::{
+    ContactLoad, ContactPoint, Controls, Manoeuvre, Motion, SteerHistory, VehicleState,
+};
 
 /// A force history and the point where it acts. If the history records a yaw moment, this moment is
 /// used instead of the one that follows from the contact point.
@@ -38,9 +40,11 @@ pub fn analyse_drive(
     if let Some((force, _)) = &load {
         check_contact_within(force, settings.duration_s)?;
     }
-    let simulation = simulate((initial, settings.duration_s), load.as_ref(), steer, settings)?;
-    let simulation = Some(simulation);
-    Ok(Analysis { simulation, notes, ..of_load(name, Some(initial), load, settings) })
+    let mut controls = settings.ending.controls(&settings.target);
+    controls.steer = steer.or(controls.steer);
+    let start = (initial, settings.duration_s);
+    let simulation = Some(simulate(start, load.as_ref(), controls.clone(), settings)?);
+    Ok(Analysis { simulation, notes, ..of_load(name, (Some(initial), controls), load, settings) })
 }
 
 /// Analyses a recorded motion, and simulates it from its first sample over the recorded duration if
@@ -72,14 +76,16 @@ pub fn analyse_recording(
         }
         (Ok(initial), Some(_)) => {
             file.series.check_starts_at_zero(TIME_TOLERANCE_S)?;
-            let motion = simulate((initial, duration_s), load.as_ref(), None, settings)?;
+            let controls = settings.ending.controls(&settings.target);
+            let motion = simulate((initial, duration_s), load.as_ref(), controls, settings)?;
             (Some(initial), Some(motion))
         }
     };
     let between = |motion: &Motion| MotionError::between(&motion.series, &file.series);
     let error = simulation.as_ref().map(between).transpose()?;
     let reference = Some(file.series.clone());
-    let analysis = of_load(name, initial, load, settings);
+    let controls = settings.ending.controls(&settings.target);
+    let analysis = of_load(name, (initial, controls), load, settings);
     Ok(Analysis { simulation, reference, error, notes, ..analysis })
 }
 
@@ -87,7 +93,7 @@ pub fn analyse_recording(
 fn simulate(
     (initial, duration_s): (VehicleState<f64>, f64),
     load: Option<&ActingForce>,
-    steer: Option<SteerHistory>,
+    controls: Controls,
     settings: &Settings,
 ) -> Result<Motion, AnalysisError> {
     let contact_load = load.map(|(force, contact)| ContactLoad {
@@ -95,14 +101,15 @@ fn simulate(
         force: force.clone(),
         contact: *contact,
     });
-    let manoeuvre = Manoeuvre { initial, contact_load, steer, duration_s };
+    let ends_at_rest = settings.ends_at_rest;
+    let manoeuvre = Manoeuvre { initial, contact_load, controls, duration_s, ends_at_rest };
     Ok(settings.target.simulate(&manoeuvre, settings.integrator)?)
 }
 
 /// The analysis before anything is simulated.
 fn of_load(
     name: &str,
-    initial: Option<VehicleState<f64>>,
+    (initial, controls): (Option<VehicleState<f64>>, Controls),
     load: Option<ActingForce>,
     settings: &Settings,
 ) -> Analysis {
@@ -110,6 +117,7 @@ fn of_load(
         vehicle: settings.target.clone(),
         initial,
         contact: *contact,
+        controls,
     });
     Analysis {
         name: name.to_owned(),

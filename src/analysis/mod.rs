@@ -17,7 +17,7 @@ mod vehicle_draws;
 use crate::collision::{Footprint, PulseError, ScenarioError};
 use crate::compare::{MotionError, ReplayError};
 use crate::data::{ContactOutside, DataError, ForceHistory, SeriesError, TimeSeries};
-use crate::vehicle::{Integrator, Motion, SimulationError, VehicleParameters};
+use crate::vehicle::{Ending, Integrator, Motion, SimulationError, VehicleParameters};
 
 pub use case::analyse_case;
 pub use file::{DriveSetup, analyse_drive, analyse_recording};
@@ -30,7 +30,6 @@ pub use motion_forecast::{
     MotionForecast, MotionForecastError, MotionForecastSettings, MotionOutcome, StruckVehicle,
     forecast_collision, forecast_forces,
 };
-pub use rest::{REST_SPEED_M_S, REST_YAW_RATE_RAD_S};
 pub use scenario::{PulseSetup, analyse_scenario};
 pub use vehicle_draws::{Sensitivity, VehicleDraws};
 
@@ -43,11 +42,17 @@ pub struct Settings {
     /// Parameters of the striking vehicle (bullet), used where it is simulated. The case or
     /// scenario replaces its mass and yaw inertia.
     pub bullet: VehicleParameters,
+    /// What happens to the wheels of the target after the first contact. A trajectory case has its
+    /// own, and a steer angle that is recorded takes precedence.
+    pub ending: Ending,
     /// Integration method for the equations of motion.
     pub integrator: Integrator,
     /// Duration of the simulation, s. Trajectory cases and recorded motions are simulated over the
     /// recorded duration instead.
     pub duration_s: f64,
+    /// Whether the simulation ends before its duration where the target has come to rest. The
+    /// bullet is followed as long.
+    pub ends_at_rest: bool,
 }
 
 /// Outline and motion of a vehicle.

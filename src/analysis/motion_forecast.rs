@@ -25,7 +25,7 @@ use crate::response::{MotionDistribution, Predictor, ResponseModel, STEP_S, weig
 use crate::uncertainty::{ForceCurve, PlanarMixture};
 use crate::vehicle::frames::body_from_world;
 use crate::vehicle::{
-    ContactLoad, ContactPoint, Manoeuvre, VehicleInput, VehicleParameters, VehicleState,
+    ContactLoad, ContactPoint, Controls, Manoeuvre, VehicleInput, VehicleParameters, VehicleState,
 };
 
 /// Number of draws for the intervals of the final position.
@@ -57,6 +57,8 @@ pub struct StruckVehicle {
     pub initial: VehicleState<f64>,
     /// Point where the force acts, in body axes.
     pub contact: ContactPoint,
+    /// What steers, brakes and locks the wheels.
+    pub controls: Controls,
 }
 
 /// A forecast of the motion of the struck vehicle.
@@ -87,8 +89,8 @@ pub struct MotionOutcome {
     /// forecast, s.
     pub time_s: f64,
     /// Whether the vehicle comes to rest: after the end of the force, speed and yaw rate fall below
-    /// [`REST_SPEED_M_S`](crate::analysis::REST_SPEED_M_S) and
-    /// [`REST_YAW_RATE_RAD_S`](crate::analysis::REST_YAW_RATE_RAD_S) and stay there to the end of the
+    /// [`REST_SPEED_M_S`](crate::vehicle::REST_SPEED_M_S) and
+    /// [`REST_YAW_RATE_RAD_S`](crate::vehicle::REST_YAW_RATE_RAD_S) and stay there to the end of the
     /// forecast.
     pub is_at_rest: bool,
     /// X of the CG at that time, m.
@@ -160,10 +162,11 @@ impl StruckVehicle {
                 ..VehicleState::default()
             },
             contact: ContactPoint { x_m, y_m, height_m: contact_height_m },
+            controls: Controls::default(),
         })
     }
 
-    /// Inputs of the vehicle at each time step under a force, without steering.
+    /// Inputs of the vehicle at each time step under a force.
     fn inputs(&self, force: &ForceHistory, duration_s: f64) -> Vec<VehicleInput<f64>> {
         let manoeuvre = Manoeuvre {
             initial: self.initial,
@@ -172,8 +175,9 @@ impl StruckVehicle {
                 contact: self.contact,
                 recorded_moment: force.mz_n_m.is_some(),
             }),
-            steer: None,
+            controls: self.controls.clone(),
             duration_s,
+            ends_at_rest: false,
         };
         manoeuvre.inputs(STEP_S, (duration_s / STEP_S).round() as usize)
     }

@@ -1,16 +1,7 @@
 //! When a vehicle has come to rest.
 
 use crate::response::STEP_S;
-use crate::vehicle::VehicleState;
-
-/// Speed of the CG below which a vehicle counts as at rest, m/s.
-pub const REST_SPEED_M_S: f64 = 0.3;
-/// Yaw rate below which a vehicle counts as at rest, rad/s: the end of a car, 3 m from its CG, then
-/// moves at [`REST_SPEED_M_S`].
-pub const REST_YAW_RATE_RAD_S: f64 = 0.1;
-/// How long both must stay below their limits, s, so that a moment of standstill is not taken for
-/// rest.
-const REST_DURATION_S: f64 = 0.1;
+use crate::vehicle::{REST_DURATION_S, REST_SPEED_M_S, REST_YAW_RATE_RAD_S, VehicleState};
 
 /// Speed of the CG, m/s, and size of the yaw rate, rad/s.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,7 +62,7 @@ mod tests {
     fn a_parked_car_that_is_struck_is_not_at_rest_before_it_has_stopped() {
         let struck = motion(|t| [if t < 0.05 { 0.0 } else { (5.0 - 2.0 * t).max(0.0) }, 0.0]);
         let rest = rest_instant(&struck, 0.1).unwrap();
-        assert!((235..=236).contains(&rest), "{rest}");
+        assert!((247..=249).contains(&rest), "{rest}");
     }
 
     #[test]

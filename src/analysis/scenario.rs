@@ -8,7 +8,7 @@ use crate::collision::{Pose, Pulse, PulseShape, Scenario, ScenarioVehicle};
 use crate::data::{ForceHistory, check_contact_within};
 use crate::vehicle::frames::body_from_world;
 use crate::vehicle::{
-    ContactLoad, ContactPoint, Manoeuvre, Motion, VehicleParameters, VehicleState,
+    ContactLoad, ContactPoint, Ending, Manoeuvre, Motion, VehicleParameters, VehicleState,
 };
 
 /// Longest sample interval of the pulse, s; a shorter pulse has at least 20 intervals.
@@ -55,15 +55,27 @@ pub fn analyse_scenario(
     let [px, py] = solution.impulse_n_s;
     let force = history([px, py])?;
     check_contact_within(&force, settings.duration_s)?;
-    let run = |vehicle: &ScenarioVehicle, preset: &VehicleParameters, pose: &Pose, force| {
+    let run = |(vehicle, ending): (&ScenarioVehicle, &Ending),
+               preset: &VehicleParameters,
+               pose: &Pose,
+               force,
+               settings: &Settings| {
         let parameters = preset.clone().with_mass(vehicle.mass_kg, Some(vehicle.yaw_inertia_kg_m2));
         let [x_m, y_m] = pose.body_from_world(geometry.contact_point_m);
         let contact = ContactPoint { x_m, y_m, height_m: pulse.contact_height_m };
-        drive_on(vehicle, &parameters, pose, (force, contact), settings)
+        drive_on(vehicle, (&parameters, ending), pose, (force, contact), settings)
     };
-    let target = run(&scenario.target, &settings.target, &geometry.target, force.clone())?;
-    let bullet = run(&scenario.bullet, &settings.bullet, &geometry.bullet, history([-px, -py])?)?;
-    let struck = StruckVehicle::of_scenario(scenario, &settings.target, pulse.contact_height_m)?;
+    let coasting = Ending::default();
+    let struck = (&scenario.target, &settings.ending);
+    let target = run(struck, &settings.target, &geometry.target, force.clone(), settings)?;
+    let striking = (&scenario.bullet, &coasting);
+    let end_s = target.series.time_s().last().copied().unwrap_or(settings.duration_s);
+    let settings = &Settings { duration_s: end_s, ends_at_rest: false, ..settings.clone() };
+    let bullet = run(striking, &settings.bullet, &geometry.bullet, history([-px, -py])?, settings)?;
+    let of_scenario =
+        StruckVehicle::of_scenario(scenario, &settings.target, pulse.contact_height_m)?;
+    let controls = settings.ending.controls(&of_scenario.vehicle);
+    let struck = StruckVehicle { controls, ..of_scenario };
     Ok(Analysis {
         name: scenario.name.clone(),
         vehicle: struck.vehicle.clone(),
@@ -85,10 +97,10 @@ pub fn analyse_scenario(
     })
 }
 
-/// Simulates a vehicle of a scenario from first contact on, without steering, drive or braking.
+/// Simulates a vehicle of a scenario from first contact on. The bullet coasts.
 fn drive_on(
     vehicle: &ScenarioVehicle,
-    parameters: &VehicleParameters,
+    (parameters, ending): (&VehicleParameters, &Ending),
     pose: &Pose,
     (force, contact): (ForceHistory, ContactPoint),
     settings: &Settings,
@@ -106,8 +118,9 @@ fn drive_on(
             ..VehicleState::default()
         },
         contact_load: Some(ContactLoad { force, contact, recorded_moment: false }),
-        steer: None,
+        controls: ending.controls(parameters),
         duration_s: settings.duration_s,
+        ends_at_rest: settings.ends_at_rest,
     };
     Ok(parameters.simulate(&manoeuvre, settings.integrator)?)
 }
@@ -126,8 +139,10 @@ mod tests {
         let settings = Settings {
             target: Preset::Target.parameters(),
             bullet: Preset::Bullet2000.parameters(),
+            ending: Ending::default(),
             integrator: Integrator::Rk4,
             duration_s: 3.0,
+            ends_at_rest: false,
         };
         let analysis = analyse_scenario(&scenario, &PulseSetup::default(), &settings).unwrap();
         let solution = scenario.solve().unwrap();

@@ -13,6 +13,8 @@ use crate::collision::{
     ImpactSolution, OffOutline, Pose, Side, find_contact, place_touching,
 };
 
+use crate::vehicle::Ending;
+
 use crate::ranges::{
     BODY_CG, BODY_LENGTH, BODY_MASS, BODY_WIDTH, BODY_YAW_INERTIA, CONTACT_COORDINATE,
     CONTACT_OFFSET, FRICTION_LIMIT, HEADING, POSITION, RESTITUTION, Range, SPEED, YAW_RATE,
@@ -122,6 +124,10 @@ pub struct Scenario {
     pub bullet: ScenarioVehicle,
     /// The contact between the two vehicles.
     pub contact: ScenarioContact,
+    /// What happens to the wheels of the target after the first contact; `None` if the scenario does
+    /// not say it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ending: Option<Ending>,
 }
 
 /// Poses and contact of the two vehicles of a scenario, in world axes.
@@ -467,6 +473,7 @@ impl ImpactCase {
                 friction_limit,
                 friction_model: FrictionModel::Limit,
             },
+            ending: None,
         })
     }
 }

@@ -24,6 +24,8 @@
 //! restitution = 0.15          # optional
 //! friction_limit = 0.4        # optional
 //! friction_model = "limit"    # optional; or "paper"
+//!
+//! # [ending]                  # optional: what happens to the target's wheels; see Ending::read
 //! ```
 //!
 //! Each quantity is given once, in any unit of
@@ -41,6 +43,7 @@ use crate::ranges::{
     BODY_CG, BODY_LENGTH, BODY_MASS, BODY_WIDTH, BODY_YAW_INERTIA, CONTACT_COORDINATE,
     CONTACT_OFFSET, FRICTION_LIMIT, HEADING, POSITION, RESTITUTION, SPEED, YAW_RATE,
 };
+use crate::vehicle::Ending;
 
 pub(super) const LOCATIONS: [&str; 3] = ["footprints", "side", "point"];
 pub(super) const FRICTION_MODELS: [&str; 2] = ["limit", "paper"];
@@ -67,6 +70,7 @@ impl Scenario {
         let notes = top.string("notes")?.unwrap_or_default();
         let (mut target, mut bullet) = (top.table("target")?, top.table("bullet")?);
         let mut contact = top.table("contact")?;
+        let ending = top.optional_table("ending")?.map(Ending::read).transpose()?;
         top.finish()?;
         let target_x_m = position(&mut target, "x")?.unwrap_or(0.0);
         let target_y_m = position(&mut target, "y")?.unwrap_or(0.0);
@@ -79,6 +83,7 @@ impl Scenario {
             target: read_vehicle(target)?,
             bullet: read_vehicle(bullet)?,
             contact: read_contact(contact, location)?,
+            ending,
         })
     }
 }

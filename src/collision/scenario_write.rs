@@ -43,7 +43,14 @@ impl Scenario {
             FrictionModel::Paper => FRICTION_MODELS[1],
         };
         contact.line("friction_model", quoted(model));
-        [top.0, target.0, bullet.0, contact.0].concat()
+        let mut ending = Lines::default();
+        if let Some(given) = &self.ending {
+            ending.0.push_str("\n[ending]\n");
+            for (key, value) in given.entries() {
+                ending.line(&key, value);
+            }
+        }
+        [top.0, target.0, bullet.0, contact.0, ending.0].concat()
     }
 }
 
@@ -90,6 +97,7 @@ mod tests {
 
     use super::*;
     use crate::data::TomlError;
+    use crate::vehicle::{Braking, Ending};
 
     const PIT: &str = include_str!("../../assets/scenarios/pit_right_rear.toml");
 
@@ -103,6 +111,10 @@ mod tests {
         scenario.name = "a \"quoted\"\nname \\ µ".to_owned();
         scenario.target_y_m = -1e-9;
         scenario.contact.friction_model = FrictionModel::Paper;
+        scenario.ending = Some(Ending {
+            brake: Some(Braking { start_s: 0.1 + 0.2, share_of_friction: 1.2, rise_s: 0.5 }),
+            ..Ending::default()
+        });
         for location in [
             scenario.contact.location,
             ContactLocation::Footprints { bullet_x_m: 0.1 + 0.2, bullet_y_m: -3.0 },

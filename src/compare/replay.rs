@@ -9,14 +9,14 @@ use crate::compare::{
     MotionError, SPIN_YAW_CHANGE_RAD, largest_yaw_change_rad, physical_violations,
 };
 use crate::data::{
-    Case, Channel, DataError, Outcome, SeriesError, TIME_TOLERANCE_S, TimeSeries,
+    Case, CaseBraking, Channel, DataError, Outcome, SeriesError, TIME_TOLERANCE_S, TimeSeries,
     TrajectoryAttributes,
 };
 use crate::jobs::{Progress, ProgressCallback};
 use crate::numerics::Summary;
 use crate::vehicle::{
-    ContactLoad, ContactPoint, Integrator, Manoeuvre, Motion, OUTPUT_INTERVAL_S, SimulationError,
-    VehicleParameters, VehicleState,
+    ContactLoad, ContactPoint, Controls, Integrator, Manoeuvre, Motion, OUTPUT_INTERVAL_S,
+    SimulationError, VehicleParameters, VehicleState, WheelEffort, WheelHistory,
 };
 
 /// Number of cases that are simulated in parallel between two reports of progress.
@@ -131,8 +131,23 @@ pub fn recorded_manoeuvre(
     Ok(Manoeuvre {
         initial: initial_state(&case.series).map_err(in_case)?,
         contact_load: Some(ContactLoad { force, contact, recorded_moment: true }),
-        steer: None,
+        controls: Controls { steer: None, wheels: braked(attributes.braking, vehicle) },
         duration_s: last.max(OUTPUT_INTERVAL_S),
+        ..Manoeuvre::default()
+    })
+}
+
+/// The wheels of a case that is braked.
+fn braked(braking: Option<CaseBraking>, vehicle: &VehicleParameters) -> Option<WheelHistory> {
+    let CaseBraking { start_s, rise_s, torque_n_m, locked } = braking?;
+    let full = |wheel: usize| WheelEffort {
+        braking_n: torque_n_m[wheel] / vehicle.tires.rolling_radius_m,
+        locked: f64::from(u8::from(locked[wheel])),
+        drive_n: 0.0,
+    };
+    Some(WheelHistory {
+        time_s: vec![start_s, start_s + rise_s],
+        wheels: vec![[WheelEffort::none(); 4], std::array::from_fn(full)],
     })
 }
 

@@ -131,13 +131,18 @@ impl Attributes {
     ///
     /// - `got`: what the cell holds, in words.
     fn wrong(&self, column: &AttributeColumn, got: String) -> DataError {
+        self.refused(column.name, got, column.range.explained())
+    }
+
+    /// Builds the error for a cell whose content cannot be used.
+    pub(crate) fn refused(&self, name: &str, got: String, expected: String) -> DataError {
         DataError::Attribute {
             path: self.path(),
             line: self.line,
-            column: self.column(column.name),
-            name: column.name.to_owned(),
+            column: self.column(name),
+            name: name.to_owned(),
             got,
-            expected: column.range.explained(),
+            expected,
         }
     }
 

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::data::{Attributes, DataError, DatasetKind};
+use crate::data::{Attributes, CaseBraking, DataError, DatasetKind};
 use crate::ranges::{
     BODY_MASS, BODY_YAW_INERTIA, BULLET_OFFSET, CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, HEADING,
     ROAD_FRICTION, Range, SPEED,
@@ -111,6 +111,8 @@ pub struct TrajectoryAttributes {
     pub spin: Option<bool>,
     /// Whether the vehicles were separated when the record of the force ended.
     pub separated: Option<bool>,
+    /// What brakes the wheels; `None` for a vehicle that coasts.
+    pub braking: Option<CaseBraking>,
 }
 
 impl ForceAttributes {
@@ -153,6 +155,7 @@ impl TrajectoryAttributes {
             side: side(attributes),
             spin: attributes.flag("spin"),
             separated: attributes.flag("fe_separated"),
+            braking: CaseBraking::read(attributes)?,
         })
     }
 }

@@ -14,6 +14,7 @@
 mod attributes;
 mod budget;
 mod case_attributes;
+mod case_braking;
 mod channel;
 mod column_map;
 mod columns;
@@ -43,6 +44,7 @@ pub use budget::{
     MAX_LINE_BYTES, MAX_MODEL_BYTES, MAX_RESULTS_BYTES, MAX_SETTINGS_BYTES, MAX_TABLE_BYTES,
 };
 pub use case_attributes::{AttributeColumn, ForceAttributes, StruckSide, TrajectoryAttributes};
+pub use case_braking::CaseBraking;
 pub use channel::Channel;
 pub use column_map::{ColumnMap, ColumnRef, ColumnSource, MapError};
 pub(crate) use columns::Columns;

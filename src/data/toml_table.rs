@@ -48,6 +48,17 @@ impl<'a> TomlTable<'a> {
         Ok(Self::new(self.file, key.to_owned(), at, table))
     }
 
+    /// Reads a table inside this one; `None` if there is no such key.
+    ///
+    /// # Errors
+    /// [`TomlError::Value`] if it is not a table.
+    pub fn optional_table(&mut self, key: &str) -> Result<Option<Self>, TomlError> {
+        match self.table.contains_key(key) {
+            true => self.table(key).map(Some),
+            false => Ok(None),
+        }
+    }
+
     /// Reads a text; `None` if there is no such key.
     ///
     /// # Errors

@@ -42,6 +42,25 @@ ranges! {
 }
 
 ranges! {
+    /// What brakes, drags and steers a vehicle after the impact.
+    CONTROLS = "driver and damage after the impact";
+    CONTROL_TIME: "start of a control" = real(Quantity::Time, [0.0, 3600.0]),
+        "when brake, drag or steering begins, after the first contact";
+    STEERING_WHEEL_ANGLE: "steering-wheel angle" = real(Quantity::Angle, [-25.0, 25.0]),
+        "angle of the steering wheel, positive to the left";
+    STEERING_RATIO: "steering ratio" = real(Quantity::Ratio, [1.0, 40.0]),
+        "angle of the steering wheel over that of the road wheels; 12 to 20 in cars";
+    BRAKE_SHARE: "braking" = real(Quantity::Ratio, [0.0, 3.0]),
+        "braking force over the largest that the road can hold; more than 1 locks the wheels";
+    BRAKE_RISE: "rise of a control" = real(Quantity::Time, [0.01, 60.0]),
+        "time over which brake or steering reach their full value";
+    DRAG_SHARE: "drag" = real(Quantity::Ratio, [0.0, 3.0]),
+        "drag of a damaged wheel over the largest that the road can hold at its static load";
+    ENGINE_BRAKING: "engine braking" = real(Quantity::Acceleration, [0.0, 5.0]),
+        "deceleration that the engine causes on a straight course";
+}
+
+ranges! {
     /// Instants and durations.
     TIMES = "times";
     INSTANT: "time" = real(Quantity::Time, [-1e10, 1e10]),
@@ -130,6 +149,8 @@ ranges! {
         "cornering stiffness over vertical load";
     SLIDING_FRICTION_RATIO: "sliding friction ratio" = real(Quantity::Ratio, [0.1, 1.0]),
         "sliding friction over peak friction";
+    ROLLING_RADIUS: "rolling radius" = real(Quantity::Length, [0.02, 1.0]),
+        "rolling radius of the tyres";
     ROLLING_RESISTANCE: "rolling resistance" = real(Quantity::Ratio, [0.0, 0.5]),
         "rolling resistance over vertical load";
     ROLLING_RESISTANCE_PER_SPEED: "rolling resistance per speed" = in_unit("s/m", [0.0, 0.01]),

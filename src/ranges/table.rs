@@ -1,7 +1,7 @@
 //! The list of all ranges.
 
 use crate::ranges::{
-    BODIES, CHANNELS, CONTACT, DATA_SHEET, FORCE_SETTINGS, MOTION, PICTURES, QUESTIONS,
+    BODIES, CHANNELS, CONTACT, CONTROLS, DATA_SHEET, FORCE_SETTINGS, MOTION, PICTURES, QUESTIONS,
     RESPONSE_SETTINGS, Range, TIMES, VEHICLE,
 };
 
@@ -17,6 +17,7 @@ pub struct RangeGroup {
 /// Every range, in the order in which it is printed.
 pub const TABLE: &[RangeGroup] = &[
     MOTION,
+    CONTROLS,
     TIMES,
     CONTACT,
     BODIES,

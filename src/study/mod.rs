@@ -92,7 +92,7 @@ pub use simulate::{
 pub use simulate_dataset::{
     ReplayedCaseReport, SimulateDatasetAnswer, SimulateDatasetReport, SimulateDatasetRequest,
 };
-pub use simulate_report::{EndState, FlagReport, ForceReport, SimulateReport};
+pub use simulate_report::{EndState, FlagReport, ForceReport, RestState, SimulateReport};
 pub use train_force::{TrainForceAnswer, TrainForceReport, TrainForceRequest};
 pub use train_response::{ResponseTrainingAnswer, ResponseTrainingReport, TrainResponseRequest};
 pub use vehicle_uncertainty::VehicleUncertainty;

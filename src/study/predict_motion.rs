@@ -184,6 +184,9 @@ impl Question for PredictMotionRequest {
         let (Some(struck), Some(own_force)) = (&analysis.struck, &analysis.force) else {
             return Err(StudyError::NoForce { name: name() });
         };
+        if struck.controls.wheels.is_some() {
+            return Err(StudyError::NotCoasting { name: name() });
+        }
 
         let model = library.response_model(&self.response_model)?;
         let settings = MotionForecastSettings {

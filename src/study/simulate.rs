@@ -27,7 +27,7 @@ use crate::study::{
     SeriesFile, SimulateReport, StudyError, VehicleChoice, word,
 };
 use crate::vehicle::{
-    ContactPoint, Equations, Integrator, SteerHistory, VehicleParameters, VehicleState,
+    ContactPoint, Ending, Equations, Integrator, SteerHistory, VehicleParameters, VehicleState,
 };
 
 /// Speed of the struck vehicle before the impact where nothing says it, m/s: 72 km/h.
@@ -59,6 +59,14 @@ pub struct SimulateRequest {
     /// Duration, s; a recorded motion has its own.
     #[serde(default = "default_duration_s")]
     pub duration_s: f64,
+    /// What happens to the wheels of the struck vehicle after the first contact. If not given, it is
+    /// as the scenario says, and else the vehicle coasts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ending: Option<Ending>,
+    /// Whether the simulation ends where the vehicle has come to rest, at the latest after the
+    /// duration.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub until_rest: bool,
     /// How many vehicles are drawn from what the data sheet of the struck vehicle leaves open.
     #[serde(default = "default_vehicle_draws")]
     pub vehicle_draws: usize,
@@ -154,6 +162,8 @@ impl SimulateRequest {
             duration_s: DEFAULT_DURATION_S,
             vehicle_draws: DEFAULT_VEHICLE_DRAWS,
             seed: 0,
+            ending: None,
+            until_rest: false,
         }
     }
 
@@ -180,8 +190,14 @@ impl SimulateRequest {
         let assumed = if has_bullet { assumptions } else { &mut unused };
         let bullet = striking_vehicle(&self.bullet, assumed)?;
         assumed.extend(Assumption::medians(AssumedQuantity::BulletParameter, &bullet));
-        let (integrator, duration_s) = (self.integrator, self.duration_s);
-        Ok(Settings { target, bullet, integrator, duration_s })
+        Ok(Settings {
+            target,
+            bullet,
+            ending: self.ending.clone().unwrap_or_default(),
+            integrator: self.integrator,
+            duration_s: self.duration_s,
+            ends_at_rest: self.until_rest,
+        })
     }
 
     fn contact_outside(&self, outside: ContactOutside) -> StudyError {
@@ -205,6 +221,10 @@ impl Question for SimulateRequest {
         check_given("friction", &ROAD_FRICTION, self.friction)?;
         check("duration_s", &SIMULATED_DURATION, self.duration_s)?;
         check_count("vehicle_draws", &VEHICLE_DRAWS, self.vehicle_draws)?;
+        if let Some(ending) = &self.ending {
+            let in_ending = |source| StudyError::OutOfRange { field: "ending".to_owned(), source };
+            ending.check().map_err(in_ending)?;
+        }
         self.source.check()
     }
 
@@ -264,8 +284,11 @@ impl Question for SimulateRequest {
             }
             MotionSource::Scenario { scenario, pulse } => {
                 assumptions.extend(pulse_assumptions(pulse));
-                let settings = self.settings(&OpenVehicle::Unknown, &mut assumptions)?;
+                let mut settings = self.settings(&OpenVehicle::Unknown, &mut assumptions)?;
                 let scenario = scenario.load()?;
+                if let (None, Some(ending)) = (&self.ending, &scenario.ending) {
+                    settings.ending.clone_from(ending);
+                }
                 (settings, Box::new(move |settings| analyse_scenario(&scenario, pulse, settings)))
             }
         };

@@ -10,8 +10,8 @@ use crate::compare::{MotionError, largest_yaw_change_rad};
 use crate::data::{Channel, ForceAxes, SeriesError, TimeSeries, contact_interval};
 use crate::numerics::interpolate;
 use crate::study::{Assumption, Provenance, SimulateRequest, VehicleUncertainty, word};
-use crate::vehicle::MotionFlag;
 use crate::vehicle::frames::world_from_body;
+use crate::vehicle::{Motion, MotionFlag};
 
 /// The simulation of one vehicle, SI units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -38,6 +38,8 @@ pub struct SimulateReport {
     pub end: Option<EndState>,
     /// Length of the path of the CG, m.
     pub distance_m: Option<f64>,
+    /// Where the vehicle has come to rest; none if it still moves at the end.
+    pub rest: Option<RestState>,
     /// Largest change of yaw from the start, rad.
     pub largest_yaw_change_rad: Option<f64>,
     /// How far the simulation lies from the recorded motion, where there is one.
@@ -81,6 +83,21 @@ pub struct ForceReport {
     pub contact_end_s: Option<f64>,
     /// Where the yaw moment comes from: `recorded` or `contact_point`.
     pub yaw_moment: &'static str,
+}
+
+/// The pose in which a vehicle has come to rest.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct RestState {
+    /// The instant since which it is at rest, s.
+    pub time_s: f64,
+    /// X of the CG, m.
+    pub x_m: f64,
+    /// Y of the CG, m.
+    pub y_m: f64,
+    /// Heading, rad.
+    pub yaw_rad: f64,
+    /// Length of the path of the CG up to there, m.
+    pub distance_m: f64,
 }
 
 /// State at the last sample.
@@ -158,6 +175,7 @@ impl SimulateReport {
         let delta_v =
             delta_v.map(|(series, interval)| delta_v_m_s(series, interval)).transpose()?;
         let recorded = analysis.reference.as_ref();
+        let end_s = series.and_then(|series| series.time_s().last().copied());
         let recorded_s = recorded.and_then(|series| series.time_s().last().copied());
         Ok(Self {
             name: analysis.name.clone(),
@@ -165,12 +183,13 @@ impl SimulateReport {
             equations: word(&analysis.vehicle.equations),
             integrator: word(&request.integrator),
             friction: analysis.vehicle.tires.friction,
-            duration_s: recorded_s.unwrap_or(request.duration_s),
+            duration_s: recorded_s.or(end_s).unwrap_or(request.duration_s),
             force: ForceReport::of(request, analysis),
             delta_v_m_s: delta_v,
             delta_v_magnitude_m_s: delta_v.map(|[x, y]| x.hypot(y)),
             end: series.map(EndState::of).transpose()?,
             distance_m: series.map(distance_m).transpose()?,
+            rest: motion.map(RestState::of).transpose()?.flatten(),
             largest_yaw_change_rad: series.map(largest_yaw_change_rad).transpose()?,
             error: analysis.error.clone(),
             uncertainty: None,
@@ -226,8 +245,33 @@ fn delta_v_m_s(series: &TimeSeries, (start_s, end_s): (f64, f64)) -> Result<[f64
 /// Length of the path of the CG, m.
 fn distance_m(series: &TimeSeries) -> Result<f64, SeriesError> {
     let (x, y) = (series.require(Channel::X)?, series.require(Channel::Y)?);
+    Ok(path_length_m(x, y))
+}
+
+fn path_length_m(x: &[f64], y: &[f64]) -> f64 {
     let steps = x.windows(2).zip(y.windows(2));
-    Ok(steps.map(|(x, y)| (x[1] - x[0]).hypot(y[1] - y[0])).sum())
+    steps.map(|(x, y)| (x[1] - x[0]).hypot(y[1] - y[0])).sum()
+}
+
+impl RestState {
+    fn of(motion: &Motion) -> Result<Option<Self>, SeriesError> {
+        let Some(time_s) = motion.rest_s else { return Ok(None) };
+        let series = &motion.series;
+        let n_before = series.time_s().partition_point(|&t| t <= time_s + 1e-9);
+        let until = |channel| -> Result<&[f64], SeriesError> {
+            let values = series.require(channel)?;
+            Ok(values.get(..n_before).unwrap_or(values))
+        };
+        let (x, y, yaw) = (until(Channel::X)?, until(Channel::Y)?, until(Channel::Yaw)?);
+        let last = |values: &[f64]| values.last().copied().unwrap_or(f64::NAN);
+        Ok(Some(Self {
+            time_s,
+            x_m: last(x),
+            y_m: last(y),
+            yaw_rad: last(yaw),
+            distance_m: path_length_m(x, y),
+        }))
+    }
 }
 
 impl EndState {

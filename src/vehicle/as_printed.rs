@@ -147,9 +147,8 @@ mod tests {
                     yaw_rate_rad_s: 0.05,
                     ..VehicleState::driving_straight(20.0)
                 },
-                contact_load: None,
-                steer: None,
                 duration_s: 2.0,
+                ..Manoeuvre::default()
             };
             let motion = vehicle.simulate(&manoeuvre, Integrator::Rk4).unwrap();
             *motion.series.require(Channel::Vy).unwrap().last().unwrap()

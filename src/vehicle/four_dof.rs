@@ -12,7 +12,8 @@
 //!
 //! Source: `eq:4dof`, `eq:4dof2` of [`PitPinnPaper`](crate::bibliography::PitPinnPaper).
 //! Assumes a rigid sprung mass on a roll axis along x, no pitch, no heave and no tyre relaxation.
-//! Wheel spin, aligning moments and suspension kinematics are left out.
+//! Wheel spin has no inertia: a wheel turns freely, turns against a brake or is locked (`tire.rs`).
+//! Aligning moments and suspension kinematics are left out.
 //! Validated against multibody simulations (`docs/VALIDATION.md`).
 //!
 //! Departures from the paper:
@@ -36,7 +37,7 @@ use crate::numerics::Lanes;
 use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::frames::body_from_world;
 use crate::vehicle::loads::{LoadTransfer, Wheel, vertical_loads_n};
-use crate::vehicle::tire::WheelSlip;
+use crate::vehicle::tire::{WheelEffort, WheelSlip};
 use crate::vehicle::{Equations, N_STATE, VehicleParameters, VehicleState};
 
 /// Number of fixed-point passes by which vertical loads and tyre forces are made consistent.
@@ -68,30 +69,38 @@ pub struct CollisionForce<T> {
     pub contact: ContactPoint,
 }
 
-/// Input u(t) of the equations of motion: steer angle, drive forces and collision force.
+/// Input u(t) of the equations of motion: steer angle, drive and brakes of the wheels, collision
+/// force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VehicleInput<T> {
     /// Steer angle δ of the front road wheels, rad, positive to the left.
     pub steer_rad: T,
-    /// Drive (positive) or brake (negative) force `[front axle, rear axle]`, N, of which each wheel
-    /// of the axle receives half. With `None` all wheels roll freely.
-    pub axle_drive_n: Option<[T; 2]>,
+    /// What drives, brakes or locks each wheel, in the order of [`Wheel::ALL`]. With `None` all
+    /// wheels roll freely.
+    pub wheels: Option<[WheelEffort<T>; 4]>,
     /// Collision force; `None` if there is no contact.
     pub collision: Option<CollisionForce<T>>,
 }
 
 impl<T: Lanes> VehicleInput<T> {
-    /// Input after a PIT impact: steering wheel and throttle are released (δ = 0, no drive force)
-    /// and there is no contact.
+    /// Input of a vehicle that coasts: steering wheel, throttle and brake are released (δ = 0, all
+    /// wheels roll freely) and there is no contact.
     pub fn released() -> Self {
-        Self { steer_rad: T::from(0.0), axle_drive_n: None, collision: None }
+        Self { steer_rad: T::from(0.0), wheels: None, collision: None }
+    }
+
+    /// Whether a wheel is driven, so that the energy of the vehicle may grow.
+    pub fn is_driven(&self) -> bool {
+        let zero = T::from(0.0);
+        let wheels = self.wheels.iter().flatten();
+        wheels.into_iter().any(|wheel| zero.any_less(wheel.drive_n.abs()))
     }
 
     /// Converts every component to another scalar type.
     pub fn map<U: Lanes>(self, convert: impl Fn(T) -> U + Copy) -> VehicleInput<U> {
         VehicleInput {
             steer_rad: convert(self.steer_rad),
-            axle_drive_n: self.axle_drive_n.map(|force_n| force_n.map(convert)),
+            wheels: self.wheels.map(|wheels| wheels.map(|wheel| wheel.map(convert))),
             collision: self.collision.map(|collision| CollisionForce {
                 force_n: collision.force_n.map(convert),
                 in_world_axes: collision.in_world_axes,
@@ -215,20 +224,22 @@ impl VehicleParameters {
     ) -> (Wrench<T>, [T; 4]) {
         let (sin_steer, cos_steer) = u.steer_rad.sin_cos();
         let slips = self.wheel_slips(x, [sin_steer, cos_steer]);
-        let force_n = |wheel_idx: usize, load_n: T, drive_n: T| {
-            let [along, across] = slips[wheel_idx].force_n(load_n, drive_n);
+        let in_body_axes = |wheel_idx: usize, [along, across]: [T; 2]| {
             if Wheel::ALL[wheel_idx].is_front() {
                 [cos_steer * along - sin_steer * across, sin_steer * along + cos_steer * across]
             } else {
                 [along, across]
             }
         };
-        // Without a drive force, the force of a tyre is proportional to its load.
-        let shares: [[T; 2]; 4] = std::array::from_fn(|i| force_n(i, T::from(1.0), T::from(0.0)));
+        // The force of a tyre that rolls freely is proportional to its load.
+        let shares: [[T; 2]; 4] = match u.wheels {
+            None => std::array::from_fn(|i| in_body_axes(i, slips[i].free_share())),
+            Some(_) => [[T::from(0.0); 2]; 4],
+        };
         let forces_n = |loads_n: &[T; 4]| -> [[T; 2]; 4] {
-            std::array::from_fn(|i| match u.axle_drive_n {
+            std::array::from_fn(|i| match &u.wheels {
                 None => shares[i].map(|share| share * loads_n[i]),
-                Some(axles_n) => force_n(i, loads_n[i], axles_n[i / 2] / 2.0),
+                Some(wheels) => in_body_axes(i, slips[i].force_n(loads_n[i], &wheels[i])),
             })
         };
 
@@ -336,14 +347,14 @@ mod tests {
     use crate::vehicle::Preset;
 
     #[test]
-    fn a_drive_of_zero_is_none() {
+    fn an_effort_of_zero_is_none() {
         let vehicle = Preset::Reference.parameters();
         for (vx_m_s, vy_m_s, yaw_rate_rad_s) in
             [(20.0, 1.0, 0.3), (-8.0, 3.0, -2.0), (0.0, 5.0, 1.0), (0.0, 0.0, 0.0)]
         {
             let x = VehicleState { vx_m_s, vy_m_s, yaw_rate_rad_s, ..VehicleState::default() };
             let free = VehicleInput { steer_rad: 0.05, ..VehicleInput::released() };
-            let driven = VehicleInput { axle_drive_n: Some([0.0; 2]), ..free };
+            let driven = VehicleInput { wheels: Some([WheelEffort::none(); 4]), ..free };
             let [(free, by_free), (driven, by_driven)] =
                 [free, driven].map(|u| vehicle.jacobian(&x, &u));
             assert!((free - driven).amax() < 1e-12, "{x:?}: {free} {driven}");

@@ -13,12 +13,15 @@
 //! - Every load is ≥ 0 and their sum is m g. If a wheel lifts, the other wheel of the axle carries
 //!   its load; if an axle lifts, the other axle carries its load.
 
+use serde::{Deserialize, Serialize};
+
 use crate::numerics::Lanes;
 use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::VehicleParameters;
 
 /// The four wheels. Every array over wheels is in this order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Wheel {
     /// The left wheel of the front axle.
     FrontLeft,
@@ -33,6 +36,11 @@ pub enum Wheel {
 impl Wheel {
     /// All wheels, in the order of every array over wheels.
     pub const ALL: [Self; 4] = [Self::FrontLeft, Self::FrontRight, Self::RearLeft, Self::RearRight];
+
+    /// Place of the wheel in [`Wheel::ALL`].
+    pub fn index(self) -> usize {
+        self as usize
+    }
 
     /// Name of the wheel in messages.
     pub fn label(self) -> &'static str {
@@ -106,6 +114,13 @@ pub fn vertical_loads_n<T: Lanes>(
     let [front_left, front_right] = axle(front, share);
     let [rear_left, rear_right] = axle(-(front - weight), 1.0 - share);
     [front_left, front_right, rear_left, rear_right]
+}
+
+impl VehicleParameters {
+    /// Vertical loads of the wheels at rest, N, in the order of [`Wheel::ALL`].
+    pub fn static_loads_n(&self) -> [f64; 4] {
+        vertical_loads_n(self, LoadTransfer::none())
+    }
 }
 
 #[cfg(test)]

@@ -136,6 +136,7 @@ impl MultibodyRecord {
                 rolling_resistance: tyre.rolling_resistance,
                 rolling_resistance_s_m: 0.0,
                 rolling_resistance_s2_m2: drag_over_weight,
+                rolling_radius_m: wheel.effective_rolling_radius,
             },
             estimates: estimates(),
             sheet: None,
@@ -164,6 +165,7 @@ impl MultibodyRecord {
             "tires.sliding_friction_ratio" => "tyre.sliding_over_peak",
             "tires.rolling_resistance" => "tyre.rolling_resistance",
             "tires.rolling_resistance_s2_m2" => "aero.CdA",
+            "tires.rolling_radius_m" => "wheel.effective_rolling_radius",
             _ => return None,
         })
     }

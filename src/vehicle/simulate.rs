@@ -10,12 +10,14 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use crate::data::{Channel, CumulativeImpulse, ForceAxes, ForceHistory, SeriesError, TimeSeries};
-use crate::numerics::{Stage, euler_step, interpolate, rk4_step};
+use crate::numerics::{Stage, euler_step, rk4_step};
 use crate::ranges::{OutOfRange, SIMULATED_DURATION};
+use crate::vehicle::controls::Controls;
 use crate::vehicle::energy::{EnergyWatch, MAX_ENERGY_GAIN};
+use crate::vehicle::rest::RestWatch;
 use crate::vehicle::{
     CollisionForce, ContactPoint, Equations, VehicleInput, VehicleMismatch, VehicleParameters,
-    VehicleState, Wheel,
+    VehicleState, Wheel, WheelEffort,
 };
 
 /// Roll angle beyond which the roll model is not valid, rad. It is 15°, about three times the angle
@@ -57,27 +59,21 @@ pub struct ContactLoad {
     pub recorded_moment: bool,
 }
 
-/// Steer angle of the front road wheels over time. It is linear between samples; outside, the first
-/// or the last value holds.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SteerHistory {
-    /// Times of the samples, s, strictly rising.
-    pub time_s: Vec<f64>,
-    /// Steer angle δ of the front road wheels at these times, rad, positive to the left.
-    pub steer_rad: Vec<f64>,
-}
-
-/// The motion to be simulated: initial state, collision force, steer angle and duration.
-#[derive(Debug, Clone, PartialEq)]
+/// The motion to be simulated: initial state, collision force, what acts on the wheels, and when it
+/// ends. By default the vehicle stands, nothing acts, and the duration is still to be given.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Manoeuvre {
     /// State at t = 0.
     pub initial: VehicleState<f64>,
     /// Collision force; `None` if there is no impact.
     pub contact_load: Option<ContactLoad>,
-    /// Steer angle over time; with `None` it is zero.
-    pub steer: Option<SteerHistory>,
+    /// What steers, drives, brakes and locks the wheels.
+    pub controls: Controls,
     /// Duration of the motion, s, in the range [`SIMULATED_DURATION`].
     pub duration_s: f64,
+    /// Whether the motion ends before its duration where the vehicle has come to rest: after the end
+    /// of the force and the last change of the controls, see [`RestWatch`].
+    pub ends_at_rest: bool,
 }
 
 impl Manoeuvre {
@@ -149,6 +145,13 @@ pub struct Motion {
     /// The first wheel lift, the first excess of the roll limit and the first gain of energy, in
     /// this order, if they occur.
     pub flags: Vec<MotionFlag>,
+    /// The instant since which the vehicle is at rest to the end of the motion, s: after the end of
+    /// the force and the last change of the controls, its speed is below [`REST_SPEED_M_S`] and its
+    /// yaw rate below [`REST_YAW_RATE_RAD_S`]. `None` if it still moves at the end.
+    ///
+    /// [`REST_SPEED_M_S`]: crate::vehicle::REST_SPEED_M_S
+    /// [`REST_YAW_RATE_RAD_S`]: crate::vehicle::REST_YAW_RATE_RAD_S
+    pub rest_s: Option<f64>,
 }
 
 /// Reason why a simulation gives no motion.
@@ -202,7 +205,8 @@ impl VehicleParameters {
         let duration_s = SIMULATED_DURATION.check(manoeuvre.duration_s)?;
         self.check_relations()?;
         let inputs = Inputs::new(manoeuvre);
-        let (step_s, steps_per_output) = self.steps(integrator);
+        let (step_s, steps_per_output) = self.steps(integrator, &manoeuvre.controls);
+        let mut rest = RestWatch::after(inputs.last_change_s());
         let n_outputs = (duration_s / OUTPUT_INTERVAL_S).round() as usize + 1;
         let mut recorder = Recorder::new(self, n_outputs);
         let mut energy = EnergyWatch::default();
@@ -218,7 +222,7 @@ impl VehicleParameters {
                 inputs.over(time_s, OUTPUT_INTERVAL_S).at(Stage::Start),
             );
             recorder.record(time_s, &now, &coming);
-            let share = energy.gain(self, &now, coming.collision.is_some());
+            let share = energy.gain(self, &now, coming.collision.is_some() || coming.is_driven());
             let is_kept = share <= MAX_ENERGY_GAIN; // not where it is NaN
             if !is_kept {
                 if !is_baseline {
@@ -226,19 +230,23 @@ impl VehicleParameters {
                 }
                 recorder.energy.get_or_insert(MotionFlag::EnergyGain { time_s });
             }
+            if rest.has_settled(time_s, &now) && manoeuvre.ends_at_rest {
+                break;
+            }
             for step in 0..steps_per_output {
                 let start_s = time_s + step as f64 * step_s;
                 state = self.step(&state, &inputs.over(start_s, step_s), integrator);
             }
         }
-        recorder.finish()
+        recorder.finish(&rest)
     }
 
     /// Length of the steps of an integrator for this vehicle, s, and how many make an output
     /// interval.
-    fn steps(&self, integrator: Integrator) -> (f64, usize) {
+    fn steps(&self, integrator: Integrator, controls: &Controls) -> (f64, usize) {
         let step_s = integrator.step_s();
         let n_substeps = match integrator {
+            Integrator::Rk4 if controls.wheels.is_some() => self.braked_substeps(step_s),
             Integrator::Rk4 => self.substeps(step_s),
             Integrator::Euler => 1,
         };
@@ -259,7 +267,7 @@ impl VehicleParameters {
 
 /// Inputs of a manoeuvre, prepared for evaluation over time steps.
 struct Inputs<'a> {
-    steer: Option<&'a SteerHistory>,
+    controls: &'a Controls,
     contact: Option<(CumulativeImpulse, &'a ContactLoad)>,
 }
 
@@ -268,6 +276,8 @@ struct StepInputs {
     step_s: f64,
     /// Steer angle at the start, the middle and the end of the step, rad.
     steer_rad: [f64; 3],
+    /// The wheels at these instants.
+    wheels: [Option<[WheelEffort<f64>; 4]>; 3],
     collision: Option<CollisionForce<f64>>,
 }
 
@@ -275,22 +285,29 @@ impl<'a> Inputs<'a> {
     fn new(manoeuvre: &'a Manoeuvre) -> Self {
         let contact = manoeuvre.contact_load.as_ref();
         Self {
-            steer: manoeuvre.steer.as_ref(),
+            controls: &manoeuvre.controls,
             contact: contact.map(|load| (load.force.cumulative(), load)),
         }
     }
 
     fn over(&self, start_s: f64, step_s: f64) -> StepInputs {
-        let steer_at = |time_s| {
-            self.steer
-                .and_then(|steer| interpolate(&steer.time_s, &steer.steer_rad, time_s))
-                .unwrap_or(0.0)
-        };
+        let Controls { steer, wheels } = self.controls;
+        let instants_s = [start_s, start_s + step_s / 2.0, start_s + step_s];
         StepInputs {
             step_s,
-            steer_rad: [start_s, start_s + step_s / 2.0, start_s + step_s].map(steer_at),
+            steer_rad: instants_s.map(|t| steer.as_ref().map_or(0.0, |steer| steer.at(t))),
+            wheels: instants_s.map(|t| wheels.as_ref().and_then(|wheels| wheels.at(t))),
             collision: self.collision_over(start_s, step_s),
         }
+    }
+
+    /// The last instant at which force, steer angle or wheels change, s; 0 if nothing acts.
+    fn last_change_s(&self) -> f64 {
+        let Controls { steer, wheels } = self.controls;
+        let contact = self.contact.as_ref().map(|(cumulative, _)| cumulative.end_s());
+        let steer = steer.as_ref().and_then(|steer| steer.time_s.last().copied());
+        let wheels = wheels.as_ref().and_then(|wheels| wheels.time_s.last().copied());
+        [contact, steer, wheels].into_iter().flatten().fold(0.0, f64::max)
     }
 
     /// Mean collision force over a step. It is `None` if neither force nor moment acts, also if the
@@ -314,13 +331,16 @@ impl<'a> Inputs<'a> {
 
 impl StepInputs {
     fn at(&self, stage: Stage) -> VehicleInput<f64> {
-        let [start, middle, end] = self.steer_rad;
-        let steer_rad = match stage {
-            Stage::Start => start,
-            Stage::Middle => middle,
-            Stage::End => end,
+        let instant = match stage {
+            Stage::Start => 0,
+            Stage::Middle => 1,
+            Stage::End => 2,
         };
-        VehicleInput { steer_rad, collision: self.collision, ..VehicleInput::released() }
+        VehicleInput {
+            steer_rad: self.steer_rad[instant],
+            wheels: self.wheels[instant],
+            collision: self.collision,
+        }
     }
 }
 
@@ -419,7 +439,8 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    fn finish(self) -> Result<Motion, SimulationError> {
+    fn finish(self, rest: &RestWatch) -> Result<Motion, SimulationError> {
+        let rest_s = self.time_s.last().and_then(|&end_s| rest.since_s(end_s));
         let mut series = TimeSeries::new(self.time_s)?;
         for (channel, column) in self.columns {
             series.insert(channel, column)?;
@@ -427,6 +448,7 @@ impl<'a> Recorder<'a> {
         Ok(Motion {
             series,
             flags: self.lift.into_iter().chain(self.roll).chain(self.energy).collect(),
+            rest_s,
         })
     }
 }

@@ -8,6 +8,7 @@
 //! side force of an axle     c g/ε (1 + m x²/I_zz')              ε: regularisation of the slip angle
 //! ... through the roll      c g/ε m_s h |x I_xz|/(I_zz I_xx − I_xz²)
 //! rolling resistance        f g/u₀ (1 + m w²/(4 I_zz'))
+//! locked wheels             μ g/ε' (1 + m (x² + w²/4)/I_zz')
 //! roll                      max(B/I_xx', √((K_φ + m_s g h)/I_xx'))
 //! I_zz' = I_zz (1 − I_xz²/(I_zz I_xx)), I_xx' likewise
 //! ```
@@ -19,7 +20,9 @@
 
 use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::VehicleParameters;
-use crate::vehicle::tire::{ROLLING_RESISTANCE_SPEED_M_S, SLIP_ANGLE_SPEED_M_S};
+use crate::vehicle::tire::{
+    LOCKED_SLIDING_SPEED_M_S, ROLLING_RESISTANCE_SPEED_M_S, SLIP_ANGLE_SPEED_M_S,
+};
 
 /// Largest h λ of a step: half of what the linear modes would bear, as the tyres are not linear. The
 /// vehicles that come with the program have at most 0.96 at the reference step of 1 ms.
@@ -135,6 +138,11 @@ impl VehicleParameters {
         parts(tires_1_s.max(rolling_1_s).max(roll_1_s), step_s)
     }
 
+    /// The same for a vehicle whose wheels may be braked or locked.
+    pub(crate) fn braked_substeps(&self, step_s: f64) -> usize {
+        self.substeps(step_s).max(parts(self.braked_rate_1_s(), step_s))
+    }
+
     /// The same for the roll alone, where something else bounds the energy of the planar motion.
     pub(crate) fn roll_substeps(&self, step_s: f64) -> usize {
         parts(self.roll_rate_bound_1_s(), step_s)
@@ -165,6 +173,16 @@ impl VehicleParameters {
                 * (1.0 + mass.mass_kg * half_track_m * half_track_m / yaw_inertia),
             roll_1_s: self.roll_rate_bound_1_s(),
         }
+    }
+
+    /// Fastest decay of a motion on locked wheels, 1/s: `μ g/ε (1 + m x²/I_zz')`.
+    fn braked_rate_1_s(&self) -> f64 {
+        let (mass, geometry) = (&self.mass, &self.geometry);
+        let arm_m = geometry.cg_to_front_axle_m.max(geometry.cg_to_rear_axle_m);
+        let arm_m = arm_m.hypot(geometry.track_width_m / 2.0);
+        let yaw_inertia = mass.yaw_inertia_kg_m2 * self.uncoupled_share();
+        let at_rest = self.tires.friction * STANDARD_GRAVITY_M_S2 / LOCKED_SLIDING_SPEED_M_S;
+        at_rest * (1.0 + mass.mass_kg * arm_m * (arm_m / yaw_inertia))
     }
 
     fn roll_rate_bound_1_s(&self) -> f64 {
@@ -206,7 +224,7 @@ mod tests {
         vehicle: &VehicleParameters,
         initial: VehicleState<f64>,
     ) -> Result<Motion, SimulationError> {
-        let manoeuvre = Manoeuvre { initial, contact_load: None, steer: None, duration_s: 1.0 };
+        let manoeuvre = Manoeuvre { initial, duration_s: 1.0, ..Manoeuvre::default() };
         vehicle.simulate(&manoeuvre, Integrator::Rk4)
     }
 

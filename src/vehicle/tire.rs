@@ -16,6 +16,8 @@
 //! - The stiffness factor is `C = c/μ` with the cornering coefficient c (cornering stiffness over
 //!   vertical load). The slope at zero slip is then that of the tyre for any friction of the road.
 //! - Rolling resistance opposes the motion and vanishes at rest: −f(|u|) F_z tanh(u/u₀).
+//! - A braked wheel stays inside the friction circle, and locks where the brake asks for more than
+//!   the road can hold (see [`WheelSlip::force_n`]).
 //! - Friction may decrease from its peak to a sliding value as the slip angle grows (see
 //!   [`TireParameters`]).
 
@@ -36,6 +38,14 @@ pub(super) const ROLLING_RESISTANCE_SPEED_M_S: f64 = 0.05;
 /// tyres slide fully at a slip of 0.6 to 0.8. The value was chosen and not fitted;
 /// `docs/VALIDATION.md` reports the results for other values.
 const SLIDING_SLIP_ANGLE_RAD: f64 = 0.5;
+
+/// Sliding speed below which the force on a locked wheel decreases to zero, m/s. A vehicle on locked
+/// wheels then comes to rest at a rate of μ g / ε ≈ 160 1/s, without chatter.
+pub(super) const LOCKED_SLIDING_SPEED_M_S: f64 = 0.05;
+
+/// By how much the braking force must exceed what the road can hold until the wheel is locked, as a
+/// share of the latter. In between the wheel slips more and more.
+const LOCKING_SHARE: f64 = 0.15;
 
 /// Parameters of the tyres of one vehicle and of the road under them. Both axles have the same
 /// friction and rolling resistance.
@@ -58,6 +68,14 @@ pub struct TireParameters {
     /// Coefficient f_r2 of the part of f that is proportional to the square of the speed, s²/m². It
     /// may represent the air drag of the vehicle.
     pub rolling_resistance_s2_m2: f64,
+    /// Rolling radius of the tyres, m, by which a torque becomes a force at the road.
+    #[serde(default = "usual_rolling_radius_m")]
+    pub rolling_radius_m: f64,
+}
+
+/// Rolling radius of a usual car tyre, such as 205/55 R16, m.
+pub(super) fn usual_rolling_radius_m() -> f64 {
+    0.31
 }
 
 /// Quantities of the tyre force that depend on the motion of a wheel only, and not on its vertical
@@ -72,6 +90,40 @@ pub struct WheelSlip<T> {
     lateral_share: T,
     /// Rolling resistance over vertical load, with a sign opposite to the motion.
     rolling_share: T,
+    /// Velocity `[u, w]` of the centre of the wheel in the axes of the wheel, m/s.
+    velocity_m_s: [T; 2],
+    /// Sliding friction coefficient of a locked wheel.
+    locked_friction: f64,
+}
+
+/// What drives, brakes or locks a wheel, beside its rolling resistance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WheelEffort<T> {
+    /// Drive torque over the rolling radius of the tyre, N, positive forwards.
+    pub drive_n: T,
+    /// Torque of brake, engine or bent bodywork against the rotation of the wheel, over the rolling
+    /// radius, N, 0 or more. It acts against the rolling in either direction and holds at rest.
+    pub braking_n: T,
+    /// 1 for a wheel that cannot turn, 0 for one that can.
+    pub locked: T,
+}
+
+impl<T: Lanes> WheelEffort<T> {
+    /// A wheel that rolls freely.
+    pub fn none() -> Self {
+        let zero = T::from(0.0);
+        Self { drive_n: zero, braking_n: zero, locked: zero }
+    }
+
+    /// Converts every component to another scalar type.
+    pub fn map<U: Lanes>(self, convert: impl Fn(T) -> U) -> WheelEffort<U> {
+        let Self { drive_n, braking_n, locked } = self;
+        WheelEffort {
+            drive_n: convert(drive_n),
+            braking_n: convert(braking_n),
+            locked: convert(locked),
+        }
+    }
 }
 
 impl TireParameters {
@@ -89,19 +141,19 @@ impl TireParameters {
         let slopes = velocities_m_s.map(|[u, w]| -w / (u.abs() + SLIP_ANGLE_SPEED_M_S));
         let slip_angles_rad = T::atan_each(slopes);
         std::array::from_fn(|i| {
-            let [u, _] = velocities_m_s[i];
-            self.slip(cornering_coefficients_per_rad[i], u, slip_angles_rad[i])
+            self.slip(cornering_coefficients_per_rad[i], velocities_m_s[i], slip_angles_rad[i])
         })
     }
 
-    /// Slip quantities of one wheel, from the velocity u in the plane of the wheel, m/s, and the
-    /// slip angle.
+    /// Slip quantities of one wheel, from the velocity `[u, w]` of its centre, m/s, and the slip
+    /// angle.
     fn slip<T: Lanes>(
         &self,
         cornering_coefficient_per_rad: f64,
-        u: T,
+        velocity_m_s: [T; 2],
         slip_angle_rad: T,
     ) -> WheelSlip<T> {
+        let [u, _] = velocity_m_s;
         let speed = u.abs();
         let beyond_peak = slip_angle_rad * slip_angle_rad / SLIDING_SLIP_ANGLE_RAD.powi(2);
         let sliding_loss = if self.sliding_friction_ratio < 1.0 {
@@ -119,6 +171,8 @@ impl TireParameters {
             // x / √(x² + 1) equals sin(atan(x)) and needs no trigonometric functions.
             lateral_share: stiffness / (stiffness * stiffness + 1.0).sqrt(),
             rolling_share: -resistance * smooth_sign(u / ROLLING_RESISTANCE_SPEED_M_S),
+            velocity_m_s,
+            locked_friction: self.friction * self.sliding_friction_ratio,
         }
     }
 }
@@ -131,24 +185,63 @@ fn smooth_sign<T: Lanes>(x: T) -> T {
 }
 
 impl<T: Lanes> WheelSlip<T> {
-    /// Computes the force `[F_x, F_y]` of the road on the tyre in the axes of the wheel, N, which
-    /// lies inside the friction circle:
+    /// Force `[F_x, F_y]` of the road on a wheel that rolls freely, in the axes of the wheel, over
+    /// its vertical load: `F_x/F_z = −f(|u|) tanh(u/u₀)`, F_y as in [`WheelSlip::force_n`].
+    pub fn free_share(&self) -> [T; 2] {
+        self.turning_n(T::from(1.0), self.rolling_share)
+    }
+
+    /// Force `[F_x, F_y]` of the road on the tyre in the axes of the wheel, N, which lies inside the
+    /// friction circle.
     ///
     /// ```text
-    /// F_x = clamp(F_drive − f(|u|) F_z tanh(u/u₀), ±μ F_z)     F_y = sin(atan(C α)) √((μ F_z)² −
-    /// F_x²)
+    /// turning   F_x = clamp(F_drive − f(|u|) F_z tanh(u/u₀) − F_brake tanh(u/u₀), ±μ(α) F_z)
+    ///           F_y = sin(atan(C α)) √((μ(α) F_z)² − F_x²)
+    /// locked    F   = −μ_s F_z [u, w]/√(u² + w² + ε²)        μ_s: sliding friction
+    /// F = (1 − λ) F_turning + λ F_locked
     /// ```
     ///
+    /// The road can turn a wheel against a brake with at most F_max = μ(α) F_z |u|/√(u² + w²), the
+    /// part of the friction along the wheel: a wheel that slides sideways is locked by little
+    /// braking, one that rolls straight only by more than μ F_z. The share λ of the locked state
+    /// grows from 0 to 1 while the braking force grows from F_max to 1.15 F_max.
+    ///
     /// - `vertical_load_n`: vertical load F_z, N, 0 or more.
-    /// - `drive_force_n`: drive (positive) or brake (negative) force F_drive of this wheel, N.
-    pub fn force_n(&self, vertical_load_n: T, drive_force_n: T) -> [T; 2] {
+    pub fn force_n(&self, vertical_load_n: T, effort: &WheelEffort<T>) -> [T; 2] {
+        let [u, w] = self.velocity_m_s;
+        let braking_n = effort.braking_n * smooth_sign(u / ROLLING_RESISTANCE_SPEED_M_S);
+        let wanted = self.rolling_share * vertical_load_n + effort.drive_n - braking_n;
+        let turning = self.turning_n(vertical_load_n, wanted);
+        let speed_squared = u * u + w * w;
+        let sliding = (speed_squared + LOCKED_SLIDING_SPEED_M_S.powi(2)).sqrt();
+        let sliding_n = -vertical_load_n * self.locked_friction / sliding;
+        let locked = [sliding_n * u, sliding_n * w];
+        let share = self.locked_share(vertical_load_n, effort);
+        std::array::from_fn(|i| turning[i] + (locked[i] - turning[i]) * share)
+    }
+
+    /// Force on a wheel that turns, N.
+    ///
+    /// - `wanted_n`: the force along the wheel that drive, brake and rolling resistance ask for.
+    fn turning_n(&self, vertical_load_n: T, wanted_n: T) -> [T; 2] {
         let limit = self.friction * vertical_load_n;
-        let wanted = self.rolling_share * vertical_load_n + drive_force_n;
         // If the longitudinal force reaches the limit, there is no lateral force. The root is not
         // used there, because its derivative at zero is infinite.
-        let along = wanted.abs().if_less(limit, wanted, limit * wanted.sign());
-        let across = self.lateral_share * (limit * limit - wanted * wanted).sqrt();
-        [along, wanted.abs().if_less(limit, across, T::from(0.0))]
+        let along = wanted_n.abs().if_less(limit, wanted_n, limit * wanted_n.sign());
+        let across = self.lateral_share * (limit * limit - wanted_n * wanted_n).sqrt();
+        [along, wanted_n.abs().if_less(limit, across, T::from(0.0))]
+    }
+
+    /// How far the wheel is locked, 0 to 1.
+    fn locked_share(&self, vertical_load_n: T, effort: &WheelEffort<T>) -> T {
+        let [u, w] = self.velocity_m_s;
+        let (zero, one) = (T::from(0.0), T::from(1.0));
+        // A millimetre per second more than nothing, so that the share is a number at rest.
+        let along = u.abs() / (u * u + w * w + 1e-6).sqrt();
+        let largest_n = self.friction * vertical_load_n * along;
+        let beyond = (effort.braking_n - largest_n) / (largest_n * LOCKING_SHARE + 1e-3);
+        let by_brake = beyond.clamped(zero, one);
+        by_brake + (one - by_brake) * effort.locked
     }
 }
 
@@ -166,7 +259,16 @@ mod tests {
         rolling_resistance: 0.01,
         rolling_resistance_s_m: 1e-4,
         rolling_resistance_s2_m2: 2e-5,
+        rolling_radius_m: 0.31,
     };
+
+    fn driven(drive_n: f64) -> WheelEffort<f64> {
+        WheelEffort { drive_n, ..WheelEffort::none() }
+    }
+
+    fn braked(braking_n: f64) -> WheelEffort<f64> {
+        WheelEffort { braking_n, ..WheelEffort::none() }
+    }
 
     fn slip(tire: &TireParameters, coefficient: f64, velocity_m_s: [f64; 2]) -> WheelSlip<f64> {
         let [slip, ..] = tire.slips([coefficient; 4], [velocity_m_s; 4]);
@@ -177,42 +279,83 @@ mod tests {
     fn the_slope_at_zero_slip_is_the_cornering_stiffness() {
         let tire = TireParameters { rolling_resistance_s2_m2: 0.0, ..TIRE };
         let (u, w) = (1e3, 1e-3);
-        let [fx, fy] = slip(&tire, 13.0, [u, -w]).force_n(5e3, 0.0);
+        let [fx, fy] = slip(&tire, 13.0, [u, -w]).force_n(5e3, &driven(0.0));
         let free_of_rolling = (1.0 - (fx / (0.8 * 5e3)).powi(2)).sqrt();
         assert!((fy / (13.0 * 5e3 * w / u * free_of_rolling) - 1.0).abs() < 1e-3, "{fy} {fx}");
     }
 
     #[test]
     fn a_wheel_that_slides_sideways_has_sliding_friction() {
-        let [_, fy] = slip(&TIRE, 20.0, [0.0, 10.0]).force_n(4000.0, 0.0);
+        let [_, fy] = slip(&TIRE, 20.0, [0.0, 10.0]).force_n(4000.0, &driven(0.0));
         let [full, sliding] = [0.8 * 4000.0, 0.8 * 0.8 * 4000.0];
         assert!(fy < 0.0 && fy.abs() < 1.01 * sliding && fy.abs() < full, "{fy}");
     }
 
     #[test]
     fn a_lifted_wheel_has_no_force() {
-        assert_eq!(slip(&TIRE, 20.0, [5.0, 3.0]).force_n(0.0, 0.0), [0.0, 0.0]);
+        assert_eq!(slip(&TIRE, 20.0, [5.0, 3.0]).force_n(0.0, &driven(0.0)), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_wheel_locks_by_more_than_the_road_holds_and_then_slides() {
+        let (load, full) = (5e3, 0.8 * 5e3);
+        let along = |braking_n| slip(&TIRE, 20.0, [20.0, 0.0]).force_n(load, &braked(braking_n))[0];
+        assert!((along(0.9 * full) + 0.9 * full).abs() < 0.03 * full, "{}", along(0.9 * full));
+        assert!((along(1.2 * full) + 0.8 * full).abs() < 1.0, "{}", along(1.2 * full));
+        // Sliding sideways, a tenth of that locks it, and the force is against the sliding.
+        let [fx, fy] = slip(&TIRE, 20.0, [1.0, 12.0]).force_n(load, &braked(0.1 * full));
+        assert!((fy / fx - 12.0).abs() < 1e-6 && fx < 0.0, "{fx} {fy}");
+        let size = f64::hypot(fx, fy);
+        assert!((size - 0.64 * load).abs() < 1.0, "{size}");
+    }
+
+    #[test]
+    fn a_locked_wheel_pushes_against_its_velocity() {
+        let locked = WheelEffort { locked: 1.0, ..WheelEffort::none() };
+        for [u, w] in [[10.0, 0.0], [-3.0, 4.0], [0.0, -7.0]] {
+            let [fx, fy] = slip(&TIRE, 20.0, [u, w]).force_n(5e3, &locked);
+            let speed = f64::hypot(u, w);
+            let expected = [u, w].map(|v| -0.64 * 5e3 * v / speed);
+            assert!((fx - expected[0]).abs() < 1.0 && (fy - expected[1]).abs() < 1.0, "{fx} {fy}");
+        }
+        assert_eq!(slip(&TIRE, 20.0, [0.0, 0.0]).force_n(5e3, &locked), [0.0, 0.0]);
     }
 
     proptest! {
         #[test]
-        fn a_tyre_never_puts_energy_in(u in -60.0..60.0, w in -60.0..60.0, load in 0.0..2e4) {
-            let [fx, fy] = slip(&TIRE, 13.0, [u, w]).force_n(load, 0.0);
+        fn a_tyre_never_puts_energy_in(
+            u in -60.0..60.0, w in -60.0..60.0, load in 0.0..2e4, braking_n in 0.0..2e4,
+            locked in 0.0..1.0,
+        ) {
+            let effort = WheelEffort { drive_n: 0.0, braking_n, locked };
+            let [fx, fy] = slip(&TIRE, 13.0, [u, w]).force_n(load, &effort);
             prop_assert!(fx * u + fy * w <= 0.0);
         }
 
         #[test]
-        fn the_force_stays_in_the_friction_circle(
-            u in -60.0..60.0, w in -60.0..60.0, load in 0.0..2e4, drive in -2e4..2e4,
+        fn a_brake_pulls_no_more_than_it_is_asked_for_until_the_wheel_locks(
+            u in 1.0..60.0, w in -60.0..60.0, braking_n in 0.0..2e4,
         ) {
-            let [fx, fy] = slip(&TIRE, 13.0, [u, w]).force_n(load, drive);
+            let tire = TireParameters { rolling_resistance: 0.0, rolling_resistance_s_m: 0.0,
+                rolling_resistance_s2_m2: 0.0, ..TIRE };
+            let [fx, _] = slip(&tire, 13.0, [u, w]).force_n(5e3, &braked(braking_n));
+            prop_assert!(-fx <= braking_n * (1.0 + 1e-9) && fx <= 0.0, "{fx}");
+        }
+
+        #[test]
+        fn the_force_stays_in_the_friction_circle(
+            u in -60.0..60.0, w in -60.0..60.0, load in 0.0..2e4, drive_n in -2e4..2e4,
+            braking_n in 0.0..2e4, locked in 0.0..1.0,
+        ) {
+            let effort = WheelEffort { drive_n, braking_n, locked };
+            let [fx, fy] = slip(&TIRE, 13.0, [u, w]).force_n(load, &effort);
             prop_assert!(f64::hypot(fx, fy) <= 0.8 * load * (1.0 + 1e-12));
         }
 
         #[test]
         fn backwards_is_the_mirror_of_forwards(u in 0.1..60.0, w in -60.0..60.0) {
-            let [fx, fy] = slip(&TIRE, 13.0, [u, w]).force_n(5e3, 0.0);
-            let [bx, by] = slip(&TIRE, 13.0, [-u, w]).force_n(5e3, 0.0);
+            let [fx, fy] = slip(&TIRE, 13.0, [u, w]).force_n(5e3, &driven(0.0));
+            let [bx, by] = slip(&TIRE, 13.0, [-u, w]).force_n(5e3, &driven(0.0));
             prop_assert!((fx + bx).abs() < 1e-9 && (fy - by).abs() < 1e-9);
         }
     }

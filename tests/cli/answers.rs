@@ -4,18 +4,13 @@
 
 use std::fs;
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use impactlab::study::{CompareRequest, ConfigChoice, Event, Library, ModelChoice, Question};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::program::{SCENARIO, TINY_RESPONSE_NETWORK, TRAJECTORIES, json, ok, program};
-
-/// Runs the program and returns its JSON output, after checking that it succeeded.
-fn answer(args: &[&str]) -> Value {
-    json(&ok(program().args(args).arg("--json").output().unwrap()))
-}
+use crate::program::{SCENARIO, TINY_RESPONSE_NETWORK, TRAJECTORIES, answer, ok, program, text};
 
 /// Runs the program and returns its one line of error, after checking that it failed.
 fn refusal(args: &[&str]) -> String {
@@ -31,10 +26,6 @@ fn write(folder: &TempDir, name: &str, text: &str) -> PathBuf {
     let path = folder.path().join(name);
     fs::write(&path, text).unwrap();
     path
-}
-
-fn text(path: &Path) -> &str {
-    path.to_str().unwrap()
 }
 
 /// The example scenario with a line of it replaced.

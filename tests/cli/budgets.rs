@@ -3,11 +3,10 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::fs;
-use std::path::Path;
 use std::process::{Command, Output};
 use std::time::{Duration, Instant};
 
-use crate::program::program;
+use crate::program::{program, text};
 
 /// Longest time for an input to be refused, on a machine that is busy.
 const PATIENCE: Duration = Duration::from_secs(50);
@@ -25,10 +24,6 @@ fn within(kib: u64, args: &[&str]) -> (i32, String, String) {
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
     let (out, err) = (text(stdout), text(stderr));
     (status.code().unwrap_or_else(|| panic!("killed: {args:?}: {out}{err}")), out, err)
-}
-
-fn text(path: &Path) -> &str {
-    path.to_str().unwrap()
 }
 
 #[test]

@@ -60,8 +60,8 @@ fn manoeuvre(speed_m_s: f64, impulse_y_n_s: f64, start_s: f64) -> Manoeuvre {
     Manoeuvre {
         initial: VehicleState::driving_straight(speed_m_s),
         contact_load: Some(ContactLoad { force, contact, recorded_moment: false }),
-        steer: None,
         duration_s: 4.0,
+        ..Manoeuvre::default()
     }
 }
 

@@ -7,6 +7,7 @@ mod budgets;
 mod closed_pipe;
 mod commands;
 mod data_sheets;
+mod endings;
 mod force;
 mod guide;
 mod log;

@@ -62,3 +62,13 @@ pub fn kill_at_checkpoint(training: &mut Command, model: &Path) {
     child.wait().unwrap();
     assert!(checkpoint.exists(), "no checkpoint within {PATIENCE:?}");
 }
+
+/// Runs the program and returns its JSON output, after checking that it succeeded.
+pub fn answer(args: &[&str]) -> Value {
+    json(&ok(program().args(args).arg("--json").output().unwrap()))
+}
+
+/// A path as an argument.
+pub fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}

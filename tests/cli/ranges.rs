@@ -9,7 +9,7 @@ use std::path::Path;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::program::{SCENARIO, TRAJECTORIES, json, ok, program};
+use crate::program::{SCENARIO, TRAJECTORIES, json, ok, program, text};
 
 /// Runs a command and returns its exit code and what it prints to the standard error.
 fn run(args: &[&str]) -> (Option<i32>, String) {
@@ -43,10 +43,6 @@ fn dataset(column: &str, cell: &str) -> TempDir {
     let table = format!("{}\n{}\n", names.join(","), cells.join(","));
     fs::write(folder.path().join("cases.csv"), table).unwrap();
     folder
-}
-
-fn text(path: &Path) -> &str {
-    path.to_str().unwrap()
 }
 
 #[test]

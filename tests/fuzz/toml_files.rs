@@ -30,9 +30,8 @@ fn vehicle(path: &Path) -> Answer {
     };
     let manoeuvre = Manoeuvre {
         initial: VehicleState { yaw_rate_rad_s: 2.0, ..VehicleState::driving_straight(20.0) },
-        contact_load: None,
-        steer: None,
         duration_s: 0.1,
+        ..Manoeuvre::default()
     };
     let answer = Answer::accepted(&vehicle);
     match vehicle.simulate(&manoeuvre, Integrator::Rk4) {

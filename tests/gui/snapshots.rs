@@ -24,6 +24,8 @@ fn analysis(dataset: &str, case: &str) -> Analysis {
         bullet: Preset::Bullet2000.parameters(),
         integrator: Integrator::Rk4,
         duration_s: 4.0,
+        ending: impactlab::vehicle::Ending::default(),
+        ends_at_rest: false,
     };
     let dataset = dataset.expect("nothing cancels");
     analyse_case(dataset.case(case).expect("a shipped case"), &settings).expect("it runs")

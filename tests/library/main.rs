@@ -10,6 +10,7 @@ mod data_quality;
 mod data_shipped;
 mod data_writes;
 mod dependencies;
+mod endings;
 mod force_baselines;
 mod force_model;
 mod layering;

@@ -4,8 +4,8 @@
 use impactlab::data::{ForceAxes, ForceHistory, Sampling};
 use impactlab::numerics::{Stage, rk4_step};
 use impactlab::vehicle::{
-    CollisionForce, ContactLoad, ContactPoint, Integrator, Manoeuvre, Preset, SteerHistory,
-    VehicleInput, VehicleParameters, VehicleState,
+    CollisionForce, ContactLoad, ContactPoint, Controls, Integrator, Manoeuvre, Preset,
+    SteerHistory, VehicleInput, VehicleParameters, VehicleState,
 };
 use impactlab::{data::Channel, units::STANDARD_GRAVITY_M_S2};
 use nalgebra::SVector;
@@ -31,8 +31,8 @@ fn pit(fy_n: f64, contact: ContactPoint, speed_m_s: f64, duration_s: f64) -> Man
     Manoeuvre {
         initial: VehicleState::driving_straight(speed_m_s),
         contact_load: Some(ContactLoad { force, contact, recorded_moment: false }),
-        steer: None,
         duration_s,
+        ..Manoeuvre::default()
     }
 }
 
@@ -127,9 +127,8 @@ fn a_free_coast_down_is_that_of_rolling_resistance() {
     vehicle.tires.rolling_resistance_s2_m2 = 0.0;
     let manoeuvre = Manoeuvre {
         initial: VehicleState::driving_straight(20.0),
-        contact_load: None,
-        steer: None,
         duration_s: 10.0,
+        ..Manoeuvre::default()
     };
     let motion = vehicle.simulate(&manoeuvre, Integrator::Rk4).unwrap();
     let deceleration = 0.01 * STANDARD_GRAVITY_M_S2;
@@ -149,9 +148,12 @@ fn steady_cornering_is_that_of_the_linear_bicycle() {
     let (speed, steer) = (15.0, 0.002);
     let manoeuvre = Manoeuvre {
         initial: VehicleState::driving_straight(speed),
-        contact_load: None,
-        steer: Some(SteerHistory { time_s: vec![0.0, 0.5], steer_rad: vec![0.0, steer] }),
+        controls: Controls {
+            steer: Some(SteerHistory { time_s: vec![0.0, 0.5], steer_rad: vec![0.0, steer] }),
+            wheels: None,
+        },
         duration_s: 8.0,
+        ..Manoeuvre::default()
     };
     let motion = vehicle.simulate(&manoeuvre, Integrator::Rk4).unwrap();
     let rate = *motion.series.require(Channel::YawRate).unwrap().last().unwrap();
@@ -177,9 +179,8 @@ fn a_spin_ends_at_rest_and_stays_there() {
         let vehicle = preset.parameters();
         let manoeuvre = Manoeuvre {
             initial: VehicleState { yaw_rate_rad_s: 8.0, ..VehicleState::driving_straight(8.0) },
-            contact_load: None,
-            steer: None,
             duration_s: 60.0,
+            ..Manoeuvre::default()
         };
         let motion = vehicle.simulate(&manoeuvre, Integrator::Rk4).unwrap();
         let column = |channel| motion.series.require(channel).unwrap();

@@ -7,6 +7,7 @@
 mod cases;
 mod comparison;
 mod data;
+mod ending;
 mod evaluation;
 mod evaluation_plots;
 mod evaluation_tables;

@@ -4,6 +4,7 @@ use egui::{ComboBox, Grid, ScrollArea, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
+use crate::app::panels::ending::ending_form;
 use crate::app::panes::PaneContext;
 use crate::app::state::{Project, Subject};
 use crate::app::widgets::{figure_frame, quantity_field, value_row};
@@ -64,6 +65,7 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         }
         ui.separator();
         contact_form(ui, project, view.units);
+        ending_form(ui, &mut project.scenario.ending, view.units);
         vehicles_form(ui, project, view.units);
     });
 }

@@ -10,8 +10,8 @@ use crate::analysis::PulseSetup;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::options::{
-    EquationsArg, IntegratorArg, OverwriteArg, SamplingArg, UnitsArg, VehicleArg, contact_point,
-    count, number,
+    EndingArgs, EquationsArg, IntegratorArg, OverwriteArg, SamplingArg, UnitsArg, VehicleArg,
+    contact_point, count, number,
 };
 use crate::cli::text::{print_dataset_simulation, print_simulation};
 use crate::data::{ColumnMap, DatasetKind, Existing, write_series_csv};
@@ -62,9 +62,17 @@ pub(in crate::cli) struct SimulateArgs {
     /// Units of the text (JSON is always SI)
     #[arg(long, value_enum, default_value_t)]
     units: UnitsArg,
+    /// Simulate until the vehicle has come to rest, for two minutes or the --duration at most
+    #[arg(long, conflicts_with = "trajectory")]
+    until_rest: bool,
+    #[command(flatten)]
+    ending: EndingArgs,
     #[command(flatten)]
     single: SingleArgs,
 }
+
+/// Longest time that a vehicle is followed to rest where nobody says it, s.
+const REST_LIMIT_S: f64 = 120.0;
 
 /// What a recorded motion or a case says itself.
 const NOT_WITH_SCENARIO: [&str; 11] = [
@@ -104,6 +112,7 @@ Examples:
   impactlab simulate --vehicle reference-2000 --speed 72km/h --force datasets/fea/forces/c001.csv \\
       --out motion.csv
   impactlab simulate --vehicle my-car.toml --speed 20 --steer steer.csv
+  impactlab simulate --scenario pit-right-rear --brake 0.8 --brake-start 0.7s --until-rest
   impactlab simulate --dataset datasets/trajectories-fea --json
 
 A force sample stands for: the mean around its instant in finite-element files (with target_vx
@@ -113,7 +122,8 @@ fx_body); else the value at its instant. --sampling overrules it.
 JSON, one vehicle: vehicle, equations, integrator, friction, duration_s, force {path, sampling, axes,
   impulse_n_s [x, y], contact_start_s, contact_end_s, yaw_moment}, delta_v_m_s [x, y] and
   delta_v_magnitude_m_s over the contact (null without), end {x_m, y_m, yaw_rad, roll_rad,
-  vx_m_s, vy_m_s, yaw_rate_rad_s, speed_m_s}, distance_m, largest_yaw_change_rad,
+  vx_m_s, vy_m_s, yaw_rate_rad_s, speed_m_s}, distance_m, rest {time_s, x_m, y_m, yaw_rad,
+  distance_m} (null while it moves), largest_yaw_change_rad,
   flags [{kind, time_s, wheel, roll_rad, message}], error (against a record), notes, assumptions
   [{quantity, value, reason}], out; for a vehicle of which only a data sheet is known uncertainty
   {n_draws, n_failed, x_m, y_m, yaw_rad, speed_m_s: each {median, half [2], ninety [2]},
@@ -163,9 +173,9 @@ struct SingleArgs {
     /// Peak friction of the road instead of the vehicle file's
     #[arg(long, value_parser = number(ROAD_FRICTION))]
     friction: Option<f64>,
-    /// Duration, s
-    #[arg(long, value_parser = number(SIMULATED_DURATION), default_value_t = DEFAULT_DURATION_S)]
-    duration: f64,
+    /// Duration, s; 4 if not given
+    #[arg(long, value_parser = number(SIMULATED_DURATION))]
+    duration: Option<f64>,
     /// Vehicles to draw from what the data sheet of the struck vehicle leaves open; 0 takes the
     /// medians alone
     #[arg(long, value_name = "N", default_value_t = DEFAULT_VEHICLE_DRAWS,
@@ -211,7 +221,12 @@ fn simulate_one(
         equations: args.equations.map(Equations::from),
         integrator: args.integrator.into(),
         friction: args.single.friction,
-        duration_s: args.single.duration,
+        duration_s: args.single.duration.unwrap_or(match args.until_rest {
+            true => REST_LIMIT_S,
+            false => DEFAULT_DURATION_S,
+        }),
+        ending: args.ending.ending(),
+        until_rest: args.until_rest,
         vehicle_draws: args.single.vehicle_draws,
         seed: args.single.seed,
     };

@@ -1,6 +1,7 @@
 //! What several commands take as options.
 
 mod choices;
+mod ending;
 mod overwrite;
 mod quantity;
 mod source;
@@ -9,6 +10,7 @@ mod training;
 pub(super) use choices::{
     BadCasesArg, EquationsArg, IntegratorArg, SamplingArg, SplitArg, UnitsArg, VehicleArg,
 };
+pub(super) use ending::EndingArgs;
 pub(super) use overwrite::OverwriteArg;
 pub(super) use quantity::{contact_point, count, number, size_px, window_s};
 pub(super) use source::SourceArgs;

@@ -8,7 +8,7 @@ use crate::cli::console::{
     print_assumptions, print_facts, print_table, shown, shown_path, shown_vector,
 };
 use crate::cli::text::sensitivity::print_sensitivity;
-use crate::study::{ForceReport, SimulateReport, VehicleUncertainty};
+use crate::study::{ForceReport, RestState, SimulateReport, VehicleUncertainty};
 use crate::units::{Quantity, UnitSystem};
 
 /// A name and a value.
@@ -41,6 +41,7 @@ pub(in crate::cli) fn print_simulation(
         let change = report.largest_yaw_change_rad;
         facts.extend(change.map(|rad| ("largest yaw change", number(Quantity::Angle, rad))));
         facts.push(("final speed", number(Quantity::Speed, end.speed_m_s)));
+        facts.push(("at rest", rest_text(report.rest.as_ref(), units)));
     }
     if let Some(error) = &report.error {
         facts.push(("average error", number(Quantity::Length, error.average_error_m)));
@@ -78,6 +79,15 @@ fn print_uncertainty(
     writeln!(text, "\nover {n_draws} vehicles drawn from the data sheet{failed}")?;
     print_table(text, &["", "median", "90 %"], &rows)?;
     print_sensitivity(text, sensitivity)
+}
+
+/// When and where the vehicle has come to rest.
+fn rest_text(rest: Option<&RestState>, units: UnitSystem) -> String {
+    let Some(rest) = rest else { return "no, still moving at the end".to_owned() };
+    let position = shown_vector(Quantity::Length, [rest.x_m, rest.y_m], ["x", "y"], units);
+    let distance = shown(Quantity::Length, rest.distance_m, units);
+    let heading = shown(Quantity::Angle, rest.yaw_rad, units);
+    format!("after {:.2} s and {distance}, {position}, heading {heading}", rest.time_s)
 }
 
 fn force_facts(force: &ForceReport, name: &str, units: UnitSystem) -> Vec<Fact> {

@@ -36,8 +36,12 @@ pub(super) fn estimated_load(
     let recorded = world_rates(after);
     for _ in 0..N_ROUNDS {
         let load = load(vehicle, (impulse_n_s, angular_n_m_s), duration_s)?;
-        let manoeuvre =
-            Manoeuvre { initial: *initial, contact_load: Some(load), steer: None, duration_s };
+        let manoeuvre = Manoeuvre {
+            initial: *initial,
+            contact_load: Some(load),
+            duration_s,
+            ..Manoeuvre::default()
+        };
         let inputs = manoeuvre.inputs(STEP_S, n_steps);
         let path = rollout(vehicle, *initial, &inputs, |_, _| [0.0; N_RESIDUAL]);
         let Some(end) = path.last() else { break };
@@ -79,8 +83,12 @@ mod tests {
         for (impulse, angular) in [([20.0, 150.0], -60.0), ([-40.0, -90.0], 35.0), ([0.0; 2], 0.0)]
         {
             let known = load(&vehicle, (impulse, angular), 0.1).unwrap();
-            let manoeuvre =
-                Manoeuvre { initial, contact_load: Some(known), steer: None, duration_s: 0.2 };
+            let manoeuvre = Manoeuvre {
+                initial,
+                contact_load: Some(known),
+                duration_s: 0.2,
+                ..Manoeuvre::default()
+            };
             let inputs = manoeuvre.inputs(STEP_S, 20);
             let states = rollout(&vehicle, initial, &inputs, |_, _| [0.0; N_RESIDUAL]);
             let found = estimated_load(&vehicle, &states, 0.1).unwrap().unwrap();

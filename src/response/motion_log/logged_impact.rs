@@ -11,7 +11,7 @@ use crate::response::motion_log::tracks::LogWindow;
 use crate::response::train::case::MIN_SAMPLES;
 use crate::response::{LogError, LogNoise, MotionLog, N_RESIDUAL, ResponseCase, STEP_S, step};
 use crate::vehicle::{
-    ContactLoad, Manoeuvre, SteerHistory, VehicleInput, VehicleParameters, VehicleState,
+    ContactLoad, Controls, Manoeuvre, SteerHistory, VehicleInput, VehicleParameters, VehicleState,
 };
 
 /// Settings for reading a log.
@@ -102,8 +102,9 @@ impl LoggedImpact {
         let manoeuvre = Manoeuvre {
             initial: states.first().copied().unwrap_or_default(),
             contact_load: load,
-            steer: steer(&log.series, start_s),
+            controls: Controls { steer: steer(&log.series, start_s), wheels: None },
             duration_s: settings.duration_s,
+            ..Manoeuvre::default()
         };
         let inputs = manoeuvre.inputs(STEP_S, states.len().saturating_sub(1));
         let states = match log.series.get(Channel::Roll) {

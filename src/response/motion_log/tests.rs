@@ -37,7 +37,7 @@ fn simulated(
     duration_s: f64,
 ) -> TimeSeries {
     let initial = VehicleState::driving_straight(6.0);
-    let manoeuvre = Manoeuvre { initial, contact_load: load, steer: None, duration_s };
+    let manoeuvre = Manoeuvre { initial, contact_load: load, duration_s, ..Manoeuvre::default() };
     vehicle.simulate(&manoeuvre, Integrator::Rk4).unwrap().series
 }
 

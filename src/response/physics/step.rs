@@ -127,10 +127,7 @@ fn step_from<T: Lanes>(
         rk4_step(f, &x, STEP_S / n_substeps as f64)
     });
     let next = VehicleState::from_array(next);
-    let drives = u
-        .axle_drive_n
-        .is_some_and(|axles_n| axles_n.iter().any(|force| T::from(0.0).any_less(*force)));
-    let is_free = u.collision.is_none() && !drives;
+    let is_free = u.collision.is_none() && !u.is_driven();
     if is_free { without_energy_gain(vehicle, x, next) } else { next }
 }
 
@@ -163,7 +160,7 @@ mod tests {
     use wide::f64x2;
 
     use super::*;
-    use crate::vehicle::{CollisionForce, ContactPoint, Preset};
+    use crate::vehicle::{CollisionForce, ContactPoint, Preset, WheelEffort};
 
     fn state(vx_m_s: f64, vy_m_s: f64, yaw_rate_rad_s: f64) -> VehicleState<f64> {
         VehicleState { vx_m_s, vy_m_s, yaw_rate_rad_s, ..VehicleState::default() }
@@ -209,7 +206,7 @@ mod tests {
         #[test]
         fn two_side_by_side_go_where_each_goes(
             first in prop::array::uniform3(-15.0..15.0), second in prop::array::uniform3(-15.0..15.0),
-            drive_n in prop::option::of(prop::array::uniform2(-2e4..1e4)),
+            efforts in prop::option::of(prop::array::uniform4([-9e3..9e3_f64, 0.0..9e3, 0.0..1.0])),
             push_n in prop::option::of(prop::array::uniform2(-3e4..3e4)),
             a in prop::array::uniform4(-10.0..10.0),
         ) {
@@ -218,7 +215,11 @@ mod tests {
             let collision = push_n.map(|force_n| CollisionForce {
                 force_n, in_world_axes: true, yaw_moment_n_m: None, contact,
             });
-            let u = VehicleInput { steer_rad: 0.1, axle_drive_n: drive_n, collision };
+            let effort = |[drive_n, braking_n, locked]: [f64; 3]| {
+                WheelEffort { drive_n, braking_n, locked }
+            };
+            let wheels = efforts.map(|wheels| wheels.map(effort));
+            let u = VehicleInput { steer_rad: 0.1, wheels, collision };
             let states = [first, second].map(|[vx, vy, r]| VehicleState {
                 yaw_rad: vy, roll_rad: r / 50.0, ..state(vx, vy, r / 3.0)
             });

@@ -44,7 +44,8 @@ impl ImpactRecord {
         let contact = ContactPoint { x_m, y_m, height_m: vehicle.geometry.cg_height_m };
         let load = ContactLoad { force, contact, recorded_moment: false };
         let duration_s = N_STEPS as f64 * STEP_S;
-        let manoeuvre = Manoeuvre { initial, contact_load: Some(load), steer: None, duration_s };
+        let manoeuvre =
+            Manoeuvre { initial, contact_load: Some(load), duration_s, ..Manoeuvre::default() };
         let inputs = manoeuvre.inputs(STEP_S, N_STEPS);
         Self { vehicle, initial, inputs }
     }

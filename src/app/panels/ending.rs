@@ -1,0 +1,159 @@
+//! The form that says what happens to the wheels of the struck vehicle after the first contact.
+
+use egui::{CollapsingHeader, ComboBox, Grid, Ui};
+
+use crate::app::widgets::quantity_field;
+use crate::ranges::{
+    BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, ENGINE_BRAKING, STEER_ANGLE,
+};
+use crate::units::UnitSystem;
+use crate::vehicle::{
+    Braking, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Ending, EngineBraking, HeldSteer,
+    Wheel,
+};
+
+/// Share of the friction with which a driver brakes hard.
+const HARD_BRAKING: f64 = 0.8;
+/// Time from the impact to the reaction of a driver, s.
+const REACTION_S: f64 = 0.7;
+/// Drag of bent bodywork on a tyre, as a share of the friction.
+const USUAL_DRAG: f64 = 0.5;
+/// Deceleration by an engine in a high gear, m/s².
+const USUAL_ENGINE_BRAKING_M_S2: f64 = 0.5;
+/// A small steer angle, rad: 3°.
+const SMALL_STEER_RAD: f64 = 0.0524;
+
+/// Draws the choices of an ending with their numbers. A vehicle for which nothing is chosen coasts.
+pub(super) fn ending_form(ui: &mut Ui, ending: &mut Option<Ending>, units: UnitSystem) {
+    let title = match ending.as_ref().is_none_or(Ending::is_coasting) {
+        true => "After the impact: the target coasts",
+        false => "After the impact",
+    };
+    CollapsingHeader::new(title).id_salt("ending").show(ui, |ui| {
+        let mut edited = ending.clone().unwrap_or_default();
+        Grid::new("ending").num_columns(2).show(ui, |ui| {
+            brake_fields(ui, &mut edited.brake, units);
+            engine_fields(ui, &mut edited.engine, units);
+            for wheel in Wheel::ALL {
+                wheel_fields(ui, wheel, &mut edited.damage, units);
+            }
+            steer_fields(ui, &mut edited.steer, units);
+        });
+        if ending.clone().unwrap_or_default() != edited {
+            *ending = (!edited.is_coasting()).then_some(edited);
+        }
+    });
+}
+
+/// Draws a check box that adds or removes a part of the ending.
+fn switch<T>(ui: &mut Ui, label: &str, part: &mut Option<T>, usual: T) {
+    let mut is_on = part.is_some();
+    if ui.checkbox(&mut is_on, label).changed() {
+        *part = is_on.then_some(usual);
+    }
+    ui.end_row();
+}
+
+fn brake_fields(ui: &mut Ui, brake: &mut Option<Braking>, units: UnitSystem) {
+    let usual = Braking {
+        start_s: REACTION_S,
+        share_of_friction: HARD_BRAKING,
+        rise_s: DEFAULT_BRAKE_RISE_S,
+    };
+    switch(ui, "The driver brakes", brake, usual);
+    let Some(brake) = brake else { return };
+    quantity_field(ui, "from", &mut brake.start_s, (&CONTROL_TIME, units));
+    quantity_field(ui, "share of friction", &mut brake.share_of_friction, (&BRAKE_SHARE, units));
+    quantity_field(ui, "rises over", &mut brake.rise_s, (&BRAKE_RISE, units));
+}
+
+fn engine_fields(ui: &mut Ui, engine: &mut Option<EngineBraking>, units: UnitSystem) {
+    let usual =
+        EngineBraking { deceleration_m_s2: USUAL_ENGINE_BRAKING_M_S2, axle: DrivenAxle::default() };
+    switch(ui, "The engine brakes", engine, usual);
+    let Some(engine) = engine else { return };
+    quantity_field(ui, "deceleration", &mut engine.deceleration_m_s2, (&ENGINE_BRAKING, units));
+    let name = ui.label("driven axle");
+    ComboBox::from_id_salt("driven axle")
+        .selected_text(axle_label(engine.axle))
+        .show_ui(ui, |ui| {
+            for axle in [DrivenAxle::Front, DrivenAxle::Rear, DrivenAxle::All] {
+                ui.selectable_value(&mut engine.axle, axle, axle_label(axle));
+            }
+        })
+        .response
+        .labelled_by(name.id);
+    ui.end_row();
+}
+
+fn axle_label(axle: DrivenAxle) -> &'static str {
+    match axle {
+        DrivenAxle::Front => "front",
+        DrivenAxle::Rear => "rear",
+        DrivenAxle::All => "all",
+    }
+}
+
+/// How a wheel is after the impact.
+#[derive(Clone, Copy, PartialEq)]
+enum Condition {
+    Free,
+    Dragged,
+    Locked,
+}
+
+impl Condition {
+    const ALL: [(Self, &str); 3] =
+        [(Self::Free, "rolls freely"), (Self::Dragged, "dragged"), (Self::Locked, "locked")];
+
+    fn of(damaged: Option<&DamagedWheel>) -> Self {
+        match damaged {
+            None => Self::Free,
+            Some(DamagedWheel { drag_share_of_friction: Some(_), .. }) => Self::Dragged,
+            Some(_) => Self::Locked,
+        }
+    }
+
+    fn label(self) -> &'static str {
+        Self::ALL.iter().find(|(condition, _)| *condition == self).map_or("", |(_, label)| label)
+    }
+}
+
+fn wheel_fields(ui: &mut Ui, wheel: Wheel, damage: &mut Vec<DamagedWheel>, units: UnitSystem) {
+    let before = Condition::of(damage.iter().find(|damaged| damaged.wheel == wheel));
+    let mut condition = before;
+    let name = ui.label(format!("Wheel, {}", wheel.label()));
+    ComboBox::from_id_salt(wheel.label())
+        .selected_text(condition.label())
+        .show_ui(ui, |ui| {
+            for (option, label) in Condition::ALL {
+                ui.selectable_value(&mut condition, option, label);
+            }
+        })
+        .response
+        .labelled_by(name.id);
+    ui.end_row();
+    if condition != before {
+        damage.retain(|damaged| damaged.wheel != wheel);
+        let drag_share_of_friction = (condition == Condition::Dragged).then_some(USUAL_DRAG);
+        if condition != Condition::Free {
+            damage.push(DamagedWheel { wheel, start_s: 0.0, drag_share_of_friction });
+        }
+    }
+    for damaged in damage.iter_mut().filter(|damaged| damaged.wheel == wheel) {
+        if let Some(share) = &mut damaged.drag_share_of_friction {
+            quantity_field(ui, "share of friction", share, (&DRAG_SHARE, units));
+        }
+        quantity_field(ui, "from", &mut damaged.start_s, (&CONTROL_TIME, units));
+    }
+}
+
+fn steer_fields(ui: &mut Ui, steer: &mut Option<HeldSteer>, units: UnitSystem) {
+    let usual =
+        HeldSteer { start_s: 0.0, rise_s: DEFAULT_BRAKE_RISE_S, road_wheel_rad: SMALL_STEER_RAD };
+    switch(ui, "The front wheels are turned", steer, usual);
+    let Some(steer) = steer else { return };
+    quantity_field(ui, "angle, to the left", &mut steer.road_wheel_rad, (&STEER_ANGLE, units));
+    quantity_field(ui, "from", &mut steer.start_s, (&CONTROL_TIME, units));
+    quantity_field(ui, "turned over", &mut steer.rise_s, (&BRAKE_RISE, units));
+}

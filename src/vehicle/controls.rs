@@ -1,0 +1,95 @@
+//! What steers, drives, brakes and locks the wheels of a vehicle over time.
+
+use crate::numerics::interpolate;
+use crate::vehicle::tire::WheelEffort;
+
+/// Steer angle of the front road wheels over time. It is linear between samples; outside, the first
+/// or the last value holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SteerHistory {
+    /// Times of the samples, s, strictly rising.
+    pub time_s: Vec<f64>,
+    /// Steer angle δ of the front road wheels at these times, rad, positive to the left.
+    pub steer_rad: Vec<f64>,
+}
+
+/// What drives, brakes and locks each wheel over time. It is linear between samples; outside, the
+/// first or the last values hold.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WheelHistory {
+    /// Times of the samples, s, strictly rising.
+    pub time_s: Vec<f64>,
+    /// The wheels at these times, in the order of [`Wheel::ALL`](crate::vehicle::Wheel::ALL).
+    pub wheels: Vec<[WheelEffort<f64>; 4]>,
+}
+
+/// Everything that acts on the wheels over time. By default the vehicle coasts: steering wheel,
+/// throttle and brake are released, and every wheel rolls freely.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Controls {
+    /// Steer angle; with `None` it is zero.
+    pub steer: Option<SteerHistory>,
+    /// The wheels; with `None` they roll freely.
+    pub wheels: Option<WheelHistory>,
+}
+
+impl SteerHistory {
+    /// Steer angle at a time, rad; 0 without samples.
+    pub(super) fn at(&self, time_s: f64) -> f64 {
+        interpolate(&self.time_s, &self.steer_rad, time_s).unwrap_or(0.0)
+    }
+}
+
+impl WheelHistory {
+    /// The wheels at a time; `None` while all of them roll freely, so that the rules for a vehicle
+    /// that coasts apply.
+    pub(super) fn at(&self, time_s: f64) -> Option<[WheelEffort<f64>; 4]> {
+        let after = self.time_s.partition_point(|&t| t <= time_s);
+        let last = self.wheels.len().checked_sub(1)?;
+        let (before, after) = (after.saturating_sub(1), after.min(last));
+        let (from, to) = (self.wheels.get(before)?, self.wheels.get(after)?);
+        let span_s = self.time_s.get(after)? - self.time_s.get(before)?;
+        let share = match span_s > 0.0 {
+            true => ((time_s - self.time_s.get(before)?) / span_s).clamp(0.0, 1.0),
+            false => 0.0,
+        };
+        let between = |i: usize| {
+            let mix = |of: fn(&WheelEffort<f64>) -> f64| {
+                of(&from[i]) + (of(&to[i]) - of(&from[i])) * share
+            };
+            WheelEffort {
+                drive_n: mix(|wheel| wheel.drive_n),
+                braking_n: mix(|wheel| wheel.braking_n),
+                locked: mix(|wheel| wheel.locked),
+            }
+        };
+        let wheels: [WheelEffort<f64>; 4] = std::array::from_fn(between);
+        wheels.iter().any(|wheel| *wheel != WheelEffort::none()).then_some(wheels)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wheels_are_linear_between_samples_and_free_where_nothing_acts() {
+        let braked = |braking_n| [WheelEffort { braking_n, ..WheelEffort::none() }; 4];
+        let history = WheelHistory {
+            time_s: vec![1.0, 2.0, 3.0],
+            wheels: vec![braked(0.0), braked(100.0), braked(50.0)],
+        };
+        for (time_s, expected) in [
+            (0.0, None),
+            (1.0, None),
+            (1.5, Some(braked(50.0))),
+            (2.0, Some(braked(100.0))),
+            (2.5, Some(braked(75.0))),
+            (3.0, Some(braked(50.0))),
+            (9.0, Some(braked(50.0))),
+        ] {
+            assert_eq!(history.at(time_s), expected, "at {time_s} s");
+        }
+        assert_eq!(WheelHistory { time_s: Vec::new(), wheels: Vec::new() }.at(1.0), None);
+    }
+}

@@ -1,0 +1,233 @@
+//! How a motion ends: what the driver does after the impact, and what the damage does to the wheels,
+//! in everyday terms. [`Ending::controls`] makes histories of steer angle and wheels of it.
+//!
+//! A vehicle that brakes with deceleration d divides its braking force between the axles so that both
+//! reach the limit of friction together (the ideal distribution, [`Gillespie1992`], chapter 3):
+//!
+//! ```text
+//! F_front/F = (l_r + h d/g)/(l_f + l_r)        F = m d, d at most μ g
+//! ```
+//!
+//! A brake without an anti-lock system that asks for more than the road can hold locks its wheels.
+//!
+//! [`Gillespie1992`]: crate::bibliography::Gillespie1992
+
+use serde::{Deserialize, Serialize};
+
+use crate::ranges::{
+    BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, ENGINE_BRAKING, OutOfRange, STEER_ANGLE,
+};
+use crate::units::STANDARD_GRAVITY_M_S2;
+use crate::vehicle::controls::{Controls, SteerHistory, WheelHistory};
+use crate::vehicle::tire::WheelEffort;
+use crate::vehicle::{VehicleParameters, Wheel};
+
+/// Time over which the braking force rises where nobody says it, s: from the first touch of the
+/// pedal to the full force of an emergency braking.
+pub const DEFAULT_BRAKE_RISE_S: f64 = 0.3;
+
+/// Time over which a damaged wheel is caught, s.
+const CATCH_S: f64 = 0.01;
+
+/// What happens to the wheels after the first contact. By default the vehicle coasts.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Ending {
+    /// The driver brakes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub brake: Option<Braking>,
+    /// The engine brakes, in gear and without throttle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub engine: Option<EngineBraking>,
+    /// Wheels that bent bodywork or a broken suspension drags or locks.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub damage: Vec<DamagedWheel>,
+    /// The front wheels are turned.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub steer: Option<HeldSteer>,
+}
+
+/// Braking by the driver, with all wheels and without an anti-lock system.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Braking {
+    /// When the force begins to rise, s after the first contact.
+    pub start_s: f64,
+    /// Braking force over what the road can hold at most, μ m g. More than 1 locks all wheels.
+    pub share_of_friction: f64,
+    /// How long the force rises, s.
+    #[serde(default = "default_brake_rise_s")]
+    pub rise_s: f64,
+}
+
+fn default_brake_rise_s() -> f64 {
+    DEFAULT_BRAKE_RISE_S
+}
+
+/// An axle of the vehicle, or both.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DrivenAxle {
+    /// The front axle.
+    #[default]
+    Front,
+    /// The rear axle.
+    Rear,
+    /// Both axles alike.
+    All,
+}
+
+/// Braking by the engine through an open differential.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct EngineBraking {
+    /// Deceleration of the whole vehicle that it causes on a straight course, m/s².
+    pub deceleration_m_s2: f64,
+    /// The axle that is driven.
+    #[serde(default)]
+    pub axle: DrivenAxle,
+}
+
+/// A wheel that is dragged or locked.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DamagedWheel {
+    /// The wheel.
+    pub wheel: Wheel,
+    /// When it is caught, s after the first contact.
+    #[serde(default)]
+    pub start_s: f64,
+    /// Drag over what the road can hold at the static load of the wheel, μ F_z; a locked wheel if
+    /// `None`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drag_share_of_friction: Option<f64>,
+}
+
+/// A steer angle that is reached and held.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HeldSteer {
+    /// When the wheels begin to turn, s after the first contact.
+    pub start_s: f64,
+    /// How long they turn, s.
+    #[serde(default = "default_brake_rise_s")]
+    pub rise_s: f64,
+    /// Angle of the front road wheels, rad, positive to the left.
+    pub road_wheel_rad: f64,
+}
+
+impl Ending {
+    /// Whether nothing acts on the wheels.
+    pub fn is_coasting(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] for the first number outside its range.
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        if let Some(brake) = &self.brake {
+            CONTROL_TIME.check(brake.start_s)?;
+            BRAKE_SHARE.check(brake.share_of_friction)?;
+            BRAKE_RISE.check(brake.rise_s)?;
+        }
+        if let Some(engine) = &self.engine {
+            ENGINE_BRAKING.check(engine.deceleration_m_s2)?;
+        }
+        for wheel in &self.damage {
+            CONTROL_TIME.check(wheel.start_s)?;
+            if let Some(share) = wheel.drag_share_of_friction {
+                DRAG_SHARE.check(share)?;
+            }
+        }
+        if let Some(steer) = &self.steer {
+            CONTROL_TIME.check(steer.start_s)?;
+            BRAKE_RISE.check(steer.rise_s)?;
+            STEER_ANGLE.check(steer.road_wheel_rad)?;
+        }
+        Ok(())
+    }
+
+    /// When the last control begins to act fully, s: before, a vehicle that stands may move again.
+    pub fn settled_s(&self) -> f64 {
+        let brake = self.brake.map(|brake| brake.start_s + brake.rise_s);
+        let steer = self.steer.map(|steer| steer.start_s + steer.rise_s);
+        let damage = self.damage.iter().map(|wheel| wheel.start_s + CATCH_S);
+        brake.into_iter().chain(steer).chain(damage).fold(0.0, f64::max)
+    }
+
+    /// Steer angle and wheels over time for a vehicle.
+    pub fn controls(&self, vehicle: &VehicleParameters) -> Controls {
+        let steer = self.steer.map(|steer| SteerHistory {
+            time_s: vec![steer.start_s, steer.start_s + steer.rise_s],
+            steer_rad: vec![0.0, steer.road_wheel_rad],
+        });
+        Controls { steer, wheels: self.wheels(vehicle) }
+    }
+
+    fn wheels(&self, vehicle: &VehicleParameters) -> Option<WheelHistory> {
+        if self.brake.is_none() && self.engine.is_none() && self.damage.is_empty() {
+            return None;
+        }
+        let brake = self.brake.into_iter().flat_map(|it| [it.start_s, it.start_s + it.rise_s]);
+        let damage = self.damage.iter().flat_map(|it| [it.start_s, it.start_s + CATCH_S]);
+        let mut time_s: Vec<f64> = brake.chain(damage).chain([0.0]).collect();
+        time_s.sort_by(f64::total_cmp);
+        time_s.dedup();
+        let wheels = time_s.iter().map(|&t| self.at(vehicle, t)).collect();
+        Some(WheelHistory { time_s, wheels })
+    }
+
+    /// The wheels at an instant. Between the instants of [`Ending::wheels`] all of it is linear.
+    fn at(&self, vehicle: &VehicleParameters, time_s: f64) -> [WheelEffort<f64>; 4] {
+        let risen = |start_s: f64, rise_s: f64| ((time_s - start_s) / rise_s).clamp(0.0, 1.0);
+        let static_loads_n = vehicle.static_loads_n();
+        Wheel::ALL.map(|wheel| {
+            let mut effort = WheelEffort::<f64>::none();
+            if let Some(brake) = &self.brake {
+                let full_n = braking_force_n(vehicle, brake.share_of_friction, wheel);
+                effort.braking_n += full_n * risen(brake.start_s, brake.rise_s);
+            }
+            if let Some(engine) = &self.engine {
+                effort.braking_n += engine.force_n(vehicle, wheel);
+            }
+            for damaged in self.damage.iter().filter(|damaged| damaged.wheel == wheel) {
+                let caught = risen(damaged.start_s, CATCH_S);
+                match damaged.drag_share_of_friction {
+                    None => effort.locked = effort.locked.max(caught),
+                    Some(share) => {
+                        let load_n = static_loads_n[wheel.index()];
+                        effort.braking_n += share * vehicle.tires.friction * load_n * caught;
+                    }
+                }
+            }
+            effort
+        })
+    }
+}
+
+/// Braking force of a wheel, N, of a vehicle that brakes with a share of μ m g.
+fn braking_force_n(vehicle: &VehicleParameters, share_of_friction: f64, wheel: Wheel) -> f64 {
+    let geometry = &vehicle.geometry;
+    let wheelbase_m = geometry.cg_to_front_axle_m + geometry.cg_to_rear_axle_m;
+    let friction = vehicle.tires.friction;
+    // The brakes are laid out for the limit of friction; beyond it both axles get more alike.
+    let deceleration_g = share_of_friction.min(1.0) * friction;
+    let front = (geometry.cg_to_rear_axle_m + geometry.cg_height_m * deceleration_g) / wheelbase_m;
+    let of_axle = if wheel.is_front() { front } else { 1.0 - front };
+    let total_n = share_of_friction * friction * vehicle.mass.mass_kg * STANDARD_GRAVITY_M_S2;
+    total_n * of_axle.clamp(0.0, 1.0) / 2.0
+}
+
+impl EngineBraking {
+    fn force_n(&self, vehicle: &VehicleParameters, wheel: Wheel) -> f64 {
+        let share = match self.axle {
+            DrivenAxle::All => 0.25,
+            DrivenAxle::Front if wheel.is_front() => 0.5,
+            DrivenAxle::Rear if !wheel.is_front() => 0.5,
+            DrivenAxle::Front | DrivenAxle::Rear => 0.0,
+        };
+        vehicle.mass.mass_kg * self.deceleration_m_s2 * share
+    }
+}

@@ -1,0 +1,111 @@
+//! Endings from the command line: brakes, dragged and locked wheels, rest.
+
+#![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
+
+use std::fs;
+
+use crate::program::{answer, ok, program, text};
+
+/// The error of a command that is refused.
+fn refusal(args: &[&str]) -> String {
+    let output = program().args(args).output().unwrap();
+    assert!(!output.status.success(), "{args:?}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+const STRAIGHT: [&str; 5] = ["simulate", "--vehicle", "reference-2000", "--speed", "20"];
+
+#[test]
+fn a_car_that_brakes_comes_to_rest_and_the_report_says_where() {
+    let args = [&STRAIGHT[..], &["--brake", "1.5", "--brake-start", "1s", "--until-rest"]].concat();
+    let stop = answer(&args);
+    let rest = &stop["rest"];
+    let number = |key: &str| rest[key].as_f64().unwrap();
+    // 20 m, what it rolls while the brakes rise, and 20²/(2 · 0.8 · 0.8 g).
+    assert!((50.0..58.0).contains(&number("distance_m")), "{rest}");
+    assert!((number("time_s") - stop["duration_s"].as_f64().unwrap()).abs() < 0.2, "{stop}");
+    let output = program().args(&args).output().unwrap();
+    assert!(ok(output).contains("at rest"), "said to a person");
+    let coasting = answer(&STRAIGHT);
+    assert!(coasting["rest"].is_null() && coasting["duration_s"] == 4.0, "{coasting}");
+}
+
+#[test]
+fn a_locked_wheel_and_a_scenario_that_brakes_change_the_path_and_coast_undoes_it() {
+    let y = |args: &[&str]| answer(args)["end"]["y_m"].as_f64().unwrap();
+    assert!(y(&[&STRAIGHT[..], &["--locked", "rear-left"]].concat()) > 0.05);
+    assert!(y(&[&STRAIGHT[..], &["--dragged", "front-right=0.5"]].concat()) < -0.05);
+
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("braked.toml");
+    let pit = fs::read_to_string("assets/scenarios/pit_right_rear.toml").unwrap();
+    fs::write(&path, pit + "\n[ending]\nbrake_start_s = 0.5\nbrake_share = 0.9\n").unwrap();
+    let with = |extra: &[&str]| {
+        let args = ["simulate", "--scenario", text(&path), "--duration", "6"];
+        answer(&[&args[..], extra].concat())
+    };
+    let (braked, coasting) = (with(&[]), with(&["--coast"]));
+    assert!(braked["rest"].is_object() && coasting["rest"].is_null(), "{braked} {coasting}");
+    let plain = answer(&["simulate", "--scenario", "pit-right-rear", "--duration", "6"]);
+    assert_eq!(coasting["end"], plain["end"]);
+}
+
+#[test]
+fn a_forecast_of_a_braked_car_is_refused_and_not_answered_as_if_it_coasted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("braked.toml");
+    let pit = fs::read_to_string("assets/scenarios/pit_right_rear.toml").unwrap();
+    fs::write(&path, pit + "\n[ending]\nrear_right = \"locked\"\n").unwrap();
+    let out = folder.path().join("out");
+    let message = refusal(&["predict", "--scenario", text(&path), "--out", text(&out)]);
+    assert!(message.contains("has learned from vehicles that coast"), "{message}");
+    assert!(!out.join("trajectory.csv").exists());
+}
+
+#[test]
+fn an_ending_that_cannot_be_is_refused_by_its_name() {
+    for (args, expected) in [
+        (&["--brake", "9"][..], "braking is 9, expected 0 to 3"),
+        (&["--dragged", "rear-left"], "such as rear-left=0.5"),
+        (&["--dragged", "rear-left=-1"], "drag is -1"),
+        (&["--locked", "spare"], "rear-left"),
+        (&["--engine-braking", "2g"], "engine braking is"),
+        (&["--coast", "--brake", "0.5"], "cannot be used with"),
+        (&["--brake-start", "1"], "--brake <SHARE>"),
+    ] {
+        let message = refusal(&[&STRAIGHT[..], args].concat());
+        assert!(message.contains(expected), "{args:?}: {message}");
+    }
+}
+
+#[test]
+fn a_data_set_with_brakes_is_replayed_with_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let (data, out) = (folder.path().join("data"), folder.path().join("out"));
+    let files = data.join("trajectories");
+    fs::create_dir_all(&files).unwrap();
+    let cases = fs::read_to_string("datasets/trajectories-fea/cases.csv").unwrap();
+    let mut lines = cases.lines();
+    let (header, first) = (lines.next().unwrap(), lines.next().unwrap());
+    let name = first.split(',').next().unwrap();
+    let rows = |torque: &str| {
+        format!(
+            "{header},braking,braking_start_s,braking_torque_n_m\n{first},driver-brake,0.5,{torque}\n"
+        )
+    };
+    let file = format!("{name}.csv");
+    fs::copy(format!("datasets/trajectories-fea/trajectories/{file}"), files.join(&file)).unwrap();
+    fs::copy("datasets/trajectories-fea/vehicle.toml", data.join("vehicle.toml")).unwrap();
+    fs::write(data.join("cases.csv"), rows("front 9000 rear 9000 a wheel")).unwrap();
+    let _ = answer(&["simulate", "--dataset", text(&data), "--out", text(&out)]);
+    let motion = fs::read_to_string(out.join(&file)).unwrap();
+    let columns: Vec<&str> = motion.lines().next().unwrap().split(',').collect();
+    let vx = columns.iter().position(|column| *column == "vx_m_s").unwrap();
+    let end: f64 = motion.lines().last().unwrap().split(',').nth(vx).unwrap().parse().unwrap();
+    assert!(end.abs() < 0.5, "{end}");
+    fs::write(data.join("cases.csv"), rows("plenty")).unwrap();
+    let output = program().args(["simulate", "--dataset", text(&data)]).output().unwrap();
+    let told = String::from_utf8_lossy(&output.stdout).into_owned()
+        + &String::from_utf8_lossy(&output.stderr);
+    assert!(told.contains("\"braking_torque_n_m\" is \"plenty\""), "{told}");
+}
