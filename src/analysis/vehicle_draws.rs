@@ -27,7 +27,20 @@ pub struct Sensitivity {
     pub position_share: f64,
     /// Share of the variance of the final heading that goes with it linearly, 0 to 1.
     pub heading_share: f64,
+    /// Share that an estimate without any influence exceeds in one of twenty cases: smaller shares
+    /// may be chance. It falls with the number of draws.
+    pub chance_share: f64,
 }
+
+impl Sensitivity {
+    /// Whether position or heading depend on the estimate by more than chance.
+    pub fn is_clear(&self) -> bool {
+        self.position_share.max(self.heading_share) > self.chance_share
+    }
+}
+
+/// Quantile 0.95 of χ² with one degree of freedom: n r² without dependence.
+const CHI_SQUARED_95: f64 = 3.841;
 
 impl VehicleDraws {
     /// Draws every estimate of a data sheet, each independent of the others.
@@ -90,6 +103,7 @@ impl VehicleDraws {
                 } else {
                     0.0
                 }),
+                chance_share: (CHI_SQUARED_95 / n.max(1.0)).min(1.0),
             }
         };
         let mut shares: Vec<Sensitivity> = self.quantities.iter().enumerate().map(of).collect();
@@ -154,5 +168,7 @@ mod tests {
         assert!((share(2).0 - 0.64).abs() < 0.08, "{shares:?}");
         assert!((share(5).0 - 0.36).abs() < 0.08, "{shares:?}");
         assert!(share(7).1 > 0.999 && share(7).0 < 0.03, "{shares:?}");
+        let n_clear = shares.iter().filter(|share| share.is_clear()).count();
+        assert!((3..=6).contains(&n_clear), "{shares:?}");
     }
 }

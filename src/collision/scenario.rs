@@ -128,6 +128,12 @@ pub struct Scenario {
     /// not say it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ending: Option<Ending>,
+    /// The struck vehicle by its name among those that come with the program, if the scenario says it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub target_vehicle: Option<String>,
+    /// The striking vehicle, likewise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bullet_vehicle: Option<String>,
 }
 
 /// Poses and contact of the two vehicles of a scenario, in world axes.
@@ -474,6 +480,8 @@ impl ImpactCase {
                 friction_model: FrictionModel::Limit,
             },
             ending: None,
+            target_vehicle: None,
+            bullet_vehicle: None,
         })
     }
 }

@@ -4,6 +4,7 @@
 //! name = "rear-quarter push"
 //!
 //! [target]                    # and [bullet]
+//! vehicle = "ford-explorer-2004"  # optional: gives mass, inertia, size and CG that are not given
 //! mass_kg = 2000              # mass_lb, mass_slug, mass_t
 //! yaw_inertia_kg_m2 = 3600    # yaw_inertia_slug_ft2
 //! length_m = 4.8              # every length: _m, _mm, _ft, _in …
@@ -41,9 +42,9 @@ use crate::collision::{
 use crate::data::{TomlError, TomlFile, TomlTable};
 use crate::ranges::{
     BODY_CG, BODY_LENGTH, BODY_MASS, BODY_WIDTH, BODY_YAW_INERTIA, CONTACT_COORDINATE,
-    CONTACT_OFFSET, FRICTION_LIMIT, HEADING, POSITION, RESTITUTION, SPEED, YAW_RATE,
+    CONTACT_OFFSET, FRICTION_LIMIT, HEADING, POSITION, RESTITUTION, Range, SPEED, YAW_RATE,
 };
-use crate::vehicle::Ending;
+use crate::vehicle::{Ending, VehicleParameters, built_in_vehicle};
 
 pub(super) const LOCATIONS: [&str; 3] = ["footprints", "side", "point"];
 pub(super) const FRICTION_MODELS: [&str; 2] = ["limit", "paper"];
@@ -75,16 +76,43 @@ impl Scenario {
         let target_x_m = position(&mut target, "x")?.unwrap_or(0.0);
         let target_y_m = position(&mut target, "y")?.unwrap_or(0.0);
         let location = read_location(&mut contact, &mut bullet)?;
+        let (target_vehicle, of_target) = named_vehicle(&mut target)?;
+        let (bullet_vehicle, of_bullet) = named_vehicle(&mut bullet)?;
         Ok(Self {
             name,
             notes,
             target_x_m,
             target_y_m,
-            target: read_vehicle(target)?,
-            bullet: read_vehicle(bullet)?,
+            target: read_vehicle(target, of_target)?,
+            bullet: read_vehicle(bullet, of_bullet)?,
             contact: read_contact(contact, location)?,
             ending,
+            target_vehicle,
+            bullet_vehicle,
         })
+    }
+}
+
+/// The vehicle that a scenario names, and its parameters.
+fn named_vehicle(
+    section: &mut TomlTable<'_>,
+) -> Result<(Option<String>, Option<VehicleParameters>), TomlError> {
+    let Some(name) = section.string("vehicle")? else { return Ok((None, None)) };
+    match built_in_vehicle(&name) {
+        Some(vehicle) => Ok((Some(name), Some(vehicle))),
+        None => Err(section.refuse_last("a vehicle that impactlab vehicles lists")),
+    }
+}
+
+/// A number that the scenario gives, else that of the vehicle that it names.
+fn number_or(
+    section: &mut TomlTable<'_>,
+    (key, range): (&str, &Range),
+    of_vehicle: Option<f64>,
+) -> Result<f64, TomlError> {
+    match (section.number(key, range)?, of_vehicle) {
+        (Some(value), _) | (None, Some(value)) => Ok(value),
+        (None, None) => section.require(key, range),
     }
 }
 
@@ -92,13 +120,22 @@ fn position(section: &mut TomlTable<'_>, base: &str) -> Result<Option<f64>, Toml
     section.number(base, &POSITION)
 }
 
-fn read_vehicle(mut section: TomlTable<'_>) -> Result<ScenarioVehicle, TomlError> {
+fn read_vehicle(
+    mut section: TomlTable<'_>,
+    of: Option<VehicleParameters>,
+) -> Result<ScenarioVehicle, TomlError> {
     let s = &mut section;
-    let mass_kg = s.require("mass", &BODY_MASS)?;
-    let yaw_inertia_kg_m2 = s.require("yaw_inertia", &BODY_YAW_INERTIA)?;
-    let length_m = s.require("length", &BODY_LENGTH)?;
-    let width_m = s.require("width", &BODY_WIDTH)?;
-    let cg_from_front_m = s.require("cg_from_front", &BODY_CG.at_most(length_m))?;
+    let mass_kg = number_or(s, ("mass", &BODY_MASS), of.as_ref().map(|of| of.mass.mass_kg))?;
+    // What was estimated from the mass follows the mass of the scenario.
+    let of = of.map(|of| of.with_mass(mass_kg, None));
+    let of = |value: fn(&VehicleParameters) -> f64| of.as_ref().map(value);
+    let inertia = of(|of| of.mass.yaw_inertia_kg_m2);
+    let yaw_inertia_kg_m2 = number_or(s, ("yaw_inertia", &BODY_YAW_INERTIA), inertia)?;
+    let length_m = number_or(s, ("length", &BODY_LENGTH), of(|of| of.geometry.outer_length_m))?;
+    let width_m = number_or(s, ("width", &BODY_WIDTH), of(|of| of.geometry.outer_width_m))?;
+    let cg_from_front = of(|of| of.geometry.cg_to_front_end_m).map(|m| m.min(length_m));
+    let cg_range = BODY_CG.at_most(length_m);
+    let cg_from_front_m = number_or(s, ("cg_from_front", &cg_range), cg_from_front)?;
     let heading = s.number("heading", &HEADING)?;
     let heading_rad = heading.unwrap_or(0.0);
     let yaw_rate_rad_s = s.number("yaw_rate", &YAW_RATE)?.unwrap_or(0.0);
@@ -216,6 +253,29 @@ mod tests {
             let other = read(&text).unwrap();
             assert!((other.target.vx_m_s - 15.0).abs() < 1e-9, "{key}: {other:?}");
         }
+    }
+
+    #[test]
+    fn a_named_vehicle_gives_what_the_scenario_does_not() {
+        let (head, rest) = PIT.split_once("mass_kg = 2000").unwrap();
+        let (_, tail) = rest.split_once("speed_km_h").unwrap();
+        let named = "vehicle = \"toyota-camry-2018\"\n";
+        let scenario = read(&format!("{head}{named}speed_km_h{tail}")).unwrap();
+        let camry = built_in_vehicle("toyota-camry-2018").unwrap();
+        assert_eq!(scenario.target_vehicle.as_deref(), Some("toyota-camry-2018"));
+        assert_eq!(scenario.target.mass_kg, camry.mass.mass_kg);
+        assert_eq!(scenario.target.yaw_inertia_kg_m2, camry.mass.yaw_inertia_kg_m2);
+        assert_eq!(scenario.target.length_m, camry.geometry.outer_length_m);
+        assert_eq!(read(&scenario.to_toml()).unwrap(), scenario);
+        // The inertia follows the mass that the scenario gives.
+        let heavy = read(&format!("{head}{named}mass_kg = 1900\nspeed_km_h{tail}")).unwrap();
+        let ratio = heavy.target.yaw_inertia_kg_m2 / camry.mass.yaw_inertia_kg_m2;
+        assert!((ratio - 1900.0 / camry.mass.mass_kg).abs() < 1e-9, "{heavy:?}");
+        let error = read(&format!("{head}vehicle = \"camry\"\nspeed_km_h{tail}")).unwrap_err();
+        let error = error.to_string();
+        assert!(
+            error.starts_with("scenario.toml:7:11: target.vehicle is \"camry\", expected a veh")
+        );
     }
 
     #[test]

@@ -12,9 +12,11 @@ impl Scenario {
         top.line("name", quoted(&self.name));
         top.line("notes", quoted(&self.notes));
         let mut target = vehicle_lines("target", &self.target);
+        target.vehicle(self.target_vehicle.as_deref());
         target.number("x_m", self.target_x_m);
         target.number("y_m", self.target_y_m);
         let mut bullet = vehicle_lines("bullet", &self.bullet);
+        bullet.vehicle(self.bullet_vehicle.as_deref());
         let mut contact = Lines("\n[contact]\n".to_owned());
         match self.contact.location {
             ContactLocation::Footprints { bullet_x_m, bullet_y_m } => {
@@ -60,6 +62,10 @@ struct Lines(String);
 impl Lines {
     fn line(&mut self, key: &str, value: impl std::fmt::Display) {
         self.0.push_str(&format!("{key} = {value}\n"));
+    }
+
+    fn vehicle(&mut self, name: Option<&str>) {
+        name.into_iter().for_each(|name| self.line("vehicle", quoted(name)));
     }
 
     fn number(&mut self, key: &str, value: f64) {

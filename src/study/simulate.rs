@@ -169,7 +169,7 @@ impl SimulateRequest {
 
     fn settings(
         &self,
-        open: &OpenVehicle<'_>,
+        (open, named_bullet): (&OpenVehicle<'_>, Option<&str>),
         assumptions: &mut Vec<Assumption>,
     ) -> Result<Settings, StudyError> {
         let mut target = struck_vehicle(&self.vehicle, open, assumptions)?;
@@ -188,7 +188,7 @@ impl SimulateRequest {
         };
         let mut unused = Vec::new();
         let assumed = if has_bullet { assumptions } else { &mut unused };
-        let bullet = striking_vehicle(&self.bullet, assumed)?;
+        let bullet = striking_vehicle(&self.bullet, named_bullet, assumed)?;
         assumed.extend(Assumption::medians(AssumedQuantity::BulletParameter, &bullet));
         Ok(Settings {
             target,
@@ -252,11 +252,12 @@ impl Question for SimulateRequest {
                     assumptions.extend(contact_height_assumption(case)?);
                 }
                 let own = OpenVehicle::OfDataset(dataset.vehicle_file.as_deref());
-                let (settings, case) = (self.settings(&own, &mut assumptions)?, case.clone());
+                let (settings, case) =
+                    (self.settings((&own, None), &mut assumptions)?, case.clone());
                 (settings, Box::new(move |settings| analyse_case(&case, settings)))
             }
             MotionSource::Trajectory { file, contact } => {
-                let settings = self.settings(&OpenVehicle::Unknown, &mut assumptions)?;
+                let settings = self.settings((&OpenVehicle::Unknown, None), &mut assumptions)?;
                 let loaded = trajectory(library, file)?;
                 assumptions.extend(by_simulation(self, true));
                 let force = recorded_force(&loaded, file)?;
@@ -274,7 +275,7 @@ impl Question for SimulateRequest {
                 (settings, Box::new(analyse))
             }
             MotionSource::Drive(drive) => {
-                let settings = self.settings(&OpenVehicle::Unknown, &mut assumptions)?;
+                let settings = self.settings((&OpenVehicle::Unknown, None), &mut assumptions)?;
                 assumptions.extend(by_simulation(self, false));
                 let setup = drive.setup(&settings, library, &mut assumptions)?;
                 let name = drive.name();
@@ -284,8 +285,10 @@ impl Question for SimulateRequest {
             }
             MotionSource::Scenario { scenario, pulse } => {
                 assumptions.extend(pulse_assumptions(pulse));
-                let mut settings = self.settings(&OpenVehicle::Unknown, &mut assumptions)?;
                 let scenario = scenario.load()?;
+                let open = OpenVehicle::OfScenario(scenario.target_vehicle.as_deref());
+                let vehicles = (&open, scenario.bullet_vehicle.as_deref());
+                let mut settings = self.settings(vehicles, &mut assumptions)?;
                 if let (None, Some(ending)) = (&self.ending, &scenario.ending) {
                     settings.ending.clone_from(ending);
                 }

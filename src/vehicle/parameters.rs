@@ -167,9 +167,10 @@ impl VehicleParameters {
     ///   to the mass too, unless a data sheet states it.
     pub fn with_mass(mut self, mass_kg: f64, yaw_inertia_kg_m2: Option<f64>) -> Self {
         if let Some(sheet) = &self.sheet {
-            let mut sheet = DataSheet::clone(sheet).with(SheetQuantity::Mass, mass_kg);
+            let mut sheet = DataSheet::clone(sheet);
+            sheet.state(SheetQuantity::Mass, mass_kg);
             if let Some(inertia) = yaw_inertia_kg_m2 {
-                sheet.set(SheetQuantity::YawInertia, inertia);
+                sheet.state(SheetQuantity::YawInertia, inertia);
             }
             return sheet.vehicle().with_equations(self.equations);
         }

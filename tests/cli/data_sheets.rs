@@ -115,3 +115,22 @@ fn a_forecast_is_wider_where_the_vehicle_is_not_known() {
     assert!(width(&drawn, "x_m") > width(&known, "x_m"), "{drawn} {known}");
     assert!(drawn["sensitivity"][0]["position_share"].as_f64().unwrap() > 0.0, "{drawn}");
 }
+
+#[test]
+fn a_scenario_names_its_vehicles() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("named.toml");
+    let text = fs::read_to_string("assets/scenarios/pit_right_rear.toml").unwrap();
+    let (head, rest) = text.split_once("mass_kg = 2000").unwrap();
+    let (_, tail) = rest.split_once("speed_km_h").unwrap();
+    let named = "vehicle = \"toyota-camry-2018\"\nspeed_km_h";
+    fs::write(&path, format!("{head}{named}{tail}")).unwrap();
+    let scenario = path.to_str().unwrap();
+    let motion = json(&["simulate", "--scenario", scenario, "--vehicle-draws", "30"]);
+    assert_eq!(motion["vehicle"], "Toyota Camry 2018");
+    // Its inertia is an estimate, here as with --vehicle.
+    let shares = motion["uncertainty"]["sensitivity"].as_array().unwrap();
+    assert!(shares.iter().any(|share| share["quantity"] == "yaw_inertia"), "{shares:?}");
+    let other = json(&["simulate", "--scenario", scenario, "--vehicle", "reference-2000"]);
+    assert_eq!(other["vehicle"], "Reference car (multibody, 2000 kg)");
+}

@@ -127,7 +127,7 @@ JSON, one vehicle: vehicle, equations, integrator, friction, duration_s, force {
   flags [{kind, time_s, wheel, roll_rad, message}], error (against a record), notes, assumptions
   [{quantity, value, reason}], out; for a vehicle of which only a data sheet is known uncertainty
   {n_draws, n_failed, x_m, y_m, yaw_rad, speed_m_s: each {median, half [2], ninety [2]},
-  sensitivity [{quantity, label, position_share, heading_share}]}
+  sensitivity [{quantity, label, position_share, heading_share, chance_share}]}
 
 JSON, data set: dataset, vehicle, equations, integrator, cases [{case, spin, average_error_m, final_error_m,
   final_heading_error_rad, horizon_error_m (at 0.5, 1, 2, 4 s), rmse_*, flags}], overall, spinning

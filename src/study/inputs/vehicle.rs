@@ -54,6 +54,8 @@ impl VehicleChoice {
 pub(in crate::study) enum OpenVehicle<'a> {
     /// The vehicle file of the data set that the question is about, if it has one.
     OfDataset(Option<&'a Path>),
+    /// The vehicle that the scenario names, if it names one.
+    OfScenario(Option<&'a str>),
     /// Nothing: the question is not about a data set.
     Unknown,
 }
@@ -70,9 +72,12 @@ pub(in crate::study) fn struck_vehicle(
     if let OpenVehicle::OfDataset(Some(file)) = open {
         return Ok(VehicleParameters::load(file)?);
     }
+    if let OpenVehicle::OfScenario(Some(name)) = open {
+        return built_in_vehicle(name).ok_or_else(|| StudyError::unknown_vehicle(name));
+    }
     let reason = match open {
         OpenVehicle::OfDataset(_) => "the data set has no vehicle.toml",
-        OpenVehicle::Unknown => "no vehicle was named",
+        OpenVehicle::OfScenario(_) | OpenVehicle::Unknown => "no vehicle was named",
     };
     let reason = format!(
         "{reason}; this is the car that the shipped response network has learned; \
@@ -83,12 +88,18 @@ pub(in crate::study) fn struck_vehicle(
 }
 
 /// The striking vehicle; one that nobody named is added to the assumptions.
+///
+/// - `named`: the vehicle that the scenario names, if it names one.
 pub(in crate::study) fn striking_vehicle(
     choice: &VehicleChoice,
+    named: Option<&str>,
     assumptions: &mut Vec<Assumption>,
 ) -> Result<VehicleParameters, StudyError> {
     if let Some(vehicle) = choice.chosen()? {
         return Ok(vehicle);
+    }
+    if let Some(name) = named {
+        return built_in_vehicle(name).ok_or_else(|| StudyError::unknown_vehicle(name));
     }
     let reason = "no striking vehicle was named; its mass, inertia and outline are those of the \
                   case; another one: --bullet";

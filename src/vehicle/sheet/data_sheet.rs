@@ -99,6 +99,17 @@ impl DataSheet {
         self.known.insert(quantity, value);
     }
 
+    /// Takes over a value that was stated elsewhere, as in a scenario. One that is the median of the
+    /// estimate, from which the scenario has it, remains an estimate. The value is not checked.
+    pub(in crate::vehicle) fn state(&mut self, quantity: SheetQuantity, value: f64) {
+        let is_median = |estimate: &Estimate| {
+            estimate.quantity == quantity && (value / estimate.median - 1.0).abs() < 1e-9
+        };
+        if !self.estimates().iter().any(is_median) {
+            self.set(quantity, value);
+        }
+    }
+
     /// A quantity if it is known, SI units.
     pub fn known(&self, quantity: SheetQuantity) -> Option<f64> {
         self.known.get(&quantity).copied()
@@ -237,6 +248,10 @@ mod tests {
         let said = car().vehicle().with_mass(1900.0, Some(3000.0));
         assert_eq!(said.mass.yaw_inertia_kg_m2, 3000.0);
         assert!(!said.estimates.contains_key("mass.yaw_inertia_kg_m2"));
+        // What a scenario has from the estimate is no measurement.
+        let inertia = car().with(Q::Mass, 1900.0).vehicle().mass.yaw_inertia_kg_m2;
+        let repeated = car().vehicle().with_mass(1900.0, Some(inertia));
+        assert!(repeated.estimates.contains_key("mass.yaw_inertia_kg_m2"));
         // A drawn car keeps its place in the scatter.
         let drawn = car().at(&[1.0; 30]).vehicle().with_mass(1900.0, None);
         let same = car().with(Q::Mass, 1900.0).at(&[1.0; 30]).vehicle();
