@@ -15,7 +15,8 @@ sources! {
     /// SAE International, 2011. Planar impact mechanics, restitution and impulse ratio.
     Brach2011;
     /// M. Carpenter, J. Welcher, *Planar impact with the no-slide condition and a friction limit*,
-    /// SAE Technical Paper 2019-01-0422, 2019. Worked barrier example.
+    /// SAE Technical Paper 2019-01-0422, 2019. Restitution from the point of common velocity,
+    /// friction limit, worked barrier example.
     CarpenterWelcher2019;
     /// Transport Canada, *Canadian Vehicle Specifications*: outer dimensions, wheelbases and tracks of
     /// vehicles sold in Canada, as served by the vPIC interface of the NHTSA and collected, rounded to
@@ -59,6 +60,10 @@ sources! {
     /// scales and tilt table, with the weight of a driver; as collected in the public repository
     /// `kktse/stunning-octo-doodle-ncap`.
     Ncap2004;
+    /// H. Kudlich, *Beitrag zur Mechanik des Kraftfahrzeug-Verkehrsunfalls*, dissertation, Technische
+    /// Hochschule Wien, 1966. Impact with compression to a common velocity and restitution as a
+    /// share of the impulse of compression; sliding on a contact plane.
+    Kudlich1966;
     /// A. Thompson, B. N. Taylor, *Guide for the Use of the International System of Units (SI)*,
     /// NIST Special Publication 811, 2008. Conversion factors.
     Nist2008;
@@ -108,6 +113,10 @@ sources! {
     SaeJ224;
     /// SAE J670:2008, *Vehicle Dynamics Terminology*.
     SaeJ670;
+    /// A. Slibar, *Die mechanischen Grundsätze des Stoßvorganges freier und geführter Körper und ihre
+    /// Anwendung auf den Stoßvorgang von Fahrzeugen*, Archiv für Unfallforschung 2(1), 1966.
+    /// Together with [`Kudlich1966`] the impact model of common reconstruction programs.
+    Slibar1966;
     /// I. E. Sutherland, G. W. Hodgman, *Reentrant polygon clipping*, Communications of the ACM
     /// 17(1), 1974.
     SutherlandHodgman1974;

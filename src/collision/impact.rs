@@ -1,8 +1,11 @@
 //! Planar impact of two rigid bodies: impulse, velocities after the impact and dissipated energy.
 //!
 //! Source: [`PitPinnPaper`](crate::bibliography::PitPinnPaper), `eq:collision_model1` to
-//! `eq:friction_coefficient2`; the no-slide solution with a friction limit is that of
-//! [`CarpenterWelcher2019`](crate::bibliography::CarpenterWelcher2019).
+//! `eq:friction_coefficient2`, with the planar impact mechanics of
+//! [`Brach2011`](crate::bibliography::Brach2011): a solution without sliding and a friction limit.
+//! For e = 0 this solution is also that of
+//! [`CarpenterWelcher2019`](crate::bibliography::CarpenterWelcher2019). With restitution theirs is
+//! another one, which is selectable; see [`RestitutionForm`].
 //!
 //! Assumptions: the impact is instantaneous, so neither vehicle moves or turns during it; the force
 //! acts at one contact point and has no moment about it; tyre forces are negligible beside the
@@ -16,7 +19,8 @@
 //!    ([`FrictionModel::Limit`]). The form of the paper is [`FrictionModel::Paper`].
 //! 3. Restitution refers to the normal velocities of the contact points. The paper does not say
 //!    which velocities are meant.
-//! 4. With [`FrictionModel::Limit`] kinetic energy never grows ([`Regime::EnergyLimited`]).
+//! 4. With [`FrictionModel::Limit`] kinetic energy never grows: [`RestitutionForm::Normal`] needs
+//!    [`Regime::EnergyLimited`] for this, [`RestitutionForm::CommonVelocity`] nothing.
 //!
 //! Validated in `tests/library/validation_collision.rs` against the published worked example and
 //! against finite-element runs.
@@ -24,6 +28,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::collision::PrincipalDirectionOfForce;
+use crate::collision::restitution_line::RestitutionLine;
 use crate::numerics::Scalar;
 
 /// One of the two rigid bodies of an impact, with its motion before the impact.
@@ -59,6 +64,55 @@ pub enum FrictionModel {
     Paper,
 }
 
+/// Meaning of the coefficient of restitution e at the contact.
+///
+/// With the relative velocity `(v_n, v_τ)` of the contact points before and `(v_n', v_τ')` after the
+/// impact, and the inverse mass matrix K of [`Impact::inverse_mass_1_kg`]:
+///
+/// ```text
+/// normal            v_n' = −e v_n      and without sliding v_τ' = 0
+/// common velocity   P = (1 + e) P_c    P_c: impulse up to the common normal velocity, v_n = 0;
+///                                      without sliding v_τ = 0 there too, so P_c = K⁻¹ v, v' = −e v
+/// ```
+///
+/// Both give `v_n' = −e v_n`. They agree for e = 0, and while the contact points slide to the same
+/// side, since then `P_τ = ±μ_c P_n` in both. Without sliding they agree for e = 0 alone.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RestitutionForm {
+    /// Restitution acts on the normal component alone (Newton's hypothesis). Source:
+    /// [`Brach2011`](crate::bibliography::Brach2011), planar impact mechanics.
+    #[default]
+    Normal,
+    /// Restitution acts on both components from the point of common velocity: the impulse of the
+    /// restitution is the share e of that of the compression (Poisson's hypothesis). Kinetic energy
+    /// cannot grow. Source: [`Kudlich1966`](crate::bibliography::Kudlich1966),
+    /// [`Slibar1966`](crate::bibliography::Slibar1966);
+    /// [`CarpenterWelcher2019`](crate::bibliography::CarpenterWelcher2019).
+    CommonVelocity,
+}
+
+impl RestitutionForm {
+    /// Both forms.
+    pub const ALL: [Self; 2] = [Self::Normal, Self::CommonVelocity];
+
+    /// Name of the form in scenario files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Normal => "normal",
+            Self::CommonVelocity => "common_velocity",
+        }
+    }
+
+    /// Description of the form in reports and choices.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Normal => "on the normal component",
+            Self::CommonVelocity => "from the common velocity",
+        }
+    }
+}
+
 /// The contact surface between the two vehicles: its direction, restitution and friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactSurface<T = f64> {
@@ -67,6 +121,8 @@ pub struct ContactSurface<T = f64> {
     pub normal_angle_rad: T,
     /// Coefficient of restitution e, 0 to 1.
     pub restitution: T,
+    /// Meaning of the coefficient of restitution.
+    pub restitution_form: RestitutionForm,
     /// Friction limit μ_c, the largest impulse ratio `|P_τ| / P_n`, 0 or more.
     pub friction_limit: T,
     /// Friction model.
@@ -90,7 +146,10 @@ pub struct Impact<T = f64> {
 pub enum Regime {
     /// The contact points have the same tangential velocity at the end of the contact.
     NoSlide,
-    /// The contact points still slide along each other at the end: `|P_τ| = μ_c P_n`.
+    /// The contact points reach the same velocity, normal and tangential, and part from it with the
+    /// share e of their velocity before ([`RestitutionForm::CommonVelocity`]).
+    CommonVelocity,
+    /// The contact points slide along each other throughout: `|P_τ| = μ_c P_n`.
     Sliding,
     /// The tangential impulse is limited to the largest value that creates no kinetic energy. This
     /// occurs only for large restitution together with long lever arms.
@@ -104,6 +163,7 @@ impl Regime {
     pub fn label(self) -> &'static str {
         match self {
             Self::NoSlide => "no sliding at the end",
+            Self::CommonVelocity => "common velocity, no sliding",
             Self::Sliding => "sliding throughout",
             Self::EnergyLimited => "friction limited by energy",
             Self::NotApproaching => "not approaching: no impact",
@@ -204,6 +264,13 @@ impl<T: Scalar> Impact<T> {
         [bx - tx, by - ty]
     }
 
+    /// The same along the normal, positive if the points approach each other, and along the tangent
+    /// of the contact surface, m/s.
+    pub fn closing_velocity_m_s(&self) -> [T; 2] {
+        let (normal, v) = (self.surface.normal(), self.relative_velocity_m_s());
+        [dot(v, normal), dot(v, perpendicular(normal))]
+    }
+
     /// Solves the impact without a check of its inputs, which have to be in range; see
     /// [`Impact::solve`] for a solution with a check.
     ///
@@ -226,29 +293,49 @@ impl<T: Scalar> Impact<T> {
     /// violates the friction limit, the ratio thus reaches μ_c before, and a solution with sliding
     /// exists.
     ///
+    /// With [`RestitutionForm::CommonVelocity`] the impulse is (1 + e) times this solution for e = 0,
+    /// which is the impulse of the compression.
+    ///
     /// If the contact points do not approach each other, the impulse is zero.
     ///
     /// # Errors
     /// [`ImpactError::Jammed`], only with [`FrictionModel::Paper`].
     pub fn solve_unchecked(&self) -> Result<ImpactSolution<T>, ImpactError> {
-        let normal = self.surface.normal();
-        let tangent = perpendicular(normal);
-        let (v, k) = (self.relative_velocity_m_s(), self.inverse_mass_1_kg());
-        let closing = [dot(v, normal), dot(v, tangent)];
+        let closing = self.closing_velocity_m_s();
         if closing[0].re() <= 0.0 {
             let zero = T::from(0.0);
             return Ok(self.apply([zero, zero], closing, Regime::NotApproaching));
         }
-        let (k_normal, k_tangent) = (multiply(k, normal), multiply(k, tangent));
-        let line = RestitutionLine {
-            k_nn: dot(normal, k_normal),
-            k_nt: dot(normal, k_tangent),
-            k_tt: dot(tangent, k_tangent),
-            closing,
-            restitution: self.surface.restitution,
-        };
+        let line = RestitutionLine::of(self);
         let (p_t, regime) = line.tangential_impulse_n_s(&self.surface)?;
-        Ok(self.apply([line.normal_impulse_n_s(p_t), p_t], closing, regime))
+        let p = [line.normal_impulse_n_s(p_t), p_t];
+        let (p, regime) = match self.surface.restitution_form {
+            RestitutionForm::Normal => (p, regime),
+            RestitutionForm::CommonVelocity => {
+                let regime = match regime {
+                    Regime::NoSlide => Regime::CommonVelocity,
+                    other => other,
+                };
+                (p.map(|p| p * (self.surface.restitution + 1.0)), regime)
+            }
+        };
+        Ok(self.apply(p, closing, regime))
+    }
+
+    /// The critical impulse ratio: `|P_τ| / P_n` of the solution without sliding, the smallest
+    /// friction limit with which the contact points do not slide. With [`RestitutionForm::Normal`]
+    /// it depends on e, with [`RestitutionForm::CommonVelocity`] it does not.
+    ///
+    /// Source: [`Brach2011`](crate::bibliography::Brach2011), who gives the impulse ratio of an
+    /// impact as a percentage of it.
+    ///
+    /// Returns `None` if the contact points do not approach each other, or if they slide whatever
+    /// the friction, since the solution without sliding would need a pull along the normal.
+    pub fn critical_impulse_ratio(&self) -> Option<T> {
+        let line = RestitutionLine::of(self);
+        let p_t = line.no_slide_impulse_n_s();
+        let p_n = line.normal_impulse_n_s(p_t);
+        (self.closing_velocity_m_s()[0].re() > 0.0 && p_n.re() > 0.0).then(|| (p_t / p_n).abs())
     }
 
     /// The solution that follows from an impulse on the target with the components `[P_n, P_τ]`, N
@@ -301,40 +388,6 @@ impl Impact<f64> {
         check(of, "friction_limit", s.friction_limit, Expected::NotNegative)?;
         self.solve_unchecked()
     }
-
-    /// Computes the coefficient of restitution and the impulse ratio that a known impulse implies,
-    /// for instance a measured one. This is the inverse of [`Impact::solve`].
-    ///
-    /// ```text
-    /// e = (K P)·n / v_n − 1          P_τ / P_n
-    /// ```
-    ///
-    /// Only the normal of the contact surface is used.
-    ///
-    /// - `impulse_n_s`: impulse on the target in world axes, N s.
-    /// - returns `None` if the contact points do not approach each other before the impact, or if
-    ///   the normal component of the impulse is not positive.
-    pub fn implied_contact(&self, impulse_n_s: [f64; 2]) -> Option<ImpliedContact> {
-        let normal = self.surface.normal();
-        let closing = dot(self.relative_velocity_m_s(), normal);
-        let p_n = dot(impulse_n_s, normal);
-        let restored = dot(multiply(self.inverse_mass_1_kg(), impulse_n_s), normal);
-        (closing > 0.0 && p_n > 0.0).then(|| ImpliedContact {
-            restitution: restored / closing - 1.0,
-            impulse_ratio: dot(impulse_n_s, perpendicular(normal)) / p_n,
-        })
-    }
-}
-
-/// Coefficient of restitution and impulse ratio that a known impulse implies; see
-/// [`Impact::implied_contact`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ImpliedContact {
-    /// Coefficient of restitution e. It lies outside the interval from 0 to 1 if the model of rigid
-    /// bodies does not fit the impulse.
-    pub restitution: f64,
-    /// Impulse ratio `P_τ / P_n`, with the sign of `P_τ`.
-    pub impulse_ratio: f64,
 }
 
 /// Kinetic energy that two vehicles lose in an impact, J: the work of the contact force along the
@@ -395,63 +448,9 @@ impl<T: Scalar> ImpactBody<T> {
 }
 
 impl<T: Scalar> ContactSurface<T> {
-    fn normal(&self) -> [T; 2] {
+    pub(super) fn normal(&self) -> [T; 2] {
         let (sin, cos) = self.normal_angle_rad.sin_cos();
         [cos, sin]
-    }
-}
-
-/// The line of impulses that satisfy the condition of restitution: `K_nn P_n + K_nτ P_τ = (1 + e)
-/// v_n`.
-struct RestitutionLine<T> {
-    k_nn: T,
-    k_nt: T,
-    k_tt: T,
-    closing: [T; 2],
-    restitution: T,
-}
-
-impl<T: Scalar> RestitutionLine<T> {
-    fn normal_impulse_n_s(&self, p_t: T) -> T {
-        ((self.restitution + 1.0) * self.closing[0] - self.k_nt * p_t) / self.k_nn
-    }
-
-    fn tangential_impulse_n_s(
-        &self,
-        surface: &ContactSurface<T>,
-    ) -> Result<(T, Regime), ImpactError> {
-        let [v_n, v_t] = self.closing;
-        let coupling = self.k_nt / self.k_nn;
-        let schur = self.k_tt - self.k_nt * coupling;
-        let frictionless = self.normal_impulse_n_s(T::from(0.0));
-        let no_slide = (v_t - self.k_nt * frictionless) / schur;
-        let sign = if no_slide.re() < 0.0 { -1.0 } else { 1.0 };
-        // P_n = frictionless / (1 + s μ K_nτ/K_nn). If the denominator is not positive, there is no
-        // point of sliding on the side s of the frictionless point.
-        let resistance = surface.friction_limit * coupling * sign + 1.0;
-        let sliding = surface.friction_limit * frictionless / resistance * sign;
-        if surface.friction_model == FrictionModel::Paper {
-            return if resistance.re() > 0.0 {
-                Ok((sliding, Regime::Sliding))
-            } else {
-                Err(ImpactError::Jammed { friction_limit: surface.friction_limit.re() })
-            };
-        }
-        let (mut p_t, mut regime) = (no_slide, Regime::NoSlide);
-        if resistance.re() > 0.0 && sliding.re().abs() < no_slide.re().abs() {
-            (p_t, regime) = (sliding, Regime::Sliding);
-        }
-        let slope = v_t - coupling * v_n;
-        let e2 = self.restitution.squared();
-        let at_frictionless = (-e2 + 1.0) * v_n.squared() / self.k_nn * 0.5;
-        let created = schur * p_t.squared() * 0.5 - slope * p_t - at_frictionless;
-        // The tolerance covers rounding errors: with e = 1 and no friction the energy created is
-        // exactly zero.
-        if created.re() > 1e-12 * (at_frictionless.re() + (slope * p_t).re().abs()) {
-            let root = (slope.squared() + schur * at_frictionless * 2.0).sqrt();
-            (p_t, regime) = ((slope + root * sign) / schur, Regime::EnergyLimited);
-        }
-        Ok((p_t, regime))
     }
 }
 
@@ -482,14 +481,14 @@ fn check(
 }
 
 /// The vector turned by 90° counter-clockwise.
-fn perpendicular<T: Scalar>([x, y]: [T; 2]) -> [T; 2] {
+pub(super) fn perpendicular<T: Scalar>([x, y]: [T; 2]) -> [T; 2] {
     [-y, x]
 }
 
-fn dot<T: Scalar>(a: [T; 2], b: [T; 2]) -> T {
+pub(super) fn dot<T: Scalar>(a: [T; 2], b: [T; 2]) -> T {
     a[0] * b[0] + a[1] * b[1]
 }
 
-fn multiply<T: Scalar>(k: [[T; 2]; 2], p: [T; 2]) -> [T; 2] {
+pub(super) fn multiply<T: Scalar>(k: [[T; 2]; 2], p: [T; 2]) -> [T; 2] {
     [dot(k[0], p), dot(k[1], p)]
 }

@@ -6,7 +6,7 @@ use proptest::test_runner::RngSeed;
 
 use crate::collision::{
     ContactSurface, FrictionModel, Impact, ImpactBody, ImpactError, ImpactSolution, Regime,
-    contact_work_j,
+    RestitutionForm, contact_work_j,
 };
 
 fn bodies() -> impl Strategy<Value = ImpactBody> {
@@ -30,6 +30,7 @@ fn impacts(friction_model: FrictionModel) -> impl Strategy<Value = Impact> {
         surface: ContactSurface {
             normal_angle_rad: gamma,
             restitution: e,
+            restitution_form: RestitutionForm::Normal,
             friction_limit: mu,
             friction_model,
         },
@@ -144,6 +145,64 @@ proptest! {
     }
 
     #[test]
+    fn restitution_from_the_common_velocity_returns_both_components(
+        impact in impacts(FrictionModel::Limit),
+    ) {
+        let impact = with_form(impact, RestitutionForm::CommonVelocity);
+        let solution = impact.solve().unwrap();
+        let (_, energy) = scales(&impact);
+        prop_assert!(solution.dissipated_energy_j > -1e-10 * energy, "{solution:?}");
+        let [before_n, before_t] = solution.closing_velocity_m_s;
+        let [after_n, after_t] = closing_after(&impact, &solution);
+        let speed = before_n.hypot(before_t) + 1.0;
+        let (e, mu) = (impact.surface.restitution, impact.surface.friction_limit);
+        if solution.regime == Regime::NotApproaching {
+            return Ok(());
+        }
+        prop_assert!((after_n + e * before_n).abs() < 1e-9 * speed, "{solution:?}");
+        let ratio = solution.impulse_tangential_n_s.abs() / solution.impulse_normal_n_s;
+        match solution.regime {
+            Regime::CommonVelocity => {
+                prop_assert!((after_t + e * before_t).abs() < 1e-9 * speed, "{solution:?}");
+                prop_assert!(ratio <= mu * (1.0 + 1e-9), "{solution:?}");
+                let lost = (1.0 - e * e) * common_velocity_work_j(&impact);
+                prop_assert!((solution.dissipated_energy_j - lost).abs() < 1e-9 * energy);
+            }
+            Regime::Sliding => prop_assert!((ratio - mu).abs() < 1e-9 * (1.0 + mu), "{ratio}"),
+            other => prop_assert!(false, "{other:?}"),
+        }
+    }
+
+    #[test]
+    fn without_restitution_both_forms_agree(impact in impacts(FrictionModel::Limit)) {
+        let surface = ContactSurface { restitution: 0.0, ..impact.surface };
+        let [one, other] = RestitutionForm::ALL
+            .map(|form| with_form(Impact { surface, ..impact }, form).solve().unwrap());
+        prop_assert_eq!(one.impulse_n_s, other.impulse_n_s);
+    }
+
+    #[test]
+    fn at_the_critical_impulse_ratio_sliding_just_ends(
+        impact in impacts(FrictionModel::Limit),
+        share in 0.1..0.9,
+        form in prop_oneof![Just(RestitutionForm::Normal), Just(RestitutionForm::CommonVelocity)],
+    ) {
+        let impact = with_form(impact, form);
+        let Some(critical) = impact.critical_impulse_ratio() else { return Ok(()) };
+        let at = |friction_limit: f64| {
+            let surface = ContactSurface { friction_limit, ..impact.surface };
+            Impact { surface, ..impact }.solve().unwrap()
+        };
+        let (below, above) = (at(share * critical), at(critical * 1.001));
+        prop_assume!(below.regime != Regime::EnergyLimited);
+        prop_assume!(above.regime != Regime::EnergyLimited);
+        prop_assert_eq!(below.regime, Regime::Sliding);
+        prop_assert!(above.regime != Regime::Sliding, "{:?}", above);
+        let ratio = above.impulse_tangential_n_s.abs() / above.impulse_normal_n_s;
+        prop_assert!((ratio - critical).abs() < 1e-9 * (1.0 + critical), "{ratio} {critical}");
+    }
+
+    #[test]
     fn the_mirror_image_has_the_mirrored_impulse(
         impact in impacts(FrictionModel::Limit),
     ) {
@@ -235,6 +294,17 @@ proptest! {
     }
 }
 
+fn with_form(impact: Impact, restitution_form: RestitutionForm) -> Impact {
+    Impact { surface: ContactSurface { restitution_form, ..impact.surface }, ..impact }
+}
+
+/// Kinetic energy of the relative motion of the contact points, ½ vᵀ K⁻¹ v, J.
+fn common_velocity_work_j(impact: &Impact) -> f64 {
+    let [[a, b], [_, d]] = impact.inverse_mass_1_kg();
+    let [x, y] = impact.relative_velocity_m_s();
+    (d * x * x - 2.0 * b * x * y + a * y * y) / (2.0 * (a * d - b * b))
+}
+
 /// The same impact in dual numbers, for the derivative with respect to the velocity of the bullet
 /// along X.
 fn dual(impact: &Impact) -> Impact<Dual64> {
@@ -254,6 +324,7 @@ fn dual(impact: &Impact) -> Impact<Dual64> {
         surface: ContactSurface {
             normal_angle_rad: impact.surface.normal_angle_rad.into(),
             restitution: impact.surface.restitution.into(),
+            restitution_form: impact.surface.restitution_form,
             friction_limit: impact.surface.friction_limit.into(),
             friction_model: impact.surface.friction_model,
         },
@@ -277,6 +348,7 @@ fn central(restitution: f64) -> Impact {
         surface: ContactSurface {
             normal_angle_rad: 0.0,
             restitution,
+            restitution_form: RestitutionForm::Normal,
             friction_limit: 0.5,
             friction_model: FrictionModel::Limit,
         },
@@ -296,6 +368,32 @@ fn a_central_impact_loses_the_textbook_energy() {
         let clocks = [solution.target.pdof, solution.bullet.pdof].map(|p| p.map(|p| p.clock()));
         assert_eq!(clocks, [Some(6), Some(12)], "e = {e}");
     }
+}
+
+/// The doc comment of the solution once called both forms by the name of one.
+#[test]
+fn with_restitution_and_without_sliding_the_forms_differ() {
+    let mut impact = central(0.3);
+    impact.bullet.contact_arm_m = [2.2, 0.8];
+    impact.bullet.velocity_m_s[1] = 1.5;
+    impact.surface.friction_limit = 2.0;
+    let [normal, common] =
+        RestitutionForm::ALL.map(|form| with_form(impact, form).solve().unwrap());
+    assert_eq!((normal.regime, common.regime), (Regime::NoSlide, Regime::CommonVelocity));
+    let after = |form, solution| closing_after(&with_form(impact, form), solution);
+    let [normal_n, normal_t] = after(RestitutionForm::Normal, &normal);
+    let [common_n, common_t] = after(RestitutionForm::CommonVelocity, &common);
+    let [closing_n, closing_t] = normal.closing_velocity_m_s;
+    for (got, expected) in [
+        (normal_n, -0.3 * closing_n),
+        (normal_t, 0.0),
+        (common_n, -0.3 * closing_n),
+        (common_t, -0.3 * closing_t),
+    ] {
+        assert!((got - expected).abs() < 1e-9, "{got} {expected}");
+    }
+    let apart = [0, 1].map(|i| normal.impulse_n_s[i] - common.impulse_n_s[i]);
+    assert!(apart[0].hypot(apart[1]) > 10.0, "{normal:?} {common:?}");
 }
 
 #[test]

@@ -27,10 +27,13 @@
 mod impact;
 #[cfg(test)]
 mod impact_tests;
+mod implied_contact;
 mod pdof;
+mod restitution_line;
 
 mod contact_distribution;
 mod footprint;
+mod impact_case;
 mod scenario;
 mod scenario_file;
 mod scenario_preset;
@@ -54,13 +57,15 @@ pub use footprint::{
 };
 pub use impact::{
     BodyAfter, ContactSurface, FrictionModel, Impact, ImpactBody, ImpactError, ImpactSolution,
-    ImpliedContact, Regime, contact_work_j,
+    Regime, RestitutionForm, contact_work_j,
 };
+pub use impact_case::ImpactCase;
+pub use implied_contact::ImpliedContact;
 pub use impulse_clusters::{ImpulseClusters, ImpulseFeatures};
 pub use pdof::PrincipalDirectionOfForce;
 pub use pulse::{Pulse, PulseError, PulseShape};
 pub use scenario::{
-    ContactLocation, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, ImpactCase, Scenario,
-    ScenarioContact, ScenarioError, ScenarioGeometry, ScenarioVehicle,
+    ContactLocation, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, Scenario, ScenarioContact,
+    ScenarioError, ScenarioGeometry, ScenarioVehicle,
 };
 pub use scenario_preset::SCENARIO_PRESETS;

@@ -4,20 +4,19 @@
 //! The source of the default restitution and friction limit is given at
 //! [`ContactDistribution`](crate::collision::ContactDistribution).
 
-use std::f64::consts::FRAC_PI_2;
-
 use serde::{Deserialize, Serialize};
 
 use crate::collision::{
     ContactSurface, Footprint, FootprintError, FrictionModel, Impact, ImpactBody, ImpactError,
-    ImpactSolution, OffOutline, Pose, Side, find_contact, place_touching,
+    ImpactSolution, OffOutline, Pose, RestitutionForm, Side, find_contact, place_touching,
 };
 
 use crate::vehicle::Ending;
 
 use crate::ranges::{
     BODY_CG, BODY_LENGTH, BODY_MASS, BODY_WIDTH, BODY_YAW_INERTIA, CONTACT_COORDINATE,
-    CONTACT_OFFSET, FRICTION_LIMIT, HEADING, POSITION, RESTITUTION, Range, SPEED, YAW_RATE,
+    CONTACT_OFFSET, FRICTION_LIMIT, FRICTION_OF_CRITICAL, HEADING, POSITION, RESTITUTION, Range,
+    SPEED, YAW_RATE,
 };
 
 /// Coefficient of restitution that is used if none is given: the median of the default
@@ -99,8 +98,15 @@ pub struct ScenarioContact {
     pub location: ContactLocation,
     /// Coefficient of restitution e, 0 to 1.
     pub restitution: f64,
+    /// Meaning of the coefficient of restitution.
+    #[serde(default)]
+    pub restitution_form: RestitutionForm,
     /// Friction limit μ_c, the largest ratio of tangential to normal impulse, 0 to 10.
     pub friction_limit: f64,
+    /// Friction limit as a share of the critical impulse ratio, 0 to 1, which overrules
+    /// `friction_limit`; see [`Impact::critical_impulse_ratio`].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction_of_critical: Option<f64>,
     /// Friction model of the contact.
     pub friction_model: FrictionModel,
 }
@@ -180,7 +186,13 @@ pub enum ScenarioError {
         /// How far the point lies off.
         source: OffOutline,
     },
-    /// The contact point of an [`ImpactCase`] lies on neither side of the target, so that the
+    /// The friction is given as a share of the critical impulse ratio, and there is none.
+    #[error(
+        "friction_of_critical has no meaning here: the vehicles slide along each other whatever \
+         the friction; give friction_limit instead"
+    )]
+    NoCriticalRatio,
+    /// The contact point of an [`ImpactCase`](crate::collision::ImpactCase) lies on neither side of the target, so that the
     /// direction of the normal is undefined.
     #[error("contact_y_m is {contact_y_m}, expected a side of the target")]
     NoSide {
@@ -233,6 +245,8 @@ impl ScenarioContact {
             ("restitution", self.restitution, RESTITUTION),
             ("friction_limit", self.friction_limit, FRICTION_LIMIT),
         ];
+        let of_critical = self.friction_of_critical;
+        numbers.extend(of_critical.map(|s| ("friction_of_critical", s, FRICTION_OF_CRITICAL)));
         let mut bullet = |x_m, y_m| {
             numbers.extend([("bullet_x_m", x_m, POSITION), ("bullet_y_m", y_m, POSITION)]);
         };
@@ -326,23 +340,32 @@ impl Scenario {
         })
     }
 
-    /// The planar impact of the two vehicles, ready to be solved.
+    /// The planar impact of the two vehicles, ready to be solved. A friction that is given as a
+    /// share of the critical impulse ratio is a friction limit here.
     ///
     /// # Errors
-    /// The errors of [`Scenario::geometry`].
+    /// The errors of [`Scenario::geometry`]; [`ScenarioError::NoCriticalRatio`].
     pub fn impact(&self) -> Result<Impact, ScenarioError> {
         let geometry = self.geometry()?;
         let point = geometry.contact_point_m;
-        Ok(Impact {
+        let mut impact = Impact {
             target: self.target.body(&geometry.target, point),
             bullet: self.bullet.body(&geometry.bullet, point),
             surface: ContactSurface {
                 normal_angle_rad: geometry.normal_angle_rad,
                 restitution: self.contact.restitution,
+                restitution_form: self.contact.restitution_form,
                 friction_limit: self.contact.friction_limit,
                 friction_model: self.contact.friction_model,
             },
-        })
+        };
+        if let Some(share) = self.contact.friction_of_critical
+            && impact.closing_velocity_m_s()[0] > 0.0
+        {
+            let critical = impact.critical_impulse_ratio().ok_or(ScenarioError::NoCriticalRatio)?;
+            impact.surface.friction_limit = share * critical;
+        }
+        Ok(impact)
     }
 
     /// Solves the impact for its impulse, the motion of both vehicles after it and the dissipated
@@ -353,135 +376,5 @@ impl Scenario {
     /// [`ScenarioError::Impact`].
     pub fn solve(&self) -> Result<ImpactSolution, ScenarioError> {
         Ok(self.impact()?.solve()?)
-    }
-}
-
-/// One row of a table of impacts, as in the shipped finite-element cases. The world axes are the
-/// body axes of the target at first contact.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ImpactCase {
-    /// Mass of the target, kg.
-    pub m_t_kg: f64,
-    /// Mass of the bullet, kg.
-    pub m_b_kg: f64,
-    /// Velocity `[x, y]` of the CG of the target before the impact, m/s.
-    pub v_t_m_s: [f64; 2],
-    /// Velocity `[x, y]` of the CG of the bullet before the impact, m/s.
-    pub v_b_m_s: [f64; 2],
-    /// Heading of the bullet relative to that of the target, rad, counter-clockwise positive.
-    pub theta_b_rad: f64,
-    /// Yaw moment of inertia of the target about its CG, kg m².
-    pub izz_t_kg_m2: f64,
-    /// Yaw moment of inertia of the bullet about its CG, kg m².
-    pub izz_b_kg_m2: f64,
-    /// Position `[x, y]` of the contact point relative to the CG of the target, m.
-    pub contact_m: [f64; 2],
-    /// Position `[x, y]` of the CG of the bullet relative to the CG of the target, m.
-    pub bullet_m: [f64; 2],
-}
-
-impl ImpactCase {
-    /// The planar impact of the case. The contact normal is perpendicular to the longitudinal axis
-    /// of the target and points into it from the side of the contact point. The yaw rates before
-    /// the impact are zero.
-    ///
-    /// - `restitution`: coefficient of restitution e, 0 to 1;
-    /// - `friction_limit`: friction limit μ_c, 0 or more.
-    ///
-    /// # Errors
-    /// [`ScenarioError::NoSide`] if the y coordinate of the contact point is zero or not finite.
-    pub fn to_impact(
-        &self,
-        restitution: f64,
-        friction_limit: f64,
-    ) -> Result<Impact, ScenarioError> {
-        let [x, y] = self.contact_m;
-        Ok(Impact {
-            target: ImpactBody {
-                mass_kg: self.m_t_kg,
-                yaw_inertia_kg_m2: self.izz_t_kg_m2,
-                heading_rad: 0.0,
-                velocity_m_s: self.v_t_m_s,
-                yaw_rate_rad_s: 0.0,
-                contact_arm_m: [x, y],
-            },
-            bullet: ImpactBody {
-                mass_kg: self.m_b_kg,
-                yaw_inertia_kg_m2: self.izz_b_kg_m2,
-                heading_rad: self.theta_b_rad,
-                velocity_m_s: self.v_b_m_s,
-                yaw_rate_rad_s: 0.0,
-                contact_arm_m: [x - self.bullet_m[0], y - self.bullet_m[1]],
-            },
-            surface: ContactSurface {
-                normal_angle_rad: self.normal_rad()?,
-                restitution,
-                friction_limit,
-                friction_model: FrictionModel::Limit,
-            },
-        })
-    }
-
-    fn normal_rad(&self) -> Result<f64, ScenarioError> {
-        let contact_y_m = self.contact_m[1];
-        if contact_y_m == 0.0 || !contact_y_m.is_finite() {
-            return Err(ScenarioError::NoSide { contact_y_m });
-        }
-        Ok(-contact_y_m.signum() * FRAC_PI_2)
-    }
-
-    /// The scenario that gives the same impact as [`ImpactCase::to_impact`], to be shown or saved.
-    ///
-    /// - `target`, `bullet`: outlines of the vehicles; they are used for drawing only.
-    /// - `restitution`, `friction_limit`: as for [`ImpactCase::to_impact`].
-    ///
-    /// # Errors
-    /// [`ScenarioError::NoSide`] if the y coordinate of the contact point is zero or not finite.
-    pub fn to_scenario(
-        &self,
-        [target, bullet]: [Footprint; 2],
-        (restitution, friction_limit): (f64, f64),
-    ) -> Result<Scenario, ScenarioError> {
-        let [x_m, y_m] = self.contact_m;
-        let normal_rad = self.normal_rad()?;
-        let vehicle = |mass_kg, yaw_inertia_kg_m2, [vx_m_s, vy_m_s]: [f64; 2], f: Footprint| {
-            ScenarioVehicle {
-                mass_kg,
-                yaw_inertia_kg_m2,
-                length_m: f.length_m,
-                width_m: f.width_m,
-                cg_from_front_m: f.cg_from_front_m,
-                heading_rad: 0.0,
-                vx_m_s,
-                vy_m_s,
-                yaw_rate_rad_s: 0.0,
-            }
-        };
-        Ok(Scenario {
-            name: String::new(),
-            notes: String::new(),
-            target_x_m: 0.0,
-            target_y_m: 0.0,
-            target: vehicle(self.m_t_kg, self.izz_t_kg_m2, self.v_t_m_s, target),
-            bullet: ScenarioVehicle {
-                heading_rad: self.theta_b_rad,
-                ..vehicle(self.m_b_kg, self.izz_b_kg_m2, self.v_b_m_s, bullet)
-            },
-            contact: ScenarioContact {
-                location: ContactLocation::Point {
-                    x_m,
-                    y_m,
-                    normal_rad,
-                    bullet_x_m: self.bullet_m[0],
-                    bullet_y_m: self.bullet_m[1],
-                },
-                restitution,
-                friction_limit,
-                friction_model: FrictionModel::Limit,
-            },
-            ending: None,
-            target_vehicle: None,
-            bullet_vehicle: None,
-        })
     }
 }

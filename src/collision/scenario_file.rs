@@ -23,7 +23,8 @@
 //! # from = "footprints"       # bullet.x_m and bullet.y_m say where the bullet is
 //! # from = "point"            # x_m, y_m, normal_deg in the target's axes; bullet.x_m, bullet.y_m
 //! restitution = 0.15          # optional
-//! friction_limit = 0.4        # optional
+//! restitution_form = "normal" # optional; or "common_velocity"
+//! friction_limit = 0.4        # optional; or friction_of_critical, friction_of_critical_percent
 //! friction_model = "limit"    # optional; or "paper"
 //!
 //! # [ending]                  # optional: what happens to the target's wheels; see Ending::read
@@ -36,13 +37,14 @@
 use std::path::Path;
 
 use crate::collision::{
-    ContactLocation, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, FrictionModel, Scenario,
-    ScenarioContact, ScenarioVehicle, Side,
+    ContactLocation, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, FrictionModel, RestitutionForm,
+    Scenario, ScenarioContact, ScenarioVehicle, Side,
 };
 use crate::data::{TomlError, TomlFile, TomlTable};
 use crate::ranges::{
     BODY_CG, BODY_LENGTH, BODY_MASS, BODY_WIDTH, BODY_YAW_INERTIA, CONTACT_COORDINATE,
-    CONTACT_OFFSET, FRICTION_LIMIT, HEADING, POSITION, RESTITUTION, Range, SPEED, YAW_RATE,
+    CONTACT_OFFSET, FRICTION_LIMIT, FRICTION_OF_CRITICAL, HEADING, POSITION, RESTITUTION, Range,
+    SPEED, YAW_RATE,
 };
 use crate::vehicle::{Ending, VehicleParameters, built_in_vehicle};
 
@@ -206,7 +208,14 @@ fn read_contact(
 ) -> Result<ScenarioContact, TomlError> {
     let s = &mut section;
     let restitution = s.number("restitution", &RESTITUTION)?;
+    let forms = RestitutionForm::ALL.map(RestitutionForm::name);
+    let form = s.choice("restitution_form", &forms)?;
     let friction_limit = s.number("friction_limit", &FRICTION_LIMIT)?;
+    let limit_key = s.last_key();
+    let friction_of_critical = s.number("friction_of_critical", &FRICTION_OF_CRITICAL)?;
+    if friction_limit.is_some() && friction_of_critical.is_some() {
+        return Err(s.conflict(&limit_key));
+    }
     let friction_model = match s.choice("friction_model", &FRICTION_MODELS)? {
         Some(1) => FrictionModel::Paper,
         _ => FrictionModel::Limit,
@@ -215,7 +224,11 @@ fn read_contact(
     Ok(ScenarioContact {
         location,
         restitution: restitution.unwrap_or(DEFAULT_RESTITUTION),
+        restitution_form: form
+            .and_then(|idx| RestitutionForm::ALL.get(idx).copied())
+            .unwrap_or_default(),
         friction_limit: friction_limit.unwrap_or(DEFAULT_FRICTION_LIMIT),
+        friction_of_critical,
         friction_model,
     })
 }
@@ -315,6 +328,23 @@ mod tests {
                 "14:1: target.vx_m_s and speed_km_h say the same thing, expected one",
             ),
             ("speed_km_h = 54", "vx_m_s = 15", "6:2: target.vy_m_s is missing"),
+            (
+                "restitution = 0.15",
+                "restitution_form = \"newton\"",
+                "28:20: contact.restitution_form is \"newton\", expected \"normal\" or \
+                 \"common_velocity\"",
+            ),
+            (
+                "friction_limit = 0.4",
+                "friction_of_critical_percent = 101",
+                "29:32: contact.friction_of_critical_percent is 101, expected 0 to 100 %",
+            ),
+            (
+                "friction_limit = 0.4",
+                "friction_limit = 0.4\nfriction_of_critical = 0.5",
+                "30:1: contact.friction_of_critical and friction_limit say the same thing, \
+                 expected one",
+            ),
             ("[contact]", "[kontact]", "1:1: [contact] is missing"),
             (
                 "side = \"right\"",
@@ -328,6 +358,20 @@ mod tests {
             let expected = format!("scenario.toml:{expected}");
             assert!(error.starts_with(&expected), "{error}\n{expected}");
         }
+    }
+
+    #[test]
+    fn friction_is_a_limit_or_a_share_of_the_critical_impulse_ratio() {
+        let given =
+            read(&PIT.replacen("friction_limit = 0.4", "friction_of_critical_percent = 80", 1));
+        let given = given.unwrap();
+        assert!((given.contact.friction_of_critical.unwrap() - 0.8).abs() < 1e-12, "{given:?}");
+        let impact = given.impact().unwrap();
+        let critical = impact.critical_impulse_ratio().unwrap();
+        let solution = given.solve().unwrap();
+        let ratio = solution.impulse_tangential_n_s.abs() / solution.impulse_normal_n_s;
+        assert!((ratio / critical - 0.8).abs() < 1e-12, "{ratio} of {critical}");
+        assert_eq!(read(&given.to_toml()).unwrap(), given);
     }
 
     #[test]

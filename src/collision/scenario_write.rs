@@ -39,7 +39,11 @@ impl Scenario {
             }
         }
         contact.number("restitution", self.contact.restitution);
-        contact.number("friction_limit", self.contact.friction_limit);
+        contact.line("restitution_form", quoted(self.contact.restitution_form.name()));
+        match self.contact.friction_of_critical {
+            Some(share) => contact.number("friction_of_critical", share),
+            None => contact.number("friction_limit", self.contact.friction_limit),
+        }
         let model = match self.contact.friction_model {
             FrictionModel::Limit => FRICTION_MODELS[0],
             FrictionModel::Paper => FRICTION_MODELS[1],
@@ -102,6 +106,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
+    use crate::collision::RestitutionForm;
     use crate::data::TomlError;
     use crate::vehicle::{Braking, Ending};
 
@@ -121,6 +126,7 @@ mod tests {
             brake: Some(Braking { start_s: 0.1 + 0.2, share_of_friction: 1.2, rise_s: 0.5 }),
             ..Ending::default()
         });
+        scenario.contact.restitution_form = RestitutionForm::CommonVelocity;
         for location in [
             scenario.contact.location,
             ContactLocation::Footprints { bullet_x_m: 0.1 + 0.2, bullet_y_m: -3.0 },

@@ -100,6 +100,8 @@ ranges! {
         "coefficient of restitution along the contact normal";
     FRICTION_LIMIT: "friction limit" = real(Quantity::Ratio, [0.0, 10.0]),
         "largest ratio of tangential to normal impulse between the vehicles";
+    FRICTION_OF_CRITICAL: "friction of critical" = real(Quantity::Ratio, [0.0, 1.0]),
+        "friction limit as a share of the impulse ratio at which the vehicles just stop sliding";
 }
 
 ranges! {

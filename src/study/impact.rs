@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::collision::{
-    BodyAfter, FrictionModel, ImpactSolution, PrincipalDirectionOfForce, Regime, Scenario,
+    BodyAfter, FrictionModel, ImpactSolution, PrincipalDirectionOfForce, Regime, RestitutionForm,
+    Scenario,
 };
 use crate::data::Outcome;
 use crate::study::{
@@ -25,6 +26,18 @@ pub struct ImpactRequest {
 pub struct ImpactReport {
     /// Name of the scenario.
     pub name: String,
+    /// Coefficient of restitution that was used.
+    pub restitution: f64,
+    /// What restitution acts on.
+    pub restitution_form: RestitutionForm,
+    /// Friction limit that was used, also where it is given as a share of the critical impulse
+    /// ratio.
+    pub friction_limit: f64,
+    /// The given share of the critical impulse ratio.
+    pub friction_of_critical: Option<f64>,
+    /// The smallest friction limit with which the vehicles do not slide; none if they do not
+    /// approach, or slide whatever the friction.
+    pub critical_impulse_ratio: Option<f64>,
     /// How friction in the contact is modelled.
     pub friction_model: FrictionModel,
     /// Whether the contact sticks or slides.
@@ -114,10 +127,16 @@ impl Question for ImpactRequest {
         }
         let unsolved = |source| self.scenario.unsolved(source);
         let geometry = scenario.geometry().map_err(unsolved)?;
+        let impact = scenario.impact().map_err(unsolved)?;
         let solution = scenario.solve().map_err(unsolved)?;
         let [x, y] = solution.impulse_n_s;
         let report = ImpactReport {
             name: scenario.name.clone(),
+            restitution: impact.surface.restitution,
+            restitution_form: impact.surface.restitution_form,
+            friction_limit: impact.surface.friction_limit,
+            friction_of_critical: scenario.contact.friction_of_critical,
+            critical_impulse_ratio: impact.critical_impulse_ratio(),
             friction_model: scenario.contact.friction_model,
             regime: solution.regime,
             impulse_n_s: solution.impulse_n_s,

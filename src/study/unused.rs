@@ -8,13 +8,14 @@
 
 use crate::analysis::PulseSetup;
 use crate::collision::{
-    DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, FrictionModel, Pose, Scenario, ScenarioGeometry,
-    ScenarioVehicle,
+    DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, FrictionModel, Pose, RestitutionForm, Scenario,
+    ScenarioGeometry, ScenarioVehicle,
 };
 use crate::study::{
     AssumedQuantity, Assumption, DEFAULT_DRAWS, DEFAULT_DURATION_S, ForceSource, MotionSource,
     PredictMotionRequest, ScenarioChoice, SimulateRequest, StudyError, VehicleChoice,
 };
+use crate::units::percent;
 use crate::vehicle::{Preset, VehicleParameters};
 
 /// Share of the approach of the contact points that may come from the turning of the vehicles.
@@ -69,7 +70,14 @@ pub(super) fn by_force_network(
     if contact.restitution != DEFAULT_RESTITUTION {
         unused.push(not_used(format!("restitution, {}", contact.restitution), by_momentum));
     }
-    if contact.friction_limit != DEFAULT_FRICTION_LIMIT {
+    if contact.restitution_form != RestitutionForm::default() {
+        let form = contact.restitution_form.label();
+        unused.push(not_used(format!("form of the restitution, {form}"), by_momentum));
+    }
+    if let Some(share) = contact.friction_of_critical {
+        let share = percent(share);
+        unused.push(not_used(format!("friction, {share} of the critical ratio"), by_momentum));
+    } else if contact.friction_limit != DEFAULT_FRICTION_LIMIT {
         unused.push(not_used(format!("friction limit, {}", contact.friction_limit), by_momentum));
     }
     if contact.friction_model != FrictionModel::Limit {

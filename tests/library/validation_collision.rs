@@ -4,7 +4,7 @@ use std::path::Path;
 
 use impactlab::collision::{
     ContactDistribution, ContactSurface, Footprint, FrictionModel, Impact, ImpactBody, ImpactCase,
-    ImpactSolution, PrincipalDirectionOfForce, Regime, Scenario,
+    ImpactSolution, PrincipalDirectionOfForce, Regime, RestitutionForm, Scenario,
 };
 use impactlab::units::{Quantity, Unit};
 
@@ -48,6 +48,7 @@ fn carpenter_welcher_barrier() {
         surface: ContactSurface {
             normal_angle_rad: (-74.6_f64 - 90.0).to_radians(),
             restitution: 0.0,
+            restitution_form: RestitutionForm::Normal,
             friction_limit: 0.82,
             friction_model: FrictionModel::Limit,
         },

@@ -8,13 +8,15 @@ use crate::app::panels::ending::ending_form;
 use crate::app::panes::PaneContext;
 use crate::app::state::{Project, Subject};
 use crate::app::widgets::{figure_frame, quantity_field, value_row};
-use crate::collision::{ContactLocation, PulseShape, Scenario, ScenarioVehicle, Side};
+use crate::collision::{
+    ContactLocation, PulseShape, RestitutionForm, Scenario, ScenarioContact, ScenarioVehicle, Side,
+};
 use crate::data::Severity;
 use crate::figure::impact_figure;
 use crate::ranges::{
     BODY_CG, BODY_LENGTH, BODY_MASS, BODY_WIDTH, BODY_YAW_INERTIA, CONTACT_COORDINATE,
-    CONTACT_HEIGHT, CONTACT_OFFSET, FRICTION_LIMIT, HEADING, POSITION, PULSE_DURATION, RESTITUTION,
-    Range, SPEED, YAW_RATE,
+    CONTACT_HEIGHT, CONTACT_OFFSET, FRICTION_LIMIT, FRICTION_OF_CRITICAL, HEADING, POSITION,
+    PULSE_DURATION, RESTITUTION, Range, SPEED, YAW_RATE,
 };
 use crate::render::{FigureOptions, theme};
 use crate::study::{BodyReport, ImpactAnswer, ImpactReport};
@@ -107,17 +109,49 @@ fn vehicle_form(ui: &mut Ui, vehicle: &mut ScenarioVehicle, units: UnitSystem) {
     quantity_field(ui, "CG behind front", &mut vehicle.cg_from_front_m, (&range, units));
 }
 
+/// Draws the fields of restitution and friction.
+fn surface_form(ui: &mut Ui, contact: &mut ScenarioContact, units: UnitSystem) {
+    quantity_field(ui, "Restitution e", &mut contact.restitution, (&RESTITUTION, units));
+    let name = ui.label("Restitution acts");
+    ComboBox::from_id_salt("restitution form")
+        .selected_text(contact.restitution_form.label())
+        .show_ui(ui, |ui| {
+            for form in RestitutionForm::ALL {
+                ui.selectable_value(&mut contact.restitution_form, form, form.label());
+            }
+        })
+        .response
+        .labelled_by(name.id);
+    ui.end_row();
+    let mut is_of_critical = contact.friction_of_critical.is_some();
+    ui.label("");
+    let hint = "The friction limit as a share of the impulse ratio at which the vehicles just stop \
+                sliding";
+    let chosen = ui.checkbox(&mut is_of_critical, "Friction by the critical ratio");
+    if chosen.on_hover_text(hint).changed() {
+        contact.friction_of_critical = is_of_critical.then_some(1.0);
+    }
+    ui.end_row();
+    match &mut contact.friction_of_critical {
+        Some(share) => {
+            quantity_field(ui, "Share of critical ratio", share, (&FRICTION_OF_CRITICAL, units));
+        }
+        None => {
+            let limit = &mut contact.friction_limit;
+            quantity_field(ui, "Friction limit μ_c", limit, (&FRICTION_LIMIT, units));
+        }
+    }
+}
+
 /// Draws the fields of the contact location, restitution and friction, and of the pulse over which
 /// the impulse is spread in the simulation.
 fn contact_form(ui: &mut Ui, project: &mut Project, units: UnitSystem) {
     egui::CollapsingHeader::new("Contact").default_open(true).show(ui, |ui| {
         Grid::new("contact").num_columns(2).show(ui, |ui| {
             location_form(ui, &mut project.scenario.contact.location, units);
-            let contact = &mut project.scenario.contact;
+            surface_form(ui, &mut project.scenario.contact, units);
             let pulse = &mut project.pulse;
             let fields = [
-                ("Restitution e", &mut contact.restitution, RESTITUTION),
-                ("Friction limit μ_c", &mut contact.friction_limit, FRICTION_LIMIT),
                 ("Pulse duration", &mut pulse.duration_s, PULSE_DURATION),
                 ("Height above ground", &mut pulse.contact_height_m, CONTACT_HEIGHT),
             ];

@@ -9,8 +9,8 @@ use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_assumptions, print_facts, shown, shown_vector};
 use crate::cli::options::UnitsArg;
 use crate::collision::FrictionModel;
-use crate::study::{ImpactAnswer, ImpactRequest, ScenarioChoice};
-use crate::units::{Quantity, UnitSystem};
+use crate::study::{ImpactAnswer, ImpactReport, ImpactRequest, ScenarioChoice};
+use crate::units::{Quantity, UnitSystem, percent, significant};
 
 /// Solve an impact: impulse, velocities after it, delta-v, energy, direction of force
 #[derive(Debug, Args)]
@@ -34,7 +34,8 @@ Example:
 The impulse acts ON the target. World axes: X along the road, Y to the left; yaw to the left is
 positive. PDOF: clockwise from straight ahead, where the force comes from.
 
-JSON: name, friction_model, regime, impulse_n_s [x, y], impulse_magnitude_n_s, impulse_normal_n_s,
+JSON: name, restitution, restitution_form, friction_limit, friction_of_critical,
+  critical_impulse_ratio, friction_model, regime, impulse_n_s [x, y], impulse_magnitude_n_s, impulse_normal_n_s,
   impulse_tangential_n_s, closing_velocity_m_s [normal, tangential], contact_point_m [x, y],
   normal_angle_rad, overlap_m, dissipated_energy_j; target and bullet each with velocity_m_s [x, y],
   speed_m_s, yaw_rate_rad_s, delta_v_m_s [x, y], delta_v_magnitude_m_s, delta_yaw_rate_rad_s,
@@ -52,26 +53,33 @@ pub(in crate::cli) fn run(
     Ok(Verdict::Clean)
 }
 
-fn print_text(out: &mut dyn Write, answer: &ImpactAnswer, units: UnitSystem) -> io::Result<()> {
-    const XY: [&str; 2] = ["x", "y"];
-    let ImpactAnswer { scenario, solution, report } = answer;
-    let contact = &scenario.contact;
-    let model = match contact.friction_model {
+/// The friction limit that was used, beside the critical impulse ratio.
+fn friction(report: &ImpactReport) -> String {
+    let limit = significant(report.friction_limit);
+    let of_critical = match report.critical_impulse_ratio {
+        Some(critical) if critical > 0.0 => {
+            let share = percent(report.friction_limit / critical);
+            format!(" ({share} of the critical impulse ratio {})", significant(critical))
+        }
+        _ => String::new(),
+    };
+    let model = match report.friction_model {
         FrictionModel::Limit => "",
         FrictionModel::Paper => ", always sliding (paper)",
     };
+    format!("{limit}{of_critical}{model}")
+}
+
+fn print_text(out: &mut dyn Write, answer: &ImpactAnswer, units: UnitSystem) -> io::Result<()> {
+    const XY: [&str; 2] = ["x", "y"];
+    let ImpactAnswer { scenario, solution, report } = answer;
     let number = |quantity, value| shown(quantity, value, units);
     let vector = |quantity, value, names| shown_vector(quantity, value, names, units);
     let closing = solution.closing_velocity_m_s;
     writeln!(out, "{}\n", scenario.name)?;
     let facts = [
-        (
-            "contact",
-            format!(
-                "restitution {}, friction limit {}{model}",
-                contact.restitution, contact.friction_limit
-            ),
-        ),
+        ("restitution", format!("{} {}", report.restitution, report.restitution_form.label())),
+        ("friction limit", friction(report)),
         ("regime", solution.regime.label().to_owned()),
         ("closing velocity", vector(Quantity::Speed, closing, ["normal", "tangential"])),
         ("impulse", vector(Quantity::Impulse, solution.impulse_n_s, XY)),

@@ -10,7 +10,7 @@ use std::f64::consts::FRAC_PI_2;
 use serde::{Deserialize, Serialize};
 
 use crate::collision::{
-    ContactSurface, FrictionModel, Impact, ImpactBody, ImpactError, ImpactSolution,
+    ContactSurface, FrictionModel, Impact, ImpactBody, ImpactError, ImpactSolution, RestitutionForm,
 };
 use crate::force::{ForceCase, ForceScenario};
 use crate::nn::{Expected, NnError, check_number, check_numbers};
@@ -121,6 +121,7 @@ impl MomentumModel {
             surface: ContactSurface {
                 normal_angle_rad: FRAC_PI_2 + self.normal_turn_rad,
                 restitution: self.restitution,
+                restitution_form: RestitutionForm::Normal,
                 friction_limit: self.friction_limit,
                 friction_model: FrictionModel::Limit,
             },
