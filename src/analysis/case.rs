@@ -1,9 +1,12 @@
 //! Analysis of the cases of force and trajectory data sets.
 
 use crate::analysis::{Analysis, AnalysisError, Settings, StruckVehicle, bullet::bullet_track};
-use crate::collision::Footprint;
+use crate::collision::{Footprint, SecondContact};
 use crate::compare::{recorded_manoeuvre, replay_case};
-use crate::data::{Case, DatasetKind, ForceAttributes, TrajectoryAttributes, check_contact_within};
+use crate::data::{
+    Case, DatasetKind, ForceAttributes, TrajectoryAttributes, check_contact_within,
+    contact_interval,
+};
 use crate::vehicle::{ContactLoad, ContactPoint, Manoeuvre, VehicleState};
 
 /// Analyses a case of a force or a trajectory data set.
@@ -37,6 +40,7 @@ fn analyse_trajectory_case(case: &Case, settings: &Settings) -> Result<Analysis,
         vehicle,
         simulation: Some(replay.motion),
         reference: Some(case.series.clone()),
+        second_contact: None,
         bullet: None,
         error: Some(replay.error),
         notes: Vec::new(),
@@ -67,19 +71,27 @@ fn analyse_force_case(case: &Case, settings: &Settings) -> Result<Analysis, Anal
         duration_s: settings.duration_s,
         ends_at_rest: settings.ends_at_rest,
     };
+    let motion = vehicle.simulate(&manoeuvre, settings.integrator)?;
+    let footprint = Footprint::from(&vehicle.geometry);
+    let bullet = bullet_track(case, &attributes, settings)?;
+    let end_s = contact_interval(&force).map_or(0.0, |(_, end_s)| end_s);
+    let second_contact = bullet.as_ref().and_then(|bullet| {
+        SecondContact::find((footprint, &motion.series), (bullet.footprint, &bullet.motion), end_s)
+    });
     let mut notes = Vec::new();
     if attributes.separated == Some(false) {
         notes.push("still in contact when the run ended: the force is cut there".to_owned());
     }
     Ok(Analysis {
         name: case.name.clone(),
-        footprint: Footprint::from(&vehicle.geometry),
-        simulation: Some(vehicle.simulate(&manoeuvre, settings.integrator)?),
+        footprint,
+        simulation: Some(motion),
         vehicle: vehicle.clone(),
         force: Some(force),
         struck: Some(StruckVehicle { vehicle, initial, contact, controls }),
         reference: None,
-        bullet: bullet_track(case, &attributes, settings)?,
+        second_contact,
+        bullet,
         error: None,
         notes,
     })

@@ -128,6 +128,7 @@ fn of_load(
         simulation: None,
         reference: None,
         bullet: None,
+        second_contact: None,
         error: None,
         notes: Vec::new(),
     }

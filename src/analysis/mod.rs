@@ -14,7 +14,7 @@ mod rest;
 mod scenario;
 mod vehicle_draws;
 
-use crate::collision::{Footprint, PulseError, ScenarioError};
+use crate::collision::{Footprint, PulseError, ScenarioError, SecondContact};
 use crate::compare::{MotionError, ReplayError};
 use crate::data::{ContactOutside, DataError, ForceHistory, SeriesError, TimeSeries};
 use crate::vehicle::{Ending, Integrator, Motion, SimulationError, VehicleParameters};
@@ -85,6 +85,9 @@ pub struct Analysis {
     pub reference: Option<TimeSeries>,
     /// Outline and motion of the striking vehicle, if known.
     pub bullet: Option<VehicleTrack>,
+    /// Where the two vehicles meet again after the contact, if they do: their motions do not know of
+    /// it.
+    pub second_contact: Option<SecondContact>,
     /// Errors of the simulated motion against the recorded one; `None` unless both exist.
     pub error: Option<MotionError>,
     /// Notes on the analysis for the user.

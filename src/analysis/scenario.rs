@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{Analysis, AnalysisError, Settings, StruckVehicle, VehicleTrack};
-use crate::collision::{Pose, Pulse, PulseShape, Scenario, ScenarioVehicle};
+use crate::collision::{Pose, Pulse, PulseShape, Scenario, ScenarioVehicle, SecondContact};
 use crate::data::{ForceHistory, check_contact_within};
 use crate::vehicle::frames::body_from_world;
 use crate::vehicle::{
@@ -76,6 +76,11 @@ pub fn analyse_scenario(
         StruckVehicle::of_scenario(scenario, &settings.target, pulse.contact_height_m)?;
     let controls = settings.ending.controls(&of_scenario.vehicle);
     let struck = StruckVehicle { controls, ..of_scenario };
+    let second_contact = SecondContact::find(
+        (scenario.target.footprint(), &target.series),
+        (scenario.bullet.footprint(), &bullet.series),
+        pulse.duration_s,
+    );
     Ok(Analysis {
         name: scenario.name.clone(),
         vehicle: struck.vehicle.clone(),
@@ -88,6 +93,7 @@ pub fn analyse_scenario(
             footprint: scenario.bullet.footprint(),
             motion: bullet.series,
         }),
+        second_contact,
         error: None,
         notes: vec![format!(
             "force: {} of {:.0} ms that carries the impulse of the momentum solution",
@@ -130,7 +136,9 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::data::Channel;
+    use crate::collision::{ContactLocation, MovingFootprint, Side, overlap_m};
+    use crate::data::{Channel, TimeSeries};
+    use crate::numerics::interpolate;
     use crate::vehicle::{Integrator, Preset};
 
     #[test]
@@ -154,5 +162,52 @@ mod tests {
         let bullet = analysis.bullet.unwrap().motion;
         assert_eq!(bullet.n_samples(), motion.n_samples());
         assert!(analysis.struck.unwrap().contact.y_m < 0.0);
+    }
+
+    /// A bullet that goes on pushing was drawn through the target without a word.
+    #[test]
+    fn vehicles_that_meet_again_are_said_to() {
+        let mut scenario = Scenario::example();
+        let settings = Settings {
+            target: Preset::Target.parameters(),
+            bullet: Preset::Bullet2000.parameters(),
+            integrator: Integrator::Rk4,
+            ending: Ending::default(),
+            duration_s: 4.0,
+            ends_at_rest: false,
+        };
+        let meets = |scenario: &Scenario| {
+            let analysis = analyse_scenario(scenario, &PulseSetup::default(), &settings).unwrap();
+            let (target, bullet) = (analysis.simulation.unwrap().series, analysis.bullet.unwrap());
+            let at = |series: &TimeSeries, footprint, time_s: f64| {
+                let of = |channel| {
+                    let values = series.require(channel).unwrap();
+                    interpolate(series.time_s(), values, time_s).unwrap()
+                };
+                let (x_m, y_m) = (of(Channel::X), of(Channel::Y));
+                let pose = Pose { x_m, y_m, yaw_rad: of(Channel::Yaw) };
+                MovingFootprint::at_rest(footprint, pose)
+            };
+            let overlap = |time_s| {
+                let target = at(&target, scenario.target.footprint(), time_s);
+                let bullet = at(&bullet.motion, bullet.footprint, time_s);
+                overlap_m(&target, &bullet)
+            };
+            let deepest = (60..=400).map(|i| overlap(f64::from(i) * 0.01)).fold(-1.0, f64::max);
+            (analysis.second_contact, deepest)
+        };
+        // The bullet pushes on along its heading, the target's tyres hold against it.
+        let (second, deepest_m) = meets(&scenario);
+        let second = second.unwrap();
+        assert!(second.time_s > 0.1 && second.closing_speed_m_s > 0.0, "{second:?}");
+        assert!(deepest_m > 0.2, "{second:?} {deepest_m}");
+        // From behind, the bullet is braked by the impact and stays behind.
+        scenario.contact.location = ContactLocation::Side { side: Side::Rear, offset_m: 0.2 };
+        scenario.bullet.heading_rad = 0.0;
+        (scenario.target.vx_m_s, scenario.bullet.vx_m_s) = (5.0, 15.0);
+        scenario.bullet.vy_m_s = 0.0;
+        let (second, deepest_m) = meets(&scenario);
+        assert_eq!(second, None);
+        assert!(deepest_m < 0.0, "{deepest_m}");
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! - `impact`, `pdof`: planar impact of two rigid bodies by conservation of momentum, and the
 //!   principal direction of force;
-//! - `footprint`: contact point and contact normal from the outlines of the vehicles;
+//! - `footprint`, `outline_contact`: contact point and contact normal from the outlines of the
+//!   vehicles;
 //! - `scenario` and its files: two vehicles that are about to collide, as a user describes them;
 //! - `contact_distribution`: how uncertain restitution and friction are;
 //! - [`crush`]: force over time from the crush of both vehicles;
@@ -34,10 +35,12 @@ mod restitution_line;
 mod contact_distribution;
 mod footprint;
 mod impact_case;
+mod outline_contact;
 mod scenario;
 mod scenario_file;
 mod scenario_preset;
 mod scenario_write;
+mod second_contact;
 
 pub mod crush;
 
@@ -51,10 +54,7 @@ pub use channel_filter::{
     ChannelClass, ChannelFilter, FilterError, filter_channel, filter_history,
 };
 pub use contact_distribution::ContactDistribution;
-pub use footprint::{
-    Contact, Footprint, FootprintError, OffOutline, Pose, Side, StruckSurface, TOUCH_TOLERANCE_M,
-    find_contact, place_touching,
-};
+pub use footprint::{Footprint, FootprintError, OffOutline, Pose, Side};
 pub use impact::{
     BodyAfter, ContactSurface, FrictionModel, Impact, ImpactBody, ImpactError, ImpactSolution,
     Regime, RestitutionForm, contact_work_j,
@@ -62,10 +62,15 @@ pub use impact::{
 pub use impact_case::ImpactCase;
 pub use implied_contact::ImpliedContact;
 pub use impulse_clusters::{ImpulseClusters, ImpulseFeatures};
+pub use outline_contact::{
+    Contact, MAX_APPROACH_TIME_S, MovingFootprint, StruckSurface, TOUCH_TOLERANCE_M, find_contact,
+    overlap_centre_m, overlap_m, place_touching,
+};
 pub use pdof::PrincipalDirectionOfForce;
 pub use pulse::{Pulse, PulseError, PulseShape};
 pub use scenario::{
-    ContactLocation, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, Scenario, ScenarioContact,
-    ScenarioError, ScenarioGeometry, ScenarioVehicle,
+    ContactLocation, DEFAULT_CONTACT_CLOSING_M_S, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION,
+    Scenario, ScenarioContact, ScenarioError, ScenarioGeometry, ScenarioVehicle,
 };
 pub use scenario_preset::SCENARIO_PRESETS;
+pub use second_contact::SecondContact;

@@ -4,10 +4,13 @@ use crate::analysis::Analysis;
 use crate::collision::{ChannelClass, FilterError, filter_history};
 use crate::data::{Channel, ForceHistory, TimeSeries, contact_interval};
 use crate::figure::{
-    Figure, ForceFigure, LineStyle, Role, SceneFigure, SceneVehicle, force_figure, motion_figure,
-    motion_readout, scene_figure,
+    Figure, FigureElement, ForceFigure, LineStyle, Role, SceneFigure, SceneVehicle, Series,
+    force_figure, motion_figure, motion_readout, scene_figure,
 };
-use crate::units::UnitSystem;
+use crate::units::{Unit, UnitSystem};
+
+/// Half the width of the cross at a second contact, m.
+const CROSS_M: f64 = 0.6;
 
 /// Force on the target over time, with classic pulses for comparison. `None` if the case has no
 /// force.
@@ -81,6 +84,25 @@ pub fn analysis_scene_figure(analysis: &Analysis, time_s: f64, units: UnitSystem
         footprint,
     });
     let vehicles: Vec<_> = [bullet, reference, simulation].into_iter().flatten().collect();
-    let title = format!("{}: scene from above at {time_s:.2} s", analysis.name);
-    scene_figure(&SceneFigure { title: &title, vehicles: &vehicles, time_s, units })
+    let second = analysis.second_contact.as_ref();
+    let met = second.filter(|second| second.time_s <= time_s);
+    let after = if met.is_some() { ", after a second contact that is not computed" } else { "" };
+    let title = format!("{}: scene from above at {time_s:.2} s{after}", analysis.name);
+    let mut figure =
+        scene_figure(&SceneFigure { title: &title, vehicles: &vehicles, time_s, units });
+    if let Some(second) = second {
+        figure.elements.extend(second_contact_mark(second.point_m, figure.x.unit));
+    }
+    figure
+}
+
+/// A cross where the vehicles meet again.
+fn second_contact_mark([x_m, y_m]: [f64; 2], unit: Unit) -> [FigureElement; 2] {
+    [1.0, -1.0].map(|slope| {
+        let points = [-CROSS_M, CROSS_M].map(|d| [x_m + d, y_m + slope * d]);
+        let points = points.map(|point| point.map(|value| unit.from_si(value))).to_vec();
+        let name = "second contact".to_owned();
+        let (role, style) = (Role::Resultant, LineStyle::Solid);
+        FigureElement::Line(Series { name, role, style, points })
+    })
 }

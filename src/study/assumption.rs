@@ -4,6 +4,10 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+use crate::collision::{
+    DEFAULT_CONTACT_CLOSING_M_S, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, Impact, Scenario,
+    ScenarioGeometry, TOUCH_TOLERANCE_M,
+};
 use crate::vehicle::sheet::Estimate;
 use crate::vehicle::{ContactPoint, VehicleParameters};
 
@@ -31,6 +35,10 @@ pub enum AssumedQuantity {
     StartOfRecord,
     /// Road-wheel angle before or after its recording.
     Steer,
+    /// Where vehicles first touched whose outlines overlap.
+    FirstTouch,
+    /// Restitution and friction between the vehicles.
+    Restitution,
     /// Not a value that was assumed, but one that was given and is not used.
     NotUsed,
 }
@@ -61,6 +69,8 @@ impl AssumedQuantity {
             Self::Pulse => "force over time",
             Self::StartOfRecord => "start of the recorded motion",
             Self::Steer => "steer angle",
+            Self::FirstTouch => "first contact",
+            Self::Restitution => "restitution and friction",
             Self::NotUsed => "not used",
         }
     }
@@ -96,6 +106,46 @@ impl Assumption {
         let value = format!("{n} of {}, at their medians", vehicle.name);
         let reason = "its data sheet does not state them; impactlab vehicles lists the rules";
         (n > 0).then(|| Self::new(quantity, value, reason))
+    }
+
+    /// What stands for the contact of vehicles whose outlines overlap.
+    pub(super) fn first_touch(geometry: &ScenarioGeometry) -> Option<Self> {
+        let (surface, overlap_m) = geometry.surface.zip(geometry.overlap_m)?;
+        let reason = format!(
+            "the outlines overlap by {overlap_m:.2} m; they first touched there at their velocities, \
+             and the middle of the overlap is the contact point"
+        );
+        let value = format!("normal {surface}");
+        let is_deep = overlap_m > TOUCH_TOLERANCE_M;
+        is_deep.then(|| Self::new(AssumedQuantity::FirstTouch, value, reason))
+    }
+
+    /// Restitution and friction limit of a scenario where they are the default.
+    pub(super) fn contact_default(scenario: &Scenario, impact: &Impact) -> Option<Self> {
+        let contact = &scenario.contact;
+        let (e, mu) = (contact.restitution, contact.friction_limit);
+        let is_default = [
+            ("e", e, e == DEFAULT_RESTITUTION),
+            ("μ_c", mu, mu == DEFAULT_FRICTION_LIMIT && contact.friction_of_critical.is_none()),
+        ];
+        let of_default = is_default.into_iter().filter(|(.., is_default)| *is_default);
+        let values: Vec<String> =
+            of_default.map(|(name, value, _)| format!("{name} = {value}")).collect();
+        if values.is_empty() {
+            return None;
+        }
+        let [low, high] = DEFAULT_CONTACT_CLOSING_M_S;
+        let [closing, _] = impact.closing_velocity_m_s();
+        let here = match closing {
+            closing if closing > high => {
+                format!("; here {closing:.1} m/s, where restitution is usually smaller")
+            }
+            closing => format!("; here {closing:.1} m/s"),
+        };
+        let reason = format!(
+            "the default, fitted to finite-element runs that close at {low} to {high} m/s{here}"
+        );
+        Some(Self::new(AssumedQuantity::Restitution, values.join(", "), reason))
     }
 
     /// The contact point that stands for an unknown one.

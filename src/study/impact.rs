@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::collision::{
     BodyAfter, FrictionModel, ImpactSolution, PrincipalDirectionOfForce, Regime, RestitutionForm,
-    Scenario,
+    Scenario, StruckSurface,
 };
 use crate::data::Outcome;
 use crate::study::{
@@ -56,6 +56,9 @@ pub struct ImpactReport {
     pub contact_point_m: [f64; 2],
     /// Direction of the normal, rad.
     pub normal_angle_rad: f64,
+    /// The side of target or bullet to which the normal is perpendicular, where the contact comes
+    /// from outlines.
+    pub struck_surface: Option<StruckSurface>,
     /// How far the outlines overlap, m, where the contact comes from outlines.
     pub overlap_m: Option<f64>,
     /// Kinetic energy lost in the contact, J.
@@ -64,7 +67,8 @@ pub struct ImpactReport {
     pub target: BodyReport,
     /// The striking vehicle after the impact.
     pub bullet: BodyReport,
-    /// What was assumed: nothing, since a scenario states everything that the solution needs.
+    /// What was assumed: where the vehicles first touched, if their outlines overlap; default
+    /// restitution and friction.
     pub assumptions: Vec<Assumption>,
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
@@ -146,11 +150,15 @@ impl Question for ImpactRequest {
             closing_velocity_m_s: solution.closing_velocity_m_s,
             contact_point_m: geometry.contact_point_m,
             normal_angle_rad: geometry.normal_angle_rad,
+            struck_surface: geometry.surface,
             overlap_m: geometry.overlap_m,
             dissipated_energy_j: solution.dissipated_energy_j,
             target: (&solution.target).into(),
             bullet: (&solution.bullet).into(),
-            assumptions: Vec::new(),
+            assumptions: Assumption::first_touch(&geometry)
+                .into_iter()
+                .chain(Assumption::contact_default(&scenario, &impact))
+                .collect(),
             provenance: Provenance::default(),
         };
         Ok(Outcome::Complete(ImpactAnswer { report, scenario, solution }))

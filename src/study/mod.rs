@@ -39,6 +39,7 @@ mod evaluate_force;
 mod evaluate_response;
 mod fine_tune;
 mod impact;
+mod implied_contact;
 mod motion_logs;
 mod predict_force;
 mod predict_motion;
@@ -69,6 +70,7 @@ pub use evaluate_force::{
 pub use evaluate_response::{EvaluateResponseAnswer, EvaluateResponseRequest};
 pub use fine_tune::FineTuneRequest;
 pub use impact::{BodyReport, ImpactAnswer, ImpactReport, ImpactRequest};
+pub use implied_contact::{ImpliedContactReport, MomentumReport};
 pub use inputs::{
     BadCases, ConfigChoice, DEFAULT_BULLET, DEFAULT_VEHICLE, EvaluatedCases, ModelChoice,
     ScenarioChoice, SeriesFile, TrainingOptions, VehicleChoice, checkpoint_beside,

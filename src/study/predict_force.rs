@@ -3,7 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{Estimate, ForceForecast, ForecastSettings, Mode};
-use crate::collision::PrincipalDirectionOfForce;
+use crate::collision::{
+    DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, Impact, PrincipalDirectionOfForce,
+};
 use crate::data::{DatasetKind, Outcome};
 use crate::force::{ForceError, ForcePrediction, ForceScenario, OutsideTraining};
 use crate::ranges::SAMPLES;
@@ -11,7 +13,8 @@ use crate::study::checks::{check_all, check_count};
 use crate::study::simulate_dataset::take_case;
 use crate::study::unused::{by_force_network, not_used};
 use crate::study::{
-    Assumption, Library, ModelChoice, Observer, Provenance, Question, ScenarioChoice, StudyError,
+    Assumption, ImpliedContactReport, Library, ModelChoice, Observer, Provenance, Question,
+    ScenarioChoice, StudyError,
 };
 
 /// Asks which force a collision brings about, and how sure that is.
@@ -79,8 +82,12 @@ pub struct PredictForceReport {
     pub pdof_clock: u8,
     /// The same with its intervals, degrees.
     pub pdof_interval_deg: Estimate,
-    /// Impulse of the momentum solution [x, y], N s.
+    /// Impulse of the momentum solution that the force network starts from, with its own restitution
+    /// and friction fitted to the training cases [x, y], N s.
     pub momentum_impulse_n_s: [f64; 2],
+    /// Restitution and impulse ratio with which a momentum solution would give the impulse, beside
+    /// the one with the values of the collision; none where the contact is open.
+    pub implied_contact: Option<ImpliedContactReport>,
     /// Probability that the bullet's corner stays caught; none for a single component.
     pub hooking_probability: Option<f64>,
     /// The components of the mixture, the likeliest first.
@@ -128,6 +135,8 @@ pub struct PredictForceAnswer {
 struct AskedCollision {
     name: String,
     numbers: ForceScenario,
+    /// Its planar impact in world axes and the heading of the target, where the contact is known.
+    impact: Option<(Impact, f64)>,
     /// What the network does not use of what the question says.
     unused: Vec<Assumption>,
 }
@@ -140,12 +149,18 @@ impl ForceQuestion {
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<AskedCollision>, StudyError> {
         let mut unused = Vec::new();
-        let (name, numbers) = match self {
+        let across = |numbers: &ForceScenario| {
+            Some((numbers.impact(DEFAULT_RESTITUTION, DEFAULT_FRICTION_LIMIT)?, 0.0))
+        };
+        let (name, numbers, impact) = match self {
             Self::Scenario(choice) => {
                 let scenario = choice.load()?;
                 unused = by_force_network(choice, &scenario)?;
+                unused.extend(scenario.geometry().iter().filter_map(Assumption::first_touch));
                 let numbers = ForceScenario::from_scenario(&scenario);
-                (scenario.name, numbers.map_err(|source| choice.unsolved(source))?)
+                let numbers = numbers.map_err(|source| choice.unsolved(source))?;
+                let impact = scenario.impact().map_err(|source| choice.unsolved(source))?;
+                (scenario.name, numbers, Some((impact, scenario.target.heading_rad)))
             }
             Self::Case { dataset: root, case } => {
                 let Outcome::Complete(dataset) = library.dataset(root, observer)? else {
@@ -154,11 +169,15 @@ impl ForceQuestion {
                 if dataset.kind != DatasetKind::Force {
                     return Err(StudyError::NoCollision { name: case.clone() });
                 }
-                (case.clone(), ForceScenario::from_case(take_case(&dataset, case)?)?)
+                let numbers = ForceScenario::from_case(take_case(&dataset, case)?)?;
+                let impact = across(&numbers);
+                (case.clone(), numbers, impact)
             }
-            Self::Numbers { name, numbers } => (name.clone(), numbers.as_ref().clone()),
+            Self::Numbers { name, numbers } => {
+                (name.clone(), numbers.as_ref().clone(), across(numbers))
+            }
         };
-        Ok(Outcome::Complete(AskedCollision { name, numbers, unused }))
+        Ok(Outcome::Complete(AskedCollision { name, numbers, impact, unused }))
     }
 }
 
@@ -187,11 +206,10 @@ impl Question for PredictForceRequest {
     ) -> Result<Outcome<PredictForceAnswer>, StudyError> {
         let model = library.force_model(&self.model)?;
         let numbers = self.collision.numbers(library, observer)?;
-        let Outcome::Complete(AskedCollision { name, numbers: mut collision, mut unused }) =
-            numbers
-        else {
+        let Outcome::Complete(asked) = numbers else {
             return Ok(Outcome::Cancelled);
         };
+        let AskedCollision { name, numbers: mut collision, mut impact, mut unused } = asked;
         if let Some(body) = &self.body {
             collision.bullet_body = Some(body.clone());
             if model.bodies().len() == 1 {
@@ -200,7 +218,7 @@ impl Question for PredictForceRequest {
             }
         }
         if self.open_contact {
-            (collision.contact_m, collision.bullet_position_m) = (None, None);
+            (collision.contact_m, collision.bullet_position_m, impact) = (None, None, None);
         }
         let prediction = model.predict(&collision)?;
         let settings = ForecastSettings { n_curves: self.samples, seed: self.seed };
@@ -211,6 +229,9 @@ impl Question for PredictForceRequest {
         let mut report = PredictForceReport::of(name, &self.model, (&prediction, &forecast));
         report.provenance = provenance;
         report.assumptions = unused;
+        report.implied_contact = impact.and_then(|(impact, heading_rad)| {
+            ImpliedContactReport::of(&prediction, (&impact, heading_rad), self.seed)
+        });
         Ok(Outcome::Complete(PredictForceAnswer { report, collision, forecast, prediction }))
     }
 }
@@ -236,6 +257,7 @@ impl PredictForceReport {
             pdof_clock: pdof.clock(),
             pdof_interval_deg: forecast.pdof_rad.scaled(1.0_f64.to_degrees()),
             momentum_impulse_n_s: prediction.momentum_impulse_n_s,
+            implied_contact: None,
             hooking_probability: prediction.hooking_probability,
             modes: forecast.modes.clone(),
             outside_training: prediction.outside.clone(),

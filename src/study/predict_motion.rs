@@ -16,8 +16,9 @@ use crate::study::checks::{check, check_count};
 use crate::study::simulate_dataset::take_case;
 use crate::study::unused::{by_force_network, by_forecast};
 use crate::study::{
-    AssumedQuantity, Assumption, Library, ModelChoice, MotionSource, Observer, Provenance,
-    Question, SeriesFile, SimulateAnswer, SimulateRequest, StudyError,
+    AssumedQuantity, Assumption, FlagReport, ImpliedContactReport, Library, ModelChoice,
+    MotionSource, Observer, Provenance, Question, SeriesFile, SimulateAnswer, SimulateRequest,
+    StudyError,
 };
 
 /// Force curves drawn from a predicted force where nobody says how many.
@@ -78,8 +79,14 @@ pub struct PredictMotionReport {
     pub outcome: MotionOutcome,
     /// Which estimates of the vehicle the end depends on, the one that moves it most first.
     pub sensitivity: Vec<Sensitivity>,
+    /// Restitution and impulse ratio with which a momentum solution would give the predicted impulse,
+    /// beside the one with the values of the scenario; none for another force.
+    pub implied_contact: Option<ImpliedContactReport>,
     /// Probability that the bullet's corner stays caught, of a predicted force.
     pub hooking_probability: Option<f64>,
+    /// A second contact of the vehicles in the 4DOF simulation of the same collision; the forecast
+    /// does not know of it.
+    pub flags: Vec<FlagReport>,
     /// Where the collision lies outside what the force network has learned from.
     pub outside_training: Vec<OutsideTraining>,
     /// What was assumed.
@@ -227,7 +234,11 @@ impl Question for PredictMotionRequest {
         assumptions.extend(unused);
         let provenance = self.provenance(library)?;
         let known = (assumptions, provenance);
-        let report = self.report(&analysis.name, struck, (&forecast, known));
+        let report = PredictMotionReport {
+            implied_contact: self.implied_contact(&forecast)?,
+            flags: analysis.second_contact.iter().map(FlagReport::from).collect(),
+            ..self.report(&analysis.name, struck, (&forecast, known))
+        };
         Ok(Outcome::Complete(PredictMotionAnswer { report, analysis, forecast }))
     }
 }
@@ -240,11 +251,29 @@ fn given_force(path: &Path, library: &Library) -> Result<ForceHistory, StudyErro
 }
 
 impl PredictMotionRequest {
+    /// What the predicted force of a scenario implies of the contact.
+    fn implied_contact(
+        &self,
+        forecast: &MotionForecast,
+    ) -> Result<Option<ImpliedContactReport>, StudyError> {
+        let (Some(prediction), MotionSource::Scenario { scenario: choice, .. }) =
+            (&forecast.force, &self.motion.source)
+        else {
+            return Ok(None);
+        };
+        let scenario = choice.load()?;
+        let impact = scenario.impact().map_err(|source| choice.unsolved(source))?;
+        let at = (&impact, scenario.target.heading_rad);
+        Ok(ImpliedContactReport::of(prediction, at, self.seed))
+    }
+
     /// Whether the motion of the struck vehicle depends on what was assumed for the simulation.
     fn rests_on(&self, assumption: &Assumption) -> bool {
         match assumption.quantity {
             AssumedQuantity::Bullet | AssumedQuantity::BulletParameter => false,
-            AssumedQuantity::Pulse => self.force == ForceSource::Given,
+            AssumedQuantity::Pulse | AssumedQuantity::Restitution => {
+                self.force == ForceSource::Given
+            }
             _ => true,
         }
     }
@@ -284,6 +313,8 @@ impl PredictMotionRequest {
             outcome: forecast.outcome.clone(),
             sensitivity: forecast.sensitivity.clone(),
             hooking_probability: predicted.and_then(|force| force.hooking_probability),
+            flags: Vec::new(),
+            implied_contact: None,
             outside_training: predicted.map_or_else(Vec::new, |force| force.outside.clone()),
             assumptions,
             provenance,

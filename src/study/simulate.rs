@@ -23,8 +23,8 @@ use crate::study::simulate_dataset::take_case;
 use crate::study::unused::by_simulation;
 use crate::study::vehicle_uncertainty::vehicle_uncertainty;
 use crate::study::{
-    AssumedQuantity, Assumption, Library, Observer, Provenance, Question, ScenarioChoice,
-    SeriesFile, SimulateReport, StudyError, VehicleChoice, word,
+    AssumedQuantity, Assumption, Library, MomentumReport, Observer, Provenance, Question,
+    ScenarioChoice, SeriesFile, SimulateReport, StudyError, VehicleChoice, word,
 };
 use crate::vehicle::{
     ContactPoint, Ending, Equations, Integrator, SteerHistory, VehicleParameters, VehicleState,
@@ -237,7 +237,7 @@ impl Question for SimulateRequest {
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<SimulateAnswer>, StudyError> {
-        let mut assumptions = Vec::new();
+        let (mut assumptions, mut momentum) = (Vec::new(), None);
         let (settings, analyse): (Settings, Box<Analyse<'_>>) = match &self.source {
             MotionSource::Case { dataset, case } => {
                 let Outcome::Complete(dataset) = library.dataset(dataset, observer)? else {
@@ -292,6 +292,12 @@ impl Question for SimulateRequest {
                 if let (None, Some(ending)) = (&self.ending, &scenario.ending) {
                     settings.ending.clone_from(ending);
                 }
+                // Where there is no geometry, the analysis says why.
+                assumptions.extend(scenario.geometry().iter().filter_map(Assumption::first_touch));
+                if let Ok(impact) = scenario.impact() {
+                    assumptions.extend(Assumption::contact_default(&scenario, &impact));
+                    momentum = MomentumReport::of(&impact, 0.0);
+                }
                 (settings, Box::new(move |settings| analyse_scenario(&scenario, pulse, settings)))
             }
         };
@@ -304,6 +310,7 @@ impl Question for SimulateRequest {
         assumptions.extend(Assumption::estimates(&analysis.vehicle));
         let mut report = SimulateReport::of(self, &analysis, assumptions)
             .map_err(|source| failed(AnalysisError::Series(source)))?;
+        report.momentum = momentum;
         let asked = (self.vehicle_draws, self.seed);
         report.uncertainty = vehicle_uncertainty(asked, (&settings, &analysis), &analyse);
         if report.uncertainty.is_some() {

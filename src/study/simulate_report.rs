@@ -5,11 +5,13 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use crate::analysis::Analysis;
-use crate::collision::PrincipalDirectionOfForce;
+use crate::collision::{PrincipalDirectionOfForce, SecondContact};
 use crate::compare::{MotionError, largest_yaw_change_rad};
 use crate::data::{Channel, ForceAxes, SeriesError, TimeSeries, contact_interval};
 use crate::numerics::interpolate;
-use crate::study::{Assumption, Provenance, SimulateRequest, VehicleUncertainty, word};
+use crate::study::{
+    Assumption, MomentumReport, Provenance, SimulateRequest, VehicleUncertainty, word,
+};
 use crate::vehicle::frames::world_from_body;
 use crate::vehicle::{Motion, MotionFlag};
 
@@ -30,6 +32,8 @@ pub struct SimulateReport {
     pub duration_s: f64,
     /// The force on the vehicle.
     pub force: Option<ForceReport>,
+    /// The momentum solution whose impulse the force carries, world axes; none without a scenario.
+    pub momentum: Option<MomentumReport>,
     /// Change of the velocity of the CG over the contact [x, y], world axes, tyres included, m/s.
     pub delta_v_m_s: Option<[f64; 2]>,
     /// Its size, m/s.
@@ -46,7 +50,7 @@ pub struct SimulateReport {
     pub error: Option<MotionError>,
     /// How the end varies with what the data sheet of the struck vehicle leaves open.
     pub uncertainty: Option<VehicleUncertainty>,
-    /// Wheel lift and roll beyond the limit.
+    /// Wheel lift, roll beyond the limit, a second contact.
     pub flags: Vec<FlagReport>,
     /// What a person should know about how this was made.
     pub notes: Vec<String>,
@@ -121,10 +125,10 @@ pub struct EndState {
     pub speed_m_s: f64,
 }
 
-/// A [`MotionFlag`] for machines and, as `message`, for a person.
+/// A [`MotionFlag`] or a [`SecondContact`] for machines and, as `message`, for a person.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FlagReport {
-    /// `wheel_lift`, `roll_limit` or `energy_gain`.
+    /// `wheel_lift`, `roll_limit`, `energy_gain` or `second_contact`.
     pub kind: &'static str,
     /// When it is first raised, s.
     pub time_s: f64,
@@ -132,31 +136,54 @@ pub struct FlagReport {
     pub wheel: Option<String>,
     /// The roll angle, rad.
     pub roll_rad: Option<f64>,
+    /// Where the vehicles meet again [x, y], m.
+    pub position_m: Option<[f64; 2]>,
+    /// How fast their overlap grows there, m/s.
+    pub closing_speed_m_s: Option<f64>,
     /// For a person.
     pub message: String,
 }
 
+impl From<&SecondContact> for FlagReport {
+    fn from(second: &SecondContact) -> Self {
+        let ([x, y], speed) = (second.point_m, second.closing_speed_m_s);
+        let how = if second.was_apart { "meet again" } else { "go deeper into each other" };
+        Self {
+            kind: "second_contact",
+            time_s: second.time_s,
+            wheel: None,
+            roll_rad: None,
+            position_m: Some(second.point_m),
+            closing_speed_m_s: Some(speed),
+            message: format!(
+                "the vehicles {how} at {:.2} s, near x {x:.1} m, y {y:.1} m, closing at {speed:.1} \
+                 m/s: a second contact, which is not computed; the motions after it are not those \
+                 of the vehicles",
+                second.time_s
+            ),
+        }
+    }
+}
+
 impl From<&MotionFlag> for FlagReport {
     fn from(flag: &MotionFlag) -> Self {
-        let message = flag.to_string();
+        let of = |kind, time_s: f64| Self {
+            kind,
+            time_s,
+            wheel: None,
+            roll_rad: None,
+            position_m: None,
+            closing_speed_m_s: None,
+            message: flag.to_string(),
+        };
         match flag {
-            MotionFlag::WheelLift { wheel, time_s } => Self {
-                kind: "wheel_lift",
-                time_s: *time_s,
-                wheel: Some(word(wheel)),
-                roll_rad: None,
-                message,
-            },
-            MotionFlag::RollLimit { time_s, roll_rad } => Self {
-                kind: "roll_limit",
-                time_s: *time_s,
-                wheel: None,
-                roll_rad: Some(*roll_rad),
-                message,
-            },
-            MotionFlag::EnergyGain { time_s } => {
-                Self { kind: "energy_gain", time_s: *time_s, wheel: None, roll_rad: None, message }
+            MotionFlag::WheelLift { wheel, time_s } => {
+                Self { wheel: Some(word(wheel)), ..of("wheel_lift", *time_s) }
             }
+            MotionFlag::RollLimit { time_s, roll_rad } => {
+                Self { roll_rad: Some(*roll_rad), ..of("roll_limit", *time_s) }
+            }
+            MotionFlag::EnergyGain { time_s } => of("energy_gain", *time_s),
         }
     }
 }
@@ -185,6 +212,7 @@ impl SimulateReport {
             friction: analysis.vehicle.tires.friction,
             duration_s: recorded_s.or(end_s).unwrap_or(request.duration_s),
             force: ForceReport::of(request, analysis),
+            momentum: None,
             delta_v_m_s: delta_v,
             delta_v_magnitude_m_s: delta_v.map(|[x, y]| x.hypot(y)),
             end: series.map(EndState::of).transpose()?,
@@ -193,9 +221,11 @@ impl SimulateReport {
             largest_yaw_change_rad: series.map(largest_yaw_change_rad).transpose()?,
             error: analysis.error.clone(),
             uncertainty: None,
-            flags: motion.map_or_else(Vec::new, |motion| {
-                motion.flags.iter().map(FlagReport::from).collect()
-            }),
+            flags: motion
+                .iter()
+                .flat_map(|motion| motion.flags.iter().map(FlagReport::from))
+                .chain(analysis.second_contact.iter().map(FlagReport::from))
+                .collect(),
             notes: analysis.notes.clone(),
             assumptions,
             provenance: Provenance::default(),

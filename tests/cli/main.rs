@@ -6,6 +6,7 @@ mod answers;
 mod budgets;
 mod closed_pipe;
 mod commands;
+mod contact;
 mod data_sheets;
 mod endings;
 mod force;

@@ -7,11 +7,10 @@ use crate::app::case_table::listed_in;
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
-use crate::app::widgets::{assumptions_ui, value_row};
+use crate::app::widgets::{assumptions_ui, flags_ui, value_row};
 use crate::compare::{ErrorSummary, HORIZONS_S, MotionError};
-use crate::data::{DatasetKind, Severity};
+use crate::data::DatasetKind;
 use crate::numerics::Summary;
-use crate::render::theme;
 use crate::study::{SimulateDatasetReport, SimulateReport};
 use crate::units::{Quantity, UnitSystem, significant};
 
@@ -56,10 +55,7 @@ fn case_ui(ui: &mut Ui, report: &SimulateReport, units: UnitSystem) {
     for note in &report.notes {
         ui.weak(note);
     }
-    for flag in &report.flags {
-        let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-        ui.colored_label(color, &flag.message);
-    }
+    flags_ui(ui, &report.flags);
     match &report.error {
         Some(error) => drop(Grid::new("case error").striped(true).show(ui, |ui| {
             for (label, text) in error_rows(error, units) {

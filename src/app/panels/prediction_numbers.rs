@@ -5,8 +5,10 @@ use egui::{Grid, Ui};
 
 use crate::analysis::Estimate;
 use crate::app::widgets::{SpreadRow, spread_table_ui, value_row};
+use crate::data::Severity;
+use crate::render::theme;
 use crate::study::PredictForceReport;
-use crate::units::{Quantity, UnitSystem, percent};
+use crate::units::{Quantity, UnitSystem, percent, significant};
 
 /// Largest number of mixture components that are listed; of further ones the number is shown.
 const SHOWN_MODES: usize = 4;
@@ -20,11 +22,26 @@ pub fn numbers_ui(ui: &mut Ui, report: &PredictForceReport, units: UnitSystem) {
     Grid::new("force momentum").num_columns(2).show(ui, |ui| {
         let momentum = Quantity::Impulse.shown_vector(report.momentum_impulse_n_s, units);
         value_row(ui, "Momentum solution", &momentum);
+        if let Some(implied) = &report.implied_contact {
+            let shown = |of: &Estimate| {
+                let [low, high] = of.spread().ninety.map(significant);
+                format!("{} ({low} to {high})", significant(of.median))
+            };
+            value_row(ui, "Implied restitution e", &shown(&implied.restitution));
+            value_row(ui, "Implied P_τ/P_n", &shown(&implied.impulse_ratio));
+            let used = &implied.momentum;
+            let own = format!("e {}, μ_c {}", used.restitution, significant(used.friction_limit));
+            value_row(ui, "Solver uses", &own);
+        }
         value_row(ui, "PDOF, clock direction", &format!("{} o'clock", report.pdof_clock));
         if let Some(probability) = report.hooking_probability {
             value_row(ui, "Hooking probability", &percent(probability));
         }
     });
+    if let Some(warning) = report.implied_contact.as_ref().and_then(|of| of.warning.as_ref()) {
+        let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+        ui.colored_label(color, warning);
+    }
     modes_ui(ui, report, units);
 }
 

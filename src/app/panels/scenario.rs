@@ -7,7 +7,7 @@ use crate::app::dialogs::Purpose;
 use crate::app::panels::ending::ending_form;
 use crate::app::panes::PaneContext;
 use crate::app::state::{Project, Subject};
-use crate::app::widgets::{figure_frame, quantity_field, value_row};
+use crate::app::widgets::{assumptions_ui, figure_frame, quantity_field, value_row};
 use crate::collision::{
     ContactLocation, PulseShape, RestitutionForm, Scenario, ScenarioContact, ScenarioVehicle, Side,
 };
@@ -216,6 +216,13 @@ fn solution_ui(ui: &mut Ui, report: &ImpactReport, units: UnitSystem) {
         value_row(ui, "Impulse on target", &impulse(report.impulse_n_s));
         let parts = [report.impulse_normal_n_s, report.impulse_tangential_n_s];
         value_row(ui, "normal, tangential", &impulse(parts));
+        let side = report.struck_surface.map_or("as given".to_owned(), |side| side.to_string());
+        let angle = Quantity::Angle.shown(report.normal_angle_rad, units);
+        value_row(ui, "Contact normal", &format!("{angle}, {side}"));
+        if let Some(overlap_m) = report.overlap_m {
+            // A gap within the tolerance counts as touching.
+            value_row(ui, "Overlap of outlines", &Quantity::Length.shown(overlap_m, units));
+        }
         value_row(ui, "Regime", report.regime.label());
         let closing = Quantity::Speed.shown(report.closing_velocity_m_s[0].abs(), units);
         value_row(ui, "Closing speed", &closing);
@@ -227,6 +234,7 @@ fn solution_ui(ui: &mut Ui, report: &ImpactReport, units: UnitSystem) {
             }
         }
     });
+    assumptions_ui(ui, &report.assumptions);
 }
 
 /// Labels and values of the change of velocity and of the motion of one vehicle after the impact.

@@ -27,9 +27,10 @@ fn place(quantity: AssumedQuantity) -> Option<&'static str> {
         | AssumedQuantity::Bullet
         | AssumedQuantity::Speed
         | AssumedQuantity::ContactPoint => "In this window: the Vehicle pane",
-        AssumedQuantity::ContactHeight | AssumedQuantity::Pulse => {
-            "In this window: Contact in the Scenario pane"
-        }
+        AssumedQuantity::FirstTouch
+        | AssumedQuantity::Restitution
+        | AssumedQuantity::ContactHeight
+        | AssumedQuantity::Pulse => "In this window: Contact in the Scenario pane",
         AssumedQuantity::VehicleParameter | AssumedQuantity::BulletParameter => {
             "A data sheet that states it: open the file, or drop it here"
         }

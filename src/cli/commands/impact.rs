@@ -37,7 +37,7 @@ positive. PDOF: clockwise from straight ahead, where the force comes from.
 JSON: name, restitution, restitution_form, friction_limit, friction_of_critical,
   critical_impulse_ratio, friction_model, regime, impulse_n_s [x, y], impulse_magnitude_n_s, impulse_normal_n_s,
   impulse_tangential_n_s, closing_velocity_m_s [normal, tangential], contact_point_m [x, y],
-  normal_angle_rad, overlap_m, dissipated_energy_j; target and bullet each with velocity_m_s [x, y],
+  normal_angle_rad, struck_surface {target|bullet: side}, overlap_m, dissipated_energy_j; target and bullet each with velocity_m_s [x, y],
   speed_m_s, yaw_rate_rad_s, delta_v_m_s [x, y], delta_v_magnitude_m_s, delta_yaw_rate_rad_s,
   pdof_deg, pdof_clock; assumptions [{quantity, value, reason}]";
 
@@ -55,7 +55,10 @@ pub(in crate::cli) fn run(
 
 /// The friction limit that was used, beside the critical impulse ratio.
 fn friction(report: &ImpactReport) -> String {
-    let limit = significant(report.friction_limit);
+    let limit = match report.friction_of_critical {
+        Some(_) => significant(report.friction_limit),
+        None => report.friction_limit.to_string(),
+    };
     let of_critical = match report.critical_impulse_ratio {
         Some(critical) if critical > 0.0 => {
             let share = percent(report.friction_limit / critical);
@@ -70,6 +73,24 @@ fn friction(report: &ImpactReport) -> String {
     format!("{limit}{of_critical}{model}")
 }
 
+/// Overlap or gap that the text leaves out, m.
+const SHOWN_OVERLAP_M: f64 = 5e-4;
+
+/// Direction of the normal, the side that it belongs to, and the overlap of the outlines.
+fn normal(report: &ImpactReport, units: UnitSystem) -> String {
+    let angle = shown(Quantity::Angle, report.normal_angle_rad, units);
+    let side = report.struck_surface.map_or(String::new(), |side| format!(", {side}"));
+    let overlap = match report.overlap_m {
+        Some(depth_m) if depth_m.abs() < SHOWN_OVERLAP_M => "; the outlines touch".to_owned(),
+        Some(depth_m) if depth_m < 0.0 => {
+            format!("; gap {}", shown(Quantity::Length, -depth_m, units))
+        }
+        Some(depth_m) => format!("; overlap {}", shown(Quantity::Length, depth_m, units)),
+        None => "; contact as given".to_owned(),
+    };
+    format!("{angle} (world axes){side}{overlap}")
+}
+
 fn print_text(out: &mut dyn Write, answer: &ImpactAnswer, units: UnitSystem) -> io::Result<()> {
     const XY: [&str; 2] = ["x", "y"];
     let ImpactAnswer { scenario, solution, report } = answer;
@@ -80,6 +101,7 @@ fn print_text(out: &mut dyn Write, answer: &ImpactAnswer, units: UnitSystem) -> 
     let facts = [
         ("restitution", format!("{} {}", report.restitution, report.restitution_form.label())),
         ("friction limit", friction(report)),
+        ("normal", normal(report, units)),
         ("regime", solution.regime.label().to_owned()),
         ("closing velocity", vector(Quantity::Speed, closing, ["normal", "tangential"])),
         ("impulse", vector(Quantity::Impulse, solution.impulse_n_s, XY)),

@@ -60,6 +60,9 @@ mean.csv and sample_001.csv, …: force histories that every other command reads
 
 JSON: impulse_n_s {mean [x, y], x, y, magnitude}, peak_n, peak_time_s, duration_s, pdof_interval_deg
   (each median and intervals at 50, 80, 90, 95 %), pdof_deg, pdof_clock, momentum_impulse_n_s,
+  implied_contact {restitution, impulse_ratio, p_rigid, p_energy_gain, warning,
+  momentum {restitution, restitution_form,
+  friction_limit, critical_impulse_ratio, regime, impulse_n_s}},
   hooking_probability, modes, outside_training [feature, value, range, deviations], is_contact_open,
   is_body_open, assumptions";
 

@@ -4,6 +4,7 @@ use std::io::{self, Write};
 
 use crate::analysis::Estimate;
 use crate::cli::console::{print_assumptions, print_facts, shown};
+use crate::cli::text::contact::implied_facts;
 use crate::study::PredictForceReport;
 use crate::units::{Quantity, UnitSystem};
 
@@ -33,6 +34,8 @@ pub(in crate::cli) fn print_force_prediction(
         ("PDOF", pdof),
         ("hooking", hooking.map_or("unknown".to_owned(), |p| format!("{:.0} %", 100.0 * p))),
     ];
+    let mut facts = facts.to_vec();
+    facts.extend(report.implied_contact.iter().flat_map(|of| implied_facts(of, units)));
     print_facts(out, &facts)?;
     let open = [("contact point", report.is_contact_open), ("bullet body", report.is_body_open)];
     for (what, _) in open.into_iter().filter(|(_, is_open)| *is_open) {

@@ -2,6 +2,7 @@
 
 mod check;
 mod comparison;
+mod contact;
 mod force_evaluation;
 mod force_prediction;
 mod motion_prediction;

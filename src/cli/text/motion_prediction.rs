@@ -4,6 +4,7 @@ use std::io::{self, Write};
 
 use crate::analysis::Spread;
 use crate::cli::console::{print_assumptions, print_facts, shown};
+use crate::cli::text::contact::implied_facts;
 use crate::cli::text::sensitivity::print_sensitivity;
 use crate::study::PredictMotionReport;
 use crate::units::{Quantity, UnitSystem, percent};
@@ -45,6 +46,8 @@ pub(in crate::cli) fn print_motion_prediction(
     if let Some(probability) = report.hooking_probability {
         facts.push(("P(hooking)", percent(probability)));
     }
+    facts.extend(report.implied_contact.iter().flat_map(|of| implied_facts(of, units)));
+    facts.extend(report.flags.iter().map(|flag| ("flag", flag.message.clone())));
     for outside in &report.outside_training {
         let [low, high] = outside.range;
         let value = format!(

@@ -7,6 +7,7 @@ use crate::analysis::Spread;
 use crate::cli::console::{
     print_assumptions, print_facts, print_table, shown, shown_path, shown_vector,
 };
+use crate::cli::text::contact::surface;
 use crate::cli::text::sensitivity::print_sensitivity;
 use crate::study::{ForceReport, RestState, SimulateReport, VehicleUncertainty};
 use crate::units::{Quantity, UnitSystem};
@@ -31,6 +32,7 @@ pub(in crate::cli) fn print_simulation(
     let mut facts: Vec<Fact> =
         vec![("vehicle", report.vehicle.clone()), ("simulation", simulation)];
     facts.extend(report.force.iter().flat_map(|force| force_facts(force, &report.name, units)));
+    facts.extend(report.momentum.iter().map(|momentum| ("momentum", surface(momentum))));
     if let Some(delta_v) = report.delta_v_m_s {
         facts.push(("Δv over contact", vector(Quantity::Speed, delta_v)));
     }

@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::collision::{Scenario, ScenarioError};
+use crate::collision::{Impact, ImpactCase, Scenario, ScenarioError};
 use crate::data::{Case, DataError, ForceAttributes, StruckSide, Value};
 use crate::numerics::wrap_angle_rad;
 use crate::ranges::{
@@ -127,6 +127,28 @@ impl ForceScenario {
         numbers
     }
 
+    /// The planar impact of the collision, with the normal across the target; `None` if contact
+    /// point, position of the bullet or a yaw inertia is open, or if the contact lies on neither
+    /// side of the target.
+    ///
+    /// - `restitution`: coefficient of restitution e, 0 to 1;
+    /// - `friction_limit`: friction limit μ_c, 0 or more.
+    pub fn impact(&self, restitution: f64, friction_limit: f64) -> Option<Impact> {
+        let ([m_t_kg, m_b_kg], [izz_t, izz_b]) = (self.mass_kg, self.yaw_inertia_kg_m2);
+        let case = ImpactCase {
+            m_t_kg,
+            m_b_kg,
+            v_t_m_s: self.target_velocity_m_s,
+            v_b_m_s: self.bullet_velocity_m_s,
+            theta_b_rad: self.theta_b_rad,
+            izz_t_kg_m2: izz_t?,
+            izz_b_kg_m2: izz_b?,
+            contact_m: self.contact_m?,
+            bullet_m: self.bullet_position_m?,
+        };
+        case.to_impact(restitution, friction_limit).ok()
+    }
+
     /// Velocity of the bullet relative to the target `v_b − v_t`, m/s.
     pub fn relative_velocity_m_s(&self) -> [f64; 2] {
         [0, 1].map(|i| self.bullet_velocity_m_s[i] - self.target_velocity_m_s[i])
@@ -179,7 +201,12 @@ pub(crate) mod tests {
     use std::f64::consts::FRAC_PI_2;
 
     use super::*;
-    use crate::collision::ContactLocation;
+    use crate::collision::{
+        ContactLocation, DEFAULT_CONTACT_CLOSING_M_S, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION,
+    };
+    use crate::force::ForceCase;
+    use crate::force::input::shipped;
+    use crate::learning::{TEST_SHARE, split};
 
     pub(crate) fn example(side: StruckSide) -> ForceScenario {
         let right = ForceScenario {
@@ -261,5 +288,35 @@ pub(crate) mod tests {
         for (a, b) in numbers(&seen).into_iter().zip(numbers(&again)) {
             assert!((a - b).abs() < 1e-9, "{seen:?}\n{again:?}");
         }
+    }
+
+    /// Restitution and friction limit of the momentum solution are those that fit the training cases
+    /// best, to the hundredth.
+    #[test]
+    fn the_defaults_of_the_contact_are_fitted_to_the_training_cases() {
+        let cases = shipped("fea");
+        let train = split(&cases, 0, TEST_SHARE).train.into_iter().map(|idx| &cases[idx]);
+        let train: Vec<&ForceCase> = train.filter(|case| case.is_clean()).collect();
+        let mean_error = |restitution, friction_limit| {
+            let error = |case: &&ForceCase| {
+                let impact = case.scenario.impact(restitution, friction_limit).unwrap();
+                let ([px, py], [qx, qy]) = (impact.solve().unwrap().impulse_n_s, case.impulse_n_s);
+                (px - qx).hypot(py - qy) / qx.hypot(qy)
+            };
+            train.iter().map(error).sum::<f64>() / train.len() as f64
+        };
+        let fitted = mean_error(DEFAULT_RESTITUTION, DEFAULT_FRICTION_LIMIT);
+        assert!((fitted - 0.171).abs() < 1e-3, "{fitted}");
+        for (e, mu) in (0..=10).flat_map(|i| (0..=10).map(move |j| (i, j))) {
+            let [e, mu] = [f64::from(e) / 10.0, f64::from(mu) / 10.0];
+            let (e, mu) = (DEFAULT_RESTITUTION * 2.0 * e, DEFAULT_FRICTION_LIMIT * 2.0 * mu);
+            assert!(mean_error(e, mu) > fitted - 5e-4, "{e} {mu}");
+        }
+        let closing = train
+            .iter()
+            .map(|case| case.scenario.impact(0.0, 0.0).unwrap().closing_velocity_m_s()[0]);
+        let (low, high) = closing.fold((f64::MAX, 0.0_f64), |(l, h), v| (l.min(v), h.max(v)));
+        let [slowest, fastest] = DEFAULT_CONTACT_CLOSING_M_S;
+        assert!((low - slowest).abs() < 0.05 && (high - fastest).abs() < 0.05, "{low} {high}");
     }
 }

@@ -1,0 +1,561 @@
+//! Contact point and contact normal of two vehicles from their outlines in plan view.
+//!
+//! Assumptions: the vehicles are at first contact, or overlap as in the course of a contact that
+//! began a moment ago at their present velocities. Rounded corners, wheels and crush are left out.
+//!
+//! Source: the test for overlap is that of separating axes of two rectangles
+//! ([`Gottschalk1996`](crate::bibliography::Gottschalk1996)); the overlap is found by polygon
+//! clipping ([`SutherlandHodgman1974`](crate::bibliography::SutherlandHodgman1974)).
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use crate::collision::{Footprint, FootprintError, Pose, Side};
+
+/// Largest gap between the outlines at which the vehicles still count as touching, m. Poses that
+/// are measured from photographs or video are no more accurate than this.
+pub const TOUCH_TOLERANCE_M: f64 = 0.02;
+
+/// Overlap to which vehicles that barely touch are pushed together before the polygon of their
+/// overlap is computed, m.
+const PROBE_DEPTH_M: f64 = 1e-3;
+
+/// Longest time since first contact for which the relative velocity still tells which side was
+/// struck, s. Vehicles are in contact for 0.1 to 0.15 s; the shipped finite-element runs for 0.116 s.
+pub const MAX_APPROACH_TIME_S: f64 = 0.2;
+
+/// Closing speed below which vehicles do not approach each other, m/s.
+const MIN_CLOSING_M_S: f64 = 1e-6;
+
+/// The side to which the contact normal is perpendicular, and the vehicle to which it belongs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StruckSurface {
+    /// A side of the target, which is struck by a corner or a side of the bullet.
+    Target(Side),
+    /// A side of the bullet, into which a corner of the target penetrates.
+    Bullet(Side),
+}
+
+impl fmt::Display for StruckSurface {
+    /// Where the normal points, for a person.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Target(side) => write!(f, "into the target's {}", side.label()),
+            Self::Bullet(side) => write!(f, "out of the bullet's {}", side.label()),
+        }
+    }
+}
+
+/// Contact of two vehicles: contact point, contact normal and overlap.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact {
+    /// Contact point in world axes, m.
+    pub point_m: [f64; 2],
+    /// Angle Γ of the contact normal in world axes, rad. The normal points INTO the target.
+    pub normal_angle_rad: f64,
+    /// Overlap of the outlines along the normal, m. A negative value is the gap between them.
+    pub depth_m: f64,
+    /// The side to which the normal is perpendicular.
+    pub surface: StruckSurface,
+}
+
+/// An outline in motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MovingFootprint {
+    /// Outline of the vehicle.
+    pub footprint: Footprint,
+    /// Its position and heading.
+    pub pose: Pose,
+    /// Velocity of the CG in world axes, m/s.
+    pub velocity_m_s: [f64; 2],
+    /// Yaw rate, rad/s.
+    pub yaw_rate_rad_s: f64,
+}
+
+impl MovingFootprint {
+    /// An outline that does not move.
+    pub fn at_rest(footprint: Footprint, pose: Pose) -> Self {
+        Self { footprint, pose, velocity_m_s: [0.0; 2], yaw_rate_rad_s: 0.0 }
+    }
+
+    /// Velocity of a point of the vehicle, m/s.
+    ///
+    /// - `[x, y]`: the point in world axes, m.
+    fn velocity_at_m_s(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [vx, vy] = self.velocity_m_s;
+        let rate = self.yaw_rate_rad_s;
+        [vx - rate * (y - self.pose.y_m), vy + rate * (x - self.pose.x_m)]
+    }
+
+    fn check(&self) -> Result<(), FootprintError> {
+        self.footprint.check()?;
+        let Pose { x_m, y_m, yaw_rad } = self.pose;
+        let [vx, vy] = self.velocity_m_s;
+        for (value, name) in [
+            (x_m, "x_m"),
+            (y_m, "y_m"),
+            (yaw_rad, "yaw_rad"),
+            (vx, "velocity_m_s[0]"),
+            (vy, "velocity_m_s[1]"),
+            (self.yaw_rate_rad_s, "yaw_rate_rad_s"),
+        ] {
+            if !value.is_finite() {
+                let expected = "a finite number";
+                return Err(FootprintError::Range { name, value, expected });
+            }
+        }
+        Ok(())
+    }
+
+    fn corners_m(&self) -> [[f64; 2]; 4] {
+        self.footprint.corners_m(&self.pose)
+    }
+}
+
+/// A side with the overlap along its normal.
+#[derive(Clone, Copy)]
+struct Candidate {
+    depth_m: f64,
+    /// Into the target.
+    normal: [f64; 2],
+    surface: StruckSurface,
+}
+
+/// Overlap of two outlines along the axis on which it is smallest, m; negative for a gap. Outlines
+/// overlap if and only if it is positive.
+pub fn overlap_m(target: &MovingFootprint, bullet: &MovingFootprint) -> f64 {
+    candidates(target, bullet).map(|of| of.depth_m).into_iter().fold(f64::INFINITY, f64::min)
+}
+
+/// Centroid of the overlap of two outlines in world axes, m; `None` if they do not overlap.
+pub fn overlap_centre_m(target: &MovingFootprint, bullet: &MovingFootprint) -> Option<[f64; 2]> {
+    centroid(&clip(&target.corners_m(), &bullet.corners_m()))
+}
+
+/// Finds the contact of two vehicles that touch or overlap.
+///
+/// Outlines that touch, with an overlap up to [`TOUCH_TOLERANCE_M`], have the normal of that side,
+/// of either vehicle, along whose normal the overlap is smallest; if two sides are equal, a side of
+/// the target is preferred. Outlines that overlap more are moved back along the relative velocity
+/// at the contact point to where they first touched: the normal is that of the side whose overlap
+/// divided by its closing speed is smallest,
+///
+/// ```text
+/// min over sides with v_rel·n > 0 of depth / (v_rel·n)
+/// ```
+///
+/// so that it never points against the approach. Without a relative velocity the smallest overlap
+/// decides.
+///
+/// The contact point is the centroid of the overlap. Outlines that overlap by less than 1 mm, or
+/// that have a gap up to [`TOUCH_TOLERANCE_M`], are first pushed together to an overlap of 1 mm. Two
+/// parallel sides therefore touch in the middle of their common length, and a corner touches at the
+/// corner.
+///
+/// - returns the contact in world axes.
+///
+/// # Errors
+/// [`FootprintError::Apart`] if the gap is larger than [`TOUCH_TOLERANCE_M`] or the outlines have
+/// no common area; [`FootprintError::TooDeep`] if the vehicles have passed each other along the
+/// normal, or if the side of first contact is not that of the smallest overlap and the first contact
+/// is more than [`MAX_APPROACH_TIME_S`] ago; [`FootprintError::Range`] if a number is out of range.
+pub fn find_contact(
+    target: &MovingFootprint,
+    bullet: &MovingFootprint,
+) -> Result<Contact, FootprintError> {
+    target.check()?;
+    bullet.check()?;
+    let candidates = candidates(target, bullet);
+    let shallowest = shallowest_of(&candidates);
+    let depth_m = shallowest.depth_m;
+    if depth_m < -TOUCH_TOLERANCE_M {
+        return Err(FootprintError::Apart { gap_m: -depth_m });
+    }
+    let push = (PROBE_DEPTH_M - depth_m).max(0.0);
+    let normal = shallowest.normal;
+    let pushed = bullet.corners_m().map(|[x, y]| [x + push * normal[0], y + push * normal[1]]);
+    let [x, y] = centroid(&clip(&target.corners_m(), &pushed))
+        .ok_or(FootprintError::Apart { gap_m: -depth_m })?;
+    // The bullet alone was pushed, but the contact point lies midway between the vehicles.
+    let point_m = [x - push / 2.0 * normal[0], y - push / 2.0 * normal[1]];
+    let struck = if depth_m > TOUCH_TOLERANCE_M {
+        let ([tx, ty], [bx, by]) =
+            (target.velocity_at_m_s(point_m), bullet.velocity_at_m_s(point_m));
+        let struck = first_touch(&candidates, shallowest, [bx - tx, by - ty])?;
+        let apart = [target.pose.x_m - bullet.pose.x_m, target.pose.y_m - bullet.pose.y_m];
+        if dot(apart, struck.normal) <= 0.0 {
+            return Err(FootprintError::TooDeep { depth_m: struck.depth_m, time_s: 0.0 });
+        }
+        struck
+    } else {
+        shallowest
+    };
+    Ok(Contact {
+        point_m,
+        normal_angle_rad: struck.normal[1].atan2(struck.normal[0]),
+        depth_m: struck.depth_m,
+        surface: struck.surface,
+    })
+}
+
+/// The four sides of the target, then those of the bullet.
+fn candidates(target: &MovingFootprint, bullet: &MovingFootprint) -> [Candidate; 8] {
+    let (target_m, bullet_m) = (target.corners_m(), bullet.corners_m());
+    let [front, left, rear, right] = Side::ALL;
+    let of_target = |side: Side| {
+        let outward = direction(target.pose.yaw_rad + side.outward_angle_rad());
+        let inward = outward.map(|c| -c);
+        let depth_m = reach(&target_m, outward) + reach(&bullet_m, inward);
+        Candidate { depth_m, normal: inward, surface: StruckSurface::Target(side) }
+    };
+    let of_bullet = |side: Side| {
+        let outward = direction(bullet.pose.yaw_rad + side.outward_angle_rad());
+        let depth_m = reach(&bullet_m, outward) + reach(&target_m, outward.map(|c| -c));
+        Candidate { depth_m, normal: outward, surface: StruckSurface::Bullet(side) }
+    };
+    [
+        of_target(front),
+        of_target(left),
+        of_target(rear),
+        of_target(right),
+        of_bullet(front),
+        of_bullet(left),
+        of_bullet(rear),
+        of_bullet(right),
+    ]
+}
+
+/// The side with the smallest overlap. Sides of equal overlap up to rounding do not replace a side
+/// of the target.
+fn shallowest_of(candidates: &[Candidate; 8]) -> Candidate {
+    let [first, others @ ..] = candidates;
+    others.iter().fold(
+        *first,
+        |best, other| {
+            if other.depth_m < best.depth_m - 1e-9 { *other } else { best }
+        },
+    )
+}
+
+/// The side at which outlines that overlap first touched.
+///
+/// - `approach_m_s`: velocity of the bullet relative to the target at the contact point.
+fn first_touch<'a>(
+    candidates: &'a [Candidate; 8],
+    shallowest: Candidate,
+    approach_m_s: [f64; 2],
+) -> Result<Candidate, FootprintError> {
+    let time_s = |of: &Candidate| of.depth_m / dot(approach_m_s, of.normal);
+    let closing = candidates.iter().filter(|of| dot(approach_m_s, of.normal) > MIN_CLOSING_M_S);
+    // As for the smallest overlap, a side of the target stays where two are equal.
+    let earlier = |best: &'a Candidate, other: &'a Candidate| {
+        if time_s(other) < time_s(best) - 1e-9 { other } else { best }
+    };
+    let Some(first) = closing.reduce(earlier) else {
+        return Ok(shallowest);
+    };
+    if dot(first.normal, shallowest.normal) > 1.0 - 1e-9 {
+        return Ok(shallowest);
+    }
+    if time_s(first) > MAX_APPROACH_TIME_S {
+        return Err(FootprintError::TooDeep { depth_m: first.depth_m, time_s: time_s(first) });
+    }
+    Ok(*first)
+}
+
+/// Computes the pose of a bullet of given heading that just touches a side of the target.
+///
+/// The point of the bullet that is furthest in the direction into the target lies on the struck
+/// side. It is a corner of the bullet, or the midpoint of a side of the bullet that is parallel to
+/// the struck side.
+///
+/// - `side`: struck side of the target.
+/// - `offset_m`: position of the touching point relative to the midpoint of the struck side, m,
+///   positive along the x axis of the target for its left and right side and along its y axis for
+///   its front and rear. A bullet at the right rear quarter of the target has the side
+///   [`Side::Right`] and a negative offset.
+/// - `heading_rad`: heading of the bullet in world axes, rad.
+///
+/// # Errors
+/// [`FootprintError::Apart`] if the offset lies so far beyond the end of the side that the outlines
+/// do not touch; [`FootprintError::Range`] if an outline or a pose is out of range.
+pub fn place_touching(
+    (target, target_pose): (&Footprint, &Pose),
+    (side, offset_m): (Side, f64),
+    (bullet, heading_rad): (&Footprint, f64),
+) -> Result<Pose, FootprintError> {
+    target.check()?;
+    bullet.check()?;
+    let [mx, my] = target.side_middle_m(side);
+    let point = target_pose.world_from_body(match side {
+        Side::Front | Side::Rear => [mx, my + offset_m],
+        Side::Left | Side::Right => [mx + offset_m, my],
+    });
+    let inward = direction(target_pose.yaw_rad + side.outward_angle_rad()).map(|c| -c);
+    let turned = Pose { x_m: 0.0, y_m: 0.0, yaw_rad: heading_rad };
+    let corners = bullet.corners_m(&turned);
+    let foremost = reach(&corners, inward);
+    let touching: Vec<_> =
+        corners.into_iter().filter(|&corner| dot(corner, inward) > foremost - 1e-9).collect();
+    let n = touching.len().max(1) as f64;
+    let middle = [0, 1].map(|i| touching.iter().map(|corner| corner[i]).sum::<f64>() / n);
+    let pose = Pose { x_m: point[0] - middle[0], y_m: point[1] - middle[1], yaw_rad: heading_rad };
+    let [still, placed] = [(target, target_pose), (bullet, &pose)]
+        .map(|(footprint, pose)| MovingFootprint::at_rest(*footprint, *pose));
+    find_contact(&still, &placed)?;
+    Ok(pose)
+}
+
+fn direction(angle_rad: f64) -> [f64; 2] {
+    let (sin, cos) = angle_rad.sin_cos();
+    [cos, sin]
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+/// Largest coordinate of the corners along a direction, m.
+fn reach(corners: &[[f64; 2]; 4], along: [f64; 2]) -> f64 {
+    corners.iter().map(|&corner| dot(corner, along)).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Intersection of two convex polygons whose corners are in counter-clockwise order (algorithm of
+/// Sutherland and Hodgman).
+fn clip(subject: &[[f64; 2]], window: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut polygon = subject.to_vec();
+    for (i, &a) in window.iter().enumerate() {
+        let b = window[(i + 1) % window.len()];
+        let inside = |p: [f64; 2]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
+        let mut kept = Vec::with_capacity(polygon.len() + 1);
+        for (j, &p) in polygon.iter().enumerate() {
+            let q = polygon[(j + 1) % polygon.len()];
+            let (dp, dq) = (inside(p), inside(q));
+            if dp >= 0.0 {
+                kept.push(p);
+            }
+            if (dp > 0.0 && dq < 0.0) || (dp < 0.0 && dq > 0.0) {
+                let t = dp / (dp - dq);
+                kept.push([0, 1].map(|k| p[k] + t * (q[k] - p[k])));
+            }
+        }
+        polygon = kept;
+    }
+    polygon
+}
+
+/// Centroid of a polygon with counter-clockwise corners; `None` if it has no area.
+fn centroid(polygon: &[[f64; 2]]) -> Option<[f64; 2]> {
+    let origin = *polygon.first()?;
+    let (mut area, mut moment) = (0.0, [0.0; 2]);
+    for pair in polygon.windows(2) {
+        let [p, q] = [0, 1].map(|k| [pair[k][0] - origin[0], pair[k][1] - origin[1]]);
+        let cross = p[0] * q[1] - p[1] * q[0];
+        area += cross;
+        for k in 0..2 {
+            moment[k] += (p[k] + q[k]) * cross / 3.0;
+        }
+    }
+    (area > 0.0).then(|| [0, 1].map(|k| origin[k] + moment[k] / area))
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+    use proptest::test_runner::RngSeed;
+
+    use super::*;
+
+    const CAR: Footprint = Footprint { length_m: 4.8, width_m: 1.8, cg_from_front_m: 2.2 };
+
+    fn pose(x_m: f64, y_m: f64, yaw_deg: f64) -> Pose {
+        let yaw_rad = yaw_deg.to_radians();
+        Pose { x_m, y_m, yaw_rad }
+    }
+
+    /// The contact of two cars at rest.
+    fn still(target: Pose, bullet: Pose) -> Result<Contact, FootprintError> {
+        let [target, bullet] = [target, bullet].map(|at| MovingFootprint::at_rest(CAR, at));
+        find_contact(&target, &bullet)
+    }
+
+    #[test]
+    fn a_rear_end_hit_touches_in_the_middle_of_the_shared_width() {
+        let (target, bullet) = (pose(0.0, 0.0, 0.0), pose(-4.8, 0.6, 0.0));
+        let contact = still(target, bullet).unwrap();
+        assert_eq!(contact.surface, StruckSurface::Target(Side::Rear));
+        assert!(contact.normal_angle_rad.abs() < 1e-12, "{contact:?}");
+        assert!((contact.point_m[0] + 2.6).abs() < 1e-9, "{contact:?}");
+        assert!((contact.point_m[1] - 0.3).abs() < 1e-9, "{contact:?}");
+    }
+
+    #[test]
+    fn a_pit_touches_at_the_bullets_corner_with_the_normal_across_the_target() {
+        for (side, theta_deg, normal_deg) in [(Side::Right, 12.0, 90.0), (Side::Left, -12.0, -90.0)]
+        {
+            let target = pose(3.0, -2.0, 30.0);
+            let heading_rad = (30.0_f64 + theta_deg).to_radians();
+            let place = (side, -1.2);
+            let bullet = place_touching((&CAR, &target), place, (&CAR, heading_rad)).unwrap();
+            let contact = still(target, bullet).unwrap();
+            assert_eq!(contact.surface, StruckSurface::Target(side));
+            let normal = contact.normal_angle_rad.to_degrees();
+            assert!((normal - 30.0 - normal_deg).abs() < 1e-9, "{contact:?}");
+            assert!(contact.depth_m.abs() < 1e-9, "{contact:?}");
+            let [x, y] = target.body_from_world(contact.point_m);
+            let expected_y = CAR.side_middle_m(side)[1];
+            assert!((x + 1.4).abs() < 3e-3 && (y - expected_y).abs() < 1e-3, "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn the_targets_corner_in_the_bullets_side_takes_the_bullets_normal() {
+        let contact = still(pose(0.0, 0.0, 0.0), pose(3.45, 1.0, 60.0)).unwrap();
+        assert_eq!(contact.surface, StruckSurface::Bullet(Side::Left));
+        assert!((contact.normal_angle_rad.to_degrees() - 150.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn placing_touches_for_every_side_and_heading() {
+        let target = pose(1.0, 2.0, -40.0);
+        for side in Side::ALL {
+            for heading_deg in (0..360).step_by(5) {
+                let heading_rad = f64::from(heading_deg).to_radians();
+                let bullet = place_touching((&CAR, &target), (side, 0.3), (&CAR, heading_rad));
+                let contact = still(target, bullet.unwrap()).unwrap();
+                assert!(contact.depth_m.abs() < 1e-9, "{side:?} {heading_deg}: {contact:?}");
+                let normal = direction(contact.normal_angle_rad);
+                let outward = direction(target.yaw_rad + side.outward_angle_rad());
+                assert!(dot(normal, outward) < -1.0 + 1e-9, "{side:?} {heading_deg}: {contact:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn vehicles_apart_are_refused() {
+        let here = pose(0.0, 0.0, 0.0);
+        let error = still(here, pose(0.0, 2.3, 0.0)).unwrap_err();
+        assert_eq!(error.to_string(), "the vehicles are 0.500 m apart");
+        assert!(place_touching((&CAR, &here), (Side::Rear, 2.0), (&CAR, 0.3)).is_err());
+        assert!(still(here, pose(f64::NAN, 2.3, 0.0)).is_err());
+    }
+
+    /// Two cars, of which the bullet approaches with `velocity_m_s` relative to the target.
+    fn approaching(bullet: Pose, velocity_m_s: [f64; 2]) -> Result<Contact, FootprintError> {
+        let target = MovingFootprint::at_rest(CAR, pose(0.0, 0.0, 0.0));
+        let bullet = MovingFootprint { velocity_m_s, ..MovingFootprint::at_rest(CAR, bullet) };
+        find_contact(&target, &bullet)
+    }
+
+    /// A deep overlap flipped the normal to the side along which it happened to be smaller: out of
+    /// the way of the approach, so that there was no impact and no warning.
+    #[test]
+    fn a_growing_overlap_keeps_the_normal_of_the_approach() {
+        for overlap_cm in 1..=115 {
+            let overlap_m = f64::from(overlap_cm) / 100.0;
+            // A push at the right rear quarter, the bullet's front 0.6 m ahead of the target's rear.
+            let pit = approaching(pose(-4.2, -1.8 + overlap_m, 0.0), [0.5, 6.0]).unwrap();
+            assert_eq!(pit.surface, StruckSurface::Target(Side::Right), "{overlap_m}");
+            assert!((pit.depth_m - overlap_m).abs() < 1e-9, "{pit:?}");
+            // The same from behind, with little of the widths shared.
+            let rear = approaching(pose(-4.8 + overlap_m, -1.2, 0.0), [8.0, 0.3]).unwrap();
+            assert_eq!(rear.surface, StruckSurface::Target(Side::Rear), "{overlap_m}");
+            // A bullet that comes from the right at a right angle into the front wing.
+            let cross = approaching(pose(2.0, -3.1 + overlap_m, 90.0), [-3.0, 10.0]).unwrap();
+            assert_eq!(cross.surface, StruckSurface::Target(Side::Right), "{overlap_m}");
+        }
+    }
+
+    #[test]
+    fn an_overlap_that_no_contact_brings_about_is_refused() {
+        // Side by side, half a metre in each other, and one overtakes: the front did not come
+        // through four metres of the other car.
+        let error = approaching(pose(-0.5, -1.3, 0.0), [5.0, 0.0]).unwrap_err();
+        assert!(matches!(error, FootprintError::TooDeep { .. }), "{error}");
+        assert!(
+            error.to_string().starts_with("the outlines overlap by 4.300 m, 0.86 s"),
+            "{error}"
+        );
+        // The bullet's CG has passed that of the target.
+        let error = approaching(pose(0.3, -0.2, 0.0), [40.0, 1.0]).unwrap_err();
+        assert!(matches!(error, FootprintError::TooDeep { .. }), "{error}");
+    }
+
+    #[test]
+    fn the_approach_is_that_of_the_contact_points() {
+        let target = MovingFootprint::at_rest(CAR, pose(0.0, 0.0, 0.0));
+        let at = MovingFootprint::at_rest(CAR, pose(-4.2, -1.1, 0.0));
+        // The bullet's front swings to the left with no velocity of its CG.
+        let swinging = MovingFootprint { yaw_rate_rad_s: 3.0, ..at };
+        let contact = find_contact(&target, &swinging).unwrap();
+        assert_eq!(contact.surface, StruckSurface::Target(Side::Right));
+        assert_eq!(find_contact(&target, &at).unwrap().surface, StruckSurface::Target(Side::Rear));
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig {
+            cases: 1000,
+            rng_seed: RngSeed::Fixed(1),
+            failure_persistence: None,
+            ..ProptestConfig::default()
+        })]
+
+        /// The normal is never against the approach, however deep the overlap.
+        #[test]
+        fn the_normal_follows_the_approach(
+            at in (-3.0..3.0, -3.0..3.0, -4.0..4.0),
+            velocity in [-20.0..20.0, -20.0..20.0],
+        ) {
+            let bullet = Pose { x_m: at.0, y_m: at.1, yaw_rad: at.2 };
+            let Ok(contact) = approaching(bullet, velocity) else { return Ok(()) };
+            if contact.depth_m > TOUCH_TOLERANCE_M {
+                let closing = dot(velocity, direction(contact.normal_angle_rad));
+                prop_assert!(closing > 0.0, "{closing} {contact:?}");
+                // Moved back to first contact, the outlines touch.
+                let back = contact.depth_m / closing;
+                let touching = Pose {
+                    x_m: at.0 - back * velocity[0],
+                    y_m: at.1 - back * velocity[1],
+                    yaw_rad: at.2,
+                };
+                let [a, b] = [Pose::default(), touching]
+                    .map(|at| MovingFootprint::at_rest(CAR, at));
+                prop_assert!(overlap_m(&a, &b) < 1e-6, "{}", overlap_m(&a, &b));
+            }
+        }
+
+        /// A rigid motion of both vehicles moves the contact with them; a mirrored scene has the
+        /// same overlap; the contact point lies in both outlines.
+        #[test]
+        fn contacts_move_with_the_scene(
+            at in (-3.0..3.0, -3.0..3.0, -4.0..4.0),
+            scene in (-50.0..50.0, -50.0..50.0, -4.0..4.0),
+        ) {
+            let car = |x_m: f64, y_m: f64, yaw_rad: f64| Pose { x_m, y_m, yaw_rad };
+            let (here, there) = (car(0.0, 0.0, 0.0), car(at.0, at.1, at.2));
+            let Ok(contact) = still(here, there) else {
+                return Ok(());
+            };
+            for pose in [here, there] {
+                let [x, y] = pose.body_from_world(contact.point_m);
+                prop_assert!((-2.6 - 0.02..2.2 + 0.02).contains(&x) && y.abs() < 0.92, "{x} {y}");
+            }
+            let moved = car(scene.0, scene.1, scene.2);
+            let [x, y] = moved.world_from_body([at.0, at.1]);
+            let bullet = car(x, y, at.2 + scene.2);
+            let other = still(moved, bullet).unwrap();
+            prop_assert!((other.depth_m - contact.depth_m).abs() < 1e-9);
+            // If two sides have the same overlap, rounding decides which of them is found.
+            if other.surface == contact.surface {
+                let point = moved.body_from_world(other.point_m);
+                for (got, expected) in point.into_iter().zip(contact.point_m) {
+                    prop_assert!((got - expected).abs() < 1e-6, "{other:?}");
+                }
+            }
+            let image = still(here, car(at.0, -at.1, -at.2)).unwrap();
+            prop_assert!((image.depth_m - contact.depth_m).abs() < 1e-9);
+        }
+    }
+}

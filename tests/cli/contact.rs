@@ -1,0 +1,168 @@
+//! One contact, one answer: where the vehicles touch, with which restitution and friction.
+
+#![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
+
+use std::path::PathBuf;
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::answers::{refusal, scenario_with, write};
+use crate::program::{SCENARIO, answer, ok, program, text};
+
+/// The example scenario with the bullet at a position, by the outlines.
+fn placed(folder: &TempDir, [x_m, y_m]: [f64; 2], bullet_speed_km_h: f64) -> PathBuf {
+    let scenario = std::fs::read_to_string(SCENARIO).unwrap();
+    let position = format!("[bullet]\nx_m = {x_m}\ny_m = {y_m}");
+    let mut scenario = scenario.replacen("[bullet]", &position, 1);
+    for (old, new) in [
+        ("from = \"side\"\nside = \"right\"\n", "from = \"footprints\"\n".to_owned()),
+        ("offset_m = -1.4         # just behind the rear axle\n", String::new()),
+        ("speed_km_h = 62", format!("speed_km_h = {bullet_speed_km_h}")),
+    ] {
+        assert!(scenario.contains(old), "{old}");
+        scenario = scenario.replacen(old, &new, 1);
+    }
+    write(folder, "placed.toml", &scenario)
+}
+
+/// From an overlap of 0.66 m on the normal lay along the target, which the bullet does not approach:
+/// `impact` said a delta-v of 0.00 and nothing else.
+#[test]
+fn outlines_that_overlap_deeply_keep_the_normal_of_the_approach() {
+    let folder = TempDir::new().unwrap();
+    let mut overlaps = Vec::new();
+    for overlap_m in [0.0, 0.2, 0.4, 0.6, 0.66, 0.8, 0.9] {
+        let scenario = placed(&folder, [-4.0, -2.52 + overlap_m], 56.0);
+        let report = answer(&["impact", text(&scenario)]);
+        let normal = report["normal_angle_rad"].as_f64().unwrap().to_degrees();
+        assert!((normal - 90.0).abs() < 1e-6, "{overlap_m}: {normal}");
+        assert_eq!(report["struck_surface"]["target"], "right");
+        let delta_v = report["target"]["delta_v_magnitude_m_s"].as_f64().unwrap();
+        assert!(delta_v > 0.5, "{overlap_m}: {delta_v}");
+        overlaps.push(report["overlap_m"].as_f64().unwrap());
+        let assumed = report["assumptions"].to_string();
+        assert_eq!(assumed.contains("they first touched there"), overlap_m > 0.1, "{assumed}");
+        let told = ok(program().arg("impact").arg(&scenario).output().unwrap());
+        let told = told.lines().find(|line| line.starts_with("normal")).unwrap().to_owned();
+        assert!(told.contains("into the target's right side; overlap"), "{told}");
+    }
+    for (pair, step) in overlaps.windows(2).zip([0.2, 0.2, 0.2, 0.06, 0.14, 0.1]) {
+        assert!((pair[1] - pair[0] - step).abs() < 1e-9, "{overlaps:?}");
+    }
+}
+
+#[test]
+fn outlines_that_cannot_have_met_like_this_are_refused() {
+    let folder = TempDir::new().unwrap();
+    // The CG of the bullet lies beyond that of the target.
+    let scenario = placed(&folder, [-2.0, 0.4], 56.0);
+    for command in ["impact", "simulate"] {
+        let args = if command == "impact" { vec![command] } else { vec![command, "--scenario"] };
+        let line = refusal(&[&args[..], &[text(&scenario)]].concat());
+        assert!(line.contains("which side was struck cannot be told"), "{line}");
+    }
+}
+
+#[test]
+fn both_forms_of_restitution_are_a_choice() {
+    let folder = TempDir::new().unwrap();
+    let solve = |old: &str, new: &str| -> Value {
+        let scenario = scenario_with(&folder, "form.toml", old, new);
+        answer(&["impact", text(&scenario)])
+    };
+    let sticks = "restitution = 0.3\nfriction_limit = 2\nrestitution_form = ";
+    let old = "restitution = 0.15\nfriction_limit = 0.4";
+    let [normal, common] =
+        ["normal", "common_velocity"].map(|form| solve(old, &format!("{sticks}\"{form}\"")));
+    assert_eq!(
+        (&normal["regime"], &common["regime"]),
+        (&"no_slide".into(), &"common_velocity".into())
+    );
+    assert_eq!(common["restitution_form"], "common_velocity");
+    assert_ne!(normal["impulse_n_s"], common["impulse_n_s"]);
+
+    let of_critical = solve("friction_limit = 0.4", "friction_of_critical_percent = 50");
+    let number = |key: &str| of_critical[key].as_f64().unwrap();
+    let (used, critical) = (number("friction_limit"), number("critical_impulse_ratio"));
+    assert!((used / critical - 0.5).abs() < 1e-12, "{used} {critical}");
+    let ratio = number("impulse_tangential_n_s").abs() / number("impulse_normal_n_s");
+    assert!((ratio - used).abs() < 1e-9, "{ratio} {used}");
+}
+
+/// Vehicles that met again after the impact were moved through each other without a word.
+#[test]
+fn a_second_contact_is_flagged() {
+    let folder = TempDir::new().unwrap();
+    let slow = scenario_with(&folder, "slow.toml", "speed_km_h = 54", "speed_km_h = 0");
+    let report = answer(&["simulate", "--scenario", text(&slow)]);
+    let flags = report["flags"].as_array().unwrap();
+    let flag = flags.iter().find(|flag| flag["kind"] == "second_contact").unwrap();
+    assert!(flag["time_s"].as_f64().unwrap() > 0.1, "{flag}");
+    assert!(flag["closing_speed_m_s"].as_f64().unwrap() > 0.5, "{flag}");
+    assert_eq!(flag["position_m"].as_array().unwrap().len(), 2);
+    let told = ok(program().args(["simulate", "--scenario"]).arg(&slow).output().unwrap());
+    assert!(told.contains("a second contact, which is not computed"), "{told}");
+    let out = folder.path().join("out");
+    let predict = ["predict", "--draws", "2", "--scenario", text(&slow), "--out", text(&out)];
+    assert_eq!(answer(&predict)["flags"][0], *flag);
+    let rear = std::fs::read_to_string(SCENARIO).unwrap().replace("heading_deg = 18", "");
+    let rear = rear.replace("side = \"right\"", "side = \"rear\"").replace("= -1.4", "= 0.2");
+    let rear = write(&folder, "rear.toml", &rear);
+    let free = answer(&["simulate", "--scenario", text(&rear)]);
+    assert_eq!(free["flags"].as_array().unwrap().len(), 0, "{free}");
+}
+
+/// The momentum solution and the force network describe one contact: both are named.
+#[test]
+fn a_predicted_impulse_is_told_as_restitution_and_impulse_ratio() {
+    let folder = TempDir::new().unwrap();
+    let report = answer(&["predict", "force", "--scenario", SCENARIO]);
+    let implied = &report["implied_contact"];
+    for key in ["restitution", "impulse_ratio"] {
+        let median = implied[key]["median"].as_f64().unwrap();
+        let [low, high] =
+            ["low", "high"].map(|end| implied[key]["intervals"][2][end].as_f64().unwrap());
+        assert!(low < median && median < high && median.abs() < 1.0, "{implied}");
+    }
+    let impact = answer(&["impact", SCENARIO]);
+    assert_eq!(implied["momentum"]["impulse_n_s"], impact["impulse_n_s"]);
+    assert_eq!(implied["momentum"]["restitution"], 0.15);
+    assert!(implied["warning"].is_null(), "{implied}");
+    let out = folder.path().join("out");
+    let predict = ["predict", "--draws", "2", "--scenario", SCENARIO, "--out", text(&out)];
+    assert_eq!(answer(&predict)["implied_contact"], *implied);
+    assert_eq!(answer(&["simulate", "--scenario", SCENARIO])["momentum"], implied["momentum"]);
+    let told = ok(program().args(["predict", "force", "--scenario", SCENARIO]).output().unwrap());
+    assert!(told.contains("implied e ") && told.contains("\nmomentum "), "{told}");
+}
+
+/// A force depends on the relative velocity alone: a standing target takes the same as a moving one.
+/// Struck by a fast bullet, which no training case has, the predicted impulse was told like any other.
+#[test]
+fn standing_and_slow_targets_have_a_force_or_a_warning() {
+    let folder = TempDir::new().unwrap();
+    let struck = |target_m_s: f64, bullet_vx_m_s: f64| {
+        let scenario = std::fs::read_to_string(SCENARIO).unwrap();
+        let scenario = scenario
+            .replacen("speed_km_h = 54", &format!("speed_m_s = {target_m_s}"), 1)
+            .replacen("speed_km_h = 62", &format!("vx_m_s = {bullet_vx_m_s}\nvy_m_s = 4.5"), 1);
+        let scenario = write(&folder, "struck.toml", &scenario);
+        answer(&["predict", "force", "--scenario", text(&scenario)])
+    };
+    let mean = |report: &Value| -> Vec<f64> {
+        let mean = report["impulse_n_s"]["mean"].as_array().unwrap().iter();
+        mean.map(|p| p.as_f64().unwrap()).collect()
+    };
+    let moving = struck(15.0, 16.5);
+    for target_m_s in [0.0, 1.0, 3.0] {
+        let slow = struck(target_m_s, target_m_s + 1.5);
+        for (slow, moving) in mean(&slow).into_iter().zip(mean(&moving)) {
+            assert!((slow / moving - 1.0).abs() < 1e-3, "{target_m_s}: {slow} {moving}");
+        }
+        assert!(slow["implied_contact"]["warning"].is_null(), "{slow}");
+        let fast = struck(target_m_s, 17.0);
+        let warning = fast["implied_contact"]["warning"].as_str().unwrap();
+        assert!(warning.contains("is not that of a contact"), "{warning}");
+    }
+}
