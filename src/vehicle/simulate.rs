@@ -72,7 +72,7 @@ pub struct Manoeuvre {
     /// Duration of the motion, s, in the range [`SIMULATED_DURATION`].
     pub duration_s: f64,
     /// Whether the motion ends before its duration where the vehicle has come to rest: after the end
-    /// of the force and the last change of the controls, see [`RestWatch`].
+    /// of the force and the last change of the controls, see [`Motion::rest_s`].
     pub ends_at_rest: bool,
 }
 

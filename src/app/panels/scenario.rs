@@ -22,6 +22,9 @@ use crate::render::{FigureOptions, theme};
 use crate::study::{BodyReport, ImpactAnswer, ImpactReport};
 use crate::units::{Quantity, UnitSystem};
 
+/// Overlap of the outlines below which they just touch, m.
+const SHOWN_OVERLAP_M: f64 = 5e-4;
+
 /// Height of the plan view, points.
 const PLAN_HEIGHT: f32 = 200.0;
 
@@ -218,10 +221,15 @@ fn solution_ui(ui: &mut Ui, report: &ImpactReport, units: UnitSystem) {
         value_row(ui, "normal, tangential", &impulse(parts));
         let side = report.struck_surface.map_or("as given".to_owned(), |side| side.to_string());
         let angle = Quantity::Angle.shown(report.normal_angle_rad, units);
-        value_row(ui, "Contact normal", &format!("{angle}, {side}"));
+        value_row(ui, "Contact normal", &angle);
+        value_row(ui, "Struck surface", &side);
         if let Some(overlap_m) = report.overlap_m {
             // A gap within the tolerance counts as touching.
-            value_row(ui, "Overlap of outlines", &Quantity::Length.shown(overlap_m, units));
+            let overlap = match overlap_m > SHOWN_OVERLAP_M {
+                true => Quantity::Length.shown(overlap_m, units),
+                false => "none, they touch".to_owned(),
+            };
+            value_row(ui, "Overlap of outlines", &overlap);
         }
         value_row(ui, "Regime", report.regime.label());
         let closing = Quantity::Speed.shown(report.closing_velocity_m_s[0].abs(), units);

@@ -40,7 +40,7 @@ pub enum Drive {
 }
 
 impl VehicleClass {
-    /// Every class, in the order of [`VehicleClass::pick`].
+    /// Every class, from the smallest car to the commercial vehicles.
     pub const ALL: [Self; 5] = [Self::Any, Self::Car, Self::Suv, Self::Pickup, Self::Van];
     /// The words in a vehicle file, in the order of [`VehicleClass::ALL`].
     pub const WORDS: [&'static str; 5] = ["any", "car", "suv", "pickup", "van"];
