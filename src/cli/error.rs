@@ -24,6 +24,12 @@ pub enum CliError {
     /// The scenario is not said.
     #[error("nothing to predict: say which scenario with --scenario FILE")]
     NothingToPredict,
+    /// What happens to the wheels is said for a data set whose cases say it themselves.
+    #[error(
+        "the cases of a trajectory data set say themselves what happens to the wheels and how long \
+         they last; leave out the options of the ending and --until-rest"
+    )]
+    EndingOfDataset,
     /// A request file holds no request.
     #[error("{}: is no request", path.display())]
     Request {

@@ -264,10 +264,10 @@ pub enum StudyError {
         /// The state of the training that is there.
         path: PathBuf,
     },
-    /// Wheels are braked, dragged or locked, of which the response network knows nothing.
+    /// Wheels are steered, braked, dragged or locked, of which the response network knows nothing.
     #[error(
-        "{name}: wheels are braked, dragged or locked, and the response network has learned from \
-         vehicles that coast; impactlab simulate takes it in, with the 4DOF model"
+        "{name}: wheels are steered, braked, dragged or locked, and the response network has learned \
+         from vehicles that coast; impactlab simulate takes it in, with the 4DOF model"
     )]
     NotCoasting {
         /// The scenario or case.

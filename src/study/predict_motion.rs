@@ -191,7 +191,7 @@ impl Question for PredictMotionRequest {
         let (Some(struck), Some(own_force)) = (&analysis.struck, &analysis.force) else {
             return Err(StudyError::NoForce { name: name() });
         };
-        if struck.controls.wheels.is_some() {
+        if !struck.controls.is_coasting() {
             return Err(StudyError::NotCoasting { name: name() });
         }
 

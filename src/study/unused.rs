@@ -126,6 +126,15 @@ pub(super) fn by_simulation(request: &SimulateRequest, is_recorded: bool) -> Vec
             "a recorded motion has its own duration",
         ));
     }
+    if is_recorded && matches!(request.source, MotionSource::Case { .. }) {
+        let by_case = "the case says itself what happens to the wheels and how long it lasts";
+        if request.ending.is_some() {
+            unused.push(not_used("what happens to the wheels", by_case));
+        }
+        if request.until_rest {
+            unused.push(not_used("simulation until rest", by_case));
+        }
+    }
     let has_bullet =
         !matches!(request.source, MotionSource::Trajectory { .. } | MotionSource::Drive(_))
             && !is_recorded;

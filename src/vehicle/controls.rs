@@ -33,6 +33,14 @@ pub struct Controls {
     pub wheels: Option<WheelHistory>,
 }
 
+impl Controls {
+    /// Whether the vehicle coasts with its front wheels straight ahead.
+    pub fn is_coasting(&self) -> bool {
+        let is_straight = |steer: &SteerHistory| steer.steer_rad.iter().all(|rad| *rad == 0.0);
+        self.wheels.is_none() && self.steer.as_ref().is_none_or(is_straight)
+    }
+}
+
 impl SteerHistory {
     /// Steer angle at a time, rad; 0 without samples.
     pub(super) fn at(&self, time_s: f64) -> f64 {

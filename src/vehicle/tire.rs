@@ -74,7 +74,7 @@ pub struct TireParameters {
 }
 
 /// Rolling radius of a usual car tyre, such as 205/55 R16, m.
-pub(super) fn usual_rolling_radius_m() -> f64 {
+fn usual_rolling_radius_m() -> f64 {
     0.31
 }
 

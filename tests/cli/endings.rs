@@ -60,6 +60,23 @@ fn a_forecast_of_a_braked_car_is_refused_and_not_answered_as_if_it_coasted() {
     let message = refusal(&["predict", "--scenario", text(&path), "--out", text(&out)]);
     assert!(message.contains("has learned from vehicles that coast"), "{message}");
     assert!(!out.join("trajectory.csv").exists());
+    // Nor is a steered one: its bands were as narrow as if the network knew it.
+    fs::write(
+        &path,
+        fs::read_to_string("assets/scenarios/pit_right_rear.toml").unwrap()
+            + "\n[ending]\nsteer_deg = 5\n",
+    )
+    .unwrap();
+    let message = refusal(&["predict", "--scenario", text(&path), "--out", text(&out)]);
+    assert!(message.contains("wheels are steered"), "{message}");
+}
+
+#[test]
+fn a_data_set_does_not_take_an_ending_without_a_word() {
+    for args in [&["--brake", "1"][..], &["--locked", "rear-left"], &["--until-rest"]] {
+        let args = [&["simulate", "--dataset", "datasets/trajectories-fea"][..], args].concat();
+        assert!(refusal(&args).contains("say themselves what happens to the wheels"), "{args:?}");
+    }
 }
 
 #[test]

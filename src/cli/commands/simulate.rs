@@ -206,6 +206,9 @@ pub(in crate::cli) fn run(
             let source = MotionSource::Case { dataset: root.clone(), case: case.clone() };
             simulate_one(args, source, console)
         }
+        (Some(_), _) if args.until_rest || args.ending.ending().is_some() => {
+            Err(CliError::EndingOfDataset)
+        }
         (Some(root), _) => simulate_dataset(args, root, console),
         (None, _) => simulate_one(args, source(args), console),
     }

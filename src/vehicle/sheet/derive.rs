@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::sheet::{DataSheet, SheetQuantity as Q};
-use crate::vehicle::tire::{TireParameters, usual_rolling_radius_m};
+use crate::vehicle::tire::TireParameters;
 use crate::vehicle::{GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters};
 
 use super::data_sheet::SheetValues;
@@ -63,7 +63,7 @@ impl DataSheet {
                 rolling_resistance: get(Q::RollingResistance),
                 rolling_resistance_s_m: 0.0,
                 rolling_resistance_s2_m2: drag,
-                rolling_radius_m: usual_rolling_radius_m(),
+                rolling_radius_m: get(Q::WheelRadius),
             },
             estimates: self.rules(),
             sheet: None,
