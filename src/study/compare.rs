@@ -14,8 +14,9 @@ use crate::study::inputs::{data_name, response_cases};
 use crate::study::question::progress_of;
 use crate::study::{
     Assumption, BadCases, ConfigChoice, Library, ModelChoice, Observer, Provenance, Question,
-    StudyError, VehicleChoice,
+    StudyError, VehicleChoice, badges,
 };
+use crate::uncertainty::Badge;
 
 /// Numbers of trajectories to fine-tune on where nobody says them.
 const DEFAULT_TRAJECTORIES: [usize; 2] = [5, 20];
@@ -91,6 +92,8 @@ pub struct CompareReport {
     pub left_out: Vec<String>,
     /// What was assumed.
     pub assumptions: Vec<Assumption>,
+    /// What restricts the answer.
+    pub badges: Vec<Badge>,
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -111,7 +114,9 @@ impl CompareAnswer {
         models: impl IntoIterator<Item = ModelDigest>,
     ) -> Self {
         let provenance = Provenance::default().with_models(models);
-        Self { report: CompareReport { comparison, left_out, assumptions, provenance } }
+        let badges = badges::of_left_out(left_out.len(), "cases").into_iter();
+        let badges = badges.chain(badges::of_assumptions(&assumptions)).collect();
+        Self { report: CompareReport { comparison, left_out, assumptions, badges, provenance } }
     }
 }
 

@@ -20,9 +20,9 @@ use crate::study::question::progress_of;
 use crate::study::unused::not_used;
 use crate::study::{
     Assumption, BadCases, EvaluatedCases, Event, Library, ModelChoice, Observer, Provenance,
-    Question, StudyError,
+    Question, StudyError, badges,
 };
-use crate::uncertainty::CurveMixture;
+use crate::uncertainty::{Badge, CurveMixture};
 
 /// Cases that are drawn with their bands.
 const N_SAMPLE_CASES: usize = 6;
@@ -117,6 +117,8 @@ pub struct EvaluateForceReport {
     pub left_out: Vec<String>,
     /// What was assumed: nothing.
     pub assumptions: Vec<Assumption>,
+    /// What restricts the answer.
+    pub badges: Vec<Badge>,
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -130,6 +132,8 @@ pub struct CrossValidateForceReport {
     pub validation: CrossValidation,
     /// What was given and is not used.
     pub assumptions: Vec<Assumption>,
+    /// What restricts the answer.
+    pub badges: Vec<Badge>,
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -191,12 +195,15 @@ impl Question for EvaluateForceRequest {
                 let what = format!("data set {}", self.data.display());
                 let reason = "a cross-validation uses the training cases that the model holds";
                 let assumptions = vec![not_used(what, reason)];
-                let report = CrossValidateForceReport { validation, assumptions, provenance };
+                let badges = badges::of_assumptions(&assumptions);
+                let report =
+                    CrossValidateForceReport { validation, assumptions, badges, provenance };
                 EvaluateForceAnswer { report: ForceEvaluation::Folds(report), cases: None }
             }));
         }
         let cases = force_cases(&self.data, self.bad_cases, (library, observer))?;
         let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
+        let n_left_out = usable.left_out.len();
         let is_wanted =
             |case: &ForceCase| self.split == EvaluatedCases::All || !model.is_trained_on(case);
         let test: Vec<ForceCase> = usable.cases.into_iter().filter(is_wanted).collect();
@@ -213,15 +220,18 @@ impl Question for EvaluateForceRequest {
         } else {
             None
         };
+        let n_trained_on = test.iter().filter(|case| model.is_trained_on(case)).count();
+        let trained_on = badges::of_trained_on(n_trained_on, test.len()).into_iter();
         let report = EvaluateForceReport {
             model_file: self.model.to_string(),
             data: self.data.clone(),
             split: self.split,
             n_test: test.len(),
-            n_trained_on: test.iter().filter(|case| model.is_trained_on(case)).count(),
+            n_trained_on,
             evaluation,
             left_out: usable.left_out,
             assumptions: Vec::new(),
+            badges: trained_on.chain(badges::of_left_out(n_left_out, "cases")).collect(),
             provenance,
         };
         let report = ForceEvaluation::Cases(report);

@@ -8,8 +8,9 @@ use crate::collision::{
 };
 use crate::data::Outcome;
 use crate::study::{
-    Assumption, Library, Observer, Provenance, Question, ScenarioChoice, StudyError,
+    Assumption, Library, Observer, Provenance, Question, ScenarioChoice, StudyError, badges,
 };
+use crate::uncertainty::Badge;
 
 /// Asks for impulse, velocities after the impact, delta-v, energy and direction of force.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -70,6 +71,8 @@ pub struct ImpactReport {
     /// What was assumed: where the vehicles first touched, if their outlines overlap; default
     /// restitution and friction.
     pub assumptions: Vec<Assumption>,
+    /// What restricts the answer.
+    pub badges: Vec<Badge>,
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -134,6 +137,11 @@ impl Question for ImpactRequest {
         let impact = scenario.impact().map_err(unsolved)?;
         let solution = scenario.solve().map_err(unsolved)?;
         let [x, y] = solution.impulse_n_s;
+        let assumptions: Vec<Assumption> = Assumption::first_touch(&geometry)
+            .into_iter()
+            .chain(Assumption::contact_default(&scenario, &impact))
+            .collect();
+        let overlap = badges::of_overlap(&geometry).into_iter();
         let report = ImpactReport {
             name: scenario.name.clone(),
             restitution: impact.surface.restitution,
@@ -155,10 +163,8 @@ impl Question for ImpactRequest {
             dissipated_energy_j: solution.dissipated_energy_j,
             target: (&solution.target).into(),
             bullet: (&solution.bullet).into(),
-            assumptions: Assumption::first_touch(&geometry)
-                .into_iter()
-                .chain(Assumption::contact_default(&scenario, &impact))
-                .collect(),
+            badges: overlap.chain(badges::of_assumptions(&assumptions)).collect(),
+            assumptions,
             provenance: Provenance::default(),
         };
         Ok(Outcome::Complete(ImpactAnswer { report, scenario, solution }))

@@ -13,10 +13,10 @@ use crate::units::percent;
 const N_DRAWS: usize = 500;
 
 /// Share of drawn impulses with a restitution between 0 and 1 below which a prediction is warned of.
-const LEAST_P_RIGID: f64 = 0.5;
+pub(super) const LEAST_P_RIGID: f64 = 0.5;
 
 /// Share of drawn impulses that add energy above which a prediction is warned of.
-const MOST_P_ENERGY_GAIN: f64 = 0.05;
+pub(super) const MOST_P_ENERGY_GAIN: f64 = 0.05;
 
 /// The momentum solution of a collision: with which restitution and friction, and what it gives.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -22,6 +22,7 @@
 //! ```
 
 mod assumption;
+mod badges;
 mod checks;
 mod error;
 mod finite;

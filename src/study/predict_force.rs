@@ -14,8 +14,9 @@ use crate::study::simulate_dataset::take_case;
 use crate::study::unused::{by_force_network, not_used};
 use crate::study::{
     Assumption, ImpliedContactReport, Library, ModelChoice, Observer, Provenance, Question,
-    ScenarioChoice, StudyError,
+    ScenarioChoice, StudyError, badges,
 };
+use crate::uncertainty::Badge;
 
 /// Asks which force a collision brings about, and how sure that is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -100,6 +101,8 @@ pub struct PredictForceReport {
     pub is_body_open: bool,
     /// What was given and is not used. Nothing is assumed, since what is open is drawn.
     pub assumptions: Vec<Assumption>,
+    /// What restricts the answer.
+    pub badges: Vec<Badge>,
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -139,6 +142,8 @@ struct AskedCollision {
     impact: Option<(Impact, f64)>,
     /// What the network does not use of what the question says.
     unused: Vec<Assumption>,
+    /// That its outlines overlap.
+    overlap: Option<Badge>,
 }
 
 impl ForceQuestion {
@@ -148,7 +153,7 @@ impl ForceQuestion {
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<AskedCollision>, StudyError> {
-        let mut unused = Vec::new();
+        let (mut unused, mut overlap) = (Vec::new(), None);
         let across = |numbers: &ForceScenario| {
             Some((numbers.impact(DEFAULT_RESTITUTION, DEFAULT_FRICTION_LIMIT)?, 0.0))
         };
@@ -156,7 +161,9 @@ impl ForceQuestion {
             Self::Scenario(choice) => {
                 let scenario = choice.load()?;
                 unused = by_force_network(choice, &scenario)?;
-                unused.extend(scenario.geometry().iter().filter_map(Assumption::first_touch));
+                let geometry = scenario.geometry().ok();
+                unused.extend(geometry.as_ref().and_then(Assumption::first_touch));
+                overlap = geometry.as_ref().and_then(badges::of_overlap);
                 let numbers = ForceScenario::from_scenario(&scenario);
                 let numbers = numbers.map_err(|source| choice.unsolved(source))?;
                 let impact = scenario.impact().map_err(|source| choice.unsolved(source))?;
@@ -177,7 +184,7 @@ impl ForceQuestion {
                 (name.clone(), numbers.as_ref().clone(), across(numbers))
             }
         };
-        Ok(Outcome::Complete(AskedCollision { name, numbers, impact, unused }))
+        Ok(Outcome::Complete(AskedCollision { name, numbers, impact, unused, overlap }))
     }
 }
 
@@ -209,7 +216,8 @@ impl Question for PredictForceRequest {
         let Outcome::Complete(asked) = numbers else {
             return Ok(Outcome::Cancelled);
         };
-        let AskedCollision { name, numbers: mut collision, mut impact, mut unused } = asked;
+        let AskedCollision { name, numbers: mut collision, mut impact, mut unused, overlap } =
+            asked;
         if let Some(body) = &self.body {
             collision.bullet_body = Some(body.clone());
             if model.bodies().len() == 1 {
@@ -232,6 +240,8 @@ impl Question for PredictForceRequest {
         report.implied_contact = impact.and_then(|(impact, heading_rad)| {
             ImpliedContactReport::of(&prediction, (&impact, heading_rad), self.seed)
         });
+        report.badges = badges::of_predicted_force(&report);
+        report.badges.extend(overlap);
         Ok(Outcome::Complete(PredictForceAnswer { report, collision, forecast, prediction }))
     }
 }
@@ -264,6 +274,7 @@ impl PredictForceReport {
             is_contact_open: prediction.is_contact_open,
             is_body_open: prediction.is_body_open,
             assumptions: Vec::new(),
+            badges: Vec::new(),
             provenance: Provenance::default(),
         }
     }

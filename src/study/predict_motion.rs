@@ -18,8 +18,9 @@ use crate::study::unused::{by_force_network, by_forecast};
 use crate::study::{
     AssumedQuantity, Assumption, FlagReport, ImpliedContactReport, Library, ModelChoice,
     MotionSource, Observer, Provenance, Question, SeriesFile, SimulateAnswer, SimulateRequest,
-    StudyError,
+    StudyError, badges,
 };
+use crate::uncertainty::{Badge, BadgeKind};
 
 /// Force curves drawn from a predicted force where nobody says how many.
 pub const DEFAULT_DRAWS: usize = 30;
@@ -91,6 +92,8 @@ pub struct PredictMotionReport {
     pub outside_training: Vec<OutsideTraining>,
     /// What was assumed.
     pub assumptions: Vec<Assumption>,
+    /// What restricts the answer.
+    pub badges: Vec<Badge>,
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -229,16 +232,19 @@ impl Question for PredictMotionRequest {
             }
         };
         let forecast = forecast.map_err(failed)?;
+        let overlap = simulated.badges.into_iter().find(|badge| badge.kind == BadgeKind::Overlap);
         let mut assumptions = simulated.assumptions;
         assumptions.retain(|assumption| self.rests_on(assumption));
         assumptions.extend(unused);
         let provenance = self.provenance(library)?;
         let known = (assumptions, provenance);
-        let report = PredictMotionReport {
+        let mut report = PredictMotionReport {
             implied_contact: self.implied_contact(&forecast)?,
             flags: analysis.second_contact.iter().map(FlagReport::from).collect(),
             ..self.report(&analysis.name, struck, (&forecast, known))
         };
+        report.badges = badges::of_predicted_motion(&report);
+        report.badges.extend(overlap);
         Ok(Outcome::Complete(PredictMotionAnswer { report, analysis, forecast }))
     }
 }
@@ -317,6 +323,7 @@ impl PredictMotionRequest {
             implied_contact: None,
             outside_training: predicted.map_or_else(Vec::new, |force| force.outside.clone()),
             assumptions,
+            badges: Vec::new(),
             provenance,
         }
     }

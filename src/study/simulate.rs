@@ -9,6 +9,7 @@ use crate::analysis::{
     Analysis, AnalysisError, DriveSetup, PulseSetup, Settings, analyse_case, analyse_drive,
     analyse_recording, analyse_scenario,
 };
+use crate::collision::Scenario;
 use crate::data::{
     Case, Channel, ContactOutside, DatasetKind, FileKind, ForceAttributes, ForceHistory, Loaded,
     Outcome, Sampling, SeriesError, TIME_TOLERANCE_S, read_force_file, read_steer_file,
@@ -24,8 +25,9 @@ use crate::study::unused::by_simulation;
 use crate::study::vehicle_uncertainty::vehicle_uncertainty;
 use crate::study::{
     AssumedQuantity, Assumption, Library, MomentumReport, Observer, Provenance, Question,
-    ScenarioChoice, SeriesFile, SimulateReport, StudyError, VehicleChoice, word,
+    ScenarioChoice, SeriesFile, SimulateReport, StudyError, VehicleChoice, badges, word,
 };
+use crate::uncertainty::Badge;
 use crate::vehicle::{
     ContactPoint, Ending, Equations, Integrator, SteerHistory, VehicleParameters, VehicleState,
 };
@@ -237,7 +239,7 @@ impl Question for SimulateRequest {
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<SimulateAnswer>, StudyError> {
-        let (mut assumptions, mut momentum) = (Vec::new(), None);
+        let (mut assumptions, mut momentum, mut overlap) = (Vec::new(), None, None);
         let (settings, analyse): (Settings, Box<Analyse<'_>>) = match &self.source {
             MotionSource::Case { dataset, case } => {
                 let Outcome::Complete(dataset) = library.dataset(dataset, observer)? else {
@@ -292,12 +294,7 @@ impl Question for SimulateRequest {
                 if let (None, Some(ending)) = (&self.ending, &scenario.ending) {
                     settings.ending.clone_from(ending);
                 }
-                // Where there is no geometry, the analysis says why.
-                assumptions.extend(scenario.geometry().iter().filter_map(Assumption::first_touch));
-                if let Ok(impact) = scenario.impact() {
-                    assumptions.extend(Assumption::contact_default(&scenario, &impact));
-                    momentum = MomentumReport::of(&impact, 0.0);
-                }
+                (momentum, overlap) = contact_of(&scenario, &mut assumptions);
                 (settings, Box::new(move |settings| analyse_scenario(&scenario, pulse, settings)))
             }
         };
@@ -316,6 +313,8 @@ impl Question for SimulateRequest {
         if report.uncertainty.is_some() {
             report.provenance = Provenance::of_seed(self.seed);
         }
+        report.badges = badges::of_simulation(&report, self.until_rest);
+        report.badges.extend(overlap);
         Ok(Outcome::Complete(SimulateAnswer { report, analysis }))
     }
 }
@@ -409,6 +408,20 @@ impl Drive {
         };
         Ok(DriveSetup { initial, load, steer, notes })
     }
+}
+
+/// The momentum solution of a scenario, and whether its outlines overlap. Where there is no geometry
+/// or solution, the analysis says why.
+fn contact_of(
+    scenario: &Scenario,
+    assumptions: &mut Vec<Assumption>,
+) -> (Option<MomentumReport>, Option<Badge>) {
+    let geometry = scenario.geometry().ok();
+    assumptions.extend(geometry.as_ref().and_then(Assumption::first_touch));
+    let overlap = geometry.as_ref().and_then(badges::of_overlap);
+    let Ok(impact) = scenario.impact() else { return (None, overlap) };
+    assumptions.extend(Assumption::contact_default(scenario, &impact));
+    (MomentumReport::of(&impact, 0.0), overlap)
 }
 
 /// Refuses a force that acts at a point far off the struck vehicle.

@@ -11,8 +11,9 @@ use crate::study::inputs::{OpenVehicle, struck_vehicle};
 use crate::study::question::progress_of;
 use crate::study::{
     AssumedQuantity, Assumption, FlagReport, Library, Observer, Provenance, Question, StudyError,
-    VehicleChoice, word,
+    VehicleChoice, badges, word,
 };
+use crate::uncertainty::Badge;
 use crate::vehicle::{Equations, Integrator};
 
 /// Asks how far the 4DOF model lies from every recorded motion of a data set.
@@ -57,6 +58,8 @@ pub struct SimulateDatasetReport {
     pub failures: Vec<String>,
     /// What was assumed.
     pub assumptions: Vec<Assumption>,
+    /// What restricts the answer.
+    pub badges: Vec<Badge>,
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -134,16 +137,23 @@ impl Question for SimulateDatasetRequest {
         let problems = unread.into_iter().flatten().map(|problem| error_chain(problem));
         let failed = replay.failures.iter().map(|failure| error_chain(failure));
         let summary = |choose: fn(&Replay) -> bool| ErrorSummary::of(&replay.cases, choose);
+        let cases: Vec<ReplayedCaseReport> =
+            replay.cases.iter().map(ReplayedCaseReport::of).collect();
+        let failures: Vec<String> = problems.chain(failed).collect();
+        let flagged = badges::of_flagged_cases(&cases).into_iter();
+        let left_out = badges::of_left_out(failures.len(), "cases");
+        let assumed = badges::of_assumptions(&assumptions);
         let report = SimulateDatasetReport {
             dataset: self.dataset.clone(),
             vehicle: vehicle.name.clone(),
             equations: word(&vehicle.equations),
             integrator: word(&self.integrator),
-            cases: replay.cases.iter().map(ReplayedCaseReport::of).collect(),
+            badges: flagged.chain(left_out).chain(assumed).collect(),
+            cases,
             overall: summary(|_| true),
             spinning: summary(|replay| replay.spin),
             not_spinning: summary(|replay| !replay.spin),
-            failures: problems.chain(failed).collect(),
+            failures,
             assumptions,
             provenance: Provenance::default(),
         };

@@ -12,6 +12,7 @@ use crate::numerics::interpolate;
 use crate::study::{
     Assumption, MomentumReport, Provenance, SimulateRequest, VehicleUncertainty, word,
 };
+use crate::uncertainty::{Badge, BadgeKind};
 use crate::vehicle::frames::world_from_body;
 use crate::vehicle::{Motion, MotionFlag};
 
@@ -56,6 +57,8 @@ pub struct SimulateReport {
     pub notes: Vec<String>,
     /// What was assumed.
     pub assumptions: Vec<Assumption>,
+    /// What restricts the answer.
+    pub badges: Vec<Badge>,
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
     pub provenance: Provenance,
@@ -129,7 +132,7 @@ pub struct EndState {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FlagReport {
     /// `wheel_lift`, `roll_limit`, `energy_gain` or `second_contact`.
-    pub kind: &'static str,
+    pub kind: BadgeKind,
     /// When it is first raised, s.
     pub time_s: f64,
     /// The wheel that lifts.
@@ -149,7 +152,7 @@ impl From<&SecondContact> for FlagReport {
         let ([x, y], speed) = (second.point_m, second.closing_speed_m_s);
         let how = if second.was_apart { "meet again" } else { "go deeper into each other" };
         Self {
-            kind: "second_contact",
+            kind: BadgeKind::SecondContact,
             time_s: second.time_s,
             wheel: None,
             roll_rad: None,
@@ -178,12 +181,12 @@ impl From<&MotionFlag> for FlagReport {
         };
         match flag {
             MotionFlag::WheelLift { wheel, time_s } => {
-                Self { wheel: Some(word(wheel)), ..of("wheel_lift", *time_s) }
+                Self { wheel: Some(word(wheel)), ..of(BadgeKind::WheelLift, *time_s) }
             }
             MotionFlag::RollLimit { time_s, roll_rad } => {
-                Self { roll_rad: Some(*roll_rad), ..of("roll_limit", *time_s) }
+                Self { roll_rad: Some(*roll_rad), ..of(BadgeKind::RollLimit, *time_s) }
             }
-            MotionFlag::EnergyGain { time_s } => of("energy_gain", *time_s),
+            MotionFlag::EnergyGain { time_s } => of(BadgeKind::EnergyGain, *time_s),
         }
     }
 }
@@ -228,6 +231,7 @@ impl SimulateReport {
                 .collect(),
             notes: analysis.notes.clone(),
             assumptions,
+            badges: Vec::new(),
             provenance: Provenance::default(),
         })
     }

@@ -1,6 +1,6 @@
 //! Probability distributions of predictions: mixtures of normal distributions over whole force
 //! curves, over scalars and over positions in the plane, with their densities, draws, quantiles and
-//! scores; and the unscented transform.
+//! scores; and the unscented transform. And the badges of what an answer cannot promise.
 //!
 //! ```
 //! use impactlab::uncertainty::{CurveComponent, CurveMixture};
@@ -24,6 +24,8 @@
 
 mod error;
 
+mod badge;
+
 mod curve;
 mod normal_mixture;
 
@@ -41,6 +43,7 @@ mod planar;
 mod planar_grid;
 mod unscented;
 
+pub use badge::{Badge, BadgeKind};
 pub use bands::{CurveBand, CurveBands};
 pub use curve::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
 pub use error::MixtureError;

@@ -3,6 +3,7 @@
 //! All tests are in one program, because each test program would link all libraries again.
 
 mod answers;
+mod badges;
 mod budgets;
 mod closed_pipe;
 mod commands;

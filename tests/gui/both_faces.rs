@@ -236,7 +236,7 @@ fn a_scenario_is_solved_simulated_and_predicted_alike() {
     let (request, answer) = latest(&state(&harness).session.force.forecast);
     CommandLine::of(&["predict", "force", "--scenario", SCENARIO])
         .asks_differently(&["collision"])
-        .tells_differently(&["implied_contact", "assumptions"])
+        .tells_differently(&["implied_contact", "assumptions", "badges"])
         .compare(request, &answer.report);
     select(&mut harness, FORCES, "c002");
     step_until(&mut harness, "the force of the case", is_answered);

@@ -111,10 +111,10 @@ fn a_case_is_predicted_edited_and_left_open() {
         answer.report.impulse_n_s.magnitude.median
     });
     assert!(sizes[1] > sizes[0], "{sizes:?}");
-    assert!(harness.query_by_label_contains("Outside the training: bullet mass").is_none());
+    assert!(harness.query_by_label_contains("outside the domain: bullet mass").is_none());
     harness.state_mut().state_mut().project.force.scenario.mass_kg[1] = 9000.0;
     step_until(&mut harness, "a forecast far off", is_forecast_current);
-    harness.get_by_label_contains("Outside the training: bullet mass [kg] is 9000");
+    harness.get_by_label_contains("outside the domain: bullet mass [kg] 9000");
 
     // An unknown contact point is averaged over, and random curves are drawn.
     apply(&mut harness, Command::PredictCase);

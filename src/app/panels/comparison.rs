@@ -7,7 +7,7 @@ use crate::app::case_table::listed_in;
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
-use crate::app::widgets::{assumptions_ui, flags_ui, value_row};
+use crate::app::widgets::{assumptions_ui, badges_ui, value_row};
 use crate::compare::{ErrorSummary, HORIZONS_S, MotionError};
 use crate::data::DatasetKind;
 use crate::numerics::Summary;
@@ -51,11 +51,11 @@ pub fn comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 
 fn case_ui(ui: &mut Ui, report: &SimulateReport, units: UnitSystem) {
     ui.strong(format!("{} with {}", report.name, report.vehicle));
+    badges_ui(ui, &report.badges);
     assumptions_ui(ui, &report.assumptions);
     for note in &report.notes {
         ui.weak(note);
     }
-    flags_ui(ui, &report.flags);
     match &report.error {
         Some(error) => drop(Grid::new("case error").striped(true).show(ui, |ui| {
             for (label, text) in error_rows(error, units) {
@@ -99,6 +99,7 @@ fn error_rows(error: &MotionError, units: UnitSystem) -> Vec<(String, String)> {
 fn dataset_ui(ui: &mut Ui, report: &SimulateDatasetReport, units: UnitSystem) {
     let violations: usize = report.cases.iter().map(|case| case.violations).sum();
     ui.strong(format!("All {} cases, average position error", report.cases.len()));
+    badges_ui(ui, &report.badges);
     assumptions_ui(ui, &report.assumptions);
     let unit = Quantity::Length.display_unit(units);
     Grid::new("dataset error").striped(true).show(ui, |ui| {

@@ -10,7 +10,7 @@ use crate::app::panels::evaluation_plots::plots_ui;
 use crate::app::panels::evaluation_tables::tables_ui;
 use crate::app::panes::PaneContext;
 use crate::app::source::{Source, open_datasets};
-use crate::app::widgets::{bad_cases_ui, dataset_choice, no_dataset_ui};
+use crate::app::widgets::{bad_cases_ui, badges_ui, dataset_choice, no_dataset_ui};
 use crate::data::{DatasetKind, Severity};
 use crate::render::theme;
 use crate::study::{EvaluateForceReport, EvaluatedCases, ForceEvaluation};
@@ -109,10 +109,7 @@ fn heading_ui(ui: &mut Ui, report: &EvaluateForceReport) {
         }
     });
     let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-    if report.n_trained_on > 0 {
-        let text = format!("{} of these cases were learned from", report.n_trained_on);
-        ui.colored_label(color, text);
-    }
+    badges_ui(ui, &report.badges);
     for problem in &evaluation.problems {
         ui.colored_label(color, problem);
     }

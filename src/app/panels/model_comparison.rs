@@ -10,7 +10,8 @@ use crate::app::panes::PaneContext;
 use crate::app::response::{ComparisonForm, ComparisonStatus};
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::{
-    assumptions_ui, bad_cases_ui, count_field, dataset_choice, duration_text, no_dataset_ui,
+    assumptions_ui, bad_cases_ui, badges_ui, count_field, dataset_choice, duration_text,
+    no_dataset_ui,
 };
 use crate::data::{DatasetKind, Severity};
 use crate::figure::model_name;
@@ -163,6 +164,7 @@ fn heading_ui(ui: &mut Ui, report: &CompareReport) {
             ui.ctx().copy_text(to_markdown(comparison));
         }
     });
+    badges_ui(ui, &report.badges);
     assumptions_ui(ui, &report.assumptions);
     let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
     for why in &report.left_out {

@@ -6,7 +6,7 @@ use egui::{Id, Ui};
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
-use crate::app::widgets::{assumptions_ui, figure_frame};
+use crate::app::widgets::{assumptions_ui, badges_ui, figure_frame};
 use crate::figure::{MOTION_CHANNELS, analysis_motion_figure, analysis_readout};
 use crate::render::FigureOptions;
 use crate::study::SimulateAnswer;
@@ -23,6 +23,7 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let Some(SimulateAnswer { report, analysis }) = analysis_or_hint(ui, session) else {
         return;
     };
+    badges_ui(ui, &report.badges);
     assumptions_ui(ui, &report.assumptions);
     let two_columns = ui.available_width() > 560.0;
     let rows = if two_columns { 2.0 } else { 4.0 };

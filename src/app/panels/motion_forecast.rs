@@ -158,15 +158,6 @@ fn force_ui(
             ui.colored_label(color, text);
         }
     }
-    for outside in answer.iter().flat_map(|answer| &answer.answer.report.outside_training) {
-        let [low, high] = outside.range;
-        let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-        let text = format!(
-            "Outside the training of the force model: {} is {:.3}, trained on {low:.3} to {high:.3}",
-            outside.feature, outside.value
-        );
-        ui.colored_label(color, text);
-    }
 }
 
 /// Draws the choice of the density map, of the time window, and of the motions that are drawn.

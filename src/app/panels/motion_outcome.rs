@@ -4,7 +4,7 @@
 use egui::{Grid, Ui};
 
 use crate::app::response::MotionAnswer;
-use crate::app::widgets::{SpreadRow, assumptions_ui, flags_ui, spread_table_ui, value_row};
+use crate::app::widgets::{SpreadRow, assumptions_ui, badges_ui, spread_table_ui, value_row};
 use crate::units::{Quantity, UnitSystem, percent};
 
 /// Draws the time at which the vehicle comes to rest (or at which the forecast ends), the
@@ -33,8 +33,8 @@ pub fn outcome_ui(ui: &mut Ui, answer: &MotionAnswer, units: UnitSystem) {
             "Change since the impact, to the left; goes on beyond a turn",
         ),
     ];
+    badges_ui(ui, &report.badges);
     assumptions_ui(ui, &report.assumptions);
-    flags_ui(ui, &report.flags);
     spread_table_ui(ui, &report.scenario, &rows);
     Grid::new("motion outcome").num_columns(2).show(ui, |ui| {
         value_row(ui, "Speed", &Quantity::Speed.shown(outcome.speed_m_s, units));

@@ -12,17 +12,15 @@ use crate::app::force::{
 };
 use crate::app::state::{Project, View};
 use crate::app::widgets::{SliderRange, quantity_slider};
-use crate::data::{Severity, StruckSide};
+use crate::data::StruckSide;
 use crate::force::ForceScenario;
 use crate::ranges::{BODY_MASS, CONTACT_X, HEADING, SPEED};
-use crate::render::theme;
-use crate::units::{UnitSystem, significant};
+use crate::units::UnitSystem;
 
 /// Width of a slider without its number field, points.
 const SLIDER_WIDTH: f32 = 110.0;
 
-/// Draws the origin of the collision, its numbers, and warnings for numbers that lie outside the
-/// range of the training data.
+/// Draws the origin of the collision, its numbers, and which of them are open.
 pub fn form_ui(
     ui: &mut Ui,
     (project, view): (&mut Project, &mut View),
@@ -41,19 +39,6 @@ pub fn form_ui(
     });
     if let Some(answer) = force.forecast.ok() {
         let report = &answer.report;
-        let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-        for outside in &report.outside_training {
-            let [low, high] = outside.range.map(significant);
-            let text = format!(
-                "Outside the training: {} is {}, trained on {low} to {high} ({} standard deviations off)",
-                outside.feature,
-                significant(outside.value),
-                significant(outside.deviations),
-            );
-            ui.colored_label(color, text).on_hover_text(
-                "The model has never seen such a collision: its bands do not hold there. Seen with the bullet on the right and the target at rest",
-            );
-        }
         let open = [
             (report.is_contact_open, "the contact point"),
             (report.is_body_open, "the bullet's body"),

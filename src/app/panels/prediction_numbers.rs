@@ -4,9 +4,7 @@
 use egui::{Grid, Ui};
 
 use crate::analysis::Estimate;
-use crate::app::widgets::{SpreadRow, spread_table_ui, value_row};
-use crate::data::Severity;
-use crate::render::theme;
+use crate::app::widgets::{SpreadRow, assumptions_ui, badges_ui, spread_table_ui, value_row};
 use crate::study::PredictForceReport;
 use crate::units::{Quantity, UnitSystem, percent, significant};
 
@@ -15,9 +13,11 @@ const SHOWN_MODES: usize = 4;
 /// Weight below which a mixture component is not listed.
 const LEAST_WEIGHT: f64 = 0.01;
 
-/// Draws the table of the numbers, which can be copied, the impulse of the momentum solution, the
+/// Draws the badges and what is not used, the table of the numbers, which can be copied, the impulse of the momentum solution, the
 /// clock direction, the probability of hooking, and the components of the mixture.
 pub fn numbers_ui(ui: &mut Ui, report: &PredictForceReport, units: UnitSystem) {
+    badges_ui(ui, &report.badges);
+    assumptions_ui(ui, &report.assumptions);
     spread_table_ui(ui, &report.scenario, &rows(report, units));
     Grid::new("force momentum").num_columns(2).show(ui, |ui| {
         let momentum = Quantity::Impulse.shown_vector(report.momentum_impulse_n_s, units);
@@ -38,10 +38,6 @@ pub fn numbers_ui(ui: &mut Ui, report: &PredictForceReport, units: UnitSystem) {
             value_row(ui, "Hooking probability", &percent(probability));
         }
     });
-    if let Some(warning) = report.implied_contact.as_ref().and_then(|of| of.warning.as_ref()) {
-        let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-        ui.colored_label(color, warning);
-    }
     modes_ui(ui, report, units);
 }
 

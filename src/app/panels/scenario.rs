@@ -7,7 +7,7 @@ use crate::app::dialogs::Purpose;
 use crate::app::panels::ending::ending_form;
 use crate::app::panes::PaneContext;
 use crate::app::state::{Project, Subject};
-use crate::app::widgets::{assumptions_ui, figure_frame, quantity_field, value_row};
+use crate::app::widgets::{assumptions_ui, badges_ui, figure_frame, quantity_field, value_row};
 use crate::collision::{
     ContactLocation, PulseShape, RestitutionForm, Scenario, ScenarioContact, ScenarioVehicle, Side,
 };
@@ -242,6 +242,7 @@ fn solution_ui(ui: &mut Ui, report: &ImpactReport, units: UnitSystem) {
             }
         }
     });
+    badges_ui(ui, &report.badges);
     assumptions_ui(ui, &report.assumptions);
 }
 

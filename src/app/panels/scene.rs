@@ -6,7 +6,7 @@ use egui::{Slider, Ui};
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
-use crate::app::widgets::{figure_frame, flags_ui};
+use crate::app::widgets::{badges_ui, figure_frame};
 use crate::figure::analysis_scene_figure;
 use crate::render::FigureOptions;
 use crate::study::SimulateAnswer;
@@ -24,8 +24,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     };
     let end_s = series.time_s().last().copied().unwrap_or(0.0);
     clock_ui(ui, (session.time_s, end_s), session.playing, commands);
-    let meet_again = report.flags.iter().filter(|flag| flag.kind == "second_contact");
-    flags_ui(ui, meet_again);
+    badges_ui(ui, &report.badges);
     let figure = analysis_scene_figure(analysis, session.time_s, view.units);
     let options = FigureOptions {
         id: "scene".to_owned(),

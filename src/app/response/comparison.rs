@@ -128,9 +128,13 @@ impl ComparisonStatus {
         if let Some(opened) = opened {
             self.opening = None;
             self.shown = Some(opened.map(|comparison| {
-                let (left_out, assumptions) = (Vec::new(), Vec::new());
-                let provenance = Provenance::default();
-                let report = CompareReport { comparison, left_out, assumptions, provenance };
+                let report = CompareReport {
+                    comparison,
+                    left_out: Vec::new(),
+                    assumptions: Vec::new(),
+                    badges: Vec::new(),
+                    provenance: Provenance::default(),
+                };
                 Arc::new(CompareAnswer { report })
             }));
         }

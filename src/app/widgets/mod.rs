@@ -2,17 +2,17 @@
 
 mod assumptions;
 mod bad_cases;
+mod badges;
 mod dataset_choice;
 mod figure_frame;
-mod flags;
 mod quantity;
 mod spread_table;
 
 pub use assumptions::assumptions_ui;
 pub use bad_cases::bad_cases_ui;
+pub use badges::badges_ui;
 pub use dataset_choice::{dataset_choice, no_dataset_ui};
 pub use figure_frame::figure_frame;
-pub use flags::flags_ui;
 pub use quantity::{
     SliderRange, count_field, duration_text, quantity_field, quantity_slider, value_row,
 };

@@ -65,7 +65,7 @@ The baselines are fitted here, to the cases that the model was trained on, which
 JSON: overall and separated (without hooked and unseparated cases), each with rmse_over_peak,
   history_error, impulse_error, peak_error, duration_error {mean, median, p90}, coverage {50, 80,
   90, 95} and more; baselines {pulse, nearest, statistical}, each with overall and separated;
-  clusters, cases, n_train, columns, split, problems, left_out, assumptions";
+  clusters, cases, n_train, columns, split, problems, left_out, assumptions, badges";
 
 /// Evaluates.
 pub(in crate::cli) fn run(

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::cli::CliError;
-use crate::cli::console::{Console, Verdict, print_assumptions, print_facts, shown, shown_vector};
+use crate::cli::console::{Console, Verdict, print_badges, print_facts, shown, shown_vector};
 use crate::cli::options::UnitsArg;
 use crate::collision::FrictionModel;
 use crate::study::{ImpactAnswer, ImpactReport, ImpactRequest, ScenarioChoice};
@@ -39,7 +39,8 @@ JSON: name, restitution, restitution_form, friction_limit, friction_of_critical,
   impulse_tangential_n_s, closing_velocity_m_s [normal, tangential], contact_point_m [x, y],
   normal_angle_rad, struck_surface {target|bullet: side}, overlap_m, dissipated_energy_j; target and bullet each with velocity_m_s [x, y],
   speed_m_s, yaw_rate_rad_s, delta_v_m_s [x, y], delta_v_magnitude_m_s, delta_yaw_rate_rad_s,
-  pdof_deg, pdof_clock; assumptions [{quantity, value, reason}]";
+  pdof_deg, pdof_clock; assumptions [{quantity, value, reason}],
+  badges [{kind, text, quantity, value, range}]";
 
 /// Solves the scenario and prints the solution.
 pub(in crate::cli) fn run(
@@ -124,5 +125,5 @@ fn print_text(out: &mut dyn Write, answer: &ImpactAnswer, units: UnitSystem) -> 
         ];
         print_facts(out, &facts)?;
     }
-    print_assumptions(out, &report.assumptions)
+    print_badges(out, &report.badges, &report.assumptions)
 }

@@ -103,7 +103,7 @@ JSON: scenario, vehicle, force_model, response_model, n_forces, n_vehicles, outc
   heading_change_rad (median, half, ninety), speed_m_s, yaw_rate_rad_s, region_90_m2, p_quarter_turn, p_half_turn},
   sensitivity [{quantity, label, position_share, heading_share, chance_share}] of a vehicle with a data sheet,
   implied_contact, hooking_probability, flags, outside_training,
-  assumptions [{quantity, value, reason}], files";
+  assumptions [{quantity, value, reason}], badges [{kind, text, quantity, value, range}], files";
 
 /// The report, and which files were written.
 #[derive(Debug, Serialize)]

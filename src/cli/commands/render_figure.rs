@@ -12,15 +12,21 @@ use crate::study::{
     Assumption, Drive, ImpactRequest, RecordedForceRequest, SimulateAnswer, SimulateRequest,
     StudyError,
 };
+use crate::uncertainty::Badge;
 use crate::units::UnitSystem;
 
 /// A figure and what should be said with it.
 pub(super) type Noted = (Figure, Vec<String>);
 
-/// Notes and assumptions as lines.
-pub(super) fn noted(notes: &[String], assumptions: &[Assumption]) -> Vec<String> {
+/// Notes, badges and assumptions as lines.
+pub(super) fn noted(
+    notes: &[String],
+    (badges, assumptions): (&[Badge], &[Assumption]),
+) -> Vec<String> {
+    let badges = badges.iter().filter(|badge| !badge.kind.is_assumption());
+    let badges = badges.map(|badge| format!("{}: {}", badge.kind.label(), badge.text));
     let assumed = assumptions.iter().map(ToString::to_string);
-    notes.iter().cloned().chain(assumed).collect()
+    notes.iter().cloned().chain(badges).chain(assumed).collect()
 }
 
 /// The force of a case or a file, filtered if a class is given.
@@ -63,7 +69,7 @@ pub(super) fn motion(
         let (name, channel) = (request.source.name(), channel.header());
         return Err(CliError::NothingToShow { name, channel });
     }
-    Ok((figure, noted(&report.notes, &report.assumptions)))
+    Ok((figure, noted(&report.notes, (&report.badges, &report.assumptions))))
 }
 
 /// The scene of a case or a file at a moment.
@@ -83,7 +89,7 @@ pub(super) fn scene(
         }
     }
     let figure = analysis_scene_figure(&analysis, time_s, units);
-    Ok((figure, noted(&report.notes, &report.assumptions)))
+    Ok((figure, noted(&report.notes, (&report.badges, &report.assumptions))))
 }
 
 /// The impact of a scenario.
@@ -96,5 +102,5 @@ pub(super) fn impact(
     let name = answer.report.name.clone();
     let figure = impact_figure(&answer.scenario, &answer.solution, units)
         .map_err(|source| StudyError::Scenario { name, source })?;
-    Ok((figure, noted(&[], &answer.report.assumptions)))
+    Ok((figure, noted(&[], (&answer.report.badges, &answer.report.assumptions))))
 }

@@ -109,5 +109,6 @@ pub(super) fn figure(
         Some(channel) => forecast_channel_figure(&input, channel),
         None => forecast_scene_figure(&input),
     };
-    Ok((figure, noted(&analysis.notes, &answer.report.assumptions)))
+    let said = (&*answer.report.badges, &*answer.report.assumptions);
+    Ok((figure, noted(&analysis.notes, said)))
 }

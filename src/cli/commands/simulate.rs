@@ -126,7 +126,8 @@ JSON, one vehicle: vehicle, equations, integrator, friction, duration_s, force {
   vx_m_s, vy_m_s, yaw_rate_rad_s, speed_m_s}, distance_m, rest {time_s, x_m, y_m, yaw_rad,
   distance_m} (null while it moves), largest_yaw_change_rad,
   flags [{kind, time_s, wheel, roll_rad, position_m, closing_speed_m_s, message}],
-  error (against a record), notes, assumptions [{quantity, value, reason}], out; for a vehicle of
+  error (against a record), notes, assumptions [{quantity, value, reason}],
+  badges [{kind, text, quantity, value, range}], out; for a vehicle of
   which only a data sheet is known uncertainty
   {n_draws, n_failed, x_m, y_m, yaw_rad, speed_m_s: each {median, half [2], ninety [2]},
   sensitivity [{quantity, label, position_share, heading_share, chance_share}]}
@@ -135,7 +136,7 @@ JSON, data set: dataset, vehicle, equations, integrator, cases [{case, spin, ave
   final_heading_error_rad, horizon_error_m (at 0.5, 1, 2, 4 s), rmse_*, flags}], overall, spinning
   and not_spinning {average_error_m, final_error_m, final_heading_error_rad,
   rmse_yaw_rate_rad_s: each {n, mean, std, median, p90, min, max}}, failures [text], assumptions,
-  out
+  badges, out
 
 Exit code 1 if any case failed.";
 

@@ -6,10 +6,11 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::cli::CliError;
-use crate::cli::console::{print_json, under_bar};
+use crate::cli::console::{print_json, under_bar, within_line};
 use crate::data::write::{FileDigest, OutputFolder, RunRecord};
 use crate::data::{Existing, check_target};
 use crate::study::{Assumption, Library, Provenance, Question, Request};
+use crate::uncertainty::Badge;
 
 /// How a command that did not fail ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -137,6 +138,19 @@ pub(in crate::cli) fn print_assumptions(
         writeln!(out, "{assumption}")?;
     }
     Ok(())
+}
+
+/// Prints the badges of an answer, and its assumptions in place of those badges that stand for them,
+/// one line each.
+pub(in crate::cli) fn print_badges(
+    out: &mut dyn Write,
+    badges: &[Badge],
+    assumptions: &[Assumption],
+) -> io::Result<()> {
+    for badge in badges.iter().filter(|badge| !badge.kind.is_assumption()) {
+        writeln!(out, "{}", within_line(&badge.to_string()))?;
+    }
+    print_assumptions(out, assumptions)
 }
 
 /// Prints the settings of a training as TOML.

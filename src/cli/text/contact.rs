@@ -19,7 +19,7 @@ pub(in crate::cli) fn implied_facts(
     };
     let momentum = &implied.momentum;
     let [x, y] = momentum.impulse_n_s;
-    let mut facts = vec![
+    vec![
         ("implied e", estimate(&implied.restitution)),
         ("P_τ/P_n", format!("implied {}", estimate(&implied.impulse_ratio))),
         (
@@ -30,9 +30,7 @@ pub(in crate::cli) fn implied_facts(
                 surface(momentum)
             ),
         ),
-    ];
-    facts.extend(implied.warning.iter().map(|warning| ("warning", warning.clone())));
-    facts
+    ]
 }
 
 /// Restitution and friction limit of a momentum solution, and its regime.

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::cli::console::print_table;
+use crate::cli::console::{print_badges, print_table};
 use crate::force::CrossValidation;
 use crate::force::metrics::CurveMetrics;
 use crate::study::{EvaluateForceReport, ForceEvaluation};
@@ -23,11 +23,7 @@ fn print_cases(out: &mut dyn Write, report: &EvaluateForceReport) -> io::Result<
     for case in &report.left_out {
         writeln!(out, "left out: {case}")?;
     }
-    if report.n_trained_on > 0 {
-        let (n_known, n_test) = (report.n_trained_on, report.n_test);
-        writeln!(out, "warning: the model was trained on {n_known} of these {n_test} cases")?;
-    }
-    Ok(())
+    print_badges(out, &report.badges, &report.assumptions)
 }
 
 fn print_folds(out: &mut dyn Write, validation: &CrossValidation) -> io::Result<()> {

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use crate::analysis::Estimate;
-use crate::cli::console::{print_assumptions, print_facts, shown};
+use crate::cli::console::{print_badges, print_facts, shown};
 use crate::cli::text::contact::implied_facts;
 use crate::study::PredictForceReport;
 use crate::units::{Quantity, UnitSystem};
@@ -41,14 +41,5 @@ pub(in crate::cli) fn print_force_prediction(
     for (what, _) in open.into_iter().filter(|(_, is_open)| *is_open) {
         writeln!(out, "\nThe {what} is open: drawn from the training cases.")?;
     }
-    for outside in &report.outside_training {
-        let [low, high] = outside.range;
-        writeln!(
-            out,
-            "\nwarning: {} is {:.4}, trained on {low:.4} to {high:.4}: {:.1} standard deviations \
-             outside",
-            outside.feature, outside.value, outside.deviations
-        )?;
-    }
-    print_assumptions(out, &report.assumptions)
+    print_badges(out, &report.badges, &report.assumptions)
 }

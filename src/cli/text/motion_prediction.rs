@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use crate::analysis::Spread;
-use crate::cli::console::{print_assumptions, print_facts, shown};
+use crate::cli::console::{print_badges, print_facts, shown};
 use crate::cli::text::contact::implied_facts;
 use crate::cli::text::sensitivity::print_sensitivity;
 use crate::study::PredictMotionReport;
@@ -47,19 +47,10 @@ pub(in crate::cli) fn print_motion_prediction(
         facts.push(("P(hooking)", percent(probability)));
     }
     facts.extend(report.implied_contact.iter().flat_map(|of| implied_facts(of, units)));
-    facts.extend(report.flags.iter().map(|flag| ("flag", flag.message.clone())));
-    for outside in &report.outside_training {
-        let [low, high] = outside.range;
-        let value = format!(
-            "{} is {:.3}, trained on {low:.3} to {high:.3}",
-            outside.feature, outside.value
-        );
-        facts.push(("outside training", value));
-    }
     if report.n_vehicles > 0 {
         facts.push(("vehicles", format!("{} drawn from the data sheet", report.n_vehicles)));
     }
     print_facts(out, &facts)?;
     print_sensitivity(out, &report.sensitivity)?;
-    print_assumptions(out, &report.assumptions)
+    print_badges(out, &report.badges, &report.assumptions)
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::analysis::Spread;
 use crate::cli::console::{
-    print_assumptions, print_facts, print_table, shown, shown_path, shown_vector,
+    print_badges, print_facts, print_table, shown, shown_path, shown_vector,
 };
 use crate::cli::text::contact::surface;
 use crate::cli::text::sensitivity::print_sensitivity;
@@ -49,14 +49,13 @@ pub(in crate::cli) fn print_simulation(
         facts.push(("average error", number(Quantity::Length, error.average_error_m)));
         facts.push(("final error", number(Quantity::Length, error.final_error_m)));
     }
-    facts.extend(report.flags.iter().map(|flag| ("flag", flag.message.clone())));
     facts.extend(report.notes.iter().map(|note| ("note", note.clone())));
     facts.extend(out.map(|path| ("written", shown_path(path))));
     print_facts(text, &facts)?;
     if let Some(uncertainty) = &report.uncertainty {
         print_uncertainty(text, uncertainty, units)?;
     }
-    print_assumptions(text, &report.assumptions)
+    print_badges(text, &report.badges, &report.assumptions)
 }
 
 /// Prints how the end varies with what the data sheet leaves open, and what it depends on most.

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use crate::cli::console::{print_assumptions, print_table, shown_path};
+use crate::cli::console::{print_badges, print_table, shown_path};
 use crate::numerics::Summary;
 use crate::study::{ReplayedCaseReport, SimulateDatasetReport};
 use crate::units::{Quantity, UnitSystem};
@@ -62,7 +62,7 @@ pub(in crate::cli) fn print_dataset_simulation(
     if let Some(folder) = folder {
         writeln!(out, "written: {}", shown_path(folder))?;
     }
-    print_assumptions(out, &report.assumptions)
+    print_badges(out, &report.badges, &report.assumptions)
 }
 
 fn summary_row(name: &str, what: &str, summary: &Summary, si_per_unit: f64) -> Vec<String> {

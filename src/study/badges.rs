@@ -1,0 +1,177 @@
+//! The badges of an answer: what a report says in words of its own, in one form for all reports.
+
+use crate::collision::{ScenarioGeometry, TOUCH_TOLERANCE_M};
+use crate::force::OutsideTraining;
+use crate::study::implied_contact::{LEAST_P_RIGID, MOST_P_ENERGY_GAIN};
+use crate::study::{
+    AssumedQuantity, Assumption, FlagReport, ImpliedContactReport, PredictForceReport,
+    PredictMotionReport, ReplayedCaseReport, SimulateReport,
+};
+use crate::uncertainty::{Badge, BadgeKind};
+use crate::units::significant;
+use crate::vehicle::{REST_SPEED_M_S, ROLL_LIMIT_RAD};
+
+/// What was assumed and what is not used, one badge for each.
+pub(super) fn of_assumptions(assumptions: &[Assumption]) -> Vec<Badge> {
+    let is_unused = |of: &&Assumption| of.quantity == AssumedQuantity::NotUsed;
+    let mut assumed: Vec<&str> =
+        assumptions.iter().filter(|of| !is_unused(of)).map(|of| of.quantity.label()).collect();
+    assumed.dedup();
+    let unused: Vec<&str> =
+        assumptions.iter().filter(is_unused).map(|of| of.value.as_str()).collect();
+    let of = |kind, what: &[&str]| (!what.is_empty()).then(|| Badge::new(kind, what.join("; ")));
+    let badges = [of(BadgeKind::Assumed, &assumed), of(BadgeKind::NotUsed, &unused)];
+    badges.into_iter().flatten().collect()
+}
+
+/// Outlines that overlap by more than the tolerance within which they touch.
+pub(super) fn of_overlap(geometry: &ScenarioGeometry) -> Option<Badge> {
+    let overlap_m = geometry.overlap_m.filter(|overlap_m| *overlap_m > TOUCH_TOLERANCE_M)?;
+    let text = format!(
+        "the outlines overlap by {overlap_m:.2} m; the contact is that at which they first touched"
+    );
+    let badge = Badge::new(BadgeKind::Overlap, text)
+        .with_value("overlap of the outlines [m]", overlap_m)
+        .with_range([f64::NEG_INFINITY, TOUCH_TOLERANCE_M]);
+    Some(badge)
+}
+
+/// A flag of a simulated motion.
+pub(super) fn of_flag(flag: &FlagReport) -> Badge {
+    let badge = Badge::new(flag.kind, &*flag.message);
+    match flag.roll_rad {
+        Some(roll_rad) => badge
+            .with_value("roll angle [rad]", roll_rad)
+            .with_range([-ROLL_LIMIT_RAD, ROLL_LIMIT_RAD]),
+        None => badge.with_value("time [s]", flag.time_s),
+    }
+}
+
+/// The badges of the simulation of one vehicle.
+///
+/// - `until_rest`: whether the question asks where the vehicle comes to rest.
+pub(super) fn of_simulation(report: &SimulateReport, until_rest: bool) -> Vec<Badge> {
+    let moving = report.end.filter(|_| until_rest && report.rest.is_none());
+    let moving = moving.map(|end| of_motion(end.speed_m_s, report.duration_s));
+    let n_failed = report.uncertainty.as_ref().map_or(0, |of| of.n_failed);
+    let left_out = of_left_out(n_failed, "vehicles drawn from the data sheet");
+    let flags = report.flags.iter().map(of_flag);
+    flags.chain(moving).chain(left_out).chain(of_assumptions(&report.assumptions)).collect()
+}
+
+/// How many cases raise each kind of flag.
+pub(super) fn of_flagged_cases(cases: &[ReplayedCaseReport]) -> Vec<Badge> {
+    let mut kinds: Vec<BadgeKind> =
+        cases.iter().flat_map(|case| case.flags.iter().map(|flag| flag.kind)).collect();
+    kinds.sort_unstable();
+    kinds.dedup();
+    let of_kind = |kind| {
+        let is_flagged = |case: &&ReplayedCaseReport| case.flags.iter().any(|of| of.kind == kind);
+        let n = cases.iter().filter(is_flagged).count();
+        let text = format!("in {n} of {} cases", cases.len());
+        Badge::new(kind, text).with_value("cases", n as f64).with_range([0.0, 0.0])
+    };
+    kinds.into_iter().map(of_kind).collect()
+}
+
+/// A motion that goes on at the end of its answer.
+///
+/// - `speed_m_s`: speed at the end.
+pub(super) fn of_motion(speed_m_s: f64, after_s: f64) -> Badge {
+    let text = format!(
+        "the vehicle still moves at {speed_m_s:.1} m/s after {after_s:.2} s: its end is not where it \
+         comes to rest"
+    );
+    Badge::new(BadgeKind::NotAtRest, text)
+        .with_value("speed at the end [m/s]", speed_m_s)
+        .with_range([0.0, REST_SPEED_M_S])
+}
+
+/// A feature of a collision that lies outside what a force network has learned from.
+pub(super) fn of_outside(outside: &OutsideTraining) -> Badge {
+    let [low, high] = outside.range.map(significant);
+    let text = format!(
+        "{} is {}, trained on {low} to {high}: {} standard deviations outside",
+        outside.feature,
+        significant(outside.value),
+        significant(outside.deviations)
+    );
+    Badge::new(BadgeKind::OutsideDomain, text)
+        .with_value(outside.feature, outside.value)
+        .with_range(outside.range)
+}
+
+/// The badges of a predicted force.
+pub(super) fn of_predicted_force(report: &PredictForceReport) -> Vec<Badge> {
+    let outside = report.outside_training.iter().map(of_outside);
+    let contact = report.implied_contact.as_ref().and_then(of_contact);
+    outside.chain(contact).chain(of_assumptions(&report.assumptions)).collect()
+}
+
+/// The badges of a predicted motion.
+pub(super) fn of_predicted_motion(report: &PredictMotionReport) -> Vec<Badge> {
+    let outside = report.outside_training.iter().map(of_outside);
+    let contact = report.implied_contact.as_ref().and_then(of_contact);
+    let flags = report.flags.iter().map(of_flag);
+    let end = &report.outcome;
+    let moving = (!end.is_at_rest).then(|| of_motion(end.speed_m_s, end.time_s));
+    let assumed = of_assumptions(&report.assumptions);
+    outside.chain(contact).chain(flags).chain(moving).chain(assumed).collect()
+}
+
+/// A predicted impulse that no contact brings about.
+pub(super) fn of_contact(implied: &ImpliedContactReport) -> Option<Badge> {
+    let badge = Badge::new(BadgeKind::ImplausibleContact, implied.warning.as_ref()?);
+    Some(if implied.p_rigid < LEAST_P_RIGID {
+        let quantity = "share of the impulse with a restitution between 0 and 1";
+        badge.with_value(quantity, implied.p_rigid).with_range([LEAST_P_RIGID, 1.0])
+    } else {
+        let quantity = "share of the impulse that adds kinetic energy";
+        badge.with_value(quantity, implied.p_energy_gain).with_range([0.0, MOST_P_ENERGY_GAIN])
+    })
+}
+
+/// Cases or draws that could not be used.
+///
+/// - `what`: what they are, in the plural.
+pub(super) fn of_left_out(n: usize, what: &str) -> Option<Badge> {
+    let badge = || {
+        let text = format!("{n} {what} could not be used");
+        Badge::new(BadgeKind::LeftOut, text).with_value(what, n as f64).with_range([0.0, 0.0])
+    };
+    (n > 0).then(badge)
+}
+
+/// Cases that the network which they judge has learned from.
+pub(super) fn of_trained_on(n_known: usize, n_test: usize) -> Option<Badge> {
+    let badge = || {
+        let text = format!("the model was trained on {n_known} of these {n_test} cases");
+        Badge::new(BadgeKind::TrainedOn, text)
+            .with_value("cases that it was trained on", n_known as f64)
+            .with_range([0.0, 0.0])
+    };
+    (n_known > 0).then(badge)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_assumed_and_what_is_not_used_are_one_badge_each() {
+        let of = |quantity, value: &str| Assumption::new(quantity, value, "nobody said it");
+        let list = [
+            of(AssumedQuantity::VehicleParameter, "mass 1500 kg"),
+            of(AssumedQuantity::VehicleParameter, "track 1.5 m"),
+            of(AssumedQuantity::Speed, "15 m/s"),
+            of(AssumedQuantity::NotUsed, "restitution, 0.3"),
+        ];
+        let badges = of_assumptions(&list);
+        let told: Vec<(BadgeKind, &str)> =
+            badges.iter().map(|badge| (badge.kind, badge.text.as_str())).collect();
+        let assumed = "parameter of the vehicle; speed before the impact";
+        let expected = [(BadgeKind::Assumed, assumed), (BadgeKind::NotUsed, "restitution, 0.3")];
+        assert_eq!(told, expected);
+        assert_eq!(of_assumptions(&[]), []);
+    }
+}

@@ -1,0 +1,84 @@
+//! Badges: what an answer cannot promise, in every JSON, in text, with quantity, value and range.
+
+#![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::answers::scenario_with;
+use crate::program::{SCENARIO, TRAJECTORIES, answer, ok, program, text};
+
+/// The badges of a report of one kind, after checking that each badge has all keys.
+fn badges<'a>(report: &'a Value, kind: &str) -> Vec<&'a Value> {
+    let all = report["badges"].as_array().unwrap_or_else(|| panic!("no badges: {report}"));
+    for badge in all {
+        let keys: Vec<&str> = badge.as_object().unwrap().keys().map(String::as_str).collect();
+        let mut sorted = keys.clone();
+        sorted.sort_unstable();
+        assert_eq!(sorted, ["kind", "quantity", "range", "text", "value"], "{badge}");
+        assert!(!badge["text"].as_str().unwrap().is_empty(), "{badge}");
+    }
+    all.iter().filter(|badge| badge["kind"] == kind).collect()
+}
+
+#[test]
+fn every_answer_with_numbers_has_badges() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("out");
+    let evaluation = folder.path().join("evaluation");
+    let asked: [&[&str]; 6] = [
+        &["impact", SCENARIO],
+        &["simulate", "--scenario", SCENARIO],
+        &["simulate", "--dataset", TRAJECTORIES, "--case", "FE_c001"],
+        &["predict", "force", "--scenario", SCENARIO],
+        &["predict", "--draws", "2", "--scenario", SCENARIO, "--out", text(&out)],
+        &[
+            "evaluate",
+            "force",
+            "--model",
+            "shipped",
+            "--data",
+            "datasets/fea",
+            "--out",
+            text(&evaluation),
+        ],
+    ];
+    for args in asked {
+        let report = answer(args);
+        assert_eq!(badges(&report, "energy_gain").len(), 0, "{args:?}: {report}");
+    }
+    let impact = answer(&["impact", SCENARIO]);
+    let assumed = badges(&impact, "assumed");
+    assert_eq!(impact["badges"].as_array().unwrap().len(), assumed.len(), "{impact}");
+}
+
+#[test]
+fn a_second_contact_is_a_badge_of_the_answer() {
+    let folder = TempDir::new().unwrap();
+    let slow = scenario_with(&folder, "slow.toml", "speed_km_h = 54", "speed_km_h = 0");
+    let report = answer(&["simulate", "--scenario", text(&slow)]);
+    let found = badges(&report, "second_contact");
+    assert_eq!(found.len(), 1, "{report}");
+    assert_eq!(found[0]["value"], report["flags"][0]["time_s"]);
+    let told = ok(program().args(["simulate", "--scenario"]).arg(&slow).output().unwrap());
+    assert!(told.contains("warning: second contact: the vehicles"), "{told}");
+}
+
+#[test]
+fn a_collision_outside_the_training_is_named_with_quantity_value_and_range() {
+    let folder = TempDir::new().unwrap();
+    let heavy = scenario_with(
+        &folder,
+        "heavy.toml",
+        "[bullet]\nmass_kg = 2000",
+        "[bullet]\nmass_kg = 3900",
+    );
+    let report = answer(&["predict", "force", "--scenario", text(&heavy)]);
+    let outside = badges(&report, "outside_domain");
+    let mass = outside.iter().find(|badge| badge["quantity"] == "bullet mass [kg]").unwrap();
+    assert_eq!(mass["value"], 3900.0);
+    let high = mass["range"][1].as_f64().unwrap();
+    assert!(high < 3900.0, "{mass}");
+    let told = ok(program().args(["predict", "force", "--scenario"]).arg(&heavy).output().unwrap());
+    assert!(told.contains("warning: outside the domain: bullet mass [kg] is 3900"), "{told}");
+}
