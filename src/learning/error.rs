@@ -68,6 +68,14 @@ pub enum LearningError {
         /// What differs: configuration, seed or cases.
         what: &'static str,
     },
+    /// A training that was taken from a checkpoint failed.
+    #[error("{}: the training that it holds cannot go on", path.display())]
+    Resumed {
+        /// The checkpoint.
+        path: PathBuf,
+        /// The reason.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
     /// The loss is no longer a finite number.
     #[error("the loss is {loss} in epoch {epoch}: lower the learning rate")]
     Diverged {

@@ -101,6 +101,28 @@ impl<C: PartialEq + Serialize + DeserializeOwned> TrainingFile<C> {
         Ok(Some(training))
     }
 
+    /// Names the checkpoint in the error of a training that was taken from it: what fails may have
+    /// come with the file.
+    ///
+    /// - `was_resumed`: whether the training was taken from the checkpoint.
+    ///
+    /// # Errors
+    /// That of `result`, within [`LearningError::Resumed`] if the training was taken from the
+    /// checkpoint.
+    pub fn named<T, E: From<LearningError> + Error + Send + Sync + 'static>(
+        &self,
+        was_resumed: bool,
+        result: Result<T, E>,
+    ) -> Result<T, E> {
+        match self.path.clone().filter(|_| was_resumed) {
+            None => result,
+            Some(path) => {
+                let in_file = |error: E| LearningError::Resumed { path, source: Box::new(error) };
+                result.map_err(|error| in_file(error).into())
+            }
+        }
+    }
+
     /// Saves a training, whole or not at all.
     ///
     /// - `put`: puts the training into the checkpoint.

@@ -23,7 +23,8 @@ use crate::mutation::Mutator;
 /// machine makes no file a fault.
 pub const LONGEST: Duration = Duration::from_secs(2);
 
-/// A loader that has not come back after this time waits for something that never comes.
+/// A loader that has not come back after this time waits for something that never comes. Time for
+/// which other programs had the core does not count.
 const LONGEST_WAIT: Duration = Duration::from_secs(60);
 
 /// Most files with faults of one run that are kept, each of another kind.
@@ -173,8 +174,9 @@ pub fn run(format: &Format<'_>) {
     // A loader on several threads stays on this one, whose time and memory are measured.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
     pool.expect("a pool of this thread");
+    let queue = RunQueue::of_this_thread();
     thread::scope(|scope| {
-        scope.spawn(|| watch((&n_done, &is_over), &path));
+        scope.spawn(|| watch((&n_done, &is_over), &queue, &path));
         let _over = Over(&is_over);
         let mut trial = Trial { format, path: &path, folder: &folder, keeps: extent.keeps };
         let mut pool = corpus.clone();
@@ -235,15 +237,34 @@ impl Drop for Over<'_> {
     }
 }
 
+/// Where the system counts for how long a thread was ready to run while another one had its core.
+struct RunQueue(PathBuf);
+
+impl RunQueue {
+    fn of_this_thread() -> Self {
+        let thread = fs::read_link("/proc/thread-self").unwrap_or_default();
+        Self(Path::new("/proc").join(thread).join("schedstat"))
+    }
+
+    /// Zero where the system does not count it.
+    fn waited(&self) -> Duration {
+        let counts = fs::read_to_string(&self.0).unwrap_or_default();
+        let waited_ns = counts.split_whitespace().nth(1).and_then(|count| count.parse().ok());
+        Duration::from_nanos(waited_ns.unwrap_or(0))
+    }
+}
+
 /// Ends the program if a loader does not come back; the file that it reads stays where it is.
-fn watch((n_done, is_over): (&AtomicU64, &AtomicBool), path: &Path) {
-    let (mut last, mut since) = (0, Instant::now());
+///
+/// - `queue`: that of the thread of the loader.
+fn watch((n_done, is_over): (&AtomicU64, &AtomicBool), queue: &RunQueue, path: &Path) {
+    let (mut last, mut since, mut queued) = (0, Instant::now(), queue.waited());
     while !is_over.load(Ordering::Relaxed) {
         thread::sleep(Duration::from_millis(20));
         let done = n_done.load(Ordering::Relaxed);
         if done != last {
-            (last, since) = (done, Instant::now());
-        } else if since.elapsed() > LONGEST_WAIT {
+            (last, since, queued) = (done, Instant::now(), queue.waited());
+        } else if since.elapsed() > LONGEST_WAIT + queue.waited().saturating_sub(queued) {
             eprintln!("{}: still not read after {LONGEST_WAIT:?}", path.display());
             process::abort();
         }

@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
+use candle_core::Tensor;
 use impactlab::data::Existing;
 use impactlab::error_chain;
 use impactlab::force::{
@@ -13,6 +14,7 @@ use impactlab::force::{
     ForceTrainingSet, train,
 };
 use impactlab::learning::{ModelFile, TrainingReport};
+use impactlab::nn::{Checkpoint, ModelKind};
 
 const N_CASES: usize = 16;
 const EPOCHS: usize = 6;
@@ -136,6 +138,34 @@ fn a_checkpoint_of_another_training_is_refused() {
         error.to_string(),
         format!("{}: the training to resume had another seed", checkpoint.display())
     );
+}
+
+/// A checkpoint of finite numbers whose predictions are not was refused after the last epoch, without
+/// its name.
+#[test]
+fn a_checkpoint_that_predicts_no_distribution_is_refused_with_its_name() {
+    const KIND: ModelKind = ModelKind { name: "training of a force network", version: 1 };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("model.training");
+    train_until(1, &settings(Some(path.clone())));
+    let untouched = fs::read(&path).unwrap();
+    for group in ["best", "parameters"] {
+        let mut file = Checkpoint::from_bytes(&untouched, KIND).unwrap();
+        let tensors = file.take_group(group).into_iter();
+        let huge = |(name, tensor): (String, Tensor)| (name, (tensor * 1e25).unwrap());
+        file.put_group(group, tensors.map(huge).collect());
+        file.write(&path, Existing::Replace).unwrap();
+        let mut n_epochs = 0;
+        let told = train(set(), &settings(Some(path.clone())), &mut |told| {
+            n_epochs += usize::from(matches!(told, TrainingReport::Epoch(_)));
+            ControlFlow::Continue(())
+        });
+        let error = error_chain(&told.unwrap_err());
+        let expected = format!("{}: cannot be used as a training: ", path.display());
+        assert!(error.starts_with(&expected), "{group}: {error}");
+        assert!(error.contains("component 0 is NaN"), "{group}: {error}");
+        assert_eq!(n_epochs, 0, "{group}: refused before any work");
+    }
 }
 
 #[test]

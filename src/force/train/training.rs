@@ -66,6 +66,7 @@ pub fn train(
         let saved = SavedForceTraining::take(checkpoint)?;
         ForceTrainingRun::resumed(set, settings, saved)
     })?;
+    let was_resumed = resumed.is_some();
     let training = match resumed {
         Some(training) => training,
         None => {
@@ -83,7 +84,7 @@ pub fn train(
             ForceTrainingRun::around(set, settings, physics)?
         }
     };
-    search(training, set, &file, report)
+    file.named(was_resumed, search(training, set, &file, report))
 }
 
 /// Trains a model as [`train`] does, around physics that [`fit_physics`] has fitted to the same
@@ -270,7 +271,11 @@ impl<'a> ForceTrainingRun<'a> {
     ) -> Result<Self, ForceError> {
         saved.check(set.train.len())?;
         let mut training = Self::around(set, settings, (saved.centre, saved.centres))?;
-        training.network.parameters().import(&saved.common.parameters)?;
+        // Parameters that are finite may still predict what is not.
+        for parameters in [&saved.best_parameters, &saved.common.parameters] {
+            training.network.parameters().import(parameters)?;
+            training.mixtures(set, &training.all())?;
+        }
         training.optimizer.import(&saved.common.optimizer)?;
         training.best_parameters = saved.best_parameters;
         training.best_epoch = saved.best_epoch;
@@ -380,9 +385,25 @@ impl<'a> ForceTrainingRun<'a> {
     /// there are enough of them, and otherwise on all training cases. The curve of the physics for
     /// each of them comes from parts that were fitted without the case. Test cases are not used.
     fn variance_factors(&self, set: &ForceTrainingSet) -> Result<VarianceFactors, ForceError> {
-        let all: Vec<usize> = (0..self.centres.len()).collect();
         let is_enough = self.validation.len() >= LEAST_CALIBRATION_CASES;
-        let chosen = if is_enough { &self.validation } else { &all };
+        let chosen = if is_enough { self.validation.clone() } else { self.all() };
+        Ok(VarianceFactors::calibrated(&self.mixtures(set, &chosen)?, self.settings.seed))
+    }
+
+    /// Indices of all training cases.
+    fn all(&self) -> Vec<usize> {
+        (0..self.centres.len()).collect()
+    }
+
+    /// Training cases with their predictions by the present parameters.
+    ///
+    /// # Errors
+    /// [`ForceError::Mixture`] if a prediction is no distribution.
+    fn mixtures<'s>(
+        &self,
+        set: &'s ForceTrainingSet,
+        chosen: &[usize],
+    ) -> Result<Vec<(&'s ForceCase, CurveMixture)>, ForceError> {
         let (input, _) = self.tensors.select(chosen)?;
         let centres: Vec<CentreCurve> =
             chosen.iter().filter_map(|&idx| self.centres.get(idx).cloned()).collect();
@@ -390,9 +411,7 @@ impl<'a> ForceTrainingRun<'a> {
         let pair = |(idx, components): (&usize, Vec<CurveComponent>)| {
             Ok((&set.train[*idx], CurveMixture::new(components)?))
         };
-        let cases: Vec<(&ForceCase, CurveMixture)> =
-            chosen.iter().zip(components).map(pair).collect::<Result<_, ForceError>>()?;
-        Ok(VarianceFactors::calibrated(&cases, self.settings.seed))
+        chosen.iter().zip(components).map(pair).collect()
     }
 }
 

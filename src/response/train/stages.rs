@@ -194,10 +194,11 @@ fn run(
     report: &mut TrainingProgress<'_>,
 ) -> Result<(ResponseNetwork, Vec<EpochRecord<ResponseEpoch>>), LearningError> {
     let file = TrainingFile::new(CHECKPOINT_KIND, settings, settings.config.clone(), data_digest);
-    file.read(|checkpoint| -> Result<(), LearningError> {
+    let resumed = file.read(|checkpoint| -> Result<(), LearningError> {
         training.resume(SavedTraining::take(checkpoint)?)
     })?;
-    run_epochs(&mut training, &file, report)?;
+    let epochs = run_epochs(&mut training, &file, report);
+    file.named(resumed.is_some(), epochs)?;
     Ok(training.finish())
 }
 
