@@ -1,10 +1,12 @@
 //! The motion of the striking vehicle in a finite-element case: as recorded, then coasting.
 
-use crate::analysis::{AnalysisError, Settings, VehicleTrack};
-use crate::collision::Footprint;
+use crate::analysis::{AnalysisError, Settings, StruckVehicle, VehicleTrack};
+use crate::collision::{Footprint, Pose};
 use crate::data::{Case, Channel, ForceAttributes, SeriesError, TimeSeries};
 use crate::vehicle::frames::body_from_world;
-use crate::vehicle::{Manoeuvre, OUTPUT_INTERVAL_S, VehicleParameters, VehicleState};
+use crate::vehicle::{
+    ContactPoint, Controls, Manoeuvre, OUTPUT_INTERVAL_S, VehicleParameters, VehicleState,
+};
 
 /// Position at each recorded sample, m, and state of the vehicle at the last one.
 struct Recorded {
@@ -37,7 +39,26 @@ pub(super) fn bullet_track(
     let vehicle = settings.bullet.clone().with_mass(mass_kg, yaw_inertia);
     let footprint = Footprint::from(&vehicle.geometry);
     let motion = append_coasting(&case.series, yaw_rad, recorded, (&vehicle, settings))?;
-    Ok(Some(VehicleTrack { footprint, motion }))
+    let yaw_rad = yaw_rad.first().copied().unwrap_or(attributes.theta_b_rad);
+    let pose = Pose { x_m: x, y_m: y, yaw_rad };
+    // The target heads along X from the origin.
+    let [x_m, y_m] = pose.body_from_world(attributes.contact_m);
+    let [vx_m_s, vy_m_s] = body_from_world(yaw_rad, attributes.bullet_velocity_m_s);
+    let height_m = attributes.contact_height_m.unwrap_or(vehicle.geometry.cg_height_m);
+    let start = StruckVehicle {
+        vehicle,
+        initial: VehicleState {
+            vx_m_s,
+            vy_m_s,
+            yaw_rad,
+            x_m: x,
+            y_m: y,
+            ..VehicleState::default()
+        },
+        contact: ContactPoint { x_m, y_m, height_m },
+        controls: Controls::default(),
+    };
+    Ok(Some(VehicleTrack { footprint, start, motion }))
 }
 
 /// Integrates the recorded world velocities by the trapezoidal rule from a start [x, y], m. `None`

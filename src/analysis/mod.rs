@@ -12,6 +12,7 @@ mod motion_density;
 mod motion_forecast;
 mod rest;
 mod scenario;
+mod second_contacts;
 mod vehicle_draws;
 
 use crate::collision::{Footprint, PulseError, ScenarioError, SecondContact};
@@ -31,6 +32,7 @@ pub use motion_forecast::{
     forecast_collision, forecast_forces,
 };
 pub use scenario::{PulseSetup, analyse_scenario};
+pub use second_contacts::SecondContacts;
 pub use vehicle_draws::{Sensitivity, VehicleDraws};
 
 /// Vehicles and settings of the simulation of a case.
@@ -55,11 +57,13 @@ pub struct Settings {
     pub ends_at_rest: bool,
 }
 
-/// Outline and motion of a vehicle.
+/// Outline and motion of the striking vehicle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VehicleTrack {
     /// Outline of the vehicle.
     pub footprint: Footprint,
+    /// Parameters, state at first contact, where the force acts, and what happens to its wheels.
+    pub start: StruckVehicle,
     /// Motion of the vehicle, with at least the channels X, Y and yaw.
     pub motion: TimeSeries,
 }

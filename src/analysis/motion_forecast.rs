@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use crate::analysis::rest::{Pace, rest_instant};
 use crate::analysis::{Sensitivity, Spread, VehicleDraws};
-use crate::collision::{Scenario, ScenarioError};
+use crate::collision::Pose;
 use crate::data::{
     ContactOutside, ForceAxes, ForceHistory, check_contact_within, contact_interval,
 };
@@ -23,7 +23,6 @@ use crate::nn::random_stream;
 use crate::ranges::{DRAWS, FORECAST_DURATION, OutOfRange};
 use crate::response::{MotionDistribution, Predictor, ResponseModel, STEP_S, weighted_mean};
 use crate::uncertainty::{ForceCurve, PlanarMixture};
-use crate::vehicle::frames::body_from_world;
 use crate::vehicle::{
     ContactLoad, ContactPoint, Controls, Manoeuvre, VehicleInput, VehicleParameters, VehicleState,
 };
@@ -48,7 +47,8 @@ pub struct MotionForecastSettings {
     pub seed: u64,
 }
 
-/// Parameters and initial state of the struck vehicle, and the point where the force acts on it.
+/// Parameters and initial state of the struck vehicle, and the point where the force acts on it; or
+/// of the striking one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StruckVehicle {
     /// Parameters of the vehicle.
@@ -69,6 +69,9 @@ pub struct MotionForecast {
     /// The path with the latent factors of the model at zero ([`Predictor::central_path`]),
     /// averaged over the force curves.
     pub central: Vec<VehicleState<f64>>,
+    /// The path with the latent factors at zero in each draw, from first contact on: the forces and
+    /// the vehicles take turns. Positions of the CG and headings at intervals of [`STEP_S`].
+    pub paths: Vec<Vec<Pose>>,
     /// Force histories with which the motions were computed; the axes are those in which they were
     /// given.
     pub forces: Vec<ForceHistory>,
@@ -133,39 +136,6 @@ pub enum MotionForecastError {
 }
 
 impl StruckVehicle {
-    /// The target of a scenario at first contact.
-    ///
-    /// - `vehicle`: parameters of the target, whose mass and yaw inertia are replaced by those of
-    ///   the scenario.
-    /// - `contact_height_m`: height of the contact point above the ground, m.
-    ///
-    /// # Errors
-    /// [`ScenarioError`] if the vehicles do not meet.
-    pub fn of_scenario(
-        scenario: &Scenario,
-        vehicle: &VehicleParameters,
-        contact_height_m: f64,
-    ) -> Result<Self, ScenarioError> {
-        let geometry = scenario.geometry()?;
-        let (target, pose) = (&scenario.target, &geometry.target);
-        let [vx_m_s, vy_m_s] = body_from_world(pose.yaw_rad, [target.vx_m_s, target.vy_m_s]);
-        let [x_m, y_m] = pose.body_from_world(geometry.contact_point_m);
-        Ok(Self {
-            vehicle: vehicle.clone().with_mass(target.mass_kg, Some(target.yaw_inertia_kg_m2)),
-            initial: VehicleState {
-                vx_m_s,
-                vy_m_s,
-                yaw_rad: pose.yaw_rad,
-                yaw_rate_rad_s: target.yaw_rate_rad_s,
-                x_m: pose.x_m,
-                y_m: pose.y_m,
-                ..VehicleState::default()
-            },
-            contact: ContactPoint { x_m, y_m, height_m: contact_height_m },
-            controls: Controls::default(),
-        })
-    }
-
     /// Inputs of the vehicle at each time step under a force.
     fn inputs(&self, force: &ForceHistory, duration_s: f64) -> Vec<VehicleInput<f64>> {
         let manoeuvre = Manoeuvre {
@@ -261,12 +231,17 @@ pub fn forecast_forces(
     Ok(MotionForecast {
         distribution,
         central,
+        paths: paths.iter().map(|path| path.iter().map(pose).collect()).collect(),
         forces: forces.to_vec(),
         outcome,
         force: None,
         n_vehicles: draws.map_or(0, |draws| draws.len()),
         sensitivity,
     })
+}
+
+fn pose(state: &VehicleState<f64>) -> Pose {
+    Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad }
 }
 
 /// The draws of what the data sheet of the vehicle leaves open, at least one for each force; `None` if

@@ -8,7 +8,7 @@ use crate::collision::{Pose, Pulse, PulseShape, Scenario, ScenarioVehicle, Secon
 use crate::data::{ForceHistory, check_contact_within};
 use crate::vehicle::frames::body_from_world;
 use crate::vehicle::{
-    ContactLoad, ContactPoint, Ending, Manoeuvre, Motion, VehicleParameters, VehicleState,
+    ContactLoad, ContactPoint, Controls, Manoeuvre, Motion, VehicleParameters, VehicleState,
 };
 
 /// Longest sample interval of the pulse, s; a shorter pulse has at least 20 intervals.
@@ -55,27 +55,25 @@ pub fn analyse_scenario(
     let [px, py] = solution.impulse_n_s;
     let force = history([px, py])?;
     check_contact_within(&force, settings.duration_s)?;
-    let run = |(vehicle, ending): (&ScenarioVehicle, &Ending),
-               preset: &VehicleParameters,
-               pose: &Pose,
-               force,
-               settings: &Settings| {
-        let parameters = preset.clone().with_mass(vehicle.mass_kg, Some(vehicle.yaw_inertia_kg_m2));
+    let start = |vehicle: &ScenarioVehicle, preset: &VehicleParameters, pose: &Pose| {
         let [x_m, y_m] = pose.body_from_world(geometry.contact_point_m);
         let contact = ContactPoint { x_m, y_m, height_m: pulse.contact_height_m };
-        drive_on(vehicle, (&parameters, ending), pose, (force, contact), settings)
+        StruckVehicle {
+            vehicle: preset.clone().with_mass(vehicle.mass_kg, Some(vehicle.yaw_inertia_kg_m2)),
+            initial: initial_state(vehicle, pose),
+            contact,
+            controls: Controls::default(),
+        }
     };
-    let coasting = Ending::default();
-    let struck = (&scenario.target, &settings.ending);
-    let target = run(struck, &settings.target, &geometry.target, force.clone(), settings)?;
-    let striking = (&scenario.bullet, &coasting);
+    let mut struck = start(&scenario.target, &settings.target, &geometry.target);
+    struck.controls = settings.ending.controls(&struck.vehicle);
+    let target = drive_on(&struck, force.clone(), settings)?;
+    let mut striking = start(&scenario.bullet, &settings.bullet, &geometry.bullet);
+    let bullet_ending = scenario.bullet_ending.clone().unwrap_or_default();
+    striking.controls = bullet_ending.controls(&striking.vehicle);
     let end_s = target.series.time_s().last().copied().unwrap_or(settings.duration_s);
     let settings = &Settings { duration_s: end_s, ends_at_rest: false, ..settings.clone() };
-    let bullet = run(striking, &settings.bullet, &geometry.bullet, history([-px, -py])?, settings)?;
-    let of_scenario =
-        StruckVehicle::of_scenario(scenario, &settings.target, pulse.contact_height_m)?;
-    let controls = settings.ending.controls(&of_scenario.vehicle);
-    let struck = StruckVehicle { controls, ..of_scenario };
+    let bullet = drive_on(&striking, history([-px, -py])?, settings)?;
     let second_contact = SecondContact::find(
         (scenario.target.footprint(), &target.series),
         (scenario.bullet.footprint(), &bullet.series),
@@ -91,6 +89,7 @@ pub fn analyse_scenario(
         reference: None,
         bullet: Some(VehicleTrack {
             footprint: scenario.bullet.footprint(),
+            start: striking,
             motion: bullet.series,
         }),
         second_contact,
@@ -103,32 +102,34 @@ pub fn analyse_scenario(
     })
 }
 
-/// Simulates a vehicle of a scenario from first contact on. The bullet coasts.
+/// State of a vehicle of a scenario at first contact.
+fn initial_state(vehicle: &ScenarioVehicle, pose: &Pose) -> VehicleState<f64> {
+    let [vx_m_s, vy_m_s] = body_from_world(pose.yaw_rad, [vehicle.vx_m_s, vehicle.vy_m_s]);
+    VehicleState {
+        vx_m_s,
+        vy_m_s,
+        yaw_rad: pose.yaw_rad,
+        yaw_rate_rad_s: vehicle.yaw_rate_rad_s,
+        x_m: pose.x_m,
+        y_m: pose.y_m,
+        ..VehicleState::default()
+    }
+}
+
+/// Simulates a vehicle from first contact on.
 fn drive_on(
-    vehicle: &ScenarioVehicle,
-    (parameters, ending): (&VehicleParameters, &Ending),
-    pose: &Pose,
-    (force, contact): (ForceHistory, ContactPoint),
+    start: &StruckVehicle,
+    force: ForceHistory,
     settings: &Settings,
 ) -> Result<Motion, AnalysisError> {
-    let velocity = [vehicle.vx_m_s, vehicle.vy_m_s];
-    let [vx_m_s, vy_m_s] = body_from_world(pose.yaw_rad, velocity);
     let manoeuvre = Manoeuvre {
-        initial: VehicleState {
-            vx_m_s,
-            vy_m_s,
-            yaw_rad: pose.yaw_rad,
-            yaw_rate_rad_s: vehicle.yaw_rate_rad_s,
-            x_m: pose.x_m,
-            y_m: pose.y_m,
-            ..VehicleState::default()
-        },
-        contact_load: Some(ContactLoad { force, contact, recorded_moment: false }),
-        controls: ending.controls(parameters),
+        initial: start.initial,
+        contact_load: Some(ContactLoad { force, contact: start.contact, recorded_moment: false }),
+        controls: start.controls.clone(),
         duration_s: settings.duration_s,
         ends_at_rest: settings.ends_at_rest,
     };
-    Ok(parameters.simulate(&manoeuvre, settings.integrator)?)
+    Ok(start.vehicle.simulate(&manoeuvre, settings.integrator)?)
 }
 
 #[cfg(test)]
@@ -139,7 +140,7 @@ mod tests {
     use crate::collision::{ContactLocation, MovingFootprint, Side, overlap_m};
     use crate::data::{Channel, TimeSeries};
     use crate::numerics::interpolate;
-    use crate::vehicle::{Integrator, Preset};
+    use crate::vehicle::{Ending, HeldSteer, Integrator, Preset};
 
     #[test]
     fn a_pit_turns_the_target_and_both_go_on() {
@@ -201,6 +202,13 @@ mod tests {
         let second = second.unwrap();
         assert!(second.time_s > 0.1 && second.closing_speed_m_s > 0.0, "{second:?}");
         assert!(deepest_m > 0.2, "{second:?} {deepest_m}");
+        // A bullet that steers away is met later and more slowly.
+        let steer = HeldSteer { start_s: 0.0, rise_s: 0.2, road_wheel_rad: -0.14 };
+        scenario.bullet_ending = Some(Ending { steer: Some(steer), ..Ending::default() });
+        let away = meets(&scenario).0.unwrap();
+        assert!(away.time_s > second.time_s, "{second:?} {away:?}");
+        assert!(away.closing_speed_m_s < 0.8 * second.closing_speed_m_s, "{second:?} {away:?}");
+        scenario.bullet_ending = None;
         // From behind, the bullet is braked by the impact and stays behind.
         scenario.contact.location = ContactLocation::Side { side: Side::Rear, offset_m: 0.2 };
         scenario.bullet.heading_rad = 0.0;

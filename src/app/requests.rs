@@ -10,6 +10,7 @@ use crate::app::model::CurrentModel;
 use crate::app::response::{ComparisonForm, ForceChoice, ResponseTrainingForm, TrainingMode};
 use crate::app::source::{Content, OpenDataset, Source};
 use crate::app::state::{FileStart, State, Subject};
+use crate::force::ForceScenario;
 use crate::shipped::ModelSource;
 use crate::study::{
     CompareRequest, ConfigChoice, DEFAULT_DRAWS, Drive, EvaluateForceRequest,
@@ -53,18 +54,38 @@ impl State {
     /// Returns the question for the force of the collision in the force prediction pane; `None` if
     /// no force model is loaded.
     pub fn force_request(&self) -> Option<PredictForceRequest> {
-        let (project, view) = (&self.project.force, &self.view.force);
+        let view = &self.view.force;
         Some(PredictForceRequest {
-            collision: ForceQuestion::Numbers {
-                name: project.name.clone(),
-                numbers: Box::new(project.scenario.clone()),
-            },
+            collision: self.collision(),
             model: choice(self.session.force.model.current.as_ref())?,
             body: None,
             open_contact: false,
             samples: view.n_curves,
             seed: view.seed,
         })
+    }
+
+    /// Returns the collision in the force prediction pane. As long as its numbers are those of the
+    /// scenario or of the selected case from which they were taken, it is that scenario or case,
+    /// which say more: outlines, restitution and friction.
+    fn collision(&self) -> ForceQuestion {
+        let (form, scenario) = (&self.project.force, &self.project.scenario);
+        let is_taken = |(name, numbers): (&str, &ForceScenario)| {
+            form.name == name && form.scenario == *numbers
+        };
+        let of_scenario = ForceScenario::from_scenario(scenario);
+        if of_scenario.is_ok_and(|numbers| is_taken((&scenario.name, &numbers))) {
+            return ForceQuestion::Scenario(self.scenario());
+        }
+        match &self.session.force.recorded {
+            Some(of) if is_taken((&of.case, &of.scenario)) => {
+                ForceQuestion::Case { dataset: of.dataset.clone(), case: of.case.clone() }
+            }
+            _ => ForceQuestion::Numbers {
+                name: form.name.clone(),
+                numbers: Box::new(form.scenario.clone()),
+            },
+        }
     }
 
     /// Returns the question for the motion of the struck vehicle that the force causes; `None` if

@@ -7,6 +7,7 @@ use crate::collision::FilterError;
 use crate::data::DataError;
 use crate::force::ForceError;
 use crate::learning::LearningError;
+use crate::ranges::OutOfRange;
 use crate::study::StudyError;
 
 /// A command that could not do its work.
@@ -24,6 +25,9 @@ pub enum CliError {
     /// The scenario is not said.
     #[error("nothing to predict: say which scenario with --scenario FILE")]
     NothingToPredict,
+    /// A steering-wheel angle that the road wheels cannot follow.
+    #[error("the steering-wheel angle over the steering ratio is no angle of a road wheel")]
+    SteeringWheel(#[from] OutOfRange),
     /// What happens to the wheels is said for a data set whose cases say it themselves.
     #[error(
         "the cases of a trajectory data set say themselves what happens to the wheels and how long \

@@ -134,6 +134,7 @@ impl ImpactCase {
                 friction_model: FrictionModel::Limit,
             },
             ending: None,
+            bullet_ending: None,
             target_vehicle: None,
             bullet_vehicle: None,
         })

@@ -141,6 +141,9 @@ pub struct Scenario {
     /// not say it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ending: Option<Ending>,
+    /// The same of the bullet.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bullet_ending: Option<Ending>,
     /// The struck vehicle by its name among those that come with the program, if the scenario says it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub target_vehicle: Option<String>,
@@ -292,6 +295,10 @@ impl Scenario {
         }
         let own = self.contact.ranges().into_iter();
         numbers.extend(own.map(|(key, value, range)| (format!("contact.{key}"), value, range)));
+        for (name, ending) in [("ending", &self.ending), ("bullet_ending", &self.bullet_ending)] {
+            let own = ending.iter().flat_map(Ending::ranges);
+            numbers.extend(own.map(|(key, value, range)| (format!("{name}.{key}"), value, range)));
+        }
         numbers
     }
 

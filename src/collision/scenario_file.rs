@@ -28,6 +28,7 @@
 //! friction_model = "limit"    # optional; or "paper"
 //!
 //! # [ending]                  # optional: what happens to the target's wheels; see Ending::read
+//! # [bullet_ending]           # optional: the same of the bullet
 //! ```
 //!
 //! Each quantity is given once, in any unit of
@@ -74,6 +75,7 @@ impl Scenario {
         let (mut target, mut bullet) = (top.table("target")?, top.table("bullet")?);
         let mut contact = top.table("contact")?;
         let ending = top.optional_table("ending")?.map(Ending::read).transpose()?;
+        let bullet_ending = top.optional_table("bullet_ending")?.map(Ending::read).transpose()?;
         top.finish()?;
         let target_x_m = position(&mut target, "x")?.unwrap_or(0.0);
         let target_y_m = position(&mut target, "y")?.unwrap_or(0.0);
@@ -89,6 +91,7 @@ impl Scenario {
             bullet: read_vehicle(bullet, of_bullet)?,
             contact: read_contact(contact, location)?,
             ending,
+            bullet_ending,
             target_vehicle,
             bullet_vehicle,
         })

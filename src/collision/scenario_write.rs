@@ -50,8 +50,9 @@ impl Scenario {
         };
         contact.line("friction_model", quoted(model));
         let mut ending = Lines::default();
-        if let Some(given) = &self.ending {
-            ending.0.push_str("\n[ending]\n");
+        for (name, given) in [("ending", &self.ending), ("bullet_ending", &self.bullet_ending)] {
+            let Some(given) = given else { continue };
+            ending.0.push_str(&format!("\n[{name}]\n"));
             for (key, value) in given.entries() {
                 ending.line(&key, value);
             }
@@ -126,6 +127,7 @@ mod tests {
             brake: Some(Braking { start_s: 0.1 + 0.2, share_of_friction: 1.2, rise_s: 0.5 }),
             ..Ending::default()
         });
+        scenario.bullet_ending = scenario.ending.clone();
         scenario.contact.restitution_form = RestitutionForm::CommonVelocity;
         for location in [
             scenario.contact.location,

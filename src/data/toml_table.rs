@@ -235,14 +235,14 @@ impl<'a> TomlTable<'a> {
 }
 
 /// The name of a key: `speed` in km/h is `speed_km_h`, `yaw_inertia` in kg m² is
-/// `yaw_inertia_kg_m2`, a ratio `e` is `e`, or `e_percent` in per cent.
+/// `yaw_inertia_kg_m2`, `torque` in N m is `torque_n_m`, a ratio `e` is `e`, or `e_percent` in per cent.
 fn key_of(base: &str, unit: &Unit) -> String {
     match unit.symbol {
         "" => base.to_owned(),
         "%" => format!("{base}_percent"),
         symbol => {
             let suffix = symbol.replace(['/', ' '], "_").replace('²', "2").replace('µ', "u");
-            format!("{base}_{suffix}")
+            format!("{base}_{}", suffix.to_lowercase())
         }
     }
 }

@@ -56,6 +56,8 @@ ranges! {
         "time over which brake or steering reach their full value";
     DRAG_SHARE: "drag" = real(Quantity::Ratio, [0.0, 3.0]),
         "drag of a damaged wheel over the largest that the road can hold at its static load";
+    DRIVE_TORQUE: "drive torque" = real(Quantity::Moment, [0.0, 20_000.0]),
+        "torque at the wheels of a driven axle together, forwards";
     ENGINE_BRAKING: "engine braking" = real(Quantity::Acceleration, [0.0, 5.0]),
         "deceleration that the engine causes on a straight course";
 }

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{
-    Analysis, MotionForecast, MotionForecastSettings, MotionOutcome, Sensitivity, StruckVehicle,
-    forecast_collision, forecast_forces,
+    Analysis, MotionForecast, MotionForecastSettings, MotionOutcome, SecondContacts, Sensitivity,
+    StruckVehicle, forecast_collision, forecast_forces,
 };
 use crate::data::{DatasetKind, ForceHistory, Outcome, check_contact_within};
 use crate::force::{ForceModel, ForceScenario, OutsideTraining};
@@ -240,7 +240,7 @@ impl Question for PredictMotionRequest {
         let known = (assumptions, provenance);
         let mut report = PredictMotionReport {
             implied_contact: self.implied_contact(&forecast)?,
-            flags: analysis.second_contact.iter().map(FlagReport::from).collect(),
+            flags: self.second_contact(&forecast, &analysis).into_iter().collect(),
             ..self.report(&analysis.name, struck, (&forecast, known))
         };
         report.badges = badges::of_predicted_motion(&report);
@@ -271,6 +271,15 @@ impl PredictMotionRequest {
         let impact = scenario.impact().map_err(|source| choice.unsolved(source))?;
         let at = (&impact, scenario.target.heading_rad);
         Ok(ImpliedContactReport::of(prediction, at, self.seed))
+    }
+
+    /// Whether the vehicles meet again, over the draws. The striking vehicle moves as in the
+    /// simulation where the force is that of the simulation.
+    fn second_contact(&self, forecast: &MotionForecast, analysis: &Analysis) -> Option<FlagReport> {
+        let bullet = analysis.bullet.as_ref()?;
+        let is_own = self.force == ForceSource::Given;
+        let met = SecondContacts::of(forecast, (analysis.footprint, bullet), is_own)?;
+        Some(FlagReport::from(&met))
     }
 
     /// Whether the motion of the struck vehicle depends on what was assumed for the simulation.

@@ -18,7 +18,7 @@ use crate::ranges::{
     CONTACT_HEIGHT, PULSE_DURATION, ROAD_FRICTION, SIMULATED_DURATION, SPEED, VEHICLE_DRAWS,
     YAW_RATE,
 };
-use crate::study::checks::{check, check_contact, check_count, check_given};
+use crate::study::checks::{check, check_all, check_contact, check_count, check_given};
 use crate::study::inputs::{OpenVehicle, striking_vehicle, struck_vehicle};
 use crate::study::simulate_dataset::take_case;
 use crate::study::unused::by_simulation;
@@ -223,10 +223,8 @@ impl Question for SimulateRequest {
         check_given("friction", &ROAD_FRICTION, self.friction)?;
         check("duration_s", &SIMULATED_DURATION, self.duration_s)?;
         check_count("vehicle_draws", &VEHICLE_DRAWS, self.vehicle_draws)?;
-        if let Some(ending) = &self.ending {
-            let in_ending = |source| StudyError::OutOfRange { field: "ending".to_owned(), source };
-            ending.check().map_err(in_ending)?;
-        }
+        let of_ending = self.ending.iter().flat_map(Ending::ranges);
+        check_all(of_ending.map(|(key, value, range)| (format!("ending.{key}"), value, range)))?;
         self.source.check()
     }
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use crate::analysis::Analysis;
+use crate::analysis::{Analysis, SecondContacts};
 use crate::collision::{PrincipalDirectionOfForce, SecondContact};
 use crate::compare::{MotionError, largest_yaw_change_rad};
 use crate::data::{Channel, ForceAxes, SeriesError, TimeSeries, contact_interval};
@@ -13,6 +13,7 @@ use crate::study::{
     Assumption, MomentumReport, Provenance, SimulateRequest, VehicleUncertainty, word,
 };
 use crate::uncertainty::{Badge, BadgeKind};
+use crate::units::percent;
 use crate::vehicle::frames::world_from_body;
 use crate::vehicle::{Motion, MotionFlag};
 
@@ -143,9 +144,16 @@ pub struct FlagReport {
     pub position_m: Option<[f64; 2]>,
     /// How fast their overlap grows there, m/s.
     pub closing_speed_m_s: Option<f64>,
+    /// Share of the draws in which they do; time, place and speed are then medians. None where
+    /// nothing is drawn.
+    pub probability: Option<f64>,
     /// For a person.
     pub message: String,
 }
+
+/// What a person should know of a second contact.
+const NOT_COMPUTED: &str = "a second contact, which is not computed; the motions after it are not \
+                            those of the vehicles";
 
 impl From<&SecondContact> for FlagReport {
     fn from(second: &SecondContact) -> Self {
@@ -158,11 +166,39 @@ impl From<&SecondContact> for FlagReport {
             roll_rad: None,
             position_m: Some(second.point_m),
             closing_speed_m_s: Some(speed),
+            probability: None,
             message: format!(
                 "the vehicles {how} at {:.2} s, near x {x:.1} m, y {y:.1} m, closing at {speed:.1} \
-                 m/s: a second contact, which is not computed; the motions after it are not those \
-                 of the vehicles",
+                 m/s: {NOT_COMPUTED}",
                 second.time_s
+            ),
+        }
+    }
+}
+
+impl From<&SecondContacts> for FlagReport {
+    fn from(met: &SecondContacts) -> Self {
+        let (x, y, speed) = (met.x_m.median, met.y_m.median, met.closing_speed_m_s.median);
+        let how = match 2.0 * met.apart_share > 1.0 {
+            true => "meet again",
+            false => "go deeper into each other",
+        };
+        let ([from_s, to_s], [slow, fast]) = (met.time_s.ninety, met.closing_speed_m_s.ninety);
+        Self {
+            kind: BadgeKind::SecondContact,
+            time_s: met.time_s.median,
+            wheel: None,
+            roll_rad: None,
+            position_m: Some([x, y]),
+            closing_speed_m_s: Some(speed),
+            probability: Some(met.probability),
+            message: format!(
+                "the vehicles {how} in {} of {} draws, at {:.2} s (90 %: {from_s:.2} to \
+                 {to_s:.2}), near x {x:.1} m, y {y:.1} m, closing at {speed:.1} m/s (90 %: \
+                 {slow:.1} to {fast:.1}): {NOT_COMPUTED}",
+                percent(met.probability),
+                met.n_draws,
+                met.time_s.median,
             ),
         }
     }
@@ -177,6 +213,7 @@ impl From<&MotionFlag> for FlagReport {
             roll_rad: None,
             position_m: None,
             closing_speed_m_s: None,
+            probability: None,
             message: flag.to_string(),
         };
         match flag {

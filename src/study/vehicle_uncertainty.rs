@@ -22,6 +22,8 @@ pub struct VehicleUncertainty {
     pub yaw_rad: Spread,
     /// Speed of the CG at the end, m/s.
     pub speed_m_s: Spread,
+    /// Share of the draws in which the two vehicles meet again; none where one vehicle moves.
+    pub second_contact_probability: Option<f64>,
     /// Which estimates the end depends on, the one that moves the end position most first.
     pub sensitivity: Vec<Sensitivity>,
 }
@@ -45,9 +47,12 @@ pub(super) fn vehicle_uncertainty(
     let vehicles = draws.vehicles(&settings.target);
     let end = |target| {
         let analysis = analyse(&Settings { target, ..settings.clone() }).ok()?;
-        EndState::of(&analysis.simulation?.series).ok()
+        let end = EndState::of(&analysis.simulation?.series).ok()?;
+        Some((end, analysis.second_contact.is_some()))
     };
-    let ends: Vec<Option<EndState>> = vehicles.into_par_iter().map(end).collect();
+    let ends: Vec<Option<(EndState, bool)>> = vehicles.into_par_iter().map(end).collect();
+    let (ends, met): (Vec<Option<EndState>>, Vec<Option<bool>>) =
+        ends.into_iter().map(Option::unzip).unzip();
     let of = |value: fn(&EndState) -> f64| {
         Spread::of_draws(ends.iter().flatten().map(value).collect::<Vec<f64>>())
     };
@@ -64,6 +69,8 @@ pub(super) fn vehicle_uncertainty(
     };
     let mut sensitivity = draws.sensitivities(&places);
     sensitivity.retain(is_estimated);
+    let n_met = met.iter().filter(|met| **met == Some(true)).count();
+    let share_met = n_met as f64 / (ends.len() - n_failed) as f64;
     Some(VehicleUncertainty {
         n_draws: ends.len(),
         n_failed,
@@ -71,6 +78,7 @@ pub(super) fn vehicle_uncertainty(
         y_m: of(|end| end.y_m),
         yaw_rad: of(|end| end.yaw_rad),
         speed_m_s: of(|end| end.speed_m_s),
+        second_contact_probability: central.bullet.is_some().then_some(share_met),
         sensitivity,
     })
 }
@@ -109,6 +117,7 @@ mod tests {
         let uncertainty = report.uncertainty.unwrap();
         assert_eq!((uncertainty.n_draws, uncertainty.n_failed), (60, 0));
         let end = report.end.unwrap();
+        assert!(uncertainty.second_contact_probability.unwrap() > 0.9, "{uncertainty:?}");
         let [low, high] = uncertainty.x_m.ninety;
         assert!(high - low > 0.1, "{uncertainty:?}");
         assert!((low..=high).contains(&end.x_m), "{low} {high} {end:?}");
@@ -131,6 +140,7 @@ mod tests {
         assert_eq!(report(pit(), "toyota-camry-2018", 0).uncertainty, None);
         let drive = Drive { speed_m_s: Some(20.0), ..Drive::default() };
         let straight = report(MotionSource::Drive(drive), "generic-suv", 60).uncertainty.unwrap();
+        assert_eq!(straight.second_contact_probability, None);
         let [low, high] = straight.y_m.ninety;
         assert!(low.abs() < 1e-6 && high.abs() < 1e-6, "{straight:?}");
         assert!(straight.x_m.ninety[1] - straight.x_m.ninety[0] < 2.0, "{straight:?}");

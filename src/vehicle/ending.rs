@@ -15,7 +15,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::ranges::{
-    BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, ENGINE_BRAKING, OutOfRange, STEER_ANGLE,
+    BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, DRIVE_TORQUE, ENGINE_BRAKING, Range,
+    STEER_ANGLE,
 };
 use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::controls::{Controls, SteerHistory, WheelHistory};
@@ -39,6 +40,9 @@ pub struct Ending {
     /// The engine brakes, in gear and without throttle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub engine: Option<EngineBraking>,
+    /// The driver accelerates.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub drive: Option<Driving>,
     /// Wheels that bent bodywork or a broken suspension drags or locks.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub damage: Vec<DamagedWheel>,
@@ -88,6 +92,23 @@ pub struct EngineBraking {
     pub axle: DrivenAxle,
 }
 
+/// Drive by the engine, through an open differential.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Driving {
+    /// Torque at the wheels of each driven axle together, N m. It does not depend on the speed.
+    pub torque_n_m: f64,
+    /// The axle that is driven.
+    #[serde(default)]
+    pub axle: DrivenAxle,
+    /// When the torque begins to rise, s after the first contact.
+    #[serde(default)]
+    pub start_s: f64,
+    /// How long it rises, s.
+    #[serde(default = "default_brake_rise_s")]
+    pub rise_s: f64,
+}
+
 /// A wheel that is dragged or locked.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -122,39 +143,45 @@ impl Ending {
         *self == Self::default()
     }
 
-    /// Checks every number.
-    ///
-    /// # Errors
-    /// [`OutOfRange`] for the first number outside its range.
-    pub fn check(&self) -> Result<(), OutOfRange> {
+    /// Every number with its name and its range.
+    pub fn ranges(&self) -> Vec<(String, f64, Range)> {
+        let mut numbers = Vec::new();
+        let mut add = |name: &str, value, range| numbers.push((name.to_owned(), value, range));
         if let Some(brake) = &self.brake {
-            CONTROL_TIME.check(brake.start_s)?;
-            BRAKE_SHARE.check(brake.share_of_friction)?;
-            BRAKE_RISE.check(brake.rise_s)?;
+            add("brake.start_s", brake.start_s, CONTROL_TIME);
+            add("brake.share_of_friction", brake.share_of_friction, BRAKE_SHARE);
+            add("brake.rise_s", brake.rise_s, BRAKE_RISE);
         }
         if let Some(engine) = &self.engine {
-            ENGINE_BRAKING.check(engine.deceleration_m_s2)?;
+            add("engine.deceleration_m_s2", engine.deceleration_m_s2, ENGINE_BRAKING);
         }
-        for wheel in &self.damage {
-            CONTROL_TIME.check(wheel.start_s)?;
+        if let Some(drive) = &self.drive {
+            add("drive.torque_n_m", drive.torque_n_m, DRIVE_TORQUE);
+            add("drive.start_s", drive.start_s, CONTROL_TIME);
+            add("drive.rise_s", drive.rise_s, BRAKE_RISE);
+        }
+        for (i, wheel) in self.damage.iter().enumerate() {
+            add(&format!("damage[{i}].start_s"), wheel.start_s, CONTROL_TIME);
             if let Some(share) = wheel.drag_share_of_friction {
-                DRAG_SHARE.check(share)?;
+                add(&format!("damage[{i}].drag_share_of_friction"), share, DRAG_SHARE);
             }
         }
         if let Some(steer) = &self.steer {
-            CONTROL_TIME.check(steer.start_s)?;
-            BRAKE_RISE.check(steer.rise_s)?;
-            STEER_ANGLE.check(steer.road_wheel_rad)?;
+            add("steer.start_s", steer.start_s, CONTROL_TIME);
+            add("steer.rise_s", steer.rise_s, BRAKE_RISE);
+            add("steer.road_wheel_rad", steer.road_wheel_rad, STEER_ANGLE);
         }
-        Ok(())
+        numbers
     }
 
     /// When the last control begins to act fully, s: before, a vehicle that stands may move again.
     pub fn settled_s(&self) -> f64 {
         let brake = self.brake.map(|brake| brake.start_s + brake.rise_s);
         let steer = self.steer.map(|steer| steer.start_s + steer.rise_s);
+        let drive = self.drive.map(|drive| drive.start_s + drive.rise_s);
         let damage = self.damage.iter().map(|wheel| wheel.start_s + CATCH_S);
-        brake.into_iter().chain(steer).chain(damage).fold(0.0, f64::max)
+        let brake = brake.into_iter().chain(drive);
+        brake.chain(steer).chain(damage).fold(0.0, f64::max)
     }
 
     /// Steer angle and wheels over time for a vehicle.
@@ -167,12 +194,13 @@ impl Ending {
     }
 
     fn wheels(&self, vehicle: &VehicleParameters) -> Option<WheelHistory> {
-        if self.brake.is_none() && self.engine.is_none() && self.damage.is_empty() {
+        if (Self { steer: None, ..self.clone() }).is_coasting() {
             return None;
         }
         let brake = self.brake.into_iter().flat_map(|it| [it.start_s, it.start_s + it.rise_s]);
+        let drive = self.drive.into_iter().flat_map(|it| [it.start_s, it.start_s + it.rise_s]);
         let damage = self.damage.iter().flat_map(|it| [it.start_s, it.start_s + CATCH_S]);
-        let mut time_s: Vec<f64> = brake.chain(damage).chain([0.0]).collect();
+        let mut time_s: Vec<f64> = brake.chain(drive).chain(damage).chain([0.0]).collect();
         time_s.sort_by(f64::total_cmp);
         time_s.dedup();
         let wheels = time_s.iter().map(|&t| self.at(vehicle, t)).collect();
@@ -191,6 +219,11 @@ impl Ending {
             }
             if let Some(engine) = &self.engine {
                 effort.braking_n += engine.force_n(vehicle, wheel);
+            }
+            if let Some(drive) = &self.drive {
+                let full_n = drive.torque_n_m / 2.0 / vehicle.tires.rolling_radius_m;
+                let risen = risen(drive.start_s, drive.rise_s);
+                effort.drive_n += if drive.axle.drives(wheel) { full_n * risen } else { 0.0 };
             }
             for damaged in self.damage.iter().filter(|damaged| damaged.wheel == wheel) {
                 let caught = risen(damaged.start_s, CATCH_S);
@@ -220,14 +253,22 @@ fn braking_force_n(vehicle: &VehicleParameters, share_of_friction: f64, wheel: W
     total_n * of_axle.clamp(0.0, 1.0) / 2.0
 }
 
+impl DrivenAxle {
+    fn drives(self, wheel: Wheel) -> bool {
+        match self {
+            Self::All => true,
+            Self::Front => wheel.is_front(),
+            Self::Rear => !wheel.is_front(),
+        }
+    }
+}
+
 impl EngineBraking {
     fn force_n(&self, vehicle: &VehicleParameters, wheel: Wheel) -> f64 {
-        let share = match self.axle {
-            DrivenAxle::All => 0.25,
-            DrivenAxle::Front if wheel.is_front() => 0.5,
-            DrivenAxle::Rear if !wheel.is_front() => 0.5,
-            DrivenAxle::Front | DrivenAxle::Rear => 0.0,
-        };
-        vehicle.mass.mass_kg * self.deceleration_m_s2 * share
+        let n_driven = Wheel::ALL.into_iter().filter(|wheel| self.axle.drives(*wheel)).count();
+        match self.axle.drives(wheel) {
+            true => vehicle.mass.mass_kg * self.deceleration_m_s2 / n_driven as f64,
+            false => 0.0,
+        }
     }
 }

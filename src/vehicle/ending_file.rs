@@ -7,6 +7,10 @@
 //! brake_rise_s = 0.3              # optional
 //! engine_braking_m_s2 = 0.5       # optional; engine_braking_g
 //! driven_axle = "front"           # optional; "rear", "all"
+//! drive_torque_n_m = 800          # optional; at the wheels of each driven axle together
+//! drive_axle = "rear"             # optional; without it, the driven_axle
+//! drive_start_s = 0.5             # optional
+//! drive_rise_s = 0.3              # optional
 //! rear_left = "locked"            # optional, for each wheel; "dragged" with the next key
 //! rear_left_share = 0.5           # of what the road can hold at the static load of the wheel
 //! rear_left_start_s = 0           # optional
@@ -19,16 +23,15 @@
 
 use crate::data::{TomlError, TomlTable};
 use crate::ranges::{
-    BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, ENGINE_BRAKING, STEER_ANGLE, STEERING_RATIO,
-    STEERING_WHEEL_ANGLE,
+    BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, DRIVE_TORQUE, ENGINE_BRAKING, STEER_ANGLE,
+    STEERING_RATIO, STEERING_WHEEL_ANGLE,
 };
 use crate::vehicle::{
-    Braking, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Ending, EngineBraking, HeldSteer,
-    Wheel,
+    Braking, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Driving, Ending, EngineBraking,
+    HeldSteer, Wheel,
 };
 
-const AXLES: [(&str, DrivenAxle); 3] =
-    [("front", DrivenAxle::Front), ("rear", DrivenAxle::Rear), ("all", DrivenAxle::All)];
+const AXLES: [DrivenAxle; 3] = [DrivenAxle::Front, DrivenAxle::Rear, DrivenAxle::All];
 
 const CONDITIONS: [&str; 2] = ["dragged", "locked"];
 
@@ -39,14 +42,14 @@ impl Ending {
     /// [`TomlError`] if a key is missing, unknown, contradictory or out of range.
     pub fn read(mut section: TomlTable<'_>) -> Result<Self, TomlError> {
         let brake = read_brake(&mut section)?;
-        let engine = read_engine(&mut section)?;
+        let (engine, drive) = read_engine(&mut section)?;
         let mut damage = Vec::new();
         for wheel in Wheel::ALL {
             damage.extend(read_wheel(&mut section, wheel)?);
         }
         let steer = read_steer(&mut section)?;
         section.finish()?;
-        Ok(Self { brake, engine, damage, steer })
+        Ok(Self { brake, engine, drive, damage, steer })
     }
 
     /// The keys and values of a section from which [`Ending::read`] reads the same ending.
@@ -60,8 +63,13 @@ impl Ending {
         }
         if let Some(engine) = &self.engine {
             add("engine_braking_m_s2".to_owned(), engine.deceleration_m_s2.into());
-            let axle = AXLES.iter().find(|(_, axle)| *axle == engine.axle);
-            add("driven_axle".to_owned(), axle.map_or("front", |(name, _)| name).into());
+            add("driven_axle".to_owned(), name_of(engine.axle).into());
+        }
+        if let Some(drive) = &self.drive {
+            add("drive_torque_n_m".to_owned(), drive.torque_n_m.into());
+            add("drive_axle".to_owned(), name_of(drive.axle).into());
+            add("drive_start_s".to_owned(), drive.start_s.into());
+            add("drive_rise_s".to_owned(), drive.rise_s.into());
         }
         for damaged in &self.damage {
             let name = key_of(damaged.wheel);
@@ -78,6 +86,14 @@ impl Ending {
             add("steer_rise_s".to_owned(), steer.rise_s.into());
         }
         entries
+    }
+}
+
+fn name_of(axle: DrivenAxle) -> &'static str {
+    match axle {
+        DrivenAxle::Front => "front",
+        DrivenAxle::Rear => "rear",
+        DrivenAxle::All => "all",
     }
 }
 
@@ -106,17 +122,36 @@ fn read_brake(section: &mut TomlTable<'_>) -> Result<Option<Braking>, TomlError>
     }
 }
 
-fn read_engine(section: &mut TomlTable<'_>) -> Result<Option<EngineBraking>, TomlError> {
+fn read_engine(
+    section: &mut TomlTable<'_>,
+) -> Result<(Option<EngineBraking>, Option<Driving>), TomlError> {
     let deceleration = section.number("engine_braking", &ENGINE_BRAKING)?;
-    let axle = section.choice("driven_axle", &AXLES.map(|(name, _)| name))?;
-    let axle = axle.and_then(|idx| AXLES.get(idx)).map(|(_, axle)| *axle);
-    match (deceleration, axle) {
-        (Some(deceleration_m_s2), axle) => {
-            Ok(Some(EngineBraking { deceleration_m_s2, axle: axle.unwrap_or_default() }))
+    let torque = section.number("drive_torque", &DRIVE_TORQUE)?;
+    let start_s = section.number("drive_start", &CONTROL_TIME)?;
+    let rise_s = section.number("drive_rise", &BRAKE_RISE)?;
+    let mut axle = |key| -> Result<Option<DrivenAxle>, TomlError> {
+        let chosen = section.choice(key, &AXLES.map(name_of))?;
+        Ok(chosen.and_then(|idx| AXLES.get(idx)).copied())
+    };
+    let (axle, drive_axle) = (axle("driven_axle")?, axle("drive_axle")?);
+    match (deceleration, torque) {
+        (None, None) if axle.is_some() => {
+            return Err(section.missing("engine_braking_m_s2 (or drive_torque_n_m)"));
         }
-        (None, None) => Ok(None),
-        (None, Some(_)) => Err(section.missing("engine_braking_m_s2")),
+        (_, None) if start_s.is_some() || rise_s.is_some() || drive_axle.is_some() => {
+            return Err(section.missing("drive_torque_n_m"));
+        }
+        _ => {}
     }
+    let axle = axle.unwrap_or_default();
+    let engine = deceleration.map(|deceleration_m_s2| EngineBraking { deceleration_m_s2, axle });
+    let drive = torque.map(|torque_n_m| Driving {
+        torque_n_m,
+        axle: drive_axle.unwrap_or(axle),
+        start_s: start_s.unwrap_or(0.0),
+        rise_s: rise_s.unwrap_or(DEFAULT_BRAKE_RISE_S),
+    });
+    Ok((engine, drive))
 }
 
 fn read_wheel(
@@ -189,13 +224,15 @@ mod tests {
     fn everyday_endings_are_read_and_written_back() {
         let text = "brake_start_s = 0.7\nbrake_share = 0.8\nengine_braking_g = 0.05\n\
                     driven_axle = \"rear\"\nrear_left = \"locked\"\nfront_right = \"dragged\"\n\
-                    front_right_share = 0.5\nsteering_wheel_deg = 48\nsteering_ratio = 16";
+                    front_right_share = 0.5\ndrive_torque_n_m = 900\nsteering_wheel_deg = 48\nsteering_ratio = 16";
         let ending = read(text).unwrap();
         assert_eq!(ending.brake.unwrap().rise_s, DEFAULT_BRAKE_RISE_S);
         assert!((ending.engine.unwrap().deceleration_m_s2 - 0.490_332_5).abs() < 1e-9);
         let steer = ending.steer.unwrap();
         assert!((steer.road_wheel_rad - 3_f64.to_radians()).abs() < 1e-12);
         assert_eq!(ending.damage.len(), 2);
+        let drive = ending.drive.unwrap();
+        assert_eq!((drive.torque_n_m, drive.axle), (900.0, DrivenAxle::Rear));
         let written: String =
             ending.entries().iter().map(|(key, value)| format!("{key} = {value}\n")).collect();
         assert_eq!(read(&written).unwrap(), ending, "{written}");
@@ -212,7 +249,10 @@ mod tests {
             ("rear_left = \"locked\"\nrear_left_share = 1", "say the same thing"),
             ("rear_left_start_s = 1", "rear_left is missing"),
             ("rear_left = \"flat\"", "\"dragged\" or \"locked\""),
-            ("driven_axle = \"rear\"", "engine_braking_m_s2 is missing"),
+            ("driven_axle = \"rear\"", "engine_braking_m_s2 (or drive_torque_n_m) is missing"),
+            ("drive_axle = \"rear\"", "drive_torque_n_m is missing"),
+            ("drive_start_s = 1", "drive_torque_n_m is missing"),
+            ("drive_torque_n_m = -5", "drive_torque_n_m is -5, expected 0 to 20000"),
             ("steer_deg = 120", "steer_deg is 120"),
             ("steering_wheel_deg = 90", "steering_ratio is missing"),
             (

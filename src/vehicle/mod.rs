@@ -24,7 +24,8 @@ mod stability;
 pub use as_printed::Equations;
 pub use controls::{Controls, SteerHistory, WheelHistory};
 pub use ending::{
-    Braking, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Ending, EngineBraking, HeldSteer,
+    Braking, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Driving, Ending, EngineBraking,
+    HeldSteer,
 };
 pub use energy::MAX_ENERGY_GAIN;
 pub use four_dof::{CollisionForce, ContactPoint, VehicleEvaluation, VehicleInput};

@@ -104,13 +104,27 @@ fn a_second_contact_is_flagged() {
     let told = ok(program().args(["simulate", "--scenario"]).arg(&slow).output().unwrap());
     assert!(told.contains("a second contact, which is not computed"), "{told}");
     let out = folder.path().join("out");
-    let predict = ["predict", "--draws", "2", "--scenario", text(&slow), "--out", text(&out)];
-    assert_eq!(answer(&predict)["flags"][0], *flag);
+    let predict = ["predict", "--draws", "5", "--scenario", text(&slow), "--out", text(&out)];
+    let report = answer(&predict);
+    let drawn = &report["flags"][0];
+    assert_eq!(drawn["kind"], "second_contact", "{report}");
+    assert_eq!(drawn["probability"], 1.0, "{drawn}");
+    assert!(drawn["message"].as_str().unwrap().contains("in 100.0 % of 5 draws"), "{drawn}");
+    let drawn = |key: &str| drawn[key].as_f64().unwrap();
+    assert!(drawn("time_s") > 0.1 && drawn("closing_speed_m_s") > 0.5, "{report}");
     let rear = std::fs::read_to_string(SCENARIO).unwrap().replace("heading_deg = 18", "");
     let rear = rear.replace("side = \"right\"", "side = \"rear\"").replace("= -1.4", "= 0.2");
     let rear = write(&folder, "rear.toml", &rear);
     let free = answer(&["simulate", "--scenario", text(&rear)]);
     assert_eq!(free["flags"].as_array().unwrap().len(), 0, "{free}");
+    // The driver of the bullet steers away: what follows is another motion of the bullet.
+    let away = std::fs::read_to_string(SCENARIO).unwrap()
+        + "\n[bullet_ending]\nsteer_deg = -8\nsteer_rise_s = 0.2\n";
+    let away = answer(&["simulate", "--scenario", text(&write(&folder, "away.toml", &away))]);
+    let plain = answer(&["simulate", "--scenario", SCENARIO]);
+    let closing = |report: &Value| report["flags"][0]["closing_speed_m_s"].as_f64().unwrap();
+    assert!(closing(&away) < 0.8 * closing(&plain), "{away} {plain}");
+    assert_eq!(away["end"], plain["end"], "the target's motion does not know of the bullet's");
 }
 
 /// The momentum solution and the force network describe one contact: both are named.

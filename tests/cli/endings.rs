@@ -51,6 +51,57 @@ fn a_locked_wheel_and_a_scenario_that_brakes_change_the_path_and_coast_undoes_it
 }
 
 #[test]
+fn steering_and_drive_are_said_by_options_and_by_the_scenario() {
+    let end = |args: &[&str], key: &str| {
+        answer(&[&STRAIGHT[..], args].concat())["end"][key].as_f64().unwrap()
+    };
+    // The steering wheel over its ratio is the road wheel.
+    let (of_wheel, of_road_wheel) = (
+        end(&["--steering-wheel", "48deg", "--steering-ratio", "16"], "y_m"),
+        end(&["--steer-angle", "3deg"], "y_m"),
+    );
+    assert!(of_wheel > 5.0 && (of_wheel - of_road_wheel).abs() < 1e-9, "{of_wheel}");
+    let later = end(&["--steer-angle", "3deg", "--steer-start", "2"], "y_m");
+    assert!(later > 0.1 && later < 0.5 * of_wheel, "{later}");
+    // 2000 N m at wheels of 0.3 m, 2000 kg: some 3.3 m/s² over 4 s.
+    let (rolls, driven) = (end(&[], "vx_m_s"), end(&["--drive-torque", "2000"], "vx_m_s"));
+    assert!((8.0..16.0).contains(&(driven - rolls)), "{rolls} {driven}");
+    let both = end(&["--drive-torque", "1000", "--driven", "all"], "vx_m_s");
+    assert!((both - driven).abs() < 0.1, "{driven} {both}: the torque is that of each axle");
+
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("driven.toml");
+    let pit = fs::read_to_string("assets/scenarios/pit_right_rear.toml").unwrap();
+    let ending = "\n[ending]\ndrive_torque_n_m = 2000\ndrive_axle = \"rear\"\n";
+    fs::write(&path, pit + ending).unwrap();
+    let distance = |args: &[&str]| answer(args)["distance_m"].as_f64().unwrap();
+    let scenario = ["simulate", "--scenario", text(&path)];
+    let coasts = distance(&[&scenario[..], &["--coast"]].concat());
+    assert!((distance(&scenario) - coasts).abs() > 0.5, "{coasts}");
+}
+
+/// The numbers of an ending that a question holds were not checked where a scenario holds them.
+#[test]
+fn an_ending_in_a_question_is_checked() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("question.json");
+    let args = ["simulate", "--scenario", "pit-right-rear", "--print-request"];
+    let asked = ok(program().args(args).output().unwrap());
+    let mut question: serde_json::Value = serde_json::from_str(&asked).unwrap();
+    let toml = fs::read_to_string("assets/scenarios/pit_right_rear.toml").unwrap();
+    let file = std::path::Path::new("pit.toml");
+    let scenario = impactlab::collision::Scenario::from_toml(&toml, file).unwrap();
+    let mut scenario = serde_json::to_value(scenario).unwrap();
+    scenario["bullet_ending"] = serde_json::json!({
+        "brake": {"start_s": 0.1, "share_of_friction": -5.0, "rise_s": 0.3}
+    });
+    question["source"]["scenario"]["scenario"] = serde_json::json!({"inline": scenario});
+    fs::write(&path, question.to_string()).unwrap();
+    let message = refusal(&["ask", text(&path)]);
+    assert!(message.contains("bullet_ending.brake.share_of_friction: braking is -5"), "{message}");
+}
+
+#[test]
 fn a_forecast_of_a_braked_car_is_refused_and_not_answered_as_if_it_coasted() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("braked.toml");
@@ -89,6 +140,16 @@ fn an_ending_that_cannot_be_is_refused_by_its_name() {
         (&["--engine-braking", "2g"], "engine braking is"),
         (&["--coast", "--brake", "0.5"], "cannot be used with"),
         (&["--brake-start", "1"], "--brake <SHARE>"),
+        (&["--steer-angle", "90deg"], "steer angle is 1.570796 rad, expected -0.9 to 0.9 rad"),
+        (&["--steering-wheel", "90deg"], "--steering-ratio <RATIO>"),
+        (&["--steering-ratio", "16"], "--steer-angle <ANGLE>|--steering-wheel <ANGLE>"),
+        (
+            &["--steering-wheel", "720deg", "--steering-ratio", "2"],
+            "no angle of a road wheel: steer angle is 6.283185 rad, expected -0.9 to 0.9 rad",
+        ),
+        (&["--steering-wheel", "90deg", "--steer-angle", "3deg"], "cannot be used with"),
+        (&["--drive-torque=-5"], "drive torque is -5"),
+        (&["--driven", "rear"], "--drive-torque <TORQUE>"),
     ] {
         let message = refusal(&[&STRAIGHT[..], args].concat());
         assert!(message.contains(expected), "{args:?}: {message}");

@@ -17,7 +17,7 @@ use crate::uncertainty::ForceCurve;
 /// The selected case with its recorded force.
 pub struct RecordedCase {
     /// Folder of the data set.
-    dataset: PathBuf,
+    pub dataset: PathBuf,
     /// Name of the case.
     pub case: String,
     /// The collision of the case as it was before the impact.

@@ -4,12 +4,12 @@ use egui::{CollapsingHeader, ComboBox, Grid, Ui};
 
 use crate::app::widgets::quantity_field;
 use crate::ranges::{
-    BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, ENGINE_BRAKING, STEER_ANGLE,
+    BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, DRIVE_TORQUE, ENGINE_BRAKING, STEER_ANGLE,
 };
 use crate::units::UnitSystem;
 use crate::vehicle::{
-    Braking, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Ending, EngineBraking, HeldSteer,
-    Wheel,
+    Braking, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Driving, Ending, EngineBraking,
+    HeldSteer, Wheel,
 };
 
 /// Share of the friction with which a driver brakes hard.
@@ -20,20 +20,30 @@ const REACTION_S: f64 = 0.7;
 const USUAL_DRAG: f64 = 0.5;
 /// Deceleration by an engine in a high gear, m/s².
 const USUAL_ENGINE_BRAKING_M_S2: f64 = 0.5;
+/// Torque at the wheels of a car that accelerates briskly, N m: some 0.2 g at 1500 kg.
+const USUAL_DRIVE_TORQUE_N_M: f64 = 1000.0;
 /// A small steer angle, rad: 3°.
 const SMALL_STEER_RAD: f64 = 0.0524;
 
 /// Draws the choices of an ending with their numbers. A vehicle for which nothing is chosen coasts.
-pub(super) fn ending_form(ui: &mut Ui, ending: &mut Option<Ending>, units: UnitSystem) {
+///
+/// - `vehicle`: whose wheels they are.
+pub(super) fn ending_form(
+    ui: &mut Ui,
+    vehicle: &str,
+    ending: &mut Option<Ending>,
+    units: UnitSystem,
+) {
     let title = match ending.as_ref().is_none_or(Ending::is_coasting) {
-        true => "After the impact: the target coasts",
-        false => "After the impact",
+        true => format!("After the impact: the {vehicle} coasts"),
+        false => format!("After the impact: the {vehicle}"),
     };
-    CollapsingHeader::new(title).id_salt("ending").show(ui, |ui| {
+    CollapsingHeader::new(title).id_salt(("ending", vehicle)).show(ui, |ui| {
         let mut edited = ending.clone().unwrap_or_default();
-        Grid::new("ending").num_columns(2).show(ui, |ui| {
+        Grid::new(("ending", vehicle)).num_columns(2).show(ui, |ui| {
             brake_fields(ui, &mut edited.brake, units);
             engine_fields(ui, &mut edited.engine, units);
+            drive_fields(ui, &mut edited.drive, units);
             for wheel in Wheel::ALL {
                 wheel_fields(ui, wheel, &mut edited.damage, units);
             }
@@ -73,12 +83,31 @@ fn engine_fields(ui: &mut Ui, engine: &mut Option<EngineBraking>, units: UnitSys
     switch(ui, "The engine brakes", engine, usual);
     let Some(engine) = engine else { return };
     quantity_field(ui, "deceleration", &mut engine.deceleration_m_s2, (&ENGINE_BRAKING, units));
-    let name = ui.label("driven axle");
-    ComboBox::from_id_salt("driven axle")
-        .selected_text(axle_label(engine.axle))
+    axle_field(ui, "driven axle", &mut engine.axle);
+}
+
+fn drive_fields(ui: &mut Ui, drive: &mut Option<Driving>, units: UnitSystem) {
+    let usual = Driving {
+        torque_n_m: USUAL_DRIVE_TORQUE_N_M,
+        axle: DrivenAxle::default(),
+        start_s: REACTION_S,
+        rise_s: DEFAULT_BRAKE_RISE_S,
+    };
+    switch(ui, "The driver accelerates", drive, usual);
+    let Some(drive) = drive else { return };
+    quantity_field(ui, "torque at an axle", &mut drive.torque_n_m, (&DRIVE_TORQUE, units));
+    axle_field(ui, "accelerated axle", &mut drive.axle);
+    quantity_field(ui, "from", &mut drive.start_s, (&CONTROL_TIME, units));
+    quantity_field(ui, "rises over", &mut drive.rise_s, (&BRAKE_RISE, units));
+}
+
+fn axle_field(ui: &mut Ui, label: &str, axle: &mut DrivenAxle) {
+    let name = ui.label(label);
+    ComboBox::from_id_salt(label)
+        .selected_text(axle_label(*axle))
         .show_ui(ui, |ui| {
-            for axle in [DrivenAxle::Front, DrivenAxle::Rear, DrivenAxle::All] {
-                ui.selectable_value(&mut engine.axle, axle, axle_label(axle));
+            for option in [DrivenAxle::Front, DrivenAxle::Rear, DrivenAxle::All] {
+                ui.selectable_value(axle, option, axle_label(option));
             }
         })
         .response

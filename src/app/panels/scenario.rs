@@ -70,7 +70,10 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         }
         ui.separator();
         contact_form(ui, project, view.units);
-        ending_form(ui, &mut project.scenario.ending, view.units);
+        let Scenario { ending, bullet_ending, .. } = &mut project.scenario;
+        for (vehicle, ending) in [("target", ending), ("bullet", bullet_ending)] {
+            ending_form(ui, vehicle, ending, view.units);
+        }
         vehicles_form(ui, project, view.units);
     });
 }

@@ -125,11 +125,12 @@ JSON, one vehicle: vehicle, equations, integrator, friction, duration_s, force {
   delta_v_magnitude_m_s over the contact (null without), end {x_m, y_m, yaw_rad, roll_rad,
   vx_m_s, vy_m_s, yaw_rate_rad_s, speed_m_s}, distance_m, rest {time_s, x_m, y_m, yaw_rad,
   distance_m} (null while it moves), largest_yaw_change_rad,
-  flags [{kind, time_s, wheel, roll_rad, position_m, closing_speed_m_s, message}],
+  flags [{kind, time_s, wheel, roll_rad, position_m, closing_speed_m_s, probability, message}],
   error (against a record), notes, assumptions [{quantity, value, reason}],
   badges [{kind, text, quantity, value, range}], out; for a vehicle of
   which only a data sheet is known uncertainty
   {n_draws, n_failed, x_m, y_m, yaw_rad, speed_m_s: each {median, half [2], ninety [2]},
+  second_contact_probability,
   sensitivity [{quantity, label, position_share, heading_share, chance_share}]}
 
 JSON, data set: dataset, vehicle, equations, integrator, cases [{case, spin, average_error_m, final_error_m,
@@ -207,7 +208,7 @@ pub(in crate::cli) fn run(
             let source = MotionSource::Case { dataset: root.clone(), case: case.clone() };
             simulate_one(args, source, console)
         }
-        (Some(_), _) if args.until_rest || args.ending.ending().is_some() => {
+        (Some(_), _) if args.until_rest || args.ending.ending()?.is_some() => {
             Err(CliError::EndingOfDataset)
         }
         (Some(root), _) => simulate_dataset(args, root, console),
@@ -231,7 +232,7 @@ fn simulate_one(
             true => REST_LIMIT_S,
             false => DEFAULT_DURATION_S,
         }),
-        ending: args.ending.ending(),
+        ending: args.ending.ending()?,
         until_rest: args.until_rest,
         vehicle_draws: args.single.vehicle_draws,
         seed: args.single.seed,

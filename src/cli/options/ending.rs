@@ -2,20 +2,27 @@
 
 use std::str::FromStr;
 
-use clap::{Args, ValueEnum};
+use clap::{ArgGroup, Args, ValueEnum};
 
 use crate::cli::options::quantity::{QuantityError, number};
-use crate::ranges::{BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, ENGINE_BRAKING};
+use crate::ranges::{
+    BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, DRIVE_TORQUE, ENGINE_BRAKING, OutOfRange,
+    STEER_ANGLE, STEERING_RATIO, STEERING_WHEEL_ANGLE,
+};
 use crate::vehicle::{
-    Braking, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Ending, EngineBraking, Wheel,
+    Braking, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Driving, Ending, EngineBraking,
+    HeldSteer, Wheel,
 };
 
 /// What the driver does and what the damage does to the wheels.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "After the first contact")]
+#[command(group(ArgGroup::new("engine").multiple(true).args(["engine_braking", "drive_torque"])))]
+#[command(group(ArgGroup::new("turned").args(["steer_angle", "steering_wheel"])))]
 pub(in crate::cli) struct EndingArgs {
     /// The vehicle coasts, also where the scenario says something else
-    #[arg(long, conflicts_with_all = ["brake", "engine_braking", "locked", "dragged"])]
+    #[arg(long, conflicts_with_all = ["brake", "engine_braking", "drive_torque", "locked",
+        "dragged", "steer_angle", "steering_wheel"])]
     coast: bool,
     /// The driver brakes with this share of what the road can hold (without an anti-lock system:
     /// more than 1 locks the wheels)
@@ -32,8 +39,15 @@ pub(in crate::cli) struct EndingArgs {
     /// The engine brakes with this deceleration: 0.5, 0.05g
     #[arg(long, value_name = "DECELERATION", value_parser = number(ENGINE_BRAKING))]
     engine_braking: Option<f64>,
+    /// The driver accelerates with this torque at the wheels of each driven axle together, N m
+    #[arg(long, value_name = "TORQUE", value_parser = number(DRIVE_TORQUE))]
+    drive_torque: Option<f64>,
+    /// When the driver accelerates, s
+    #[arg(long, value_name = "TIME", value_parser = number(CONTROL_TIME), default_value = "0",
+        requires = "drive_torque")]
+    drive_start: f64,
     /// The driven axle
-    #[arg(long, value_enum, default_value_t, requires = "engine_braking")]
+    #[arg(long, value_enum, default_value_t, requires = "engine")]
     driven: AxleArg,
     /// A wheel that cannot turn from the first contact on; may be given several times
     #[arg(long, value_enum, value_name = "WHEEL")]
@@ -42,6 +56,25 @@ pub(in crate::cli) struct EndingArgs {
     /// rear-left=0.5; may be given several times
     #[arg(long, value_name = "WHEEL=SHARE")]
     dragged: Vec<DraggedArg>,
+    /// The front road wheels turn to this angle, positive to the left: 3deg
+    #[arg(long, value_name = "ANGLE", value_parser = number(STEER_ANGLE),
+        allow_hyphen_values = true, group = "steering", conflicts_with = "steering_ratio")]
+    steer_angle: Option<f64>,
+    /// The steering wheel turns to this angle, positive to the left: 90deg
+    #[arg(long, value_name = "ANGLE", value_parser = number(STEERING_WHEEL_ANGLE),
+        allow_hyphen_values = true, group = "steering", requires = "steering_ratio")]
+    steering_wheel: Option<f64>,
+    /// Angle of the steering wheel over that of the road wheels; 12 to 20 in cars
+    #[arg(long, value_name = "RATIO", value_parser = number(STEERING_RATIO), requires = "steering")]
+    pub(in crate::cli) steering_ratio: Option<f64>,
+    /// When the steering begins, s
+    #[arg(long, value_name = "TIME", value_parser = number(CONTROL_TIME), default_value = "0",
+        requires = "turned")]
+    steer_start: f64,
+    /// How long the wheels turn, s
+    #[arg(long, value_name = "TIME", value_parser = number(BRAKE_RISE),
+        default_value_t = DEFAULT_BRAKE_RISE_S, requires = "turned")]
+    steer_rise: f64,
 }
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
@@ -112,7 +145,15 @@ impl From<AxleArg> for DrivenAxle {
 
 impl EndingArgs {
     /// The ending that the options say; `None` if they say none.
-    pub(in crate::cli) fn ending(&self) -> Option<Ending> {
+    ///
+    /// # Errors
+    /// [`OutOfRange`] for a steering-wheel angle that no road wheel follows.
+    pub(in crate::cli) fn ending(&self) -> Result<Option<Ending>, OutOfRange> {
+        let of_wheel = self.steering_wheel.zip(self.steering_ratio);
+        let road_wheel_rad = match of_wheel {
+            Some((angle_rad, ratio)) => Some(STEER_ANGLE.check(angle_rad / ratio)?),
+            None => self.steer_angle,
+        };
         let locked = self.locked.iter().map(|&wheel| (wheel, None));
         let dragged = self.dragged.iter().map(|dragged| (dragged.wheel, Some(dragged.share)));
         let damaged = |(wheel, share): (WheelArg, Option<f64>)| DamagedWheel {
@@ -130,9 +171,19 @@ impl EndingArgs {
                 deceleration_m_s2,
                 axle: self.driven.into(),
             }),
+            drive: self.drive_torque.map(|torque_n_m| Driving {
+                torque_n_m,
+                axle: self.driven.into(),
+                start_s: self.drive_start,
+                rise_s: DEFAULT_BRAKE_RISE_S,
+            }),
             damage: locked.chain(dragged).map(damaged).collect(),
-            steer: None,
+            steer: road_wheel_rad.map(|road_wheel_rad| HeldSteer {
+                start_s: self.steer_start,
+                rise_s: self.steer_rise,
+                road_wheel_rad,
+            }),
         };
-        (self.coast || !ending.is_coasting()).then_some(ending)
+        Ok((self.coast || !ending.is_coasting()).then_some(ending))
     }
 }

@@ -10,7 +10,7 @@ use crate::cli::console::{
 use crate::cli::text::contact::surface;
 use crate::cli::text::sensitivity::print_sensitivity;
 use crate::study::{ForceReport, RestState, SimulateReport, VehicleUncertainty};
-use crate::units::{Quantity, UnitSystem};
+use crate::units::{Quantity, UnitSystem, percent};
 
 /// A name and a value.
 type Fact = (&'static str, String);
@@ -64,8 +64,7 @@ fn print_uncertainty(
     uncertainty: &VehicleUncertainty,
     units: UnitSystem,
 ) -> io::Result<()> {
-    let VehicleUncertainty { n_draws, n_failed, x_m, y_m, yaw_rad, speed_m_s, sensitivity } =
-        uncertainty;
+    let VehicleUncertainty { n_draws, n_failed, x_m, y_m, yaw_rad, speed_m_s, .. } = uncertainty;
     let row = |name: &str, quantity, spread: &Spread| {
         let [low, high] = spread.ninety.map(|value| shown(quantity, value, units));
         vec![name.to_owned(), shown(quantity, spread.median, units), format!("{low} to {high}")]
@@ -79,7 +78,10 @@ fn print_uncertainty(
     let failed = if *n_failed > 0 { format!(", {n_failed} left out") } else { String::new() };
     writeln!(text, "\nover {n_draws} vehicles drawn from the data sheet{failed}")?;
     print_table(text, &["", "median", "90 %"], &rows)?;
-    print_sensitivity(text, sensitivity)
+    if let Some(probability) = uncertainty.second_contact_probability {
+        writeln!(text, "P(second contact) {}", percent(probability))?;
+    }
+    print_sensitivity(text, &uncertainty.sensitivity)
 }
 
 /// When and where the vehicle has come to rest.
