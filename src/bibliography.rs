@@ -64,6 +64,9 @@ sources! {
     /// Hochschule Wien, 1966. Impact with compression to a common velocity and restitution as a
     /// share of the impulse of compression; sliding on a contact plane.
     Kudlich1966;
+    /// NHTSA, *Laboratory Test Procedure for Dynamic Rollover: The Fishhook Maneuver Test Procedure*,
+    /// New Car Assessment Program, March 2013. Slowly increasing steer, fishhook: sections 3.1, 3.2.
+    Nhtsa2013;
     /// A. Thompson, B. N. Taylor, *Guide for the Use of the International System of Units (SI)*,
     /// NIST Special Publication 811, 2008. Conversion factors.
     Nist2008;

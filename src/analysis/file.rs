@@ -7,13 +7,14 @@ use crate::compare::{MotionError, initial_state};
 use crate::data::{ForceHistory, Loaded, SeriesError, TIME_TOLERANCE_S, check_contact_within};
 use crate::vehicle::{
     ContactLoad, ContactPoint, Controls, Manoeuvre, Motion, SteerHistory, VehicleState,
+    WheelHistory,
 };
 
 /// A force history and the point where it acts. If the history records a yaw moment, this moment is
 /// used instead of the one that follows from the contact point.
 pub type ActingForce = (ForceHistory, ContactPoint);
 
-/// Initial state of a vehicle, and the force and steer angle that act on it.
+/// Initial state of a vehicle, and what pushes, steers, brakes and drives it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DriveSetup {
     /// State of the vehicle at the start of the simulation.
@@ -22,6 +23,8 @@ pub struct DriveSetup {
     pub load: Option<ActingForce>,
     /// Road-wheel angle of the front axle over time.
     pub steer: Option<SteerHistory>,
+    /// What brakes and drives the wheels over time.
+    pub wheels: Option<WheelHistory>,
     /// Notes for the user on the files that were read.
     pub notes: Vec<String>,
 }
@@ -36,12 +39,13 @@ pub fn analyse_drive(
     setup: DriveSetup,
     settings: &Settings,
 ) -> Result<Analysis, AnalysisError> {
-    let DriveSetup { initial, load, steer, notes } = setup;
+    let DriveSetup { initial, load, steer, wheels, notes } = setup;
     if let Some((force, _)) = &load {
         check_contact_within(force, settings.duration_s)?;
     }
     let mut controls = settings.ending.controls(&settings.target);
     controls.steer = steer.or(controls.steer);
+    controls.wheels = wheels.or(controls.wheels);
     let start = (initial, settings.duration_s);
     let simulation = Some(simulate(start, load.as_ref(), controls.clone(), settings)?);
     Ok(Analysis { simulation, notes, ..of_load(name, (Some(initial), controls), load, settings) })

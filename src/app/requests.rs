@@ -36,6 +36,7 @@ impl State {
             equations: project.equations,
             integrator: project.integrator,
             duration_s: project.duration_s,
+            until_rest: project.until_rest,
             ..SimulateRequest::new(self.motion_source()?)
         })
     }

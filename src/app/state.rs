@@ -84,6 +84,8 @@ pub struct Project {
     pub integrator: Integrator,
     /// Duration of simulations for which no motion is recorded, s.
     pub duration_s: f64,
+    /// Whether these simulations end where the vehicle has come to rest.
+    pub until_rest: bool,
     /// The filter of the force plot by its channel frequency class; `None` shows the force
     /// unfiltered.
     pub channel_class: Option<ChannelClass>,
@@ -110,6 +112,7 @@ impl Default for Project {
             equations: None,
             integrator: Integrator::default(),
             duration_s: DEFAULT_DURATION_S,
+            until_rest: false,
             channel_class: None,
             show_pulses: false,
             scenario: Scenario::example(),

@@ -221,16 +221,23 @@ impl Footprint {
     }
 }
 
+/// An outline and poses for tests.
 #[cfg(test)]
-mod tests {
-    use super::*;
+pub(super) mod examples {
+    use super::{Footprint, Pose};
 
-    const CAR: Footprint = Footprint { length_m: 4.8, width_m: 1.8, cg_from_front_m: 2.2 };
+    pub(in crate::collision) const CAR: Footprint =
+        Footprint { length_m: 4.8, width_m: 1.8, cg_from_front_m: 2.2 };
 
-    fn pose(x_m: f64, y_m: f64, yaw_deg: f64) -> Pose {
+    pub(in crate::collision) fn pose(x_m: f64, y_m: f64, yaw_deg: f64) -> Pose {
         let yaw_rad = yaw_deg.to_radians();
         Pose { x_m, y_m, yaw_rad }
     }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::examples::{CAR, pose};
 
     #[test]
     fn corners_run_counter_clockwise_from_the_front_left() {

@@ -36,6 +36,7 @@ mod contact_distribution;
 mod footprint;
 mod impact_case;
 mod outline_contact;
+mod polygon;
 mod scenario;
 mod scenario_file;
 mod scenario_preset;

@@ -4,13 +4,13 @@
 //! began a moment ago at their present velocities. Rounded corners, wheels and crush are left out.
 //!
 //! Source: the test for overlap is that of separating axes of two rectangles
-//! ([`Gottschalk1996`](crate::bibliography::Gottschalk1996)); the overlap is found by polygon
-//! clipping ([`SutherlandHodgman1974`](crate::bibliography::SutherlandHodgman1974)).
+//! ([`Gottschalk1996`](crate::bibliography::Gottschalk1996)).
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+use crate::collision::polygon::{centroid, clip, direction, dot, reach};
 use crate::collision::{Footprint, FootprintError, Pose, Side};
 
 /// Largest gap between the outlines at which the vehicles still count as touching, m. Poses that
@@ -308,72 +308,13 @@ pub fn place_touching(
     Ok(pose)
 }
 
-fn direction(angle_rad: f64) -> [f64; 2] {
-    let (sin, cos) = angle_rad.sin_cos();
-    [cos, sin]
-}
-
-fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-/// Largest coordinate of the corners along a direction, m.
-fn reach(corners: &[[f64; 2]; 4], along: [f64; 2]) -> f64 {
-    corners.iter().map(|&corner| dot(corner, along)).fold(f64::NEG_INFINITY, f64::max)
-}
-
-/// Intersection of two convex polygons whose corners are in counter-clockwise order (algorithm of
-/// Sutherland and Hodgman).
-fn clip(subject: &[[f64; 2]], window: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let mut polygon = subject.to_vec();
-    for (i, &a) in window.iter().enumerate() {
-        let b = window[(i + 1) % window.len()];
-        let inside = |p: [f64; 2]| (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]);
-        let mut kept = Vec::with_capacity(polygon.len() + 1);
-        for (j, &p) in polygon.iter().enumerate() {
-            let q = polygon[(j + 1) % polygon.len()];
-            let (dp, dq) = (inside(p), inside(q));
-            if dp >= 0.0 {
-                kept.push(p);
-            }
-            if (dp > 0.0 && dq < 0.0) || (dp < 0.0 && dq > 0.0) {
-                let t = dp / (dp - dq);
-                kept.push([0, 1].map(|k| p[k] + t * (q[k] - p[k])));
-            }
-        }
-        polygon = kept;
-    }
-    polygon
-}
-
-/// Centroid of a polygon with counter-clockwise corners; `None` if it has no area.
-fn centroid(polygon: &[[f64; 2]]) -> Option<[f64; 2]> {
-    let origin = *polygon.first()?;
-    let (mut area, mut moment) = (0.0, [0.0; 2]);
-    for pair in polygon.windows(2) {
-        let [p, q] = [0, 1].map(|k| [pair[k][0] - origin[0], pair[k][1] - origin[1]]);
-        let cross = p[0] * q[1] - p[1] * q[0];
-        area += cross;
-        for k in 0..2 {
-            moment[k] += (p[k] + q[k]) * cross / 3.0;
-        }
-    }
-    (area > 0.0).then(|| [0, 1].map(|k| origin[k] + moment[k] / area))
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
     use proptest::test_runner::RngSeed;
 
     use super::*;
-
-    const CAR: Footprint = Footprint { length_m: 4.8, width_m: 1.8, cg_from_front_m: 2.2 };
-
-    fn pose(x_m: f64, y_m: f64, yaw_deg: f64) -> Pose {
-        let yaw_rad = yaw_deg.to_radians();
-        Pose { x_m, y_m, yaw_rad }
-    }
+    use crate::collision::footprint::examples::{CAR, pose};
 
     /// The contact of two cars at rest.
     fn still(target: Pose, bullet: Pose) -> Result<Contact, FootprintError> {

@@ -90,8 +90,7 @@ fn pose_at(motion: &TimeSeries, time_s: f64) -> Option<Pose> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const CAR: Footprint = Footprint { length_m: 4.8, width_m: 1.8, cg_from_front_m: 2.2 };
+    use crate::collision::footprint::examples::CAR;
 
     /// A straight motion at the Y of the time, sampled every 10 ms over 4 s.
     fn motion(x_m: impl Fn(f64) -> f64, y_m: impl Fn(f64) -> f64) -> TimeSeries {

@@ -108,6 +108,24 @@ channels! {
     SteerFl: "steer_fl_rad", Angle, "Steer FL", ["steerfl", "deltafl"];
     /// Road-wheel steer angle of the front right wheel.
     SteerFr: "steer_fr_rad", Angle, "Steer FR", ["steerfr", "deltafr"];
+    /// Angle of the steering wheel.
+    SteeringWheel: "steering_wheel_rad", Angle, "Steering wheel", ["steeringwheel", "steeringwheelangle", "handwheel", "handwheelangle", "swa", "lenkradwinkel"];
+    /// Torque of the brake of the front left wheel.
+    BrakeFl: "brake_fl_nm", Moment, "Brake FL", ["brakefl", "braketorquefl"];
+    /// Torque of the brake of the front right wheel.
+    BrakeFr: "brake_fr_nm", Moment, "Brake FR", ["brakefr", "braketorquefr"];
+    /// Torque of the brake of the rear left wheel.
+    BrakeRl: "brake_rl_nm", Moment, "Brake RL", ["brakerl", "braketorquerl"];
+    /// Torque of the brake of the rear right wheel.
+    BrakeRr: "brake_rr_nm", Moment, "Brake RR", ["brakerr", "braketorquerr"];
+    /// Torque that drives the front left wheel forwards.
+    DriveFl: "drive_fl_nm", Moment, "Drive FL", ["drivefl", "drivetorquefl"];
+    /// Torque that drives the front right wheel forwards.
+    DriveFr: "drive_fr_nm", Moment, "Drive FR", ["drivefr", "drivetorquefr"];
+    /// Torque that drives the rear left wheel forwards.
+    DriveRl: "drive_rl_nm", Moment, "Drive RL", ["driverl", "drivetorquerl"];
+    /// Torque that drives the rear right wheel forwards.
+    DriveRr: "drive_rr_nm", Moment, "Drive RR", ["driverr", "drivetorquerr"];
     /// Vertical load of the front left wheel.
     FzFl: "fz_fl_n", Force, "F_z FL", ["fzfl"];
     /// Vertical load of the front right wheel.

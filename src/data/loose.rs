@@ -1,4 +1,4 @@
-//! Reads single files of a contact force, a motion or a steer angle over time, from any program
+//! Reads single files of a contact force, a motion or the controls over time, from any program
 //! that writes delimited text. The columns are found by their headers or by a mapping of the user
 //! and converted to SI units.
 
@@ -9,8 +9,9 @@ use crate::data::{
     TimeSeries,
 };
 use crate::ranges::{
-    ACCELERATION_SAMPLE, ANGLE_SAMPLE, ANGULAR_VELOCITY_SAMPLE, FORCE_SAMPLE, INSTANT,
-    LENGTH_SAMPLE, MOMENT_SAMPLE, Range, SPEED, STEER_ANGLE, TIME_STEP,
+    ACCELERATION_SAMPLE, ANGLE_SAMPLE, ANGULAR_VELOCITY_SAMPLE, BRAKE_TORQUE, FORCE_SAMPLE,
+    INSTANT, LENGTH_SAMPLE, MOMENT_SAMPLE, Range, SPEED, STEER_ANGLE, STEERING_WHEEL_ANGLE,
+    TIME_STEP,
 };
 use crate::units::Quantity;
 
@@ -24,8 +25,10 @@ pub enum FileKind {
     Force,
     /// A motion: time, `x` and `y`. It may contain a contact force too.
     Trajectory,
-    /// Steering: time with `steer`, or with `steer_fl` and `steer_fr`.
+    /// Steering: time with `steer`, with `steer_fl` and `steer_fr`, or with `steering_wheel`.
     Steer,
+    /// Brakes and drive: time with the torque of one wheel or more.
+    Wheels,
 }
 
 /// A file that was read, with the interpretation of its columns.
@@ -63,14 +66,28 @@ impl Loaded {
 
 impl FileKind {
     /// All kinds, the most specific first, in the order in which a file of unknown kind is tried.
-    const ALL: [Self; 3] = [Self::Trajectory, Self::Force, Self::Steer];
+    const ALL: [Self; 4] = [Self::Trajectory, Self::Force, Self::Steer, Self::Wheels];
 
     /// The sets of channels of which one must be complete, in addition to the time.
     fn alternatives(self) -> &'static [&'static [Channel]] {
         match self {
             Self::Force => &[&[Channel::Fx, Channel::Fy], &[Channel::FxBody, Channel::FyBody]],
             Self::Trajectory => &[&[Channel::X, Channel::Y]],
-            Self::Steer => &[&[Channel::Steer], &[Channel::SteerFl, Channel::SteerFr]],
+            Self::Steer => &[
+                &[Channel::Steer],
+                &[Channel::SteerFl, Channel::SteerFr],
+                &[Channel::SteeringWheel],
+            ],
+            Self::Wheels => &[
+                &[Channel::BrakeFl],
+                &[Channel::BrakeFr],
+                &[Channel::BrakeRl],
+                &[Channel::BrakeRr],
+                &[Channel::DriveFl],
+                &[Channel::DriveFr],
+                &[Channel::DriveRl],
+                &[Channel::DriveRr],
+            ],
         }
     }
 
@@ -78,7 +95,8 @@ impl FileKind {
         match self {
             Self::Force => "time, fx and fy (or fx_body and fy_body)",
             Self::Trajectory => "time, x and y",
-            Self::Steer => "time and steer (or steer_fl and steer_fr)",
+            Self::Steer => "time and steer (or steer_fl and steer_fr, or steering_wheel)",
+            Self::Wheels => "time and torques of wheels (brake_fl … brake_rr, drive_fl … drive_rr)",
         }
     }
 
@@ -87,6 +105,7 @@ impl FileKind {
             Self::Force => "time=1:ms,fx=2:kN,fy=3:kN",
             Self::Trajectory => "time=1:s,x=2:m,y=3:m",
             Self::Steer => "time=1:s,steer=2:deg",
+            Self::Wheels => "time=1:s,brake_fl=2:N m,brake_fr=3:N m",
         }
     }
 
@@ -141,7 +160,17 @@ pub fn read_motion_log(path: &Path, map: Option<&ColumnMap>) -> Result<Loaded, D
     load(&table, columns, FileKind::Trajectory, map.is_some())
 }
 
-/// Reads road-wheel steer angles over time.
+/// Reads the torques of brakes and drive at the wheels over time.
+///
+/// - `map`: columns that the user has chosen; the others are found by their headers.
+///
+/// # Errors
+/// [`DataError`] as for [`read_force_file`].
+pub fn read_wheels_file(path: &Path, map: Option<&ColumnMap>) -> Result<Loaded, DataError> {
+    read_series(path, map, FileKind::Wheels)
+}
+
+/// Reads angles of the road wheels or of the steering wheel over time.
 ///
 /// - `map`: columns that the user has chosen; the others are found by their headers.
 ///
@@ -264,6 +293,10 @@ fn check_steps(table: &Table, column: &ColumnUse, time_s: &[f64]) -> Result<(), 
 fn samples_range(channel: Channel) -> Option<Range> {
     Some(match (channel, channel.quantity()) {
         (Channel::Steer | Channel::SteerFl | Channel::SteerFr, _) => STEER_ANGLE,
+        (Channel::SteeringWheel, _) => STEERING_WHEEL_ANGLE,
+        (Channel::BrakeFl | Channel::BrakeFr | Channel::BrakeRl | Channel::BrakeRr, _) => {
+            BRAKE_TORQUE
+        }
         (_, Quantity::Force) => FORCE_SAMPLE,
         (_, Quantity::Moment) => MOMENT_SAMPLE,
         (_, Quantity::Speed) => SPEED,

@@ -61,7 +61,7 @@ pub use force_history::{CumulativeImpulse, ForceAxes, ForceHistory, Sampling};
 pub(crate) use json::{finite_or_null, finite_or_nulls, null_as_nan, nulls_as_nan};
 pub use loose::{
     FileKind, Loaded, read_any_series, read_force_file, read_motion_log, read_series,
-    read_steer_file, read_trajectory_file,
+    read_steer_file, read_trajectory_file, read_wheels_file,
 };
 pub use open::{Opened, open};
 pub use quality::{Flag, FlagKind, Severity, check_case, check_series};

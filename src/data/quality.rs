@@ -11,6 +11,7 @@ use std::fmt;
 use crate::data::{
     Case, Channel, DatasetKind, ForceAxes, ForceHistory, Sampling, TimeSeries, contact_interval,
 };
+use crate::numerics::quantile_of_sorted;
 
 /// Momentum residual above which a warning is raised, as a share of the impulse.
 const MOMENTUM_RESIDUAL: f64 = 0.01;
@@ -362,7 +363,6 @@ fn momentum_residual(force: &ForceHistory, expected_n_s: (f64, f64)) -> Option<F
 }
 
 fn median(mut values: Vec<f64>) -> Option<f64> {
-    let middle = values.len().checked_sub(1)? / 2;
     values.sort_by(f64::total_cmp);
-    values.get(middle).copied()
+    quantile_of_sorted(&values, 0.5)
 }

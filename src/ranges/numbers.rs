@@ -36,7 +36,7 @@ ranges! {
     POSITION: "position" = real(Quantity::Length, [-1e6, 1e6]),
         "coordinate of a vehicle in world axes";
     STEER_ANGLE: "steer angle" = real(Quantity::Angle, [-0.9, 0.9]),
-        "angle of a road wheel; divide a steering-wheel angle by the steering ratio first";
+        "angle of a road wheel; say an angle of the steering wheel as such, with the steering ratio";
     ROAD_FRICTION: "road friction" = real(Quantity::Ratio, [0.01, 2.0]),
         "peak friction between tyre and road; 0.8 on dry asphalt, 0.1 on ice";
 }
@@ -56,6 +56,8 @@ ranges! {
         "time over which brake or steering reach their full value";
     DRAG_SHARE: "drag" = real(Quantity::Ratio, [0.0, 3.0]),
         "drag of a damaged wheel over the largest that the road can hold at its static load";
+    BRAKE_TORQUE: "brake torque" = real(Quantity::Moment, [0.0, 100_000.0]),
+        "torque of the brake of a wheel against its rotation";
     DRIVE_TORQUE: "drive torque" = real(Quantity::Moment, [0.0, 20_000.0]),
         "torque at the wheels of a driven axle together, forwards";
     ENGINE_BRAKING: "engine braking" = real(Quantity::Acceleration, [0.0, 5.0]),

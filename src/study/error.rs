@@ -67,6 +67,57 @@ pub enum StudyError {
         /// Number of cases that the model was trained on.
         n_cases: usize,
     },
+    /// A file holds angles of a steering wheel, and the steering ratio is not said.
+    #[error(
+        "{}: holds angles of the steering wheel; say the steering ratio (--steering-ratio, 12 to \
+         20 in cars)",
+        path.display()
+    )]
+    NoSteeringRatio {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A steering ratio is said for angles of the road wheels.
+    #[error(
+        "{}: holds angles of the road wheels, to which the steering ratio does not apply; angles \
+         of the steering wheel have the header steering_wheel, or --steer-map \
+         time=1:s,steering_wheel=2:deg",
+        path.display()
+    )]
+    NoSteeringWheel {
+        /// The file.
+        path: PathBuf,
+    },
+    /// An angle of a steering wheel over the steering ratio is none of a road wheel.
+    #[error("{}: an angle of the steering wheel over the ratio {ratio}", path.display())]
+    RoadWheel {
+        /// The file.
+        path: PathBuf,
+        /// The steering ratio.
+        ratio: f64,
+        /// The angle and its range.
+        source: OutOfRange,
+    },
+    /// Two things control the vehicle alike.
+    #[error("{name}: more than one of file, fishhook and ending {what} the vehicle, expected one")]
+    TwoControls {
+        /// The file or manoeuvre.
+        name: String,
+        /// What they do.
+        what: &'static str,
+    },
+    /// The steering angle of a fishhook does not exist for a vehicle.
+    #[error(
+        "{vehicle}: the fishhook is 6.5 times the road-wheel angle at which the vehicle turns \
+         with 0.3 g at 50 mph; by its axle loads and cornering stiffnesses that is {angle_rad:.4} \
+         rad, expected more than 0 and at most 0.138"
+    )]
+    NoFishhook {
+        /// The vehicle.
+        vehicle: String,
+        /// The angle, rad.
+        angle_rad: f64,
+    },
     /// A file or data set cannot be read.
     #[error(transparent)]
     Data(#[from] DataError),

@@ -36,12 +36,14 @@ mod inputs;
 mod check;
 mod check_report;
 mod compare;
+mod drive;
 mod evaluate_force;
 mod evaluate_response;
 mod fine_tune;
 mod impact;
 mod implied_contact;
 mod motion_logs;
+mod motion_source;
 mod predict_force;
 mod predict_motion;
 mod recorded_force;
@@ -63,6 +65,7 @@ pub use check_report::{
 };
 pub use checks::check_window;
 pub use compare::{CompareAnswer, CompareReport, CompareRequest, DEFAULT_CHOICES};
+pub use drive::{ASSUMED_SPEED_M_S, Drive};
 pub use error::StudyError;
 pub use evaluate_force::{
     CrossValidateForceReport, EvaluateForceAnswer, EvaluateForceReport, EvaluateForceRequest,
@@ -78,6 +81,7 @@ pub use inputs::{
 };
 pub use library::Library;
 pub use motion_logs::{DEFAULT_LOG_DURATION_S, LogReport, MotionLogs};
+pub use motion_source::{ASSUMED_CONTACT, MotionSource};
 pub use predict_force::{
     ForceQuestion, ImpulseReport, PredictForceAnswer, PredictForceReport, PredictForceRequest,
 };
@@ -88,10 +92,7 @@ pub use provenance::Provenance;
 pub use question::{Event, Observer, Question};
 pub use recorded_force::{RecordedForceAnswer, RecordedForceRequest};
 pub use request::{Report, Request};
-pub use simulate::{
-    ASSUMED_CONTACT, ASSUMED_SPEED_M_S, DEFAULT_DURATION_S, DEFAULT_VEHICLE_DRAWS, Drive,
-    MotionSource, SimulateAnswer, SimulateRequest,
-};
+pub use simulate::{DEFAULT_DURATION_S, DEFAULT_VEHICLE_DRAWS, SimulateAnswer, SimulateRequest};
 pub use simulate_dataset::{
     ReplayedCaseReport, SimulateDatasetAnswer, SimulateDatasetReport, SimulateDatasetRequest,
 };

@@ -9,7 +9,7 @@ use crate::ranges::{INSTANT, LOG_DURATION};
 use crate::response::{ForceOrigin, LogNoise, LogSettings, LoggedImpact, MotionLog, ResponseCase};
 use crate::study::StudyError;
 use crate::study::checks::{check, check_contact, check_given};
-use crate::study::simulate::acting_force;
+use crate::study::motion_source::acting_force;
 use crate::vehicle::{ContactLoad, ContactPoint, VehicleParameters};
 
 /// How much of a log from the first contact on is learned from where nobody says it, s.

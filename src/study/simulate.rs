@@ -1,42 +1,29 @@
 //! The motion of one struck vehicle by the 4DOF model: `simulate`.
 
-use std::path::PathBuf;
-use std::sync::Arc;
-
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{
-    Analysis, AnalysisError, DriveSetup, PulseSetup, Settings, analyse_case, analyse_drive,
-    analyse_recording, analyse_scenario,
+    Analysis, AnalysisError, Settings, analyse_case, analyse_drive, analyse_recording,
+    analyse_scenario,
 };
 use crate::collision::Scenario;
-use crate::data::{
-    Case, Channel, ContactOutside, DatasetKind, FileKind, ForceAttributes, ForceHistory, Loaded,
-    Outcome, Sampling, SeriesError, TIME_TOLERANCE_S, read_force_file, read_steer_file,
-};
-use crate::ranges::{
-    CONTACT_HEIGHT, PULSE_DURATION, ROAD_FRICTION, SIMULATED_DURATION, SPEED, VEHICLE_DRAWS,
-    YAW_RATE,
-};
-use crate::study::checks::{check, check_all, check_contact, check_count, check_given};
+use crate::data::{ContactOutside, DatasetKind, Outcome};
+use crate::ranges::{ROAD_FRICTION, SIMULATED_DURATION, VEHICLE_DRAWS};
+use crate::study::checks::{check, check_all, check_count, check_given};
 use crate::study::inputs::{OpenVehicle, striking_vehicle, struck_vehicle};
+use crate::study::motion_source::{
+    acting_force, contact_height_assumption, pulse_assumptions, recorded_force, start_of_record,
+    trajectory,
+};
 use crate::study::simulate_dataset::take_case;
 use crate::study::unused::by_simulation;
 use crate::study::vehicle_uncertainty::vehicle_uncertainty;
 use crate::study::{
-    AssumedQuantity, Assumption, Library, MomentumReport, Observer, Provenance, Question,
-    ScenarioChoice, SeriesFile, SimulateReport, StudyError, VehicleChoice, badges, word,
+    AssumedQuantity, Assumption, Library, MomentumReport, MotionSource, Observer, Provenance,
+    Question, SimulateReport, StudyError, VehicleChoice, badges,
 };
 use crate::uncertainty::Badge;
-use crate::vehicle::{
-    ContactPoint, Ending, Equations, Integrator, SteerHistory, VehicleParameters, VehicleState,
-};
-
-/// Speed of the struck vehicle before the impact where nothing says it, m/s: 72 km/h.
-pub const ASSUMED_SPEED_M_S: f64 = 20.0;
-
-/// Where a force acts where nothing says it: the right rear quarter of a car, where a PIT begins.
-pub const ASSUMED_CONTACT: ContactPoint = ContactPoint { x_m: -1.5, y_m: -0.9, height_m: 0.52 };
+use crate::vehicle::{ContactPoint, Ending, Equations, Integrator};
 
 /// Asks where the struck vehicle goes, by the 4DOF model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -89,57 +76,6 @@ pub const DEFAULT_DURATION_S: f64 = 4.0;
 
 fn default_duration_s() -> f64 {
     DEFAULT_DURATION_S
-}
-
-/// What drives a motion.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum MotionSource {
-    /// A case of a data set, with its recorded start and force.
-    Case {
-        /// The data set.
-        dataset: PathBuf,
-        /// Name of the case.
-        case: String,
-    },
-    /// A recorded motion, simulated from its first sample if it records its force.
-    Trajectory {
-        /// The file.
-        file: SeriesFile,
-        /// Where the force acts; without it, the file's own yaw moment.
-        #[serde(default)]
-        contact: Option<ContactPoint>,
-    },
-    /// A start, a force and a steer angle.
-    Drive(Drive),
-    /// Two vehicles that meet; the impulse is spread over a classic pulse.
-    Scenario {
-        /// The scenario.
-        scenario: ScenarioChoice,
-        /// How the impulse is spread over time.
-        #[serde(default)]
-        pulse: PulseSetup,
-    },
-}
-
-/// How a vehicle starts and what pushes and steers it.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct Drive {
-    /// Forward speed at the start, m/s.
-    pub speed_m_s: Option<f64>,
-    /// Leftward speed at the start, m/s.
-    pub vy_m_s: f64,
-    /// Yaw rate at the start, rad/s.
-    pub yaw_rate_rad_s: f64,
-    /// The force on the vehicle.
-    pub force: Option<SeriesFile>,
-    /// What a force sample stands for; without it, as the columns suggest.
-    pub sampling: Option<Sampling>,
-    /// Where the force acts; without it, the file's own yaw moment.
-    pub contact: Option<ContactPoint>,
-    /// The road-wheel angle.
-    pub steer: Option<SeriesFile>,
 }
 
 /// A simulated motion.
@@ -317,97 +253,6 @@ impl Question for SimulateRequest {
     }
 }
 
-impl MotionSource {
-    /// The source of a file that was opened, by what the file is about.
-    ///
-    /// - `start`: speed and contact point that the user gave; the file is filled in here.
-    pub fn of_file(file: SeriesFile, kind: FileKind, start: Drive) -> Self {
-        match kind {
-            FileKind::Trajectory => Self::Trajectory { file, contact: start.contact },
-            FileKind::Force => Self::Drive(Drive { force: Some(file), ..start }),
-            FileKind::Steer => Self::Drive(Drive { steer: Some(file), ..start }),
-        }
-    }
-
-    /// Checks every number of the source.
-    pub(super) fn check(&self) -> Result<(), StudyError> {
-        match self {
-            Self::Case { .. } => Ok(()),
-            Self::Trajectory { contact, .. } => check_contact(contact.as_ref()),
-            Self::Drive(drive) => {
-                check_given("speed_m_s", &SPEED, drive.speed_m_s)?;
-                check("vy_m_s", &SPEED, drive.vy_m_s)?;
-                check("yaw_rate_rad_s", &YAW_RATE, drive.yaw_rate_rad_s)?;
-                check_contact(drive.contact.as_ref())
-            }
-            Self::Scenario { scenario, pulse } => {
-                check("pulse.duration_s", &PULSE_DURATION, pulse.duration_s)?;
-                check("pulse.contact_height_m", &CONTACT_HEIGHT, pulse.contact_height_m)?;
-                scenario.check()
-            }
-        }
-    }
-
-    /// What a title calls it.
-    pub fn name(&self) -> String {
-        match self {
-            Self::Case { case, .. } => case.clone(),
-            Self::Trajectory { file, .. } => file.path.display().to_string(),
-            Self::Drive(drive) => drive.name(),
-            Self::Scenario { scenario, .. } => scenario.name(),
-        }
-    }
-
-    /// The file of the force, where the force is one.
-    pub(super) fn force_file(&self) -> Option<&PathBuf> {
-        match self {
-            Self::Drive(drive) => drive.force.as_ref().map(|file| &file.path),
-            Self::Trajectory { file, .. } => Some(&file.path),
-            Self::Case { .. } | Self::Scenario { .. } => None,
-        }
-    }
-}
-
-impl Drive {
-    fn name(&self) -> String {
-        let file = self.force.as_ref().or(self.steer.as_ref());
-        file.map_or_else(|| "manoeuvre".to_owned(), SeriesFile::title)
-    }
-
-    fn setup(
-        &self,
-        settings: &Settings,
-        library: &Library,
-        assumptions: &mut Vec<Assumption>,
-    ) -> Result<DriveSetup, StudyError> {
-        let speed_m_s = self.speed_m_s.unwrap_or_else(|| {
-            let reason = "the speed before the impact is not known; another one: --speed";
-            let value = format!("{ASSUMED_SPEED_M_S} m/s");
-            assumptions.push(Assumption::new(AssumedQuantity::Speed, value, reason));
-            ASSUMED_SPEED_M_S
-        });
-        let mut notes = Vec::new();
-        let load = match &self.force {
-            Some(file) => {
-                let loaded = library.series(file)?;
-                notes.extend(loaded.notes.iter().map(ToString::to_string));
-                let force = force_of(&loaded, self.sampling, file)?;
-                Some(acting_force(force, (self.contact, &settings.target), assumptions))
-            }
-            None => None,
-        };
-        let steer = self.steer.as_ref().map(steer_history).transpose()?;
-        let held = steer.as_ref().and_then(|steer| held_steer(steer, settings.duration_s));
-        assumptions.extend(held);
-        let initial = VehicleState {
-            vy_m_s: self.vy_m_s,
-            yaw_rate_rad_s: self.yaw_rate_rad_s,
-            ..VehicleState::driving_straight(speed_m_s)
-        };
-        Ok(DriveSetup { initial, load, steer, notes })
-    }
-}
-
 /// The momentum solution of a scenario, and whether its outlines overlap. Where there is no geometry
 /// or solution, the analysis says why.
 fn contact_of(
@@ -431,145 +276,4 @@ fn refuse_contact_off_vehicle(analysis: &Analysis) -> Result<(), StudyError> {
         vehicle: struck.vehicle.name.clone(),
         source,
     })
-}
-
-/// A recorded motion; another kind of file is refused, since its speed is not known.
-fn trajectory(library: &Library, file: &SeriesFile) -> Result<Arc<Loaded>, StudyError> {
-    let loaded = library.series(file)?;
-    if loaded.kind == FileKind::Trajectory {
-        return Ok(loaded);
-    }
-    Err(StudyError::WrongKind {
-        path: file.path.clone(),
-        got: format!("a {} file", word(&loaded.kind)),
-        expected: "a trajectory; `impactlab simulate --out FILE.csv` makes one",
-    })
-}
-
-/// The force of a recorded motion; `None` if it records none. One component alone is no force.
-fn recorded_force(loaded: &Loaded, file: &SeriesFile) -> Result<Option<ForceHistory>, StudyError> {
-    let components = [Channel::Fx, Channel::Fy, Channel::FxBody, Channel::FyBody];
-    if components.iter().all(|component| loaded.series.get(*component).is_none()) {
-        return Ok(None);
-    }
-    match ForceHistory::from_series(&loaded.series, loaded.force_sampling()) {
-        Ok(force) => Ok(Some(force)),
-        Err(source) => Err(StudyError::Series { path: file.path.clone(), source }),
-    }
-}
-
-/// The force of a file, under its own meaning of a sample or a given one.
-fn force_of(
-    loaded: &Loaded,
-    sampling: Option<Sampling>,
-    file: &SeriesFile,
-) -> Result<ForceHistory, StudyError> {
-    let sampling = sampling.unwrap_or_else(|| loaded.force_sampling());
-    match ForceHistory::from_series(&loaded.series, sampling) {
-        Ok(force) => Ok(force),
-        Err(source) => {
-            // Read as a force file it gives the error that says where and what to do.
-            read_force_file(&file.path, file.map.as_ref())?;
-            Err(StudyError::Series { path: file.path.clone(), source })
-        }
-    }
-}
-
-/// A force with the point where it acts.
-///
-/// A given contact point overrules a recorded yaw moment; a recorded yaw moment acts about the CG;
-/// without either, the contact point is assumed.
-pub(super) fn acting_force(
-    mut force: ForceHistory,
-    (contact, vehicle): (Option<ContactPoint>, &VehicleParameters),
-    assumptions: &mut Vec<Assumption>,
-) -> (ForceHistory, ContactPoint) {
-    if let Some(contact) = contact {
-        force.mz_n_m = None;
-        return (force, contact);
-    }
-    if force.mz_n_m.is_some() {
-        let height_m = vehicle.geometry.cg_height_m;
-        return (force, ContactPoint { x_m: 0.0, y_m: 0.0, height_m });
-    }
-    let reason = "the force has no yaw moment (mz) and nothing says where it acts; another point: \
-                  --contact";
-    assumptions.push(Assumption::contact_point(ASSUMED_CONTACT, reason));
-    (force, ASSUMED_CONTACT)
-}
-
-/// What stands for the steer angle where its recording does not reach.
-fn held_steer(steer: &SteerHistory, duration_s: f64) -> Option<Assumption> {
-    let (&start_s, &end_s) = (steer.time_s.first()?, steer.time_s.last()?);
-    let (&first_rad, &last_rad) = (steer.steer_rad.first()?, steer.steer_rad.last()?);
-    let mut held = Vec::new();
-    if start_s > TIME_TOLERANCE_S && first_rad != 0.0 {
-        held.push(format!("{first_rad} rad before {start_s} s"));
-    }
-    if end_s < duration_s - TIME_TOLERANCE_S && last_rad != 0.0 {
-        held.push(format!("{last_rad} rad after {end_s} s"));
-    }
-    let reason = "the recording of the steer angle does not reach further; its ends are held";
-    let is_held = !held.is_empty();
-    is_held.then(|| Assumption::new(AssumedQuantity::Steer, held.join(", "), reason))
-}
-
-/// What stands for the rates and the roll with which a recorded motion starts, if it does not say
-/// them.
-fn start_of_record(loaded: &Loaded) -> Option<Assumption> {
-    let is_missing = |channel: &Channel| loaded.series.get(*channel).is_none();
-    let missing = [Channel::YawRate, Channel::Roll, Channel::RollRate].into_iter();
-    let zeros: Vec<String> =
-        missing.filter(is_missing).map(|channel| format!("{} = 0", channel.header())).collect();
-    let is_assumed = !zeros.is_empty();
-    is_assumed.then(|| {
-        let reason = "the file does not record them";
-        Assumption::new(AssumedQuantity::StartOfRecord, zeros.join(", "), reason)
-    })
-}
-
-/// What stands for the contact height of a force case that does not state it.
-fn contact_height_assumption(case: &Case) -> Result<Option<Assumption>, StudyError> {
-    let is_known = ForceAttributes::read(&case.attributes)?.contact_height_m.is_some();
-    Ok((!is_known).then(|| {
-        let reason = "the case does not say how high the vehicles touch";
-        Assumption::new(AssumedQuantity::ContactHeight, "that of the CG", reason)
-    }))
-}
-
-/// What the pulse of a scenario adds to what the momentum solution says.
-fn pulse_assumptions(pulse: &PulseSetup) -> Vec<Assumption> {
-    if *pulse != PulseSetup::default() {
-        return Vec::new();
-    }
-    let shape = format!("{} of {:.0} ms", pulse.shape.label(), pulse.duration_s * 1e3);
-    let height = format!("{} m above the ground", pulse.contact_height_m);
-    vec![
-        Assumption::new(
-            AssumedQuantity::Pulse,
-            shape,
-            "the momentum solution gives the impulse, not the force over time",
-        ),
-        Assumption::new(
-            AssumedQuantity::ContactHeight,
-            height,
-            "a scenario does not say how high the vehicles touch",
-        ),
-    ]
-}
-
-/// The road-wheel angle of a file: that of the front axle, or the mean of its wheels.
-fn steer_history(file: &SeriesFile) -> Result<SteerHistory, StudyError> {
-    let series = read_steer_file(&file.path, file.map.as_ref())?.series;
-    let in_file = |source: SeriesError| StudyError::Series { path: file.path.clone(), source };
-    let steer_rad = match series.get(Channel::Steer) {
-        Some(steer) => steer.to_vec(),
-        None => {
-            let left = series.require(Channel::SteerFl).map_err(in_file)?;
-            let right = series.require(Channel::SteerFr).map_err(in_file)?;
-            let mean = |(left, right): (&f64, &f64)| (left + right) / 2.0;
-            left.iter().zip(right).map(mean).collect()
-        }
-    };
-    Ok(SteerHistory { time_s: series.time_s().to_vec(), steer_rad })
 }

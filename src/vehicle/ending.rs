@@ -174,16 +174,6 @@ impl Ending {
         numbers
     }
 
-    /// When the last control begins to act fully, s: before, a vehicle that stands may move again.
-    pub fn settled_s(&self) -> f64 {
-        let brake = self.brake.map(|brake| brake.start_s + brake.rise_s);
-        let steer = self.steer.map(|steer| steer.start_s + steer.rise_s);
-        let drive = self.drive.map(|drive| drive.start_s + drive.rise_s);
-        let damage = self.damage.iter().map(|wheel| wheel.start_s + CATCH_S);
-        let brake = brake.into_iter().chain(drive);
-        brake.chain(steer).chain(damage).fold(0.0, f64::max)
-    }
-
     /// Steer angle and wheels over time for a vehicle.
     pub fn controls(&self, vehicle: &VehicleParameters) -> Controls {
         let steer = self.steer.map(|steer| SteerHistory {

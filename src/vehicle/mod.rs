@@ -18,6 +18,7 @@ mod four_dof;
 
 mod ending;
 mod ending_file;
+mod fishhook;
 mod simulate;
 mod stability;
 
@@ -28,6 +29,7 @@ pub use ending::{
     HeldSteer,
 };
 pub use energy::MAX_ENERGY_GAIN;
+pub use fishhook::{USUAL_STEERING_RATIO, angle_at_third_g_rad, fishhook};
 pub use four_dof::{CollisionForce, ContactPoint, VehicleEvaluation, VehicleInput};
 pub use loads::Wheel;
 pub use multibody_record::MultibodyRecord;

@@ -80,6 +80,83 @@ fn steering_and_drive_are_said_by_options_and_by_the_scenario() {
     assert!((distance(&scenario) - coasts).abs() > 0.5, "{coasts}");
 }
 
+/// Steering of the rollover test needed a file made by hand.
+#[test]
+fn an_ordinary_vehicle_steers_the_fishhook_of_the_nhtsa() {
+    let fishhook = |vehicle: &str, args: &[&str]| {
+        let of = ["simulate", "--fishhook", "--duration", "7", "--vehicle", vehicle];
+        answer(&[&of[..], args].concat())
+    };
+    let fast = fishhook("ford-explorer-2004", &["--speed", "45mph"]);
+    let slow = fishhook("ford-explorer-2004", &["--speed", "20mph"]);
+    // To the left first, then a tighter turn to the right.
+    assert!(fast["end"]["yaw_rad"].as_f64().unwrap() < -1.0, "{fast}");
+    assert!(fast["uncertainty"]["n_failed"] == 0, "{fast}");
+    let assumed = |report: &serde_json::Value| report["assumptions"].to_string();
+    assert!(assumed(&fast).contains("ratio 16"), "{fast}");
+    let said = fishhook("ford-explorer-2004", &["--speed", "45mph", "--steering-ratio", "18"]);
+    assert!(!assumed(&said).contains("ratio 16"), "{said}");
+    let lifts = |report: &serde_json::Value| report["flags"].to_string().contains("wheel_lift");
+    assert!(!lifts(&slow), "{slow}");
+    for vehicle in ["toyota-camry-2018", "generic-van", "reference-2000"] {
+        let report = fishhook(vehicle, &["--speed", "35mph"]);
+        assert!(report["distance_m"].as_f64().unwrap() > 30.0, "{vehicle}: {report}");
+    }
+    let message = refusal(&[&STRAIGHT[..], &["--fishhook", "--steer-angle", "3deg"]].concat());
+    assert!(message.contains("cannot be used with"), "{message}");
+}
+
+#[test]
+fn files_of_steering_wheel_and_torques_steer_and_brake() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        fs::write(&path, text).unwrap();
+        path
+    };
+    let steer = |header: &str, full: f64, args: &[&str]| {
+        let path = file("steer.csv", &format!("time_s,{header}\n0,0\n1,{full}\n4,{full}\n"));
+        program().args(STRAIGHT).args(["--steer", text(&path), "--json"]).args(args).output()
+    };
+    let y_m = |output: std::io::Result<std::process::Output>| -> f64 {
+        let report: serde_json::Value = serde_json::from_str(&ok(output.unwrap())).unwrap();
+        report["end"]["y_m"].as_f64().unwrap()
+    };
+    let of_road_wheels = y_m(steer("steer_deg", 3.0, &[]));
+    let of_steering_wheel = y_m(steer("steering_wheel_deg", 48.0, &["--steering-ratio", "16"]));
+    assert!((of_road_wheels - of_steering_wheel).abs() < 1e-9, "{of_road_wheels}");
+    for (header, full, args, expected) in [
+        ("steering_wheel_deg", 48.0, &[][..], "say the steering ratio (--steering-ratio"),
+        ("steer_deg", 3.0, &["--steering-ratio", "16"], "holds angles of the road wheels"),
+        ("steering_wheel_deg", 720.0, &["--steering-ratio", "2"], "steer angle is 6.283185 rad"),
+        ("steer_deg", 270.0, &[], "an angle of the steering wheel as such"),
+    ] {
+        let output = steer(header, full, args).unwrap();
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && message.contains(expected), "{header}: {message}");
+    }
+
+    // 4 · 600 N m over the rolling radius brake 2000 kg.
+    let header = "time_s,brake_fl_nm,brake_fr_nm,brake_rl_nm,brake_rr_nm";
+    let brakes = file("brakes.csv", &format!("{header}\n0,600,600,600,600\n9,600,600,600,600\n"));
+    let stop = answer(&[&STRAIGHT[..], &["--wheels", text(&brakes), "--until-rest"]].concat());
+    let vehicle = impactlab::vehicle::Preset::Reference.parameters();
+    let deceleration = 4.0 * 600.0 / vehicle.tires.rolling_radius_m / vehicle.mass.mass_kg;
+    let (expected_m, got_m) =
+        (20.0 * 20.0 / (2.0 * deceleration), stop["rest"]["distance_m"].as_f64().unwrap());
+    // Rolling resistance and drag help.
+    assert!(got_m < expected_m && got_m > 0.9 * expected_m, "{expected_m} {got_m}");
+    let drive = file("drive.csv", "time_s,drive_rl_nm,drive_rr_nm\n0,300,300\n4,300,300\n");
+    let driven = answer(&[&STRAIGHT[..], &["--wheels", text(&drive)]].concat());
+    assert!(driven["end"]["vx_m_s"].as_f64().unwrap() > 22.0, "{driven}");
+    let message =
+        refusal(&[&STRAIGHT[..], &["--wheels", text(&brakes), "--brake", "0.5"]].concat());
+    assert!(message.contains("more than one of file, fishhook and ending brake"), "{message}");
+    let negative = file("negative.csv", "time_s,brake_fl_nm\n0,-5\n1,0\n");
+    let message = refusal(&[&STRAIGHT[..], &["--wheels", text(&negative)]].concat());
+    assert!(message.contains("negative.csv:2:2") && message.contains("brake torque"), "{message}");
+}
+
 /// The numbers of an ending that a question holds were not checked where a scenario holds them.
 #[test]
 fn an_ending_in_a_question_is_checked() {

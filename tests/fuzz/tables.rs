@@ -7,6 +7,7 @@ use std::path::Path;
 use impactlab::data::{
     Dataset, Loaded, Opened, Outcome, check_case, check_series, contact_interval, open,
     propose_columns, read_force_file, read_motion_log, read_steer_file, read_trajectory_file,
+    read_wheels_file,
 };
 use impactlab::error_chain;
 use impactlab::force::ForceCase;
@@ -15,6 +16,9 @@ use impactlab::vehicle::Preset;
 
 use crate::harness::{Answer, Format, run};
 use crate::mutation::Mutator;
+
+/// How many files of a time series are tried, and their name.
+const SERIES: (u64, &str) = (4_000, "file.csv");
 
 /// What a file of a time series holds, and what is made of it at once: flags, force, contact.
 fn series(loaded: &Loaded) -> Answer {
@@ -30,22 +34,25 @@ fn series(loaded: &Loaded) -> Answer {
     }
 }
 
+/// Tries a loader of delimited text.
+///
+/// - `file_name`: where the file lies in the folder that it is read from.
+fn text_format(
+    name: &'static str,
+    (n_inputs, file_name): (u64, &'static str),
+    load: &dyn Fn(&Path) -> Answer,
+) {
+    let (seeds, mutate) = (Vec::new(), Mutator::text);
+    run(&Format { name, n_inputs, file_name, names_file: true, seeds, mutate, load });
+}
+
 fn series_format(
     name: &'static str,
     load: fn(&Path) -> Result<Loaded, impactlab::data::DataError>,
 ) {
-    let load = |path: &Path| match load(path) {
+    text_format(name, SERIES, &|path| match load(path) {
         Ok(loaded) => series(&loaded),
         Err(error) => Answer::refused(&error),
-    };
-    run(&Format {
-        name,
-        n_inputs: 4_000,
-        file_name: "file.csv",
-        names_file: true,
-        seeds: Vec::new(),
-        mutate: Mutator::text,
-        load: &load,
     });
 }
 
@@ -65,13 +72,18 @@ fn steer_files() {
 }
 
 #[test]
+fn files_of_wheel_torques() {
+    series_format("wheels", |path| read_wheels_file(path, None));
+}
+
+#[test]
 fn logs_of_motions() {
     series_format("log", |path| read_motion_log(path, None));
 }
 
 #[test]
 fn files_of_unknown_kind() {
-    let load = |path: &Path| {
+    text_format("any-series", SERIES, &|path| {
         let mut go_on = |_| ControlFlow::Continue(());
         let proposed = propose_columns(path);
         match open(path, &mut go_on) {
@@ -79,15 +91,6 @@ fn files_of_unknown_kind() {
             Ok(other) => panic!("a file is opened as {other:?}"),
             Err(error) => Answer::refused(&error),
         }
-    };
-    run(&Format {
-        name: "any-series",
-        n_inputs: 4_000,
-        file_name: "file.csv",
-        names_file: true,
-        seeds: Vec::new(),
-        mutate: Mutator::text,
-        load: &load,
     });
 }
 
@@ -127,15 +130,7 @@ fn cases_format(name: &'static str, folder: &'static str, file_name: &'static st
         }
         answer
     };
-    run(&Format {
-        name,
-        n_inputs: 1_500,
-        file_name,
-        names_file: true,
-        seeds: Vec::new(),
-        mutate: Mutator::text,
-        load: &load,
-    });
+    text_format(name, (1_500, file_name), &load);
 }
 
 #[test]

@@ -156,6 +156,7 @@ fn file_ui(
         FileKind::Force => "force",
         FileKind::Trajectory => "trajectory",
         FileKind::Steer => "steer",
+        FileKind::Wheels => "wheels",
     };
     let n_samples = file.loaded.series.n_samples();
     let response =

@@ -10,6 +10,7 @@ use crate::app::widgets::{badges_ui, figure_frame};
 use crate::figure::analysis_scene_figure;
 use crate::render::FigureOptions;
 use crate::study::SimulateAnswer;
+use crate::units::Quantity;
 
 /// Draws the time slider and the plan view.
 pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
@@ -25,6 +26,11 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let end_s = series.time_s().last().copied().unwrap_or(0.0);
     clock_ui(ui, (session.time_s, end_s), session.playing, commands);
     badges_ui(ui, &report.badges);
+    if let Some(rest) = &report.rest {
+        let distance = Quantity::Length.shown(rest.distance_m, view.units);
+        let position = Quantity::Length.shown_vector([rest.x_m, rest.y_m], view.units);
+        ui.label(format!("At rest after {:.2} s and {distance}, at {position}", rest.time_s));
+    }
     let figure = analysis_scene_figure(analysis, session.time_s, view.units);
     let options = FigureOptions {
         id: "scene".to_owned(),

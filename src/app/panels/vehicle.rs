@@ -30,6 +30,10 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             list_ui(ui, "Integration", &mut project.integrator, (&integrators, integrator_label));
             let range = (&SIMULATED_DURATION, view.units);
             quantity_field(ui, "Duration", &mut project.duration_s, range);
+            let hint = "The simulation ends where the vehicle has come to rest, at the latest \
+                        after the duration";
+            ui.checkbox(&mut project.until_rest, "Until rest").on_hover_text(hint);
+            ui.end_row();
         });
         ui.separator();
         ui.strong("For single force files");

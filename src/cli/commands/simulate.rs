@@ -26,7 +26,9 @@ use crate::vehicle::{ContactPoint, Equations};
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 #[command(group(ArgGroup::new("source").required(true).multiple(true)
-    .args(["dataset", "scenario", "trajectory", "force", "steer", "speed"])))]
+    .args(["dataset", "scenario", "trajectory", "force", "steer", "fishhook", "wheels", "speed"])))]
+#[command(group(ArgGroup::new("steering")
+    .args(["steer", "fishhook", "steer_angle", "steering_wheel"])))]
 pub(in crate::cli) struct SimulateArgs {
     /// Simulate every case of this trajectory data set from its recorded start and force, and
     /// compare; of a force data set the one of --case
@@ -75,7 +77,7 @@ pub(in crate::cli) struct SimulateArgs {
 const REST_LIMIT_S: f64 = 120.0;
 
 /// What a recorded motion or a case says itself.
-const NOT_WITH_SCENARIO: [&str; 11] = [
+const NOT_WITH_SCENARIO: [&str; 13] = [
     "dataset",
     "trajectory",
     "speed",
@@ -83,22 +85,37 @@ const NOT_WITH_SCENARIO: [&str; 11] = [
     "yaw_rate",
     "steer",
     "steer_map",
+    "fishhook",
+    "wheels",
     "force",
     "map",
     "sampling",
     "contact",
 ];
 
-const NOT_WITH_TRAJECTORY: [&str; 9] =
-    ["dataset", "scenario", "speed", "vy", "yaw_rate", "steer", "steer_map", "force", "duration"];
-
-/// What a data set says itself.
-const SINGLE_ONLY: [&str; 11] = [
+const NOT_WITH_TRAJECTORY: [&str; 11] = [
+    "dataset",
+    "scenario",
     "speed",
     "vy",
     "yaw_rate",
     "steer",
     "steer_map",
+    "fishhook",
+    "wheels",
+    "force",
+    "duration",
+];
+
+/// What a data set says itself.
+const SINGLE_ONLY: [&str; 13] = [
+    "speed",
+    "vy",
+    "yaw_rate",
+    "steer",
+    "steer_map",
+    "fishhook",
+    "wheels",
     "force",
     "map",
     "sampling",
@@ -112,6 +129,7 @@ Examples:
   impactlab simulate --vehicle reference-2000 --speed 72km/h --force datasets/fea/forces/c001.csv \\
       --out motion.csv
   impactlab simulate --vehicle my-car.toml --speed 20 --steer steer.csv
+  impactlab simulate --vehicle ford-explorer-2004 --fishhook --speed 45mph --duration 7
   impactlab simulate --scenario pit-right-rear --brake 0.8 --brake-start 0.7s --until-rest
   impactlab simulate --dataset datasets/trajectories-fea --json
 
@@ -153,12 +171,20 @@ struct SingleArgs {
     /// Yaw rate at the start, rad/s to the left, or with a unit: 30deg/s
     #[arg(long, value_parser = number(YAW_RATE), allow_hyphen_values = true, default_value = "0")]
     yaw_rate: f64,
-    /// Road-wheel angle over time: CSV with time and steer, positive to the left
+    /// Steering over time: CSV with time and steer, the angle of the road wheels, or with time and
+    /// steering_wheel and --steering-ratio; positive to the left
     #[arg(long, value_name = "FILE")]
     steer: Option<PathBuf>,
     /// Which column of the steer file is what: time=1:s,steer=2:deg
     #[arg(long, value_name = "MAP", requires = "steer")]
     steer_map: Option<ColumnMap>,
+    /// Steer the fishhook of the NHTSA's rollover test, to the left first
+    #[arg(long)]
+    fishhook: bool,
+    /// Torques at the wheels over time: CSV with time and brake_fl … brake_rr, against the rotation,
+    /// drive_fl … drive_rr, forwards; N m or with a unit
+    #[arg(long, value_name = "FILE")]
+    wheels: Option<PathBuf>,
     /// Contact force ON the vehicle over time: CSV with time and fx, fy (world axes) or fx_body,
     /// fy_body (heading axes)
     #[arg(long, value_name = "F.csv")]
@@ -298,5 +324,11 @@ fn source(args: &SimulateArgs) -> MotionSource {
         sampling: single.sampling.map(Into::into),
         contact: single.contact,
         steer: single.steer.clone().map(|path| file(path, &single.steer_map)),
+        steering_ratio: match single.steer.is_some() || single.fishhook {
+            true => args.ending.steering_ratio,
+            false => None,
+        },
+        fishhook: single.fishhook,
+        wheels: single.wheels.clone().map(SeriesFile::new),
     })
 }

@@ -58,11 +58,11 @@ pub(in crate::cli) struct EndingArgs {
     dragged: Vec<DraggedArg>,
     /// The front road wheels turn to this angle, positive to the left: 3deg
     #[arg(long, value_name = "ANGLE", value_parser = number(STEER_ANGLE),
-        allow_hyphen_values = true, group = "steering", conflicts_with = "steering_ratio")]
+        allow_hyphen_values = true, conflicts_with = "steering_ratio")]
     steer_angle: Option<f64>,
     /// The steering wheel turns to this angle, positive to the left: 90deg
     #[arg(long, value_name = "ANGLE", value_parser = number(STEERING_WHEEL_ANGLE),
-        allow_hyphen_values = true, group = "steering", requires = "steering_ratio")]
+        allow_hyphen_values = true, requires = "steering_ratio")]
     steering_wheel: Option<f64>,
     /// Angle of the steering wheel over that of the road wheels; 12 to 20 in cars
     #[arg(long, value_name = "RATIO", value_parser = number(STEERING_RATIO), requires = "steering")]

@@ -83,7 +83,7 @@ impl Files {
         paths.into_iter().for_each(|path| self.path(path));
     }
 
-    fn series(&mut self, files: [&Option<SeriesFile>; 2]) {
+    fn series(&mut self, files: [&Option<SeriesFile>; 3]) {
         files.into_iter().flatten().for_each(|file| self.path(&file.path));
     }
 
@@ -113,7 +113,9 @@ impl Files {
         match &asked.source {
             MotionSource::Case { dataset, .. } => self.path(dataset),
             MotionSource::Trajectory { file, .. } => self.path(&file.path),
-            MotionSource::Drive(Drive { force, steer, .. }) => self.series([force, steer]),
+            MotionSource::Drive(Drive { force, steer, wheels, .. }) => {
+                self.series([force, steer, wheels])
+            }
             MotionSource::Scenario { scenario, .. } => self.scenario(scenario),
         }
         self.vehicle(&asked.vehicle);
