@@ -9,9 +9,11 @@ use serde::{Deserialize, Serialize};
 /// Standard gravity, m/s²; exact by definition (3rd CGPM, 1901).
 pub const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 
+/// One mile per hour, m/s; exact by definition (international yard and pound agreement, 1959).
+pub const MILE_PER_HOUR_M_S: f64 = 0.447_04;
+
 const FOOT_M: f64 = 0.3048;
 const INCH_M: f64 = 0.0254;
-pub const MILE_PER_HOUR_M_S: f64 = 0.447_04;
 const KILOMETRE_PER_HOUR_M_S: f64 = 1.0 / 3.6;
 const POUND_KG: f64 = 0.453_592_37;
 const POUND_FORCE_N: f64 = POUND_KG * STANDARD_GRAVITY_M_S2;

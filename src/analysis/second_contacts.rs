@@ -1,8 +1,8 @@
 //! Whether the two vehicles of a forecast meet again, over its draws.
 //!
 //! The struck vehicle moves on the central path of each draw, the striking one as a 4DOF vehicle of
-//! its own under the opposite of the same force. So that the motions without a force between them
-//! are followed to where they would pass through each other ([`SecondContact`]).
+//! its own under the opposite of the same force. Both are followed to where they would pass through
+//! each other ([`SecondContact`]).
 //!
 //! What is left out: the scatter of the struck vehicle's motion under one force, and what is not
 //! known of the striking vehicle.
