@@ -154,7 +154,10 @@ fn files_of_steering_wheel_and_torques_steer_and_brake() {
     assert!(message.contains("more than one of file, fishhook and ending brake"), "{message}");
     let negative = file("negative.csv", "time_s,brake_fl_nm\n0,-5\n1,0\n");
     let message = refusal(&[&STRAIGHT[..], &["--wheels", text(&negative)]].concat());
-    assert!(message.contains("negative.csv:2:2") && message.contains("brake torque"), "{message}");
+    assert!(
+        message.contains("negative.csv:2:2") && message.contains("torque of the brake"),
+        "{message}"
+    );
 }
 
 /// The numbers of an ending that a question holds were not checked where a scenario holds them.

@@ -188,7 +188,7 @@ fn what_goes_wrong_together_is_an_error() {
     let (code, error) = run(&["simulate", "--speed", "20", "--steer", text(&steer)]);
     assert!(code == Some(1) && error.contains("steer.csv:3:2: "), "{error}");
     assert!(error.contains("is 5 rad, expected -0.9 to 0.9 rad"), "{error}");
-    assert!(error.contains("steering-wheel angle"), "{error}");
+    assert!(error.contains("an angle of the steering wheel as such"), "{error}");
 }
 
 #[test]
