@@ -157,7 +157,7 @@ fn other_kinds_of_file_say_what_they_need() {
     );
     assert_eq!(
         refused(read_steer_file(&path, None).unwrap_err()),
-        r#"f.csv:1: no column for time and steer (or steer_fl and steer_fr); found "time_s", "x_m", "steering"; say which it is, e.g. --map steer=COLUMN, or in the mapping dialog"#
+        r#"f.csv:1: no column for time and steer (or steer_fl and steer_fr, or steering_wheel); found "time_s", "x_m", "steering"; say which it is, e.g. --map steer=COLUMN, or in the mapping dialog"#
     );
     let map: ColumnMap = "y=Y position".parse().unwrap();
     assert_eq!(

@@ -158,7 +158,9 @@ proptest! {
             .collect();
         let mut series = TimeSeries::new(time_s).unwrap();
         for &channel in Channel::ALL.iter().filter(|channel| **channel != Channel::Time) {
-            // The angle of a road wheel is below 0.9 rad.
+            // The angle of a road wheel is below 0.9 rad, the torque of a brake not below zero.
+            let is_brake = channel.header().starts_with("brake_");
+            let scale = if is_brake { scale.abs() } else { scale };
             let values = steps.iter().map(|step| step * scale / 1.2e6).collect();
             series.insert(channel, values).unwrap();
         }

@@ -237,7 +237,7 @@ fn time_series_are_checked() {
         read(format!("time_s,fx_n,fy_n\n0,0,0\n{step},1,0\n"))
     });
     let error = read("time_s,steer_rad\n0,0\n1,5\n".to_owned()).unwrap_err();
-    assert!(error.contains("steering-wheel angle"), "{error}");
+    assert!(error.contains("an angle of the steering wheel as such"), "{error}");
 }
 
 fn pit() -> Scenario {
