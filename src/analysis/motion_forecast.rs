@@ -21,7 +21,9 @@ use crate::force::{ForceError, ForceModel, ForcePrediction, ForceScenario};
 use crate::learning::LearningError;
 use crate::nn::random_stream;
 use crate::ranges::{DRAWS, FORECAST_DURATION, OutOfRange};
-use crate::response::{MotionDistribution, Predictor, ResponseModel, STEP_S, weighted_mean};
+use crate::response::{
+    Applicability, MotionDistribution, Predictor, ResponseModel, STEP_S, weighted_mean,
+};
 use crate::uncertainty::{ForceCurve, PlanarMixture};
 use crate::vehicle::{
     ContactLoad, ContactPoint, Controls, Manoeuvre, VehicleInput, VehicleParameters, VehicleState,
@@ -83,6 +85,9 @@ pub struct MotionForecast {
     pub n_vehicles: usize,
     /// Which estimates of the vehicle the end of the motion depends on; empty if none was drawn.
     pub sensitivity: Vec<Sensitivity>,
+    /// How far the response network holds for the forecast: of the force and the vehicle for which
+    /// it holds least.
+    pub applicability: Applicability,
 }
 
 /// State of the vehicle at rest, or at the end of the forecast.
@@ -200,20 +205,29 @@ pub fn forecast_forces(
     settings: &MotionForecastSettings,
 ) -> Result<MotionForecast, MotionForecastError> {
     let duration_s = FORECAST_DURATION.check(settings.duration_s)?;
-    let draws = drawn_vehicles(struck, settings, forces.len());
+    // What is uncertain of a car whose motions are known is in the network's strengths.
+    let is_known = response.known_car(&struck.vehicle).is_some();
+    let draws = if is_known { None } else { drawn_vehicles(struck, settings, forces.len()) };
     let predictors = predictors(response, struck, draws.as_ref())?;
     let n_parts = forces.len().max(predictors.len());
     let of = |part: usize| {
         let (force, predictor) =
             (forces.get(part % forces.len())?, predictors.get(part % predictors.len())?);
         let inputs = struck.inputs(force, duration_s);
-        let motion = predictor.motion(&struck.initial, &inputs);
-        Some((motion, predictor.central_path(&struck.initial, &inputs)))
+        Some(Part {
+            motion: predictor.motion(&struck.initial, &inputs),
+            path: predictor.central_path(&struck.initial, &inputs),
+            applicability: predictor.applicability(&struck.initial, &inputs),
+        })
     };
-    let parts: Vec<(MotionDistribution, Vec<VehicleState<f64>>)> =
-        (0..n_parts).into_par_iter().filter_map(of).collect();
+    let parts: Vec<Part> = (0..n_parts).into_par_iter().filter_map(of).collect();
+    let least = parts.iter().map(|part| &part.applicability);
+    let applicability = least
+        .max_by(|a, b| a.distance.total_cmp(&b.distance))
+        .cloned()
+        .unwrap_or_else(Applicability::whole);
     let (parts, paths): (Vec<MotionDistribution>, Vec<Vec<VehicleState<f64>>>) =
-        parts.into_iter().unzip();
+        parts.into_iter().map(|part| (part.motion, part.path)).unzip();
     let central = mean_of(&paths);
     let distribution = MotionDistribution::mixed(parts);
     let pace = Pace::mean_of(&paths);
@@ -237,11 +251,19 @@ pub fn forecast_forces(
         force: None,
         n_vehicles: draws.map_or(0, |draws| draws.len()),
         sensitivity,
+        applicability,
     })
 }
 
 fn pose(state: &VehicleState<f64>) -> Pose {
     Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad }
+}
+
+/// The forecast for one force and one vehicle.
+struct Part {
+    motion: MotionDistribution,
+    path: Vec<VehicleState<f64>>,
+    applicability: Applicability,
 }
 
 /// The draws of what the data sheet of the vehicle leaves open, at least one for each force; `None` if

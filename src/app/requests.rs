@@ -14,7 +14,7 @@ use crate::force::ForceScenario;
 use crate::shipped::ModelSource;
 use crate::study::{
     CompareRequest, ConfigChoice, DEFAULT_DRAWS, Drive, EvaluateForceRequest,
-    EvaluateResponseRequest, FineTuneRequest, ForceQuestion, ForceSource, ImpactRequest,
+    EvaluateResponseRequest, FineTuneRequest, ForceQuestion, ForceSource, ImpactRequest, Learning,
     ModelChoice, MotionSource, PredictForceRequest, PredictMotionRequest, ScenarioChoice,
     SeriesFile, SimulateDatasetRequest, SimulateRequest, TrainForceRequest, TrainResponseRequest,
     TrainingOptions,
@@ -172,12 +172,17 @@ impl State {
         let form: &ResponseTrainingForm = &self.project.response.training;
         let model = match form.mode {
             TrainingMode::FineTuneShipped => Some(ModelSource::ShippedPretrained.into()),
-            TrainingMode::FineTuneCurrent => {
+            TrainingMode::FineTuneCurrent | TrainingMode::Condition => {
                 Some(choice(self.session.response.model.current.as_ref())?)
             }
             TrainingMode::FromScratch | TrainingMode::Pretrain => None,
         };
+        let learning = match form.mode {
+            TrainingMode::Condition => Learning::Strengths,
+            _ => Learning::Network,
+        };
         Some(FineTuneRequest {
+            learning,
             model,
             data: vec![data],
             trajectories: form.n_trajectories,

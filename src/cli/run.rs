@@ -8,8 +8,8 @@ use clap::{Parser, Subcommand};
 
 use crate::cli::CliError;
 use crate::cli::commands::{
-    app, ask, check, compare, evaluate, fine_tune, impact, licences, predict, ranges, render,
-    simulate, train, vehicles,
+    app, ask, check, compare, condition, evaluate, fine_tune, impact, licences, predict, ranges,
+    render, simulate, train, vehicles,
 };
 use crate::cli::console::{Console, Escaped, Verdict, within_line};
 use crate::error_chain;
@@ -50,6 +50,7 @@ enum CliCommand {
     Simulate(Box<simulate::SimulateArgs>),
     Train(train::TrainArgs),
     FineTune(fine_tune::FineTuneArgs),
+    Condition(condition::ConditionArgs),
     Predict(predict::PredictArgs),
     Evaluate(evaluate::EvaluateArgs),
     Compare(compare::CompareArgs),
@@ -118,6 +119,7 @@ fn dispatch(command: Option<CliCommand>, console: &mut Console<'_>) -> Result<Ve
         Some(CliCommand::Simulate(args)) => simulate::run(&args, console),
         Some(CliCommand::Train(args)) => train::run(&args, console),
         Some(CliCommand::FineTune(args)) => fine_tune::run(&args, console),
+        Some(CliCommand::Condition(args)) => condition::run(&args, console),
         Some(CliCommand::Compare(args)) => compare::run(&args, console),
         Some(CliCommand::Evaluate(args)) => evaluate::run(&args, console),
         Some(CliCommand::Predict(args)) => predict::run(&args, console),

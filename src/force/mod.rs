@@ -26,9 +26,9 @@ mod evaluate;
 pub use config::{Centre, CrushConfig, ForceConfig, LossWeights, NetworkConfig, TrainingConfig};
 pub use error::ForceError;
 pub use evaluate::{
-    BaselineMetrics, CaseErrors, ClusterMetrics, ComparedMetrics, CrossValidation, EvaluateError,
-    Evaluation, EvaluationError, EvaluationSettings, FittedBaselines, ForceMetrics, baselines,
-    cross_validate, evaluate, evaluate_model,
+    BaselineMetrics, CaseErrors, ClusterMetrics, ComparedMetrics, CrossValidation, DomainMetrics,
+    EvaluateError, Evaluation, EvaluationError, EvaluationSettings, FittedBaselines, ForceMetrics,
+    baselines, cross_validate, evaluate, evaluate_model,
 };
 pub use input::{ForceCase, ForceCaseError, ForceScenario, curve_on_grid};
 pub use metrics::CurvePrediction;

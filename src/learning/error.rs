@@ -84,6 +84,11 @@ pub enum LearningError {
         /// The epoch, counted from 1.
         epoch: usize,
     },
+    /// The model does not know how cars differ, so that trajectories of one say nothing of it.
+    #[error(
+        "the response network was not trained on a fleet of cars; it can be fine-tuned, not conditioned"
+    )]
+    NoPopulation,
     /// The network itself or a model file failed.
     #[error(transparent)]
     Network(#[from] NnError),

@@ -66,6 +66,14 @@ impl Checkpoint {
         T::deserialize(value).map_err(to_error)
     }
 
+    /// The piece of metadata of this key, if the file has it.
+    ///
+    /// # Errors
+    /// [`NnError::Metadata`] if it has another form.
+    pub fn find<T: DeserializeOwned>(&self, key: &str) -> Result<Option<T>, NnError> {
+        self.metadata.contains_key(key).then(|| self.get(key)).transpose()
+    }
+
     /// Puts tensors of 32 or 64 bits in, named `group.NAME`.
     pub fn put_group(&mut self, group: &str, tensors: NamedTensors) {
         let named = tensors.into_iter().map(|(name, tensor)| (format!("{group}.{name}"), tensor));

@@ -157,6 +157,8 @@ ranges! {
         "sliding friction over peak friction";
     ROLLING_RADIUS: "rolling radius" = real(Quantity::Length, [0.02, 1.0]),
         "rolling radius of the tyres";
+    WHEEL_INERTIA: "wheel inertia" = in_unit("kg m²", [0.0, 100.0]),
+        "moment of inertia of a wheel with its tyre about its axis";
     ROLLING_RESISTANCE: "rolling resistance" = real(Quantity::Ratio, [0.0, 0.5]),
         "rolling resistance over vertical load";
     ROLLING_RESISTANCE_PER_SPEED: "rolling resistance per speed" = in_unit("s/m", [0.0, 0.01]),

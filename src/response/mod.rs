@@ -12,6 +12,8 @@ mod train;
 
 mod predict;
 
+mod population;
+
 pub mod evaluate;
 
 mod motion_log;
@@ -27,12 +29,16 @@ pub use physics::{
     N_RESIDUAL, N_TOKEN_NUMBERS, N_TOKENS, RESIDUAL_MIRROR, STEP_S, Tuning, TuningConfig,
     average_error_m, combined, effects, features, motion_series, rollout, step, vehicle_tokens,
 };
+pub use population::{CarStrengths, KnownCar, StrengthPopulation};
+pub(crate) use population::{UnseenCar, is_same_car};
 pub(crate) use predict::weighted_mean;
 pub use predict::{
-    ComponentMotion, ComponentPath, LATENT_NAMES, LatentScales, MotionDistribution, N_LATENTS,
-    Predictor, ResponseModel, StateDistribution,
+    Applicability, ComponentMotion, ComponentPath, LATENT_NAMES, LatentScales, MotionDistribution,
+    MotionDomain, N_LATENTS, N_NAMED_LATENTS, OutsideDomain, Predictor, ResponseModel,
+    StateDistribution,
 };
 pub use train::{
     ImpactRecord, ResponseCase, ResponseCaseError, ResponseEpoch, ResponseRecord, ResponseStage,
-    ResponseTrainSettings, ResponseTraining, ResponseTrainingSet, fine_tune, pretrain,
+    ResponseTrainSettings, ResponseTraining, ResponseTrainingSet, UnseenCars, condition, fine_tune,
+    learn_population, pretrain, train_fleet,
 };

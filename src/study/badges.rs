@@ -1,7 +1,7 @@
 //! The badges of an answer: what a report says in words of its own, in one form for all reports.
 
 use crate::collision::{ScenarioGeometry, TOUCH_TOLERANCE_M};
-use crate::force::OutsideTraining;
+use crate::response::OutsideDomain;
 use crate::study::implied_contact::{LEAST_P_RIGID, MOST_P_ENERGY_GAIN};
 use crate::study::{
     AssumedQuantity, Assumption, FlagReport, ImpliedContactReport, PredictForceReport,
@@ -87,35 +87,37 @@ pub(super) fn of_motion(speed_m_s: f64, after_s: f64) -> Badge {
         .with_range([0.0, REST_SPEED_M_S])
 }
 
-/// A feature of a collision that lies outside what a force network has learned from.
-pub(super) fn of_outside(outside: &OutsideTraining) -> Badge {
-    let [low, high] = outside.range.map(significant);
+/// A quantity of a motion that lies outside what a response network has learned from.
+fn of_outside_domain(outside: &OutsideDomain) -> Badge {
+    let OutsideDomain { quantity, value, range } = outside;
+    let [low, high] = range.map(significant);
     let text = format!(
-        "{} is {}, trained on {low} to {high}: {} standard deviations outside",
-        outside.feature,
-        significant(outside.value),
-        significant(outside.deviations)
+        "{quantity} is {}, the response network has learned from {low} to {high}",
+        significant(*value)
     );
-    Badge::new(BadgeKind::OutsideDomain, text)
-        .with_value(outside.feature, outside.value)
-        .with_range(outside.range)
+    Badge::new(BadgeKind::OutsideDomain, text).with_value(*quantity, *value).with_range(*range)
 }
 
 /// The badges of a predicted force.
-pub(super) fn of_predicted_force(report: &PredictForceReport) -> Vec<Badge> {
-    let outside = report.outside_training.iter().map(of_outside);
+///
+/// - `predicted`: those of the force network.
+pub(super) fn of_predicted_force(report: &PredictForceReport, predicted: &[Badge]) -> Vec<Badge> {
     let contact = report.implied_contact.as_ref().and_then(of_contact);
-    outside.chain(contact).chain(of_assumptions(&report.assumptions)).collect()
+    let assumed = of_assumptions(&report.assumptions);
+    predicted.iter().cloned().chain(contact).chain(assumed).collect()
 }
 
 /// The badges of a predicted motion.
-pub(super) fn of_predicted_motion(report: &PredictMotionReport) -> Vec<Badge> {
-    let outside = report.outside_training.iter().map(of_outside);
+///
+/// - `predicted`: those of the force network, where it predicts the force.
+pub(super) fn of_predicted_motion(report: &PredictMotionReport, predicted: &[Badge]) -> Vec<Badge> {
+    let domain = report.outside_domain.iter().map(of_outside_domain);
     let contact = report.implied_contact.as_ref().and_then(of_contact);
     let flags = report.flags.iter().map(of_flag);
     let end = &report.outcome;
     let moving = (!end.is_at_rest).then(|| of_motion(end.speed_m_s, end.time_s));
     let assumed = of_assumptions(&report.assumptions);
+    let outside = predicted.iter().cloned().chain(domain);
     outside.chain(contact).chain(flags).chain(moving).chain(assumed).collect()
 }
 

@@ -7,10 +7,12 @@ use serde::{Deserialize, Serialize};
 use crate::data::Outcome;
 use crate::data::write::ModelDigest;
 use crate::ranges::{CHOICES, TRAJECTORIES, TRAJECTORY_SETS};
-use crate::response::ResponseConfig;
-use crate::response::evaluate::{Comparison, ComparisonSettings, compare_models};
+use crate::response::evaluate::{
+    Comparison, ComparisonSettings, compare_models, compare_on_unseen_cars,
+};
+use crate::response::{ResponseConfig, ResponseTrainingSet};
 use crate::study::checks::{check, check_count};
-use crate::study::inputs::{data_name, response_cases};
+use crate::study::inputs::{UsableCases, data_name, dataset_folders, response_cases};
 use crate::study::question::progress_of;
 use crate::study::{
     Assumption, BadCases, ConfigChoice, Library, ModelChoice, Observer, Provenance, Question,
@@ -26,8 +28,15 @@ pub const DEFAULT_CHOICES: u64 = 3;
 /// Asks which response model does best on motions that none has seen.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CompareRequest {
-    /// A trajectory data set; a share of its cases is kept apart for the test.
+    /// A trajectory data set; a share of its cases is kept apart for the test. With
+    /// [`CompareRequest::leave_one_car_out`] a folder of such sets, one for each car.
     pub data: PathBuf,
+    /// Whether each car is asked about that the network has not seen.
+    #[serde(default)]
+    pub leave_one_car_out: bool,
+    /// With [`CompareRequest::leave_one_car_out`]: data sets that are learned from beside.
+    #[serde(default)]
+    pub beside: Vec<PathBuf>,
     /// Numbers of trajectories to fine-tune on.
     #[serde(default = "default_trajectories")]
     pub trajectories: Vec<usize>,
@@ -64,6 +73,8 @@ impl CompareRequest {
     pub fn new(data: impl Into<PathBuf>) -> Self {
         Self {
             data: data.into(),
+            leave_one_car_out: false,
+            beside: Vec::new(),
             trajectories: default_trajectories(),
             choices: DEFAULT_CHOICES,
             seed: 0,
@@ -151,18 +162,39 @@ impl Question for CompareRequest {
             (None, None) => ResponseConfig::default(),
         };
         let mut assumptions = Vec::new();
-        let chosen = (self.data.as_path(), &self.vehicle);
-        let cases = response_cases(chosen, self.bad_cases, &mut assumptions, (library, observer))?;
-        let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
+        let folders = match self.leave_one_car_out {
+            true => {
+                [self.beside.clone(), dataset_folders(std::slice::from_ref(&self.data))?].concat()
+            }
+            false => vec![self.data.clone()],
+        };
+        let mut usable = UsableCases { cases: Vec::new(), left_out: Vec::new() };
+        for folder in folders {
+            let chosen = (folder.as_path(), &self.vehicle);
+            let cases =
+                response_cases(chosen, self.bad_cases, &mut assumptions, (library, observer))?;
+            let Outcome::Complete(of_folder) = cases else { return Ok(Outcome::Cancelled) };
+            usable.cases.extend(of_folder.cases);
+            usable.left_out.extend(of_folder.left_out);
+        }
         let settings = ComparisonSettings {
             config,
             trajectories: self.trajectories.clone(),
             n_choices: self.choices,
             seed: self.seed,
         };
-        let data = (&*data_name(&self.data), &*usable.cases);
+        let name = data_name(&self.data);
         let mut report = progress_of(observer);
-        let compared = compare_models(data, start.as_deref(), &settings, &mut report)?;
+        let compared = match self.leave_one_car_out {
+            true => {
+                let start = start.as_deref().ok_or(StudyError::NoStart)?;
+                let set = ResponseTrainingSet { name, train: usable.cases, test: Vec::new() };
+                compare_on_unseen_cars(&set, start, &settings, &mut report)?
+            }
+            false => {
+                compare_models((&name, &usable.cases), start.as_deref(), &settings, &mut report)?
+            }
+        };
         Ok(match compared {
             None => Outcome::Cancelled,
             Some(comparison) => Outcome::Complete(CompareAnswer::new(

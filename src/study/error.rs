@@ -343,6 +343,9 @@ pub enum StudyError {
     /// Nothing says what should be learned from.
     #[error("nothing to learn from: say which data set with --data, or which log with --log")]
     NothingToLearnFrom,
+    /// What is to be learned takes a network to start from.
+    #[error("a network to start from is needed: say which with --model")]
+    NoStart,
 }
 
 impl StudyError {

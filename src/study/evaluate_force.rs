@@ -82,9 +82,9 @@ impl EvaluateForceRequest {
 #[serde(untagged)]
 pub enum ForceEvaluation {
     /// The model on cases of the data set.
-    Cases(EvaluateForceReport),
+    Cases(Box<EvaluateForceReport>),
     /// Models trained anew, each on the cases that it has not seen.
-    Folds(CrossValidateForceReport),
+    Folds(Box<CrossValidateForceReport>),
 }
 
 impl ForceEvaluation {
@@ -198,7 +198,10 @@ impl Question for EvaluateForceRequest {
                 let badges = badges::of_assumptions(&assumptions);
                 let report =
                     CrossValidateForceReport { validation, assumptions, badges, provenance };
-                EvaluateForceAnswer { report: ForceEvaluation::Folds(report), cases: None }
+                EvaluateForceAnswer {
+                    report: ForceEvaluation::Folds(Box::new(report)),
+                    cases: None,
+                }
             }));
         }
         let cases = force_cases(&self.data, self.bad_cases, (library, observer))?;
@@ -234,7 +237,7 @@ impl Question for EvaluateForceRequest {
             badges: trained_on.chain(badges::of_left_out(n_left_out, "cases")).collect(),
             provenance,
         };
-        let report = ForceEvaluation::Cases(report);
+        let report = ForceEvaluation::Cases(Box::new(report));
         Ok(Outcome::Complete(EvaluateForceAnswer { report, cases }))
     }
 }

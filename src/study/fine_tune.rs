@@ -1,4 +1,5 @@
-//! The fine-tuning of the response network: `fine-tune response`.
+//! What the response network learns from recorded motions: `fine-tune response`, and `condition
+//! response`.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -7,13 +8,16 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 
 use crate::data::Outcome;
-use crate::learning::TEST_SHARE;
+use crate::learning::{TEST_SHARE, TrainingReport};
 use crate::ranges::{TEST_SHARE as SHARE_OF_TEST, TRAJECTORIES};
 use crate::response::{
-    ResponseConfig, ResponseModel, ResponseTrainSettings, ResponseTrainingSet, fine_tune,
+    ResponseConfig, ResponseModel, ResponseTrainSettings, ResponseTrainingSet, condition,
+    fine_tune, train_fleet,
 };
 use crate::study::checks::{check, check_count};
-use crate::study::inputs::{OpenVehicle, data_name, response_cases, struck_vehicle};
+use crate::study::inputs::{
+    OpenVehicle, data_name, dataset_folders, response_cases, struck_vehicle,
+};
 use crate::study::train_response::TrainingNotes;
 use crate::study::{
     AssumedQuantity, Assumption, ConfigChoice, Event, Library, ModelChoice, MotionLogs, Observer,
@@ -21,13 +25,29 @@ use crate::study::{
     VehicleChoice,
 };
 
+/// What is learned from recorded motions.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Learning {
+    /// The network itself, for the cars of the data.
+    #[default]
+    Network,
+    /// The network, and how cars differ, for cars of which there are no data.
+    Fleet,
+    /// The strengths of one car, by a network that knows how cars differ: seconds, no training.
+    Strengths,
+}
+
 /// Asks for a response network that has learned from recorded motions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FineTuneRequest {
+    /// What is learned.
+    #[serde(default)]
+    pub learning: Learning,
     /// The network to start from; without one all layers are trained, from random weights.
     #[serde(default)]
     pub model: Option<ModelChoice>,
-    /// Trajectory data sets, of each of which a share of the cases is kept apart for the test.
+    /// Trajectory data sets, or folders of such sets, of each of which a share of the cases is kept apart for the test.
     #[serde(default)]
     pub data: Vec<PathBuf>,
     /// Logs of single impacts instead of data sets.
@@ -58,6 +78,7 @@ fn default_test_share() -> f64 {
 impl Default for FineTuneRequest {
     fn default() -> Self {
         Self {
+            learning: Learning::Network,
             model: None,
             data: Vec::new(),
             logs: None,
@@ -108,14 +129,14 @@ impl FineTuneRequest {
             return Ok(Outcome::Complete(set));
         }
         let mut sets = Vec::new();
-        for root in &self.data {
+        for root in dataset_folders(&self.data)? {
             let chosen = (root.as_path(), &self.vehicle);
             let assumptions = &mut notes.assumptions;
             let cases =
                 response_cases(chosen, self.training.bad_cases, assumptions, (library, observer))?;
             let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
             notes.left_out.extend(usable.left_out);
-            let (name, share) = (data_name(root), self.test_share);
+            let (name, share) = (data_name(&root), self.test_share);
             let set = ResponseTrainingSet::of_split(name, &usable.cases, self.training.seed, share);
             sets.push(set.choose(self.trajectories, self.choice_seed())?);
         }
@@ -123,6 +144,22 @@ impl FineTuneRequest {
             return Err(StudyError::NothingToLearnFrom);
         }
         Ok(Outcome::Complete(ResponseTrainingSet::joined(sets)))
+    }
+
+    fn learned(
+        &self,
+        start: Option<&ResponseModel>,
+        set: &ResponseTrainingSet,
+        settings: &ResponseTrainSettings,
+        observer: &mut Observer<'_>,
+    ) -> Result<ResponseModel, StudyError> {
+        let mut told = |told: &TrainingReport| observer(Event::Training(told));
+        Ok(match (self.learning, start) {
+            (Learning::Network, start) => fine_tune(start, set, settings, &mut told)?,
+            (Learning::Fleet, Some(start)) => train_fleet(start, set, settings, &mut told)?,
+            (Learning::Strengths, Some(start)) => condition(start, set)?,
+            (Learning::Fleet | Learning::Strengths, None) => return Err(StudyError::NoStart),
+        })
     }
 
     fn choice_seed(&self) -> u64 {
@@ -169,9 +206,7 @@ impl Question for FineTuneRequest {
             resume: self.training.resume,
         };
         let started = Instant::now();
-        let model = fine_tune(start.as_deref(), &set, &settings, &mut |told| {
-            observer(Event::Training(told))
-        })?;
+        let model = self.learned(start.as_deref(), &set, &settings, observer)?;
         let answer = ResponseTrainingAnswer::of(model, started.elapsed().as_secs_f64(), notes)?;
         Ok(Outcome::Complete(answer))
     }

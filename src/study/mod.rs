@@ -72,7 +72,7 @@ pub use evaluate_force::{
     EvaluatedForceCases, ForceEvaluation,
 };
 pub use evaluate_response::{EvaluateResponseAnswer, EvaluateResponseRequest};
-pub use fine_tune::FineTuneRequest;
+pub use fine_tune::{FineTuneRequest, Learning};
 pub use impact::{BodyReport, ImpactAnswer, ImpactReport, ImpactRequest};
 pub use implied_contact::{ImpliedContactReport, MomentumReport};
 pub use inputs::{

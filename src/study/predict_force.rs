@@ -93,6 +93,9 @@ pub struct PredictForceReport {
     pub hooking_probability: Option<f64>,
     /// The components of the mixture, the likeliest first.
     pub modes: Vec<Mode>,
+    /// How far the force network applies to the collision, 0 to 1. The rest of the distribution is
+    /// that of the physics alone.
+    pub applicability: f64,
     /// Where the collision lies outside what was learned from.
     pub outside_training: Vec<OutsideTraining>,
     /// Whether the contact point is open and drawn from that of the training cases.
@@ -226,7 +229,8 @@ impl Question for PredictForceRequest {
             }
         }
         if self.open_contact {
-            (collision.contact_m, collision.bullet_position_m, impact) = (None, None, None);
+            (collision.contact_m, collision.normal_rad) = (None, None);
+            (collision.bullet_position_m, impact) = (None, None);
         }
         let prediction = model.predict(&collision)?;
         let settings = ForecastSettings { n_curves: self.samples, seed: self.seed };
@@ -240,7 +244,7 @@ impl Question for PredictForceRequest {
         report.implied_contact = impact.and_then(|(impact, heading_rad)| {
             ImpliedContactReport::of(&prediction, (&impact, heading_rad), self.seed)
         });
-        report.badges = badges::of_predicted_force(&report);
+        report.badges = badges::of_predicted_force(&report, &prediction.badges);
         report.badges.extend(overlap);
         Ok(Outcome::Complete(PredictForceAnswer { report, collision, forecast, prediction }))
     }
@@ -270,6 +274,7 @@ impl PredictForceReport {
             implied_contact: None,
             hooking_probability: prediction.hooking_probability,
             modes: forecast.modes.clone(),
+            applicability: prediction.applicability,
             outside_training: prediction.outside.clone(),
             is_contact_open: prediction.is_contact_open,
             is_body_open: prediction.is_body_open,

@@ -12,6 +12,7 @@ use crate::analysis::{
 use crate::data::{DatasetKind, ForceHistory, Outcome, check_contact_within};
 use crate::force::{ForceModel, ForceScenario, OutsideTraining};
 use crate::ranges::{DRAWS, FORECAST_DURATION};
+use crate::response::OutsideDomain;
 use crate::study::checks::{check, check_count};
 use crate::study::simulate_dataset::take_case;
 use crate::study::unused::{by_force_network, by_forecast};
@@ -88,8 +89,15 @@ pub struct PredictMotionReport {
     /// A second contact of the vehicles in the 4DOF simulation of the same collision; the forecast
     /// does not know of it.
     pub flags: Vec<FlagReport>,
+    /// How far the force network applies to the collision, 0 to 1; none for another force.
+    pub force_applicability: Option<f64>,
     /// Where the collision lies outside what the force network has learned from.
     pub outside_training: Vec<OutsideTraining>,
+    /// How far the response network holds for this motion, 0 to 1: as it falls, the forecast goes
+    /// over to the 4DOF model, and its bands to the error of that.
+    pub applicability: f64,
+    /// Where vehicle, road or impact lie outside what the response network has learned from.
+    pub outside_domain: Vec<OutsideDomain>,
     /// What was assumed.
     pub assumptions: Vec<Assumption>,
     /// What restricts the answer.
@@ -194,11 +202,14 @@ impl Question for PredictMotionRequest {
         let (Some(struck), Some(own_force)) = (&analysis.struck, &analysis.force) else {
             return Err(StudyError::NoForce { name: name() });
         };
-        if !struck.controls.is_coasting() {
+        let model = library.response_model(&self.response_model)?;
+        // A fleet has braked and dragged wheels, none that are steered or driven.
+        let controls = &struck.controls;
+        let is_like_fleet =
+            model.population().is_some() && !(controls.is_steered() || controls.is_driven());
+        if !controls.is_coasting() && !is_like_fleet {
             return Err(StudyError::NotCoasting { name: name() });
         }
-
-        let model = library.response_model(&self.response_model)?;
         let settings = MotionForecastSettings {
             n_curves: self.draws,
             n_vehicles: self.motion.vehicle_draws,
@@ -238,12 +249,13 @@ impl Question for PredictMotionRequest {
         assumptions.extend(unused);
         let provenance = self.provenance(library)?;
         let known = (assumptions, provenance);
+        let predicted = forecast.force.as_ref().map_or(&[][..], |force| &force.badges);
         let mut report = PredictMotionReport {
             implied_contact: self.implied_contact(&forecast)?,
             flags: self.second_contact(&forecast, &analysis).into_iter().collect(),
             ..self.report(&analysis.name, struck, (&forecast, known))
         };
-        report.badges = badges::of_predicted_motion(&report);
+        report.badges = badges::of_predicted_motion(&report, predicted);
         report.badges.extend(overlap);
         Ok(Outcome::Complete(PredictMotionAnswer { report, analysis, forecast }))
     }
@@ -330,7 +342,10 @@ impl PredictMotionRequest {
             hooking_probability: predicted.and_then(|force| force.hooking_probability),
             flags: Vec::new(),
             implied_contact: None,
+            force_applicability: predicted.map(|force| force.applicability),
             outside_training: predicted.map_or_else(Vec::new, |force| force.outside.clone()),
+            applicability: forecast.applicability.value,
+            outside_domain: forecast.applicability.outside.clone(),
             assumptions,
             badges: Vec::new(),
             provenance,

@@ -36,8 +36,19 @@ pub struct Controls {
 impl Controls {
     /// Whether the vehicle coasts with its front wheels straight ahead.
     pub fn is_coasting(&self) -> bool {
-        let is_straight = |steer: &SteerHistory| steer.steer_rad.iter().all(|rad| *rad == 0.0);
-        self.wheels.is_none() && self.steer.as_ref().is_none_or(is_straight)
+        self.wheels.is_none() && !self.is_steered()
+    }
+
+    /// Whether the front wheels are turned.
+    pub fn is_steered(&self) -> bool {
+        let is_turned = |steer: &SteerHistory| steer.steer_rad.iter().any(|rad| *rad != 0.0);
+        self.steer.as_ref().is_some_and(is_turned)
+    }
+
+    /// Whether a wheel is driven.
+    pub fn is_driven(&self) -> bool {
+        let of = self.wheels.iter().flat_map(|history| history.wheels.iter().flatten());
+        of.into_iter().any(|wheel| wheel.drive_n != 0.0)
     }
 }
 

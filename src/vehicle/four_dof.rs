@@ -12,7 +12,8 @@
 //!
 //! Source: `eq:4dof`, `eq:4dof2` of [`PitPinnPaper`](crate::bibliography::PitPinnPaper).
 //! Assumes a rigid sprung mass on a roll axis along x, no pitch, no heave and no tyre relaxation.
-//! Wheel spin has no inertia: a wheel turns freely, turns against a brake or is locked (`tire.rs`).
+//! A wheel turns freely, turns against a brake or is locked; the inertia of its spin is that of a
+//! steady rotation of the vehicle (`tire.rs`).
 //! Aligning moments and suspension kinematics are left out.
 //! Validated against multibody simulations (`docs/VALIDATION.md`).
 //!
@@ -231,14 +232,9 @@ impl VehicleParameters {
                 [along, across]
             }
         };
-        // The force of a tyre that rolls freely is proportional to its load.
-        let shares: [[T; 2]; 4] = match u.wheels {
-            None => std::array::from_fn(|i| in_body_axes(i, slips[i].free_share())),
-            Some(_) => [[T::from(0.0); 2]; 4],
-        };
         let forces_n = |loads_n: &[T; 4]| -> [[T; 2]; 4] {
             std::array::from_fn(|i| match &u.wheels {
-                None => shares[i].map(|share| share * loads_n[i]),
+                None => in_body_axes(i, slips[i].free_n(loads_n[i])),
                 Some(wheels) => in_body_axes(i, slips[i].force_n(loads_n[i], &wheels[i])),
             })
         };
@@ -284,7 +280,7 @@ impl VehicleParameters {
                 false => [u, w],
             }
         });
-        tires.slips(cornering_coefficients_per_rad, velocities_m_s)
+        tires.slips(cornering_coefficients_per_rad, velocities_m_s, x.yaw_rate_rad_s)
     }
 
     /// Moment of the weight of the sprung mass about the roll axis, `m_s g h sin φ`, N m.

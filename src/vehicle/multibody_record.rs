@@ -62,6 +62,7 @@ struct GeometryRecord {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 struct WheelRecord {
     effective_rolling_radius: f64,
+    wheel_and_tyre_spin_inertia: f64,
 }
 
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -137,6 +138,7 @@ impl MultibodyRecord {
                 rolling_resistance_s_m: 0.0,
                 rolling_resistance_s2_m2: drag_over_weight,
                 rolling_radius_m: wheel.effective_rolling_radius,
+                wheel_inertia_kg_m2: wheel.wheel_and_tyre_spin_inertia,
             },
             estimates: estimates(),
             sheet: None,
@@ -166,6 +168,7 @@ impl MultibodyRecord {
             "tires.rolling_resistance" => "tyre.rolling_resistance",
             "tires.rolling_resistance_s2_m2" => "aero.CdA",
             "tires.rolling_radius_m" => "wheel.effective_rolling_radius",
+            "tires.wheel_inertia_kg_m2" => "wheel.wheel_and_tyre_spin_inertia",
             _ => return None,
         })
     }

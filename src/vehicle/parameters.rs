@@ -13,10 +13,10 @@ use crate::ranges::{
     OUTER_WIDTH, ROAD_FRICTION, ROLL_ARM, ROLL_AXIS_HEIGHT, ROLL_DAMPING, ROLL_INERTIA,
     ROLL_STIFFNESS, ROLL_YAW_PRODUCT, ROLLING_RADIUS, ROLLING_RESISTANCE,
     ROLLING_RESISTANCE_PER_SPEED, ROLLING_RESISTANCE_PER_SPEED_2, Range, SLIDING_FRICTION_RATIO,
-    SPRUNG_MASS, TRACK_WIDTH, VEHICLE_MASS, VEHICLE_YAW_INERTIA,
+    SPRUNG_MASS, TRACK_WIDTH, VEHICLE_MASS, VEHICLE_YAW_INERTIA, WHEEL_INERTIA,
 };
 use crate::vehicle::sheet::SheetQuantity;
-use crate::vehicle::tire::TireParameters;
+use crate::vehicle::tire::{TireParameters, WHEEL_MASS_SHARE};
 use crate::vehicle::{DataSheet, Equations, MultibodyRecord, VehicleMismatch};
 
 /// Parameters of one vehicle in SI units. [`VehicleParameters::load`] and
@@ -134,10 +134,21 @@ impl VehicleParameters {
         } else if table.contains_key("data_sheet") {
             (DataSheet::from_toml(file)?.vehicle(), DataSheet::origin)
         } else {
-            (file.to()?, |_| None)
+            let vehicle: Self = file.to()?;
+            let is_known = table["tires"].get("wheel_inertia_kg_m2").is_some();
+            (if is_known { vehicle } else { vehicle.with_estimated_wheels() }, |_| None)
         };
         vehicle.check(file, origin)?;
         Ok(vehicle)
+    }
+
+    /// The same vehicle with the inertia of its wheels estimated, as of 13 multibody cars.
+    fn with_estimated_wheels(mut self) -> Self {
+        let radius_m = self.tires.rolling_radius_m;
+        self.tires.wheel_inertia_kg_m2 = WHEEL_MASS_SHARE * self.mass.mass_kg * radius_m * radius_m;
+        let rule = "0.0115 × mass × radius² (13 multibody cars)".to_owned();
+        self.estimates.insert("tires.wheel_inertia_kg_m2".to_owned(), rule);
+        self
     }
 
     /// The same vehicle on a road with another peak friction coefficient. The value is not checked.
@@ -278,6 +289,7 @@ impl VehicleParameters {
                 ROLLING_RESISTANCE_PER_SPEED_2,
             ),
             ("tires.rolling_radius_m", tires.rolling_radius_m, ROLLING_RADIUS),
+            ("tires.wheel_inertia_kg_m2", tires.wheel_inertia_kg_m2, WHEEL_INERTIA),
         ]
     }
 }

@@ -5,7 +5,8 @@
 //! Source: simplified magic formula of [`PitPinnPaper`](crate::bibliography::PitPinnPaper),
 //! `eq:tire_model`, `eq:tire_model3`.
 //! Assumes a steady state (no relaxation length), no camber, no aligning moment, and friction that
-//! does not depend on the load.
+//! does not depend on the load. The inertia of the wheel's spin counts where the vehicle turns under
+//! it (see [`WheelSlip::force_n`]).
 //!
 //! Departures from the paper:
 //! - The leading minus of `eq:tire_model` is omitted: with α = δ − atan(…) it would supply energy
@@ -47,6 +48,20 @@ pub(super) const LOCKED_SLIDING_SPEED_M_S: f64 = 0.05;
 /// share of the latter. In between the wheel slips more and more.
 const LOCKING_SHARE: f64 = 0.15;
 
+/// Regularisation ε of the slip S of a wheel whose spin lags, m/s.
+const SPIN_LAG_SLIP_M_S: f64 = 0.2;
+
+/// Share of the friction that is taken for the force of a wheel whose spin lags where it has less.
+const LEAST_LAGGING_SHARE: f64 = 0.2;
+
+/// Passes through slip, time constant and rolling speed of a wheel whose spin lags. More of them
+/// change the path of a spun car by millimetres.
+const SPIN_LAG_PASSES: usize = 2;
+
+/// Equivalent mass of a spinning wheel as a share of the mass of the vehicle, where nobody states the
+/// inertia: median of 13 multibody cars, which lie between 0.0095 and 0.0137.
+pub(super) const WHEEL_MASS_SHARE: f64 = 0.0115;
+
 /// Parameters of the tyres of one vehicle and of the road under them. Both axles have the same
 /// friction and rolling resistance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -71,6 +86,10 @@ pub struct TireParameters {
     /// Rolling radius of the tyres, m, by which a torque becomes a force at the road.
     #[serde(default = "usual_rolling_radius_m")]
     pub rolling_radius_m: f64,
+    /// Moment of inertia I_w of one wheel with its tyre about its axis of rotation, kg m². With a
+    /// value of 0 a wheel follows every change of speed at once.
+    #[serde(default)]
+    pub wheel_inertia_kg_m2: f64,
 }
 
 /// Rolling radius of a usual car tyre, such as 205/55 R16, m.
@@ -92,6 +111,8 @@ pub struct WheelSlip<T> {
     rolling_share: T,
     /// Velocity `[u, w]` of the centre of the wheel in the axes of the wheel, m/s.
     velocity_m_s: [T; 2],
+    /// `m_w r`: equivalent mass of the spinning wheel times the yaw rate of the vehicle, kg/s.
+    turning_mass_kg_s: T,
     /// Sliding friction coefficient of a locked wheel.
     locked_friction: f64,
 }
@@ -132,17 +153,27 @@ impl TireParameters {
     /// - `cornering_coefficients_per_rad`: cornering coefficient c of each wheel, 1/rad.
     /// - `velocities_m_s`: velocity `[u, w]` of the centre of each wheel in the axes of the wheel,
     ///   m/s, with u in the plane of the wheel and w to the left.
+    /// - `yaw_rate_rad_s`: yaw rate r of the vehicle, rad/s.
     pub fn slips<T: Lanes>(
         &self,
         cornering_coefficients_per_rad: [f64; 4],
         velocities_m_s: [[T; 2]; 4],
+        yaw_rate_rad_s: T,
     ) -> [WheelSlip<T>; 4] {
+        let turning_mass_kg_s = yaw_rate_rad_s * self.wheel_mass_kg();
         // This equals −atan2(w, |u| + ε), since |u| + ε is positive; atan is faster than atan2.
         let slopes = velocities_m_s.map(|[u, w]| -w / (u.abs() + SLIP_ANGLE_SPEED_M_S));
         let slip_angles_rad = T::atan_each(slopes);
         std::array::from_fn(|i| {
-            self.slip(cornering_coefficients_per_rad[i], velocities_m_s[i], slip_angles_rad[i])
+            let slip =
+                self.slip(cornering_coefficients_per_rad[i], velocities_m_s[i], slip_angles_rad[i]);
+            WheelSlip { turning_mass_kg_s, ..slip }
         })
+    }
+
+    /// Equivalent mass `m_w = I_w/R²` of a spinning wheel, kg.
+    pub fn wheel_mass_kg(&self) -> f64 {
+        self.wheel_inertia_kg_m2 / (self.rolling_radius_m * self.rolling_radius_m)
     }
 
     /// Slip quantities of one wheel, from the velocity `[u, w]` of its centre, m/s, and the slip
@@ -172,6 +203,7 @@ impl TireParameters {
             lateral_share: stiffness / (stiffness * stiffness + 1.0).sqrt(),
             rolling_share: -resistance * smooth_sign(u / ROLLING_RESISTANCE_SPEED_M_S),
             velocity_m_s,
+            turning_mass_kg_s: T::from(0.0),
             locked_friction: self.friction * self.sliding_friction_ratio,
         }
     }
@@ -185,18 +217,19 @@ fn smooth_sign<T: Lanes>(x: T) -> T {
 }
 
 impl<T: Lanes> WheelSlip<T> {
-    /// Force `[F_x, F_y]` of the road on a wheel that rolls freely, in the axes of the wheel, over
-    /// its vertical load: `F_x/F_z = −f(|u|) tanh(u/u₀)`, F_y as in [`WheelSlip::force_n`].
-    pub fn free_share(&self) -> [T; 2] {
-        self.turning_n(T::from(1.0), self.rolling_share)
+    /// Force `[F_x, F_y]` of the road on a wheel that rolls freely, in the axes of the wheel, N: that
+    /// of [`WheelSlip::force_n`] without an effort.
+    pub fn free_n(&self, vertical_load_n: T) -> [T; 2] {
+        self.turning_n(vertical_load_n, self.rolling_share * vertical_load_n)
     }
 
     /// Force `[F_x, F_y]` of the road on the tyre in the axes of the wheel, N, which lies inside the
     /// friction circle.
     ///
     /// ```text
-    /// turning   F_x = clamp(F_drive − f(|u|) F_z tanh(u/u₀) − F_brake tanh(u/u₀), ±μ(α) F_z)
-    ///           F_y = sin(atan(C α)) √((μ(α) F_z)² − F_x²)
+    /// turning   F_w = clamp(F_drive − f(|u|) F_z tanh(u/u₀) − F_brake tanh(u/u₀), ±μ(α) F_z)
+    ///           F_y = sin(atan(C α)) √((μ(α) F_z)² − F_w²) |w|/S
+    ///           F_x = F_w − |F_y| (u − u_w)/|w|              both scaled to the circle
     /// locked    F   = −μ_s F_z [u, w]/√(u² + w² + ε²)        μ_s: sliding friction
     /// F = (1 − λ) F_turning + λ F_locked
     /// ```
@@ -205,6 +238,19 @@ impl<T: Lanes> WheelSlip<T> {
     /// part of the friction along the wheel: a wheel that slides sideways is locked by little
     /// braking, one that rolls straight only by more than μ F_z. The share λ of the locked state
     /// grows from 0 to 1 while the braking force grows from F_max to 1.15 F_max.
+    ///
+    /// A wheel under a large slip angle has little grip along its plane. The vehicle turns under it
+    /// at the yaw rate r, and the speed u along its plane changes by r w; the wheel is spun up or
+    /// down with a delay τ, so that its circumference moves at u_w and not at u. In a steady rotation
+    ///
+    /// ```text
+    /// u_w = (u − τ r w)/(1 + (r τ)²)    τ = m_w S/|F|    S² = (u − u_w)² + w²    m_w = I_w/R²
+    /// ```
+    ///
+    /// with |F| the force of the tyre without the delay. At small slip angles F_x is the inertia
+    /// force −m_w r w; of a spinning car it is a drag that a third of its deceleration may come from.
+    /// Source of the wheel with slip: H. B. Pacejka, Tire and Vehicle Dynamics, 3rd ed., 2012,
+    /// sections 1.2 and 8.2; the solution for a steady rotation is ours.
     ///
     /// - `vertical_load_n`: vertical load F_z, N, 0 or more.
     pub fn force_n(&self, vertical_load_n: T, effort: &WheelEffort<T>) -> [T; 2] {
@@ -224,12 +270,41 @@ impl<T: Lanes> WheelSlip<T> {
     ///
     /// - `wanted_n`: the force along the wheel that drive, brake and rolling resistance ask for.
     fn turning_n(&self, vertical_load_n: T, wanted_n: T) -> [T; 2] {
+        let zero = T::from(0.0);
         let limit = self.friction * vertical_load_n;
         // If the longitudinal force reaches the limit, there is no lateral force. The root is not
         // used there, because its derivative at zero is infinite.
-        let along = wanted_n.abs().if_less(limit, wanted_n, limit * wanted_n.sign());
-        let across = self.lateral_share * (limit * limit - wanted_n * wanted_n).sqrt();
-        [along, wanted_n.abs().if_less(limit, across, T::from(0.0))]
+        let wanted = wanted_n.abs().if_less(limit, wanted_n, limit * wanted_n.sign());
+        let room = (limit * limit - wanted_n * wanted_n).sqrt();
+        let side = self.lateral_share * wanted_n.abs().if_less(limit, room, zero);
+        // Smooth where the wheel changes from left to right, and nowhere more than the side force.
+        let floor = limit * LEAST_LAGGING_SHARE + 1e-6;
+        let size = (side * side + floor * floor).sqrt();
+        let [lag, across] = self.spin_lag(size);
+        let (fx, fy) = (wanted - side * side / size * lag, side * across);
+        let beyond = (fx * fx + fy * fy) / (limit * limit + 1e-12);
+        let one = T::from(1.0);
+        let scale = one.if_less(beyond, beyond.sqrt().recip(), one);
+        [fx * scale, fy * scale]
+    }
+
+    /// `[(u − u_w)/S, √(w² + ε²)/S]`: the direction of the slip of a wheel whose spin lags.
+    ///
+    /// - `force_n`: force of the tyre without the lag, N, above 0.
+    fn spin_lag(&self, force_n: T) -> [T; 2] {
+        let [u, w] = self.velocity_m_s;
+        let turned_per_slip = self.turning_mass_kg_s / force_n;
+        let rest = w * w + SPIN_LAG_SLIP_M_S * SPIN_LAG_SLIP_M_S;
+        let across = rest.sqrt();
+        let (mut slip, mut lag) = (across, T::from(0.0));
+        for _ in 0..SPIN_LAG_PASSES {
+            let turned = turned_per_slip * slip;
+            let rolling = (u - turned * w) / (turned * turned + 1.0);
+            lag = u - rolling;
+            slip = (lag * lag + rest).sqrt();
+        }
+        let per_slip = slip.recip();
+        [lag * per_slip, across * per_slip]
     }
 
     /// How far the wheel is locked, 0 to 1.
@@ -260,6 +335,7 @@ mod tests {
         rolling_resistance_s_m: 1e-4,
         rolling_resistance_s2_m2: 2e-5,
         rolling_radius_m: 0.31,
+        wheel_inertia_kg_m2: 1.2,
     };
 
     fn driven(drive_n: f64) -> WheelEffort<f64> {
@@ -271,8 +347,30 @@ mod tests {
     }
 
     fn slip(tire: &TireParameters, coefficient: f64, velocity_m_s: [f64; 2]) -> WheelSlip<f64> {
-        let [slip, ..] = tire.slips([coefficient; 4], [velocity_m_s; 4]);
+        turning(tire, coefficient, velocity_m_s, 0.0)
+    }
+
+    fn turning(
+        tire: &TireParameters,
+        coefficient: f64,
+        velocity_m_s: [f64; 2],
+        yaw_rate_rad_s: f64,
+    ) -> WheelSlip<f64> {
+        let [slip, ..] = tire.slips([coefficient; 4], [velocity_m_s; 4], yaw_rate_rad_s);
         slip
+    }
+
+    #[test]
+    fn a_wheel_lags_behind_a_fast_rotation_and_drags() {
+        // Rolling backwards after half a turn, the wheel still brakes, and has less side force.
+        let [fx, fy] = turning(&TIRE, 20.0, [-15.0, -8.0], 4.0).free_n(5e3);
+        let [_, steady] = slip(&TIRE, 20.0, [-15.0, -8.0]).free_n(5e3);
+        assert!(fx > 300.0 && fx < 700.0 && fy > 0.0 && fy < steady, "{fx} {fy} {steady}");
+        // In a gentle curve the drag is the inertia force of the wheel, −m_w r w.
+        let [fx, _] = turning(&TIRE, 20.0, [20.0, 0.5], 0.2).free_n(5e3);
+        let [rolling, _] = slip(&TIRE, 20.0, [20.0, 0.5]).free_n(5e3);
+        let expected = -TIRE.wheel_mass_kg() * 0.2 * 0.5;
+        assert!(((fx - rolling) / expected - 1.0).abs() < 0.1, "{} {expected}", fx - rolling);
     }
 
     #[test]
@@ -325,10 +423,10 @@ mod tests {
         #[test]
         fn a_tyre_never_puts_energy_in(
             u in -60.0..60.0, w in -60.0..60.0, load in 0.0..2e4, braking_n in 0.0..2e4,
-            locked in 0.0..1.0,
+            locked in 0.0..1.0, yaw_rate in -10.0..10.0,
         ) {
             let effort = WheelEffort { drive_n: 0.0, braking_n, locked };
-            let [fx, fy] = slip(&TIRE, 13.0, [u, w]).force_n(load, &effort);
+            let [fx, fy] = turning(&TIRE, 13.0, [u, w], yaw_rate).force_n(load, &effort);
             prop_assert!(fx * u + fy * w <= 0.0);
         }
 
@@ -345,10 +443,10 @@ mod tests {
         #[test]
         fn the_force_stays_in_the_friction_circle(
             u in -60.0..60.0, w in -60.0..60.0, load in 0.0..2e4, drive_n in -2e4..2e4,
-            braking_n in 0.0..2e4, locked in 0.0..1.0,
+            braking_n in 0.0..2e4, locked in 0.0..1.0, yaw_rate in -10.0..10.0,
         ) {
             let effort = WheelEffort { drive_n, braking_n, locked };
-            let [fx, fy] = slip(&TIRE, 13.0, [u, w]).force_n(load, &effort);
+            let [fx, fy] = turning(&TIRE, 13.0, [u, w], yaw_rate).force_n(load, &effort);
             prop_assert!(f64::hypot(fx, fy) <= 0.8 * load * (1.0 + 1e-12));
         }
 

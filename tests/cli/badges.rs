@@ -82,3 +82,41 @@ fn a_collision_outside_the_training_is_named_with_quantity_value_and_range() {
     let told = ok(program().args(["predict", "force", "--scenario"]).arg(&heavy).output().unwrap());
     assert!(told.contains("warning: outside the domain: bullet mass [kg] is 3900"), "{told}");
 }
+
+/// Each of these was answered with a band as tight as in the training, and without a word.
+#[test]
+fn what_the_force_network_has_never_seen_has_the_band_of_the_physics() {
+    let folder = TempDir::new().unwrap();
+    let changed =
+        |name: &str, old: &str, new: &str| text(&scenario_with(&folder, name, old, new)).to_owned();
+    let scenarios = [
+        changed("fast.toml", "speed_km_h = 62", "speed_km_h = 288"),
+        changed("standing.toml", "speed_km_h = 54", "speed_km_h = 0"),
+        changed("slow.toml", "speed_km_h = 54", "speed_km_h = 18"),
+        changed("light.toml", "[target]\nmass_kg = 2000", "[target]\nmass_kg = 1050"),
+        "carpenter-welcher-barrier".to_owned(),
+    ];
+    for scenario in &scenarios {
+        let report = answer(&["predict", "force", "--scenario", scenario]);
+        assert_eq!(report["applicability"], 0.0, "{scenario}");
+        let outside = badges(&report, "outside_domain");
+        assert!(outside.len() > 1, "{scenario}: {report}");
+        for badge in outside {
+            assert!(badge["quantity"].is_string() && badge["value"].is_number(), "{badge}");
+            assert!(badge["range"].is_array(), "{badge}");
+        }
+        let interval = |level: f64| -> [f64; 2] {
+            let all = report["impulse_n_s"]["magnitude"]["intervals"].as_array().unwrap();
+            let of = all.iter().find(|of| of["level"] == level).unwrap();
+            ["low", "high"].map(|end| of[end].as_f64().unwrap())
+        };
+        let [low, high] = interval(0.9);
+        assert!(high / low > 1.7, "{scenario}: {low} to {high}");
+        // The solver with the values of the scenario does not contradict the prediction.
+        let momentum = report["implied_contact"]["momentum"]["impulse_n_s"].as_array().unwrap();
+        let [x, y] = [0, 1].map(|i| momentum[i].as_f64().unwrap());
+        let [low, high] = interval(0.95);
+        let size = x.hypot(y);
+        assert!((low..=high).contains(&size), "{scenario}: {size} in {low} to {high}");
+    }
+}

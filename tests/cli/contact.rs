@@ -108,8 +108,9 @@ fn a_second_contact_is_flagged() {
     let report = answer(&predict);
     let drawn = &report["flags"][0];
     assert_eq!(drawn["kind"], "second_contact", "{report}");
-    assert_eq!(drawn["probability"], 1.0, "{drawn}");
-    assert!(drawn["message"].as_str().unwrap().contains("in 100.0 % of 5 draws"), "{drawn}");
+    let probability = drawn["probability"].as_f64().unwrap();
+    assert!(probability > 0.5, "{drawn}");
+    assert!(drawn["message"].as_str().unwrap().contains(" % of 5 draws"), "{drawn}");
     let drawn = |key: &str| drawn[key].as_f64().unwrap();
     assert!(drawn("time_s") > 0.1 && drawn("closing_speed_m_s") > 0.5, "{report}");
     let rear = std::fs::read_to_string(SCENARIO).unwrap().replace("heading_deg = 18", "");
@@ -152,9 +153,10 @@ fn a_predicted_impulse_is_told_as_restitution_and_impulse_ratio() {
 }
 
 /// A force depends on the relative velocity alone: a standing target takes the same as a moving one.
-/// Struck by a fast bullet, which no training case has, the predicted impulse was told like any other.
+/// Struck by a fast bullet, which no training case has, the network's impulse would add energy: the
+/// physics answers.
 #[test]
-fn standing_and_slow_targets_have_a_force_or_a_warning() {
+fn standing_and_slow_targets_have_the_force_of_a_contact() {
     let folder = TempDir::new().unwrap();
     let struck = |target_m_s: f64, bullet_vx_m_s: f64| {
         let scenario = std::fs::read_to_string(SCENARIO).unwrap();
@@ -176,7 +178,7 @@ fn standing_and_slow_targets_have_a_force_or_a_warning() {
         }
         assert!(slow["implied_contact"]["warning"].is_null(), "{slow}");
         let fast = struck(target_m_s, 17.0);
-        let warning = fast["implied_contact"]["warning"].as_str().unwrap();
-        assert!(warning.contains("is not that of a contact"), "{warning}");
+        assert_eq!(fast["applicability"], 0.0, "{fast}");
+        assert!(fast["implied_contact"]["warning"].is_null(), "{fast}");
     }
 }

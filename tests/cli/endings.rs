@@ -182,13 +182,33 @@ fn an_ending_in_a_question_is_checked() {
 }
 
 #[test]
-fn a_forecast_of_a_braked_car_is_refused_and_not_answered_as_if_it_coasted() {
+fn a_forecast_of_a_braked_car_is_not_that_of_one_that_coasts() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("braked.toml");
     let pit = fs::read_to_string("assets/scenarios/pit_right_rear.toml").unwrap();
     fs::write(&path, pit + "\n[ending]\nrear_right = \"locked\"\n").unwrap();
     let out = folder.path().join("out");
-    let message = refusal(&["predict", "--scenario", text(&path), "--out", text(&out)]);
+    let end_m = |path: &str, out: &str| {
+        let args = [
+            "predict",
+            "--scenario",
+            path,
+            "--draws",
+            "3",
+            "--out",
+            text(&folder.path().join(out)),
+        ]
+        .map(str::to_owned);
+        let args: Vec<&str> = args.iter().map(String::as_str).collect();
+        answer(&args)["outcome"]["x_m"]["median"].as_f64().unwrap()
+    };
+    let [braked_m, coasting_m] =
+        [end_m(text(&path), "braked"), end_m("pit-right-rear", "coasting")];
+    assert!((braked_m - coasting_m).abs() > 1.0, "{braked_m} {coasting_m}");
+    // A network that has not learned from braked vehicles refuses.
+    let model = ["--response-model", "shipped-pretrained"];
+    let args = [&["predict", "--scenario", text(&path), "--out", text(&out)][..], &model].concat();
+    let message = refusal(&args);
     assert!(message.contains("has learned from vehicles that coast"), "{message}");
     assert!(!out.join("trajectory.csv").exists());
     // Nor is a steered one: its bands were as narrow as if the network knew it.

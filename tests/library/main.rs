@@ -3,6 +3,7 @@
 //!
 //! All tests are in one program, because each test program would link all libraries again.
 
+mod any_car;
 mod data_bad_input;
 mod data_budgets;
 mod data_dialects;
@@ -12,6 +13,7 @@ mod data_writes;
 mod dependencies;
 mod endings;
 mod force_baselines;
+mod force_domain;
 mod force_model;
 mod layering;
 mod model_budgets;

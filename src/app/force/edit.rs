@@ -41,9 +41,10 @@ pub fn set_contact_x(scenario: &mut ForceScenario, x_m: f64) {
     }
 }
 
-/// Marks the contact point and the position of the bullet as unknown.
+/// Marks the contact point, its normal and the position of the bullet as unknown.
 pub fn forget_contact(scenario: &mut ForceScenario) {
     (scenario.contact_m, scenario.bullet_position_m) = (None, None);
+    scenario.normal_rad = None;
 }
 
 /// Proposes a contact point on the struck side, 1.5 m behind the CG and at half the width of the

@@ -122,6 +122,7 @@ impl Default for ForceProject {
             theta_b_rad: 0.3,
             side: StruckSide::Right,
             contact_m: None,
+            normal_rad: None,
             bullet_position_m: None,
             bullet_body: None,
             yaw_inertia_kg_m2: [None; 2],

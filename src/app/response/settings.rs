@@ -58,6 +58,8 @@ pub enum TrainingMode {
     FineTuneShipped,
     /// Fine-tune the current model on trajectories.
     FineTuneCurrent,
+    /// Tell the current model, which knows how cars differ, trajectories of one: seconds.
+    Condition,
     /// Train a network with random initial weights on trajectories alone.
     FromScratch,
     /// Pre-train a network with random initial weights on simulations.
@@ -66,14 +68,20 @@ pub enum TrainingMode {
 
 impl TrainingMode {
     /// All modes.
-    pub const ALL: [Self; 4] =
-        [Self::FineTuneShipped, Self::FineTuneCurrent, Self::FromScratch, Self::Pretrain];
+    pub const ALL: [Self; 5] = [
+        Self::FineTuneShipped,
+        Self::FineTuneCurrent,
+        Self::Condition,
+        Self::FromScratch,
+        Self::Pretrain,
+    ];
 
     /// Returns the name of the mode, shown to the user.
     pub fn label(self) -> &'static str {
         match self {
             Self::FineTuneShipped => "fine-tune the shipped pre-trained network",
             Self::FineTuneCurrent => "fine-tune the current model",
+            Self::Condition => "tell the current model of a car (seconds)",
             Self::FromScratch => "train a new network on trajectories alone",
             Self::Pretrain => "pre-train a new network on simulations",
         }
@@ -82,7 +90,7 @@ impl TrainingMode {
     /// Returns the kinds of data sets from which a training in this mode can learn.
     pub fn data_kinds(self) -> &'static [DatasetKind] {
         match self {
-            Self::FineTuneShipped | Self::FineTuneCurrent | Self::FromScratch => {
+            Self::FineTuneShipped | Self::FineTuneCurrent | Self::Condition | Self::FromScratch => {
                 &[DatasetKind::Trajectory]
             }
             Self::Pretrain => &[DatasetKind::Trajectory, DatasetKind::Force],

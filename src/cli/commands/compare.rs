@@ -20,6 +20,13 @@ pub(in crate::cli) struct CompareArgs {
     /// A trajectory data set; a quarter of its cases is kept apart for the test
     #[arg(long, value_name = "DIR")]
     data: PathBuf,
+    /// Ask about cars that the network has not seen: --data is a folder of data sets, one for each car,
+    /// and the numbers of trajectories are those of the car that the network is told
+    #[arg(long, requires = "model")]
+    leave_one_car_out: bool,
+    /// With --leave-one-car-out: a data set that is learned from beside; several if given again
+    #[arg(long, value_name = "DIR", requires = "leave_one_car_out")]
+    beside: Vec<PathBuf>,
     /// Numbers of trajectories to fine-tune on; 5,20 if not given
     #[arg(long, value_delimiter = ',', value_name = "N,N", value_parser = count::<usize>(TRAJECTORIES))]
     trajectories: Vec<usize>,
@@ -51,6 +58,8 @@ const EXAMPLES: &str = "\
 Examples:
   impactlab compare --data datasets/trajectories-fea --out comparison
   impactlab compare --data datasets/trajectories-pulse --trajectories 20 --choices 1 --json
+  impactlab compare --leave-one-car-out --data datasets/trajectories-fleet \\
+      --model shipped-pretrained --trajectories 1,5 --choices 1
 
 Every model is fitted to the same trajectories and asked about the same others. The column of the
 paper holds what it printed, measured on other data.
@@ -67,6 +76,8 @@ pub(in crate::cli) fn run(
 ) -> Result<Verdict, CliError> {
     let unsaid = CompareRequest::new(&args.data);
     let request = CompareRequest {
+        leave_one_car_out: args.leave_one_car_out,
+        beside: args.beside.clone(),
         trajectories: match args.trajectories.as_slice() {
             [] => unsaid.trajectories.clone(),
             numbers => numbers.to_vec(),

@@ -12,7 +12,7 @@ use crate::data::ColumnMap;
 use crate::learning::{ModelFile, TEST_SHARE};
 use crate::ranges::{INSTANT, LOG_DURATION, TEST_SHARE as SHARE_OF_TEST, TRAJECTORIES};
 use crate::shipped::ModelSource;
-use crate::study::{DEFAULT_LOG_DURATION_S, FineTuneRequest, ModelChoice, MotionLogs};
+use crate::study::{DEFAULT_LOG_DURATION_S, FineTuneRequest, Learning, ModelChoice, MotionLogs};
 use crate::vehicle::ContactPoint;
 
 /// Fine-tune a network on data of your own
@@ -35,12 +35,15 @@ struct FineTuneResponseArgs {
     /// trained, from random weights
     #[arg(long, value_name = "MODEL")]
     model: Option<ModelSource>,
-    /// A trajectory data set, of which a quarter of the cases is kept apart for the test; several if
-    /// given again
+    /// A trajectory data set, or a folder of such sets, of which a quarter of the cases is kept apart
+    /// for the test; several if given again
     #[arg(long, value_name = "DIR", required_unless_present = "log")]
     data: Vec<PathBuf>,
     #[command(flatten)]
     logs: LogArgs,
+    /// Learn how cars differ too, from data sets of several cars, for cars of which there are no data
+    #[arg(long, requires = "model", conflicts_with = "log")]
+    fleet: bool,
     /// How many trajectories of each data set to learn from; all that are not kept for the test if not
     /// given
     #[arg(long, value_name = "N", value_parser = count::<usize>(TRAJECTORIES))]
@@ -64,6 +67,8 @@ Examples:
       --data datasets/trajectories-fea --trajectories 20 --out response.safetensors
   impactlab fine-tune response --data datasets/trajectories-fea --data datasets/trajectories-pulse \\
       --out r.safetensors
+  impactlab fine-tune response --model shipped-pretrained --fleet \\
+      --data datasets/trajectories-fleet --data datasets/trajectories-fea --out any-car.safetensors
   impactlab fine-tune response --model shipped-pretrained \\
       --log impact.csv --vehicle scaled-target-100 --out scaled.safetensors
 
@@ -81,7 +86,7 @@ JSON: model, data, data_digest, seed, n_simulated, train, n_test, n_parameters, 
 
 /// Where logs come from.
 #[derive(Debug, Args)]
-struct LogArgs {
+pub(in crate::cli) struct LogArgs {
     /// A log of one impact instead of a data set: CSV with time, x, y, yaw, and perhaps yaw_rate, vx
     /// and vy, roll, steer; or a folder of such files. May be given several times
     #[arg(long, value_name = "LOG.csv|DIR", requires = "vehicle", conflicts_with_all = ["data", "trajectories", "test_share"])]
@@ -120,6 +125,7 @@ fn fine_tune_response(
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
     let request = FineTuneRequest {
+        learning: if args.fleet { Learning::Fleet } else { Learning::Network },
         model: args.model.clone().map(ModelChoice::from),
         data: args.data.clone(),
         logs: args.logs.logs(),
@@ -142,7 +148,7 @@ fn fine_tune_response(
 
 impl LogArgs {
     /// The logs, if there are any.
-    fn logs(&self) -> Option<MotionLogs> {
+    pub(in crate::cli) fn logs(&self) -> Option<MotionLogs> {
         (!self.log.is_empty()).then(|| MotionLogs {
             logs: self.log.clone(),
             forces: self.force.clone(),

@@ -4,6 +4,7 @@ pub(super) mod app;
 pub(super) mod ask;
 pub(super) mod check;
 pub(super) mod compare;
+pub(super) mod condition;
 pub(super) mod evaluate;
 mod evaluate_force;
 mod evaluate_response;

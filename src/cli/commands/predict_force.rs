@@ -63,7 +63,7 @@ JSON: impulse_n_s {mean [x, y], x, y, magnitude}, peak_n, peak_time_s, duration_
   implied_contact {restitution, impulse_ratio, p_rigid, p_energy_gain, warning,
   momentum {restitution, restitution_form,
   friction_limit, critical_impulse_ratio, regime, impulse_n_s}},
-  hooking_probability, modes, outside_training [feature, value, range, deviations], is_contact_open,
+  hooking_probability, modes, applicability (0 to 1), outside_training [feature, value, range, deviations], is_contact_open,
   is_body_open, assumptions, badges [{kind, text, quantity, value, range}]";
 
 /// The report, and where its files are.

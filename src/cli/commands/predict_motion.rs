@@ -102,7 +102,7 @@ scene.png and one picture per quantity, each with its numbers as CSV beside it (
 JSON: scenario, vehicle, force_model, response_model, n_forces, n_vehicles, outcome {time_s, is_at_rest, x_m, y_m,
   heading_change_rad (median, half, ninety), speed_m_s, yaw_rate_rad_s, region_90_m2, p_quarter_turn, p_half_turn},
   sensitivity [{quantity, label, position_share, heading_share, chance_share}] of a vehicle with a data sheet,
-  implied_contact, hooking_probability, flags, outside_training,
+  implied_contact, hooking_probability, flags, force_applicability, outside_training,
   assumptions [{quantity, value, reason}], badges [{kind, text, quantity, value, range}], files";
 
 /// The report, and which files were written.

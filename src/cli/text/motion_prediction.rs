@@ -47,6 +47,9 @@ pub(in crate::cli) fn print_motion_prediction(
         facts.push(("P(hooking)", percent(probability)));
     }
     facts.extend(report.implied_contact.iter().flat_map(|of| implied_facts(of, units)));
+    if report.applicability < 1.0 {
+        facts.push(("applicability", format!("{:.2} of 1", report.applicability)));
+    }
     if report.n_vehicles > 0 {
         facts.push(("vehicles", format!("{} drawn from the data sheet", report.n_vehicles)));
     }

@@ -9,7 +9,7 @@ use crate::data::Outcome;
 use crate::force::evaluate::baselines::{NearestBaseline, PulseBaseline};
 use crate::force::evaluate::scored::Scored;
 use crate::force::evaluate::{
-    BaselineMetrics, CaseErrors, ClusterMetrics, Evaluation, EvaluationError,
+    BaselineMetrics, CaseErrors, ClusterMetrics, DomainMetrics, Evaluation, EvaluationError,
 };
 use crate::force::metrics::ProbabilisticSettings;
 use crate::force::regression::{ColumnSet, CurveFitError, CurveRegression};
@@ -97,6 +97,12 @@ pub fn evaluate(
         return Ok(Outcome::Cancelled);
     }
     let scored = Scored::of(test, predictions, settings.probabilistic)?;
+    let of_domain = |inside: bool| {
+        let known = predictions.iter().enumerate();
+        let known = known.filter(|(_, of)| (of.applicability == 1.0) == inside);
+        scored.over(known.map(|(idx, _)| idx))
+    };
+    let domain = DomainMetrics { inside: of_domain(true), outside: of_domain(false) };
     let clusters = cluster(train, settings.seed)?;
     let all = [&scored, &pulse, &nearest, &statistical];
     let metrics = |of: &Scored| of.metrics(test).ok_or(EvaluationError::NoCases);
@@ -105,6 +111,7 @@ pub fn evaluate(
         columns: settings.columns,
         n_train: train.len(),
         metrics: metrics(&scored)?,
+        domain,
         baselines: BaselineMetrics {
             pulse: metrics(&pulse)?,
             nearest: metrics(&nearest)?,

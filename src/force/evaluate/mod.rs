@@ -17,4 +17,6 @@ pub use evaluation::{EvaluationSettings, FittedBaselines, evaluate};
 pub use model_evaluation::{
     ComparedMetrics, CrossValidation, EvaluateError, cross_validate, evaluate_model,
 };
-pub use report::{BaselineMetrics, CaseErrors, ClusterMetrics, Evaluation, ForceMetrics};
+pub use report::{
+    BaselineMetrics, CaseErrors, ClusterMetrics, DomainMetrics, Evaluation, ForceMetrics,
+};

@@ -104,7 +104,9 @@ fn predictions(
 ) -> Result<Vec<CurvePrediction>, ForceError> {
     let predict = |case: &ForceCase| {
         let said = model.predict(&known(&case.scenario, settings.columns))?;
-        Ok(CurvePrediction::of_mixture(said.mixture, &said.likely))
+        let applicability = said.applicability;
+        let prediction = CurvePrediction::of_mixture(said.mixture, &said.likely);
+        Ok(CurvePrediction { applicability, ..prediction })
     };
     test.iter().map(predict).collect()
 }

@@ -14,6 +14,15 @@ pub struct ForceMetrics {
     pub separated: Option<CurveMetrics>,
 }
 
+/// Metrics of a model inside and outside of what it has learned from; each `None` without cases.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DomainMetrics {
+    /// Over the cases to which it applies fully.
+    pub inside: Option<CurveMetrics>,
+    /// Over the others.
+    pub outside: Option<CurveMetrics>,
+}
+
 /// Metrics of the baselines.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BaselineMetrics {
@@ -69,6 +78,8 @@ pub struct Evaluation {
     /// Metrics of the model.
     #[serde(flatten)]
     pub metrics: ForceMetrics,
+    /// Metrics of the model by where the cases lie.
+    pub domain: DomainMetrics,
     /// Metrics of the baselines.
     pub baselines: BaselineMetrics,
     /// Metrics by cluster of the training cases. Clusters without a test case are left out.

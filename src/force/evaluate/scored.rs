@@ -49,8 +49,12 @@ impl Scored {
         test: &[&ForceCase],
         choose: impl Fn(&ForceCase) -> bool,
     ) -> Option<CurveMetrics> {
-        let taken: Vec<usize> =
-            test.iter().enumerate().filter(|(_, case)| choose(case)).map(|(idx, _)| idx).collect();
+        self.over(test.iter().enumerate().filter(|(_, case)| choose(case)).map(|(idx, _)| idx))
+    }
+
+    /// Metrics over the cases with these indices; `None` without any.
+    pub(super) fn over(&self, indices: impl Iterator<Item = usize>) -> Option<CurveMetrics> {
+        let taken: Vec<usize> = indices.collect();
         let errors: Vec<_> = taken.iter().filter_map(|idx| self.errors.get(*idx)).collect();
         let scores: Vec<_> = taken.iter().filter_map(|idx| self.scores.get(*idx)).collect();
         CurveMetrics::of(&errors, &scores)

@@ -75,7 +75,13 @@ impl Evaluation {
     }
 
     fn coverage(&self) -> Option<MetricsTable> {
-        let rows = self.with_distribution().flat_map(|(name, of)| {
+        let by_domain = [("in the domain", &self.domain.inside), ("outside", &self.domain.outside)];
+        let by_domain = by_domain.into_iter().filter_map(|(name, of)| {
+            let of = of.as_ref().filter(|_| self.domain.outside.is_some())?;
+            Some((format!("{}, {} {name}", self.model, of.n_cases), of.probabilistic.as_ref()?))
+        });
+        let all = self.with_distribution().map(|(name, of)| (name.to_owned(), of));
+        let rows = all.chain(by_domain).flat_map(|(name, of)| {
             let quantities = [
                 ("F(t)", &of.force_n),
                 ("impulse", &of.impulse_n_s),
@@ -83,7 +89,7 @@ impl Evaluation {
                 ("duration", &of.duration_s),
             ];
             quantities.map(|(quantity, coverage)| {
-                let labels = [name.to_owned(), quantity.to_owned()];
+                let labels = [name.clone(), quantity.to_owned()];
                 labels.into_iter().chain(coverage.iter().map(share)).collect::<Vec<_>>()
             })
         });

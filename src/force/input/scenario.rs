@@ -28,6 +28,10 @@ pub struct ForceScenario {
     pub side: StruckSide,
     /// First contact `[x, y]` in the target's body axes from its CG, m, where it is known.
     pub contact_m: Option<[f64; 2]>,
+    /// Direction of the contact normal, which points into the target, from the target's heading, rad,
+    /// −π to π, where it is known. The cases of a data set are blows against the side: π/2 on the right.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub normal_rad: Option<f64>,
     /// The bullet's CG `[x, y]` from the target's CG, m, where it is known.
     pub bullet_position_m: Option<[f64; 2]>,
     /// Kind of bullet body, where it is known.
@@ -67,6 +71,7 @@ impl ForceScenario {
             theta_b_rad: theta,
             side: attributes.side.unwrap_or_else(side),
             contact_m: Some(attributes.contact_m),
+            normal_rad: None,
             bullet_position_m: None,
             bullet_body: None,
             yaw_inertia_kg_m2: attributes.yaw_inertia_kg_m2,
@@ -95,6 +100,7 @@ impl ForceScenario {
             theta_b_rad,
             side: struck_side(Some(contact_m[1]), theta_b_rad, approach),
             contact_m: Some(contact_m),
+            normal_rad: Some(wrap_angle_rad(geometry.normal_angle_rad - target.heading_rad)),
             bullet_position_m: Some(
                 geometry.target.body_from_world([geometry.bullet.x_m, geometry.bullet.y_m]),
             ),
@@ -124,6 +130,7 @@ impl ForceScenario {
             add(&format!("bullet_position_m, {axis}"), position, BULLET_OFFSET);
         }
         add("theta_b_rad", Some(self.theta_b_rad), HEADING);
+        add("normal_rad", self.normal_rad, HEADING);
         numbers
     }
 
@@ -167,6 +174,7 @@ impl ForceScenario {
                 StruckSide::Right => StruckSide::Left,
             },
             contact_m: self.contact_m.map(mirror),
+            normal_rad: self.normal_rad.map(|normal| wrap_angle_rad(-normal)),
             bullet_position_m: self.bullet_position_m.map(mirror),
             ..self.clone()
         }
@@ -216,6 +224,7 @@ pub(crate) mod tests {
             theta_b_rad: 0.5,
             side: StruckSide::Right,
             contact_m: Some([-1.5, -0.925]),
+            normal_rad: None,
             bullet_position_m: Some([-2.75, -2.5]),
             bullet_body: Some("A".to_owned()),
             yaw_inertia_kg_m2: [Some(3600.0), None],

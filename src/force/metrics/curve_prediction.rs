@@ -13,13 +13,15 @@ pub struct CurvePrediction {
     pub peak_n: f64,
     /// Distribution of curve and duration.
     pub mixture: Option<CurveMixture>,
+    /// How far the model applies to the case, 0 to 1; 1 for a model that does not say.
+    pub applicability: f64,
 }
 
 impl CurvePrediction {
     /// The prediction of a curve alone, with the impulse and the peak of this curve.
     pub fn of_curve(curve: ForceCurve) -> Self {
         let (impulse_n_s, peak_n) = (curve.impulse_n_s(), curve.peak().0);
-        Self { curve, impulse_n_s, peak_n, mixture: None }
+        Self { curve, impulse_n_s, peak_n, mixture: None, applicability: 1.0 }
     }
 
     /// The prediction of a distribution, with point estimates from a part of it.

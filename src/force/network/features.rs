@@ -5,10 +5,11 @@ use serde::{Deserialize, Serialize};
 use crate::force::physics::CentreCurve;
 use crate::force::{ForceCase, ForceScenario};
 use crate::nn::{Expected, NnError, check_length, check_number, check_numbers};
-use crate::uncertainty::CURVE_N_INSTANTS;
+use crate::uncertainty::{Badge, BadgeKind, CURVE_N_INSTANTS};
+use crate::units::significant;
 
 /// Names of the scenario's features as shown to the user, with units.
-const SCENARIO_NAMES: [&str; N_SCENARIO] = [
+pub(super) const SCENARIO_NAMES: [&str; N_SCENARIO] = [
     "target mass [kg]",
     "bullet mass [kg]",
     "v_bx − v_tx [m/s]",
@@ -16,7 +17,7 @@ const SCENARIO_NAMES: [&str; N_SCENARIO] = [
     "θ_b [rad]",
     "contact x [m]",
 ];
-const N_SCENARIO: usize = 6;
+pub(super) const N_SCENARIO: usize = 6;
 /// Number of features of the scenario's physics.
 const N_PHYSICS: usize = 6;
 /// Number of features of a scenario besides one for each kind of body.
@@ -57,6 +58,22 @@ pub struct OutsideTraining {
     pub deviations: f64,
 }
 
+impl OutsideTraining {
+    /// The badge that names the feature.
+    pub(crate) fn badge(&self) -> Badge {
+        let [low, high] = self.range.map(significant);
+        let text = format!(
+            "{} is {}, trained on {low} to {high}: {} standard deviations outside",
+            self.feature,
+            significant(self.value),
+            significant(self.deviations)
+        );
+        Badge::new(BadgeKind::OutsideDomain, text)
+            .with_value(self.feature, self.value)
+            .with_range(self.range)
+    }
+}
+
 /// The features of a canonical scenario: its numbers, then its physics, then the body.
 pub(crate) fn features(
     scenario: &ForceScenario,
@@ -79,7 +96,10 @@ pub(crate) fn features(
     numbers.into_iter().chain(physics).chain(body).collect()
 }
 
-fn scenario_numbers(scenario: &ForceScenario, [contact_x, _]: [f64; 2]) -> [f64; N_SCENARIO] {
+pub(super) fn scenario_numbers(
+    scenario: &ForceScenario,
+    [contact_x, _]: [f64; 2],
+) -> [f64; N_SCENARIO] {
     let [vx, vy] = scenario.relative_velocity_m_s();
     let [target_mass, bullet_mass] = scenario.mass_kg;
     [target_mass, bullet_mass, vx, vy, scenario.theta_b_rad, contact_x]
@@ -143,26 +163,6 @@ impl Standardisation {
         let scaled = row.iter().zip(&self.mean).zip(&self.std);
         scaled.map(|((x, mean), std)| ((x - mean) / std) as f32).collect()
     }
-
-    /// The features of a canonical scenario that lie outside the range of the training cases. Features
-    /// that the scenario leaves open are never listed.
-    pub(crate) fn outside(&self, scenario: &ForceScenario) -> Vec<OutsideTraining> {
-        let numbers = scenario_numbers(scenario, scenario.contact_m.unwrap_or([f64::NAN; 2]));
-        let check = |(i, value): (usize, f64)| {
-            let (range, std) = (*self.range.get(i)?, *self.std.get(i)?);
-            let [low, high] = range;
-            let beyond = (low - value).max(value - high);
-            // A range that was never varied allows for rounding.
-            let is_outside = beyond > 1e-6 * (1.0 + high.abs());
-            is_outside.then(|| OutsideTraining {
-                feature: SCENARIO_NAMES[i],
-                value,
-                range,
-                deviations: beyond / std,
-            })
-        };
-        numbers.into_iter().enumerate().filter_map(check).collect()
-    }
 }
 
 /// Distribution of contact point and kind of body over the training cases, for scenarios that leave
@@ -210,30 +210,5 @@ impl OpenFeatures {
         };
         let body = bodies.iter().map(|name| count(name) / cases.len().max(1) as f64).collect();
         Self { contact_m, body }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::data::StruckSide;
-    use crate::force::input::example;
-
-    #[test]
-    fn what_was_never_seen_is_named_with_its_distance() {
-        let seen = example(StruckSide::Right);
-        let row = |scenario: &ForceScenario| {
-            scenario_numbers(scenario, scenario.contact_m.unwrap()).to_vec()
-        };
-        let heavier = ForceScenario { mass_kg: [2000.0, 2500.0], ..seen.clone() };
-        let standardisation = Standardisation::of(&[row(&seen), row(&heavier)]);
-        assert_eq!(standardisation.outside(&seen), vec![]);
-        let outside =
-            standardisation.outside(&ForceScenario { mass_kg: [2000.0, 3000.0], ..seen.clone() });
-        assert_eq!(outside.len(), 1);
-        assert_eq!((outside[0].feature, outside[0].range), ("bullet mass [kg]", [1500.0, 2500.0]));
-        assert!((outside[0].deviations - 1.0).abs() < 1e-12);
-        let open = ForceScenario { contact_m: None, ..seen };
-        assert_eq!(standardisation.outside(&open), vec![]);
     }
 }

@@ -10,6 +10,7 @@ use crate::collision::crush::{
     BodyCrush, CrushFit, CrushHistory, CrushLaw, CrushSample, CrushScenario, Nose,
 };
 use crate::collision::{Impact, PulseShape};
+use crate::force::physics::bare::BareForce;
 use crate::force::physics::committee::Committee;
 use crate::force::{Centre, CrushConfig, ForceCase, ForceError, ForceScenario, MomentumModel};
 use crate::learning::{LearningError, Split, folds};
@@ -273,6 +274,21 @@ impl CentreModel {
             history.curve = committee.curve(&history.curve, &known)?;
         }
         self.centre_curve(history, scenario, contact_m)
+    }
+
+    /// What physics alone says of a scenario, without anything that was learned but the mean duration.
+    ///
+    /// - `scenario`: canonical;
+    /// - `contact_m`: contact point, which the scenario may leave open.
+    ///
+    /// # Errors
+    /// [`ForceError::Impact`].
+    pub(crate) fn bare(
+        &self,
+        scenario: &ForceScenario,
+        contact_m: [f64; 2],
+    ) -> Result<BareForce, ForceError> {
+        Ok(BareForce::of(&self.momentum, (scenario, contact_m), self.duration_s)?)
     }
 
     fn unseen_histories(

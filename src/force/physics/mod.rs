@@ -3,6 +3,8 @@
 
 mod momentum;
 
+mod bare;
+
 pub mod regression;
 
 mod centre;
@@ -10,6 +12,7 @@ mod committee;
 
 mod residuals;
 
+pub(crate) use bare::BareForce;
 #[cfg(test)]
 pub(crate) use centre::tests::haversine_centre;
 pub use centre::{CentreCurve, CentreFit, CentreModel};

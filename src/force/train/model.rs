@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use candle_core::{DType, Device, Tensor};
 use serde::{Deserialize, Serialize};
 
-use crate::force::network::{ForceNetwork, OpenFeatures, Standardisation};
+use crate::force::network::{ForceDomain, ForceNetwork, OpenFeatures, Standardisation};
 use crate::force::physics::{CentreModel, ResidualModel};
 use crate::force::{ForceCase, ForceConfig, ForceError, ForceRecord, ForceScenario};
 use crate::learning::ModelFile;
@@ -26,6 +26,8 @@ pub struct ForceModel {
     pub(crate) centre: CentreModel,
     pub(crate) residuals: ResidualModel,
     pub(crate) standardisation: Standardisation,
+    /// Where the training cases lie; follows from them.
+    pub(crate) domain: ForceDomain,
     pub(crate) open: OpenFeatures,
     pub(crate) network: ForceNetwork,
     pub(crate) record: ForceRecord,
@@ -150,11 +152,13 @@ impl ModelFile for ForceModel {
         }
         let rows = curves.to_dtype(DType::F64)?.to_vec2::<f64>()?;
         let cases = stored.into_iter().zip(rows).map(|(case, row)| case.with_curve(&row));
+        let cases: Vec<ForceCase> = cases.collect();
         Ok(Self {
+            domain: ForceDomain::of(&standardisation, &cases),
             standardisation,
             open,
             record,
-            cases: cases.collect(),
+            cases,
             config,
             centre,
             residuals,

@@ -5,7 +5,7 @@ use std::time::Instant;
 use candle_core::DType;
 use rand::seq::SliceRandom;
 
-use crate::force::network::{ForceNetwork, OpenFeatures, Standardisation, features};
+use crate::force::network::{ForceDomain, ForceNetwork, OpenFeatures, Standardisation, features};
 use crate::force::physics::{CentreCurve, CentreModel, ResidualModel};
 use crate::force::train::batch::CaseTensors;
 use crate::force::train::loss::{Loss, LossTerms};
@@ -373,6 +373,7 @@ impl<'a> ForceTrainingRun<'a> {
             config: self.settings.config.clone(),
             centre: self.centre,
             residuals: self.residuals,
+            domain: ForceDomain::of(&self.standardisation, &set.train),
             standardisation: self.standardisation,
             open,
             network: self.network,

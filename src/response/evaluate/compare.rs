@@ -94,7 +94,7 @@ pub(super) struct CaseClusters {
     pub clusters: Option<ImpulseClusters>,
 }
 
-fn clusters(cases: &[&ResponseCase], seed: u64) -> CaseClusters {
+pub(super) fn clusters(cases: &[&ResponseCase], seed: u64) -> CaseClusters {
     let features: Vec<Option<ImpulseFeatures>> =
         cases.iter().map(|case| ImpulseFeatures::of(&case.force_history())).collect();
     let known: Vec<ImpulseFeatures> = features.iter().flatten().copied().collect();
@@ -107,7 +107,8 @@ fn clusters(cases: &[&ResponseCase], seed: u64) -> CaseClusters {
     CaseClusters { of_case: features.iter().map(of).collect(), clusters }
 }
 
-fn answers(
+/// What a model says of trajectories.
+pub(super) fn answers(
     (model, trajectories, choice): (&MotionModel, usize, u64),
     cases: &[&ResponseCase],
     clusters: &CaseClusters,

@@ -7,6 +7,7 @@ mod case_metrics;
 mod metrics;
 
 mod compare;
+mod leave_cars_out;
 mod result;
 
 mod paper;
@@ -15,6 +16,7 @@ mod write;
 
 pub use case_metrics::{MotionCaseMetrics, MotionCoverage};
 pub use compare::{ComparisonSettings, compare_models, evaluate_motion_model};
+pub use leave_cars_out::compare_on_unseen_cars;
 pub use metrics::{CoverageMetrics, MeanStd, MotionMetrics, RootMeanSquares};
 pub use motion_model::{MotionModel, MotionModelKind};
 pub use paper::{PaperMetrics, paper_metrics};

@@ -100,6 +100,29 @@ impl VehicleNetwork {
         self.strengths.as_ref()?.get(component)
     }
 
+    /// Mean over the components of the strengths of the effects; zero where effects are no part of the
+    /// network.
+    pub(crate) fn mean_strengths(&self) -> [f64; N_EFFECTS] {
+        let rows = self.strengths.as_deref().unwrap_or_default();
+        let n = rows.len().max(1) as f64;
+        std::array::from_fn(|k| rows.iter().map(|row| row[k]).sum::<f64>() / n)
+    }
+
+    /// The same network with strengths added in every component, and all that it says beside the bare
+    /// physics times a share.
+    ///
+    /// - `added`: `[N_EFFECTS]`; `share`: 0 to 1.
+    #[must_use]
+    pub(crate) fn adapted(mut self, added: &[f64], share: f64) -> Self {
+        for row in self.strengths.iter_mut().flatten() {
+            for (value, added) in row.iter_mut().zip(added) {
+                *value = (*value + added) * share;
+            }
+        }
+        self.unit = self.unit.map(|unit| unit * share);
+        self
+    }
+
     /// `a_bound ⊙ tanh(a/a_bound)`.
     pub(crate) fn bounded(&self, free: [f64; N_RESIDUAL]) -> [f64; N_RESIDUAL] {
         match self.bound {

@@ -170,6 +170,14 @@ fn body_effects<T: Scalar>(
     out[BodyEffect::RollAccelerationYaw as usize][YAW] = rate.roll_rate_rad_s * 0.05;
 }
 
+/// Whether an effect is one of the collision: it is nothing where no force acts.
+pub(crate) fn is_of_collision(effect: usize) -> bool {
+    use BodyEffect as B;
+    [B::CollisionRoll, B::CollisionLongitudinal, B::CollisionLateral, B::CollisionYaw]
+        .iter()
+        .any(|of| of.index() == effect)
+}
+
 /// A change of several strengths together that has a name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Direction {

@@ -19,7 +19,8 @@ use argmin::solver::neldermead::NelderMead;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
-use crate::response::{LatentScales, N_LATENTS, Predictor, ResponseCase, STEP_S};
+use crate::response::predict::latents::NAMED_PLACES;
+use crate::response::{LatentScales, N_NAMED_LATENTS, Predictor, ResponseCase, STEP_S};
 use crate::vehicle::VehicleState;
 
 /// Instants at which errors are looked at, s.
@@ -51,7 +52,7 @@ pub(crate) struct Unseen<'a> {
 struct Observation {
     error: Vector3<f64>,
     /// Change of the prediction by one unit of each latent factor.
-    sensitivities: [Vector3<f64>; N_LATENTS],
+    sensitivities: [Vector3<f64>; N_NAMED_LATENTS],
     /// Covariance by the steps' noise of deviation one.
     noise: Matrix3<f64>,
 }
@@ -67,7 +68,7 @@ pub(crate) fn calibrate(unseen: &[Unseen<'_>], prior_std: f64) -> LatentScales {
     }
     let problem =
         CalibrationProblem { observations: &observations, n_cases: unseen.len(), prior_std };
-    let start = vec![0.0; N_LATENTS + 1];
+    let start = vec![0.0; N_NAMED_LATENTS + 1];
     let mut simplex = vec![start.clone()];
     for i in 0..start.len() {
         let mut corner = start.clone();
@@ -96,18 +97,18 @@ fn pose(state: &VehicleState<f64>) -> Vector3<f64> {
 fn observe(unseen: &Unseen<'_>) -> Vec<Observation> {
     let case = unseen.case;
     let Some(initial) = case.states.first() else { return Vec::new() };
-    let with = |scales: [f64; N_LATENTS], step_noise: f64| {
+    let with = |scales: [f64; N_NAMED_LATENTS], step_noise: f64| {
         let latents = LatentScales { scales, step_noise, ..LatentScales::default() };
         unseen.predictor.clone().with_latents(latents)
     };
-    let certain = with([0.0; N_LATENTS], 0.0).central_path(initial, &case.inputs);
-    let noise = with([0.0; N_LATENTS], PROBE_NOISE).motion(initial, &case.inputs);
+    let certain = with([0.0; N_NAMED_LATENTS], 0.0).central_path(initial, &case.inputs);
+    let noise = with([0.0; N_NAMED_LATENTS], PROBE_NOISE).motion(initial, &case.inputs);
     // A latent that is one: strengths moved by a probe, all components alike.
-    let moved: Vec<Vec<VehicleState<f64>>> = (0..N_LATENTS)
+    let moved: Vec<Vec<VehicleState<f64>>> = (0..N_NAMED_LATENTS)
         .map(|m| {
-            let mut scales = [0.0; N_LATENTS];
+            let mut scales = [0.0; N_NAMED_LATENTS];
             scales[m] = PROBE;
-            with(scales, 0.0).path_at(initial, &case.inputs, m)
+            with(scales, 0.0).path_at(initial, &case.inputs, NAMED_PLACES[m])
         })
         .collect();
     let at = |idx: usize| {
@@ -133,7 +134,7 @@ fn scales_of(logs: &[f64]) -> LatentScales {
     let log = |i: usize| logs.get(i).copied().unwrap_or(0.0).clamp(-6.0, 6.0);
     LatentScales {
         scales: std::array::from_fn(|m| usual.scales[m] * log(m).exp()),
-        step_noise: usual.step_noise * log(N_LATENTS).exp(),
+        step_noise: usual.step_noise * log(N_NAMED_LATENTS).exp(),
         ..usual
     }
 }
@@ -187,7 +188,7 @@ fn largest(observations: &[Observation], scales: &LatentScales) -> usize {
         let of = observations.iter().map(|seen| seen.sensitivities[m].xy().norm());
         of.sum::<f64>() * scales.scales[m]
     };
-    (0..N_LATENTS).max_by(|a, b| effect(*a).total_cmp(&effect(*b))).unwrap_or(0)
+    (0..N_NAMED_LATENTS).max_by(|a, b| effect(*a).total_cmp(&effect(*b))).unwrap_or(0)
 }
 
 /// The factor on all scales with which the regions hold as many positions as they say, all

@@ -4,7 +4,7 @@
 use crate::numerics::Lanes;
 use crate::response::network::vehicle_network::{VehicleNetwork, Workspace};
 use crate::response::physics::features::features_of;
-use crate::response::predict::latents::{LatentScales, N_LATENTS};
+use crate::response::predict::latents::{Latents, N_LATENTS};
 use crate::response::{N_EFFECTS, N_FEATURES, N_RESIDUAL, combined, effects};
 use crate::vehicle::{VehicleEvaluation, VehicleInput, VehicleParameters, VehicleState};
 
@@ -12,7 +12,7 @@ use crate::vehicle::{VehicleEvaluation, VehicleInput, VehicleParameters, Vehicle
 pub(crate) struct Dynamics<'a> {
     pub vehicle: &'a VehicleParameters,
     pub network: &'a VehicleNetwork,
-    pub scales: LatentScales,
+    pub latents: &'a Latents,
     /// Change of the strengths of the effects with each latent, where there is one.
     directions: [Vec<(usize, f64)>; N_LATENTS],
 }
@@ -47,12 +47,17 @@ impl<'a> Dynamics<'a> {
     pub(crate) fn new(
         vehicle: &'a VehicleParameters,
         network: &'a VehicleNetwork,
-        scales: LatentScales,
+        latents: &'a Latents,
     ) -> Self {
         let changed = |strengths: [f64; N_EFFECTS]| {
             strengths.into_iter().enumerate().filter(|(_, change)| *change != 0.0).collect()
         };
-        Self { vehicle, network, scales, directions: scales.directions().map(changed) }
+        Self { vehicle, network, latents, directions: latents.directions.map(changed) }
+    }
+
+    /// Whether the step does not depend on a latent factor.
+    pub(super) fn ignores(&self, latent: usize) -> bool {
+        self.directions.get(latent).is_none_or(Vec::is_empty)
     }
 
     /// One step at given latent factors.
@@ -140,7 +145,7 @@ impl<'a> Dynamics<'a> {
     /// Standard deviation of the noise of a step from the first state of the batch.
     pub(crate) fn noise(&self, component: usize, batch: &NetworkBatch) -> [f64; N_RESIDUAL] {
         let variance = self.network.variance(&batch.work, [0, component]);
-        variance.map(|variance| self.scales.step_noise * variance.sqrt())
+        variance.map(|variance| self.latents.step_noise * variance.sqrt())
     }
 }
 

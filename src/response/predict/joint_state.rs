@@ -8,7 +8,7 @@
 use nalgebra::{SMatrix, SVector};
 
 use crate::response::N_RESIDUAL;
-use crate::response::predict::latents::N_LATENTS;
+use crate::response::predict::latents::{N_LATENTS, N_OF_COLLISION};
 use crate::vehicle::VehicleState;
 
 /// Number of components of ξ.
@@ -26,7 +26,7 @@ pub(super) const Y: usize = N_DYNAMIC + 2;
 /// Places in ξ of the components to which each step adds noise: v_x, v_y, r, φ̇.
 pub(super) const NOISY: [usize; N_RESIDUAL] = [0, 1, 2, 4];
 /// Places in ξ of the latent factors of the collision, which matter as long as a force acts.
-pub(super) const OF_COLLISION: [usize; 2] = [N_SEEN + 2, N_SEEN + 3];
+pub(super) const OF_COLLISION: [usize; N_OF_COLLISION] = [N_DYNAMIC - 2, N_DYNAMIC - 1];
 /// Variance that is added to every component of ξ so that no covariance is singular.
 pub(super) const LEAST_VARIANCE: f64 = 1e-12;
 

@@ -21,19 +21,44 @@ use crate::numerics::{normal_density, normal_quantile};
 use crate::response::N_EFFECTS;
 use crate::response::physics::effects::{Direction, direction};
 
-/// Number of latent factors.
-pub const N_LATENTS: usize = 4;
+/// Number of latent factors of a motion: of the vehicle and its road, then of the collision.
+pub const N_LATENTS: usize = 8;
+
+/// How many of them are of the collision: they matter as long as a force acts.
+pub(crate) const N_OF_COLLISION: usize = 2;
+
+/// Number of latent factors that have a name.
+pub const N_NAMED_LATENTS: usize = 4;
 
 /// Their names, in order.
-pub const LATENT_NAMES: [&str; N_LATENTS] = ["grip", "balance", "yaw impulse", "lateral impulse"];
+pub const LATENT_NAMES: [&str; N_NAMED_LATENTS] =
+    ["grip", "balance", "yaw impulse", "lateral impulse"];
 
-/// How uncertain a model is along a motion.
+/// How far the 4DOF model by data sheet errs, as scales of the named latent factors.
+const BARE_SCALES: [f64; N_NAMED_LATENTS] = [0.10, 0.05, 0.10, 0.10];
+
+/// Places of the named latent factors among all.
+pub(super) const NAMED_PLACES: [usize; N_NAMED_LATENTS] = [0, 1, 6, 7];
+
+/// Directions in the space of the strengths along which a prediction is uncertain.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Latents {
+    /// s_m d_m: change of the strengths by one standard deviation of each latent factor; zero for one
+    /// that a model does not use.
+    pub directions: [[f64; N_EFFECTS]; N_LATENTS],
+    /// The latent factor that the components of the mixture share out.
+    pub shared_out: usize,
+    /// Factor on the standard deviation of each step's noise.
+    pub step_noise: f64,
+}
+
+/// How uncertain a model is along a motion, by latent factors that have a name.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LatentScales {
     /// s: standard deviation of the grip, of the balance between the axles (shares of the friction),
     /// of the yaw moment and of the lateral force of the collision (shares of either).
-    pub scales: [f64; N_LATENTS],
+    pub scales: [f64; N_NAMED_LATENTS],
     /// The latent factor that the components of the mixture share out.
     pub shared_out: usize,
     /// Factor on the standard deviation of each step's noise.
@@ -65,7 +90,7 @@ impl LatentScales {
     pub(crate) fn check(&self) -> Result<(), NnError> {
         check_numbers("latents.scales", &self.scales, Expected::NotNegative)?;
         check_number("latents.step_noise", self.step_noise, Expected::NotNegative)?;
-        let last = (N_LATENTS - 1) as f64;
+        let last = (N_NAMED_LATENTS - 1) as f64;
         check_number("latents.shared_out", self.shared_out as f64, Expected::Magnitude(last))
     }
 
@@ -87,13 +112,31 @@ impl LatentScales {
         self
     }
 
-    /// Change of the strengths by one standard deviation of each latent.
-    pub(crate) fn directions(&self) -> [[f64; N_EFFECTS]; N_LATENTS] {
-        let of =
-            [Direction::Grip, Direction::Balance, Direction::YawImpulse, Direction::LateralImpulse];
-        std::array::from_fn(|m| direction(of[m]).map(|value| value * self.scales[m]))
+    /// The scales of a model whose learned part has faded: towards how far the bare physics errs.
+    ///
+    /// - `share`: that is left of what was learned, 0 to 1; `beyond`: how far outside.
+    pub(crate) fn faded(mut self, [share, beyond]: [f64; 2]) -> Self {
+        let [learned, bare] = [share * share, (1.0 - share * share) * (1.0 + beyond).powi(2)];
+        for (scale, of_physics) in self.scales.iter_mut().zip(BARE_SCALES) {
+            *scale = (learned * *scale * *scale + bare * of_physics * of_physics).sqrt();
+        }
+        self
     }
 
+    /// The directions.
+    pub(crate) fn latents(&self) -> Latents {
+        let named =
+            [Direction::Grip, Direction::Balance, Direction::YawImpulse, Direction::LateralImpulse];
+        let mut directions = [[0.0; N_EFFECTS]; N_LATENTS];
+        for ((place, of), scale) in NAMED_PLACES.into_iter().zip(named).zip(self.scales) {
+            directions[place] = direction(of).map(|value| value * scale);
+        }
+        let shared_out = NAMED_PLACES.get(self.shared_out).copied().unwrap_or(0);
+        Latents { directions, shared_out, step_noise: self.step_noise }
+    }
+}
+
+impl Latents {
     /// The latent factors within component `j` of `n`: of the factor that is shared out, the component has
     /// the j-th of n equally likely parts of the standard normal distribution; of the others, the whole.
     pub(crate) fn of_component(&self, j: usize, n: usize) -> [LatentShare; N_LATENTS] {
@@ -146,10 +189,12 @@ mod tests {
     #[test]
     fn directions_scale_with_their_scales() {
         let scales = LatentScales::default();
-        let (once, twice) = (scales.directions(), scales.widened(2.0).directions());
+        let [once, twice] = [scales, scales.widened(2.0)].map(|of| of.latents().directions);
         for (a, b) in once.iter().flatten().zip(twice.iter().flatten()) {
             assert!((2.0 * a - b).abs() < 1e-15);
         }
-        assert!(once.iter().all(|direction| direction.iter().any(|value| *value != 0.0)));
+        for place in NAMED_PLACES {
+            assert!(once[place].iter().any(|value| *value != 0.0));
+        }
     }
 }

@@ -1,6 +1,8 @@
 //! The prediction: a trained model, what is uncertain along a whole motion, and the distribution of
 //! the motion that follows.
 
+mod domain;
+
 mod latents;
 
 pub(super) mod calibration;
@@ -15,9 +17,11 @@ mod propagate;
 #[cfg(test)]
 mod propagate_tests;
 
-mod predictor;
+pub(super) mod predictor;
 
-pub use latents::{LATENT_NAMES, LatentScales, N_LATENTS};
+pub use domain::{Applicability, MotionDomain, OutsideDomain};
+pub use latents::{LATENT_NAMES, LatentScales, N_LATENTS, N_NAMED_LATENTS};
+pub(crate) use latents::{Latents, N_OF_COLLISION};
 pub use model::ResponseModel;
 pub(crate) use predictor::weighted_mean;
 pub use predictor::{ComponentPath, MotionDistribution, Predictor};

@@ -1,10 +1,16 @@
 //! A trained response network and its file.
 
-use crate::learning::{LearningError, ModelFile};
-use crate::nn::{Checkpoint, ModelKind, parameter_budget, random_stream};
+use std::sync::Arc;
+
+use crate::learning::{CaseId, LearningError, ModelFile};
+use crate::nn::{Checkpoint, ModelKind, parameter_budget, random_stream, sha256_hex};
 use crate::response::network::response_network::ResponseNetwork;
 use crate::response::network::vehicle_network::VehicleNetwork;
-use crate::response::{LatentScales, Predictor, ResponseCase, ResponseConfig, ResponseRecord};
+use crate::response::predict::predictor::{PredictorSource, SourceStrengths};
+use crate::response::{
+    KnownCar, LatentScales, MotionDomain, Predictor, ResponseCase, ResponseConfig, ResponseRecord,
+    StrengthPopulation,
+};
 use crate::vehicle::VehicleParameters;
 
 /// A trained response network with all it takes to predict.
@@ -13,6 +19,10 @@ pub struct ResponseModel {
     config: ResponseConfig,
     network: ResponseNetwork,
     latents: LatentScales,
+    /// How the strengths are distributed over cars, if that was learned.
+    population: Option<Arc<StrengthPopulation>>,
+    /// What was learned from, if trajectories were.
+    domain: Option<MotionDomain>,
     record: ResponseRecord,
 }
 
@@ -22,7 +32,8 @@ impl ResponseModel {
         network: ResponseNetwork,
         record: ResponseRecord,
     ) -> Self {
-        Self { config, network, latents: LatentScales::default(), record }
+        let latents = LatentScales::default();
+        Self { config, network, latents, population: None, domain: None, record }
     }
 
     /// The configuration that the model was trained with.
@@ -54,7 +65,8 @@ impl ResponseModel {
         let network = ResponseNetwork::new(&self.config.network, &mut rng)?;
         network.parameters().import(&self.network.parameters().export()?)?;
         let (config, record) = (self.config.clone(), self.record.clone());
-        Ok(Self { config, network, latents: self.latents, record })
+        let (population, domain) = (self.population.clone(), self.domain.clone());
+        Ok(Self { config, network, latents: self.latents, population, domain, record })
     }
 
     pub(crate) fn network(&self) -> &ResponseNetwork {
@@ -78,13 +90,54 @@ impl ResponseModel {
         self.record.detail.keeps_latents = true;
     }
 
+    /// How the strengths are distributed over cars, if that was learned.
+    pub fn population(&self) -> Option<&StrengthPopulation> {
+        self.population.as_deref()
+    }
+
+    /// Replaces how the strengths are distributed over cars.
+    pub(crate) fn set_population(&mut self, population: StrengthPopulation) {
+        self.population = Some(Arc::new(population));
+    }
+
+    /// Says what was learned from.
+    pub(crate) fn set_domain(&mut self, domain: MotionDomain) {
+        self.domain = Some(domain);
+    }
+
+    /// Adds trajectories to those that were learned from.
+    pub(crate) fn add_to_record(&mut self, data: &str, cases: &[ResponseCase]) {
+        let record = &mut self.record;
+        record.data = format!("{}, {data}", record.data);
+        record.train.extend(cases.iter().map(CaseId::of));
+        record.data_digest = sha256_hex(record.train.iter().map(|case| case.digest.as_bytes()));
+    }
+
+    /// The car that a vehicle is, if trajectories of it are known.
+    pub fn known_car(&self, vehicle: &VehicleParameters) -> Option<&KnownCar> {
+        self.population()?.known(vehicle)
+    }
+
     /// The model for one vehicle.
     ///
     /// # Errors
     /// [`LearningError::Network`].
     pub fn predictor(&self, vehicle: &VehicleParameters) -> Result<Predictor, LearningError> {
         let network = VehicleNetwork::new(&self.network, vehicle)?;
-        Ok(Predictor::new(vehicle.clone(), network, self.latents))
+        let strengths = match &self.population {
+            Some(population) => {
+                SourceStrengths::Population(Arc::clone(population), population.of(vehicle))
+            }
+            None => SourceStrengths::OneCar(self.latents),
+        };
+        let domain = self.domain.clone().unwrap_or_default();
+        let of_vehicle = match self.known_car(vehicle) {
+            // The strengths of the car itself are known.
+            Some(_) => domain.of_road(vehicle),
+            None => domain.of_vehicle(vehicle),
+        };
+        let source = PredictorSource { network, strengths, domain, of_vehicle };
+        Ok(Predictor::of_source(vehicle.clone(), source))
     }
 }
 
@@ -97,6 +150,12 @@ impl ModelFile for ResponseModel {
         file.put("config", &self.config)?;
         file.put("latents", &self.latents)?;
         file.put("record", &self.record)?;
+        if let Some(domain) = &self.domain {
+            file.put("domain", domain)?;
+        }
+        if let Some(population) = &self.population {
+            population.put(file)?;
+        }
         file.put_group("network", self.network.parameters().export()?);
         Ok(())
     }
@@ -111,6 +170,11 @@ impl ModelFile for ResponseModel {
         network.parameters().import(&tensors)?;
         let latents: LatentScales = file.get("latents")?;
         latents.check()?;
-        Ok(Self { config, network, latents, record: file.get("record")? })
+        let domain: Option<MotionDomain> = file.find("domain")?;
+        if let Some(domain) = &domain {
+            domain.check()?;
+        }
+        let population = StrengthPopulation::take(file)?.map(Arc::new);
+        Ok(Self { config, network, latents, population, domain, record: file.get("record")? })
     }
 }

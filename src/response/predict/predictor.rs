@@ -1,5 +1,8 @@
 //! A response network asked about one vehicle: paths, their distribution, and coherent draws.
 
+use std::borrow::Cow;
+use std::sync::Arc;
+
 use nalgebra::{SMatrix, SVector};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -8,9 +11,13 @@ use rayon::prelude::*;
 
 use crate::nn::random_stream;
 use crate::response::network::vehicle_network::VehicleNetwork;
+use crate::response::predict::Latents;
 use crate::response::predict::dynamics::{Dynamics, NetworkBatch};
 use crate::response::predict::joint_state::N_JOINT;
-use crate::response::{ComponentMotion, LatentScales, N_LATENTS, N_RESIDUAL, STEP_S};
+use crate::response::{
+    Applicability, CarStrengths, ComponentMotion, LatentScales, MotionDomain, N_EFFECTS, N_LATENTS,
+    N_RESIDUAL, STEP_S, StrengthPopulation,
+};
 use crate::uncertainty::{NormalMixture, NormalPart, PlanarMixture, PlanarPart, Unscented};
 use crate::vehicle::{N_STATE, VehicleInput, VehicleParameters, VehicleState};
 
@@ -27,8 +34,48 @@ const LEAST_VARIANCE: f64 = 1e-12;
 pub struct Predictor {
     vehicle: VehicleParameters,
     network: VehicleNetwork,
-    latents: LatentScales,
+    latents: Latents,
     unscented: Unscented,
+    source: Option<Arc<PredictorSource>>,
+}
+
+/// What a predictor is made from again where a motion lies outside of what was learned from.
+#[derive(Debug)]
+pub(super) struct PredictorSource {
+    /// The network for the vehicle as it was trained.
+    pub network: VehicleNetwork,
+    /// What the model knows of the strengths.
+    pub strengths: SourceStrengths,
+    /// What was learned from.
+    pub domain: MotionDomain,
+    /// How far the model holds for the vehicle.
+    pub of_vehicle: Applicability,
+}
+
+/// What a model knows of the strengths of its effects.
+#[derive(Debug)]
+pub(super) enum SourceStrengths {
+    /// How they are distributed over cars, and those of this one.
+    Population(Arc<StrengthPopulation>, CarStrengths),
+    /// Those of the car that it was trained on.
+    OneCar(LatentScales),
+}
+
+impl PredictorSource {
+    /// Network and uncertainty at an applicability: what was learned fades to the bare physics.
+    fn at(&self, applicability: &Applicability) -> (VehicleNetwork, Latents) {
+        let (share, beyond) = (applicability.value, applicability.distance);
+        let none = [0.0; N_EFFECTS];
+        let (added, latents) = match &self.strengths {
+            SourceStrengths::Population(population, of) => {
+                (of.mean.as_slice(), population.latents(of, [share, beyond]))
+            }
+            SourceStrengths::OneCar(scales) => {
+                (none.as_slice(), scales.faded([share, beyond]).latents())
+            }
+        };
+        (self.network.clone().adapted(added, share), latents)
+    }
 }
 
 /// The motion that one component of the mixture predicts.
@@ -51,15 +98,49 @@ impl Predictor {
     pub(crate) fn new(
         vehicle: VehicleParameters,
         network: VehicleNetwork,
-        latents: LatentScales,
+        latents: Latents,
     ) -> Self {
-        Self { vehicle, network, latents, unscented: POINTS }
+        Self { vehicle, network, latents, unscented: POINTS, source: None }
+    }
+
+    /// A predictor whose learned part fades where a motion lies outside of what was learned from.
+    pub(super) fn of_source(vehicle: VehicleParameters, source: PredictorSource) -> Self {
+        let (network, latents) = source.at(&source.of_vehicle);
+        Self { source: Some(Arc::new(source)), ..Self::new(vehicle, network, latents) }
+    }
+
+    /// How far the model holds for a motion of the vehicle.
+    pub fn applicability(
+        &self,
+        initial: &VehicleState<f64>,
+        inputs: &[VehicleInput<f64>],
+    ) -> Applicability {
+        self.source.as_ref().map_or_else(Applicability::whole, |source| {
+            let of_motion = source.domain.of_motion(&self.vehicle, initial, inputs);
+            source.of_vehicle.and(&of_motion)
+        })
+    }
+
+    /// The predictor for a motion.
+    fn fitted_to(
+        &self,
+        initial: &VehicleState<f64>,
+        inputs: &[VehicleInput<f64>],
+    ) -> Cow<'_, Self> {
+        let Some(source) = &self.source else { return Cow::Borrowed(self) };
+        let applicability = self.applicability(initial, inputs);
+        if applicability.distance <= source.of_vehicle.distance {
+            return Cow::Borrowed(self);
+        }
+        let (network, latents) = source.at(&applicability);
+        Cow::Owned(Self { network, latents, source: None, ..self.clone() })
     }
 
     /// The same predictor with another uncertainty.
     #[must_use]
     pub fn with_latents(mut self, latents: LatentScales) -> Self {
-        self.latents = latents;
+        self.latents = latents.latents();
+        self.source = None;
         self
     }
 
@@ -74,7 +155,7 @@ impl Predictor {
     }
 
     fn dynamics(&self) -> Dynamics<'_> {
-        Dynamics::new(&self.vehicle, &self.network, self.latents)
+        Dynamics::new(&self.vehicle, &self.network, &self.latents)
     }
 
     /// The path of each component with its latent factors at their means.
@@ -86,7 +167,8 @@ impl Predictor {
         inputs: &[VehicleInput<f64>],
     ) -> Vec<ComponentPath> {
         let n = self.n_components();
-        self.paths_at(initial, inputs, |j| self.latents.of_component(j, n).map(|share| share.mean))
+        let of = self.fitted_to(initial, inputs);
+        of.paths_at(initial, inputs, |j| of.latents.of_component(j, n).map(|share| share.mean))
     }
 
     /// The path of each component at given latent factors.
@@ -127,7 +209,8 @@ impl Predictor {
         initial: &VehicleState<f64>,
         inputs: &[VehicleInput<f64>],
     ) -> Vec<VehicleState<f64>> {
-        let paths = self.paths_at(initial, inputs, |_| [0.0; N_LATENTS]);
+        let of = self.fitted_to(initial, inputs);
+        let paths = of.paths_at(initial, inputs, |_| [0.0; N_LATENTS]);
         mean_of(&paths, inputs.len())
     }
 
@@ -139,7 +222,8 @@ impl Predictor {
         initial: &VehicleState<f64>,
         inputs: &[VehicleInput<f64>],
     ) -> MotionDistribution {
-        let dynamics = self.dynamics();
+        let of = self.fitted_to(initial, inputs);
+        let dynamics = of.dynamics();
         let component = |j| dynamics.motion((j, self.unscented), initial, inputs);
         MotionDistribution::new((0..self.n_components()).map(component).collect())
     }
@@ -153,13 +237,14 @@ impl Predictor {
         (initial, inputs): (&VehicleState<f64>, &[VehicleInput<f64>]),
         (n, seed): (usize, u64),
     ) -> Vec<Vec<VehicleState<f64>>> {
-        let dynamics = self.dynamics();
+        let of = self.fitted_to(initial, inputs);
+        let dynamics = of.dynamics();
         let weights: Vec<f64> =
             self.paths(initial, inputs).iter().map(|path| path.weight).collect();
         let draw = |idx: usize| {
             let mut rng = random_stream(seed, "coherent motions", idx as u64);
             let j = drawn(&weights, rng.random());
-            let shares = self.latents.of_component(j, weights.len());
+            let shares = of.latents.of_component(j, weights.len());
             let latents: [f64; N_LATENTS] = std::array::from_fn(|m| {
                 shares[m].mean + shares[m].variance.sqrt() * normal(&mut rng)
             });

@@ -84,6 +84,8 @@ enum PointReuse {
 /// Conditions that decide on the reuse of results in a step.
 #[derive(Clone, Copy)]
 struct ReusePlan {
+    /// The latent factors on which the step does not depend.
+    ignored: [bool; N_LATENTS],
     /// No force will act any more: what is uncertain about the collision has had its effect.
     is_free: bool,
     /// A force in world axes acts on a car that is turned otherwise from another side.
@@ -91,9 +93,9 @@ struct ReusePlan {
 }
 
 impl ReusePlan {
-    fn new(u: &VehicleInput<f64>, is_free: bool) -> Self {
+    fn new(u: &VehicleInput<f64>, is_free: bool, ignored: [bool; N_LATENTS]) -> Self {
         let in_world = u.collision.is_some_and(|collision| collision.in_world_axes);
-        Self { is_free, depends_on_pose: !is_free && in_world }
+        Self { ignored, is_free, depends_on_pose: !is_free && in_world }
     }
 
     /// The results that can be reused for the points of a column of the root.
@@ -102,6 +104,7 @@ impl ReusePlan {
     ///   mean.
     fn reuse(self, i: usize) -> PointReuse {
         match i {
+            i if (N_SEEN..N_DYNAMIC).contains(&i) && self.ignored[i - N_SEEN] => PointReuse::Step,
             _ if self.depends_on_pose => PointReuse::None,
             i if i < N_SEEN => PointReuse::None,
             i if i < N_DYNAMIC && !(self.is_free && OF_COLLISION.contains(&i)) => {
@@ -134,7 +137,7 @@ impl Dynamics<'_> {
         let n_components = self.network.n_components();
         let mut mean = mean_of(initial, &[0.0; N_LATENTS]);
         let mut covariance = Covariance::identity() * LEAST_VARIANCE;
-        let shares = self.scales.of_component(component, n_components);
+        let shares = self.latents.of_component(component, n_components);
         for (m, share) in shares.into_iter().enumerate() {
             mean[N_SEEN + m] = share.mean;
             covariance[(N_SEEN + m, N_SEEN + m)] = share.variance.max(LEAST_VARIANCE);
@@ -169,7 +172,8 @@ impl Dynamics<'_> {
         buffers: &mut StepBuffers,
     ) -> (Mean, Covariance) {
         let StepBuffers { batch, evaluations } = buffers;
-        let plan = ReusePlan::new(u, is_free);
+        let ignored = std::array::from_fn(|latent| self.ignores(latent));
+        let plan = ReusePlan::new(u, is_free, ignored);
         let root = root_of(covariance) * weights.reach;
         let columns: [Mean; N] = std::array::from_fn(|i| root.column(i).into_owned());
         let x = state_of(mean);

@@ -14,9 +14,13 @@ mod record;
 mod training_data;
 mod training_run;
 
+mod fleet;
+
 mod stages;
 
 pub use case::{ResponseCase, ResponseCaseError};
+pub(crate) use fleet::{FleetParts, train_parts};
+pub use fleet::{UnseenCars, condition, learn_population, train_fleet};
 pub use record::{ResponseEpoch, ResponseRecord, ResponseStage, ResponseTraining};
 pub use simulated::ImpactRecord;
 pub(crate) use stages::check_start;

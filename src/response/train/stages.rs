@@ -15,8 +15,8 @@ use crate::response::train::simulated::{ImpactRecord, SimulatedMotion, simulate}
 use crate::response::train::training_data::TrainingData;
 use crate::response::train::training_run::{CHECKPOINT_KIND, Planned, TrainingRun};
 use crate::response::{
-    Correction, ResponseCase, ResponseConfig, ResponseEpoch, ResponseModel, ResponseRecord,
-    ResponseStage, ResponseTraining,
+    Correction, MotionDomain, ResponseCase, ResponseConfig, ResponseEpoch, ResponseModel,
+    ResponseRecord, ResponseStage, ResponseTraining,
 };
 
 /// Trajectories to fine-tune on.
@@ -117,6 +117,9 @@ pub fn fine_tune(
     {
         model.keep_latents(start.latents());
     }
+    if !is_cut.get() {
+        model.set_domain(MotionDomain::of(&set.train));
+    }
     Ok(model)
 }
 
@@ -142,7 +145,8 @@ pub(crate) fn check_start(
     Ok(network.parameters().import(&start.network().parameters().export()?)?)
 }
 
-fn fine_tune_once(
+/// Fine-tunes a network without a calibration.
+pub(super) fn fine_tune_once(
     start: Option<&ResponseModel>,
     set: &ResponseTrainingSet,
     settings: &ResponseTrainSettings,
@@ -156,7 +160,7 @@ fn fine_tune_once(
     let (mut n_simulated, mut history) = (0, Vec::new());
     if let Some(start) = start {
         network.parameters().import(&start.network().parameters().export()?)?;
-        if config.network.correction != Correction::Whole {
+        if config.network.correction != Correction::Whole && start.population().is_none() {
             network.silence()?;
         }
         network.freeze(config.single_steps.frozen_share);
@@ -166,7 +170,10 @@ fn fine_tune_once(
         network.freeze(0.0);
     }
     let data = TrainingData::of_trajectories(&set.train, config, settings.seed);
-    if config.network.effects {
+    if let Some(population) = start.and_then(ResponseModel::population) {
+        let cases: Vec<&ResponseCase> = set.train.iter().collect();
+        network.set_strengths(&population.strengths_of(&network, &cases)?)?;
+    } else if config.network.effects {
         let rows: Vec<_> =
             data.instants.rows().iter().map(|row| (&*row.effects, row.target)).collect();
         network.set_strengths(&fit_strengths(&rows, config.network.unit, config.effects))?;

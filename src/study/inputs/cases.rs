@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::data::{Case, Dataset, DatasetKind, Outcome};
+use crate::data::{Case, Dataset, DatasetKind, Outcome, list_folder};
 use crate::error_chain;
 use crate::force::ForceCase;
 use crate::learning::{cases_and_problems, check_kind, load_cases};
@@ -81,6 +81,29 @@ pub(in crate::study) fn response_cases(
     assumptions.extend(Assumption::medians(AssumedQuantity::VehicleParameter, &vehicle));
     let from_case = |case: &Case| ResponseCase::from_case(case, &vehicle);
     usable(&dataset, bad_cases, from_case).map(Outcome::Complete)
+}
+
+/// The data sets of paths: each folder that is one, and those in a folder of them, by name.
+///
+/// # Errors
+/// [`StudyError::Data`] if a folder cannot be read.
+pub(in crate::study) fn dataset_folders(paths: &[PathBuf]) -> Result<Vec<PathBuf>, StudyError> {
+    let mut folders = Vec::new();
+    for path in paths {
+        let inside = match DatasetKind::of_folder(path) {
+            None if path.is_dir() => list_folder(path)?,
+            _ => Vec::new(),
+        };
+        let mut sets: Vec<PathBuf> =
+            inside.into_iter().filter(|path| DatasetKind::of_folder(path).is_some()).collect();
+        sets.sort();
+        // What is no data set is said where it is read.
+        if sets.is_empty() {
+            sets.push(path.clone());
+        }
+        folders.extend(sets);
+    }
+    Ok(folders)
 }
 
 fn usable<T, E: Error + Send + Sync + 'static>(

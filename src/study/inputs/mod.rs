@@ -9,7 +9,9 @@ mod scenario;
 mod vehicle;
 
 pub use cases::{BadCases, EvaluatedCases};
-pub(super) use cases::{data_name, data_names, force_cases, response_cases};
+pub(super) use cases::{
+    UsableCases, data_name, data_names, dataset_folders, force_cases, response_cases,
+};
 pub use config::{ConfigChoice, TrainingOptions, checkpoint_beside};
 pub use file::SeriesFile;
 pub use model::ModelChoice;

@@ -64,6 +64,7 @@ impl DataSheet {
                 rolling_resistance_s_m: 0.0,
                 rolling_resistance_s2_m2: drag,
                 rolling_radius_m: get(Q::WheelRadius),
+                wheel_inertia_kg_m2: get(Q::WheelInertia),
             },
             estimates: self.rules(),
             sheet: None,

@@ -7,7 +7,7 @@ use crate::ranges::{
     FRONT_ROLL_SHARE, OUTER_LENGTH, OUTER_WIDTH, ROAD_FRICTION, ROLL_AXIS_HEIGHT,
     ROLL_DAMPING_RATIO, ROLL_GRADIENT, ROLL_INERTIA, ROLL_YAW_PRODUCT, ROLLING_RESISTANCE, Range,
     SLIDING_FRICTION_RATIO, SPRUNG_MASS, TRACK_WIDTH, VEHICLE_MASS, VEHICLE_YAW_INERTIA,
-    WHEEL_RADIUS, WHEELBASE,
+    WHEEL_INERTIA, WHEEL_RADIUS, WHEELBASE,
 };
 
 /// What kind of vehicle it is, as far as the rules of estimation tell kinds apart.
@@ -137,6 +137,9 @@ quantities! {
     SprungMass: "sprung_mass", "kg", "sprung mass", SPRUNG_MASS, ["mass.sprung_mass_kg"];
     /// Rolling radius of the wheels, m: height of the CG of the unsprung mass.
     WheelRadius: "wheel_radius", "m", "wheel radius", WHEEL_RADIUS, [];
+    /// Moment of inertia of a wheel with its tyre about its axis, kg m².
+    WheelInertia: "wheel_inertia", "kg m²", "inertia of a wheel", WHEEL_INERTIA,
+        ["tires.wheel_inertia_kg_m2"];
     /// Height of the roll axis above the ground at the CG, m.
     RollAxisHeight: "roll_axis_height", "m", "height of the roll axis", ROLL_AXIS_HEIGHT,
         ["suspension.roll_axis_height_m", "suspension.roll_arm_m"];

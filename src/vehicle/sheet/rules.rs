@@ -23,6 +23,7 @@
 //! - What no source could be found for is said to be assumed, with a wide scatter.
 
 use crate::vehicle::sheet::{Drive, SheetQuantity, VehicleClass};
+use crate::vehicle::tire::WHEEL_MASS_SHARE;
 
 use super::data_sheet::SheetValues;
 
@@ -82,6 +83,7 @@ impl Rule {
             }
             Q::SprungMass
             | Q::WheelRadius
+            | Q::WheelInertia
             | Q::RollAxisHeight
             | Q::RollGradient
             | Q::RollDampingRatio
@@ -218,6 +220,12 @@ fn suspension(quantity: SheetQuantity, class: VehicleClass, values: &SheetValues
         Q::WheelRadius => {
             relative(class.pick([0.33, 0.31, 0.36, 0.36, 0.34]), 0.06, "by class", MULTIBODY)
         }
+        Q::WheelInertia => relative(
+            WHEEL_MASS_SHARE * values.get(Q::Mass) * values.get(Q::WheelRadius).powi(2),
+            0.10,
+            "0.0115 × mass × radius²",
+            MULTIBODY,
+        ),
         Q::RollAxisHeight => absolute(
             class.pick([0.12, 0.10, 0.14, 0.14, 0.12]),
             class.pick([0.05, 0.04, 0.06, 0.06, 0.05]),

@@ -186,6 +186,7 @@ impl CurveRegression {
         let n_numbers = N_SCALARS + regressed.coefficients.mean.len();
         let of_means = self.curve(regressed, false, &vec![0.0; n_numbers]);
         CurvePrediction {
+            applicability: 1.0,
             curve,
             impulse_n_s: [impulse * sin, impulse * cos],
             peak_n: of_means.peak().0,

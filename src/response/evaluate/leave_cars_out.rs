@@ -1,0 +1,122 @@
+//! How far models err on cars that they have not seen, or of which they know a few trajectories.
+//!
+//! The cars are divided into parts. For each part a network is trained on the cars of the others; how
+//! its strengths are distributed over cars is learned from the other parts, each predicted by the
+//! network that has not seen it. What is asked is a quarter of the trajectories of each car, which are
+//! never learned from; n of the others condition the network, and the 4DOF model is tuned on the same.
+
+use std::cell::Cell;
+use std::ops::ControlFlow;
+
+use crate::jobs::{Progress, ProgressCallback};
+use crate::learning::{LearningError, TEST_SHARE, TrainSettings, TrainingReport, TrainingSet};
+use crate::response::evaluate::compare::{answers, clusters};
+use crate::response::evaluate::{ComparedCase, Comparison, ComparisonSettings, MotionModel};
+use crate::response::train::{FleetParts, train_parts};
+use crate::response::{
+    ResponseCase, ResponseModel, ResponseTrainingSet, Tuning, UnseenCars, condition,
+    learn_population,
+};
+
+/// Compares the network with tuned and untuned 4DOF model on cars that it has not seen. `None` if it
+/// was broken off.
+///
+/// - `set`: trajectories of several cars;
+/// - `start`: a pre-trained network.
+///
+/// # Errors
+/// [`LearningError`].
+pub fn compare_on_unseen_cars(
+    set: &ResponseTrainingSet,
+    start: &ResponseModel,
+    settings: &ComparisonSettings,
+    report: &mut ProgressCallback<'_>,
+) -> Result<Option<Comparison>, LearningError> {
+    let training = TrainSettings::unsaved(settings.config.clone(), settings.seed);
+    let is_broken = Cell::new(false);
+    let mut tell = |done: f64, message: &str| {
+        let flow = report(Progress::new((done * 1000.0) as u64, 1000, message));
+        is_broken.set(is_broken.get() || flow.is_break());
+        flow
+    };
+    let mut told = |told: &TrainingReport| match told {
+        TrainingReport::Epoch(epoch) => tell(0.8 * epoch.share_done(), "training on other cars"),
+        TrainingReport::Fit { .. } => ControlFlow::Continue(()),
+    };
+    let FleetParts { parts, members } = train_parts(start, set, &training, &mut told)?;
+    if is_broken.get() {
+        return Ok(None);
+    }
+    let case = |idx: &usize| set.train.get(*idx);
+    let cars_of = |part: usize| -> Vec<Vec<&ResponseCase>> {
+        let cars = parts.get(part).into_iter().flatten();
+        cars.map(|cases| cases.iter().filter_map(case).collect()).collect()
+    };
+    let mut asked = Asked { settings, test: Vec::new(), rows: Vec::new() };
+    for (part, member) in members.iter().enumerate() {
+        let others = (0..members.len()).filter(|other| *other != part);
+        let unseen: Vec<UnseenCars<'_>> = others
+            .filter_map(|other| {
+                Some(UnseenCars { model: members.get(other)?, cars: cars_of(other) })
+            })
+            .collect();
+        let is_left = |case: &&ResponseCase| {
+            !cars_of(part).iter().flatten().any(|left_out| left_out.digest == case.digest)
+        };
+        let train: Vec<ResponseCase> = set.train.iter().filter(is_left).cloned().collect();
+        let mut model = member.copied()?;
+        learn_population(&mut model, &unseen, &train)?;
+        for cases in cars_of(part) {
+            asked.ask(&model, &cases)?;
+        }
+        let done = 0.8 + 0.2 * (part + 1) as f64 / members.len() as f64;
+        if tell(done, "cars that were left out").is_break() {
+            return Ok(None);
+        }
+    }
+    let Asked { test, rows, .. } = asked;
+    let test: Vec<&ResponseCase> = test.iter().collect();
+    let clusters = clusters(&test, settings.seed);
+    Ok(Some(Comparison::of((&set.name, settings), &test, &clusters, rows, &[])))
+}
+
+/// The cars that were asked about.
+struct Asked<'a> {
+    settings: &'a ComparisonSettings,
+    test: Vec<ResponseCase>,
+    rows: Vec<ComparedCase>,
+}
+
+impl Asked<'_> {
+    /// Asks every model about a car.
+    ///
+    /// - `model`: that has not seen it.
+    fn ask(&mut self, model: &ResponseModel, cases: &[&ResponseCase]) -> Result<(), LearningError> {
+        let seed = self.settings.seed;
+        let cases: Vec<ResponseCase> = cases.iter().copied().cloned().collect();
+        let all = TrainingSet::of_split(String::new(), &cases, seed, TEST_SHARE);
+        let is_test = |case: &&ResponseCase| all.test.iter().any(|id| id.digest == case.digest);
+        let test: Vec<&ResponseCase> = cases.iter().filter(is_test).collect();
+        let clusters = clusters(&test, seed);
+        let mut add = |of: (&MotionModel, usize, u64)| -> Result<(), LearningError> {
+            self.rows.extend(answers(of, &test, &clusters)?);
+            Ok(())
+        };
+        add((&MotionModel::Untuned, 0, seed))?;
+        add((&MotionModel::Network(Box::new(model.copied()?)), 0, seed))?;
+        for &n in &self.settings.trajectories {
+            for choice in seed..seed + self.settings.n_choices {
+                let set = all.clone().choose(Some(n), choice)?;
+                let learned: Vec<&ResponseCase> = set.train.iter().collect();
+                let tuning =
+                    Tuning::fit(&learned, self.settings.config.tuning, choice, &mut |_, _| {
+                        ControlFlow::Continue(())
+                    });
+                add((&MotionModel::Tuned(tuning), n, choice))?;
+                add((&MotionModel::Network(Box::new(condition(model, &set)?)), n, choice))?;
+            }
+        }
+        self.test.extend(test.into_iter().cloned());
+        Ok(())
+    }
+}

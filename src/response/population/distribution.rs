@@ -1,0 +1,277 @@
+//! The distribution of strengths over cars, and the directions in which a prediction is uncertain by
+//! it.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use crate::nn::NnError;
+use crate::response::network::response_network::ResponseNetwork;
+use crate::response::physics::effects::is_of_collision;
+use crate::response::population::linearized::{Linearized, N_ROWS, Predicted};
+use crate::response::population::strengths::Evidence;
+use crate::response::predict::{Latents, N_OF_COLLISION};
+use crate::response::{CarStrengths, N_EFFECTS, N_LATENTS, ResponseCase, vehicle_tokens};
+use crate::vehicle::VehicleParameters;
+
+/// Degrees of freedom of Student's distribution, by which windows that are far off count less.
+const DEGREES_OF_FREEDOM: f64 = 4.0;
+/// Share of what trajectories say of a car that counts: what the effects cannot explain is not
+/// independent from window to window and from motion to motion. Without it, on cars left out, regions
+/// of 90 % after one trajectory hold 42 to 94 % and some means move away; chosen so that neither happens.
+const EVIDENCE_SHARE: f64 = 0.2;
+/// Rounds of linearisation about what the last one found.
+const N_ROUNDS: usize = 3;
+/// Steps of a trajectory that are learned from: 4 s.
+pub(super) const LEARNED_STEPS: usize = 400;
+/// Place of the friction of the road among the tokens of the tyres: it is not the car's.
+const FRICTION_TOKEN: [usize; 2] = [2, 2];
+/// Difference of tokens below which two vehicles are the same.
+const SAME_TOKENS: f64 = 1e-6;
+
+/// The distribution of what is added to the strengths of a network, over cars and over the motions of a
+/// car.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StrengthPopulation {
+    /// Σ_between.
+    pub(super) between: DMatrix<f64>,
+    /// Second moment over cars of all the strengths, those of the network included: how far the bare
+    /// physics errs.
+    pub(super) bare: DMatrix<f64>,
+    /// Mean over windows of `JᵀJ` of the position at their ends: how much a change of strengths moves
+    /// the vehicle.
+    pub(super) importance: DMatrix<f64>,
+    /// Σ_within.
+    pub(super) within: DMatrix<f64>,
+    /// R: variances of X, Y, ψ, v_x, v_y, r in the middle and at the end of a window.
+    pub(super) noise: [f64; N_ROWS],
+    /// Factor on the standard deviations with which the regions hold as many motions as they say.
+    pub(super) widening: f64,
+    /// Factor on the standard deviation of each step's noise.
+    pub(super) step_noise: f64,
+    /// Cars of which trajectories are known.
+    pub(super) cars: Vec<KnownCar>,
+}
+
+/// A car of which trajectories are known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KnownCar {
+    /// Its parameters; the friction is that of one of its trajectories.
+    pub vehicle: VehicleParameters,
+    /// Trajectories that were learned from.
+    pub n_trajectories: usize,
+    /// What they say of its strengths.
+    pub strengths: CarStrengths,
+}
+
+impl KnownCar {
+    /// Whether a vehicle is this car, on whatever road.
+    pub fn is(&self, vehicle: &VehicleParameters) -> bool {
+        is_same_car(&self.vehicle, vehicle)
+    }
+}
+
+/// Weight of a window whose mean squared deviation is so many variances.
+pub(super) fn window_weight(distance: f64) -> f64 {
+    (DEGREES_OF_FREEDOM + 1.0) / (DEGREES_OF_FREEDOM + distance)
+}
+
+/// Whether two vehicles are the same car, on whatever roads.
+pub(crate) fn is_same_car(one: &VehicleParameters, other: &VehicleParameters) -> bool {
+    let [mut one, mut other] = [one, other].map(vehicle_tokens);
+    let [group, number] = FRICTION_TOKEN;
+    (one[group][number], other[group][number]) = (0.0, 0.0);
+    one.iter().flatten().zip(other.iter().flatten()).all(|(a, b)| (a - b).abs() < SAME_TOKENS)
+}
+
+impl StrengthPopulation {
+    /// The car that a vehicle is, if trajectories of it are known.
+    pub fn known(&self, vehicle: &VehicleParameters) -> Option<&KnownCar> {
+        self.cars.iter().rev().find(|car| car.is(vehicle))
+    }
+
+    /// The cars of which trajectories are known.
+    pub fn cars(&self) -> &[KnownCar] {
+        &self.cars
+    }
+
+    /// The strengths of a car.
+    pub fn of(&self, vehicle: &VehicleParameters) -> CarStrengths {
+        self.known(vehicle).map_or_else(|| self.prior(), |car| car.strengths.clone())
+    }
+
+    /// Factor on all standard deviations.
+    pub fn widening(&self) -> f64 {
+        self.widening
+    }
+
+    /// Replaces the factor on all standard deviations.
+    pub(crate) fn set_widening(&mut self, widening: f64) {
+        self.widening = widening;
+    }
+
+    /// The strengths of a car that nobody has measured.
+    pub(super) fn prior(&self) -> CarStrengths {
+        CarStrengths { mean: DVector::zeros(N_EFFECTS), covariance: self.between.clone() }
+    }
+
+    /// The strengths of a car after trajectories.
+    ///
+    /// - `prior`: before them.
+    fn posterior(
+        &self,
+        prior: &CarStrengths,
+        network: &ResponseNetwork,
+        cases: &[&ResponseCase],
+    ) -> Result<CarStrengths, NnError> {
+        let predicted: Vec<Predicted<'_>> =
+            cases.iter().map(|case| Predicted::new(case, network)).collect::<Result<_, _>>()?;
+        let mut posterior = prior.clone();
+        for _ in 0..N_ROUNDS {
+            let evidence: Vec<Evidence> = predicted
+                .par_iter()
+                .map(|one| {
+                    let of = one.linearized(&posterior.mean, LEARNED_STEPS);
+                    self.evidence(&of, &posterior.mean)
+                })
+                .collect();
+            posterior = prior.updated(&Evidence::sum(evidence).times(EVIDENCE_SHARE));
+        }
+        Ok(posterior)
+    }
+
+    /// The same distribution with a car that the network itself has learned from: what trajectories add
+    /// to its strengths is in the network already, and only how well they are known is new.
+    ///
+    /// # Errors
+    /// [`NnError`] if a tensor cannot be read.
+    pub(crate) fn with_learned_car(
+        self,
+        network: &ResponseNetwork,
+        cases: &[&ResponseCase],
+    ) -> Result<Self, NnError> {
+        let mut population = self.with_car(network, cases)?;
+        if let Some(car) = population.cars.last_mut() {
+            car.strengths.mean.fill(0.0);
+        }
+        Ok(population)
+    }
+
+    /// The same distribution after trajectories of one car, which are new.
+    ///
+    /// # Errors
+    /// [`NnError`] if a tensor cannot be read.
+    pub(crate) fn with_car(
+        mut self,
+        network: &ResponseNetwork,
+        cases: &[&ResponseCase],
+    ) -> Result<Self, NnError> {
+        let Some(first) = cases.first() else { return Ok(self) };
+        let strengths = self.posterior(&self.of(&first.vehicle), network, cases)?;
+        let n_known = self.known(&first.vehicle).map_or(0, |car| car.n_trajectories);
+        self.cars.retain(|car| !car.is(&first.vehicle));
+        let n_trajectories = n_known + cases.len();
+        let vehicle = VehicleParameters { sheet: None, ..first.vehicle.clone() };
+        self.cars.push(KnownCar { vehicle, n_trajectories, strengths });
+        Ok(self)
+    }
+
+    /// Strengths, those of the network included, after trajectories.
+    ///
+    /// # Errors
+    /// [`NnError`] if a tensor cannot be read.
+    pub(crate) fn strengths_of(
+        &self,
+        network: &ResponseNetwork,
+        cases: &[&ResponseCase],
+    ) -> Result<Vec<f64>, NnError> {
+        let Some(first) = cases.first() else { return Ok(vec![0.0; N_EFFECTS]) };
+        let of_network = Predicted::new(first, network)?.strengths;
+        let added = self.posterior(&self.of(&first.vehicle), network, cases)?.mean;
+        Ok((of_network + added).iter().copied().collect())
+    }
+
+    /// What one trajectory says: its strengths differ from those of the car by N(0, Σ_within).
+    /// Windows that are far off, as where a wheel lifts, count less (Student's distribution).
+    ///
+    /// - `mean`: strengths about which that is judged.
+    pub(super) fn evidence(&self, of: &Linearized, mean: &DVector<f64>) -> Evidence {
+        let mut covariance = &of.by_strengths * &self.within * of.by_strengths.transpose();
+        let left = &of.target - &of.by_strengths * mean;
+        for window in 0..of.n_rows() / N_ROWS {
+            let rows = window * N_ROWS..(window + 1) * N_ROWS;
+            let square = |row: usize| {
+                left[row].powi(2) / (covariance[(row, row)] + self.noise[row % N_ROWS])
+            };
+            let distance = rows.clone().map(square).sum::<f64>() / N_ROWS as f64;
+            let weight = window_weight(distance);
+            for row in rows {
+                covariance[(row, row)] += self.noise[row % N_ROWS] / weight;
+            }
+        }
+        let Some(root) = covariance.cholesky() else {
+            // Not finite: the trajectory says nothing.
+            return Evidence::none();
+        };
+        let weighted = root.solve(&of.by_strengths);
+        Evidence {
+            precision: weighted.tr_mul(&of.by_strengths),
+            weighted: weighted.tr_mul(&of.target),
+        }
+    }
+
+    /// The directions in which a prediction is uncertain.
+    ///
+    /// - `strengths`: of the car;
+    /// - `applicability`: 1 where it is like what was learned from, 0 where only the bare physics is
+    ///   left; `beyond`: how far outside, in units of what was learned from.
+    pub(crate) fn latents(
+        &self,
+        strengths: &CarStrengths,
+        [applicability, beyond]: [f64; 2],
+    ) -> Latents {
+        let mut covariance = strengths.covariance.clone();
+        if applicability < 1.0 {
+            let fading = 1.0 - applicability * applicability;
+            let growth = (1.0 + beyond).powi(2);
+            covariance *= applicability * applicability;
+            covariance += &self.bare * (fading * growth);
+        }
+        covariance += &self.within;
+        covariance *= self.widening * self.widening;
+        Latents {
+            directions: self.principal(&covariance),
+            shared_out: 0,
+            step_noise: self.step_noise,
+        }
+    }
+
+    /// The directions that move the vehicle most, of vehicle and road and of the collision apart:
+    /// with L Lᵀ the covariance and V the eigenvectors of `Lᵀ G L`, the first columns of `L V`. What
+    /// the others would move it is put on them in proportion.
+    fn principal(&self, covariance: &DMatrix<f64>) -> [[f64; N_EFFECTS]; N_LATENTS] {
+        let mut all = [[0.0; N_EFFECTS]; N_LATENTS];
+        let (of_vehicle, of_collision) = all.split_at_mut(N_LATENTS - N_OF_COLLISION);
+        for (slots, is_collision) in [(of_vehicle, false), (of_collision, true)] {
+            let places: Vec<usize> =
+                (0..N_EFFECTS).filter(|k| is_of_collision(*k) == is_collision).collect();
+            let part = |of: &DMatrix<f64>| of.select_rows(&places).select_columns(&places);
+            let floor = DMatrix::identity(places.len(), places.len()) * 1e-12;
+            let Some(root) = (part(covariance) + floor).cholesky() else { continue };
+            let root = root.unpack();
+            let moved = root.transpose() * part(&self.importance) * &root;
+            let eigen = moved.symmetric_eigen();
+            let mut order: Vec<usize> = (0..places.len()).collect();
+            order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
+            let kept: f64 = order.iter().take(slots.len()).map(|i| eigen.eigenvalues[*i]).sum();
+            let total: f64 = eigen.eigenvalues.iter().sum();
+            let scale = if kept > 0.0 { (total / kept).max(1.0).sqrt() } else { 1.0 };
+            for (slot, i) in slots.iter_mut().zip(order) {
+                let direction = &root * eigen.eigenvectors.column(i) * scale;
+                for (place, value) in places.iter().zip(direction.iter()) {
+                    slot[*place] = *value;
+                }
+            }
+        }
+        all
+    }
+}

@@ -1,0 +1,120 @@
+//! The distribution of strengths over cars in a model file.
+
+use candle_core::{Device, Tensor};
+use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+
+use crate::nn::{Checkpoint, Expected, NamedTensors, NnError, check_number, check_numbers};
+use crate::response::population::linearized::N_ROWS;
+use crate::response::{CarStrengths, KnownCar, N_EFFECTS, StrengthPopulation};
+use crate::vehicle::VehicleParameters;
+
+/// Key of the metadata and group of the tensors.
+const NAME: &str = "population";
+
+/// What of a distribution is no matrix.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Stored {
+    noise: [f64; N_ROWS],
+    widening: f64,
+    step_noise: f64,
+    cars: Vec<StoredCar>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StoredCar {
+    vehicle: VehicleParameters,
+    n_trajectories: usize,
+}
+
+impl StrengthPopulation {
+    /// Puts the distribution into a file.
+    ///
+    /// # Errors
+    /// [`NnError`].
+    pub(crate) fn put(&self, file: &mut Checkpoint) -> Result<(), NnError> {
+        let mut tensors = NamedTensors::new();
+        let mut add = |name: String, of: &DMatrix<f64>| -> Result<(), NnError> {
+            tensors.insert(name, tensor(of)?);
+            Ok(())
+        };
+        add("between".to_owned(), &self.between)?;
+        add("within".to_owned(), &self.within)?;
+        add("bare".to_owned(), &self.bare)?;
+        add("importance".to_owned(), &self.importance)?;
+        let mut cars = Vec::new();
+        for (i, car) in self.cars.iter().enumerate() {
+            add(format!("car{i}.covariance"), &car.strengths.covariance)?;
+            let mean = DMatrix::from_column_slice(1, N_EFFECTS, car.strengths.mean.as_slice());
+            add(format!("car{i}.mean"), &mean)?;
+            let (vehicle, n_trajectories) = (car.vehicle.clone(), car.n_trajectories);
+            cars.push(StoredCar { vehicle, n_trajectories });
+        }
+        let Self { noise, widening, step_noise, .. } = *self;
+        file.put(NAME, &Stored { noise, widening, step_noise, cars })?;
+        file.put_group(NAME, tensors);
+        Ok(())
+    }
+
+    /// Takes the distribution out of a file, if it has one.
+    ///
+    /// # Errors
+    /// [`NnError`] if a matrix is missing, has another shape or is no covariance, or a number is out
+    /// of range.
+    pub(crate) fn take(file: &mut Checkpoint) -> Result<Option<Self>, NnError> {
+        let Some(stored): Option<Stored> = file.find(NAME)? else { return Ok(None) };
+        check_numbers("population.noise", &stored.noise, Expected::NotNegative)?;
+        check_number("population.widening", stored.widening, Expected::NotNegative)?;
+        check_number("population.step_noise", stored.step_noise, Expected::NotNegative)?;
+        let tensors = file.take_group(NAME);
+        let matrix = |name: &str, n_rows: usize| matrix(&tensors, name, n_rows);
+        let covariance = |name: &str| -> Result<DMatrix<f64>, NnError> {
+            let found = matrix(name, N_EFFECTS)?;
+            let diagonal: Vec<f64> = found.diagonal().iter().copied().collect();
+            check_numbers(&format!("{NAME}.{name}"), &diagonal, Expected::NotNegative)?;
+            Ok(found)
+        };
+        let mut cars = Vec::new();
+        for (i, StoredCar { vehicle, n_trajectories }) in stored.cars.into_iter().enumerate() {
+            let mean = matrix(&format!("car{i}.mean"), 1)?;
+            let strengths = CarStrengths {
+                mean: DVector::from_iterator(N_EFFECTS, mean.iter().copied()),
+                covariance: covariance(&format!("car{i}.covariance"))?,
+            };
+            cars.push(KnownCar { vehicle, n_trajectories, strengths });
+        }
+        Ok(Some(Self {
+            between: covariance("between")?,
+            bare: covariance("bare")?,
+            importance: covariance("importance")?,
+            within: covariance("within")?,
+            noise: stored.noise,
+            widening: stored.widening,
+            step_noise: stored.step_noise,
+            cars,
+        }))
+    }
+}
+
+fn tensor(of: &DMatrix<f64>) -> Result<Tensor, NnError> {
+    let rows: Vec<f64> = of.transpose().iter().copied().collect();
+    Ok(Tensor::from_vec(rows, of.shape(), &Device::Cpu)?)
+}
+
+fn matrix(tensors: &NamedTensors, name: &str, n_rows: usize) -> Result<DMatrix<f64>, NnError> {
+    let missing = || NnError::MissingTensor { name: format!("{NAME}.{name}") };
+    let tensor = tensors.get(name).ok_or_else(missing)?;
+    let shape = [n_rows, N_EFFECTS];
+    if tensor.dims() != shape {
+        return Err(NnError::WrongShape {
+            name: format!("{NAME}.{name}"),
+            got: tensor.dims().to_vec(),
+            expected: shape.to_vec(),
+        });
+    }
+    let rows: Vec<f64> = tensor.flatten_all()?.to_vec1()?;
+    check_numbers(&format!("{NAME}.{name}"), &rows, Expected::Magnitude(1e9))?;
+    Ok(DMatrix::from_row_slice(n_rows, N_EFFECTS, &rows))
+}

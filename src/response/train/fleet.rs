@@ -1,0 +1,269 @@
+//! Trains a response network on the cars of a fleet, so that it holds for a car that nobody has
+//! measured, and says how far.
+//!
+//! The cars are divided into parts. A training leaves out each part, and predicts it: from this the
+//! distribution of the strengths over cars is learned, and how wide the regions have to be. A car with
+//! many more trajectories than the others is left out of none: without it there would be little to
+//! learn from. What is used is a training on all cars, whose trajectories make them known.
+
+use std::cell::Cell;
+
+use rayon::prelude::*;
+
+use crate::learning::{EpochReport, LearningError, TrainingProgress, TrainingReport};
+use crate::response::train::stages::fine_tune_once;
+use crate::response::{
+    MotionDomain, ResponseCase, ResponseModel, ResponseTrainSettings, ResponseTrainingSet,
+    StrengthPopulation, UnseenCar, is_same_car,
+};
+
+/// Parts of the fleet.
+const N_PARTS: usize = 4;
+/// A car with more than this many times the trajectories of the median car is left out of no training.
+const MANY: usize = 2;
+/// Factors on all deviations that are tried, and the levels at which the regions shall be right.
+const FACTORS: [f64; 9] = [0.6, 0.7, 0.8, 0.9, 1.0, 1.15, 1.3, 1.6, 2.0];
+const LEVELS: [f64; 2] = [0.5, 0.9];
+/// Steps from one instant at which the regions are looked at to the next: 0.5 s, up to 4 s.
+const STRIDE_STEPS: usize = 50;
+const LAST_STEP: usize = 400;
+
+/// Trajectories of cars, and a model that has not seen them.
+#[derive(Debug)]
+pub struct UnseenCars<'a> {
+    /// The model.
+    pub model: &'a ResponseModel,
+    /// The trajectories of each car.
+    pub cars: Vec<Vec<&'a ResponseCase>>,
+}
+
+/// Trains a network on a fleet.
+///
+/// - `start`: a pre-trained model;
+/// - `set`: trajectories of several cars.
+///
+/// # Errors
+/// [`LearningError::TooFewCases`] for fewer cars than parts, and those of the trainings.
+pub fn train_fleet(
+    start: &ResponseModel,
+    set: &ResponseTrainingSet,
+    settings: &ResponseTrainSettings,
+    report: &mut TrainingProgress<'_>,
+) -> Result<ResponseModel, LearningError> {
+    let is_cut = Cell::new(false);
+    let mut told = |told: &TrainingReport| {
+        let flow = report(told);
+        is_cut.set(is_cut.get() || flow.is_break());
+        flow
+    };
+    let FleetParts { parts, members } = train_parts(start, set, settings, &mut told)?;
+    let mut last = |of: &TrainingReport| told(&numbered(of, N_PARTS));
+    let mut model = fine_tune_once(Some(start), set, settings, &mut last)?;
+    if is_cut.get() {
+        return Ok(model);
+    }
+    let case = |idx: &usize| set.train.get(*idx);
+    let unseen: Vec<UnseenCars<'_>> = members
+        .iter()
+        .zip(&parts)
+        .map(|(model, cars)| {
+            let cars = cars.iter().map(|cases| cases.iter().filter_map(case).collect()).collect();
+            UnseenCars { model, cars }
+        })
+        .collect();
+    learn_population(&mut model, &unseen, &set.train)?;
+    Ok(model)
+}
+
+/// A model after trajectories of one or several cars: a Gaussian update of the strengths of each, by
+/// which its regions narrow. The network stays as it is. Trajectories that the model has learned from
+/// already say nothing new.
+///
+/// # Errors
+/// [`LearningError::NoPopulation`] for a model that was not trained on a fleet,
+/// [`LearningError::TooFewCases`] where there is nothing new, [`LearningError::Network`].
+pub fn condition(
+    start: &ResponseModel,
+    set: &ResponseTrainingSet,
+) -> Result<ResponseModel, LearningError> {
+    let mut population = start.population().ok_or(LearningError::NoPopulation)?.clone();
+    let new: Vec<ResponseCase> =
+        set.train.iter().filter(|case| !start.is_trained_on(case)).cloned().collect();
+    if new.is_empty() {
+        return Err(LearningError::TooFewCases { n_cases: 0, least: 1 });
+    }
+    for car in cars_of(&new) {
+        let cases: Vec<&ResponseCase> = car.iter().filter_map(|idx| new.get(*idx)).collect();
+        population = population.with_car(start.network(), &cases)?;
+    }
+    let mut model = start.copied()?;
+    model.set_population(population);
+    model.add_to_record(&set.name, &new);
+    Ok(model)
+}
+
+/// The cars of each part, and the network that has not seen them.
+pub(crate) struct FleetParts {
+    /// Of each part, the numbers of the trajectories of each car.
+    pub parts: Vec<Vec<Vec<usize>>>,
+    /// The networks.
+    pub members: Vec<ResponseModel>,
+}
+
+/// Trains a network for each part of a fleet, on all cars but those of the part. Each has a checkpoint
+/// of its own beside that of the training.
+///
+/// # Errors
+/// [`LearningError::TooFewCases`] for fewer cars than parts, and those of the trainings.
+pub(crate) fn train_parts(
+    start: &ResponseModel,
+    set: &ResponseTrainingSet,
+    settings: &ResponseTrainSettings,
+    report: &mut TrainingProgress<'_>,
+) -> Result<FleetParts, LearningError> {
+    settings.config.check()?;
+    settings.config.check_memory()?;
+    let parts = parts_of(&cars_of(&set.train));
+    if parts.iter().any(Vec::is_empty) {
+        let n_cases = parts.iter().map(Vec::len).sum();
+        return Err(LearningError::TooFewCases { n_cases, least: N_PARTS });
+    }
+    let mut members = Vec::new();
+    for (part, left_out) in parts.iter().enumerate() {
+        let is_left = |idx: &usize| !left_out.iter().flatten().any(|left_out| left_out == idx);
+        let train: Vec<usize> = (0..set.train.len()).filter(is_left).collect();
+        let checkpoint = settings.checkpoint.as_ref().map(|path| {
+            let mut name = path.as_os_str().to_owned();
+            name.push(format!(".part{part}"));
+            name.into()
+        });
+        let settings = ResponseTrainSettings { checkpoint, ..settings.clone() };
+        let mut told = |of: &TrainingReport| report(&numbered(of, part));
+        members.push(fine_tune_once(Some(start), &set.part(&train), &settings, &mut told)?);
+    }
+    Ok(FleetParts { parts, members })
+}
+
+/// A report of one of the trainings of a fleet, which says which.
+fn numbered(report: &TrainingReport, training_idx: usize) -> TrainingReport {
+    match report {
+        TrainingReport::Epoch(epoch) => TrainingReport::Epoch(EpochReport {
+            training_idx,
+            n_trainings: N_PARTS + 1,
+            ..epoch.clone()
+        }),
+        fit => fit.clone(),
+    }
+}
+
+/// The trajectories of each car, in the order in which the cars come first.
+fn cars_of(cases: &[ResponseCase]) -> Vec<Vec<usize>> {
+    let mut cars: Vec<Vec<usize>> = Vec::new();
+    for (idx, case) in cases.iter().enumerate() {
+        let same = |car: &&mut Vec<usize>| {
+            let first = car.first().and_then(|first| cases.get(*first));
+            first.is_some_and(|first| is_same_car(&first.vehicle, &case.vehicle))
+        };
+        match cars.iter_mut().find(same) {
+            Some(car) => car.push(idx),
+            None => cars.push(vec![idx]),
+        }
+    }
+    cars
+}
+
+/// The cars of each part, by the numbers of their cases.
+fn parts_of(cars: &[Vec<usize>]) -> Vec<Vec<Vec<usize>>> {
+    let mut sizes: Vec<usize> = cars.iter().map(Vec::len).collect();
+    sizes.sort_unstable();
+    let most = MANY * sizes.get(sizes.len() / 2).copied().unwrap_or(0);
+    let mut parts = vec![Vec::new(); N_PARTS];
+    for (i, car) in cars.iter().filter(|car| car.len() <= most).enumerate() {
+        if let Some(part) = parts.get_mut(i % N_PARTS) {
+            part.push(car.clone());
+        }
+    }
+    parts
+}
+
+/// Gives a model the distribution of strengths over cars, and makes cars known to it.
+///
+/// - `unseen`: cars, each with a model that has not seen it;
+/// - `train`: the trajectories that the model has learned from.
+///
+/// # Errors
+/// [`LearningError::Network`].
+pub fn learn_population(
+    model: &mut ResponseModel,
+    unseen: &[UnseenCars<'_>],
+    train: &[ResponseCase],
+) -> Result<(), LearningError> {
+    let cars: Vec<UnseenCar<'_>> = unseen
+        .iter()
+        .flat_map(|of| of.cars.iter().map(|cases| UnseenCar { cases, network: of.model.network() }))
+        .collect();
+    let mut population = StrengthPopulation::fit(&cars)?;
+    population.set_widening(widening(&population, unseen)?);
+    for car in cars_of(train) {
+        let cases: Vec<&ResponseCase> = car.iter().filter_map(|idx| train.get(*idx)).collect();
+        population = population.with_learned_car(model.network(), &cases)?;
+    }
+    model.set_domain(MotionDomain::of(train));
+    model.set_population(population);
+    Ok(())
+}
+
+/// The factor on the deviations with which the regions hold as many of the recorded positions as they
+/// say.
+fn widening(
+    population: &StrengthPopulation,
+    unseen: &[UnseenCars<'_>],
+) -> Result<f64, LearningError> {
+    let mut best = (f64::INFINITY, 1.0);
+    for factor in FACTORS {
+        let mut population = population.clone();
+        population.set_widening(factor);
+        let (mut inside, mut n) = ([0; LEVELS.len()], 0);
+        for of in unseen {
+            let mut model = of.model.copied()?;
+            model.set_population(population.clone());
+            let counted: Vec<([usize; LEVELS.len()], usize)> = of
+                .cars
+                .par_iter()
+                .flatten()
+                .map(|case| count_inside(&model, case))
+                .collect::<Result<_, _>>()?;
+            for (counted, of_case) in counted {
+                inside.iter_mut().zip(counted).for_each(|(sum, inside)| *sum += inside);
+                n += of_case;
+            }
+        }
+        let off: f64 = inside
+            .iter()
+            .zip(LEVELS)
+            .map(|(inside, level)| (*inside as f64 / f64::max(n as f64, 1.0) - level).abs())
+            .sum();
+        if off < best.0 {
+            best = (off, factor);
+        }
+    }
+    Ok(best.1)
+}
+
+/// Instants at which the recorded position lies in the region of each level, and all instants.
+fn count_inside(
+    model: &ResponseModel,
+    case: &ResponseCase,
+) -> Result<([usize; LEVELS.len()], usize), LearningError> {
+    let Some(initial) = case.states.first() else { return Ok(([0; LEVELS.len()], 0)) };
+    let n_steps = case.inputs.len().min(LAST_STEP);
+    let motion = model.predictor(&case.vehicle)?.motion(initial, &case.inputs[..n_steps]);
+    let at: Vec<usize> = (STRIDE_STEPS..=n_steps).step_by(STRIDE_STEPS).collect();
+    let levels: Vec<f64> = at
+        .iter()
+        .filter_map(|&at| Some((at, case.states.get(at)?)))
+        .map(|(at, state)| motion.position(at).level_of([state.x_m, state.y_m]))
+        .collect();
+    let inside = LEVELS.map(|level| levels.iter().filter(|of| **of <= level).count());
+    Ok((inside, levels.len()))
+}
