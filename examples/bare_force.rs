@@ -9,6 +9,8 @@
 //! with the largest are left out in turn. What is printed are the constants of
 //! `src/force/physics/bare.rs`.
 
+#![allow(clippy::print_stdout)]
+
 use std::error::Error;
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
