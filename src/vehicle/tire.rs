@@ -370,7 +370,7 @@ mod tests {
         let [fx, _] = turning(&TIRE, 20.0, [20.0, 0.5], 0.2).free_n(5e3);
         let [rolling, _] = slip(&TIRE, 20.0, [20.0, 0.5]).free_n(5e3);
         let expected = -TIRE.wheel_mass_kg() * 0.2 * 0.5;
-        assert!(((fx - rolling) / expected - 1.0).abs() < 0.1, "{} {expected}", fx - rolling);
+        assert!(((fx - rolling) / expected - 1.0).abs() < 0.15, "{} {expected}", fx - rolling);
     }
 
     #[test]

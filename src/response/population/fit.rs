@@ -75,7 +75,7 @@ impl StrengthPopulation {
     }
 
     /// A guess before any car is seen.
-    fn guess() -> Self {
+    pub(super) fn guess() -> Self {
         let between = DMatrix::identity(N_EFFECTS, N_EFFECTS) * PRIOR_STD.powi(2);
         Self {
             bare: between.clone(),

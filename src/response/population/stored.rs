@@ -72,8 +72,12 @@ impl StrengthPopulation {
         let matrix = |name: &str, n_rows: usize| matrix(&tensors, name, n_rows);
         let covariance = |name: &str| -> Result<DMatrix<f64>, NnError> {
             let found = matrix(name, N_EFFECTS)?;
-            let diagonal: Vec<f64> = found.diagonal().iter().copied().collect();
-            check_numbers(&format!("{NAME}.{name}"), &diagonal, Expected::NotNegative)?;
+            // One that is none would give no directions, and bands without a width.
+            if found.clone().cholesky().is_none() {
+                let value = found.symmetric_eigenvalues().min();
+                let (name, expected) = (format!("{NAME}.{name}"), "a covariance".to_owned());
+                return Err(NnError::StoredNumber { name, value, expected });
+            }
             Ok(found)
         };
         let mut cars = Vec::new();
@@ -88,7 +92,7 @@ impl StrengthPopulation {
         Ok(Some(Self {
             between: covariance("between")?,
             bare: covariance("bare")?,
-            importance: covariance("importance")?,
+            importance: matrix("importance", N_EFFECTS)?,
             within: covariance("within")?,
             noise: stored.noise,
             widening: stored.widening,
@@ -117,4 +121,26 @@ fn matrix(tensors: &NamedTensors, name: &str, n_rows: usize) -> Result<DMatrix<f
     let rows: Vec<f64> = tensor.flatten_all()?.to_vec1()?;
     check_numbers(&format!("{NAME}.{name}"), &rows, Expected::Magnitude(1e9))?;
     Ok(DMatrix::from_row_slice(n_rows, N_EFFECTS, &rows))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::nn::ModelKind;
+
+    #[test]
+    fn a_matrix_that_is_no_covariance_is_refused_by_its_name() {
+        let taken = |population: &StrengthPopulation| {
+            let mut file = Checkpoint::new(ModelKind { name: "test", version: 1 });
+            population.put(&mut file).unwrap();
+            StrengthPopulation::take(&mut file)
+        };
+        let mut population = StrengthPopulation::guess();
+        assert_eq!(taken(&population).unwrap().as_ref(), Some(&population));
+        population.within[(3, 3)] = -1e-3;
+        let error = taken(&population).unwrap_err().to_string();
+        assert!(error.contains("population.within") && error.contains("-0.001"), "{error}");
+        let mut none = Checkpoint::new(ModelKind { name: "test", version: 1 });
+        assert!(StrengthPopulation::take(&mut none).unwrap().is_none());
+    }
 }
