@@ -85,8 +85,8 @@ pub struct MotionForecast {
     pub n_vehicles: usize,
     /// Which estimates of the vehicle the end of the motion depends on; empty if none was drawn.
     pub sensitivity: Vec<Sensitivity>,
-    /// How far the response network holds for the forecast: of the force and the vehicle for which
-    /// it holds least.
+    /// How far the response network holds for the forecast: mean over forces and vehicles, with what
+    /// lies outside for the median of them.
     pub applicability: Applicability,
 }
 
@@ -221,11 +221,7 @@ pub fn forecast_forces(
         })
     };
     let parts: Vec<Part> = (0..n_parts).into_par_iter().filter_map(of).collect();
-    let least = parts.iter().map(|part| &part.applicability);
-    let applicability = least
-        .max_by(|a, b| a.distance.total_cmp(&b.distance))
-        .cloned()
-        .unwrap_or_else(Applicability::whole);
+    let applicability = usual(parts.iter().map(|part| &part.applicability).collect());
     let (parts, paths): (Vec<MotionDistribution>, Vec<Vec<VehicleState<f64>>>) =
         parts.into_iter().map(|part| (part.motion, part.path)).unzip();
     let central = mean_of(&paths);
@@ -257,6 +253,16 @@ pub fn forecast_forces(
 
 fn pose(state: &VehicleState<f64>) -> Pose {
     Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad }
+}
+
+/// What lies outside for the median of several forces and vehicles, with the mean of their values.
+fn usual(mut all: Vec<&Applicability>) -> Applicability {
+    all.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+    let mean = all.iter().map(|of| of.value).sum::<f64>() / all.len().max(1) as f64;
+    match all.get(all.len() / 2) {
+        Some(median) => Applicability { value: mean, ..(*median).clone() },
+        None => Applicability::whole(),
+    }
 }
 
 /// The forecast for one force and one vehicle.

@@ -16,6 +16,11 @@ pub enum LearningError {
         /// How many it takes.
         least: usize,
     },
+    /// Every case was learned from before.
+    #[error(
+        "every trajectory is one that the network has learned from already; it says nothing new"
+    )]
+    NothingNew,
     /// A setting outside its range.
     #[error("{name} is {value}, expected {expected}")]
     Setting {

@@ -67,7 +67,7 @@ struct ConditionResponseArgs {
 
 const EXAMPLES: &str = "\
 Examples:
-  impactlab condition response --data datasets/trajectories-fleet/van --trajectories 5 --out van.safetensors
+  impactlab condition response --data my-car-trajectories --trajectories 5 --out my-car.safetensors
   impactlab condition response --log impact.csv --vehicle car.toml --out car.safetensors
 
 The effects that the 4DOF model leaves out have strengths that differ from car to car. A network that

@@ -81,7 +81,7 @@ pub fn train_fleet(
 ///
 /// # Errors
 /// [`LearningError::NoPopulation`] for a model that was not trained on a fleet,
-/// [`LearningError::TooFewCases`] where there is nothing new, [`LearningError::Network`].
+/// [`LearningError::NothingNew`], [`LearningError::Network`].
 pub fn condition(
     start: &ResponseModel,
     set: &ResponseTrainingSet,
@@ -90,7 +90,7 @@ pub fn condition(
     let new: Vec<ResponseCase> =
         set.train.iter().filter(|case| !start.is_trained_on(case)).cloned().collect();
     if new.is_empty() {
-        return Err(LearningError::TooFewCases { n_cases: 0, least: 1 });
+        return Err(LearningError::NothingNew);
     }
     for car in cars_of(&new) {
         let cases: Vec<&ResponseCase> = car.iter().filter_map(|idx| new.get(*idx)).collect();
