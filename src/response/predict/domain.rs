@@ -5,7 +5,7 @@
 //! D²  = Σ_q d_q²       applicability = 1/(1 + (D/0.5)⁴)
 //! ```
 //!
-//! Within the ranges the applicability is 1; half of half a range beyond one of them it is a half.
+//! Distance and power are chosen, not fitted. Within the ranges the applicability is 1; half of half a range beyond one of them it is a half.
 
 use serde::{Deserialize, Serialize};
 

@@ -34,7 +34,9 @@ pub const N_NAMED_LATENTS: usize = 4;
 pub const LATENT_NAMES: [&str; N_NAMED_LATENTS] =
     ["grip", "balance", "yaw impulse", "lateral impulse"];
 
-/// How far the 4DOF model by data sheet errs, as scales of the named latent factors.
+/// How far the 4DOF model by data sheet errs, as scales of the named latent factors, on the wide side:
+/// over the cars of the fleet the strengths along them have root mean squares of 0.06, 0.02, 0.02 and
+/// 0.07.
 const BARE_SCALES: [f64; N_NAMED_LATENTS] = [0.10, 0.05, 0.10, 0.10];
 
 /// Places of the named latent factors among all.
