@@ -5,13 +5,11 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 
 use crate::cli::CliError;
-use crate::cli::commands::fine_tune::LogArgs;
 use crate::cli::console::{Console, Verdict};
-use crate::cli::options::{BadCasesArg, OverwriteArg, VehicleArg, count, number};
+use crate::cli::options::{BadCasesArg, LearningDataArgs, OverwriteArg};
 use crate::cli::text::{Trained, print_response_training};
 use crate::data::check_target;
-use crate::learning::{ModelFile, TEST_SHARE};
-use crate::ranges::{TEST_SHARE as SHARE_OF_TEST, TRAJECTORIES};
+use crate::learning::ModelFile;
 use crate::shipped::ModelSource;
 use crate::study::{FineTuneRequest, Learning, ModelChoice, TrainingOptions};
 
@@ -34,28 +32,11 @@ struct ConditionResponseArgs {
     /// A response network that was trained on a fleet: `shipped` or a file
     #[arg(long, value_name = "MODEL", default_value = "shipped")]
     model: ModelSource,
-    /// A trajectory data set of the car, of which a quarter of the cases is kept apart for the test;
-    /// several if given again
-    #[arg(long, value_name = "DIR", required_unless_present = "log")]
-    data: Vec<PathBuf>,
     #[command(flatten)]
-    logs: LogArgs,
-    /// How many trajectories of each data set to learn from; all that are not kept for the test if not
-    /// given
-    #[arg(long, value_name = "N", value_parser = count::<usize>(TRAJECTORIES))]
-    trajectories: Option<usize>,
-    /// The struck vehicle: a preset or a file, instead of the data set's own
-    #[arg(long, value_name = "NAME|FILE")]
-    vehicle: Option<VehicleArg>,
-    /// Share of the cases that is kept for the test
-    #[arg(long, default_value_t = TEST_SHARE, value_name = "SHARE", value_parser = number(SHARE_OF_TEST))]
-    test_share: f64,
+    data: LearningDataArgs,
     /// Seed of the split
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Seed of the choice of the trajectories; the split's if not given
-    #[arg(long)]
-    choice: Option<u64>,
     #[command(flatten)]
     bad_cases: BadCasesArg,
     /// Where the model goes
@@ -85,17 +66,12 @@ pub(in crate::cli) fn run(
     let request = FineTuneRequest {
         learning: Learning::Strengths,
         model: Some(ModelChoice::from(args.model.clone())),
-        data: args.data.clone(),
-        logs: args.logs.logs(),
-        trajectories: args.trajectories,
-        vehicle: VehicleArg::choice(&args.vehicle),
-        test_share: args.test_share,
-        choice: args.choice,
         training: TrainingOptions {
             seed: args.seed,
             bad_cases: args.bad_cases.into(),
             ..TrainingOptions::default()
         },
+        ..args.data.request()
     };
     if !console.print_request {
         check_target(&args.out, args.overwrite.into())?;

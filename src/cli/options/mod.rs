@@ -2,6 +2,7 @@
 
 mod choices;
 mod ending;
+mod learning_data;
 mod overwrite;
 mod quantity;
 mod source;
@@ -11,6 +12,7 @@ pub(super) use choices::{
     BadCasesArg, EquationsArg, IntegratorArg, SamplingArg, SplitArg, UnitsArg, VehicleArg,
 };
 pub(super) use ending::EndingArgs;
+pub(super) use learning_data::LearningDataArgs;
 pub(super) use overwrite::OverwriteArg;
 pub(super) use quantity::{contact_point, count, number, size_px, window_s};
 pub(super) use source::SourceArgs;
