@@ -16,7 +16,8 @@ use crate::jobs::{Progress, ProgressCallback};
 use crate::numerics::Summary;
 use crate::vehicle::{
     ContactLoad, ContactPoint, Controls, Integrator, Manoeuvre, Motion, OUTPUT_INTERVAL_S,
-    SimulationError, VehicleParameters, VehicleState, WheelEffort, WheelHistory,
+    SimulationError, SimulationRun, VehicleParameters, VehicleState, WheelEffort, WheelHistory,
+    simulate_batch,
 };
 
 /// Number of cases that are simulated in parallel between two reports of progress.
@@ -183,17 +184,57 @@ pub fn replay_case(
     vehicle: &VehicleParameters,
     integrator: Integrator,
 ) -> Result<Replay, ReplayError> {
-    let in_case = |source| ReplayError::Series { case: case.name.clone(), source };
+    let (vehicle, manoeuvre) = prepared(case, vehicle)?;
+    let motion = vehicle.simulate(&manoeuvre, integrator);
+    compared(case, &vehicle, motion)
+}
+
+/// The vehicle of a case, on the road of the case, and its manoeuvre.
+fn prepared(
+    case: &Case,
+    vehicle: &VehicleParameters,
+) -> Result<(VehicleParameters, Manoeuvre), ReplayError> {
     let manoeuvre = recorded_manoeuvre(case, vehicle)?;
     let friction = TrajectoryAttributes::read(&case.attributes)?.mu;
-    let vehicle = vehicle.clone().with_friction(friction);
-    let motion = vehicle
-        .simulate(&manoeuvre, integrator)
-        .map_err(|source| ReplayError::Simulation { case: case.name.clone(), source })?;
+    Ok((vehicle.clone().with_friction(friction), manoeuvre))
+}
+
+/// The simulated motion of a case beside the recorded one.
+fn compared(
+    case: &Case,
+    vehicle: &VehicleParameters,
+    motion: Result<Motion, SimulationError>,
+) -> Result<Replay, ReplayError> {
+    let in_case = |source| ReplayError::Series { case: case.name.clone(), source };
+    let motion =
+        motion.map_err(|source| ReplayError::Simulation { case: case.name.clone(), source })?;
     let error = MotionError::between(&motion.series, &case.series).map_err(in_case)?;
     let spin = largest_yaw_change_rad(&case.series).map_err(in_case)? > SPIN_YAW_CHANGE_RAD;
-    let violations = physical_violations(&motion.series, &vehicle).map_err(in_case)?;
+    let violations = physical_violations(&motion.series, vehicle).map_err(in_case)?;
     Ok(Replay { case: case.name.clone(), motion, error, spin, violations })
+}
+
+/// Simulates and compares cases, side by side where the method allows it.
+fn replay_block(
+    cases: &[Case],
+    vehicle: &VehicleParameters,
+    integrator: Integrator,
+) -> Vec<Result<Replay, ReplayError>> {
+    if integrator != Integrator::Rk4 {
+        return cases.par_iter().map(|case| replay_case(case, vehicle, integrator)).collect();
+    }
+    let prepared: Vec<_> = cases.par_iter().map(|case| prepared(case, vehicle)).collect();
+    let runs: Vec<SimulationRun<'_>> = prepared
+        .iter()
+        .flatten()
+        .map(|(vehicle, manoeuvre)| SimulationRun { vehicle, manoeuvre })
+        .collect();
+    let mut motions = simulate_batch(&runs).into_iter();
+    let of_cases = cases.iter().zip(prepared).filter_map(|(case, prepared)| match prepared {
+        Ok((vehicle, _)) => Some(compared(case, &vehicle, motions.next()?)),
+        Err(error) => Some(Err(error)),
+    });
+    of_cases.collect()
 }
 
 /// Simulates and compares the cases of a data set in parallel. A case that fails does not stop the
@@ -209,9 +250,7 @@ pub fn replay_dataset(
     let mut all = DatasetReplay::default();
     let n_cases = cases.len() as u64;
     for block in cases.chunks(BLOCK_CASES) {
-        let results: Vec<_> =
-            block.par_iter().map(|case| replay_case(case, vehicle, integrator)).collect();
-        for result in results {
+        for result in replay_block(block, vehicle, integrator) {
             match result {
                 Ok(replay) => all.cases.push(replay),
                 Err(error) => all.failures.push(error),

@@ -23,6 +23,7 @@ pub enum Stage {
 /// - `x`: state at the start of the step.
 /// - `h`: length of the step, in the unit of time of `f`.
 /// - returns the state at the end of the step.
+#[inline(always)]
 pub fn euler_step<T: Lanes, const N: usize>(
     f: impl Fn(Stage, &[T; N]) -> [T; N],
     x: &[T; N],
@@ -43,20 +44,45 @@ pub fn euler_step<T: Lanes, const N: usize>(
 /// - `x`: state at the start of the step.
 /// - `h`: length of the step, in the unit of time of `f`.
 /// - returns the state at the end of the step.
+#[inline(always)]
 pub fn rk4_step<T: Lanes, const N: usize>(
     f: impl Fn(Stage, &[T; N]) -> [T; N],
     x: &[T; N],
     h: f64,
 ) -> [T; N] {
-    let k1 = f(Stage::Start, x);
-    let k2 = f(Stage::Middle, &advance(x, &k1, h / 2.0));
-    let k3 = f(Stage::Middle, &advance(x, &k2, h / 2.0));
-    let k4 = f(Stage::End, &advance(x, &k3, h));
-    std::array::from_fn(|i| x[i] + (k1[i] + (k2[i] + k3[i]) * 2.0 + k4[i]) * (h / 6.0))
+    rk4_step_from(&f(Stage::Start, x), f, x, h)
 }
 
+/// [`rk4_step`] where the right-hand side at the start of the step is known.
+///
+/// - `start`: f(t, x).
+#[inline(always)]
+pub fn rk4_step_from<T: Lanes, const N: usize>(
+    start: &[T; N],
+    f: impl Fn(Stage, &[T; N]) -> [T; N],
+    x: &[T; N],
+    h: f64,
+) -> [T; N] {
+    let (mut k, mut sum) = (*start, *start);
+    // A loop, so that a large f is compiled once.
+    for (stage, share, weight) in
+        [(Stage::Middle, 0.5, 2.0), (Stage::Middle, 0.5, 2.0), (Stage::End, 1.0, 1.0)]
+    {
+        k = f(stage, &advance(x, &k, h * share));
+        for (sum, k) in sum.iter_mut().zip(&k) {
+            *sum += *k * weight;
+        }
+    }
+    advance(x, &sum, h / 6.0)
+}
+
+#[inline(always)]
 fn advance<T: Lanes, const N: usize>(x: &[T; N], k: &[T; N], h: f64) -> [T; N] {
-    std::array::from_fn(|i| x[i] + k[i] * h)
+    let mut next = *x;
+    for (x, k) in next.iter_mut().zip(k) {
+        *x += *k * h;
+    }
+    next
 }
 
 #[cfg(test)]

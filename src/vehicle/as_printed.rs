@@ -20,11 +20,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::numerics::Lanes;
-use crate::units::STANDARD_GRAVITY_M_S2;
+use crate::numerics::{Lanes, LanesOver};
+use crate::vehicle::constants::VehicleConstants;
 use crate::vehicle::four_dof::{LOAD_PASSES, collision_wrench};
-use crate::vehicle::loads::Wheel;
-use crate::vehicle::{VehicleEvaluation, VehicleInput, VehicleParameters, VehicleState};
+use crate::vehicle::frames::Heading;
+use crate::vehicle::{VehicleEvaluation, VehicleInput, VehicleState};
 
 /// The form of the equations of motion of the 4DOF vehicle.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -38,38 +38,44 @@ pub enum Equations {
     Paper,
 }
 
-impl VehicleParameters {
+impl<P: Copy> VehicleConstants<P> {
     /// The right-hand side of the equations of motion as the paper prints them.
-    pub(super) fn evaluate_as_printed<T: Lanes>(
+    #[inline(always)]
+    pub(super) fn evaluate_as_printed<T: Lanes + LanesOver<P>>(
         &self,
         x: &VehicleState<T>,
         u: &VehicleInput<T>,
     ) -> VehicleEvaluation<T> {
-        let collision = collision_wrench(x.yaw_rad, u.collision.as_ref());
-        let mass_kg = self.mass.mass_kg;
-        let mut acceleration = [T::from(0.0); 2];
-        let mut loads = self.loads_as_printed(acceleration, x.roll_rad);
+        let (body, printed) = (&self.body, &self.printed);
+        let zero = x.vx_m_s.constant(0.0);
+        let heading = Heading::of(x.yaw_rad);
+        let collision = collision_wrench(heading, zero, u.collision.as_ref());
+        let leaning_n_m = x.roll_rad.sin() * body.weight_moment_n_m;
+        let mut acceleration = [zero; 2];
+        let mut loads = [zero; 4];
         let mut yaw_moment = collision.yaw_moment_n_m;
-        for pass in 0..=LOAD_PASSES {
+        for _ in 0..=LOAD_PASSES {
+            loads = self.loads_as_printed(acceleration, leaning_n_m);
             let ([fx, fy], tire_moment) = self.tires_as_printed(x, u.steer_rad, &loads);
-            acceleration =
-                [fx + collision.force_n[0], fy + collision.force_n[1]].map(|force| force / mass_kg);
+            acceleration = [
+                (fx + collision.force_n[0]) * body.per_mass_1_kg,
+                (fy + collision.force_n[1]) * body.per_mass_1_kg,
+            ];
             yaw_moment = tire_moment + collision.yaw_moment_n_m;
-            if pass < LOAD_PASSES {
-                loads = self.loads_as_printed(acceleration, x.roll_rad);
-            }
         }
-        let yaw_acceleration = yaw_moment / self.mass.yaw_inertia_kg_m2;
-        let suspension = &self.suspension;
-        let contact_height_m = u.collision.map_or(0.0, |c| c.contact.height_m);
-        let roll_moment = self.gravity_roll_moment_n_m(x.roll_rad)
-            - x.roll_rad * suspension.roll_stiffness_n_m_rad
-            - x.roll_rate_rad_s * suspension.roll_damping_n_m_s_rad
-            - collision.force_n[1] * (contact_height_m - suspension.roll_axis_height_m)
-            - yaw_acceleration * self.mass.roll_yaw_product_kg_m2;
-        let roll_acceleration = roll_moment / self.mass.roll_inertia_kg_m2;
+        let yaw_acceleration = yaw_moment / printed.yaw_inertia_kg_m2;
+        let roll_arm_m = match &u.collision {
+            Some(collision) => collision.contact.height_m - body.roll_axis_height_m,
+            None => zero,
+        };
+        let roll_moment = leaning_n_m
+            - x.roll_rad * body.roll_stiffness_n_m_rad
+            - x.roll_rate_rad_s * body.roll_damping_n_m_s_rad
+            - collision.force_n[1] * roll_arm_m
+            - yaw_acceleration * printed.roll_yaw_product_kg_m2;
+        let roll_acceleration = roll_moment / printed.roll_inertia_kg_m2;
         VehicleEvaluation {
-            derivative: x.derivative(acceleration, [yaw_acceleration, roll_acceleration]),
+            derivative: x.derivative(heading, acceleration, [yaw_acceleration, roll_acceleration]),
             acceleration_m_s2: acceleration,
             vertical_loads_n: loads,
             collision_force_n: collision.force_n,
@@ -79,29 +85,34 @@ impl VehicleParameters {
 
     /// Tyre forces by `eq:tire_model` to `eq:tire_model3`, summed by `eq:4dof2`: `[F_x, F_y]`, N,
     /// and the yaw moment M_z, N m.
-    fn tires_as_printed<T: Lanes>(
+    #[inline(always)]
+    fn tires_as_printed<T: Lanes + LanesOver<P>>(
         &self,
         x: &VehicleState<T>,
         steer_rad: T,
         loads_n: &[T; 4],
     ) -> ([T; 2], T) {
-        let tires = &self.tires;
-        let zero = T::from(0.0);
+        let (body, tires) = (&self.body, &self.tires);
+        let zero = x.vx_m_s.constant(0.0);
         let speed = x.vx_m_s;
         let resistance = speed * speed * tires.rolling_resistance_s2_m2
             + speed * tires.rolling_resistance_s_m
             + tires.rolling_resistance;
+        let (half_track, front, rear) =
+            (zero + body.half_track_m, zero + body.front_x_m, zero + body.rear_x_m);
+        let (of_front, of_rear) =
+            ((steer_rad, tires.front_stiffness_1_rad), (zero, tires.rear_stiffness_1_rad));
+        let wheels = [
+            (front, half_track, of_front),
+            (front, -half_track, of_front),
+            (rear, half_track, of_rear),
+            (rear, -half_track, of_rear),
+        ];
         let (mut force, mut moment) = ([zero; 2], zero);
-        for (wheel, &load) in Wheel::ALL.into_iter().zip(loads_n) {
-            let [px, py] = wheel.position_m(self);
+        for ((px, py, (steer, stiffness)), &load) in wheels.into_iter().zip(loads_n) {
             let course =
                 ((x.vy_m_s + x.yaw_rate_rad_s * px) / (x.vx_m_s - x.yaw_rate_rad_s * py)).atan();
-            let (steer, coefficient) = if wheel.is_front() {
-                (steer_rad, tires.cornering_coefficient_front_per_rad)
-            } else {
-                (zero, tires.cornering_coefficient_rear_per_rad)
-            };
-            let stiffness = (steer - course) * (coefficient / tires.friction);
+            let stiffness = (steer - course) * stiffness;
             let fx = resistance * load;
             let limit = load * tires.friction;
             let fy = -(stiffness / (stiffness * stiffness + 1.0).sqrt())
@@ -113,22 +124,23 @@ impl VehicleParameters {
         (force, moment)
     }
 
-    /// Vertical loads by `eq:tire_model4`, N, in the order of [`Wheel::ALL`]. The lateral load
-    /// transfer is divided between the axles by CORNERING stiffness, as printed.
-    fn loads_as_printed<T: Lanes>(&self, [ax, ay]: [T; 2], roll_rad: T) -> [T; 4] {
-        let (mass, geometry, tires) = (&self.mass, &self.geometry, &self.tires);
-        let (lf, lr) = (geometry.cg_to_front_axle_m, geometry.cg_to_rear_axle_m);
-        let weight = mass.mass_kg * STANDARD_GRAVITY_M_S2;
-        let pitch = ax * (mass.mass_kg * geometry.cg_height_m / (2.0 * geometry.wheelbase_m()));
-        let front = -(pitch - weight * lr / (2.0 * geometry.wheelbase_m()));
-        let rear = pitch + weight * lf / (2.0 * geometry.wheelbase_m());
-        let stiffness_front = tires.cornering_coefficient_front_per_rad * lr;
-        let stiffness_rear = tires.cornering_coefficient_rear_per_rad * lf;
-        let share = stiffness_front / (stiffness_front + stiffness_rear);
-        let lateral = (ay * (mass.mass_kg * geometry.cg_height_m)
-            + self.gravity_roll_moment_n_m(roll_rad))
-            / geometry.track_width_m;
-        let (shift_front, shift_rear) = (lateral * share, lateral * (1.0 - share));
+    /// Vertical loads by `eq:tire_model4`, N, in the order of
+    /// [`Wheel::ALL`](crate::vehicle::Wheel::ALL). The lateral load transfer is divided between the
+    /// axles by CORNERING stiffness, as printed.
+    ///
+    /// - `leaning_n_m`: moment of the weight about the roll axis, N m.
+    #[inline(always)]
+    fn loads_as_printed<T: Lanes + LanesOver<P>>(
+        &self,
+        [ax, ay]: [T; 2],
+        leaning_n_m: T,
+    ) -> [T; 4] {
+        let (body, printed) = (&self.body, &self.printed);
+        let pitch = ax * printed.pitch_kg;
+        let [front, rear] = [-pitch + body.front_static_n, pitch + body.rear_static_n];
+        let lateral = ay * printed.lateral_kg + leaning_n_m * printed.per_track_1_m;
+        let (shift_front, shift_rear) =
+            (lateral * printed.front_share, lateral * printed.rear_share);
         [front - shift_front, front + shift_front, rear - shift_rear, rear + shift_rear]
     }
 }

@@ -31,13 +31,14 @@
 
 use nalgebra::{SMatrix, SVector};
 use num_dual::DualSVec64;
+use pulp::NullaryFnOnce;
 
 use serde::{Deserialize, Serialize};
 
-use crate::numerics::Lanes;
-use crate::units::STANDARD_GRAVITY_M_S2;
-use crate::vehicle::frames::body_from_world;
-use crate::vehicle::loads::{LoadTransfer, Wheel, vertical_loads_n};
+use crate::numerics::{Four, Lanes, LanesOver};
+use crate::vehicle::constants::{BodyConstants, VehicleConstants};
+use crate::vehicle::frames::Heading;
+use crate::vehicle::loads::{LoadTransfer, vertical_loads_n};
 use crate::vehicle::tire::{WheelEffort, WheelSlip};
 use crate::vehicle::{Equations, N_STATE, VehicleParameters, VehicleState};
 
@@ -46,13 +47,13 @@ pub(super) const LOAD_PASSES: usize = 2;
 
 /// Point of the vehicle at which the collision force acts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct ContactPoint {
+pub struct ContactPoint<T = f64> {
     /// Coordinate x of the point in body axes, m: its distance in front of the CG.
-    pub x_m: f64,
+    pub x_m: T,
     /// Coordinate y of the point in body axes, m: its distance to the left of the CG.
-    pub y_m: f64,
+    pub y_m: T,
     /// Height of the point above the ground, m.
-    pub height_m: f64,
+    pub height_m: T,
 }
 
 /// Collision force that acts ON the vehicle at an instant.
@@ -67,7 +68,7 @@ pub struct CollisionForce<T> {
     /// at the contact point is used.
     pub yaw_moment_n_m: Option<T>,
     /// Contact point.
-    pub contact: ContactPoint,
+    pub contact: ContactPoint<T>,
 }
 
 /// Input u(t) of the equations of motion: steer angle, drive and brakes of the wheels, collision
@@ -76,28 +77,35 @@ pub struct CollisionForce<T> {
 pub struct VehicleInput<T> {
     /// Steer angle δ of the front road wheels, rad, positive to the left.
     pub steer_rad: T,
-    /// What drives, brakes or locks each wheel, in the order of [`Wheel::ALL`]. With `None` all
+    /// What drives, brakes or locks each wheel, in the order of [`Wheel::ALL`](crate::vehicle::Wheel::ALL). With `None` all
     /// wheels roll freely.
     pub wheels: Option<[WheelEffort<T>; 4]>,
     /// Collision force; `None` if there is no contact.
     pub collision: Option<CollisionForce<T>>,
 }
 
-impl<T: Lanes> VehicleInput<T> {
+impl<T: From<f64>> VehicleInput<T> {
     /// Input of a vehicle that coasts: steering wheel, throttle and brake are released (δ = 0, all
     /// wheels roll freely) and there is no contact.
     pub fn released() -> Self {
         Self { steer_rad: T::from(0.0), wheels: None, collision: None }
     }
+}
 
+impl VehicleInput<f64> {
+    /// [`VehicleInput::released`] as a constant.
+    pub const RELEASED: Self = Self { steer_rad: 0.0, wheels: None, collision: None };
+}
+
+impl<T: Lanes> VehicleInput<T> {
     /// Whether a wheel is driven, so that the energy of the vehicle may grow.
     pub fn is_driven(&self) -> bool {
-        let zero = T::from(0.0);
-        let wheels = self.wheels.iter().flatten();
-        wheels.into_iter().any(|wheel| zero.any_less(wheel.drive_n.abs()))
+        let is_driven = |force_n: T| force_n.constant(0.0).any_less(force_n.abs());
+        self.wheels.iter().flatten().any(|wheel| is_driven(wheel.drive_n))
     }
 
     /// Converts every component to another scalar type.
+    #[inline(always)]
     pub fn map<U: Lanes>(self, convert: impl Fn(T) -> U + Copy) -> VehicleInput<U> {
         VehicleInput {
             steer_rad: convert(self.steer_rad),
@@ -106,7 +114,11 @@ impl<T: Lanes> VehicleInput<T> {
                 force_n: collision.force_n.map(convert),
                 in_world_axes: collision.in_world_axes,
                 yaw_moment_n_m: collision.yaw_moment_n_m.map(convert),
-                contact: collision.contact,
+                contact: ContactPoint {
+                    x_m: convert(collision.contact.x_m),
+                    y_m: convert(collision.contact.y_m),
+                    height_m: convert(collision.contact.height_m),
+                },
             }),
         }
     }
@@ -119,25 +131,12 @@ pub struct VehicleEvaluation<T> {
     pub derivative: VehicleState<T>,
     /// Acceleration `[a_x, a_y]` of the CG in body axes, m/s².
     pub acceleration_m_s2: [T; 2],
-    /// Vertical loads of the wheels, N, in the order of [`Wheel::ALL`].
+    /// Vertical loads of the wheels, N, in the order of [`Wheel::ALL`](crate::vehicle::Wheel::ALL).
     pub vertical_loads_n: [T; 4],
     /// Collision force in body axes, N.
     pub collision_force_n: [T; 2],
     /// Yaw moment of the collision force about the CG, N m.
     pub collision_yaw_moment_n_m: T,
-}
-
-impl<T: Lanes> VehicleEvaluation<T> {
-    /// Converts every component to another scalar type.
-    pub(crate) fn map<U: Lanes>(self, convert: impl Fn(T) -> U + Copy) -> VehicleEvaluation<U> {
-        VehicleEvaluation {
-            derivative: self.derivative.map(convert),
-            acceleration_m_s2: self.acceleration_m_s2.map(convert),
-            vertical_loads_n: self.vertical_loads_n.map(convert),
-            collision_force_n: self.collision_force_n.map(convert),
-            collision_yaw_moment_n_m: convert(self.collision_yaw_moment_n_m),
-        }
-    }
 }
 
 /// Resultant of forces in body axes: `[F_x, F_y]`, N, and the yaw moment M_z about the CG, N m.
@@ -148,41 +147,20 @@ pub(super) struct Wrench<T> {
 }
 
 impl VehicleParameters {
-    /// Evaluates the right-hand side f(x, u) of the equations of motion, in the form that
-    /// [`VehicleParameters::equations`] selects.
+    /// Evaluates the right-hand side f(x, u) of the equations of motion once. Where it is evaluated
+    /// more often, [`VehicleParameters::constants`] are prepared first.
     pub fn evaluate<T: Lanes>(
         &self,
         x: &VehicleState<T>,
         u: &VehicleInput<T>,
     ) -> VehicleEvaluation<T> {
-        if self.equations == Equations::Paper {
-            return self.evaluate_as_printed(x, u);
-        }
-        let collision = collision_wrench(x.yaw_rad, u.collision.as_ref());
-        let contact_height_m =
-            u.collision.map_or(self.geometry.cg_height_m, |c| c.contact.height_m);
-        let leaning_n_m = self.gravity_roll_moment_n_m(x.roll_rad);
-        let contact_arm_m = contact_height_m - self.geometry.cg_height_m;
-        let of_body = LoadTransfer {
-            to_front_n_m: collision.force_n[0] * contact_arm_m,
-            to_right_n_m: leaning_n_m - collision.force_n[1] * contact_arm_m,
-        };
-        let (tires, vertical_loads_n) = self.tire_wrench(x, u, of_body);
+        self.constants().evaluate(x, u)
+    }
 
-        let mass_kg = self.mass.mass_kg;
-        let ax = (tires.force_n[0] + collision.force_n[0]) / mass_kg;
-        let ay = (tires.force_n[1] + collision.force_n[1]) / mass_kg;
-        let yaw_moment = tires.yaw_moment_n_m + collision.yaw_moment_n_m;
-        let roll_moment = leaning_n_m + self.roll_moment_n_m(x, ay)
-            - collision.force_n[1] * (contact_height_m - self.suspension.roll_axis_height_m);
-        let [yaw_acceleration, roll_acceleration] = self.solve_yaw_roll(yaw_moment, roll_moment);
-        VehicleEvaluation {
-            derivative: x.derivative([ax, ay], [yaw_acceleration, roll_acceleration]),
-            acceleration_m_s2: [ax, ay],
-            vertical_loads_n,
-            collision_force_n: collision.force_n,
-            collision_yaw_moment_n_m: collision.yaw_moment_n_m,
-        }
+    /// Change of the accelerations by an additional force at the ground; see
+    /// [`VehicleConstants::acceleration_of`].
+    pub fn acceleration_of(&self, force_n: [f64; 2], yaw_moment_n_m: f64) -> [f64; 4] {
+        self.constants().acceleration_of(force_n, yaw_moment_n_m)
     }
 
     /// Evaluates the right-hand side f, `[8]`, and its Jacobian ∂f/∂x, `[8, 8]`, both in the order
@@ -193,12 +171,74 @@ impl VehicleParameters {
         x: &VehicleState<f64>,
         u: &VehicleInput<f64>,
     ) -> (SVector<f64, N_STATE>, SMatrix<f64, N_STATE, N_STATE>) {
+        let constants = self.constants();
         let u = u.map(DualSVec64::<N_STATE>::from);
         let f = |x: SVector<DualSVec64<N_STATE>, N_STATE>| {
             let state = VehicleState::from_array(x.into());
-            SVector::from(self.evaluate(&state, &u).derivative.to_array())
+            SVector::from(constants.evaluate(&state, &u).derivative.to_array())
         };
         num_dual::jacobian(f, &SVector::from(x.to_array()))
+    }
+}
+
+impl<P: Copy> VehicleConstants<P> {
+    /// Evaluates the right-hand side f(x, u) of the equations of motion, in the form that the vehicle
+    /// has.
+    pub fn evaluate<T: Lanes + LanesOver<P>>(
+        &self,
+        x: &VehicleState<T>,
+        u: &VehicleInput<T>,
+    ) -> VehicleEvaluation<T> {
+        x.vx_m_s.apart(Evaluation { constants: self, x, u })
+    }
+
+    /// The time derivative of the state alone, `[8]`, in the order of `eq:state_vector`.
+    #[inline(always)]
+    pub fn derivative<T: Lanes + LanesOver<P>>(
+        &self,
+        x: &[T; N_STATE],
+        u: &VehicleInput<T>,
+    ) -> [T; N_STATE] {
+        self.evaluate(&VehicleState::from_array(*x), u).derivative.to_array()
+    }
+
+    #[inline(always)]
+    fn evaluate_corrected<T: Lanes + LanesOver<P>>(
+        &self,
+        x: &VehicleState<T>,
+        u: &VehicleInput<T>,
+    ) -> VehicleEvaluation<T> {
+        let body = &self.body;
+        let heading = Heading::of(x.yaw_rad);
+        let collision = collision_wrench(heading, x.yaw_rad.constant(0.0), u.collision.as_ref());
+        let leaning_n_m = x.roll_rad.sin() * body.weight_moment_n_m;
+        let [arm_m, roll_arm_m] = match &u.collision {
+            Some(CollisionForce { contact, .. }) => {
+                [contact.height_m - body.cg_height_m, contact.height_m - body.roll_axis_height_m]
+            }
+            None => [x.yaw_rad.constant(0.0); 2],
+        };
+        let of_body = LoadTransfer {
+            to_front_n_m: collision.force_n[0] * arm_m,
+            to_right_n_m: leaning_n_m - collision.force_n[1] * arm_m,
+        };
+        let (tires, vertical_loads_n) = self.tire_wrench(x, u, of_body);
+
+        let ax = (tires.force_n[0] + collision.force_n[0]) * body.per_mass_1_kg;
+        let ay = (tires.force_n[1] + collision.force_n[1]) * body.per_mass_1_kg;
+        let yaw_moment = tires.yaw_moment_n_m + collision.yaw_moment_n_m;
+        let roll_moment = leaning_n_m + ay * body.sprung_moment_kg_m
+            - x.roll_rad * body.roll_stiffness_n_m_rad
+            - x.roll_rate_rad_s * body.roll_damping_n_m_s_rad
+            - collision.force_n[1] * roll_arm_m;
+        let [yaw_acceleration, roll_acceleration] = body.solve_yaw_roll(yaw_moment, roll_moment);
+        VehicleEvaluation {
+            derivative: x.derivative(heading, [ax, ay], [yaw_acceleration, roll_acceleration]),
+            acceleration_m_s2: [ax, ay],
+            vertical_loads_n,
+            collision_force_n: collision.force_n,
+            collision_yaw_moment_n_m: collision.yaw_moment_n_m,
+        }
     }
 
     /// Change of the accelerations by an additional force at the ground, by the corrected equations
@@ -207,130 +247,183 @@ impl VehicleParameters {
     /// - `force_n`: additional force in body axes, N;
     /// - `yaw_moment_n_m`: additional yaw moment about the CG, N m;
     /// - returns the changes of v̇_x and v̇_y, m/s², and of ṙ and φ̈, rad/s².
-    pub fn acceleration_of<T: Lanes>(&self, force_n: [T; 2], yaw_moment_n_m: T) -> [T; 4] {
-        let [ax, ay] = force_n.map(|force| force / self.mass.mass_kg);
-        let roll_moment = ay * (self.mass.sprung_mass_kg * self.suspension.roll_arm_m);
-        let [yaw, roll] = self.solve_yaw_roll(yaw_moment_n_m, roll_moment);
+    #[inline(always)]
+    pub fn acceleration_of<T: Lanes + LanesOver<P>>(
+        &self,
+        force_n: [T; 2],
+        yaw_moment_n_m: T,
+    ) -> [T; 4] {
+        let [ax, ay] = [force_n[0] * self.body.per_mass_1_kg, force_n[1] * self.body.per_mass_1_kg];
+        let roll_moment = ay * self.body.sprung_moment_kg_m;
+        let [yaw, roll] = self.body.solve_yaw_roll(yaw_moment_n_m, roll_moment);
         [ax, ay, yaw, roll]
+    }
+
+    /// Energy of the planar motion, `m (v_x² + v_y²)/2 + I_zz r²/2`, J.
+    #[inline(always)]
+    pub fn planar_energy_j<T: Lanes + LanesOver<P>>(&self, x: &VehicleState<T>) -> T {
+        let speed_squared = x.vx_m_s * x.vx_m_s + x.vy_m_s * x.vy_m_s;
+        let spin_squared = x.yaw_rate_rad_s * x.yaw_rate_rad_s;
+        speed_squared * self.body.half_mass_kg + spin_squared * self.body.half_yaw_inertia_kg_m2
     }
 
     /// Resultant of the tyre forces, and the vertical loads of the wheels, N.
     ///
     /// - `of_body`: load transfer by everything except the tyre forces.
-    fn tire_wrench<T: Lanes>(
+    #[inline(always)]
+    fn tire_wrench<T: Lanes + LanesOver<P>>(
         &self,
         x: &VehicleState<T>,
         u: &VehicleInput<T>,
         of_body: LoadTransfer<T>,
     ) -> (Wrench<T>, [T; 4]) {
-        let (sin_steer, cos_steer) = u.steer_rad.sin_cos();
-        let slips = self.wheel_slips(x, [sin_steer, cos_steer]);
-        let in_body_axes = |wheel_idx: usize, [along, across]: [T; 2]| {
-            if Wheel::ALL[wheel_idx].is_front() {
-                [cos_steer * along - sin_steer * across, sin_steer * along + cos_steer * across]
-            } else {
-                [along, across]
+        let body = &self.body;
+        let zero = x.vx_m_s.constant(0.0);
+        let steer = Steer::of(u.steer_rad);
+        let slips = self.wheel_slips(x, &steer);
+        let free = slips.free();
+        let efforts = u.wheels.as_ref().map(side_by_side);
+        let [front_n, rear_n] = [zero + body.front_static_n, zero + body.rear_static_n];
+        let mut loads_n = [front_n, front_n, rear_n, rear_n];
+        let mut tires_n = [[zero; 4]; 2];
+        for pass in 0..=LOAD_PASSES {
+            if pass > 0 {
+                let transfer = LoadTransfer {
+                    to_front_n_m: of_body.to_front_n_m - sum(tires_n[0]) * body.cg_height_m,
+                    to_right_n_m: of_body.to_right_n_m + sum(tires_n[1]) * body.cg_height_m,
+                };
+                loads_n = vertical_loads_n(body, transfer);
             }
-        };
-        let forces_n = |loads_n: &[T; 4]| -> [[T; 2]; 4] {
-            std::array::from_fn(|i| match &u.wheels {
-                None => in_body_axes(i, slips[i].free_n(loads_n[i])),
-                Some(wheels) => in_body_axes(i, slips[i].force_n(loads_n[i], &wheels[i])),
-            })
-        };
-
-        let cg_height_m = self.geometry.cg_height_m;
-        let mut loads_n = vertical_loads_n(self, LoadTransfer::none());
-        let mut tires_n = forces_n(&loads_n);
-        for _ in 0..LOAD_PASSES {
-            let [fx, fy] = sum(&tires_n);
-            loads_n = vertical_loads_n(
-                self,
-                LoadTransfer {
-                    to_front_n_m: of_body.to_front_n_m - fx * cg_height_m,
-                    to_right_n_m: of_body.to_right_n_m + fy * cg_height_m,
-                },
-            );
-            tires_n = forces_n(&loads_n);
+            let [Four(along), Four(across)] = match &efforts {
+                None => free.force_n(Four(loads_n)),
+                Some(efforts) => slips.force_n(Four(loads_n), efforts),
+            };
+            let [x_fl, y_fl] = steer.body_from_wheel([along[0], across[0]]);
+            let [x_fr, y_fr] = steer.body_from_wheel([along[1], across[1]]);
+            tires_n = [[x_fl, x_fr, along[2], along[3]], [y_fl, y_fr, across[2], across[3]]];
         }
-        let mut yaw_moment_n_m = T::from(0.0);
-        for (wheel, [fx, fy]) in Wheel::ALL.into_iter().zip(tires_n) {
-            let [px, py] = wheel.position_m(self);
-            yaw_moment_n_m += fy * px - fx * py;
-        }
-        (Wrench { force_n: sum(&tires_n), yaw_moment_n_m }, loads_n)
+        let [[x_fl, x_fr, x_rl, x_rr], [y_fl, y_fr, y_rl, y_rr]] = tires_n;
+        let yaw_moment_n_m = (y_fl + y_fr) * body.front_x_m
+            + (y_rl + y_rr) * body.rear_x_m
+            + (x_fr + x_rr - (x_fl + x_rl)) * body.half_track_m;
+        (Wrench { force_n: [sum(tires_n[0]), sum(tires_n[1])], yaw_moment_n_m }, loads_n)
     }
 
-    fn wheel_slips<T: Lanes>(
+    /// The slip of the four wheels, side by side in the order of [`Wheel::ALL`](crate::vehicle::Wheel::ALL).
+    #[inline(always)]
+    fn wheel_slips<T: Lanes + LanesOver<P>>(
         &self,
         x: &VehicleState<T>,
-        [sin_steer, cos_steer]: [T; 2],
-    ) -> [WheelSlip<T>; 4] {
-        let tires = &self.tires;
-        let cornering_coefficients_per_rad = Wheel::ALL.map(|wheel| match wheel.is_front() {
-            true => tires.cornering_coefficient_front_per_rad,
-            false => tires.cornering_coefficient_rear_per_rad,
-        });
-        let velocities_m_s = Wheel::ALL.map(|wheel| {
-            let [px, py] = wheel.position_m(self);
-            let u = x.vx_m_s - x.yaw_rate_rad_s * py;
-            let w = x.vy_m_s + x.yaw_rate_rad_s * px;
-            match wheel.is_front() {
-                true => [cos_steer * u + sin_steer * w, cos_steer * w - sin_steer * u],
-                false => [u, w],
-            }
-        });
-        tires.slips(cornering_coefficients_per_rad, velocities_m_s, x.yaw_rate_rad_s)
+        steer: &Steer<T>,
+    ) -> WheelSlip<Four<T>> {
+        let body = &self.body;
+        let tires = self.tires.along(x.vx_m_s, Four::splat);
+        let yaw_rate = x.yaw_rate_rad_s;
+        let by_track = yaw_rate * body.half_track_m;
+        let [left, right] = [x.vx_m_s - by_track, x.vx_m_s + by_track];
+        let front = x.vy_m_s + yaw_rate * body.front_x_m;
+        let rear = x.vy_m_s + yaw_rate * body.rear_x_m;
+        let [u_fl, w_fl] = steer.wheel_from_body([left, front]);
+        let [u_fr, w_fr] = steer.wheel_from_body([right, front]);
+        let velocity_m_s = [Four([u_fl, u_fr, left, right]), Four([w_fl, w_fr, rear, rear])];
+        let [of_front, of_rear] =
+            [tires.front_stiffness_1_rad.0[0], tires.rear_stiffness_1_rad.0[0]];
+        let stiffness = Four([of_front, of_front, of_rear, of_rear]);
+        tires.slip(stiffness, velocity_m_s, Four::splat(yaw_rate))
     }
+}
 
-    /// Moment of the weight of the sprung mass about the roll axis, `m_s g h sin φ`, N m.
-    pub(super) fn gravity_roll_moment_n_m<T: Lanes>(&self, roll_rad: T) -> T {
-        let sprung_kg = self.mass.sprung_mass_kg;
-        roll_rad.sin() * (sprung_kg * STANDARD_GRAVITY_M_S2 * self.suspension.roll_arm_m)
-    }
-
-    /// Right-hand side of the roll equation without the moments of weight and collision force, N m:
-    /// `m_s h a_y − K_φ φ − B φ̇`.
-    fn roll_moment_n_m<T: Lanes>(&self, x: &VehicleState<T>, ay_m_s2: T) -> T {
-        let suspension = &self.suspension;
-        ay_m_s2 * (self.mass.sprung_mass_kg * suspension.roll_arm_m)
-            - x.roll_rad * suspension.roll_stiffness_n_m_rad
-            - x.roll_rate_rad_s * suspension.roll_damping_n_m_s_rad
-    }
-
+impl<P: Copy> BodyConstants<P> {
     /// Solves the coupled yaw and roll equations for `[ṙ, φ̈]`, rad/s², from the moments about the
     /// yaw and the roll axis, N m.
-    fn solve_yaw_roll<T: Lanes>(&self, yaw_moment: T, roll_moment: T) -> [T; 2] {
-        let (izz, ixx) = (self.mass.yaw_inertia_kg_m2, self.mass.roll_inertia_kg_m2);
-        let ixz = self.mass.roll_yaw_product_kg_m2;
-        let determinant = izz * ixx - ixz * ixz; // > 0: checked with the parameters
+    #[inline(always)]
+    fn solve_yaw_roll<T: Lanes + LanesOver<P>>(&self, yaw_moment: T, roll_moment: T) -> [T; 2] {
         [
-            (yaw_moment * ixx - roll_moment * ixz) / determinant,
-            (roll_moment * izz - yaw_moment * ixz) / determinant,
+            yaw_moment * self.yaw_by_yaw - roll_moment * self.yaw_by_roll,
+            roll_moment * self.roll_by_roll - yaw_moment * self.yaw_by_roll,
         ]
     }
 }
 
-/// Sum of the forces of the wheels.
-fn sum<T: Lanes>(forces_n: &[[T; 2]; 4]) -> [T; 2] {
-    let [front_left, front_right, rear_left, rear_right] = forces_n;
-    std::array::from_fn(|i| front_left[i] + front_right[i] + (rear_left[i] + rear_right[i]))
+/// Sine and cosine of the steer angle; `None` where no front wheel is turned.
+struct Steer<T>(Option<[T; 2]>);
+
+impl<T: Lanes> Steer<T> {
+    #[inline(always)]
+    fn of(steer_rad: T) -> Self {
+        if steer_rad.is_nothing() {
+            return Self(None);
+        }
+        let (sin, cos) = steer_rad.sin_cos();
+        Self(Some([sin, cos]))
+    }
+
+    #[inline(always)]
+    fn wheel_from_body(&self, [u, w]: [T; 2]) -> [T; 2] {
+        match self.0 {
+            Some([sin, cos]) => [cos * u + sin * w, cos * w - sin * u],
+            None => [u, w],
+        }
+    }
+
+    #[inline(always)]
+    fn body_from_wheel(&self, [along, across]: [T; 2]) -> [T; 2] {
+        match self.0 {
+            Some([sin, cos]) => [cos * along - sin * across, sin * along + cos * across],
+            None => [along, across],
+        }
+    }
+}
+
+/// The equations of motion at a state and an input.
+struct Evaluation<'a, P, T> {
+    constants: &'a VehicleConstants<P>,
+    x: &'a VehicleState<T>,
+    u: &'a VehicleInput<T>,
+}
+
+impl<P: Copy, T: Lanes + LanesOver<P>> NullaryFnOnce for Evaluation<'_, P, T> {
+    type Output = VehicleEvaluation<T>;
+
+    #[inline(always)]
+    fn call(self) -> VehicleEvaluation<T> {
+        match self.constants.equations {
+            Equations::Corrected => self.constants.evaluate_corrected(self.x, self.u),
+            Equations::Paper => self.constants.evaluate_as_printed(self.x, self.u),
+        }
+    }
+}
+
+/// Sum of a quantity of the wheels.
+#[inline(always)]
+fn sum<T: Lanes>([front_left, front_right, rear_left, rear_right]: [T; 4]) -> T {
+    front_left + front_right + (rear_left + rear_right)
+}
+
+/// The efforts of the four wheels, side by side.
+#[inline(always)]
+fn side_by_side<T: Lanes>([fl, fr, rl, rr]: &[WheelEffort<T>; 4]) -> WheelEffort<Four<T>> {
+    WheelEffort {
+        drive_n: Four([fl.drive_n, fr.drive_n, rl.drive_n, rr.drive_n]),
+        braking_n: Four([fl.braking_n, fr.braking_n, rl.braking_n, rr.braking_n]),
+        locked: Four([fl.locked, fr.locked, rl.locked, rr.locked]),
+    }
 }
 
 /// The collision force in body axes and its yaw moment about the CG; zero without a collision
 /// force.
+#[inline(always)]
 pub(super) fn collision_wrench<T: Lanes>(
-    yaw_rad: T,
+    heading: Heading<T>,
+    zero: T,
     collision: Option<&CollisionForce<T>>,
 ) -> Wrench<T> {
-    let zero = T::from(0.0);
     let Some(collision) = collision else {
         return Wrench { force_n: [zero; 2], yaw_moment_n_m: zero };
     };
-    let force_n = if collision.in_world_axes {
-        body_from_world(yaw_rad, collision.force_n)
-    } else {
-        collision.force_n
+    let force_n = match collision.in_world_axes {
+        true => heading.body_from_world(collision.force_n),
+        false => collision.force_n,
     };
     let ContactPoint { x_m, y_m, .. } = collision.contact;
     let at_contact = force_n[1] * x_m - force_n[0] * y_m;

@@ -7,16 +7,42 @@
 
 use crate::numerics::Lanes;
 
+/// Direction of the vehicle: sine and cosine of its yaw angle.
+#[derive(Debug, Clone, Copy)]
+pub struct Heading<T> {
+    sin: T,
+    cos: T,
+}
+
+impl<T: Lanes> Heading<T> {
+    /// The direction at a yaw angle ψ, rad.
+    #[inline(always)]
+    pub fn of(yaw_rad: T) -> Self {
+        let (sin, cos) = yaw_rad.sin_cos();
+        Self { sin, cos }
+    }
+
+    /// Transforms a vector from world axes to body axes: `R(−ψ) v`.
+    #[inline(always)]
+    pub fn body_from_world(self, [x, y]: [T; 2]) -> [T; 2] {
+        [self.cos * x + self.sin * y, self.cos * y - self.sin * x]
+    }
+
+    /// Transforms a vector from body axes to world axes: `R(ψ) v`.
+    #[inline(always)]
+    pub fn world_from_body(self, [x, y]: [T; 2]) -> [T; 2] {
+        [self.cos * x - self.sin * y, self.sin * x + self.cos * y]
+    }
+}
+
 /// Transforms a vector from world axes to body axes: `R(−ψ) v`, with the yaw angle ψ in rad.
-pub fn body_from_world<T: Lanes>(yaw_rad: T, [x, y]: [T; 2]) -> [T; 2] {
-    let (sin, cos) = yaw_rad.sin_cos();
-    [cos * x + sin * y, cos * y - sin * x]
+pub fn body_from_world<T: Lanes>(yaw_rad: T, vector: [T; 2]) -> [T; 2] {
+    Heading::of(yaw_rad).body_from_world(vector)
 }
 
 /// Transforms a vector from body axes to world axes: `R(ψ) v`, with the yaw angle ψ in rad.
-pub fn world_from_body<T: Lanes>(yaw_rad: T, [x, y]: [T; 2]) -> [T; 2] {
-    let (sin, cos) = yaw_rad.sin_cos();
-    [cos * x - sin * y, sin * x + cos * y]
+pub fn world_from_body<T: Lanes>(yaw_rad: T, vector: [T; 2]) -> [T; 2] {
+    Heading::of(yaw_rad).world_from_body(vector)
 }
 
 #[cfg(test)]

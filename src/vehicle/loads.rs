@@ -15,9 +15,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::numerics::Lanes;
+use crate::numerics::{Lanes, LanesOver};
 use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::VehicleParameters;
+use crate::vehicle::constants::BodyConstants;
 
 /// The four wheels. Every array over wheels is in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -79,13 +80,6 @@ pub struct LoadTransfer<T> {
     pub to_right_n_m: T,
 }
 
-impl<T: Lanes> LoadTransfer<T> {
-    /// No load transfer: the static loads.
-    pub fn none() -> Self {
-        Self { to_front_n_m: T::from(0.0), to_right_n_m: T::from(0.0) }
-    }
-}
-
 /// Computes the vertical load of each wheel, N, in the order of [`Wheel::ALL`].
 ///
 /// ```text
@@ -95,31 +89,43 @@ impl<T: Lanes> LoadTransfer<T> {
 ///
 /// The load of an axle is limited to the interval from 0 to m g, and the load of a wheel to that
 /// from 0 to the load of its axle.
-pub fn vertical_loads_n<T: Lanes>(
-    vehicle: &VehicleParameters,
+#[inline(always)]
+pub(super) fn vertical_loads_n<P: Copy, T: Lanes + LanesOver<P>>(
+    body: &BodyConstants<P>,
     transfer: LoadTransfer<T>,
 ) -> [T; 4] {
-    let weight = vehicle.mass.mass_kg * STANDARD_GRAVITY_M_S2;
-    let geometry = &vehicle.geometry;
-    let front = (transfer.to_front_n_m + weight * geometry.cg_to_rear_axle_m)
-        * (1.0 / geometry.wheelbase_m());
-    let front = front.clamped(T::from(0.0), T::from(weight));
-    let axle = |load: T, share: f64| {
-        let half = load / 2.0;
-        let shift = transfer.to_right_n_m * (share / geometry.track_width_m);
-        let shift = shift.clamped(-half, half);
-        [half - shift, half + shift]
-    };
-    let share = vehicle.suspension.front_roll_stiffness_share;
-    let [front_left, front_right] = axle(front, share);
-    let [rear_left, rear_right] = axle(-(front - weight), 1.0 - share);
+    let zero = transfer.to_front_n_m.constant(0.0);
+    let weight = zero + body.weight_n;
+    let front = (transfer.to_front_n_m + body.weight_about_rear_n_m) * body.per_wheelbase_1_m;
+    let front = front.clamped(zero, weight);
+    let [front_left, front_right] = of_axle_n(front, transfer.to_right_n_m * body.front_shift_1_m);
+    let [rear_left, rear_right] =
+        of_axle_n(weight - front, transfer.to_right_n_m * body.rear_shift_1_m);
     [front_left, front_right, rear_left, rear_right]
+}
+
+/// Loads of the left and of the right wheel of an axle.
+#[inline(always)]
+fn of_axle_n<T: Lanes>(load_n: T, shift_n: T) -> [T; 2] {
+    let half = load_n * 0.5;
+    let shift = shift_n.clamped(-half, half);
+    [half - shift, half + shift]
+}
+
+/// Vertical loads of the front and of the rear axle at rest, N.
+pub(super) fn static_axle_loads_n(vehicle: &VehicleParameters) -> [f64; 2] {
+    let geometry = &vehicle.geometry;
+    let weight = vehicle.mass.mass_kg * STANDARD_GRAVITY_M_S2;
+    let front = weight * geometry.cg_to_rear_axle_m * (1.0 / geometry.wheelbase_m());
+    let front = front.clamp(0.0, weight);
+    [front, weight - front]
 }
 
 impl VehicleParameters {
     /// Vertical loads of the wheels at rest, N, in the order of [`Wheel::ALL`].
     pub fn static_loads_n(&self) -> [f64; 4] {
-        vertical_loads_n(self, LoadTransfer::none())
+        let [front, rear] = static_axle_loads_n(self).map(|load| load / 2.0);
+        [front, front, rear, rear]
     }
 }
 
@@ -131,10 +137,12 @@ mod tests {
     #[test]
     fn loads_are_never_negative_and_always_carry_the_weight() {
         let vehicle = Preset::Reference.parameters();
+        let body = vehicle.constants().body;
         let weight = vehicle.mass.mass_kg * STANDARD_GRAVITY_M_S2;
         for to_front_n_m in [-1e5, -3e3, 0.0, 5e3, 1e5] {
             for to_right_n_m in [-1e5, -2e3, 0.0, 4e3, 1e5] {
-                let loads = vertical_loads_n(&vehicle, LoadTransfer { to_front_n_m, to_right_n_m });
+                let transfer = LoadTransfer { to_front_n_m, to_right_n_m };
+                let loads = vertical_loads_n(&body, transfer);
                 assert!(loads.iter().all(|&load| load >= 0.0), "{loads:?}");
                 assert!((loads.iter().sum::<f64>() - weight).abs() < 1e-8, "{loads:?}");
             }
@@ -144,12 +152,12 @@ mod tests {
     #[test]
     fn a_left_turn_loads_the_right_and_braking_the_front() {
         let vehicle = Preset::Reference.parameters();
-        let at_rest = vertical_loads_n(&vehicle, LoadTransfer::none());
-        let turning =
-            vertical_loads_n(&vehicle, LoadTransfer { to_right_n_m: 2e3, ..LoadTransfer::none() });
+        let (body, at_rest) = (vehicle.constants().body, vehicle.static_loads_n());
+        let none = LoadTransfer { to_front_n_m: 0.0, to_right_n_m: 0.0 };
+        assert_eq!(vertical_loads_n(&body, none), at_rest);
+        let turning = vertical_loads_n(&body, LoadTransfer { to_right_n_m: 2e3, ..none });
         assert!(turning[1] > at_rest[1] && turning[3] > at_rest[3]);
-        let braking =
-            vertical_loads_n(&vehicle, LoadTransfer { to_front_n_m: 2e3, ..LoadTransfer::none() });
+        let braking = vertical_loads_n(&body, LoadTransfer { to_front_n_m: 2e3, ..none });
         assert!(braking[0] > at_rest[0] && braking[2] < at_rest[2]);
     }
 }

@@ -1,6 +1,7 @@
 //! The 4DOF vehicle model: axes, parameters, tyre forces, vertical loads, the equations of motion
 //! and their integration over time.
 
+mod constants;
 mod controls;
 mod energy;
 pub mod frames;
@@ -19,10 +20,16 @@ mod four_dof;
 mod ending;
 mod ending_file;
 mod fishhook;
+mod recorder;
+mod run;
 mod simulate;
 mod stability;
 
+mod batch;
+
 pub use as_printed::Equations;
+pub use batch::{SimulationRun, simulate_batch};
+pub use constants::VehicleConstants;
 pub use controls::{Controls, SteerHistory, WheelHistory};
 pub use ending::{
     Braking, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Driving, Ending, EngineBraking,

@@ -9,15 +9,13 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::data::{Channel, CumulativeImpulse, ForceAxes, ForceHistory, SeriesError, TimeSeries};
-use crate::numerics::{Stage, euler_step, rk4_step};
-use crate::ranges::{OutOfRange, SIMULATED_DURATION};
+use crate::data::{ForceHistory, SeriesError, TimeSeries};
+use crate::ranges::OutOfRange;
 use crate::vehicle::controls::Controls;
-use crate::vehicle::energy::{EnergyWatch, MAX_ENERGY_GAIN};
-use crate::vehicle::rest::RestWatch;
+use crate::vehicle::energy::MAX_ENERGY_GAIN;
+use crate::vehicle::run::{Inputs, Run};
 use crate::vehicle::{
-    CollisionForce, ContactPoint, Equations, VehicleInput, VehicleMismatch, VehicleParameters,
-    VehicleState, Wheel, WheelEffort,
+    ContactPoint, VehicleInput, VehicleMismatch, VehicleParameters, VehicleState, Wheel,
 };
 
 /// Roll angle beyond which the roll model is not valid, rad. It is 15°, about three times the angle
@@ -81,7 +79,7 @@ impl Manoeuvre {
     /// mean of the collision force over each step, and the steer angle at the start of the step.
     pub fn inputs(&self, step_s: f64, n_steps: usize) -> Vec<VehicleInput<f64>> {
         let inputs = Inputs::new(self);
-        let over = |i: usize| inputs.over(i as f64 * step_s, step_s).at(Stage::Start);
+        let over = |i: usize| inputs.over(i as f64 * step_s, step_s).instants[0];
         (0..n_steps).map(over).collect()
     }
 }
@@ -190,7 +188,8 @@ impl VehicleParameters {
     /// [`OUTPUT_INTERVAL_S`]. The result is deterministic.
     ///
     /// The steps of [`Integrator::Rk4`] are divided where the vehicle has faster modes than they
-    /// follow; ordinary vehicles have none.
+    /// follow; ordinary vehicles have none. Several motions are simulated faster side by side, see
+    /// [`simulate_batch`](crate::vehicle::simulate_batch).
     ///
     /// # Errors
     /// [`SimulationError::Duration`] if the duration is out of range, [`SimulationError::Vehicle`]
@@ -202,253 +201,10 @@ impl VehicleParameters {
         manoeuvre: &Manoeuvre,
         integrator: Integrator,
     ) -> Result<Motion, SimulationError> {
-        let duration_s = SIMULATED_DURATION.check(manoeuvre.duration_s)?;
-        self.check_relations()?;
-        let inputs = Inputs::new(manoeuvre);
-        let (step_s, steps_per_output) = self.steps(integrator, &manoeuvre.controls);
-        let mut rest = RestWatch::after(inputs.last_change_s());
-        let n_outputs = (duration_s / OUTPUT_INTERVAL_S).round() as usize + 1;
-        let mut recorder = Recorder::new(self, n_outputs);
-        let mut energy = EnergyWatch::default();
-        let is_baseline = integrator == Integrator::Euler || self.equations == Equations::Paper;
-        let mut state = manoeuvre.initial.to_array();
-        for output in 0..n_outputs {
-            let time_s = output as f64 * OUTPUT_INTERVAL_S;
-            if !state.iter().all(|value| value.is_finite()) {
-                return Err(SimulationError::Diverged { time_s });
-            }
-            let (now, coming) = (
-                VehicleState::from_array(state),
-                inputs.over(time_s, OUTPUT_INTERVAL_S).at(Stage::Start),
-            );
-            recorder.record(time_s, &now, &coming);
-            let share = energy.gain(self, &now, coming.collision.is_some() || coming.is_driven());
-            let is_kept = share <= MAX_ENERGY_GAIN; // not where it is NaN
-            if !is_kept {
-                if !is_baseline {
-                    return Err(SimulationError::EnergyGain { time_s, share });
-                }
-                recorder.energy.get_or_insert(MotionFlag::EnergyGain { time_s });
-            }
-            if rest.has_settled(time_s, &now) && manoeuvre.ends_at_rest {
-                break;
-            }
-            for step in 0..steps_per_output {
-                let start_s = time_s + step as f64 * step_s;
-                state = self.step(&state, &inputs.over(start_s, step_s), integrator);
-            }
+        let mut run = Run::new(self, manoeuvre, integrator)?;
+        while run.goes_on()? {
+            run.advance(integrator);
         }
-        recorder.finish(&rest)
-    }
-
-    /// Length of the steps of an integrator for this vehicle, s, and how many make an output
-    /// interval.
-    fn steps(&self, integrator: Integrator, controls: &Controls) -> (f64, usize) {
-        let step_s = integrator.step_s();
-        let n_substeps = match integrator {
-            Integrator::Rk4 if controls.wheels.is_some() => self.braked_substeps(step_s),
-            Integrator::Rk4 => self.substeps(step_s),
-            Integrator::Euler => 1,
-        };
-        let per_output = (OUTPUT_INTERVAL_S / step_s).round() as usize;
-        (step_s / n_substeps as f64, per_output * n_substeps)
-    }
-
-    fn step(&self, state: &[f64; 8], inputs: &StepInputs, integrator: Integrator) -> [f64; 8] {
-        let f = |stage, x: &[f64; 8]| {
-            self.evaluate(&VehicleState::from_array(*x), &inputs.at(stage)).derivative.to_array()
-        };
-        match integrator {
-            Integrator::Rk4 => rk4_step(f, state, inputs.step_s),
-            Integrator::Euler => euler_step(f, state, inputs.step_s),
-        }
-    }
-}
-
-/// Inputs of a manoeuvre, prepared for evaluation over time steps.
-struct Inputs<'a> {
-    controls: &'a Controls,
-    contact: Option<(CumulativeImpulse, &'a ContactLoad)>,
-}
-
-/// Inputs over one time step.
-struct StepInputs {
-    step_s: f64,
-    /// Steer angle at the start, the middle and the end of the step, rad.
-    steer_rad: [f64; 3],
-    /// The wheels at these instants.
-    wheels: [Option<[WheelEffort<f64>; 4]>; 3],
-    collision: Option<CollisionForce<f64>>,
-}
-
-impl<'a> Inputs<'a> {
-    fn new(manoeuvre: &'a Manoeuvre) -> Self {
-        let contact = manoeuvre.contact_load.as_ref();
-        Self {
-            controls: &manoeuvre.controls,
-            contact: contact.map(|load| (load.force.cumulative(), load)),
-        }
-    }
-
-    fn over(&self, start_s: f64, step_s: f64) -> StepInputs {
-        let Controls { steer, wheels } = self.controls;
-        let instants_s = [start_s, start_s + step_s / 2.0, start_s + step_s];
-        StepInputs {
-            step_s,
-            steer_rad: instants_s.map(|t| steer.as_ref().map_or(0.0, |steer| steer.at(t))),
-            wheels: instants_s.map(|t| wheels.as_ref().and_then(|wheels| wheels.at(t))),
-            collision: self.collision_over(start_s, step_s),
-        }
-    }
-
-    /// The last instant at which force, steer angle or wheels change, s; 0 if nothing acts.
-    fn last_change_s(&self) -> f64 {
-        let Controls { steer, wheels } = self.controls;
-        let contact = self.contact.as_ref().map(|(cumulative, _)| cumulative.end_s());
-        let steer = steer.as_ref().and_then(|steer| steer.time_s.last().copied());
-        let wheels = wheels.as_ref().and_then(|wheels| wheels.time_s.last().copied());
-        [contact, steer, wheels].into_iter().flatten().fold(0.0, f64::max)
-    }
-
-    /// Mean collision force over a step. It is `None` if neither force nor moment acts, also if the
-    /// history continues with zeros, so that rules for a vehicle without a collision force apply.
-    fn collision_over(&self, start_s: f64, step_s: f64) -> Option<CollisionForce<f64>> {
-        let (cumulative, load) = self.contact.as_ref()?;
-        if start_s >= cumulative.end_s() {
-            return None;
-        }
-        let (force_n, moment) = cumulative.mean_over(start_s, start_s + step_s);
-        let yaw_moment_n_m = moment.filter(|_| load.recorded_moment);
-        let acts = force_n != [0.0; 2] || yaw_moment_n_m.is_some_and(|moment| moment != 0.0);
-        acts.then_some(CollisionForce {
-            force_n,
-            in_world_axes: load.force.axes == ForceAxes::World,
-            yaw_moment_n_m,
-            contact: load.contact,
-        })
-    }
-}
-
-impl StepInputs {
-    fn at(&self, stage: Stage) -> VehicleInput<f64> {
-        let instant = match stage {
-            Stage::Start => 0,
-            Stage::Middle => 1,
-            Stage::End => 2,
-        };
-        VehicleInput {
-            steer_rad: self.steer_rad[instant],
-            wheels: self.wheels[instant],
-            collision: self.collision,
-        }
-    }
-}
-
-/// Collects the samples and the flags of a simulation.
-struct Recorder<'a> {
-    vehicle: &'a VehicleParameters,
-    time_s: Vec<f64>,
-    columns: Vec<(Channel, Vec<f64>)>,
-    lift: Option<MotionFlag>,
-    roll: Option<MotionFlag>,
-    energy: Option<MotionFlag>,
-}
-
-/// Channels of a simulated motion, in the order in which [`Recorder::record`] lists their values.
-const RECORDED: [Channel; 20] = {
-    use Channel as C;
-    [
-        C::X,
-        C::Y,
-        C::Yaw,
-        C::Roll,
-        C::Vx,
-        C::Vy,
-        C::YawRate,
-        C::RollRate,
-        C::Ax,
-        C::Ay,
-        C::FxBody,
-        C::FyBody,
-        C::Mz,
-        C::Mx,
-        C::SteerFl,
-        C::SteerFr,
-        C::FzFl,
-        C::FzFr,
-        C::FzRl,
-        C::FzRr,
-    ]
-};
-
-impl<'a> Recorder<'a> {
-    fn new(vehicle: &'a VehicleParameters, n_samples: usize) -> Self {
-        let column = |channel| (channel, Vec::with_capacity(n_samples));
-        let columns = RECORDED.map(column).into();
-        Self {
-            vehicle,
-            time_s: Vec::with_capacity(n_samples),
-            columns,
-            lift: None,
-            roll: None,
-            energy: None,
-        }
-    }
-
-    fn record(&mut self, time_s: f64, x: &VehicleState<f64>, u: &VehicleInput<f64>) {
-        let now = self.vehicle.evaluate(x, u);
-        let contact_arm_m =
-            u.collision.map_or(0.0, |c| c.contact.height_m - self.vehicle.geometry.cg_height_m);
-        let [ax, ay] = now.acceleration_m_s2;
-        let [fx, fy] = now.collision_force_n;
-        let [fl, fr, rl, rr] = now.vertical_loads_n;
-        let mx = -contact_arm_m * fy;
-        let sample = [
-            x.x_m,
-            x.y_m,
-            x.yaw_rad,
-            x.roll_rad,
-            x.vx_m_s,
-            x.vy_m_s,
-            x.yaw_rate_rad_s,
-            x.roll_rate_rad_s,
-            ax,
-            ay,
-            fx,
-            fy,
-            now.collision_yaw_moment_n_m,
-            mx,
-            u.steer_rad,
-            u.steer_rad,
-            fl,
-            fr,
-            rl,
-            rr,
-        ];
-        self.time_s.push(time_s);
-        for ((_, column), value) in self.columns.iter_mut().zip(sample) {
-            column.push(value);
-        }
-        let lifted =
-            Wheel::ALL.into_iter().zip(now.vertical_loads_n).find(|(_, load)| *load <= 0.0);
-        if let Some((wheel, _)) = lifted {
-            self.lift.get_or_insert(MotionFlag::WheelLift { wheel, time_s });
-        }
-        if x.roll_rad.abs() > ROLL_LIMIT_RAD {
-            self.roll.get_or_insert(MotionFlag::RollLimit { time_s, roll_rad: x.roll_rad });
-        }
-    }
-
-    fn finish(self, rest: &RestWatch) -> Result<Motion, SimulationError> {
-        let rest_s = self.time_s.last().and_then(|&end_s| rest.since_s(end_s));
-        let mut series = TimeSeries::new(self.time_s)?;
-        for (channel, column) in self.columns {
-            series.insert(channel, column)?;
-        }
-        Ok(Motion {
-            series,
-            flags: self.lift.into_iter().chain(self.roll).chain(self.energy).collect(),
-            rest_s,
-        })
+        run.finish()
     }
 }

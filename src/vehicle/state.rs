@@ -1,7 +1,7 @@
 //! The state of the 4DOF vehicle and its kinematics.
 
 use crate::numerics::Lanes;
-use crate::vehicle::frames::world_from_body;
+use crate::vehicle::frames::Heading;
 
 /// State x = [v_x, v_y, ψ, r, φ, φ̇, X, Y] of the vehicle (`eq:state_vector`). Velocities are in
 /// body axes, the position is in world axes.
@@ -30,6 +30,7 @@ pub const N_STATE: usize = 8;
 
 impl<T: Lanes> VehicleState<T> {
     /// Converts the state to an array in the order of `eq:state_vector`, `[8]`.
+    #[inline(always)]
     pub fn to_array(self) -> [T; N_STATE] {
         let Self { vx_m_s, vy_m_s, yaw_rad, yaw_rate_rad_s, roll_rad, roll_rate_rad_s, x_m, y_m } =
             self;
@@ -37,12 +38,14 @@ impl<T: Lanes> VehicleState<T> {
     }
 
     /// Creates the state from an array in the order of `eq:state_vector`, `[8]`.
+    #[inline(always)]
     pub fn from_array(array: [T; N_STATE]) -> Self {
         let [vx_m_s, vy_m_s, yaw_rad, yaw_rate_rad_s, roll_rad, roll_rate_rad_s, x_m, y_m] = array;
         Self { vx_m_s, vy_m_s, yaw_rad, yaw_rate_rad_s, roll_rad, roll_rate_rad_s, x_m, y_m }
     }
 
     /// Converts every component to another scalar type.
+    #[inline(always)]
     pub fn map<U: Lanes>(self, convert: impl Fn(T) -> U) -> VehicleState<U> {
         VehicleState::from_array(self.to_array().map(convert))
     }
@@ -55,19 +58,21 @@ impl<T: Lanes> VehicleState<T> {
 }
 
 impl<T: Lanes> VehicleState<T> {
-    /// Time derivative ẋ of the state, from the acceleration `[a_x, a_y]` of the CG in body axes,
-    /// m/s², and the angular accelerations `[ṙ, φ̈]`, rad/s².
+    /// Time derivative ẋ of the state, from its heading, the acceleration `[a_x, a_y]` of the CG in
+    /// body axes, m/s², and the angular accelerations `[ṙ, φ̈]`, rad/s².
     ///
     /// ```text
     /// v̇_x = a_x + v_y r      v̇_y = a_y − v_x r
     /// Ẋ = v_x cos ψ − v_y sin ψ      Ẏ = v_x sin ψ + v_y cos ψ
     /// ```
+    #[inline(always)]
     pub(crate) fn derivative(
         &self,
+        heading: Heading<T>,
         [ax, ay]: [T; 2],
         [yaw_acceleration, roll_acceleration]: [T; 2],
     ) -> Self {
-        let [x_dot, y_dot] = world_from_body(self.yaw_rad, [self.vx_m_s, self.vy_m_s]);
+        let [x_dot, y_dot] = heading.world_from_body([self.vx_m_s, self.vy_m_s]);
         Self {
             vx_m_s: ax + self.vy_m_s * self.yaw_rate_rad_s,
             vy_m_s: ay - self.vx_m_s * self.yaw_rate_rad_s,

@@ -25,6 +25,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::numerics::Lanes;
+use crate::vehicle::constants::TireConstants;
 
 /// Regularisation ε of the slip angle, m/s. Near standstill the lateral force is proportional to
 /// the lateral velocity, which decays at a rate of c g / ε ≈ 400 1/s; the reference step of 1 ms
@@ -105,16 +106,35 @@ pub struct WheelSlip<T> {
     pub slip_angle_rad: T,
     /// Friction coefficient μ(α) at this slip angle.
     friction: T,
-    /// Lateral force over its limit, `sin(atan(C α))`, −1 to 1.
-    lateral_share: T,
+    /// C α. The lateral force over its limit is `sin(atan(C α))`.
+    stiffness: T,
+    /// `1/((C α)² + 1)`.
+    flattening: T,
     /// Rolling resistance over vertical load, with a sign opposite to the motion.
     rolling_share: T,
+    /// Direction in which the wheel rolls, −1 to 1, smooth at rest.
+    direction: T,
     /// Velocity `[u, w]` of the centre of the wheel in the axes of the wheel, m/s.
     velocity_m_s: [T; 2],
     /// `m_w r`: equivalent mass of the spinning wheel times the yaw rate of the vehicle, kg/s.
     turning_mass_kg_s: T,
     /// Sliding friction coefficient of a locked wheel.
-    locked_friction: f64,
+    locked_friction: T,
+}
+
+/// Forces over vertical load of a wheel that rolls freely: those of [`WheelSlip`], which are in
+/// proportion to the load but for the lag of the spin.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FreeWheel<T> {
+    slip: WheelSlip<T>,
+    /// Rolling resistance.
+    along: T,
+    /// Side force without lag.
+    side: T,
+    /// Force that the lag is taken from.
+    size: T,
+    /// Drag of a lag of one.
+    drag: T,
 }
 
 /// What drives, brakes or locks a wheel, beside its rolling resistance.
@@ -129,15 +149,21 @@ pub struct WheelEffort<T> {
     pub locked: T,
 }
 
-impl<T: Lanes> WheelEffort<T> {
+impl<T: From<f64>> WheelEffort<T> {
     /// A wheel that rolls freely.
     pub fn none() -> Self {
-        let zero = T::from(0.0);
-        Self { drive_n: zero, braking_n: zero, locked: zero }
+        Self { drive_n: T::from(0.0), braking_n: T::from(0.0), locked: T::from(0.0) }
     }
+}
 
+impl WheelEffort<f64> {
+    /// [`WheelEffort::none`] as a constant.
+    pub const FREE: Self = Self { drive_n: 0.0, braking_n: 0.0, locked: 0.0 };
+}
+
+impl<T> WheelEffort<T> {
     /// Converts every component to another scalar type.
-    pub fn map<U: Lanes>(self, convert: impl Fn(T) -> U) -> WheelEffort<U> {
+    pub fn map<U>(self, convert: impl Fn(T) -> U) -> WheelEffort<U> {
         let Self { drive_n, braking_n, locked } = self;
         WheelEffort {
             drive_n: convert(drive_n),
@@ -148,79 +174,96 @@ impl<T: Lanes> WheelEffort<T> {
 }
 
 impl TireParameters {
-    /// Computes slip angles, friction and rolling resistance of the four wheels of a vehicle.
-    ///
-    /// - `cornering_coefficients_per_rad`: cornering coefficient c of each wheel, 1/rad.
-    /// - `velocities_m_s`: velocity `[u, w]` of the centre of each wheel in the axes of the wheel,
-    ///   m/s, with u in the plane of the wheel and w to the left.
-    /// - `yaw_rate_rad_s`: yaw rate r of the vehicle, rad/s.
-    pub fn slips<T: Lanes>(
-        &self,
-        cornering_coefficients_per_rad: [f64; 4],
-        velocities_m_s: [[T; 2]; 4],
-        yaw_rate_rad_s: T,
-    ) -> [WheelSlip<T>; 4] {
-        let turning_mass_kg_s = yaw_rate_rad_s * self.wheel_mass_kg();
-        // This equals −atan2(w, |u| + ε), since |u| + ε is positive; atan is faster than atan2.
-        let slopes = velocities_m_s.map(|[u, w]| -w / (u.abs() + SLIP_ANGLE_SPEED_M_S));
-        let slip_angles_rad = T::atan_each(slopes);
-        std::array::from_fn(|i| {
-            let slip =
-                self.slip(cornering_coefficients_per_rad[i], velocities_m_s[i], slip_angles_rad[i]);
-            WheelSlip { turning_mass_kg_s, ..slip }
-        })
-    }
-
     /// Equivalent mass `m_w = I_w/R²` of a spinning wheel, kg.
     pub fn wheel_mass_kg(&self) -> f64 {
         self.wheel_inertia_kg_m2 / (self.rolling_radius_m * self.rolling_radius_m)
     }
+}
 
-    /// Slip quantities of one wheel, from the velocity `[u, w]` of its centre, m/s, and the slip
-    /// angle.
-    fn slip<T: Lanes>(
+impl<T: Lanes> TireConstants<T> {
+    /// Computes slip angle, friction and rolling resistance of a wheel, or of four.
+    ///
+    /// - `stiffness_1_rad`: C of the wheel, 1/rad;
+    /// - `velocity_m_s`: velocity `[u, w]` of its centre in the axes of the wheel, m/s, with u in its
+    ///   plane and w to the left;
+    /// - `yaw_rate_rad_s`: yaw rate r of the vehicle, rad/s.
+    #[inline(always)]
+    pub(super) fn slip(
         &self,
-        cornering_coefficient_per_rad: f64,
+        stiffness_1_rad: T,
         velocity_m_s: [T; 2],
-        slip_angle_rad: T,
+        yaw_rate_rad_s: T,
     ) -> WheelSlip<T> {
-        let [u, _] = velocity_m_s;
+        let [u, w] = velocity_m_s;
+        let (zero, one) = (u.constant(0.0), u.constant(1.0));
         let speed = u.abs();
-        let beyond_peak = slip_angle_rad * slip_angle_rad / SLIDING_SLIP_ANGLE_RAD.powi(2);
-        let sliding_loss = if self.sliding_friction_ratio < 1.0 {
-            -((-beyond_peak).exp() - 1.0) * (1.0 - self.sliding_friction_ratio)
-        } else {
-            T::from(0.0)
+        // This equals −atan2(w, |u| + ε), since |u| + ε is positive.
+        let slip_angle_rad = (-w).atan_ratio(speed + SLIP_ANGLE_SPEED_M_S);
+        let beyond_peak = slip_angle_rad * slip_angle_rad * SLIDING_SLIP_ANGLE_RAD.powi(-2);
+        let sliding_loss = match zero.any_less(self.sliding_loss) {
+            true => (one - (-beyond_peak).exp()) * self.sliding_loss,
+            false => zero,
         };
-        let stiffness = slip_angle_rad * (cornering_coefficient_per_rad / self.friction);
+        let stiffness = slip_angle_rad * stiffness_1_rad;
         let resistance = speed * speed * self.rolling_resistance_s2_m2
             + speed * self.rolling_resistance_s_m
             + self.rolling_resistance;
+        let direction = smooth_sign(u * (1.0 / ROLLING_RESISTANCE_SPEED_M_S));
         WheelSlip {
             slip_angle_rad,
-            friction: -(sliding_loss - 1.0) * self.friction,
-            // x / √(x² + 1) equals sin(atan(x)) and needs no trigonometric functions.
-            lateral_share: stiffness / (stiffness * stiffness + 1.0).sqrt(),
-            rolling_share: -resistance * smooth_sign(u / ROLLING_RESISTANCE_SPEED_M_S),
+            friction: (one - sliding_loss) * self.friction,
+            stiffness,
+            flattening: (stiffness * stiffness + 1.0).recip(),
+            rolling_share: -resistance * direction,
+            direction,
             velocity_m_s,
-            turning_mass_kg_s: T::from(0.0),
-            locked_friction: self.friction * self.sliding_friction_ratio,
+            turning_mass_kg_s: yaw_rate_rad_s * self.wheel_mass_kg,
+            locked_friction: self.sliding_friction,
         }
     }
 }
 
 /// The hyperbolic tangent, also for large arguments: the derivative of `tanh` by dual numbers
 /// divides by cosh², which overflows from about 350 on.
+#[inline(always)]
 fn smooth_sign<T: Lanes>(x: T) -> T {
-    let end = T::from(20.0); // tanh is 1 from here on
+    let end = x.constant(20.0); // tanh is 1 from here on
     if x.abs().any_less(end) { x.clamped(-end, end).tanh() } else { x.sign() }
 }
 
+impl<T: Lanes> FreeWheel<T> {
+    /// Force `[F_x, F_y]` of the road on the wheel in its axes, N: that of [`WheelSlip::force_n`]
+    /// without an effort.
+    #[inline(always)]
+    pub(super) fn force_n(&self, vertical_load_n: T) -> [T; 2] {
+        let [lag, across] = self.slip.spin_lag(self.size * vertical_load_n);
+        let force_n = [
+            (self.along - self.drag * lag) * vertical_load_n,
+            self.side * across * vertical_load_n,
+        ];
+        in_circle(force_n, self.slip.friction * vertical_load_n)
+    }
+}
+
+/// A force, scaled to the friction circle of this radius where it is larger.
+#[inline(always)]
+fn in_circle<T: Lanes>([fx, fy]: [T; 2], limit_n: T) -> [T; 2] {
+    let (squared, limit) = (fx * fx + fy * fy, limit_n * limit_n + 1e-12);
+    if !limit.any_less(squared) {
+        return [fx, fy];
+    }
+    let scale = limit.if_less(squared, (limit / squared).sqrt(), fx.constant(1.0));
+    [fx * scale, fy * scale]
+}
+
 impl<T: Lanes> WheelSlip<T> {
-    /// Force `[F_x, F_y]` of the road on a wheel that rolls freely, in the axes of the wheel, N: that
-    /// of [`WheelSlip::force_n`] without an effort.
-    pub fn free_n(&self, vertical_load_n: T) -> [T; 2] {
-        self.turning_n(vertical_load_n, self.rolling_share * vertical_load_n)
+    /// What the force on the wheel needs if it rolls freely.
+    #[inline(always)]
+    pub(super) fn free(self) -> FreeWheel<T> {
+        let (along, side) = self.shared(self.rolling_share, self.friction);
+        let squared = side * side;
+        let size = lagging(squared, self.friction);
+        FreeWheel { slip: self, along, side, size, drag: squared / size }
     }
 
     /// Force `[F_x, F_y]` of the road on the tyre in the axes of the wheel, N, which lies inside the
@@ -253,64 +296,84 @@ impl<T: Lanes> WheelSlip<T> {
     /// sections 1.2 and 8.2; the solution for a steady rotation is ours.
     ///
     /// - `vertical_load_n`: vertical load F_z, N, 0 or more.
+    #[inline(always)]
     pub fn force_n(&self, vertical_load_n: T, effort: &WheelEffort<T>) -> [T; 2] {
-        let [u, w] = self.velocity_m_s;
-        let braking_n = effort.braking_n * smooth_sign(u / ROLLING_RESISTANCE_SPEED_M_S);
-        let wanted = self.rolling_share * vertical_load_n + effort.drive_n - braking_n;
+        let wanted = self.rolling_share * vertical_load_n + effort.drive_n
+            - effort.braking_n * self.direction;
         let turning = self.turning_n(vertical_load_n, wanted);
+        let share = self.locked_share(vertical_load_n, effort);
+        if !share.constant(0.0).any_less(share) {
+            return turning;
+        }
+        let [u, w] = self.velocity_m_s;
         let speed_squared = u * u + w * w;
         let sliding = (speed_squared + LOCKED_SLIDING_SPEED_M_S.powi(2)).sqrt();
         let sliding_n = -vertical_load_n * self.locked_friction / sliding;
         let locked = [sliding_n * u, sliding_n * w];
-        let share = self.locked_share(vertical_load_n, effort);
-        std::array::from_fn(|i| turning[i] + (locked[i] - turning[i]) * share)
+        [
+            turning[0] + (locked[0] - turning[0]) * share,
+            turning[1] + (locked[1] - turning[1]) * share,
+        ]
     }
 
     /// Force on a wheel that turns, N.
     ///
     /// - `wanted_n`: the force along the wheel that drive, brake and rolling resistance ask for.
+    #[inline(always)]
     fn turning_n(&self, vertical_load_n: T, wanted_n: T) -> [T; 2] {
-        let zero = T::from(0.0);
         let limit = self.friction * vertical_load_n;
+        let (along, side) = self.shared(wanted_n, limit);
+        let squared = side * side;
+        let size = lagging(squared, limit);
+        let [lag, across] = self.spin_lag(size);
+        in_circle([along - squared / size * lag, side * across], limit)
+    }
+
+    /// The force along the wheel within the limit of friction, and the side force in what it leaves:
+    /// x/√(x² + 1) equals sin(atan(x)) and needs no trigonometric functions.
+    #[inline(always)]
+    fn shared(&self, wanted: T, limit: T) -> (T, T) {
         // If the longitudinal force reaches the limit, there is no lateral force. The root is not
         // used there, because its derivative at zero is infinite.
-        let wanted = wanted_n.abs().if_less(limit, wanted_n, limit * wanted_n.sign());
-        let room = (limit * limit - wanted_n * wanted_n).sqrt();
-        let side = self.lateral_share * wanted_n.abs().if_less(limit, room, zero);
-        // Smooth where the wheel changes from left to right, and nowhere more than the side force.
-        let floor = limit * LEAST_LAGGING_SHARE + 1e-6;
-        let size = (side * side + floor * floor).sqrt();
-        let [lag, across] = self.spin_lag(size);
-        let (fx, fy) = (wanted - side * side / size * lag, side * across);
-        let beyond = (fx * fx + fy * fy) / (limit * limit + 1e-12);
-        let one = T::from(1.0);
-        let scale = one.if_less(beyond, beyond.sqrt().recip(), one);
-        [fx * scale, fy * scale]
+        let along = wanted.abs().if_less(limit, wanted, limit * wanted.sign());
+        let room = (limit * limit - wanted * wanted) * self.flattening;
+        let side = self.stiffness * room.sqrt();
+        (along, wanted.abs().if_less(limit, side, wanted.constant(0.0)))
     }
 
     /// `[(u − u_w)/S, √(w² + ε²)/S]`: the direction of the slip of a wheel whose spin lags.
     ///
-    /// - `force_n`: force of the tyre without the lag, N, above 0.
+    /// Numerators and denominators are kept apart until the end, since divisions take longest:
+    /// with `r τ = a/b`
+    ///
+    /// ```text
+    /// u − u_w = a (u a + w b)/(a² + b²)
+    /// ```
+    ///
+    /// - `force_n`: force of the tyre without the lag, N.
+    #[inline(always)]
     fn spin_lag(&self, force_n: T) -> [T; 2] {
         let [u, w] = self.velocity_m_s;
-        let turned_per_slip = self.turning_mass_kg_s / force_n;
+        // A micronewton more than nothing, so that the lag of a lifted wheel is a number.
+        let force_n = force_n + 1e-6;
         let rest = w * w + SPIN_LAG_SLIP_M_S * SPIN_LAG_SLIP_M_S;
         let across = rest.sqrt();
-        let (mut slip, mut lag) = (across, T::from(0.0));
+        let (mut lag, mut slip, mut below) = (w.constant(0.0), across, w.constant(1.0));
         for _ in 0..SPIN_LAG_PASSES {
-            let turned = turned_per_slip * slip;
-            let rolling = (u - turned * w) / (turned * turned + 1.0);
-            lag = u - rolling;
-            slip = (lag * lag + rest).sqrt();
+            let (a, b) = (self.turning_mass_kg_s * slip, force_n * below);
+            below = a * a + b * b;
+            lag = a * (u * a + w * b);
+            slip = (lag * lag + rest * (below * below)).sqrt();
         }
         let per_slip = slip.recip();
-        [lag * per_slip, across * per_slip]
+        [lag * per_slip, across * below * per_slip]
     }
 
     /// How far the wheel is locked, 0 to 1.
+    #[inline(always)]
     fn locked_share(&self, vertical_load_n: T, effort: &WheelEffort<T>) -> T {
         let [u, w] = self.velocity_m_s;
-        let (zero, one) = (T::from(0.0), T::from(1.0));
+        let (zero, one) = (u.constant(0.0), u.constant(1.0));
         // A millimetre per second more than nothing, so that the share is a number at rest.
         let along = u.abs() / (u * u + w * w + 1e-6).sqrt();
         let largest_n = self.friction * vertical_load_n * along;
@@ -318,6 +381,14 @@ impl<T: Lanes> WheelSlip<T> {
         let by_brake = beyond.clamped(zero, one);
         by_brake + (one - by_brake) * effort.locked
     }
+}
+
+/// Size of the force that the lag of the spin is taken from: smooth where the wheel changes from left
+/// to right, and nowhere more than the side force; a number with a derivative also without friction.
+#[inline(always)]
+fn lagging<T: Lanes>(side_squared: T, limit: T) -> T {
+    let floor = limit * LEAST_LAGGING_SHARE;
+    (side_squared + floor * floor + 1e-30).sqrt()
 }
 
 #[cfg(test)]
@@ -346,6 +417,10 @@ mod tests {
         WheelEffort { braking_n, ..WheelEffort::none() }
     }
 
+    fn free_n(slip: WheelSlip<f64>, vertical_load_n: f64) -> [f64; 2] {
+        slip.free().force_n(vertical_load_n)
+    }
+
     fn slip(tire: &TireParameters, coefficient: f64, velocity_m_s: [f64; 2]) -> WheelSlip<f64> {
         turning(tire, coefficient, velocity_m_s, 0.0)
     }
@@ -356,19 +431,18 @@ mod tests {
         velocity_m_s: [f64; 2],
         yaw_rate_rad_s: f64,
     ) -> WheelSlip<f64> {
-        let [slip, ..] = tire.slips([coefficient; 4], [velocity_m_s; 4], yaw_rate_rad_s);
-        slip
+        tire.constants().slip(coefficient / tire.friction, velocity_m_s, yaw_rate_rad_s)
     }
 
     #[test]
     fn a_wheel_lags_behind_a_fast_rotation_and_drags() {
         // Rolling backwards after half a turn, the wheel still brakes, and has less side force.
-        let [fx, fy] = turning(&TIRE, 20.0, [-15.0, -8.0], 4.0).free_n(5e3);
-        let [_, steady] = slip(&TIRE, 20.0, [-15.0, -8.0]).free_n(5e3);
+        let [fx, fy] = free_n(turning(&TIRE, 20.0, [-15.0, -8.0], 4.0), 5e3);
+        let [_, steady] = free_n(slip(&TIRE, 20.0, [-15.0, -8.0]), 5e3);
         assert!(fx > 300.0 && fx < 700.0 && fy > 0.0 && fy < steady, "{fx} {fy} {steady}");
         // In a gentle curve the drag is the inertia force of the wheel, −m_w r w.
-        let [fx, _] = turning(&TIRE, 20.0, [20.0, 0.5], 0.2).free_n(5e3);
-        let [rolling, _] = slip(&TIRE, 20.0, [20.0, 0.5]).free_n(5e3);
+        let [fx, _] = free_n(turning(&TIRE, 20.0, [20.0, 0.5], 0.2), 5e3);
+        let [rolling, _] = free_n(slip(&TIRE, 20.0, [20.0, 0.5]), 5e3);
         let expected = -TIRE.wheel_mass_kg() * 0.2 * 0.5;
         assert!(((fx - rolling) / expected - 1.0).abs() < 0.15, "{} {expected}", fx - rolling);
     }

@@ -70,7 +70,7 @@ pub(crate) fn features_of<T: Lanes>(
     let speed = (x.vx_m_s * x.vx_m_s + x.vy_m_s * x.vy_m_s + 1e-12).sqrt() + SLOW_M_S;
     let along = x.vx_m_s.abs() + SLOW_M_S;
     let slip = |arm_m: f64| ((x.vy_m_s + x.yaw_rate_rad_s * arm_m) / along).atan();
-    let constant = T::from;
+    let constant = |value| x.vx_m_s.constant(value);
     [
         x.vx_m_s / VX_UNIT_M_S,
         x.vy_m_s / VY_UNIT_M_S,

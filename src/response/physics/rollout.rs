@@ -1,6 +1,7 @@
 //! The vehicle over many steps.
 
-use crate::response::{N_RESIDUAL, step};
+use crate::response::physics::step::StepModel;
+use crate::response::{Correction, N_RESIDUAL};
 use crate::vehicle::{VehicleInput, VehicleParameters, VehicleState};
 
 /// The states at the beginning of each step and at the end: one more than inputs.
@@ -13,10 +14,13 @@ pub fn rollout(
     mut residual: impl FnMut(usize, &VehicleState<f64>) -> [f64; N_RESIDUAL],
 ) -> Vec<VehicleState<f64>> {
     let mut states = Vec::with_capacity(inputs.len() + 1);
+    let model = StepModel::of(vehicle);
     let mut state = initial;
     states.push(state);
     for (i, input) in inputs.iter().enumerate() {
-        state = step(vehicle, &state, input, residual(i, &state));
+        let now = model.constants.evaluate(&state, input);
+        let at = (&state, input, &now);
+        state = Correction::Acceleration.step_from(&model, at, residual(i, &state));
         states.push(state);
     }
     states

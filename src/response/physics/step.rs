@@ -10,8 +10,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::numerics::{Lanes, Stage, rk4_step};
-use crate::vehicle::{N_STATE, VehicleEvaluation, VehicleInput, VehicleParameters, VehicleState};
+use crate::numerics::{Lanes, LanesOver, rk4_step, rk4_step_from};
+use crate::vehicle::frames::Heading;
+use crate::vehicle::{
+    N_STATE, VehicleConstants, VehicleEvaluation, VehicleInput, VehicleParameters, VehicleState,
+};
 
 /// Length of a step, s: that of the trajectory data sets.
 pub const STEP_S: f64 = 0.01;
@@ -37,6 +40,21 @@ pub enum Correction {
     Whole,
 }
 
+/// The 4DOF model of a vehicle, prepared for steps of [`STEP_S`].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StepModel<P = f64> {
+    pub constants: VehicleConstants<P>,
+    /// Parts into which a step is divided. Without a force the energy of the planar motion is bounded
+    /// by the step, and that of the roll by its division.
+    n_substeps: usize,
+}
+
+impl StepModel {
+    pub fn of(vehicle: &VehicleParameters) -> Self {
+        Self { constants: vehicle.constants(), n_substeps: vehicle.roll_substeps(STEP_S) }
+    }
+}
+
 impl Correction {
     /// The state after a step.
     ///
@@ -49,20 +67,23 @@ impl Correction {
         u: &VehicleInput<T>,
         value: [T; N_RESIDUAL],
     ) -> VehicleState<T> {
-        self.step_from(vehicle, (x, u, &vehicle.evaluate(x, u)), value)
+        let model = StepModel::of(vehicle);
+        self.step_from(&model, (x, u, &model.constants.evaluate(x, u)), value)
     }
 
     /// [`Correction::step`] where the 4DOF model was evaluated at the beginning already.
-    pub(crate) fn step_from<T: Lanes>(
+    #[inline(always)]
+    pub(crate) fn step_from<P: Copy, T: Lanes + LanesOver<P>>(
         self,
-        vehicle: &VehicleParameters,
+        model: &StepModel<P>,
         (x, u, now): (&VehicleState<T>, &VehicleInput<T>, &VehicleEvaluation<T>),
         value: [T; N_RESIDUAL],
     ) -> VehicleState<T> {
         match self {
-            Self::Acceleration => step_from(vehicle, (x, u, now), value),
+            Self::Acceleration => step_from(model, (x, u, now), value),
             Self::StateOffset => {
-                let mut next = step_from(vehicle, (x, u, now), [T::from(0.0); N_RESIDUAL]);
+                let none = [x.vx_m_s.constant(0.0); N_RESIDUAL];
+                let mut next = step_from(model, (x, u, now), none);
                 let [vx, vy, yaw, roll] = value;
                 next.vx_m_s += vx;
                 next.vy_m_s += vy;
@@ -74,7 +95,7 @@ impl Correction {
                 let [ax, ay, yaw, roll] = value;
                 let f = |_, x: &[T; N_STATE]| {
                     let x = VehicleState::from_array(*x);
-                    x.derivative([ax, ay], [yaw, roll]).to_array()
+                    x.derivative(Heading::of(x.yaw_rad), [ax, ay], [yaw, roll]).to_array()
                 };
                 VehicleState::from_array(rk4_step(f, &x.to_array(), STEP_S))
             }
@@ -100,45 +121,54 @@ pub fn step<T: Lanes>(
     u: &VehicleInput<T>,
     residual: [T; N_RESIDUAL],
 ) -> VehicleState<T> {
-    step_from(vehicle, (x, u, &vehicle.evaluate(x, u)), residual)
+    Correction::Acceleration.step(vehicle, x, u, residual)
 }
 
-fn step_from<T: Lanes>(
-    vehicle: &VehicleParameters,
+#[inline(always)]
+fn step_from<P: Copy, T: Lanes + LanesOver<P>>(
+    model: &StepModel<P>,
     (x, u, now): (&VehicleState<T>, &VehicleInput<T>, &VehicleEvaluation<T>),
     residual: [T; N_RESIDUAL],
 ) -> VehicleState<T> {
-    let [ax, ay, yaw, roll] = residual;
-    // Without a force the energy of the planar motion is bounded below, and that of the roll here.
-    let n_substeps = vehicle.roll_substeps(STEP_S);
-    let derivative = |substep, stage, x: &[T; 8]| {
-        let mut rate = match (substep, stage) {
-            (0, Stage::Start) => now.derivative,
-            _ => vehicle.evaluate(&VehicleState::from_array(*x), u).derivative,
-        };
-        rate.vx_m_s += ax;
-        rate.vy_m_s += ay;
-        rate.yaw_rate_rad_s += yaw;
-        rate.roll_rate_rad_s += roll;
-        rate.to_array()
-    };
-    let next = (0..n_substeps).fold(x.to_array(), |x, substep| {
-        let f = |stage, x: &[T; 8]| derivative(substep, stage, x);
-        rk4_step(f, &x, STEP_S / n_substeps as f64)
-    });
+    let StepModel { constants, n_substeps } = model;
+    let h = STEP_S / *n_substeps as f64;
+    let derivative = |_, x: &[T; N_STATE]| with_residual(constants.derivative(x, u), residual);
+    let mut next = x.to_array();
+    let mut start = with_residual(now.derivative.to_array(), residual);
+    for substep in 0..*n_substeps {
+        if substep > 0 {
+            start = with_residual(constants.derivative(&next, u), residual);
+        }
+        next = rk4_step_from(&start, derivative, &next, h);
+    }
     let next = VehicleState::from_array(next);
     let is_free = u.collision.is_none() && !u.is_driven();
-    if is_free { without_energy_gain(vehicle, x, next) } else { next }
+    if is_free { without_energy_gain(constants, x, next) } else { next }
 }
 
-fn without_energy_gain<T: Lanes>(
-    vehicle: &VehicleParameters,
+/// The time derivative of a state with a residual acceleration.
+#[inline(always)]
+fn with_residual<T: Lanes>(
+    derivative: [T; N_STATE],
+    [ax, ay, yaw, roll]: [T; N_RESIDUAL],
+) -> [T; N_STATE] {
+    let mut rate = VehicleState::from_array(derivative);
+    rate.vx_m_s += ax;
+    rate.vy_m_s += ay;
+    rate.yaw_rate_rad_s += yaw;
+    rate.roll_rate_rad_s += roll;
+    rate.to_array()
+}
+
+#[inline(always)]
+fn without_energy_gain<P: Copy, T: Lanes + LanesOver<P>>(
+    constants: &VehicleConstants<P>,
     before: &VehicleState<T>,
     mut after: VehicleState<T>,
 ) -> VehicleState<T> {
-    let (old, new) = (planar_energy_j(vehicle, before), planar_energy_j(vehicle, &after));
+    let (old, new) = (constants.planar_energy_j(before), constants.planar_energy_j(&after));
     if old.any_less(new) {
-        let share = old.if_less(new, (old / new).sqrt(), T::from(1.0));
+        let share = old.if_less(new, (old / new).sqrt(), old.constant(1.0));
         after.vx_m_s *= share;
         after.vy_m_s *= share;
         after.yaw_rate_rad_s *= share;
@@ -146,21 +176,39 @@ fn without_energy_gain<T: Lanes>(
     after
 }
 
-/// `m (v_x² + v_y²)/2 + I_zz r²/2`, J.
-fn planar_energy_j<T: Lanes>(vehicle: &VehicleParameters, x: &VehicleState<T>) -> T {
-    let speed_squared = x.vx_m_s * x.vx_m_s + x.vy_m_s * x.vy_m_s;
-    let spin_squared = x.yaw_rate_rad_s * x.yaw_rate_rad_s;
-    let mass = &vehicle.mass;
-    speed_squared * (mass.mass_kg / 2.0) + spin_squared * (mass.yaw_inertia_kg_m2 / 2.0)
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
-    use wide::f64x2;
+    use pulp::{Simd, WithSimd};
 
     use super::*;
+    use crate::numerics::Packed;
     use crate::vehicle::{CollisionForce, ContactPoint, Preset, WheelEffort};
+
+    /// A step from several states side by side.
+    struct Steps<'a> {
+        vehicle: &'a VehicleParameters,
+        states: [VehicleState<f64>; 8],
+        u: VehicleInput<f64>,
+        a: [f64; N_RESIDUAL],
+    }
+
+    impl WithSimd for Steps<'_> {
+        type Output = Vec<[f64; N_STATE]>;
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+            let states = self.states.map(VehicleState::to_array);
+            let x = std::array::from_fn(|i| {
+                Packed::new(simd, &std::array::from_fn(|lane| states[lane][i]))
+            });
+            let splat = |value| Packed::splat(simd, value);
+            let x = VehicleState::from_array(x);
+            let next = step(self.vehicle, &x, &self.u.map(splat), self.a.map(splat));
+            let next = next.to_array().map(Packed::to_array);
+            (0..Packed::<S>::N).map(|lane| next.map(|values| values[lane])).collect()
+        }
+    }
 
     fn state(vx_m_s: f64, vy_m_s: f64, yaw_rate_rad_s: f64) -> VehicleState<f64> {
         VehicleState { vx_m_s, vy_m_s, yaw_rate_rad_s, ..VehicleState::default() }
@@ -184,7 +232,8 @@ mod tests {
             let vehicle = Preset::Reference.parameters();
             let x = state(vx, vy, r);
             let next = step(&vehicle, &x, &VehicleInput::released(), a);
-            let [before, after] = [&x, &next].map(|x| planar_energy_j(&vehicle, x));
+            let constants = vehicle.constants();
+            let [before, after] = [&x, &next].map(|x| constants.planar_energy_j(x));
             prop_assert!(after <= before * (1.0 + 1e-12), "{before} {after}");
         }
 
@@ -204,8 +253,8 @@ mod tests {
         }
 
         #[test]
-        fn two_side_by_side_go_where_each_goes(
-            first in prop::array::uniform3(-15.0..15.0), second in prop::array::uniform3(-15.0..15.0),
+        fn states_side_by_side_go_where_each_goes_to_the_last_digit(
+            of_lanes in prop::array::uniform8(prop::array::uniform3(-15.0..15.0)),
             efforts in prop::option::of(prop::array::uniform4([-9e3..9e3_f64, 0.0..9e3, 0.0..1.0])),
             push_n in prop::option::of(prop::array::uniform2(-3e4..3e4)),
             a in prop::array::uniform4(-10.0..10.0),
@@ -220,18 +269,12 @@ mod tests {
             };
             let wheels = efforts.map(|wheels| wheels.map(effort));
             let u = VehicleInput { steer_rad: 0.1, wheels, collision };
-            let states = [first, second].map(|[vx, vy, r]| VehicleState {
+            let states = of_lanes.map(|[vx, vy, r]| VehicleState {
                 yaw_rad: vy, roll_rad: r / 50.0, ..state(vx, vy, r / 3.0)
             });
-            let [one, other] = states.map(|x| x.to_array());
-            let both = std::array::from_fn(|i| f64x2::new([one[i], other[i]]));
-            let both = VehicleState::from_array(both);
-            let next = step(&vehicle, &both, &u.map(f64x2::from), a.map(f64x2::from)).to_array();
-            for (lane, x) in states.iter().enumerate() {
-                for (got, expected) in next.iter().zip(step(&vehicle, x, &u, a).to_array()) {
-                    let off = got.to_array()[lane] - expected;
-                    prop_assert!(off.abs() < 1e-9 * (1.0 + expected.abs()), "{off} of {expected}");
-                }
+            let steps = pulp::Arch::new().dispatch(Steps { vehicle: &vehicle, states, u, a });
+            for (next, x) in steps.iter().zip(&states) {
+                prop_assert_eq!(*next, step(&vehicle, x, &u, a).to_array());
             }
         }
 

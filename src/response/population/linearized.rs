@@ -18,6 +18,7 @@ use crate::nn::NnError;
 use crate::response::network::response_network::ResponseNetwork;
 use crate::response::network::vehicle_network::{VehicleNetwork, Workspace};
 use crate::response::physics::features::features_of;
+use crate::response::physics::step::StepModel;
 use crate::response::{N_EFFECTS, N_RESIDUAL, ResponseCase, STEP_S, combined, effects};
 use crate::vehicle::{VehicleInput, VehicleState};
 
@@ -35,6 +36,7 @@ const PROBE: f64 = 0.02;
 /// A trajectory and the network for its vehicle.
 pub(super) struct Predicted<'a> {
     pub case: &'a ResponseCase,
+    model: StepModel,
     network: VehicleNetwork,
     /// Mean strengths over the components, `[N_EFFECTS]`.
     pub strengths: DVector<f64>,
@@ -54,7 +56,8 @@ impl<'a> Predicted<'a> {
     pub fn new(case: &'a ResponseCase, network: &ResponseNetwork) -> Result<Self, NnError> {
         let network = VehicleNetwork::new(network, &case.vehicle)?;
         let strengths = DVector::from_row_slice(&network.mean_strengths());
-        Ok(Self { case, network, strengths })
+        let model = StepModel::of(&case.vehicle);
+        Ok(Self { case, model, network, strengths })
     }
 
     /// One step with strengths added, in the mean over the components.
@@ -65,7 +68,7 @@ impl<'a> Predicted<'a> {
         work: &mut Workspace,
     ) -> VehicleState<f64> {
         let vehicle = &self.case.vehicle;
-        let now = vehicle.evaluate(x, u);
+        let now = self.model.constants.evaluate(x, u);
         self.network.forward(&[features_of(vehicle, x, &now, time_s)], work);
         let mut free = combined(&effects(vehicle, x, &now), strengths);
         let n = self.network.n_components();
@@ -75,7 +78,7 @@ impl<'a> Predicted<'a> {
                 free[i] += remainder[i] / n as f64;
             }
         }
-        self.network.correction().step_from(vehicle, (x, u, &now), self.network.bounded(free))
+        self.network.correction().step_from(&self.model, (x, u, &now), self.network.bounded(free))
     }
 
     /// Linearises the trajectory.

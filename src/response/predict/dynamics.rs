@@ -1,9 +1,9 @@
 //! One step of a component of the mixture: the correction terms at a state, and the state that follows
 //! at given latent factors.
 
-use crate::numerics::Lanes;
 use crate::response::network::vehicle_network::{VehicleNetwork, Workspace};
 use crate::response::physics::features::features_of;
+use crate::response::physics::step::StepModel;
 use crate::response::predict::latents::{Latents, N_LATENTS};
 use crate::response::{N_EFFECTS, N_FEATURES, N_RESIDUAL, combined, effects};
 use crate::vehicle::{VehicleEvaluation, VehicleInput, VehicleParameters, VehicleState};
@@ -11,6 +11,7 @@ use crate::vehicle::{VehicleEvaluation, VehicleInput, VehicleParameters, Vehicle
 /// Vehicle, network and latent factors: all that a step needs besides the state.
 pub(crate) struct Dynamics<'a> {
     pub vehicle: &'a VehicleParameters,
+    pub model: StepModel,
     pub network: &'a VehicleNetwork,
     pub latents: &'a Latents,
     /// Change of the strengths of the effects with each latent, where there is one.
@@ -52,7 +53,8 @@ impl<'a> Dynamics<'a> {
         let changed = |strengths: [f64; N_EFFECTS]| {
             strengths.into_iter().enumerate().filter(|(_, change)| *change != 0.0).collect()
         };
-        Self { vehicle, network, latents, directions: latents.directions.map(changed) }
+        let model = StepModel::of(vehicle);
+        Self { vehicle, model, network, latents, directions: latents.directions.map(changed) }
     }
 
     /// Whether the step does not depend on a latent factor.
@@ -67,7 +69,7 @@ impl<'a> Dynamics<'a> {
         (x, u, time_s): (&VehicleState<f64>, &VehicleInput<f64>, f64),
         batch: &mut NetworkBatch,
     ) -> VehicleState<f64> {
-        let now = self.vehicle.evaluate(x, u);
+        let now = self.model.constants.evaluate(x, u);
         batch.clear();
         batch.push(features_of(self.vehicle, x, &now, time_s));
         let mut terms = self.effects_at(component, x, &now);
@@ -128,13 +130,13 @@ impl<'a> Dynamics<'a> {
     /// The state after a step with a correction.
     ///
     /// - `now`: the 4DOF model at the beginning.
-    pub(super) fn advance<T: Lanes>(
+    pub(super) fn advance(
         &self,
-        (x, now): (&VehicleState<T>, &VehicleEvaluation<T>),
-        correction: [T; N_RESIDUAL],
-        u: &VehicleInput<T>,
-    ) -> VehicleState<T> {
-        self.network.correction().step_from(self.vehicle, (x, u, now), correction)
+        (x, now): (&VehicleState<f64>, &VehicleEvaluation<f64>),
+        correction: [f64; N_RESIDUAL],
+        u: &VehicleInput<f64>,
+    ) -> VehicleState<f64> {
+        self.network.correction().step_from(&self.model, (x, u, now), correction)
     }
 
     /// Probability of a component at the first state of the batch.

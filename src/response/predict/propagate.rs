@@ -9,15 +9,13 @@
 //!
 //! Points off the mean come in pairs along the columns of a lower triangular root of P, so that a
 //! column leaves alone what comes before it in ξ: those of the latents see what the mean sees, those of
-//! the pose have the mean's step turned and shifted. The two of a pair go through the equations of
-//! motion side by side. The paper restarts from a certain pose at every step, so that its
+//! the pose have the mean's step turned and shifted. The paper restarts from a certain pose at every step, so that its
 //! spread never grows along the path; with a certain pose this is its formula.
 //!
 //! Source: `eq:sigma_points_gmm` to `eq:complete_trajectory_gmm` of
 //! [`PitPinnPaper`](crate::bibliography::PitPinnPaper).
 
 use nalgebra::SMatrix;
-use wide::f64x2;
 
 use crate::response::STEP_S;
 use crate::response::physics::features::features_of;
@@ -61,11 +59,11 @@ struct StepBuffers {
     evaluations: Vec<PairEvaluation>,
 }
 
-/// The two sigma points of a column of the root, side by side, with vehicle model and correction terms
-/// evaluated there.
+/// The two sigma points of a column of the root, with vehicle model and correction terms evaluated
+/// there.
 struct PairEvaluation {
-    x: VehicleState<f64x2>,
-    now: VehicleEvaluation<f64x2>,
+    x: [VehicleState<f64>; 2],
+    now: [VehicleEvaluation<f64>; 2],
     terms: [CorrectionTerms; 2],
 }
 
@@ -177,18 +175,17 @@ impl Dynamics<'_> {
         let root = root_of(covariance) * weights.reach;
         let columns: [Mean; N] = std::array::from_fn(|i| root.column(i).into_owned());
         let x = state_of(mean);
-        let now = self.vehicle.evaluate(&x, u);
+        let now = self.model.constants.evaluate(&x, u);
         let mut terms = self.effects_at(component, &x, &now);
         batch.clear();
         batch.push(features_of(self.vehicle, &x, &now, time_s));
-        let u_pair = u.map(f64x2::from);
         evaluations.clear();
         for (_, column) in
             columns.iter().enumerate().filter(|(i, _)| plan.reuse(*i) == PointReuse::None)
         {
             let offset = plan.start(column);
-            let x = pair(SIDES.map(|side| state_of(&(mean + offset * side))));
-            evaluations.push(self.evaluate_pair(component, (x, &u_pair, time_s), batch));
+            let x = SIDES.map(|side| state_of(&(mean + offset * side)));
+            evaluations.push(self.evaluate_pair(component, (x, u, time_s), batch));
         }
         self.evaluate_network(batch);
         self.add_remainder(&mut terms, batch, [0, component]);
@@ -201,8 +198,7 @@ impl Dynamics<'_> {
         let of_mean = self.correction(&terms, &latents_of(mean));
         let of_mean = self.advance((&x, &now), of_mean, u);
         let centre = mean_of(&of_mean, &latents_of(mean));
-        let at_mean =
-            PairEvaluation { x: x.map(f64x2::from), now: now.map(f64x2::from), terms: [terms; 2] };
+        let at_mean = PairEvaluation { x: [x; 2], now: [now; 2], terms: [terms; 2] };
         let mut evaluated = evaluations.iter();
         let mut offsets = [Mean::zeros(); N_POINTS];
         for (i, (column, offsets)) in columns.iter().zip(offsets.as_chunks_mut::<2>().0).enumerate()
@@ -213,7 +209,7 @@ impl Dynamics<'_> {
                 PointReuse::Evaluation => Some(&at_mean),
                 PointReuse::Step => None,
             };
-            let ends = from.map_or([of_mean; 2], |from| self.advance_pair(from, &latents, &u_pair));
+            let ends = from.map_or([of_mean; 2], |from| self.advance_pair(from, &latents, u));
             let pose = column - plan.start(column);
             let (sin, cos) = pose[PSI].sin_cos();
             for (lane, (offset, side)) in offsets.iter_mut().zip(SIDES).enumerate() {
@@ -232,42 +228,33 @@ impl Dynamics<'_> {
         (centre + shift, covariance)
     }
 
-    /// Evaluates vehicle model and effects at two states side by side, and adds both to the batch of the
-    /// network.
+    /// Evaluates vehicle model and effects at two states, and adds both to the batch of the network.
     fn evaluate_pair(
         &self,
         component: usize,
-        (x, u, time_s): (VehicleState<f64x2>, &VehicleInput<f64x2>, f64),
+        (x, u, time_s): ([VehicleState<f64>; 2], &VehicleInput<f64>, f64),
         batch: &mut NetworkBatch,
     ) -> PairEvaluation {
-        let now = self.vehicle.evaluate(&x, u);
-        let features = features_of(self.vehicle, &x, &now, time_s).map(f64x2::to_array);
+        let now = x.map(|x| self.model.constants.evaluate(&x, u));
         let terms = [0, 1].map(|lane| {
-            batch.push(features.map(|pair| pair[lane]));
-            let of_lane = |pair: f64x2| pair.to_array()[lane];
-            self.effects_at(component, &x.map(of_lane), &now.map(of_lane))
+            batch.push(features_of(self.vehicle, &x[lane], &now[lane], time_s));
+            self.effects_at(component, &x[lane], &now[lane])
         });
         PairEvaluation { x, now, terms }
     }
 
-    /// The states after a step from two side by side.
+    /// The states after a step from two.
     fn advance_pair(
         &self,
         from: &PairEvaluation,
         latents: &[[f64; N_LATENTS]; 2],
-        u: &VehicleInput<f64x2>,
+        u: &VehicleInput<f64>,
     ) -> [VehicleState<f64>; 2] {
-        let [first, second] = [0, 1].map(|i| self.correction(&from.terms[i], &latents[i]));
-        let correction = std::array::from_fn(|i| f64x2::new([first[i], second[i]]));
-        let next = self.advance((&from.x, &from.now), correction, u);
-        [0, 1].map(|lane| next.map(|pair| pair.to_array()[lane]))
+        [0, 1].map(|i| {
+            let correction = self.correction(&from.terms[i], &latents[i]);
+            self.advance((&from.x[i], &from.now[i]), correction, u)
+        })
     }
-}
-
-/// Two states side by side.
-fn pair([first, second]: [VehicleState<f64>; 2]) -> VehicleState<f64x2> {
-    let (first, second) = (first.to_array(), second.to_array());
-    VehicleState::from_array(std::array::from_fn(|i| f64x2::new([first[i], second[i]])))
 }
 
 /// Mean and covariance of points about the centre.

@@ -1,0 +1,258 @@
+//! A motion that is being simulated, by itself or side by side with others.
+
+use crate::data::{CumulativeImpulse, ForceAxes};
+use crate::numerics::{Stage, euler_step, rk4_step};
+use crate::ranges::SIMULATED_DURATION;
+use crate::vehicle::controls::Controls;
+use crate::vehicle::energy::{EnergyWatch, MAX_ENERGY_GAIN};
+use crate::vehicle::recorder::{Forces, Recorder};
+use crate::vehicle::rest::RestWatch;
+use crate::vehicle::{
+    CollisionForce, ContactLoad, Equations, Integrator, Manoeuvre, Motion, MotionFlag, N_STATE,
+    OUTPUT_INTERVAL_S, SimulationError, VehicleConstants, VehicleInput, VehicleParameters,
+    VehicleState,
+};
+
+/// A motion that is being simulated. It stands at an output instant.
+pub(super) struct Run<'a> {
+    vehicle: &'a VehicleParameters,
+    pub constants: VehicleConstants<f64>,
+    inputs: Inputs<'a>,
+    ends_at_rest: bool,
+    /// Whether the motion goes on where its energy grows.
+    is_baseline: bool,
+    pub step_s: f64,
+    pub steps_per_output: usize,
+    n_outputs: usize,
+    /// Number of output instants before this one.
+    output: usize,
+    /// State at this instant, in the order of `eq:state_vector`.
+    pub state: [f64; N_STATE],
+    recorder: Recorder<'a>,
+    energy: EnergyWatch,
+    rest: RestWatch,
+}
+
+impl<'a> Run<'a> {
+    /// # Errors
+    /// [`SimulationError::Duration`] or [`SimulationError::Vehicle`].
+    pub fn new(
+        vehicle: &'a VehicleParameters,
+        manoeuvre: &'a Manoeuvre,
+        integrator: Integrator,
+    ) -> Result<Self, SimulationError> {
+        let duration_s = SIMULATED_DURATION.check(manoeuvre.duration_s)?;
+        vehicle.check_relations()?;
+        let inputs = Inputs::new(manoeuvre);
+        let rest = RestWatch::after(inputs.last_change_s());
+        let (step_s, steps_per_output) = steps(vehicle, integrator, &manoeuvre.controls);
+        let n_outputs = (duration_s / OUTPUT_INTERVAL_S).round() as usize + 1;
+        Ok(Self {
+            vehicle,
+            constants: vehicle.constants(),
+            inputs,
+            ends_at_rest: manoeuvre.ends_at_rest,
+            is_baseline: integrator == Integrator::Euler || vehicle.equations == Equations::Paper,
+            step_s,
+            steps_per_output,
+            n_outputs,
+            output: 0,
+            state: manoeuvre.initial.to_array(),
+            recorder: Recorder::new(vehicle, n_outputs),
+            energy: EnergyWatch::default(),
+            rest,
+        })
+    }
+
+    /// Axes of the collision force, and whether its yaw moment is recorded.
+    pub fn kind_of_force(&self) -> (bool, bool) {
+        self.inputs.kind_of_force()
+    }
+
+    /// Input over the interval that begins.
+    pub fn coming(&self) -> VehicleInput<f64> {
+        self.inputs.over(self.time_s(), OUTPUT_INTERVAL_S).instants[0]
+    }
+
+    /// Whether something may act over the interval that begins.
+    pub fn is_acted_on(&self) -> bool {
+        self.inputs.may_act_from(self.time_s())
+    }
+
+    /// Inputs over a step of the interval that begins.
+    pub fn inputs_of(&self, step: usize) -> StepInputs<f64> {
+        self.inputs.over(self.time_s() + step as f64 * self.step_s, self.step_s)
+    }
+
+    fn time_s(&self) -> f64 {
+        self.output as f64 * OUTPUT_INTERVAL_S
+    }
+
+    /// Records this instant, and says whether the motion goes on.
+    ///
+    /// # Errors
+    /// [`SimulationError::Diverged`] or [`SimulationError::EnergyGain`].
+    pub fn goes_on(&mut self) -> Result<bool, SimulationError> {
+        let coming = self.coming();
+        let now = self.constants.evaluate(&VehicleState::from_array(self.state), &coming);
+        self.record(&coming, &now.into())
+    }
+
+    /// [`Run::goes_on`] where the equations of motion were evaluated already.
+    ///
+    /// - `coming`: input over the interval that begins; `forces`: under it.
+    pub fn record(
+        &mut self,
+        coming: &VehicleInput<f64>,
+        forces: &Forces<f64>,
+    ) -> Result<bool, SimulationError> {
+        let (time_s, now) = (self.time_s(), VehicleState::from_array(self.state));
+        if !self.state.iter().all(|value| value.is_finite()) {
+            return Err(SimulationError::Diverged { time_s });
+        }
+        self.recorder.record(time_s, (&now, coming), forces);
+        let is_pushed = coming.collision.is_some() || coming.is_driven();
+        let share = self.energy.gain(self.vehicle, &now, is_pushed);
+        let is_kept = share <= MAX_ENERGY_GAIN; // not where it is NaN
+        if !is_kept {
+            if !self.is_baseline {
+                return Err(SimulationError::EnergyGain { time_s, share });
+            }
+            self.recorder.energy.get_or_insert(MotionFlag::EnergyGain { time_s });
+        }
+        let has_settled = self.rest.has_settled(time_s, &now);
+        Ok(!(has_settled && self.ends_at_rest) && self.output + 1 < self.n_outputs)
+    }
+
+    /// Goes on to the next output instant.
+    pub fn advance(&mut self, integrator: Integrator) {
+        for step in 0..self.steps_per_output {
+            let inputs = self.inputs_of(step);
+            let f = |stage, x: &[f64; N_STATE]| self.constants.derivative(x, inputs.at(stage));
+            self.state = match integrator {
+                Integrator::Rk4 => rk4_step(f, &self.state, self.step_s),
+                Integrator::Euler => euler_step(f, &self.state, self.step_s),
+            };
+        }
+        self.output += 1;
+    }
+
+    /// Goes on to the next output instant, where the state is known.
+    pub fn advanced_to(&mut self, state: [f64; N_STATE]) {
+        self.state = state;
+        self.output += 1;
+    }
+
+    /// # Errors
+    /// [`SimulationError::Series`] if the samples do not form a valid time series.
+    pub fn finish(self) -> Result<Motion, SimulationError> {
+        self.recorder.finish(&self.rest)
+    }
+}
+
+/// Length of the steps of an integrator for a vehicle, s, and how many make an output interval.
+fn steps(vehicle: &VehicleParameters, integrator: Integrator, controls: &Controls) -> (f64, usize) {
+    let step_s = integrator.step_s();
+    let n_substeps = match integrator {
+        Integrator::Rk4 if controls.wheels.is_some() => vehicle.braked_substeps(step_s),
+        Integrator::Rk4 => vehicle.substeps(step_s),
+        Integrator::Euler => 1,
+    };
+    let per_output = (OUTPUT_INTERVAL_S / step_s).round() as usize;
+    (step_s / n_substeps as f64, per_output * n_substeps)
+}
+
+/// Inputs of a manoeuvre, prepared for evaluation over time steps.
+pub(super) struct Inputs<'a> {
+    controls: &'a Controls,
+    contact: Option<(CumulativeImpulse, &'a ContactLoad)>,
+}
+
+/// Inputs over one time step.
+#[derive(Clone, Copy)]
+pub(super) struct StepInputs<T> {
+    /// Inputs at the start, the middle and the end of the step.
+    pub instants: [VehicleInput<T>; 3],
+}
+
+impl<'a> Inputs<'a> {
+    pub fn new(manoeuvre: &'a Manoeuvre) -> Self {
+        let contact = manoeuvre.contact_load.as_ref();
+        Self {
+            controls: &manoeuvre.controls,
+            contact: contact.map(|load| (load.force.cumulative(), load)),
+        }
+    }
+
+    pub fn over(&self, start_s: f64, step_s: f64) -> StepInputs<f64> {
+        let Controls { steer, wheels } = self.controls;
+        let collision = self.collision_over(start_s, step_s);
+        let instants_s = [start_s, start_s + step_s / 2.0, start_s + step_s];
+        let at = |time_s: f64| VehicleInput {
+            steer_rad: steer.as_ref().map_or(0.0, |steer| steer.at(time_s)),
+            wheels: wheels.as_ref().and_then(|wheels| wheels.at(time_s)),
+            collision,
+        };
+        StepInputs { instants: instants_s.map(at) }
+    }
+
+    /// Whether something may act from an instant on.
+    pub fn may_act_from(&self, start_s: f64) -> bool {
+        let Controls { steer, wheels } = self.controls;
+        let is_pushed =
+            self.contact.as_ref().is_some_and(|(cumulative, _)| start_s < cumulative.end_s());
+        steer.is_some() || wheels.is_some() || is_pushed
+    }
+
+    /// Axes of the collision force, and whether its yaw moment is recorded.
+    pub fn kind_of_force(&self) -> (bool, bool) {
+        self.contact.as_ref().map_or((false, false), |(cumulative, load)| {
+            let is_recorded = load.recorded_moment && cumulative.angular_n_m_s.is_some();
+            (load.force.axes == ForceAxes::World, is_recorded)
+        })
+    }
+
+    /// The last instant at which force, steer angle or wheels change, s; 0 if nothing acts.
+    fn last_change_s(&self) -> f64 {
+        let Controls { steer, wheels } = self.controls;
+        let contact = self.contact.as_ref().map(|(cumulative, _)| cumulative.end_s());
+        let steer = steer.as_ref().and_then(|steer| steer.time_s.last().copied());
+        let wheels = wheels.as_ref().and_then(|wheels| wheels.time_s.last().copied());
+        [contact, steer, wheels].into_iter().flatten().fold(0.0, f64::max)
+    }
+
+    /// Mean collision force over a step. It is `None` if neither force nor moment acts, also if the
+    /// history continues with zeros, so that rules for a vehicle without a collision force apply.
+    fn collision_over(&self, start_s: f64, step_s: f64) -> Option<CollisionForce<f64>> {
+        let (cumulative, load) = self.contact.as_ref()?;
+        if start_s >= cumulative.end_s() {
+            return None;
+        }
+        let (force_n, moment) = cumulative.mean_over(start_s, start_s + step_s);
+        let yaw_moment_n_m = moment.filter(|_| load.recorded_moment);
+        let acts = force_n != [0.0; 2] || yaw_moment_n_m.is_some_and(|moment| moment != 0.0);
+        acts.then_some(CollisionForce {
+            force_n,
+            in_world_axes: load.force.axes == ForceAxes::World,
+            yaw_moment_n_m,
+            contact: load.contact,
+        })
+    }
+}
+
+impl StepInputs<f64> {
+    /// Inputs of a vehicle that coasts.
+    pub const RELEASED: Self = Self { instants: [VehicleInput::RELEASED; 3] };
+}
+
+impl<T> StepInputs<T> {
+    #[inline(always)]
+    pub fn at(&self, stage: Stage) -> &VehicleInput<T> {
+        let [start, middle, end] = &self.instants;
+        match stage {
+            Stage::Start => start,
+            Stage::Middle => middle,
+            Stage::End => end,
+        }
+    }
+}
