@@ -50,6 +50,34 @@ impl<S: Simd> Packed<S> {
         values
     }
 
+    /// Rows of numbers, one for each lane, as numbers side by side; lanes beyond the rows repeat the last
+    /// one.
+    #[inline(always)]
+    pub fn columns<const M: usize>(simd: S, rows: &[[f64; M]]) -> [Self; M] {
+        let mut columns = [Self::splat(simd, 0.0); M];
+        let Some(last) = rows.len().checked_sub(1) else { return columns };
+        for (i, column) in columns.iter_mut().enumerate() {
+            let mut values = [0.0; MAX_LANES];
+            for (lane, value) in values[..Self::N].iter_mut().enumerate() {
+                *value = rows[lane.min(last)][i];
+            }
+            *column = Self::new(simd, &values);
+        }
+        columns
+    }
+
+    /// Numbers side by side as rows, one for each lane: what [`Packed::columns`] takes.
+    #[inline(always)]
+    pub fn rows<const M: usize>(columns: &[Self; M]) -> [[f64; M]; MAX_LANES] {
+        let mut rows = [[0.0; M]; MAX_LANES];
+        for (i, column) in columns.iter().enumerate() {
+            for (row, value) in rows.iter_mut().zip(column.to_array()) {
+                row[i] = value;
+            }
+        }
+        rows
+    }
+
     #[inline(always)]
     fn of(self, lanes: S::f64s) -> Self {
         Self { lanes, ..self }

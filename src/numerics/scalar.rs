@@ -80,6 +80,14 @@ pub trait Lanes:
         self.if_less(self.constant(0.0), self.constant(-1.0), self.constant(1.0))
     }
 
+    /// The hyperbolic tangent, also for large arguments: the derivative of `tanh` by dual numbers
+    /// divides by cosh², which overflows from about 350 on.
+    #[inline(always)]
+    fn smooth_sign(self) -> Self {
+        let end = self.constant(20.0); // tanh is 1 from here on
+        if self.abs().any_less(end) { self.clamped(-end, end).tanh() } else { self.sign() }
+    }
+
     /// The number, limited to the range from `low` to `high`.
     #[inline(always)]
     fn clamped(self, low: Self, high: Self) -> Self {

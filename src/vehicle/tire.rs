@@ -208,7 +208,7 @@ impl<T: Lanes> TireConstants<T> {
         let resistance = speed * speed * self.rolling_resistance_s2_m2
             + speed * self.rolling_resistance_s_m
             + self.rolling_resistance;
-        let direction = smooth_sign(u * (1.0 / ROLLING_RESISTANCE_SPEED_M_S));
+        let direction = (u * (1.0 / ROLLING_RESISTANCE_SPEED_M_S)).smooth_sign();
         WheelSlip {
             slip_angle_rad,
             friction: (one - sliding_loss) * self.friction,
@@ -221,14 +221,6 @@ impl<T: Lanes> TireConstants<T> {
             locked_friction: self.sliding_friction,
         }
     }
-}
-
-/// The hyperbolic tangent, also for large arguments: the derivative of `tanh` by dual numbers
-/// divides by cosh², which overflows from about 350 on.
-#[inline(always)]
-fn smooth_sign<T: Lanes>(x: T) -> T {
-    let end = x.constant(20.0); // tanh is 1 from here on
-    if x.abs().any_less(end) { x.clamped(-end, end).tanh() } else { x.sign() }
 }
 
 impl<T: Lanes> FreeWheel<T> {

@@ -8,9 +8,9 @@
 //! double precision.
 
 use candle_core::Tensor;
-use wide::f64x4;
 
 use crate::nn::NnError;
+use crate::numerics::Lanes;
 use crate::response::network::dense::{Dense, Rows};
 use crate::response::network::folded_attention::FoldedAttention;
 use crate::response::network::response_network::{N_COMPONENT_NUMBERS, ResponseNetwork};
@@ -124,14 +124,14 @@ impl VehicleNetwork {
     }
 
     /// `a_bound ⊙ tanh(a/a_bound)`.
-    pub(crate) fn bounded(&self, free: [f64; N_RESIDUAL]) -> [f64; N_RESIDUAL] {
-        match self.bound {
-            Some(bound) => {
-                let bound = f64x4::new(bound);
-                ((f64x4::new(free) / bound).tanh() * bound).to_array()
+    #[inline(always)]
+    pub(crate) fn bounded<T: Lanes>(&self, mut free: [T; N_RESIDUAL]) -> [T; N_RESIDUAL] {
+        if let Some(bound) = &self.bound {
+            for (value, bound) in free.iter_mut().zip(bound) {
+                *value = (*value / *bound).tanh() * *bound;
             }
-            None => free,
         }
+        free
     }
 
     /// Evaluates the network at instants; its outputs are left in `work`.

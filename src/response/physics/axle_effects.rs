@@ -1,6 +1,6 @@
 //! The effects of an axle that the 4DOF model leaves out; what they are stands in `effects.rs`.
 
-use crate::numerics::Scalar;
+use crate::numerics::Lanes;
 use crate::response::N_RESIDUAL;
 use crate::vehicle::{VehicleEvaluation, VehicleParameters, VehicleState};
 
@@ -27,107 +27,166 @@ pub(super) const N_PER_AXLE: usize = N_SLIP_KNOTS + 4 + 2 * WHEEL_MASS_SHARES.le
 /// Share of the friction at a strength of one of the characteristic.
 pub(super) const CHARACTERISTIC_SCALE: f64 = 0.125;
 
-/// One axle.
-pub(super) struct Axle<'a, T> {
-    vehicle: &'a VehicleParameters,
+/// The effects of an axle that push it to the side; the others push along the car.
+const IS_SIDE_FORCE: [bool; N_PER_AXLE] = {
+    let mut is_side_force = [true; N_PER_AXLE];
+    let mut i = N_SLIP_KNOTS;
+    while i < N_SLIP_KNOTS + 4 {
+        is_side_force[i] = false; // drag
+        i += 1;
+    }
+    while i < N_SLIP_KNOTS + 4 + 2 * WHEEL_MASS_SHARES.len() {
+        is_side_force[i] = false; // drag of the spin lag; its loss of side force comes next
+        i += 2;
+    }
+    is_side_force
+};
+
+/// One axle of a vehicle, prepared for all states.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Axle {
     /// Distance of the axle from the CG, positive forward, m.
     arm_m: f64,
+    friction: f64,
+    /// Equivalent masses of the two wheels that are spun up, kg.
+    spun_masses_kg: [f64; WHEEL_MASS_SHARES.len()],
+    cornering_coefficient: f64,
     /// v̇_x, v̇_y, ṙ, φ̈ by a side force of 1 N.
     by_side_force: [f64; N_RESIDUAL],
     /// v̇_x by a force of 1 N along the car.
     by_along_force: f64,
-    cornering_coefficient: f64,
-    /// Vertical loads of the left and of the right wheel, N.
-    loads_n: [T; 2],
 }
 
-impl<'a, T: Scalar> Axle<'a, T> {
-    /// - `arm_m`: from the CG, forward; `loads_n`: of its left and its right wheel.
-    pub(super) fn new(
-        vehicle: &'a VehicleParameters,
-        arm_m: f64,
-        cornering_coefficient: f64,
-        loads_n: [T; 2],
-    ) -> Self {
-        let by_side_force = vehicle.acceleration_of([0.0, 1.0], arm_m);
-        let by_along_force = 1.0 / vehicle.mass.mass_kg;
-        Self { vehicle, arm_m, by_side_force, by_along_force, cornering_coefficient, loads_n }
+/// The effects of an axle at a state: the force of each at a strength of one, N.
+pub(super) type AxleForces<T> = [T; N_PER_AXLE];
+
+impl Axle {
+    /// - `arm_m`: from the CG, forward.
+    pub(super) fn new(vehicle: &VehicleParameters, arm_m: f64, cornering_coefficient: f64) -> Self {
+        let mass_kg = vehicle.mass.mass_kg;
+        Self {
+            arm_m,
+            friction: vehicle.tires.friction,
+            spun_masses_kg: WHEEL_MASS_SHARES.map(|share| 2.0 * share * mass_kg),
+            cornering_coefficient,
+            by_side_force: vehicle.acceleration_of([0.0, 1.0], arm_m),
+            by_along_force: 1.0 / mass_kg,
+        }
     }
 
-    /// The effects of the axle, in order.
+    /// The forces of the effects, in order, N.
     ///
-    /// - `out`: all zero.
-    pub(super) fn effects(
+    /// - `loads_n`: vertical loads of the left and of the right wheel.
+    #[inline(always)]
+    pub(super) fn forces<T: Lanes>(
         &self,
         x: &VehicleState<T>,
         now: &VehicleEvaluation<T>,
-        out: &mut [[T; N_RESIDUAL]; N_PER_AXLE],
-    ) {
-        let friction = self.vehicle.tires.friction;
-        let load_n = self.loads_n[0] + self.loads_n[1];
+        loads_n: [T; 2],
+    ) -> AxleForces<T> {
+        let load_n = loads_n[0] + loads_n[1];
         let u = x.vx_m_s;
         let w = x.vy_m_s + x.yaw_rate_rad_s * self.arm_m;
         let slope = w / (u.abs() + SLOW_M_S);
         let slip_rad = -slope.atan();
-        let grip_n = load_n * friction;
-        let (characteristic, others) = out.split_at_mut(N_SLIP_KNOTS);
-        let hat_force_n = grip_n * (CHARACTERISTIC_SCALE * sign(slip_rad));
-        for (knot_idx, height) in hats(slip_rad.abs() * (KNOT_FRICTION / friction)) {
-            if let Some(slot) = characteristic.get_mut(knot_idx) {
-                *slot = self.side_force(height * hat_force_n);
-            }
+        let grip_n = load_n * self.friction;
+        let mut forces = [load_n; N_PER_AXLE];
+        let (characteristic, others) = forces.split_at_mut(N_SLIP_KNOTS);
+        let hat_force_n = grip_n * (slip_rad.sign() * CHARACTERISTIC_SCALE);
+        let hats = hats(slip_rad.abs() * (KNOT_FRICTION / self.friction));
+        for (slot, height) in characteristic.iter_mut().zip(hats) {
+            *slot = height * hat_force_n;
         }
-        let mut others = others.iter_mut();
-        let mut put = |acceleration| {
-            if let Some(slot) = others.next() {
-                *slot = acceleration;
-            }
-        };
         let cos = (slope * slope + 1.0).sqrt().recip();
         let sin = slope.abs() * cos;
-        let drag_n = grip_n * (u / SLOW_M_S).tanh() * -0.125;
-        for shape in [sin, sin * sin, sin * cos * 2.0, cos] {
-            put(self.along_force(shape * drag_n));
-        }
-        let masses_kg = WHEEL_MASS_SHARES.map(|share| 2.0 * share * self.vehicle.mass.mass_kg);
-        for [along, across] in spin_lags_n([u, w, x.yaw_rate_rad_s], grip_n, masses_kg) {
-            put(self.along_force(along * 0.3));
-            put(self.side_force(across * 0.3));
-        }
-        let relaxation = self.relaxation_n([u, w, slip_rad], now, load_n);
-        put(self.side_force(relaxation));
-        let transfer = (self.loads_n[0] - self.loads_n[1]) / (load_n + 1.0);
-        let stiffness = slip_rad * (self.cornering_coefficient / friction);
+        let drag_n = grip_n * (u / SLOW_M_S).smooth_sign() * -0.125;
+        let [[along, across], [heavy_along, heavy_across]] =
+            spin_lags_n([u, w, x.yaw_rate_rad_s], grip_n, self.spun_masses_kg);
+        let relaxation_n = self.relaxation_n([u, w, slip_rad], now, load_n);
+        let transfer = (loads_n[0] - loads_n[1]) / (load_n + 1.0);
+        let stiffness = slip_rad * (self.cornering_coefficient / self.friction);
         let side_force_n = grip_n * stiffness / (stiffness * stiffness + 1.0).sqrt();
-        put(self.side_force(side_force_n * transfer * transfer * 0.3));
+        others.copy_from_slice(&[
+            sin * drag_n,
+            sin * sin * drag_n,
+            sin * cos * 2.0 * drag_n,
+            cos * drag_n,
+            along * 0.3,
+            across * 0.3,
+            heavy_along * 0.3,
+            heavy_across * 0.3,
+            relaxation_n,
+            side_force_n * transfer * transfer * 0.3,
+        ]);
+        forces
+    }
+
+    /// The residual acceleration of each effect at a strength of one.
+    pub(super) fn each<T: Lanes>(
+        &self,
+        forces: &AxleForces<T>,
+        out: &mut [[T; N_RESIDUAL]; N_PER_AXLE],
+    ) {
+        for ((slot, force), is_side_force) in out.iter_mut().zip(forces).zip(IS_SIDE_FORCE) {
+            *slot = match is_side_force {
+                true => self.by_side_force.map(|acceleration| *force * acceleration),
+                false => {
+                    let zero = force.constant(0.0);
+                    [*force * self.by_along_force, zero, zero, zero]
+                }
+            };
+        }
+    }
+
+    /// Adds the residual acceleration of all effects at given strengths to a sum.
+    #[inline(always)]
+    pub(super) fn add<T: Lanes>(
+        &self,
+        forces: &AxleForces<T>,
+        strengths: &[f64; N_PER_AXLE],
+        sum: &mut [T; N_RESIDUAL],
+    ) {
+        let zero = sum[0].constant(0.0);
+        let (mut side, mut along) = (zero, zero);
+        for i in 0..N_PER_AXLE {
+            let part = forces[i] * strengths[i];
+            if IS_SIDE_FORCE[i] {
+                side += part;
+            } else {
+                along += part;
+            }
+        }
+        for (sum, acceleration) in sum.iter_mut().zip(self.by_side_force) {
+            *sum += side * acceleration;
+        }
+        sum[0] += along * self.by_along_force;
     }
 
     /// `−σ/V ∂F_y/∂α α̇`, N.
-    fn relaxation_n(&self, [u, w, slip_rad]: [T; 3], now: &VehicleEvaluation<T>, load_n: T) -> T {
+    #[inline(always)]
+    fn relaxation_n<T: Lanes>(
+        &self,
+        [u, w, slip_rad]: [T; 3],
+        now: &VehicleEvaluation<T>,
+        load_n: T,
+    ) -> T {
         let rate = &now.derivative;
         let across = rate.vy_m_s + rate.yaw_rate_rad_s * self.arm_m;
         let speed_squared = u * u + w * w + SLOW_M_S * SLOW_M_S;
         let turning = -(across * u.abs() - w * rate.vx_m_s * sign(u)) / speed_squared;
-        let stiffness = slip_rad * (self.cornering_coefficient / self.vehicle.tires.friction);
+        let stiffness = slip_rad * (self.cornering_coefficient / self.friction);
         let flattening = stiffness * stiffness + 1.0;
         let slope = load_n * self.cornering_coefficient / (flattening * flattening.sqrt());
         let force_n = -slope * turning * RELAXATION_LENGTH_M / speed_squared.sqrt();
         let limit_n = load_n * RELAXATION_LIMIT;
         force_n.clamped(-limit_n, limit_n)
     }
-
-    fn side_force(&self, force_n: T) -> [T; N_RESIDUAL] {
-        self.by_side_force.map(|acceleration| force_n * acceleration)
-    }
-
-    fn along_force(&self, force_n: T) -> [T; N_RESIDUAL] {
-        [force_n * self.by_along_force, T::from(0.0), T::from(0.0), T::from(0.0)]
-    }
 }
 
 /// Drag, and the loss of side force, of an axle whose wheels roll slower or faster than they move, N,
 /// for each mass.
-fn spin_lags_n<T: Scalar, const N: usize>(
+#[inline(always)]
+fn spin_lags_n<T: Lanes, const N: usize>(
     [u, w, yaw_rate]: [T; 3],
     grip_n: T,
     masses_kg: [f64; N],
@@ -135,7 +194,7 @@ fn spin_lags_n<T: Scalar, const N: usize>(
     let yaw_rate_per_grip = yaw_rate / (grip_n + 100.0);
     let rest = w * w + 0.1;
     let across = rest.sqrt();
-    let (mut slips, mut alongs) = ([w.abs() + 0.3; N], [T::from(0.0); N]);
+    let (mut slips, mut alongs) = ([w.abs() + 0.3; N], [w.constant(0.0); N]);
     // All masses in a pass: their divisions and roots do not wait for each other.
     for _ in 0..SPIN_LAG_PASSES {
         for ((slip, along), mass_kg) in slips.iter_mut().zip(&mut alongs).zip(masses_kg) {
@@ -145,30 +204,36 @@ fn spin_lags_n<T: Scalar, const N: usize>(
             *slip = (*along * *along + rest).sqrt();
         }
     }
-    std::array::from_fn(|i| {
-        let lost = w / slips[i] - w / across;
-        [-grip_n * alongs[i] / slips[i], -grip_n * lost]
-    })
+    let mut lags = [[across; 2]; N];
+    for ((lag, slip), along) in lags.iter_mut().zip(slips).zip(alongs) {
+        let lost = w / slip - w / across;
+        *lag = [-grip_n * along / slip, -grip_n * lost];
+    }
+    lags
 }
 
-/// The hat functions over [`SLIP_KNOTS_RAD`] that are not zero, with their heights: those of the knots
-/// below and above.
-fn hats<T: Scalar>(slip_rad: T) -> [(usize, T); 2] {
-    let above = SLIP_KNOTS_RAD.partition_point(|knot| *knot < slip_rad.re());
-    match (above.checked_sub(1), SLIP_KNOTS_RAD.get(above)) {
-        (Some(below), Some(high)) => {
-            let low = SLIP_KNOTS_RAD[below];
-            let share = (slip_rad - low) / (high - low);
-            [(below, -(share - 1.0)), (above, share)]
-        }
-        (None, Some(high)) => [(above, slip_rad / *high), (above + 1, T::from(0.0))],
-        (_, None) => [(N_SLIP_KNOTS - 2, T::from(0.0)), (N_SLIP_KNOTS - 1, T::from(1.0))],
+/// The heights of the hat functions over [`SLIP_KNOTS_RAD`]; beyond the last knot its hat stays at one.
+#[inline(always)]
+fn hats<T: Lanes>(slip_rad: T) -> [T; N_SLIP_KNOTS] {
+    let (zero, one) = (slip_rad.constant(0.0), slip_rad.constant(1.0));
+    // What has risen up to a knot falls up to the next one.
+    let mut heights = [zero; N_SLIP_KNOTS];
+    let mut below = 0.0;
+    for (height, knot) in heights.iter_mut().zip(SLIP_KNOTS_RAD) {
+        *height = ((slip_rad - below) * (1.0 / (knot - below))).clamped(zero, one);
+        below = knot;
     }
+    for i in 0..N_SLIP_KNOTS - 1 {
+        heights[i] = heights[i] - heights[i + 1];
+    }
+    heights
 }
 
 /// Sign of a number, 0 at 0.
-fn sign<T: Scalar>(x: T) -> f64 {
-    if x.re() == 0.0 { 0.0 } else { x.re().signum() }
+#[inline(always)]
+fn sign<T: Lanes>(x: T) -> T {
+    let zero = x.constant(0.0);
+    x.if_less(zero, x.constant(-1.0), zero.if_less(x, x.constant(1.0), zero))
 }
 
 #[cfg(test)]
@@ -178,11 +243,13 @@ mod tests {
     #[test]
     fn hats_sum_to_one_between_the_knots_and_beyond() {
         for slip in [0.01_f64, 0.02, 0.3, 1.0, 1.5] {
-            let [(below, low), (above, high)] = hats(slip);
-            assert!((low + high - 1.0).abs() < 1e-12 && above == below + 1, "{slip}: {low} {high}");
+            let heights = hats(slip);
+            assert!((heights.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{slip}: {heights:?}");
+            assert!(heights.iter().filter(|height| **height > 0.0).count() <= 2, "{heights:?}");
         }
-        assert_eq!(hats(0.005)[0], (0, 0.5));
-        assert_eq!(hats(0.15), [(3, 0.0), (4, 1.0)]);
+        assert_eq!(hats(0.005)[..2], [0.5, 0.0]);
+        let at_knot = hats(0.15).map(|height: f64| (height * 1e12).round() / 1e12);
+        assert_eq!(at_knot, std::array::from_fn(|i| if i == 4 { 1.0 } else { 0.0 }));
     }
 
     #[test]

@@ -34,10 +34,10 @@
 
 use std::ops::Range;
 
-use crate::numerics::Scalar;
+use crate::numerics::Lanes;
 use crate::response::N_RESIDUAL;
 use crate::response::physics::axle_effects::{
-    Axle, CHARACTERISTIC_SCALE, N_PER_AXLE, N_SLIP_KNOTS,
+    Axle, AxleForces, CHARACTERISTIC_SCALE, N_PER_AXLE, N_SLIP_KNOTS,
 };
 use crate::vehicle::{VehicleEvaluation, VehicleParameters, VehicleState};
 
@@ -72,6 +72,10 @@ enum BodyEffect {
 impl BodyEffect {
     /// Number of effects of the body.
     const COUNT: usize = Self::RollAccelerationYaw as usize + 1;
+
+    /// The component of the residual acceleration that each adds to.
+    const COMPONENTS: [usize; Self::COUNT] =
+        [VX, ROLL, ROLL, ROLL, ROLL, VX, VY, YAW, VY, YAW, YAW];
 
     /// Index among all effects.
     const fn index(self) -> usize {
@@ -109,65 +113,118 @@ const COLLISION_SCALE: f64 = 0.1;
 /// Residual acceleration of each effect at strength one: v̇_x, v̇_y, m/s², ṙ, φ̈, rad/s².
 pub type Effects<T> = [[T; N_RESIDUAL]; N_EFFECTS];
 
+/// The effects of a vehicle, prepared for all states.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct EffectModel {
+    axles: [Axle; 2],
+    mass_kg: f64,
+    yaw_inertia_kg_m2: f64,
+}
+
+/// How large each effect is at a state and a strength of one: a force of the axles, N, and the
+/// accelerations of the body, in the order of [`Effects`].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct EffectAmounts<T> {
+    axles: [AxleForces<T>; 2],
+    body: [T; BodyEffect::COUNT],
+}
+
+impl EffectModel {
+    pub fn of(vehicle: &VehicleParameters) -> Self {
+        let (geometry, tires) = (&vehicle.geometry, &vehicle.tires);
+        let [front, rear] =
+            [tires.cornering_coefficient_front_per_rad, tires.cornering_coefficient_rear_per_rad];
+        Self {
+            axles: [
+                Axle::new(vehicle, geometry.cg_to_front_axle_m, front),
+                Axle::new(vehicle, -geometry.cg_to_rear_axle_m, rear),
+            ],
+            mass_kg: vehicle.mass.mass_kg,
+            yaw_inertia_kg_m2: vehicle.mass.yaw_inertia_kg_m2,
+        }
+    }
+
+    /// The amounts at a state.
+    ///
+    /// - `now`: the 4DOF model at the same state.
+    #[inline(always)]
+    pub fn amounts<T: Lanes>(
+        &self,
+        x: &VehicleState<T>,
+        now: &VehicleEvaluation<T>,
+    ) -> EffectAmounts<T> {
+        let [fl, fr, rl, rr] = now.vertical_loads_n;
+        let [front, rear] = &self.axles;
+        let [fx, fy] = now.collision_force_n;
+        let (fx, fy) = (fx / self.mass_kg, fy / self.mass_kg);
+        let struck_yaw = now.collision_yaw_moment_n_m / self.yaw_inertia_kg_m2;
+        let rate = &now.derivative;
+        let mut body = [fx; BodyEffect::COUNT];
+        body[BodyEffect::WheelInertia as usize] = -rate.vx_m_s * 0.05;
+        body[BodyEffect::RollAngle as usize] = x.roll_rad * 100.0;
+        body[BodyEffect::RollRate as usize] = x.roll_rate_rad_s * 10.0;
+        body[BodyEffect::LateralAccelerationRoll as usize] = now.acceleration_m_s2[1];
+        body[BodyEffect::CollisionRoll as usize] = fy;
+        body[BodyEffect::CollisionLongitudinal as usize] = fx * COLLISION_SCALE;
+        body[BodyEffect::CollisionLateral as usize] = fy * COLLISION_SCALE;
+        body[BodyEffect::CollisionYaw as usize] = struck_yaw * COLLISION_SCALE;
+        body[BodyEffect::RollRateLateral as usize] = x.roll_rate_rad_s;
+        body[BodyEffect::RollRateYaw as usize] = x.roll_rate_rad_s;
+        body[BodyEffect::RollAccelerationYaw as usize] = rate.roll_rate_rad_s * 0.05;
+        EffectAmounts {
+            axles: [front.forces(x, now, [fl, fr]), rear.forces(x, now, [rl, rr])],
+            body,
+        }
+    }
+
+    /// `Σ_k c_k e_k`, m/s² and rad/s².
+    ///
+    /// - `strengths`: c_k.
+    #[inline(always)]
+    pub fn combined<T: Lanes>(
+        &self,
+        amounts: &EffectAmounts<T>,
+        strengths: &[f64; N_EFFECTS],
+    ) -> [T; N_RESIDUAL] {
+        let mut sum = [amounts.body[0].constant(0.0); N_RESIDUAL];
+        let (of_axles, of_body) = strengths.split_at(2 * N_PER_AXLE);
+        let (of_axles, _) = of_axles.as_chunks();
+        for ((axle, forces), strengths) in self.axles.iter().zip(&amounts.axles).zip(of_axles) {
+            axle.add(forces, strengths, &mut sum);
+        }
+        for (i, strength) in of_body.iter().enumerate().take(BodyEffect::COUNT) {
+            sum[BodyEffect::COMPONENTS[i]] += amounts.body[i] * *strength;
+        }
+        sum
+    }
+
+    /// The residual acceleration of each effect.
+    fn each<T: Lanes>(&self, amounts: &EffectAmounts<T>) -> Effects<T> {
+        let zero = amounts.body[0].constant(0.0);
+        let mut effects = [[zero; N_RESIDUAL]; N_EFFECTS];
+        let (of_axles, of_body) = effects.split_at_mut(2 * N_PER_AXLE);
+        let (of_axles, _) = of_axles.as_chunks_mut();
+        for ((axle, forces), out) in self.axles.iter().zip(&amounts.axles).zip(of_axles) {
+            axle.each(forces, out);
+        }
+        let of_body = of_body.iter_mut().zip(amounts.body).zip(BodyEffect::COMPONENTS);
+        for ((slot, amount), component) in of_body {
+            slot[component] = amount;
+        }
+        effects
+    }
+}
+
 /// The effects, scaled so that their strengths are of the order of 0.1 to 1.
 ///
 /// - `now`: the 4DOF model at the same state.
-#[inline] // where it is called, the numbers are written to their place instead of copied
-pub fn effects<T: Scalar>(
+pub fn effects<T: Lanes>(
     vehicle: &VehicleParameters,
     x: &VehicleState<T>,
     now: &VehicleEvaluation<T>,
 ) -> Effects<T> {
-    let mut effects = [[T::from(0.0); N_RESIDUAL]; N_EFFECTS];
-    fill(&mut effects, vehicle, x, now);
-    effects
-}
-
-fn fill<T: Scalar>(
-    effects: &mut Effects<T>,
-    vehicle: &VehicleParameters,
-    x: &VehicleState<T>,
-    now: &VehicleEvaluation<T>,
-) {
-    let geometry = &vehicle.geometry;
-    let (tires, [fl, fr, rl, rr]) = (&vehicle.tires, now.vertical_loads_n);
-    let axles = [
-        (geometry.cg_to_front_axle_m, tires.cornering_coefficient_front_per_rad, [fl, fr]),
-        (-geometry.cg_to_rear_axle_m, tires.cornering_coefficient_rear_per_rad, [rl, rr]),
-    ];
-    let (of_axles, of_body) = effects.split_at_mut(2 * N_PER_AXLE);
-    let (of_axles, _) = of_axles.as_chunks_mut();
-    for ((arm_m, cornering_coefficient, loads_n), out) in axles.into_iter().zip(of_axles) {
-        Axle::new(vehicle, arm_m, cornering_coefficient, loads_n).effects(x, now, out);
-    }
-    if let Some(of_body) = of_body.first_chunk_mut() {
-        body_effects(vehicle, x, now, of_body);
-    }
-}
-
-/// - `out`: all zero.
-fn body_effects<T: Scalar>(
-    vehicle: &VehicleParameters,
-    x: &VehicleState<T>,
-    now: &VehicleEvaluation<T>,
-    out: &mut [[T; N_RESIDUAL]; BodyEffect::COUNT],
-) {
-    let mass = &vehicle.mass;
-    let [fx, fy] = now.collision_force_n.map(|force| force / mass.mass_kg);
-    let struck_yaw = now.collision_yaw_moment_n_m / mass.yaw_inertia_kg_m2;
-    let rate = &now.derivative;
-    let [_, ay] = now.acceleration_m_s2;
-    out[BodyEffect::WheelInertia as usize][VX] = -rate.vx_m_s * 0.05;
-    out[BodyEffect::RollAngle as usize][ROLL] = x.roll_rad * 100.0;
-    out[BodyEffect::RollRate as usize][ROLL] = x.roll_rate_rad_s * 10.0;
-    out[BodyEffect::LateralAccelerationRoll as usize][ROLL] = ay;
-    out[BodyEffect::CollisionRoll as usize][ROLL] = fy;
-    out[BodyEffect::CollisionLongitudinal as usize][VX] = fx * COLLISION_SCALE;
-    out[BodyEffect::CollisionLateral as usize][VY] = fy * COLLISION_SCALE;
-    out[BodyEffect::CollisionYaw as usize][YAW] = struck_yaw * COLLISION_SCALE;
-    out[BodyEffect::RollRateLateral as usize][VY] = x.roll_rate_rad_s;
-    out[BodyEffect::RollRateYaw as usize][YAW] = x.roll_rate_rad_s;
-    out[BodyEffect::RollAccelerationYaw as usize][YAW] = rate.roll_rate_rad_s * 0.05;
+    let model = EffectModel::of(vehicle);
+    model.each(&model.amounts(x, now))
 }
 
 /// Whether an effect is one of the collision: it is nothing where no force acts.
@@ -219,8 +276,8 @@ pub(crate) fn direction(direction: Direction) -> [f64; N_EFFECTS] {
 /// `Σ_k c_k e_k`, m/s² and rad/s².
 ///
 /// - `strengths`: c_k, as many as effects.
-pub fn combined<T: Scalar>(effects: &Effects<T>, strengths: &[f64]) -> [T; N_RESIDUAL] {
-    let mut sum = [T::from(0.0); N_RESIDUAL];
+pub fn combined<T: Lanes>(effects: &Effects<T>, strengths: &[f64]) -> [T; N_RESIDUAL] {
+    let mut sum = [effects[0][0].constant(0.0); N_RESIDUAL];
     for (effect, strength) in effects.iter().zip(strengths) {
         for (sum, value) in sum.iter_mut().zip(effect) {
             *sum += *value * *strength;
@@ -257,6 +314,18 @@ mod tests {
             for ((a, b), sign) in plain.iter().zip(mirrored).zip(RESIDUAL_MIRROR) {
                 assert!((a - sign * b).abs() < 1e-12, "{plain:?} {mirrored:?}");
             }
+        }
+    }
+
+    #[test]
+    fn the_sum_by_force_is_the_sum_of_the_effects() {
+        let (vehicle, x) = (Preset::Reference.parameters(), state(1.0));
+        let strengths: [f64; N_EFFECTS] = std::array::from_fn(|k| (k as f64 * 0.7).sin());
+        let (model, now) =
+            (EffectModel::of(&vehicle), vehicle.evaluate(&x, &VehicleInput::released()));
+        let sum = model.combined(&model.amounts(&x, &now), &strengths);
+        for (got, expected) in sum.into_iter().zip(combined(&at(&x), &strengths)) {
+            assert!((got - expected).abs() < 1e-12 * (1.0 + expected.abs()), "{got} {expected}");
         }
     }
 

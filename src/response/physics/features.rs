@@ -58,6 +58,7 @@ pub fn features<T: Lanes>(
 }
 
 /// [`features`] where the 4DOF model was evaluated already.
+#[inline(always)]
 pub(crate) fn features_of<T: Lanes>(
     vehicle: &VehicleParameters,
     x: &VehicleState<T>,
@@ -69,8 +70,8 @@ pub(crate) fn features_of<T: Lanes>(
     let (mass, geometry) = (&vehicle.mass, &vehicle.geometry);
     let speed = (x.vx_m_s * x.vx_m_s + x.vy_m_s * x.vy_m_s + 1e-12).sqrt() + SLOW_M_S;
     let along = x.vx_m_s.abs() + SLOW_M_S;
-    let slip = |arm_m: f64| ((x.vy_m_s + x.yaw_rate_rad_s * arm_m) / along).atan();
-    let constant = |value| x.vx_m_s.constant(value);
+    let front = x.vy_m_s + x.yaw_rate_rad_s * geometry.cg_to_front_axle_m;
+    let rear = x.vy_m_s - x.yaw_rate_rad_s * geometry.cg_to_rear_axle_m;
     [
         x.vx_m_s / VX_UNIT_M_S,
         x.vy_m_s / VY_UNIT_M_S,
@@ -80,8 +81,8 @@ pub(crate) fn features_of<T: Lanes>(
         fx / (mass.mass_kg * FORCE_UNIT_M_S2),
         fy / (mass.mass_kg * FORCE_UNIT_M_S2),
         now.collision_yaw_moment_n_m / (mass.yaw_inertia_kg_m2 * ANGULAR_UNIT_RAD_S2),
-        slip(geometry.cg_to_front_axle_m),
-        slip(-geometry.cg_to_rear_axle_m),
+        front.atan_ratio(along),
+        rear.atan_ratio(along),
         rate.vx_m_s / RATE_UNIT_M_S2,
         rate.vy_m_s / RATE_UNIT_M_S2,
         rate.yaw_rate_rad_s / ANGULAR_RATE_UNIT_RAD_S2,
@@ -90,8 +91,8 @@ pub(crate) fn features_of<T: Lanes>(
         ay / TIRE_UNIT_M_S2,
         x.vx_m_s / speed,
         x.vy_m_s / speed,
-        constant((-time_s / TRANSIENT_S).exp()),
-        constant(time_s / HORIZON_S),
+        along.constant((-time_s / TRANSIENT_S).exp()),
+        along.constant(time_s / HORIZON_S),
     ]
 }
 

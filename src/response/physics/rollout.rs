@@ -19,7 +19,7 @@ pub fn rollout(
     states.push(state);
     for (i, input) in inputs.iter().enumerate() {
         let now = model.constants.evaluate(&state, input);
-        let at = (&state, input, &now);
+        let at = (&state, input, &now.derivative);
         state = Correction::Acceleration.step_from(&model, at, residual(i, &state));
         states.push(state);
     }

@@ -12,9 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::numerics::{Lanes, LanesOver, rk4_step, rk4_step_from};
 use crate::vehicle::frames::Heading;
-use crate::vehicle::{
-    N_STATE, VehicleConstants, VehicleEvaluation, VehicleInput, VehicleParameters, VehicleState,
-};
+use crate::vehicle::{N_STATE, VehicleConstants, VehicleInput, VehicleParameters, VehicleState};
 
 /// Length of a step, s: that of the trajectory data sets.
 pub const STEP_S: f64 = 0.01;
@@ -68,15 +66,17 @@ impl Correction {
         value: [T; N_RESIDUAL],
     ) -> VehicleState<T> {
         let model = StepModel::of(vehicle);
-        self.step_from(&model, (x, u, &model.constants.evaluate(x, u)), value)
+        self.step_from(&model, (x, u, &model.constants.evaluate(x, u).derivative), value)
     }
 
-    /// [`Correction::step`] where the 4DOF model was evaluated at the beginning already.
+    /// [`Correction::step`] where the time derivative by the 4DOF model at the beginning is known.
+    ///
+    /// - `now`: that derivative.
     #[inline(always)]
     pub(crate) fn step_from<P: Copy, T: Lanes + LanesOver<P>>(
         self,
         model: &StepModel<P>,
-        (x, u, now): (&VehicleState<T>, &VehicleInput<T>, &VehicleEvaluation<T>),
+        (x, u, now): (&VehicleState<T>, &VehicleInput<T>, &VehicleState<T>),
         value: [T; N_RESIDUAL],
     ) -> VehicleState<T> {
         match self {
@@ -127,14 +127,14 @@ pub fn step<T: Lanes>(
 #[inline(always)]
 fn step_from<P: Copy, T: Lanes + LanesOver<P>>(
     model: &StepModel<P>,
-    (x, u, now): (&VehicleState<T>, &VehicleInput<T>, &VehicleEvaluation<T>),
+    (x, u, now): (&VehicleState<T>, &VehicleInput<T>, &VehicleState<T>),
     residual: [T; N_RESIDUAL],
 ) -> VehicleState<T> {
     let StepModel { constants, n_substeps } = model;
     let h = STEP_S / *n_substeps as f64;
     let derivative = |_, x: &[T; N_STATE]| with_residual(constants.derivative(x, u), residual);
     let mut next = x.to_array();
-    let mut start = with_residual(now.derivative.to_array(), residual);
+    let mut start = with_residual(now.to_array(), residual);
     for substep in 0..*n_substeps {
         if substep > 0 {
             start = with_residual(constants.derivative(&next, u), residual);

@@ -17,9 +17,10 @@ use rayon::prelude::*;
 use crate::nn::NnError;
 use crate::response::network::response_network::ResponseNetwork;
 use crate::response::network::vehicle_network::{VehicleNetwork, Workspace};
+use crate::response::physics::effects::EffectModel;
 use crate::response::physics::features::features_of;
 use crate::response::physics::step::StepModel;
-use crate::response::{N_EFFECTS, N_RESIDUAL, ResponseCase, STEP_S, combined, effects};
+use crate::response::{N_EFFECTS, N_RESIDUAL, ResponseCase, STEP_S};
 use crate::vehicle::{VehicleInput, VehicleState};
 
 /// Steps of a window; the next one begins where it ends, so that nothing is counted twice.
@@ -37,6 +38,7 @@ const PROBE: f64 = 0.02;
 pub(super) struct Predicted<'a> {
     pub case: &'a ResponseCase,
     model: StepModel,
+    effects: EffectModel,
     network: VehicleNetwork,
     /// Mean strengths over the components, `[N_EFFECTS]`.
     pub strengths: DVector<f64>,
@@ -57,20 +59,22 @@ impl<'a> Predicted<'a> {
         let network = VehicleNetwork::new(network, &case.vehicle)?;
         let strengths = DVector::from_row_slice(&network.mean_strengths());
         let model = StepModel::of(&case.vehicle);
-        Ok(Self { case, model, network, strengths })
+        let effects = EffectModel::of(&case.vehicle);
+        Ok(Self { case, model, effects, network, strengths })
     }
 
     /// One step with strengths added, in the mean over the components.
     fn step(
         &self,
         (x, u, time_s): (&VehicleState<f64>, &VehicleInput<f64>, f64),
-        strengths: &[f64],
+        strengths: &[f64; N_EFFECTS],
         work: &mut Workspace,
     ) -> VehicleState<f64> {
         let vehicle = &self.case.vehicle;
         let now = self.model.constants.evaluate(x, u);
         self.network.forward(&[features_of(vehicle, x, &now, time_s)], work);
-        let mut free = combined(&effects(vehicle, x, &now), strengths);
+        let amounts = self.effects.amounts(x, &now);
+        let mut free = self.effects.combined(&amounts, strengths);
         let n = self.network.n_components();
         for component in 0..n {
             let remainder = self.network.remainder(work, [0, component]);
@@ -78,7 +82,11 @@ impl<'a> Predicted<'a> {
                 free[i] += remainder[i] / n as f64;
             }
         }
-        self.network.correction().step_from(&self.model, (x, u, &now), self.network.bounded(free))
+        self.network.correction().step_from(
+            &self.model,
+            (x, u, &now.derivative),
+            self.network.bounded(free),
+        )
     }
 
     /// Linearises the trajectory.
@@ -114,11 +122,12 @@ impl<'a> Predicted<'a> {
         let state = |i: usize| self.case.states.get(start + i).copied().unwrap_or_default();
         let mut work = Workspace::default();
         let mut path = |strengths: &DVector<f64>| -> DVector<f64> {
+            let strengths = std::array::from_fn(|k| strengths[k]);
             let mut seen = DVector::zeros(N_ROWS);
             let mut x = state(0);
             for (i, u) in self.case.inputs[start..end].iter().enumerate() {
                 let time_s = (start + i) as f64 * STEP_S;
-                x = self.step((&x, u, time_s), strengths.as_slice(), &mut work);
+                x = self.step((&x, u, time_s), &strengths, &mut work);
                 for (k, _) in at.iter().enumerate().filter(|(_, at)| **at == i + 1) {
                     seen.rows_mut(k * N_OBSERVED, N_OBSERVED).copy_from_slice(&x.planar());
                 }

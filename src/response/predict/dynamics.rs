@@ -1,11 +1,13 @@
 //! One step of a component of the mixture: the correction terms at a state, and the state that follows
 //! at given latent factors.
 
+use crate::numerics::Lanes;
 use crate::response::network::vehicle_network::{VehicleNetwork, Workspace};
+use crate::response::physics::effects::EffectModel;
 use crate::response::physics::features::features_of;
 use crate::response::physics::step::StepModel;
 use crate::response::predict::latents::{Latents, N_LATENTS};
-use crate::response::{N_EFFECTS, N_FEATURES, N_RESIDUAL, combined, effects};
+use crate::response::{N_FEATURES, N_RESIDUAL};
 use crate::vehicle::{VehicleEvaluation, VehicleInput, VehicleParameters, VehicleState};
 
 /// Vehicle, network and latent factors: all that a step needs besides the state.
@@ -14,8 +16,9 @@ pub(crate) struct Dynamics<'a> {
     pub model: StepModel,
     pub network: &'a VehicleNetwork,
     pub latents: &'a Latents,
-    /// Change of the strengths of the effects with each latent, where there is one.
-    directions: [Vec<(usize, f64)>; N_LATENTS],
+    effects: EffectModel,
+    /// Whether the step does not depend on a latent factor.
+    ignored: [bool; N_LATENTS],
 }
 
 /// The states of a step at which the network is evaluated, as features, and the results.
@@ -27,11 +30,11 @@ pub(crate) struct NetworkBatch {
 
 /// The terms of the correction at a state, before it is bounded.
 #[derive(Clone, Copy)]
-pub(super) struct CorrectionTerms {
+pub(super) struct CorrectionTerms<T = f64> {
     /// Effects and remainder of the component with every latent factor at zero.
-    value: [f64; N_RESIDUAL],
+    pub value: [T; N_RESIDUAL],
     /// Change of that by a latent factor of one.
-    by_latents: [[f64; N_RESIDUAL]; N_LATENTS],
+    pub by_latents: [[T; N_RESIDUAL]; N_LATENTS],
 }
 
 impl NetworkBatch {
@@ -50,16 +53,19 @@ impl<'a> Dynamics<'a> {
         network: &'a VehicleNetwork,
         latents: &'a Latents,
     ) -> Self {
-        let changed = |strengths: [f64; N_EFFECTS]| {
-            strengths.into_iter().enumerate().filter(|(_, change)| *change != 0.0).collect()
-        };
-        let model = StepModel::of(vehicle);
-        Self { vehicle, model, network, latents, directions: latents.directions.map(changed) }
+        Self {
+            vehicle,
+            model: StepModel::of(vehicle),
+            network,
+            latents,
+            effects: EffectModel::of(vehicle),
+            ignored: latents.directions.map(|of| of.iter().all(|change| *change == 0.0)),
+        }
     }
 
-    /// Whether the step does not depend on a latent factor.
-    pub(super) fn ignores(&self, latent: usize) -> bool {
-        self.directions.get(latent).is_none_or(Vec::is_empty)
+    /// Whether the step does not depend on each latent factor.
+    pub(super) fn ignored(&self) -> [bool; N_LATENTS] {
+        self.ignored
     }
 
     /// One step at given latent factors.
@@ -75,26 +81,30 @@ impl<'a> Dynamics<'a> {
         let mut terms = self.effects_at(component, x, &now);
         self.evaluate_network(batch);
         self.add_remainder(&mut terms, batch, [0, component]);
-        self.advance((x, &now), self.correction(&terms, latents), u)
+        let correction = self.network.bounded(self.free_correction(&terms, latents));
+        self.network.correction().step_from(&self.model, (x, u, &now.derivative), correction)
     }
 
     /// The known effects of a component.
-    pub(super) fn effects_at(
+    #[inline(always)]
+    pub(super) fn effects_at<T: Lanes>(
         &self,
         component: usize,
-        x: &VehicleState<f64>,
-        now: &VehicleEvaluation<f64>,
-    ) -> CorrectionTerms {
-        let effects = effects(self.vehicle, x, now);
-        let known = self.network.strengths(component).map(|known| combined(&effects, known));
-        let by_latents = self.directions.each_ref().map(|direction| {
-            let mut sum = [0.0; N_RESIDUAL];
-            for &(k, change) in direction {
-                add(&mut sum, change, &effects[k]);
+        x: &VehicleState<T>,
+        now: &VehicleEvaluation<T>,
+    ) -> CorrectionTerms<T> {
+        let amounts = self.effects.amounts(x, now);
+        let none = [x.vx_m_s.constant(0.0); N_RESIDUAL];
+        let mut terms = CorrectionTerms { value: none, by_latents: [none; N_LATENTS] };
+        if let Some(known) = self.network.strengths(component) {
+            terms.value = self.effects.combined(&amounts, known);
+        }
+        for (latent, by_latent) in terms.by_latents.iter_mut().enumerate() {
+            if !self.ignored[latent] {
+                *by_latent = self.effects.combined(&amounts, &self.latents.directions[latent]);
             }
-            sum
-        });
-        CorrectionTerms { value: known.unwrap_or_default(), by_latents }
+        }
+        terms
     }
 
     /// Evaluates the network at every state of the batch.
@@ -114,8 +124,8 @@ impl<'a> Dynamics<'a> {
         add(&mut terms.value, 1.0, &self.network.remainder(&batch.work, at));
     }
 
-    /// The correction at given latent factors.
-    pub(super) fn correction(
+    /// The correction at given latent factors, before it is bounded.
+    pub(super) fn free_correction(
         &self,
         terms: &CorrectionTerms,
         latents: &[f64; N_LATENTS],
@@ -124,19 +134,7 @@ impl<'a> Dynamics<'a> {
         for (z, by_latent) in latents.iter().zip(&terms.by_latents) {
             add(&mut value, *z, by_latent);
         }
-        self.network.bounded(value)
-    }
-
-    /// The state after a step with a correction.
-    ///
-    /// - `now`: the 4DOF model at the beginning.
-    pub(super) fn advance(
-        &self,
-        (x, now): (&VehicleState<f64>, &VehicleEvaluation<f64>),
-        correction: [f64; N_RESIDUAL],
-        u: &VehicleInput<f64>,
-    ) -> VehicleState<f64> {
-        self.network.correction().step_from(&self.model, (x, u, now), correction)
+        value
     }
 
     /// Probability of a component at the first state of the batch.

@@ -13,6 +13,8 @@ mod dynamics;
 
 mod joint_state;
 
+mod side_by_side;
+
 mod propagate;
 #[cfg(test)]
 mod propagate_tests;

@@ -9,7 +9,8 @@
 //!
 //! Points off the mean come in pairs along the columns of a lower triangular root of P, so that a
 //! column leaves alone what comes before it in ξ: those of the latents see what the mean sees, those of
-//! the pose have the mean's step turned and shifted. The paper restarts from a certain pose at every step, so that its
+//! the pose have the mean's step turned and shifted. All points
+//! of a step go through the equations of motion side by side. The paper restarts from a certain pose at every step, so that its
 //! spread never grows along the path; with a certain pose this is its formula.
 //!
 //! Source: `eq:sigma_points_gmm` to `eq:complete_trajectory_gmm` of
@@ -17,16 +18,17 @@
 
 use nalgebra::SMatrix;
 
+use crate::numerics::Lanes;
 use crate::response::STEP_S;
-use crate::response::physics::features::features_of;
-use crate::response::predict::dynamics::{CorrectionTerms, Dynamics, NetworkBatch};
+use crate::response::predict::dynamics::{Dynamics, NetworkBatch};
 use crate::response::predict::joint_state::{
     Covariance, LEAST_VARIANCE, Mean, N_DYNAMIC, N_JOINT, N_SEEN, NOISY, OF_COLLISION, PSI, X, Y,
     forget, latents_of, mean_of, state_of, turned,
 };
 use crate::response::predict::latents::N_LATENTS;
+use crate::response::predict::side_by_side::{Advance, EvaluatedPoint, Evaluation, StepStart};
 use crate::uncertainty::{Unscented, UnscentedWeights};
-use crate::vehicle::{VehicleEvaluation, VehicleInput, VehicleState};
+use crate::vehicle::{N_STATE, VehicleInput, VehicleState};
 
 const N: usize = N_JOINT;
 /// Points about the mean.
@@ -56,15 +58,12 @@ pub struct ComponentMotion {
 #[derive(Default)]
 struct StepBuffers {
     batch: NetworkBatch,
-    evaluations: Vec<PairEvaluation>,
-}
-
-/// The two sigma points of a column of the root, with vehicle model and correction terms evaluated
-/// there.
-struct PairEvaluation {
-    x: [VehicleState<f64>; 2],
-    now: [VehicleEvaluation<f64>; 2],
-    terms: [CorrectionTerms; 2],
+    /// The mean, and the points that are evaluated themselves.
+    states: Vec<[f64; N_STATE]>,
+    points: Vec<EvaluatedPoint>,
+    /// The mean, and the points whose step is taken.
+    starts: Vec<StepStart>,
+    ends: Vec<VehicleState<f64>>,
 }
 
 /// Which results of the mean point can be reused for a sigma point, by the first component of ξ in
@@ -169,51 +168,27 @@ impl Dynamics<'_> {
         (u, time_s, is_free): (&VehicleInput<f64>, f64, bool),
         buffers: &mut StepBuffers,
     ) -> (Mean, Covariance) {
-        let StepBuffers { batch, evaluations } = buffers;
-        let ignored = std::array::from_fn(|latent| self.ignores(latent));
-        let plan = ReusePlan::new(u, is_free, ignored);
+        let plan = ReusePlan::new(u, is_free, self.ignored());
         let root = root_of(covariance) * weights.reach;
         let columns: [Mean; N] = std::array::from_fn(|i| root.column(i).into_owned());
-        let x = state_of(mean);
-        let now = self.model.constants.evaluate(&x, u);
-        let mut terms = self.effects_at(component, &x, &now);
-        batch.clear();
-        batch.push(features_of(self.vehicle, &x, &now, time_s));
-        evaluations.clear();
-        for (_, column) in
-            columns.iter().enumerate().filter(|(i, _)| plan.reuse(*i) == PointReuse::None)
-        {
-            let offset = plan.start(column);
-            let x = SIDES.map(|side| state_of(&(mean + offset * side)));
-            evaluations.push(self.evaluate_pair(component, (x, u, time_s), batch));
-        }
-        self.evaluate_network(batch);
-        self.add_remainder(&mut terms, batch, [0, component]);
-        for (i, evaluation) in evaluations.iter_mut().enumerate() {
-            for (lane, terms) in evaluation.terms.iter_mut().enumerate() {
-                self.add_remainder(terms, batch, [1 + 2 * i + lane, component]);
-            }
-        }
-
-        let of_mean = self.correction(&terms, &latents_of(mean));
-        let of_mean = self.advance((&x, &now), of_mean, u);
+        self.evaluate_points(component, (mean, &columns, plan), (u, time_s), buffers);
+        self.advance_points((mean, &columns, plan), u, buffers);
+        let StepBuffers { batch, ends, .. } = buffers;
+        let of_mean = ends[0];
         let centre = mean_of(&of_mean, &latents_of(mean));
-        let at_mean = PairEvaluation { x: [x; 2], now: [now; 2], terms: [terms; 2] };
-        let mut evaluated = evaluations.iter();
+        let mut pairs = ends[1..].as_chunks::<2>().0.iter();
         let mut offsets = [Mean::zeros(); N_POINTS];
         for (i, (column, offsets)) in columns.iter().zip(offsets.as_chunks_mut::<2>().0).enumerate()
         {
-            let latents = SIDES.map(|side| latents_of(&(mean + column * side)));
-            let from = match plan.reuse(i) {
-                PointReuse::None => evaluated.next(),
-                PointReuse::Evaluation => Some(&at_mean),
+            let own = match plan.reuse(i) {
                 PointReuse::Step => None,
+                PointReuse::None | PointReuse::Evaluation => pairs.next(),
             };
-            let ends = from.map_or([of_mean; 2], |from| self.advance_pair(from, &latents, u));
+            let ends = own.copied().unwrap_or([of_mean; 2]);
             let pose = column - plan.start(column);
-            let (sin, cos) = pose[PSI].sin_cos();
-            for (lane, (offset, side)) in offsets.iter_mut().zip(SIDES).enumerate() {
-                let next = mean_of(&ends[lane], &latents[lane]);
+            let (sin, cos) = Lanes::sin_cos(pose[PSI]);
+            for ((offset, end), side) in offsets.iter_mut().zip(&ends).zip(SIDES) {
+                let next = mean_of(end, &latents_of(&(mean + column * side)));
                 let way = [next[X] - mean[X], next[Y] - mean[Y]];
                 *offset = turned(&(next - centre), way, (&(pose * side), [sin * side, cos]));
             }
@@ -228,32 +203,73 @@ impl Dynamics<'_> {
         (centre + shift, covariance)
     }
 
-    /// Evaluates vehicle model and effects at two states, and adds both to the batch of the network.
-    fn evaluate_pair(
+    /// Evaluates vehicle model, effects and network at the mean and at the points that do not reuse what
+    /// the mean sees.
+    fn evaluate_points(
         &self,
         component: usize,
-        (x, u, time_s): ([VehicleState<f64>; 2], &VehicleInput<f64>, f64),
-        batch: &mut NetworkBatch,
-    ) -> PairEvaluation {
-        let now = x.map(|x| self.model.constants.evaluate(&x, u));
-        let terms = [0, 1].map(|lane| {
-            batch.push(features_of(self.vehicle, &x[lane], &now[lane], time_s));
-            self.effects_at(component, &x[lane], &now[lane])
+        (mean, columns, plan): (&Mean, &[Mean; N], ReusePlan),
+        (u, time_s): (&VehicleInput<f64>, f64),
+        buffers: &mut StepBuffers,
+    ) {
+        let StepBuffers { batch, states, points, .. } = buffers;
+        states.clear();
+        states.push(state_of(mean).to_array());
+        for (_, column) in
+            columns.iter().enumerate().filter(|(i, _)| plan.reuse(*i) == PointReuse::None)
+        {
+            let offset = plan.start(column);
+            states.extend(SIDES.map(|side| state_of(&(mean + offset * side)).to_array()));
+        }
+        batch.clear();
+        points.clear();
+        let dynamics = self;
+        pulp::Arch::new().dispatch(Evaluation {
+            dynamics,
+            component,
+            u,
+            time_s,
+            states,
+            batch,
+            points,
         });
-        PairEvaluation { x, now, terms }
+        self.evaluate_network(batch);
+        for (i, point) in points.iter_mut().enumerate() {
+            self.add_remainder(&mut point.terms, batch, [i, component]);
+        }
     }
 
-    /// The states after a step from two.
-    fn advance_pair(
+    /// Takes the steps of the mean and of the points that do not reuse that of the mean.
+    fn advance_points(
         &self,
-        from: &PairEvaluation,
-        latents: &[[f64; N_LATENTS]; 2],
+        (mean, columns, plan): (&Mean, &[Mean; N], ReusePlan),
         u: &VehicleInput<f64>,
-    ) -> [VehicleState<f64>; 2] {
-        [0, 1].map(|i| {
-            let correction = self.correction(&from.terms[i], &latents[i]);
-            self.advance((&from.x[i], &from.now[i]), correction, u)
-        })
+        buffers: &mut StepBuffers,
+    ) {
+        let StepBuffers { points, starts, ends, .. } = buffers;
+        let start = |from: &EvaluatedPoint, latents: &[f64; N_LATENTS]| StepStart {
+            state: from.state,
+            derivative: from.derivative,
+            correction: self.free_correction(&from.terms, latents),
+        };
+        let at_mean = &points[0];
+        starts.clear();
+        starts.push(start(at_mean, &latents_of(mean)));
+        let mut evaluated = points[1..].iter();
+        for (i, column) in columns.iter().enumerate() {
+            for side in SIDES {
+                let from = match plan.reuse(i) {
+                    PointReuse::None => evaluated.next(),
+                    PointReuse::Evaluation => Some(at_mean),
+                    PointReuse::Step => None,
+                };
+                if let Some(from) = from {
+                    starts.push(start(from, &latents_of(&(mean + column * side))));
+                }
+            }
+        }
+        ends.clear();
+        pulp::Arch::new().dispatch(Advance { dynamics: self, u, starts, ends });
     }
 }
 
