@@ -6,7 +6,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::answers::scenario_with;
-use crate::program::{SCENARIO, TRAJECTORIES, answer, ok, program, text};
+use crate::program::{EVALUATE_SHIPPED, SCENARIO, TRAJECTORIES, answer, ok, program, text};
 
 /// The badges of a report of one kind, after checking that each badge has all keys.
 fn badges<'a>(report: &'a Value, kind: &str) -> Vec<&'a Value> {
@@ -32,16 +32,7 @@ fn every_answer_with_numbers_has_badges() {
         &["simulate", "--dataset", TRAJECTORIES, "--case", "FE_c001"],
         &["predict", "force", "--scenario", SCENARIO],
         &["predict", "--draws", "2", "--scenario", SCENARIO, "--out", text(&out)],
-        &[
-            "evaluate",
-            "force",
-            "--model",
-            "shipped",
-            "--data",
-            "datasets/fea",
-            "--out",
-            text(&evaluation),
-        ],
+        &[&EVALUATE_SHIPPED[..], &["--out", text(&evaluation)]].concat(),
     ];
     for args in asked {
         let report = answer(args);

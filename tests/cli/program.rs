@@ -12,6 +12,9 @@ use serde_json::Value;
 
 pub const SCENARIO: &str = "assets/scenarios/pit_right_rear.toml";
 pub const TRAJECTORIES: &str = "datasets/trajectories-fea";
+/// The evaluation of the shipped force network on the shipped runs.
+pub const EVALUATE_SHIPPED: [&str; 6] =
+    ["evaluate", "force", "--model", "shipped", "--data", "datasets/fea"];
 
 /// Layers of a response network that is small enough to be trained within seconds.
 pub const TINY_RESPONSE_NETWORK: &str = "\

@@ -9,7 +9,7 @@ use std::path::Path;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::program::{SCENARIO, TRAJECTORIES, json, ok, program, text};
+use crate::program::{EVALUATE_SHIPPED, SCENARIO, TRAJECTORIES, json, ok, program, text};
 
 /// Runs a command and returns its exit code and what it prints to the standard error.
 fn run(args: &[&str]) -> (Option<i32>, String) {
@@ -165,16 +165,7 @@ fn what_goes_wrong_together_is_an_error() {
     let (code, error) = run(&["simulate", "--force", force, "--contact=-20,0,0.5"]);
     assert!(code == Some(1) && error.contains("lies 17.527 m off the outline"), "{error}");
 
-    let (code, error) = run(&[
-        "evaluate",
-        "force",
-        "--model",
-        "shipped",
-        "--data",
-        "datasets/fea",
-        "--cross-validate",
-        "900",
-    ]);
+    let (code, error) = run(&[&EVALUATE_SHIPPED[..], &["--cross-validate", "900"]].concat());
     assert!(code == Some(1) && error.contains("900 folds of"), "{error}");
 
     let out = folder.path().join("prediction");

@@ -9,6 +9,7 @@ pub mod regression;
 
 mod centre;
 mod committee;
+mod crush_laws;
 
 mod residuals;
 
