@@ -28,6 +28,8 @@ const FRONT_OVERHANG_M: f64 = 0.78;
 /// states them.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct MultibodyRecord {
+    #[serde(default)]
+    name: Option<String>,
     mass: MassRecord,
     geometry: GeometryRecord,
     wheel: WheelRecord,
@@ -97,7 +99,9 @@ impl MultibodyRecord {
     /// Derives the parameters of the 4DOF vehicle that represents the multibody model. Only the
     /// data sheet is used, by the rules that [`VehicleParameters::estimates`] lists; no parameter
     /// is fitted to trajectories.
-    pub fn parameters(&self) -> VehicleParameters {
+    ///
+    /// - `folder`: the folder of the file, after which a car is named that its file does not name.
+    pub fn parameters(&self, folder: Option<&str>) -> VehicleParameters {
         let Self { mass, geometry, wheel, tyre, aero, .. } = self;
         let sprung_kg = mass.total_kg - mass.unsprung_kg;
         let unsprung_moment = mass.unsprung_kg * wheel.effective_rolling_radius;
@@ -106,7 +110,10 @@ impl MultibodyRecord {
         let drag_over_weight =
             0.5 * AIR_DENSITY_KG_M3 * aero.drag_area_m2 / (mass.total_kg * STANDARD_GRAVITY_M_S2);
         VehicleParameters {
-            name: "Reference car (multibody, 2000 kg)".to_owned(),
+            name: self.name.clone().unwrap_or_else(|| {
+                let name = folder.unwrap_or("car");
+                format!("{name} (multibody, {} kg)", mass.total_kg)
+            }),
             source: "vehicle.toml of the trajectory dataset: values of the multibody model at rest"
                 .to_owned(),
             equations: Equations::default(),

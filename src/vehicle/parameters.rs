@@ -2,6 +2,7 @@
 //! every value is checked against a range.
 
 use std::collections::BTreeMap;
+use std::ffi::OsStr;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -130,7 +131,8 @@ impl VehicleParameters {
         let table: toml::Table = file.to()?;
         let is_multibody = table.get("mass").is_some_and(|mass| mass.get("total").is_some());
         let (vehicle, origin): (Self, Origin) = if is_multibody {
-            (file.to::<MultibodyRecord>()?.parameters(), MultibodyRecord::origin)
+            let folder = path.parent().and_then(Path::file_name).and_then(OsStr::to_str);
+            (file.to::<MultibodyRecord>()?.parameters(folder), MultibodyRecord::origin)
         } else if table.contains_key("data_sheet") {
             (DataSheet::from_toml(file)?.vehicle(), DataSheet::origin)
         } else {

@@ -134,3 +134,16 @@ fn a_scenario_names_its_vehicles() {
     let other = json(&["simulate", "--scenario", scenario, "--vehicle", "reference-2000"]);
     assert_eq!(other["vehicle"], "Reference car (multibody, 2000 kg)");
 }
+
+/// Every multibody car of the fleet was called by the name of one of them.
+#[test]
+fn a_multibody_car_is_called_by_its_file_or_its_folder() {
+    let named = |dataset: &str| {
+        let args = ["simulate", "--dataset", dataset, "--case"];
+        let cases = std::fs::read_to_string(format!("{dataset}/cases.csv")).unwrap();
+        let case = cases.lines().nth(1).unwrap().split(',').next().unwrap().to_owned();
+        answer(&[&args[..], &[case.as_str()]].concat())["vehicle"].as_str().unwrap().to_owned()
+    };
+    assert_eq!(named("datasets/trajectories-fleet/buggy"), "buggy (multibody, 1120 kg)");
+    assert_eq!(named("datasets/trajectories-fea"), "Reference car (multibody, 2000 kg)");
+}
