@@ -64,6 +64,10 @@ sources! {
     /// Hochschule Wien, 1966. Impact with compression to a common velocity and restitution as a
     /// share of the impulse of compression; sliding on a contact plane.
     Kudlich1966;
+    /// NHTSA, *Consumer Information; New Car Assessment Program; Rollover Resistance*, final policy
+    /// statement, 49 CFR Part 575, docket NHTSA-2001-9663 notice 3, Federal Register 68 (2003)
+    /// 59249–59304. Fishhook with roll rate feedback.
+    Nhtsa2003;
     /// NHTSA, *Laboratory Test Procedure for Dynamic Rollover: The Fishhook Maneuver Test Procedure*,
     /// New Car Assessment Program, March 2013. Slowly increasing steer, fishhook: sections 3.1, 3.2.
     Nhtsa2013;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::{DriveSetup, Settings};
+use crate::analysis::{AnalysisError, DriveSetup, Settings};
 use crate::data::{
     Channel, ForceHistory, Loaded, Sampling, TIME_TOLERANCE_S, TimeSeries, read_force_file,
     read_steer_file, read_wheels_file,
@@ -13,7 +13,7 @@ use crate::study::motion_source::acting_force;
 use crate::study::{AssumedQuantity, Assumption, Library, SeriesFile, StudyError};
 use crate::vehicle::{
     ContactPoint, Ending, SteerHistory, USUAL_STEERING_RATIO, VehicleParameters, VehicleState,
-    Wheel, WheelEffort, WheelHistory, angle_at_third_g_rad, fishhook,
+    Wheel, WheelEffort, WheelHistory, angle_at_third_g_rad, fishhook, fishhook_amplitude_rad,
 };
 
 /// Speed of the struck vehicle before the impact where nothing says it, m/s: 72 km/h.
@@ -87,14 +87,14 @@ impl Drive {
             }
             None => None,
         };
-        let steer = self.steer(&settings.target, assumptions)?;
-        let held = steer.as_ref().and_then(|steer| held_steer(steer, settings.duration_s));
-        assumptions.extend(held);
         let initial = VehicleState {
             vy_m_s: self.vy_m_s,
             yaw_rate_rad_s: self.yaw_rate_rad_s,
             ..VehicleState::driving_straight(speed_m_s)
         };
+        let steer = self.steer((&settings.target, &initial), assumptions)?;
+        let held = steer.as_ref().and_then(|steer| held_steer(steer, settings.duration_s));
+        assumptions.extend(held);
         let wheels = self.wheels.as_ref().map(|file| wheel_history(file, &settings.target));
         Ok(DriveSetup { initial, load, steer, wheels: wheels.transpose()?, notes })
     }
@@ -116,7 +116,7 @@ impl Drive {
     /// The road-wheel angle over time.
     fn steer(
         &self,
-        vehicle: &VehicleParameters,
+        (vehicle, initial): (&VehicleParameters, &VehicleState<f64>),
         assumptions: &mut Vec<Assumption>,
     ) -> Result<Option<SteerHistory>, StudyError> {
         if !self.fishhook {
@@ -131,13 +131,16 @@ impl Drive {
             assumptions.push(Assumption::new(AssumedQuantity::Steer, value, reason));
             USUAL_STEERING_RATIO
         });
-        let history = fishhook(angle_rad, ratio);
-        let amplitude_rad = history.steer_rad.iter().copied().fold(0.0, f64::max);
+        let amplitude_rad = fishhook_amplitude_rad(angle_rad);
         if angle_rad <= 0.0 || !STEER_ANGLE.contains(amplitude_rad) {
             let vehicle = vehicle.name.clone();
             return Err(StudyError::NoFishhook { vehicle, angle_rad });
         }
-        Ok(Some(history))
+        let failed = |source| StudyError::Analysis {
+            name: self.name(),
+            source: Box::new(AnalysisError::Simulation(source)),
+        };
+        fishhook((vehicle, initial), amplitude_rad, ratio).map(Some).map_err(failed)
     }
 }
 

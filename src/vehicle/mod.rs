@@ -36,12 +36,13 @@ pub use ending::{
     HeldSteer,
 };
 pub use energy::MAX_ENERGY_GAIN;
-pub use fishhook::{USUAL_STEERING_RATIO, angle_at_third_g_rad, fishhook};
+pub use fishhook::{USUAL_STEERING_RATIO, angle_at_third_g_rad, fishhook, fishhook_amplitude_rad};
 pub use four_dof::{CollisionForce, ContactPoint, VehicleEvaluation, VehicleInput};
 pub use loads::Wheel;
 pub use multibody_record::MultibodyRecord;
 pub use parameters::{GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters};
 pub use preset::{Preset, built_in_vehicle};
+pub(crate) use rest::RestWatch;
 pub use rest::{REST_DURATION_S, REST_SPEED_M_S, REST_YAW_RATE_RAD_S};
 pub use sheet::{DataSheet, LibraryVehicle};
 pub use simulate::{

@@ -13,7 +13,7 @@ pub const REST_DURATION_S: f64 = 0.1;
 
 /// Looks for rest along a motion.
 #[derive(Debug)]
-pub(super) struct RestWatch {
+pub(crate) struct RestWatch {
     /// Before this instant the vehicle may still be pushed or braked otherwise, s.
     last_change_s: f64,
     /// Since when both limits have held, s.
@@ -21,12 +21,12 @@ pub(super) struct RestWatch {
 }
 
 impl RestWatch {
-    pub(super) fn after(last_change_s: f64) -> Self {
+    pub(crate) fn after(last_change_s: f64) -> Self {
         Self { last_change_s, since_s: None }
     }
 
     /// Whether the vehicle has been at rest for [`REST_DURATION_S`].
-    pub(super) fn has_settled(&mut self, time_s: f64, x: &VehicleState<f64>) -> bool {
+    pub(crate) fn has_settled(&mut self, time_s: f64, x: &VehicleState<f64>) -> bool {
         let speed_m_s = x.vx_m_s.hypot(x.vy_m_s);
         let is_slow = speed_m_s < REST_SPEED_M_S && x.yaw_rate_rad_s.abs() < REST_YAW_RATE_RAD_S;
         if !is_slow || time_s < self.last_change_s {
@@ -39,7 +39,7 @@ impl RestWatch {
     /// The instant since which the vehicle is at rest, s; `None` if it still moves.
     ///
     /// - `end_s`: the last instant that was looked at.
-    pub(super) fn since_s(&self, end_s: f64) -> Option<f64> {
+    pub(crate) fn since_s(&self, end_s: f64) -> Option<f64> {
         self.since_s.filter(|since_s| since_s + REST_DURATION_S - 1e-9 <= end_s)
     }
 }
