@@ -10,7 +10,9 @@ mod forecast;
 mod motion_bands;
 mod motion_density;
 mod motion_forecast;
+mod motion_to_rest;
 mod rest;
+mod rest_outcome;
 mod scenario;
 mod second_contacts;
 mod vehicle_draws;
@@ -31,6 +33,7 @@ pub use motion_forecast::{
     MotionForecast, MotionForecastError, MotionForecastSettings, MotionOutcome, StruckVehicle,
     forecast_collision, forecast_forces,
 };
+pub use rest_outcome::{MotionEnd, RestOutcome};
 pub use scenario::{PulseSetup, analyse_scenario};
 pub use second_contacts::SecondContacts;
 pub use vehicle_draws::{Sensitivity, VehicleDraws};

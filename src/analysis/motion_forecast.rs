@@ -11,8 +11,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::analysis::motion_to_rest::{Settled, ToRest};
 use crate::analysis::rest::{Pace, rest_instant};
-use crate::analysis::{Sensitivity, Spread, VehicleDraws};
+use crate::analysis::rest_outcome::region_m2;
+use crate::analysis::{RestOutcome, Sensitivity, Spread, VehicleDraws};
 use crate::collision::Pose;
 use crate::data::{
     ContactOutside, ForceAxes, ForceHistory, check_contact_within, contact_interval,
@@ -20,7 +22,7 @@ use crate::data::{
 use crate::force::{ForceError, ForceModel, ForcePrediction, ForceScenario};
 use crate::learning::LearningError;
 use crate::nn::random_stream;
-use crate::ranges::{DRAWS, FORECAST_DURATION, OutOfRange};
+use crate::ranges::{DRAWS, FORECAST_DURATION, OutOfRange, REST_LIMIT};
 use crate::response::{
     Applicability, MotionDistribution, Predictor, ResponseModel, STEP_S, weighted_mean,
 };
@@ -31,9 +33,6 @@ use crate::vehicle::{
 
 /// Number of draws for the intervals of the final position.
 const N_END_DRAWS: usize = 4000;
-/// Number of draws for the area of the region of the final position, which then has an error of some
-/// 2 %.
-const N_REGION_DRAWS: usize = 10_000;
 
 /// Settings of a motion forecast.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,8 +42,11 @@ pub struct MotionForecastSettings {
     /// Number of vehicles that are drawn from what the data sheet of the struck vehicle leaves open;
     /// with 0 all estimates are at their medians.
     pub n_vehicles: usize,
-    /// Duration of the forecast from the start of the impact, s, 0.1 to 60.
+    /// Duration of the forecast from the start of the impact, s, 0.1 to 60, or, of a motion that is
+    /// followed to rest, to 120.
     pub duration_s: f64,
+    /// Whether the motion is followed until the vehicle is at rest, at the latest to the duration.
+    pub until_rest: bool,
     /// Seed of all random draws.
     pub seed: u64,
 }
@@ -79,6 +81,12 @@ pub struct MotionForecast {
     pub forces: Vec<ForceHistory>,
     /// Final position, heading and speed.
     pub outcome: MotionOutcome,
+    /// Where, when and after what distance the vehicle comes to rest, of a motion that is followed to
+    /// rest.
+    pub rest: Option<RestOutcome>,
+    /// How long the motions were that the response network has learned from, s. What comes after that
+    /// is the physics with the strengths that it knows.
+    pub learned_s: f64,
     /// The prediction of the force network, if the force was predicted.
     pub force: Option<ForcePrediction>,
     /// Number of vehicles that were drawn; 0 if the struck vehicle has no estimates.
@@ -142,7 +150,7 @@ pub enum MotionForecastError {
 
 impl StruckVehicle {
     /// Inputs of the vehicle at each time step under a force.
-    fn inputs(&self, force: &ForceHistory, duration_s: f64) -> Vec<VehicleInput<f64>> {
+    pub(super) fn inputs(&self, force: &ForceHistory, duration_s: f64) -> Vec<VehicleInput<f64>> {
         let manoeuvre = Manoeuvre {
             initial: self.initial,
             contact_load: Some(ContactLoad {
@@ -195,7 +203,8 @@ pub fn forecast_collision(
 /// vehicle of its own.
 ///
 /// # Errors
-/// [`MotionForecastError::OutOfRange`] for a duration outside [`FORECAST_DURATION`],
+/// [`MotionForecastError::OutOfRange`] for a duration outside [`FORECAST_DURATION`] or
+/// [`REST_LIMIT`],
 /// [`MotionForecastError::Response`] if the response network refuses the vehicle,
 /// [`MotionForecastError::Diverged`] if the motion is not finite.
 pub fn forecast_forces(
@@ -204,34 +213,32 @@ pub fn forecast_forces(
     struck: &StruckVehicle,
     settings: &MotionForecastSettings,
 ) -> Result<MotionForecast, MotionForecastError> {
-    let duration_s = FORECAST_DURATION.check(settings.duration_s)?;
+    let range = if settings.until_rest { REST_LIMIT } else { FORECAST_DURATION };
+    let duration_s = range.check(settings.duration_s)?;
     // What is uncertain of a car whose motions are known is in the network's strengths.
     let is_known = response.known_car(&struck.vehicle).is_some();
     let draws = if is_known { None } else { drawn_vehicles(struck, settings, forces.len()) };
     let predictors = predictors(response, struck, draws.as_ref())?;
-    let n_parts = forces.len().max(predictors.len());
-    let of = |part: usize| {
-        let (force, predictor) =
-            (forces.get(part % forces.len())?, predictors.get(part % predictors.len())?);
-        let inputs = struck.inputs(force, duration_s);
-        Some(Part {
-            motion: predictor.motion(&struck.initial, &inputs),
-            path: predictor.central_path(&struck.initial, &inputs),
-            applicability: predictor.applicability(&struck.initial, &inputs),
-        })
+    let motion = match settings.until_rest {
+        true => {
+            let to_rest = ToRest {
+                forces,
+                predictors: &predictors,
+                struck,
+                has_drawn_vehicles: draws.is_some(),
+                limit_s: duration_s,
+                seed: settings.seed,
+            };
+            to_rest.settle().map(ForecastMotion::of_settled)
+        }
+        false => propagated((forces, &predictors), struck, settings),
     };
-    let parts: Vec<Part> = (0..n_parts).into_par_iter().filter_map(of).collect();
-    let applicability = usual(parts.iter().map(|part| &part.applicability).collect());
-    let (parts, paths): (Vec<MotionDistribution>, Vec<Vec<VehicleState<f64>>>) =
-        parts.into_iter().map(|part| (part.motion, part.path)).unzip();
+    let ForecastMotion { distribution, paths, outcome, rest, applicabilities } =
+        motion.ok_or(MotionForecastError::Diverged)?;
     let central = mean_of(&paths);
-    let distribution = MotionDistribution::mixed(parts);
-    let pace = Pace::mean_of(&paths);
-    let force_end_s = forces.iter().filter_map(contact_interval).map(|(_, end_s)| end_s);
-    let rest = rest_instant(&pace, force_end_s.fold(0.0, f64::max));
-    let outcome = outcome((&distribution, &central), (&pace, rest), settings.seed)
-        .filter(|_| central.iter().all(|state| state.to_array().iter().all(|v| v.is_finite())))
-        .ok_or(MotionForecastError::Diverged)?;
+    if !central.iter().all(|state| state.to_array().iter().all(|v| v.is_finite())) {
+        return Err(MotionForecastError::Diverged);
+    }
     let sensitivity = draws.as_ref().map_or_else(Vec::new, |draws| {
         let end = |path: &Vec<VehicleState<f64>>| {
             path.last().map(|state| [state.x_m, state.y_m, state.yaw_rad])
@@ -244,11 +251,59 @@ pub fn forecast_forces(
         paths: paths.iter().map(|path| path.iter().map(pose).collect()).collect(),
         forces: forces.to_vec(),
         outcome,
+        rest,
+        learned_s: predictors.first().map_or(f64::INFINITY, Predictor::learned_s),
         force: None,
         n_vehicles: draws.map_or(0, |draws| draws.len()),
         sensitivity,
-        applicability,
+        applicability: usual(applicabilities.iter().collect()),
     })
+}
+
+/// A motion over all forces and vehicles.
+struct ForecastMotion {
+    distribution: MotionDistribution,
+    paths: Vec<Vec<VehicleState<f64>>>,
+    outcome: MotionOutcome,
+    rest: Option<RestOutcome>,
+    applicabilities: Vec<Applicability>,
+}
+
+impl ForecastMotion {
+    fn of_settled(settled: Settled) -> Self {
+        let Settled { distribution, paths, outcome, rest, applicabilities } = settled;
+        Self { distribution, paths, outcome, rest: Some(rest), applicabilities }
+    }
+}
+
+/// The motion over the duration, by propagation of the moments of the state; `None` where it is not
+/// finite.
+fn propagated(
+    (forces, predictors): (&[ForceHistory], &[Predictor]),
+    struck: &StruckVehicle,
+    settings: &MotionForecastSettings,
+) -> Option<ForecastMotion> {
+    let n_parts = forces.len().max(predictors.len());
+    let of = |part: usize| {
+        let (force, predictor) =
+            (forces.get(part % forces.len())?, predictors.get(part % predictors.len())?);
+        let inputs = struck.inputs(force, settings.duration_s);
+        Some(Part {
+            motion: predictor.motion(&struck.initial, &inputs),
+            path: predictor.central_path(&struck.initial, &inputs),
+            applicability: predictor.applicability(&struck.initial, &inputs),
+        })
+    };
+    let parts: Vec<Part> = (0..n_parts).into_par_iter().filter_map(of).collect();
+    let applicabilities = parts.iter().map(|part| part.applicability.clone()).collect();
+    let (parts, paths): (Vec<MotionDistribution>, Vec<Vec<VehicleState<f64>>>) =
+        parts.into_iter().map(|part| (part.motion, part.path)).unzip();
+    let distribution = MotionDistribution::mixed(parts);
+    let pace = Pace::mean_of(&paths);
+    let force_end_s = forces.iter().filter_map(contact_interval).map(|(_, end_s)| end_s);
+    let rest = rest_instant(&pace, force_end_s.fold(0.0, f64::max));
+    let outcome = outcome((&distribution, &mean_of(&paths)), (&pace, rest), settings.seed)?;
+    Some(ForecastMotion { distribution, paths, outcome, rest: None, applicabilities })
 }
 
 fn pose(state: &VehicleState<f64>) -> Pose {
@@ -351,34 +406,9 @@ fn outcome(
     })
 }
 
-/// Area of the smallest region that holds the position with probability `level`, m².
-///
-/// ```text
-/// A = E[1/p(X); p(X) ≥ c]
-/// ```
-///
-/// The expected value is estimated by the mean over draws X, with the threshold c exceeded by the
-/// share `level` of them.
-fn region_m2(position: &PlanarMixture, level: f64) -> f64 {
-    let densities = position.densities_of_draws(N_REGION_DRAWS);
-    let n_outside = ((1.0 - level) * densities.len() as f64).round() as usize;
-    let inverse = densities.iter().skip(n_outside).map(|density| 1.0 / density);
-    inverse.sum::<f64>() / densities.len().max(1) as f64
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::uncertainty::PlanarPart;
-
-    #[test]
-    fn the_region_of_a_normal_distribution_is_an_ellipse() {
-        let part = PlanarPart { weight: 1.0, mean: [0.0; 2], covariance: [4.0, 0.0, 1.0] };
-        // The squared radius of the 90 % region is −2 ln 0.1 = 4.605, and its area π · 4.605 · 2 ·
-        // 1.
-        let area = region_m2(&PlanarMixture::new(vec![part]), 0.9);
-        assert!((area / 28.93 - 1.0).abs() < 0.05, "{area}");
-    }
 
     #[test]
     fn a_force_is_turned_into_world_axes() {

@@ -51,7 +51,7 @@ enum CliCommand {
     Train(train::TrainArgs),
     FineTune(fine_tune::FineTuneArgs),
     Condition(condition::ConditionArgs),
-    Predict(predict::PredictArgs),
+    Predict(Box<predict::PredictArgs>),
     Evaluate(evaluate::EvaluateArgs),
     Compare(compare::CompareArgs),
     Render(render::RenderArgs),

@@ -75,9 +75,11 @@ ranges! {
         "duration of a simulation";
     FORECAST_DURATION: "duration of a forecast" = real(Quantity::Time, [0.1, 60.0]),
         "duration of a motion that the response network predicts";
+    REST_LIMIT: "time to rest" = real(Quantity::Time, [0.1, 120.0]),
+        "time after which a predicted motion is followed no further to rest";
     LOG_DURATION: "duration of a log" = real(Quantity::Time, [0.1, 600.0]),
         "part of a log after the first contact that is learned from";
-    WINDOW: "window" = real(Quantity::Time, [0.0, 60.0]),
+    WINDOW: "window" = real(Quantity::Time, [0.0, 120.0]),
         "start or end of the time over which a density is averaged";
     PULSE_DURATION: "pulse duration" = real(Quantity::Time, [0.001, 2.0]),
         "time over which the impulse of a scenario is spread";

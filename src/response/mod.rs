@@ -34,8 +34,8 @@ pub(crate) use population::{UnseenCar, is_same_car};
 pub(crate) use predict::weighted_mean;
 pub use predict::{
     Applicability, ComponentMotion, ComponentPath, LATENT_NAMES, LatentScales, MotionDistribution,
-    MotionDomain, N_LATENTS, N_NAMED_LATENTS, OutsideDomain, Predictor, ResponseModel,
-    StateDistribution,
+    MotionDomain, N_LATENTS, N_NAMED_LATENTS, OutsideDomain, Predictor, ResponseModel, RestSearch,
+    SettledMotion, StateDistribution,
 };
 pub use train::{
     ImpactRecord, ResponseCase, ResponseCaseError, ResponseEpoch, ResponseRecord, ResponseStage,

@@ -1,14 +1,15 @@
 //! The badges of an answer: what a report says in words of its own, in one form for all reports.
 
+use crate::analysis::RestOutcome;
 use crate::collision::{ScenarioGeometry, TOUCH_TOLERANCE_M};
-use crate::response::OutsideDomain;
+use crate::response::{OutsideDomain, STEP_S};
 use crate::study::implied_contact::{LEAST_P_RIGID, MOST_P_ENERGY_GAIN};
 use crate::study::{
     AssumedQuantity, Assumption, FlagReport, ImpliedContactReport, PredictForceReport,
     PredictMotionReport, ReplayedCaseReport, SimulateReport,
 };
 use crate::uncertainty::{Badge, BadgeKind};
-use crate::units::significant;
+use crate::units::{percent, significant};
 use crate::vehicle::{REST_SPEED_M_S, ROLL_LIMIT_RAD};
 
 /// What was assumed and what is not used, one badge for each.
@@ -87,6 +88,43 @@ pub(super) fn of_motion(speed_m_s: f64, after_s: f64) -> Badge {
         .with_range([0.0, REST_SPEED_M_S])
 }
 
+/// Draws of a motion that is followed to rest and still move at the limit of time.
+pub(super) fn of_rest(rest: &RestOutcome) -> Option<Badge> {
+    let speed_m_s = rest.moving_speed_m_s?;
+    let text = format!(
+        "in {} of {} draws the vehicle still moves after {:.2} s, at {speed_m_s:.1} m/s in the median: \
+         times and distances to rest are longer than said",
+        percent(1.0 - rest.share_at_rest),
+        rest.n_draws,
+        rest.limit_s,
+    );
+    let badge = Badge::new(BadgeKind::NotAtRest, text)
+        .with_value("share of the draws at rest", rest.share_at_rest)
+        .with_range([1.0, 1.0]);
+    Some(badge)
+}
+
+/// A motion that lasts longer than those that the response network has learned from.
+fn of_duration(report: &PredictMotionReport) -> Option<Badge> {
+    let end_s = match &report.rest {
+        Some(rest) => rest.time_s.ninety[1],
+        None => report.outcome.time_s,
+    };
+    let learned_s = report.learned_duration_s;
+    // A record of 400 samples and a forecast of 4 s differ by one of them.
+    if end_s <= learned_s + 1.5 * STEP_S {
+        return None;
+    }
+    let text = format!(
+        "the motion lasts {end_s:.2} s, the response network has learned from motions of up to \
+         {learned_s:.2} s: from there on this is the 4DOF model with the strengths that it knows"
+    );
+    let badge = Badge::new(BadgeKind::OutsideDomain, text)
+        .with_value("duration of the motion [s]", end_s)
+        .with_range([0.0, learned_s]);
+    Some(badge)
+}
+
 /// A quantity of a motion that lies outside what a response network has learned from.
 fn of_outside_domain(outside: &OutsideDomain) -> Badge {
     let OutsideDomain { quantity, value, range } = outside;
@@ -115,9 +153,13 @@ pub(super) fn of_predicted_motion(report: &PredictMotionReport, predicted: &[Bad
     let contact = report.implied_contact.as_ref().and_then(of_contact);
     let flags = report.flags.iter().map(of_flag);
     let end = &report.outcome;
-    let moving = (!end.is_at_rest).then(|| of_motion(end.speed_m_s, end.time_s));
+    let moving = match &report.rest {
+        Some(rest) => of_rest(rest),
+        None => (!end.is_at_rest).then(|| of_motion(end.speed_m_s, end.time_s)),
+    };
     let assumed = of_assumptions(&report.assumptions);
-    let outside = predicted.iter().cloned().chain(domain);
+    let beyond = of_duration(report);
+    let outside = predicted.iter().cloned().chain(domain).chain(beyond);
     outside.chain(contact).chain(flags).chain(moving).chain(assumed).collect()
 }
 

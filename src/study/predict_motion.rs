@@ -6,20 +6,20 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{
-    Analysis, MotionForecast, MotionForecastSettings, MotionOutcome, SecondContacts, Sensitivity,
-    StruckVehicle, forecast_collision, forecast_forces,
+    Analysis, MotionForecast, MotionForecastSettings, MotionOutcome, RestOutcome, SecondContacts,
+    Sensitivity, StruckVehicle, forecast_collision, forecast_forces,
 };
 use crate::data::{DatasetKind, ForceHistory, Outcome, check_contact_within};
 use crate::force::{ForceModel, ForceScenario, OutsideTraining};
-use crate::ranges::{DRAWS, FORECAST_DURATION};
+use crate::ranges::{DRAWS, FORECAST_DURATION, REST_LIMIT};
 use crate::response::OutsideDomain;
 use crate::study::checks::{check, check_count};
 use crate::study::simulate_dataset::take_case;
 use crate::study::unused::{by_force_network, by_forecast};
 use crate::study::{
-    AssumedQuantity, Assumption, FlagReport, ImpliedContactReport, Library, ModelChoice,
-    MotionSource, Observer, Provenance, Question, SeriesFile, SimulateAnswer, SimulateRequest,
-    StudyError, badges,
+    AssumedQuantity, Assumption, DEFAULT_DURATION_S, FlagReport, ImpliedContactReport, Library,
+    ModelChoice, MotionSource, Observer, Provenance, Question, SeriesFile, SimulateAnswer,
+    SimulateRequest, StudyError, badges,
 };
 use crate::uncertainty::{Badge, BadgeKind};
 
@@ -79,6 +79,12 @@ pub struct PredictMotionReport {
     pub n_vehicles: usize,
     /// How the motion ends.
     pub outcome: MotionOutcome,
+    /// Where, when and after what distance the vehicle comes to rest; none unless the question asks for
+    /// it.
+    pub rest: Option<RestOutcome>,
+    /// How long the motions were that the response network has learned from, s: what comes after that
+    /// is the physics with the strengths that it knows.
+    pub learned_duration_s: f64,
     /// Which estimates of the vehicle the end depends on, the one that moves it most first.
     pub sensitivity: Vec<Sensitivity>,
     /// Restitution and impulse ratio with which a momentum solution would give the predicted impulse,
@@ -171,7 +177,11 @@ impl Question for PredictMotionRequest {
     fn check(&self) -> Result<(), StudyError> {
         self.motion.check()?;
         // A recorded motion has its own duration.
-        if matches!(self.motion.source, MotionSource::Scenario { .. } | MotionSource::Drive(_)) {
+        let is_open =
+            matches!(self.motion.source, MotionSource::Scenario { .. } | MotionSource::Drive(_));
+        if self.motion.until_rest {
+            check("motion.duration_s", &REST_LIMIT, self.motion.duration_s)?;
+        } else if is_open {
             check("motion.duration_s", &FORECAST_DURATION, self.motion.duration_s)?;
         }
         check_count("draws", &DRAWS, self.draws)
@@ -187,7 +197,11 @@ impl Question for PredictMotionRequest {
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<PredictMotionAnswer>, StudyError> {
         // The vehicles are drawn for the forecast, not for the simulation beside it.
-        let simulation = SimulateRequest { vehicle_draws: 0, ..self.motion.clone() };
+        let mut simulation = SimulateRequest { vehicle_draws: 0, ..self.motion.clone() };
+        if self.is_recorded() {
+            // The record has its own duration; what goes on to rest is the forecast.
+            (simulation.until_rest, simulation.duration_s) = (false, DEFAULT_DURATION_S);
+        }
         let Outcome::Complete(simulated) = simulation.answer(library, observer)? else {
             return Ok(Outcome::Cancelled);
         };
@@ -213,7 +227,11 @@ impl Question for PredictMotionRequest {
         let settings = MotionForecastSettings {
             n_curves: self.draws,
             n_vehicles: self.motion.vehicle_draws,
-            duration_s: simulated.duration_s,
+            duration_s: match self.motion.until_rest {
+                true => self.motion.duration_s,
+                false => simulated.duration_s,
+            },
+            until_rest: self.motion.until_rest,
             seed: self.seed,
         };
         let failed = |source| StudyError::Forecast { name: name(), source: Box::new(source) };
@@ -285,6 +303,17 @@ impl PredictMotionRequest {
         Ok(ImpliedContactReport::of(prediction, at, self.seed))
     }
 
+    /// Whether the motion of the source is a recorded one.
+    fn is_recorded(&self) -> bool {
+        match &self.motion.source {
+            MotionSource::Trajectory { .. } => true,
+            MotionSource::Case { dataset, .. } => {
+                DatasetKind::of_folder(dataset) == Some(DatasetKind::Trajectory)
+            }
+            MotionSource::Scenario { .. } | MotionSource::Drive(_) => false,
+        }
+    }
+
     /// Whether the vehicles meet again, over the draws. The striking vehicle moves as in the
     /// simulation where the force is that of the simulation.
     fn second_contact(&self, forecast: &MotionForecast, analysis: &Analysis) -> Option<FlagReport> {
@@ -338,6 +367,8 @@ impl PredictMotionRequest {
             n_forces: forecast.forces.len(),
             n_vehicles: forecast.n_vehicles,
             outcome: forecast.outcome.clone(),
+            rest: forecast.rest.clone(),
+            learned_duration_s: forecast.learned_s,
             sensitivity: forecast.sensitivity.clone(),
             hooking_probability: predicted.and_then(|force| force.hooking_probability),
             flags: Vec::new(),

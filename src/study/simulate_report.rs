@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use crate::analysis::{Analysis, SecondContacts};
+use crate::analysis::{Analysis, MotionEnd, SecondContacts};
 use crate::collision::{PrincipalDirectionOfForce, SecondContact};
 use crate::compare::{MotionError, largest_yaw_change_rad};
 use crate::data::{Channel, ForceAxes, SeriesError, TimeSeries, contact_interval};
@@ -343,6 +343,28 @@ impl RestState {
             distance_m: path_length_m(x, y),
         }))
     }
+}
+
+/// Where a simulated motion ends: at rest, or at its last sample.
+pub(super) fn motion_end(motion: &Motion) -> Result<MotionEnd, SeriesError> {
+    let end = EndState::of(&motion.series)?;
+    let rest = RestState::of(motion)?;
+    let last_s = motion.series.time_s().last().copied().unwrap_or(0.0);
+    let pose = rest.map_or([end.x_m, end.y_m, end.yaw_rad], |at| [at.x_m, at.y_m, at.yaw_rad]);
+    let [x_m, y_m, yaw_rad] = pose;
+    Ok(MotionEnd {
+        is_at_rest: rest.is_some(),
+        time_s: rest.map_or(last_s, |rest| rest.time_s),
+        distance_m: match rest {
+            Some(rest) => rest.distance_m,
+            None => distance_m(&motion.series)?,
+        },
+        x_m,
+        y_m,
+        yaw_rad,
+        speed_m_s: end.speed_m_s,
+        yaw_rate_rad_s: end.yaw_rate_rad_s,
+    })
 }
 
 impl EndState {

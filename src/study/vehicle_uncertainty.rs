@@ -3,8 +3,11 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::analysis::{Analysis, AnalysisError, Sensitivity, Settings, Spread, VehicleDraws};
+use crate::analysis::{
+    Analysis, AnalysisError, MotionEnd, RestOutcome, Sensitivity, Settings, Spread, VehicleDraws,
+};
 use crate::study::EndState;
+use crate::study::simulate_report::motion_end;
 
 /// Where and how the motion ends over vehicles that are drawn from the estimates of a data sheet, SI
 /// units. The rest of what is asked is the same for all of them.
@@ -22,10 +25,20 @@ pub struct VehicleUncertainty {
     pub yaw_rad: Spread,
     /// Speed of the CG at the end, m/s.
     pub speed_m_s: Spread,
+    /// Where, when and after what distance the vehicle comes to rest; none unless the question asks for
+    /// it.
+    pub rest: Option<RestOutcome>,
     /// Share of the draws in which the two vehicles meet again; none where one vehicle moves.
     pub second_contact_probability: Option<f64>,
     /// Which estimates the end depends on, the one that moves the end position most first.
     pub sensitivity: Vec<Sensitivity>,
+}
+
+/// How the motion of one drawn vehicle ends.
+struct DrawnEnd {
+    state: EndState,
+    end: MotionEnd,
+    has_met: bool,
 }
 
 /// Simulates the motion with vehicles drawn from what the data sheet leaves open; `None` if it leaves
@@ -47,12 +60,20 @@ pub(super) fn vehicle_uncertainty(
     let vehicles = draws.vehicles(&settings.target);
     let end = |target| {
         let analysis = analyse(&Settings { target, ..settings.clone() }).ok()?;
-        let end = EndState::of(&analysis.simulation?.series).ok()?;
-        Some((end, analysis.second_contact.is_some()))
+        let motion = analysis.simulation?;
+        Some(DrawnEnd {
+            state: EndState::of(&motion.series).ok()?,
+            end: motion_end(&motion).ok()?,
+            has_met: analysis.second_contact.is_some(),
+        })
     };
-    let ends: Vec<Option<(EndState, bool)>> = vehicles.into_par_iter().map(end).collect();
-    let (ends, met): (Vec<Option<EndState>>, Vec<Option<bool>>) =
-        ends.into_iter().map(Option::unzip).unzip();
+    let drawn: Vec<Option<DrawnEnd>> = vehicles.into_par_iter().map(end).collect();
+    let ends: Vec<Option<EndState>> =
+        drawn.iter().map(|drawn| drawn.as_ref().map(|of| of.state)).collect();
+    let rest = || {
+        let ends: Vec<MotionEnd> = drawn.iter().flatten().map(|drawn| drawn.end).collect();
+        RestOutcome::of(&ends, settings.duration_s)
+    };
     let of = |value: fn(&EndState) -> f64| {
         Spread::of_draws(ends.iter().flatten().map(value).collect::<Vec<f64>>())
     };
@@ -69,7 +90,7 @@ pub(super) fn vehicle_uncertainty(
     };
     let mut sensitivity = draws.sensitivities(&places);
     sensitivity.retain(is_estimated);
-    let n_met = met.iter().filter(|met| **met == Some(true)).count();
+    let n_met = drawn.iter().flatten().filter(|drawn| drawn.has_met).count();
     let share_met = n_met as f64 / (ends.len() - n_failed) as f64;
     Some(VehicleUncertainty {
         n_draws: ends.len(),
@@ -78,6 +99,7 @@ pub(super) fn vehicle_uncertainty(
         y_m: of(|end| end.y_m),
         yaw_rad: of(|end| end.yaw_rad),
         speed_m_s: of(|end| end.speed_m_s),
+        rest: settings.ends_at_rest.then(rest).flatten(),
         second_contact_probability: central.bullet.is_some().then_some(share_met),
         sensitivity,
     })

@@ -287,3 +287,106 @@ fn a_data_set_with_brakes_is_replayed_with_them() {
         + &String::from_utf8_lossy(&output.stderr);
     assert!(told.contains("\"braking_torque_n_m\" is \"plenty\""), "{told}");
 }
+
+/// A forecast to rest of a scenario with an ending, in a folder of its own.
+fn to_rest(folder: &std::path::Path, ending: &str, args: &[&str]) -> serde_json::Value {
+    let path = folder.join("scenario.toml");
+    let pit = fs::read_to_string("assets/scenarios/pit_right_rear.toml").unwrap();
+    fs::write(&path, pit + ending).unwrap();
+    let out = folder.join("out");
+    let fixed = ["predict", "--scenario", text(&path), "--until-rest", "--overwrite", "--out"];
+    answer(&[&fixed[..], &[text(&out)], args].concat())
+}
+
+/// `predict --until-rest` was an unknown option.
+#[test]
+fn a_forecast_goes_on_to_rest_and_says_how_far_that_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let braking = "\n[ending]\nbrake_start_s = 0\nbrake_rise_s = 0.01\nbrake_share = 1.5\n";
+    let braked = to_rest(folder.path(), braking, &["--draws", "10"]);
+    let rest = &braked["rest"];
+    assert_eq!(rest["share_at_rest"], 1.0, "{rest}");
+    let spread = |key: &str| -> [f64; 5] {
+        let ends = |level: &str| [0, 1].map(|end| rest[key][level][end].as_f64().unwrap());
+        let ([low, high], [from, to]) = (ends("ninety"), ends("half"));
+        [low, from, rest[key]["median"].as_f64().unwrap(), to, high]
+    };
+    for key in ["time_s", "distance_m", "x_m", "y_m", "yaw_rad"] {
+        assert!(spread(key).is_sorted(), "{key}: {:?}", spread(key));
+    }
+    // 15 m/s with locked wheels on μ = 0.8, of which 0.72 slides: v²/2μg, less what the impact takes.
+    let vehicle = impactlab::vehicle::Preset::Reference.parameters();
+    let sliding = vehicle.tires.friction * vehicle.tires.sliding_friction_ratio;
+    let expected_m = 15.0 * 15.0 / (2.0 * sliding * 9.81);
+    let [low, .., median, _, high] = spread("distance_m");
+    assert!((median / expected_m - 1.0).abs() < 0.2, "{expected_m} {rest}");
+    assert!(low > 0.6 * expected_m && high < 1.4 * expected_m, "{expected_m} {rest}");
+    let [_, _, time_s, ..] = spread("time_s");
+    assert!((time_s / (2.0 * expected_m / 15.0) - 1.0).abs() < 0.2, "{rest}");
+    let [half, ninety] = ["region_50_m2", "region_90_m2"].map(|key| rest[key].as_f64().unwrap());
+    assert!(half > 0.0 && half < ninety, "{rest}");
+    let is_beyond = |report: &serde_json::Value| {
+        report["badges"].to_string().contains("duration of the motion [s]")
+    };
+    assert!(!is_beyond(&braked) && braked["learned_duration_s"] == 7.99, "{braked}");
+    // The forecast ends soon after the last draw has stopped, and its files with it.
+    let motion = fs::read_to_string(folder.path().join("out/trajectory.csv")).unwrap();
+    let end_s: f64 = motion.lines().last().unwrap().split(',').next().unwrap().parse().unwrap();
+    assert!(end_s >= high / 15.0 && end_s < 3.0 * time_s, "{end_s} {rest}");
+
+    // A car that coasts takes minutes; what was not seen to its end is said.
+    let coasting = to_rest(folder.path(), "", &["--draws", "3", "--duration", "25"]);
+    let share = coasting["rest"]["share_at_rest"].as_f64().unwrap();
+    assert!(share < 0.9 && coasting["rest"]["moving_speed_m_s"].as_f64().unwrap() > 0.05);
+    let told = coasting["badges"].to_string();
+    assert!(told.contains("not_at_rest") && told.contains("still moves after 25.00 s"), "{told}");
+    assert!(
+        is_beyond(&coasting) && told.contains("learned from motions of up to 7.99 s"),
+        "{told}"
+    );
+    let plain = answer(&[
+        "predict",
+        "--scenario",
+        "pit-right-rear",
+        "--draws",
+        "3",
+        "--overwrite",
+        "--out",
+        text(&folder.path().join("out")),
+    ]);
+    assert!(plain["rest"].is_null() && !is_beyond(&plain), "{plain}");
+    let message = refusal(&[
+        "predict",
+        "--scenario",
+        "pit-right-rear",
+        "--until-rest",
+        "--duration",
+        "200",
+        "--out",
+        text(&folder.path().join("out")),
+    ]);
+    assert!(message.contains("time to rest is 200"), "{message}");
+}
+
+/// Over the vehicles drawn from a data sheet the simulation said its end alone.
+#[test]
+fn the_vehicles_of_a_data_sheet_come_to_rest_one_by_one() {
+    let args = [
+        "simulate",
+        "--vehicle",
+        "toyota-camry-2018",
+        "--speed",
+        "15",
+        "--brake",
+        "1.5",
+        "--vehicle-draws",
+        "40",
+    ];
+    let stop = answer(&[&args[..], &["--until-rest"]].concat());
+    let rest = &stop["uncertainty"]["rest"];
+    assert!(rest["n_draws"] == 40 && rest["share_at_rest"] == 1.0, "{rest}");
+    let at = |end: usize| rest["distance_m"]["ninety"][end].as_f64().unwrap();
+    let own = stop["rest"]["distance_m"].as_f64().unwrap();
+    assert!(at(0) < own && own < at(1), "{own} {rest}");
+    assert!(answer(&args)["uncertainty"]["rest"].is_null());
+}

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{ArgGroup, Args};
 use serde::Serialize;
 
 use crate::analysis::{MotionForecast, PulseSetup};
@@ -10,11 +10,11 @@ use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::{MotionFiles, write_motion_prediction};
 use crate::cli::options::{
-    OverwriteArg, UnitsArg, VehicleArg, contact_point, count, number, window_s,
+    EndingArgs, OverwriteArg, UnitsArg, VehicleArg, contact_point, count, number, window_s,
 };
 use crate::cli::text::print_motion_prediction;
-use crate::data::{Existing, write_atomically};
-use crate::ranges::{DRAWS, FORECAST_DURATION, ROAD_FRICTION, VEHICLE_DRAWS};
+use crate::data::{DatasetKind, Existing, write_atomically};
+use crate::ranges::{DRAWS, REST_LIMIT, ROAD_FRICTION, VEHICLE_DRAWS};
 use crate::response::STEP_S;
 use crate::shipped::ModelSource;
 use crate::study::{
@@ -25,6 +25,7 @@ use crate::vehicle::ContactPoint;
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
+#[command(group(ArgGroup::new("steering").args(["steer_angle", "steering_wheel"])))]
 pub(in crate::cli) struct PredictMotionArgs {
     /// The scenario, both vehicles and where they meet: a file, or `pit-right-rear`
     #[arg(long, value_name = "NAME|FILE", required_unless_present_any = ["dataset", "trajectory"])]
@@ -69,9 +70,12 @@ pub(in crate::cli) struct PredictMotionArgs {
     /// each force; 0 takes the medians alone
     #[arg(long, default_value_t = DEFAULT_DRAWS, value_name = "N", value_parser = count::<usize>(VEHICLE_DRAWS))]
     vehicle_draws: usize,
-    /// How long, s; a recorded motion has its own duration
-    #[arg(long, default_value_t = DEFAULT_DURATION_S, value_name = "S", value_parser = number(FORECAST_DURATION))]
-    duration: f64,
+    /// How long, s; 4 if not given; a recorded motion has its own duration
+    #[arg(long, value_name = "S", value_parser = number(REST_LIMIT))]
+    duration: Option<f64>,
+    /// Follow the vehicle until it has come to rest, for two minutes or the --duration at most
+    #[arg(long)]
+    until_rest: bool,
     /// Seed of the draws
     #[arg(long, default_value_t = 0)]
     seed: u64,
@@ -87,11 +91,15 @@ pub(in crate::cli) struct PredictMotionArgs {
     /// Units of text and pictures (JSON and tables are always SI)
     #[arg(long, value_enum, default_value_t)]
     units: UnitsArg,
+    #[command(flatten)]
+    ending: EndingArgs,
 }
 
 const EXAMPLES: &str = "\
-Example:
+Examples:
   impactlab predict --scenario pit-right-rear --out prediction
+  impactlab predict --scenario pit-right-rear --brake 0.8 --brake-start 0.7s --until-rest \\
+      --out prediction
 
 trajectory.csv: time, central path (nothing uncertain), mean, standard deviation and edges of the 50
   and 90 % bands of X, Y, yaw, v_x, v_y and yaw rate. density.csv: probability density of the position of the CG at the end, or its
@@ -101,6 +109,8 @@ scene.png and one picture per quantity, each with its numbers as CSV beside it (
 
 JSON: scenario, vehicle, force_model, response_model, n_forces, n_vehicles, outcome {time_s, is_at_rest, x_m, y_m,
   heading_change_rad (median, half, ninety), speed_m_s, yaw_rate_rad_s, region_90_m2, p_quarter_turn, p_half_turn},
+  rest (null without --until-rest) {n_draws, share_at_rest, limit_s, time_s, distance_m, x_m, y_m, yaw_rad: each
+  {median, half [2], ninety [2]}, region_50_m2, region_90_m2, moving_speed_m_s}, learned_duration_s,
   sensitivity [{quantity, label, position_share, heading_share, chance_share}] of a vehicle with a data sheet,
   implied_contact, hooking_probability, flags, force_applicability, outside_training,
   assumptions [{quantity, value, reason}], badges [{kind, text, quantity, value, range}], files";
@@ -121,11 +131,23 @@ pub(in crate::cli) fn run(
     args: &PredictMotionArgs,
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
+    let says_itself = args.trajectory.is_some()
+        || args.dataset.as_deref().and_then(DatasetKind::of_folder)
+            == Some(DatasetKind::Trajectory);
+    if says_itself && args.ending.ending()?.is_some() {
+        return Err(CliError::EndingOfDataset);
+    }
+    let asked_s = args.duration.unwrap_or(match args.until_rest {
+        true => REST_LIMIT.high,
+        false => DEFAULT_DURATION_S,
+    });
     let request = PredictMotionRequest {
         motion: SimulateRequest {
             vehicle: VehicleArg::choice(&args.vehicle),
             friction: args.friction,
-            duration_s: args.duration,
+            duration_s: asked_s,
+            until_rest: args.until_rest,
+            ending: args.ending.ending()?,
             vehicle_draws: args.vehicle_draws,
             ..SimulateRequest::new(source(args)?)
         },
@@ -135,7 +157,7 @@ pub(in crate::cli) fn run(
         seed: args.seed,
     };
     if args.scenario.is_some() {
-        check_window_end(args.window, args.duration)?;
+        check_window_end(args.window, asked_s)?;
     }
     let mut files = Vec::new();
     let existing = OverwriteArg::of_flag(args.overwrite).into();

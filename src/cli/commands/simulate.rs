@@ -15,7 +15,9 @@ use crate::cli::options::{
 };
 use crate::cli::text::{print_dataset_simulation, print_simulation};
 use crate::data::{ColumnMap, DatasetKind, Existing, write_series_csv};
-use crate::ranges::{ROAD_FRICTION, SIMULATED_DURATION, SPEED, VEHICLE_DRAWS, YAW_RATE};
+use crate::ranges::{
+    REST_LIMIT, ROAD_FRICTION, SIMULATED_DURATION, SPEED, VEHICLE_DRAWS, YAW_RATE,
+};
 use crate::study::{
     DEFAULT_DURATION_S, DEFAULT_VEHICLE_DRAWS, Drive, MotionSource, ScenarioChoice, SeriesFile,
     SimulateDatasetRequest, SimulateRequest,
@@ -27,6 +29,8 @@ use crate::vehicle::{ContactPoint, Equations};
 #[command(after_help = EXAMPLES)]
 #[command(group(ArgGroup::new("source").required(true).multiple(true)
     .args(["dataset", "scenario", "trajectory", "force", "steer", "fishhook", "wheels", "speed"])))]
+#[command(group(ArgGroup::new("start").multiple(true)
+    .args(["speed", "vy", "yaw_rate", "steer", "steer_map", "fishhook", "wheels", "force"])))]
 #[command(group(ArgGroup::new("steering")
     .args(["steer", "fishhook", "steer_angle", "steering_wheel"])))]
 pub(in crate::cli) struct SimulateArgs {
@@ -73,56 +77,15 @@ pub(in crate::cli) struct SimulateArgs {
     single: SingleArgs,
 }
 
-/// Longest time that a vehicle is followed to rest where nobody says it, s.
-const REST_LIMIT_S: f64 = 120.0;
+/// What a scenario says itself.
+const NOT_WITH_SCENARIO: [&str; 6] =
+    ["dataset", "trajectory", "start", "map", "sampling", "contact"];
 
-/// What a recorded motion or a case says itself.
-const NOT_WITH_SCENARIO: [&str; 13] = [
-    "dataset",
-    "trajectory",
-    "speed",
-    "vy",
-    "yaw_rate",
-    "steer",
-    "steer_map",
-    "fishhook",
-    "wheels",
-    "force",
-    "map",
-    "sampling",
-    "contact",
-];
-
-const NOT_WITH_TRAJECTORY: [&str; 11] = [
-    "dataset",
-    "scenario",
-    "speed",
-    "vy",
-    "yaw_rate",
-    "steer",
-    "steer_map",
-    "fishhook",
-    "wheels",
-    "force",
-    "duration",
-];
+/// What a recorded motion says itself.
+const NOT_WITH_TRAJECTORY: [&str; 4] = ["dataset", "scenario", "start", "duration"];
 
 /// What a data set says itself.
-const SINGLE_ONLY: [&str; 13] = [
-    "speed",
-    "vy",
-    "yaw_rate",
-    "steer",
-    "steer_map",
-    "fishhook",
-    "wheels",
-    "force",
-    "map",
-    "sampling",
-    "contact",
-    "friction",
-    "duration",
-];
+const SINGLE_ONLY: [&str; 6] = ["start", "map", "sampling", "contact", "friction", "duration"];
 
 const EXAMPLES: &str = "\
 Examples:
@@ -148,7 +111,7 @@ JSON, one vehicle: vehicle, equations, integrator, friction, duration_s, force {
   badges [{kind, text, quantity, value, range}], out; for a vehicle of
   which only a data sheet is known uncertainty
   {n_draws, n_failed, x_m, y_m, yaw_rad, speed_m_s: each {median, half [2], ninety [2]},
-  second_contact_probability,
+  rest (with --until-rest; as in `predict`), second_contact_probability,
   sensitivity [{quantity, label, position_share, heading_share, chance_share}]}
 
 JSON, data set: dataset, vehicle, equations, integrator, cases [{case, spin, average_error_m, final_error_m,
@@ -255,7 +218,7 @@ fn simulate_one(
         integrator: args.integrator.into(),
         friction: args.single.friction,
         duration_s: args.single.duration.unwrap_or(match args.until_rest {
-            true => REST_LIMIT_S,
+            true => REST_LIMIT.high,
             false => DEFAULT_DURATION_S,
         }),
         ending: args.ending.ending()?,

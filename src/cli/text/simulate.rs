@@ -8,6 +8,7 @@ use crate::cli::console::{
     print_badges, print_facts, print_table, shown, shown_path, shown_vector,
 };
 use crate::cli::text::contact::surface;
+use crate::cli::text::motion_prediction::{rest_facts, shown_share};
 use crate::cli::text::sensitivity::print_sensitivity;
 use crate::study::{ForceReport, RestState, SimulateReport, VehicleUncertainty};
 use crate::units::{Quantity, UnitSystem, percent};
@@ -78,6 +79,11 @@ fn print_uncertainty(
     let failed = if *n_failed > 0 { format!(", {n_failed} left out") } else { String::new() };
     writeln!(text, "\nover {n_draws} vehicles drawn from the data sheet{failed}")?;
     print_table(text, &["", "median", "90 %"], &rows)?;
+    if let Some(rest) = &uncertainty.rest {
+        let mut facts = vec![("over these vehicles", shown_share(rest))];
+        facts.extend(rest_facts(rest, units));
+        print_facts(text, &facts)?;
+    }
     if let Some(probability) = uncertainty.second_contact_probability {
         writeln!(text, "P(second contact) {}", percent(probability))?;
     }

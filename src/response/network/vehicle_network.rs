@@ -42,6 +42,8 @@ pub(crate) struct VehicleNetwork {
     bound: Option<[f64; N_RESIDUAL]>,
     unit: [f64; N_RESIDUAL],
     min_std: f64,
+    /// How long the motions were that the network has learned from, s.
+    learned_s: f64,
 }
 
 /// Buffers of a forward pass, and what came out of it.
@@ -84,7 +86,20 @@ impl VehicleNetwork {
             bound: config.bound,
             unit: config.unit,
             min_std: config.min_std,
+            learned_s: f64::INFINITY,
         })
+    }
+
+    /// The same network, of which it is known how long the motions were that it has learned from, s.
+    #[must_use]
+    pub(crate) fn learned_for(mut self, learned_s: f64) -> Self {
+        self.learned_s = learned_s;
+        self
+    }
+
+    /// How long the motions were that the network has learned from, s.
+    pub(crate) fn learned_s(&self) -> f64 {
+        self.learned_s
     }
 
     pub(crate) fn n_components(&self) -> usize {

@@ -63,13 +63,20 @@ const OF_MOTION: [DomainQuantity; 5] = [
     quantity("yaw rate change by the impact [rad/s]", Width::Thousandths(2_000)),
 ];
 
+/// Numbers of a motion: those by which motions are compared, and the duration.
+const N_OF_MOTION: usize = OF_MOTION.len() + 1;
+
+/// How long the motions were that a model has learned from, where its file does not say it, s: as in
+/// the trajectory data sets of one car.
+const USUAL_DURATION_S: f64 = 4.0;
+
 /// The ranges that a model has learned from.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MotionDomain {
     /// Smallest and largest of each quantity of the vehicle.
     vehicle: Vec<[f64; 2]>,
-    /// Smallest and largest of each quantity of the motion.
+    /// Smallest and largest of each quantity of the motion, last the duration, s.
     motion: Vec<[f64; 2]>,
 }
 
@@ -128,6 +135,11 @@ impl MotionDomain {
         domain
     }
 
+    /// How long the longest motion was that the model has learned from, s.
+    pub(crate) fn duration_s(&self) -> f64 {
+        self.motion.get(OF_MOTION.len()).map_or(USUAL_DURATION_S, |[_, longest_s]| *longest_s)
+    }
+
     /// Checks ranges from a file.
     ///
     /// # Errors
@@ -158,7 +170,9 @@ impl MotionDomain {
         initial: &VehicleState<f64>,
         inputs: &[VehicleInput<f64>],
     ) -> Applicability {
-        applicability(&OF_MOTION, &self.motion, of_motion(vehicle, initial, inputs))
+        // Beyond their duration the learned part fades along the motion, not as a whole.
+        let numbers = of_motion(vehicle, initial, inputs);
+        applicability(&OF_MOTION, &self.motion, std::array::from_fn(|i| numbers[i]))
     }
 }
 
@@ -213,7 +227,7 @@ fn of_motion(
     vehicle: &VehicleParameters,
     initial: &VehicleState<f64>,
     inputs: &[VehicleInput<f64>],
-) -> [f64; OF_MOTION.len()] {
+) -> [f64; N_OF_MOTION] {
     let (mut impulse, mut spin) = ([0.0; 2], 0.0);
     for collision in inputs.iter().filter_map(|input| input.collision) {
         let CollisionForce { force_n: [fx, fy], yaw_moment_n_m, contact, .. } = collision;
@@ -228,6 +242,7 @@ fn of_motion(
         initial.yaw_rate_rad_s.abs(),
         impulse[0].hypot(impulse[1]) / vehicle.mass.mass_kg,
         spin.abs() / vehicle.mass.yaw_inertia_kg_m2,
+        inputs.len() as f64 * STEP_S,
     ]
 }
 

@@ -21,11 +21,21 @@ pub(crate) struct Dynamics<'a> {
     ignored: [bool; N_LATENTS],
 }
 
+/// Time over which the remainder of the network fades where a motion goes on for longer than those
+/// that were learned from, s.
+const FADE_S: f64 = 1.0;
+
+/// Largest variance of the noise of a step, (m/s)², (rad/s)². Within what was learned from it is some
+/// 1e-4; in a crash far outside of that, the network's exponential knows no bound.
+const LARGEST_VARIANCE: f64 = 1.0;
+
 /// The states of a step at which the network is evaluated, as features, and the results.
 #[derive(Default)]
 pub(crate) struct NetworkBatch {
     work: Workspace,
     features: Vec<[f64; N_FEATURES]>,
+    /// Share of the network's remainder and noise at the time of the step.
+    share: f64,
 }
 
 /// The terms of the correction at a state, before it is bounded.
@@ -38,8 +48,10 @@ pub(super) struct CorrectionTerms<T = f64> {
 }
 
 impl NetworkBatch {
-    pub(super) fn clear(&mut self) {
+    /// Begins a step at which the network has a share.
+    pub(super) fn begin(&mut self, share: f64) {
         self.features.clear();
+        self.share = share;
     }
 
     pub(super) fn push(&mut self, features: [f64; N_FEATURES]) {
@@ -63,6 +75,23 @@ impl<'a> Dynamics<'a> {
         }
     }
 
+    /// Share of the network's remainder and noise at a time: the motions that it has learned from were
+    /// not longer. What follows them is the physics with its strengths, which do not depend on time.
+    pub(super) fn share_at(&self, time_s: f64) -> f64 {
+        (1.0 - (time_s - self.network.learned_s()) / FADE_S).clamp(0.0, 1.0)
+    }
+
+    /// What the network sees, at the latest at the end of the motions that it has learned from.
+    #[inline(always)]
+    pub(super) fn features<T: Lanes>(
+        &self,
+        x: &VehicleState<T>,
+        now: &VehicleEvaluation<T>,
+        time_s: f64,
+    ) -> [T; N_FEATURES] {
+        features_of(self.vehicle, x, now, time_s.min(self.network.learned_s()))
+    }
+
     /// Whether the step does not depend on each latent factor.
     pub(super) fn ignored(&self) -> [bool; N_LATENTS] {
         self.ignored
@@ -76,11 +105,13 @@ impl<'a> Dynamics<'a> {
         batch: &mut NetworkBatch,
     ) -> VehicleState<f64> {
         let now = self.model.constants.evaluate(x, u);
-        batch.clear();
-        batch.push(features_of(self.vehicle, x, &now, time_s));
+        batch.begin(self.share_at(time_s));
         let mut terms = self.effects_at(component, x, &now);
-        self.evaluate_network(batch);
-        self.add_remainder(&mut terms, batch, [0, component]);
+        if batch.share > 0.0 {
+            batch.push(self.features(x, &now, time_s));
+            self.evaluate_network(batch);
+            self.add_remainder(&mut terms, batch, [0, component]);
+        }
         let correction = self.network.bounded(self.free_correction(&terms, latents));
         self.network.correction().step_from(&self.model, (x, u, &now.derivative), correction)
     }
@@ -121,7 +152,7 @@ impl<'a> Dynamics<'a> {
         batch: &NetworkBatch,
         at: [usize; 2],
     ) {
-        add(&mut terms.value, 1.0, &self.network.remainder(&batch.work, at));
+        add(&mut terms.value, batch.share, &self.network.remainder(&batch.work, at));
     }
 
     /// The correction at given latent factors, before it is bounded.
@@ -137,7 +168,8 @@ impl<'a> Dynamics<'a> {
         value
     }
 
-    /// Probability of a component at the first state of the batch.
+    /// Probability of a component at the first state of the batch, as it was when the network had last
+    /// been evaluated.
     pub(crate) fn weight(&self, component: usize, batch: &NetworkBatch) -> f64 {
         self.network.weight(&batch.work, [0, component])
     }
@@ -145,7 +177,8 @@ impl<'a> Dynamics<'a> {
     /// Standard deviation of the noise of a step from the first state of the batch.
     pub(crate) fn noise(&self, component: usize, batch: &NetworkBatch) -> [f64; N_RESIDUAL] {
         let variance = self.network.variance(&batch.work, [0, component]);
-        variance.map(|variance| self.latents.step_noise * variance.sqrt())
+        let std = variance.map(|variance| variance.min(LARGEST_VARIANCE).sqrt());
+        std.map(|std| batch.share * self.latents.step_noise * std)
     }
 }
 

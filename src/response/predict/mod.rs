@@ -21,6 +21,8 @@ mod propagate_tests;
 
 pub(super) mod predictor;
 
+mod to_rest;
+
 pub use domain::{Applicability, MotionDomain, OutsideDomain};
 pub use latents::{LATENT_NAMES, LatentScales, N_LATENTS, N_NAMED_LATENTS};
 pub(crate) use latents::{Latents, N_OF_COLLISION};
@@ -28,3 +30,4 @@ pub use model::ResponseModel;
 pub(crate) use predictor::weighted_mean;
 pub use predictor::{ComponentPath, MotionDistribution, Predictor};
 pub use propagate::{ComponentMotion, StateDistribution};
+pub use to_rest::{RestSearch, SettledMotion};

@@ -123,7 +123,6 @@ impl ResponseModel {
     /// # Errors
     /// [`LearningError::Network`].
     pub fn predictor(&self, vehicle: &VehicleParameters) -> Result<Predictor, LearningError> {
-        let network = VehicleNetwork::new(&self.network, vehicle)?;
         let strengths = match &self.population {
             Some(population) => {
                 SourceStrengths::Population(Arc::clone(population), population.of(vehicle))
@@ -131,6 +130,7 @@ impl ResponseModel {
             None => SourceStrengths::OneCar(self.latents),
         };
         let domain = self.domain.clone().unwrap_or_default();
+        let network = VehicleNetwork::new(&self.network, vehicle)?.learned_for(domain.duration_s());
         let of_vehicle = match self.known_car(vehicle) {
             // The strengths of the car itself are known.
             Some(_) => domain.of_road(vehicle),

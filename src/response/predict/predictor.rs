@@ -32,9 +32,9 @@ const LEAST_VARIANCE: f64 = 1e-12;
 /// A model for one vehicle.
 #[derive(Debug, Clone)]
 pub struct Predictor {
-    vehicle: VehicleParameters,
-    network: VehicleNetwork,
-    latents: Latents,
+    pub(super) vehicle: VehicleParameters,
+    pub(super) network: VehicleNetwork,
+    pub(super) latents: Latents,
     unscented: Unscented,
     source: Option<Arc<PredictorSource>>,
 }
@@ -122,7 +122,7 @@ impl Predictor {
     }
 
     /// The predictor for a motion.
-    fn fitted_to(
+    pub(super) fn fitted_to(
         &self,
         initial: &VehicleState<f64>,
         inputs: &[VehicleInput<f64>],
@@ -154,7 +154,7 @@ impl Predictor {
         self.network.n_components()
     }
 
-    fn dynamics(&self) -> Dynamics<'_> {
+    pub(super) fn dynamics(&self) -> Dynamics<'_> {
         Dynamics::new(&self.vehicle, &self.network, &self.latents)
     }
 
@@ -267,11 +267,12 @@ fn mean_of(paths: &[ComponentPath], n_steps: usize) -> Vec<VehicleState<f64>> {
     (0..=n_steps).map(at).collect()
 }
 
-fn normal(rng: &mut ChaCha8Rng) -> f64 {
+pub(super) fn normal(rng: &mut ChaCha8Rng) -> f64 {
     rng.sample(StandardNormal)
 }
 
-fn drawn(weights: &[f64], share: f64) -> usize {
+/// The component that a number from 0 to 1 falls upon.
+pub(super) fn drawn(weights: &[f64], share: f64) -> usize {
     let mut sum = 0.0;
     let found = weights.iter().position(|weight| {
         sum += weight;

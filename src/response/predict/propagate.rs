@@ -221,7 +221,7 @@ impl Dynamics<'_> {
             let offset = plan.start(column);
             states.extend(SIDES.map(|side| state_of(&(mean + offset * side)).to_array()));
         }
-        batch.clear();
+        batch.begin(self.share_at(time_s));
         points.clear();
         let dynamics = self;
         pulp::Arch::new().dispatch(Evaluation {
