@@ -9,7 +9,8 @@ use crate::app::force::ForceTrainingForm;
 use crate::app::model::CurrentModel;
 use crate::app::response::{ComparisonForm, ForceChoice, ResponseTrainingForm, TrainingMode};
 use crate::app::source::{Content, OpenDataset, Source};
-use crate::app::state::{FileStart, State, Subject};
+use crate::app::state::{State, Subject};
+use crate::data::{DatasetKind, FileKind};
 use crate::force::ForceScenario;
 use crate::shipped::ModelSource;
 use crate::study::{
@@ -37,6 +38,7 @@ impl State {
             integrator: project.integrator,
             duration_s: project.duration_s,
             until_rest: project.until_rest,
+            ending: self.says_no_ending().then(|| project.ending.clone()).flatten(),
             ..SimulateRequest::new(self.motion_source()?)
         })
     }
@@ -110,6 +112,19 @@ impl State {
             draws: form.n_curves,
             seed: form.seed,
         })
+    }
+
+    /// Whether the subject leaves open what happens to the wheels after the impact.
+    pub(in crate::app) fn says_no_ending(&self) -> bool {
+        match &self.project.subject {
+            Some(Subject::Case { dataset, .. }) => {
+                let source = self.session.sources.iter().find(|source| source.path == *dataset);
+                let kind = source.and_then(Source::dataset).map(|checked| checked.dataset.kind);
+                kind == Some(DatasetKind::Force)
+            }
+            Some(Subject::File(_)) => true,
+            Some(Subject::Scenario) | None => false,
+        }
     }
 
     /// Whether the subject describes the collision of the two vehicles, so that its force can be
@@ -268,9 +283,26 @@ impl State {
                     return None;
                 };
                 let series = SeriesFile { path: path.clone(), map: map.clone() };
-                let FileStart { speed_m_s, contact } = self.project.file_start;
-                let start = Drive { speed_m_s, contact, ..Drive::default() };
-                Some(MotionSource::of_file(series, file.loaded.kind, start))
+                let kind = file.loaded.kind;
+                let of = &self.project.file_start;
+                let beside = |path: &Option<PathBuf>| {
+                    let of_path = |path: &PathBuf| {
+                        let map = find(path).and_then(|source| source.map.clone());
+                        SeriesFile { path: path.clone(), map }
+                    };
+                    path.as_ref().map(of_path)
+                };
+                let start = Drive {
+                    speed_m_s: of.speed_m_s,
+                    contact: of.contact,
+                    steer: beside(&of.steer),
+                    wheels: beside(&of.wheels),
+                    ..Drive::default()
+                };
+                let is_steered = kind == FileKind::Steer || start.steer.is_some();
+                let steering_ratio = of.steering_ratio.filter(|_| is_steered);
+                let start = Drive { steering_ratio, ..start };
+                Some(MotionSource::of_file(series, kind, start))
             }
             Subject::Scenario => {
                 let pulse = self.project.pulse;

@@ -24,7 +24,7 @@ use crate::study::{
     DEFAULT_DURATION_S, ImpactRequest, Library, SimulateAnswer, SimulateRequest, VehicleChoice,
 };
 use crate::units::UnitSystem;
-use crate::vehicle::{ContactPoint, Equations, Integrator};
+use crate::vehicle::{ContactPoint, Ending, Equations, Integrator};
 
 /// Version of the format in which the state is saved. A state of another version is not read.
 const SAVED_VERSION: u32 = 1;
@@ -58,13 +58,19 @@ pub enum Subject {
 
 /// Quantities that a single file does not state about the struck vehicle. For those that are left
 /// open, [`study`](crate::study) assumes a value and lists it in the report.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct FileStart {
     /// Speed of the struck vehicle before the impact, m/s.
     pub speed_m_s: Option<f64>,
     /// Point of the struck vehicle at which the force acts, in its body axes.
     pub contact: Option<ContactPoint>,
+    /// File of the steering over time, beside a file of another kind.
+    pub steer: Option<PathBuf>,
+    /// Angle of the steering wheel over that of the road wheels, for files of steering-wheel angles.
+    pub steering_ratio: Option<f64>,
+    /// File of the torques at the wheels, beside a file of another kind.
+    pub wheels: Option<PathBuf>,
 }
 
 /// What the user works on: the subject, the vehicles, and the settings of simulation, prediction
@@ -95,8 +101,14 @@ pub struct Project {
     pub scenario: Scenario,
     /// Shape and duration of the pulse that spreads the impulse of the scenario over time.
     pub pulse: PulseSetup,
-    /// Speed and contact point for single files, which do not state them.
+    /// Speed, contact point and controls for single files, which do not state them.
     pub file_start: FileStart,
+    /// What happens to the wheels of the struck vehicle after the impact of a case of a force data set
+    /// or of a single file; a scenario and a recorded motion say it themselves.
+    pub ending: Option<Ending>,
+    /// Angle of the steering wheel over that of the road wheels, where endings are given by the
+    /// steering wheel.
+    pub steering_ratio: Option<f64>,
     /// Settings of the force network: the collision, the model and the training.
     pub force: ForceProject,
     /// Settings of the response network: the forecast, the model, the training and the comparison.
@@ -118,6 +130,8 @@ impl Default for Project {
             scenario: Scenario::example(),
             pulse: PulseSetup::default(),
             file_start: FileStart::default(),
+            ending: None,
+            steering_ratio: None,
             force: ForceProject::default(),
             response: ResponseProject::default(),
         }

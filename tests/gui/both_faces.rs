@@ -302,6 +302,28 @@ fn a_motion_is_predicted_alike() {
     let given = [&of_scenario[..], &["--given-force"]].concat();
     let given = CommandLine::of(&given).asks_differently(&["motion"]);
     compare_motion(&mut harness, ForceChoice::Given, given);
+    let braked = {
+        let pit = std::fs::read_to_string(SCENARIO).expect("the scenario");
+        let ending = "\n[ending]\nbrake_start_s = 0.3\nbrake_share = 0.9\n";
+        write(folder.path(), "braked.toml", &(pit + ending))
+    };
+    apply(&mut harness, Command::Open(vec![braked.clone().into()]));
+    let project = &mut harness.state_mut().state_mut().project;
+    (project.until_rest, project.duration_s) = (true, 30.0);
+    step_until(&mut harness, "the braked scenario", is_idle);
+    let results = folder.path().join("results").display().to_string();
+    let to_rest = [
+        &["predict", "--scenario", &braked, "--until-rest", "--duration", "30", "--draws", "3"][..],
+        &["--seed", "7", "--out", &results, "--overwrite"],
+    ]
+    .concat();
+    let predicted = CommandLine::of(&to_rest).asks_differently(&["motion"]);
+    compare_motion(&mut harness, ForceChoice::Predicted, predicted);
+    let rest = state(&harness).motion_forecast().and_then(|of| of.answer.report.rest.clone());
+    assert!(rest.is_some_and(|rest| rest.share_at_rest == 1.0));
+    apply(&mut harness, Command::Show(Pane::MotionForecast));
+    harness.run_steps(3);
+    harness.get_by_label_contains("At rest in 100.0 % of 240 draws");
 
     let record = "datasets/trajectories-fea/trajectories/FE_c001.csv";
     let mut harness = open_on(record);

@@ -5,11 +5,12 @@ use egui::{CollapsingHeader, ComboBox, Grid, Ui};
 use crate::app::widgets::quantity_field;
 use crate::ranges::{
     BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, DRIVE_TORQUE, ENGINE_BRAKING, STEER_ANGLE,
+    STEERING_RATIO, STEERING_WHEEL_ANGLE,
 };
 use crate::units::UnitSystem;
 use crate::vehicle::{
     Braking, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Driving, Ending, EngineBraking,
-    HeldSteer, Wheel,
+    HeldSteer, USUAL_STEERING_RATIO, Wheel,
 };
 
 /// Share of the friction with which a driver brakes hard.
@@ -28,10 +29,11 @@ const SMALL_STEER_RAD: f64 = 0.0524;
 /// Draws the choices of an ending with their numbers. A vehicle for which nothing is chosen coasts.
 ///
 /// - `vehicle`: whose wheels they are.
+/// - `steering_ratio`: with one, steer angles are those of the steering wheel.
 pub(super) fn ending_form(
     ui: &mut Ui,
     vehicle: &str,
-    ending: &mut Option<Ending>,
+    (ending, steering_ratio): (&mut Option<Ending>, &mut Option<f64>),
     units: UnitSystem,
 ) {
     let title = match ending.as_ref().is_none_or(Ending::is_coasting) {
@@ -47,7 +49,7 @@ pub(super) fn ending_form(
             for wheel in Wheel::ALL {
                 wheel_fields(ui, wheel, &mut edited.damage, units);
             }
-            steer_fields(ui, &mut edited.steer, units);
+            steer_fields(ui, (&mut edited.steer, steering_ratio), units);
         });
         if ending.clone().unwrap_or_default() != edited {
             *ending = (!edited.is_coasting()).then_some(edited);
@@ -177,12 +179,42 @@ fn wheel_fields(ui: &mut Ui, wheel: Wheel, damage: &mut Vec<DamagedWheel>, units
     }
 }
 
-fn steer_fields(ui: &mut Ui, steer: &mut Option<HeldSteer>, units: UnitSystem) {
+fn steer_fields(
+    ui: &mut Ui,
+    (steer, steering_ratio): (&mut Option<HeldSteer>, &mut Option<f64>),
+    units: UnitSystem,
+) {
     let usual =
         HeldSteer { start_s: 0.0, rise_s: DEFAULT_BRAKE_RISE_S, road_wheel_rad: SMALL_STEER_RAD };
     switch(ui, "The front wheels are turned", steer, usual);
     let Some(steer) = steer else { return };
-    quantity_field(ui, "angle, to the left", &mut steer.road_wheel_rad, (&STEER_ANGLE, units));
+    switch(ui, "by the steering wheel", steering_ratio, USUAL_STEERING_RATIO);
+    match steering_ratio {
+        None => {
+            let angle = &mut steer.road_wheel_rad;
+            quantity_field(ui, "angle, to the left", angle, (&STEER_ANGLE, units));
+        }
+        Some(ratio) => steering_wheel_fields(ui, &mut steer.road_wheel_rad, ratio, units),
+    }
     quantity_field(ui, "from", &mut steer.start_s, (&CONTROL_TIME, units));
     quantity_field(ui, "turned over", &mut steer.rise_s, (&BRAKE_RISE, units));
+}
+
+/// Draws the ratio of the steering and the angle of the steering wheel. Another ratio keeps the angle of
+/// the steering wheel, as far as road wheels can follow it.
+fn steering_wheel_fields(
+    ui: &mut Ui,
+    road_wheel_rad: &mut f64,
+    ratio: &mut f64,
+    units: UnitSystem,
+) {
+    let mut angle_rad = *road_wheel_rad * *ratio;
+    let mut is_changed = quantity_field(ui, "steering ratio", ratio, (&STEERING_RATIO, units));
+    let range =
+        STEERING_WHEEL_ANGLE.within([STEER_ANGLE.low, STEER_ANGLE.high].map(|end| end * *ratio));
+    let label = "angle of the steering wheel, to the left";
+    is_changed |= quantity_field(ui, label, &mut angle_rad, (&range, units));
+    if is_changed {
+        *road_wheel_rad = (angle_rad / *ratio).clamp(STEER_ANGLE.low, STEER_ANGLE.high);
+    }
 }

@@ -11,6 +11,7 @@ mod ending;
 mod evaluation;
 mod evaluation_plots;
 mod evaluation_tables;
+mod file_start;
 mod force;
 mod model_comparison;
 mod model_comparison_plots;

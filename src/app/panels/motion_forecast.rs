@@ -12,6 +12,7 @@ use crate::app::panels::analysis_or_hint;
 use crate::app::panels::model_row::{model_row_ui, no_model_ui};
 use crate::app::panels::motion_outcome::outcome_ui;
 use crate::app::panels::scene::clock_ui;
+use crate::app::panels::vehicle::until_rest_ui;
 use crate::app::panes::PaneContext;
 use crate::app::response::{
     DensityChoice, ForceChoice, MotionAnswer, ResponseProject, ResponseSession, ResponseView,
@@ -57,6 +58,7 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             model_ui(ui, &session.response, commands);
             ui.separator();
             force_ui(ui, &mut project.response, session, commands);
+            until_rest_ui(ui, project);
             ui.separator();
             shown_ui(ui, &mut view.response, session, commands);
             if let Some(answer) = session.response.forecast.ok() {

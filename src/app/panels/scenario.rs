@@ -72,7 +72,7 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         contact_form(ui, project, view.units);
         let Scenario { ending, bullet_ending, .. } = &mut project.scenario;
         for (vehicle, ending) in [("target", ending), ("bullet", bullet_ending)] {
-            ending_form(ui, vehicle, ending, view.units);
+            ending_form(ui, vehicle, (ending, &mut project.steering_ratio), view.units);
         }
         vehicles_form(ui, project, view.units);
     });

@@ -4,24 +4,22 @@
 use egui::{ComboBox, Grid, ScrollArea, Ui};
 
 use crate::app::model::file_name;
+use crate::app::panels::file_start::file_start_ui;
 use crate::app::panes::PaneContext;
-use crate::app::state::{FileStart, Project};
-use crate::app::widgets::{quantity_field, value_row};
-use crate::ranges::{CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, SIMULATED_DURATION, SPEED};
-use crate::study::{
-    ASSUMED_CONTACT, ASSUMED_SPEED_M_S, DEFAULT_BULLET, DEFAULT_VEHICLE, VehicleChoice,
-};
-use crate::units::{Quantity, UnitSystem};
+use crate::app::state::Project;
+use crate::app::widgets::{SpreadRow, quantity_field, sensitivity_ui, spread_table_ui, value_row};
+use crate::ranges::{REST_LIMIT, SIMULATED_DURATION};
+use crate::study::{DEFAULT_BULLET, DEFAULT_DURATION_S, DEFAULT_VEHICLE, VehicleChoice};
+use crate::units::Quantity;
 use crate::vehicle::{
-    ContactPoint, Equations, Integrator, LibraryVehicle, Preset, VehicleParameters,
-    built_in_vehicle,
+    Equations, Integrator, LibraryVehicle, Preset, VehicleParameters, built_in_vehicle,
 };
 
 /// Draws the choice of the vehicles, the equations and the integrator, the start of single force
 /// files, and, if the struck vehicle is a preset, its parameters.
 pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext { project, view, .. } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let PaneContext { project, view, .. } = &mut *pane;
         Grid::new("vehicle choice").num_columns(2).show(ui, |ui| {
             choice_ui(ui, project);
             let equations = [None, Some(Equations::Corrected), Some(Equations::Paper)];
@@ -29,18 +27,15 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             let integrators = [Integrator::Rk4, Integrator::Euler];
             list_ui(ui, "Integration", &mut project.integrator, (&integrators, integrator_label));
             let range = (&SIMULATED_DURATION, view.units);
-            quantity_field(ui, "Duration", &mut project.duration_s, range);
-            let hint = "The simulation ends where the vehicle has come to rest, at the latest \
-                        after the duration";
-            ui.checkbox(&mut project.until_rest, "Until rest").on_hover_text(hint);
+            let label = if project.until_rest { "At the latest after" } else { "Duration" };
+            quantity_field(ui, label, &mut project.duration_s, range);
+            until_rest_ui(ui, project);
             ui.end_row();
         });
         ui.separator();
-        ui.strong("For single force files");
-        Grid::new("file start").num_columns(2).show(ui, |ui| {
-            speed_ui(ui, &mut project.file_start, view.units);
-            contact_ui(ui, &mut project.file_start, view.units);
-        });
+        file_start_ui(ui, pane);
+        uncertainty_ui(ui, pane);
+        let project = &pane.project;
         if let VehicleChoice::Preset(id) = &project.vehicle
             && let Some(vehicle) = built_in_vehicle(id)
         {
@@ -48,6 +43,51 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             parameters_ui(ui, &vehicle);
         }
     });
+}
+
+/// Draws how the end of the simulation that is shown varies with what the data sheet of the struck
+/// vehicle leaves open, and which estimates it depends on; nothing if it leaves nothing open.
+fn uncertainty_ui(ui: &mut Ui, pane: &PaneContext<'_>) {
+    let Some(answer) = pane.session.analysis.ok() else { return };
+    let Some(uncertainty) = &answer.report.uncertainty else { return };
+    ui.separator();
+    let row = |label, quantity: Quantity, spread| SpreadRow {
+        label,
+        unit: quantity.display_unit(pane.view.units),
+        spread,
+        hint: "Over the vehicles that are drawn",
+    };
+    let mut rows = vec![
+        row("X at the end", Quantity::Length, uncertainty.x_m),
+        row("Y at the end", Quantity::Length, uncertainty.y_m),
+        row("Heading at the end", Quantity::Angle, uncertainty.yaw_rad),
+        row("Speed at the end", Quantity::Speed, uncertainty.speed_m_s),
+    ];
+    if let Some(rest) = &uncertainty.rest {
+        rows.extend([
+            row("Time to rest", Quantity::Time, rest.time_s),
+            row("Distance to rest", Quantity::Length, rest.distance_m),
+        ]);
+    }
+    let n_draws = uncertainty.n_draws;
+    ui.label(format!("4DOF model, {n_draws} vehicles drawn from the data sheet:"));
+    spread_table_ui(ui, &answer.report.name, &rows);
+    sensitivity_ui(ui, "simulation", &uncertainty.sensitivity);
+}
+
+/// Draws the choice whether motions are followed to rest. The duration is then the time after which they
+/// are followed no further: where it was the usual one, it becomes the usual one of that.
+pub(super) fn until_rest_ui(ui: &mut Ui, project: &mut Project) {
+    let hint = "Simulation and forecast end where the vehicle has come to rest, at the latest after \
+                the duration";
+    let choice = ui.checkbox(&mut project.until_rest, "Until rest").on_hover_text(hint);
+    let (before, after) = match project.until_rest {
+        true => (DEFAULT_DURATION_S, REST_LIMIT.high),
+        false => (REST_LIMIT.high, DEFAULT_DURATION_S),
+    };
+    if choice.changed() && project.duration_s == before {
+        project.duration_s = after;
+    }
 }
 
 /// Draws the choice of the struck and of the striking vehicle.
@@ -125,71 +165,6 @@ fn integrator_label(integrator: Integrator) -> &'static str {
         Integrator::Rk4 => "RK4, 1 ms (reference)",
         Integrator::Euler => "Euler, 10 ms (the paper's baseline)",
     }
-}
-
-/// Draws the speed before the impact if the user has set it, otherwise the value that is assumed.
-fn speed_ui(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
-    let label = "Speed before impact";
-    let Some(speed_m_s) = &mut start.speed_m_s else {
-        let assumed = Quantity::Speed.shown(ASSUMED_SPEED_M_S, units);
-        if assumed_ui(ui, label, &assumed) {
-            start.speed_m_s = Some(ASSUMED_SPEED_M_S);
-        }
-        return;
-    };
-    quantity_field(ui, label, speed_m_s, (&SPEED, units));
-    if leave_open_ui(ui, "Speed not known") {
-        start.speed_m_s = None;
-    }
-}
-
-/// Draws the contact point, at which the force acts, if the user has set it, otherwise the point
-/// that is assumed.
-fn contact_ui(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
-    let Some(ContactPoint { x_m, y_m, height_m }) = &mut start.contact else {
-        let ContactPoint { x_m, y_m, height_m } = ASSUMED_CONTACT;
-        let [x, y, z] = [x_m, y_m, height_m].map(|m| Quantity::Length.shown(m, units));
-        let assumed =
-            format!("{x} ahead, {y} left, {z} high; a yaw moment in the file counts first");
-        if assumed_ui(ui, "Contact point", &assumed) {
-            start.contact = Some(ASSUMED_CONTACT);
-        }
-        return;
-    };
-    for (label, value, range) in [
-        ("Contact ahead of CG", x_m, CONTACT_X),
-        ("Contact left of CG", y_m, CONTACT_Y),
-        ("Contact above ground", height_m, CONTACT_HEIGHT),
-    ] {
-        quantity_field(ui, label, value, (&range, units));
-    }
-    if leave_open_ui(ui, "Contact point not known") {
-        start.contact = None;
-    }
-}
-
-/// Draws a row of a two-column grid with the value that is assumed, and returns whether the user
-/// clicked the button to set the value instead.
-fn assumed_ui(ui: &mut Ui, label: &str, assumed: &str) -> bool {
-    ui.label(label);
-    let is_clicked = ui
-        .horizontal_wrapped(|ui| {
-            let button = ui.small_button("Set").on_hover_text("Say it instead of assuming it");
-            ui.weak(format!("assumed: {assumed}"));
-            button.clicked()
-        })
-        .inner;
-    ui.end_row();
-    is_clicked
-}
-
-/// Draws a row of a two-column grid with a button, and returns whether the user clicked it to have
-/// the value assumed.
-fn leave_open_ui(ui: &mut Ui, label: &str) -> bool {
-    ui.label("");
-    let is_clicked = ui.small_button(label).on_hover_text("Assume a value").clicked();
-    ui.end_row();
-    is_clicked
 }
 
 /// Draws the parameters of a vehicle with the names and SI units of its file, marks the estimates,

@@ -6,6 +6,7 @@ mod badges;
 mod dataset_choice;
 mod figure_frame;
 mod quantity;
+mod sensitivity;
 mod spread_table;
 
 pub use assumptions::assumptions_ui;
@@ -16,4 +17,5 @@ pub use figure_frame::figure_frame;
 pub use quantity::{
     SliderRange, count_field, duration_text, quantity_field, quantity_slider, value_row,
 };
+pub use sensitivity::sensitivity_ui;
 pub use spread_table::{SpreadRow, spread_table_ui};

@@ -1,0 +1,161 @@
+//! What single files do not say about the struck vehicle: its speed, where the force acts, what steers,
+//! brakes and drives it.
+
+use std::path::{Path, PathBuf};
+
+use egui::{ComboBox, Grid, Ui};
+
+use crate::app::command::Command;
+use crate::app::dialogs::Purpose;
+use crate::app::model::file_name;
+use crate::app::panels::ending::ending_form;
+use crate::app::panes::PaneContext;
+use crate::app::source::{Content, Source};
+use crate::app::state::FileStart;
+use crate::app::widgets::quantity_field;
+use crate::data::FileKind;
+use crate::ranges::{CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, SPEED, STEERING_RATIO};
+use crate::study::{ASSUMED_CONTACT, ASSUMED_SPEED_M_S};
+use crate::units::{Quantity, UnitSystem};
+use crate::vehicle::{ContactPoint, USUAL_STEERING_RATIO};
+
+/// Draws speed, contact point, files of steering and torques, and what happens after the impact.
+pub(super) fn file_start_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
+    let PaneContext { project, view, session, commands } = pane;
+    ui.strong("For single files");
+    Grid::new("file start").num_columns(2).show(ui, |ui| {
+        let start = &mut project.file_start;
+        speed_ui(ui, start, view.units);
+        contact_ui(ui, start, view.units);
+        let files = |kind| open_files(&session.sources, kind);
+        file_ui(ui, "Steering", (&mut start.steer, &files(FileKind::Steer)), commands);
+        ratio_ui(ui, start, view.units);
+        file_ui(
+            ui,
+            "Torques at the wheels",
+            (&mut start.wheels, &files(FileKind::Wheels)),
+            commands,
+        );
+    });
+    let project = &mut **project;
+    ui.strong("For single files and cases of a force");
+    let ending = (&mut project.ending, &mut project.steering_ratio);
+    ending_form(ui, "struck vehicle", ending, view.units);
+}
+
+/// The open files of a kind.
+fn open_files(sources: &[Source], kind: FileKind) -> Vec<PathBuf> {
+    let is_of_kind = |source: &&Source| match &source.content {
+        Content::File(file) => file.loaded.kind == kind,
+        _ => false,
+    };
+    sources.iter().filter(is_of_kind).map(|source| source.path.clone()).collect()
+}
+
+/// Draws a row of a two-column grid with the choice of a file among those that are open.
+fn file_ui(
+    ui: &mut Ui,
+    label: &str,
+    (chosen, open): (&mut Option<PathBuf>, &[PathBuf]),
+    commands: &mut Vec<Command>,
+) {
+    let name = ui.label(label);
+    let text = |path: Option<&Path>| path.map_or("none".to_owned(), file_name);
+    ui.horizontal(|ui| {
+        let hint = "A file that goes with the one that is shown. Drop it on the window, or open it";
+        ComboBox::from_id_salt(label)
+            .selected_text(text(chosen.as_deref()))
+            .show_ui(ui, |ui| {
+                ui.selectable_value(chosen, None, "none");
+                for path in open {
+                    ui.selectable_value(chosen, Some(path.clone()), file_name(path));
+                }
+            })
+            .response
+            .labelled_by(name.id)
+            .on_hover_text(hint);
+        if ui.small_button("Open…").clicked() {
+            commands.push(Command::Ask(Purpose::Files));
+        }
+    });
+    ui.end_row();
+}
+
+/// Draws the steering ratio for files that hold angles of the steering wheel.
+fn ratio_ui(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
+    let mut is_of_wheel = start.steering_ratio.is_some();
+    ui.label("");
+    let choice = ui.checkbox(&mut is_of_wheel, "Angles of the steering wheel");
+    if choice.on_hover_text("As the steering file gives them; else of the road wheels").changed() {
+        start.steering_ratio = is_of_wheel.then_some(USUAL_STEERING_RATIO);
+    }
+    ui.end_row();
+    if let Some(ratio) = &mut start.steering_ratio {
+        quantity_field(ui, "Steering ratio", ratio, (&STEERING_RATIO, units));
+    }
+}
+
+/// Draws the speed before the impact if the user has set it, otherwise the value that is assumed.
+fn speed_ui(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
+    let label = "Speed before impact";
+    let Some(speed_m_s) = &mut start.speed_m_s else {
+        let assumed = Quantity::Speed.shown(ASSUMED_SPEED_M_S, units);
+        if assumed_ui(ui, label, &assumed) {
+            start.speed_m_s = Some(ASSUMED_SPEED_M_S);
+        }
+        return;
+    };
+    quantity_field(ui, label, speed_m_s, (&SPEED, units));
+    if leave_open_ui(ui, "Speed not known") {
+        start.speed_m_s = None;
+    }
+}
+
+/// Draws the contact point, at which the force acts, if the user has set it, otherwise the point
+/// that is assumed.
+fn contact_ui(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
+    let Some(ContactPoint { x_m, y_m, height_m }) = &mut start.contact else {
+        let ContactPoint { x_m, y_m, height_m } = ASSUMED_CONTACT;
+        let [x, y, z] = [x_m, y_m, height_m].map(|m| Quantity::Length.shown(m, units));
+        let assumed =
+            format!("{x} ahead, {y} left, {z} high; a yaw moment in the file counts first");
+        if assumed_ui(ui, "Contact point", &assumed) {
+            start.contact = Some(ASSUMED_CONTACT);
+        }
+        return;
+    };
+    for (label, value, range) in [
+        ("Contact ahead of CG", x_m, CONTACT_X),
+        ("Contact left of CG", y_m, CONTACT_Y),
+        ("Contact above ground", height_m, CONTACT_HEIGHT),
+    ] {
+        quantity_field(ui, label, value, (&range, units));
+    }
+    if leave_open_ui(ui, "Contact point not known") {
+        start.contact = None;
+    }
+}
+
+/// Draws a row of a two-column grid with the value that is assumed, and returns whether the user
+/// clicked the button to set the value instead.
+fn assumed_ui(ui: &mut Ui, label: &str, assumed: &str) -> bool {
+    ui.label(label);
+    let is_clicked = ui
+        .horizontal_wrapped(|ui| {
+            let button = ui.small_button("Set").on_hover_text("Say it instead of assuming it");
+            ui.weak(format!("assumed: {assumed}"));
+            button.clicked()
+        })
+        .inner;
+    ui.end_row();
+    is_clicked
+}
+
+/// Draws a row of a two-column grid with a button, and returns whether the user clicked it to have
+/// the value assumed.
+fn leave_open_ui(ui: &mut Ui, label: &str) -> bool {
+    ui.label("");
+    let is_clicked = ui.small_button(label).on_hover_text("Assume a value").clicked();
+    ui.end_row();
+    is_clicked
+}
