@@ -24,13 +24,17 @@ use crate::learning::LearningError;
 use crate::nn::random_stream;
 use crate::ranges::{DRAWS, FORECAST_DURATION, OutOfRange, REST_LIMIT};
 use crate::response::{
-    Applicability, MotionDistribution, Predictor, ResponseModel, STEP_S, weighted_mean,
+    Applicability, ComponentMotion, MotionDistribution, Predictor, ResponseModel, STEP_S,
+    weighted_mean,
 };
 use crate::uncertainty::{ForceCurve, PlanarMixture};
 use crate::vehicle::{
     ContactLoad, ContactPoint, Controls, Manoeuvre, VehicleInput, VehicleParameters, VehicleState,
 };
 
+/// Largest standard deviation of a component's heading with which its moments are propagated, rad.
+/// With 1 rad the mean of a velocity that turns with the vehicle has lost 40 % of its size.
+const MOST_HEADING_STD_RAD: f64 = 0.8;
 /// Number of draws for the intervals of the final position.
 const N_END_DRAWS: usize = 4000;
 
@@ -219,19 +223,20 @@ pub fn forecast_forces(
     let is_known = response.known_car(&struck.vehicle).is_some();
     let draws = if is_known { None } else { drawn_vehicles(struck, settings, forces.len()) };
     let predictors = predictors(response, struck, draws.as_ref())?;
+    let whole_motions = ToRest {
+        forces,
+        predictors: &predictors,
+        struck,
+        has_drawn_vehicles: draws.is_some(),
+        limit_s: duration_s,
+        lasts_to_limit: !settings.until_rest,
+        seed: settings.seed,
+    };
     let motion = match settings.until_rest {
-        true => {
-            let to_rest = ToRest {
-                forces,
-                predictors: &predictors,
-                struck,
-                has_drawn_vehicles: draws.is_some(),
-                limit_s: duration_s,
-                seed: settings.seed,
-            };
-            to_rest.settle().map(ForecastMotion::of_settled)
-        }
-        false => propagated((forces, &predictors), struck, settings),
+        true => whole_motions.settle().map(ForecastMotion::of_settled),
+        false => propagated((forces, &predictors), struck, settings)
+            .filter(|motion| motion.is_followed_by_moments())
+            .or_else(|| whole_motions.settle()?.timed(forces, settings.seed)),
     };
     let ForecastMotion { distribution, paths, outcome, rest, applicabilities } =
         motion.ok_or(MotionForecastError::Diverged)?;
@@ -274,6 +279,34 @@ impl ForecastMotion {
         let Settled { distribution, paths, outcome, rest, applicabilities } = settled;
         Self { distribution, paths, outcome, rest: Some(rest), applicabilities }
     }
+
+    /// Whether mean and covariance follow the motion: no component is so uncertain about its heading
+    /// that a normal distribution of position and velocity in the axes of the vehicle means nothing.
+    fn is_followed_by_moments(&self) -> bool {
+        let at_end = |component: &ComponentMotion| component.states.last().copied();
+        let ends = self.distribution.components.iter().filter_map(at_end);
+        ends.map(|end| end.covariance[(2, 2)].sqrt()).all(|std_rad| std_rad < MOST_HEADING_STD_RAD)
+    }
+}
+
+impl Settled {
+    /// The same motion with its outcome at the end of the forecast, or where it has come to rest.
+    fn timed(self, forces: &[ForceHistory], seed: u64) -> Option<ForecastMotion> {
+        let outcome = timed_outcome((&self.distribution, &self.paths), forces, seed)?;
+        Some(ForecastMotion { outcome, rest: None, ..ForecastMotion::of_settled(self) })
+    }
+}
+
+/// The outcome of a motion that is followed for a given time.
+fn timed_outcome(
+    (distribution, paths): (&MotionDistribution, &[Vec<VehicleState<f64>>]),
+    forces: &[ForceHistory],
+    seed: u64,
+) -> Option<MotionOutcome> {
+    let pace = Pace::mean_of(paths);
+    let force_end_s = forces.iter().filter_map(contact_interval).map(|(_, end_s)| end_s);
+    let rest = rest_instant(&pace, force_end_s.fold(0.0, f64::max));
+    outcome((distribution, &mean_of(paths)), (&pace, rest), seed)
 }
 
 /// The motion over the duration, by propagation of the moments of the state; `None` where it is not
@@ -299,10 +332,7 @@ fn propagated(
     let (parts, paths): (Vec<MotionDistribution>, Vec<Vec<VehicleState<f64>>>) =
         parts.into_iter().map(|part| (part.motion, part.path)).unzip();
     let distribution = MotionDistribution::mixed(parts);
-    let pace = Pace::mean_of(&paths);
-    let force_end_s = forces.iter().filter_map(contact_interval).map(|(_, end_s)| end_s);
-    let rest = rest_instant(&pace, force_end_s.fold(0.0, f64::max));
-    let outcome = outcome((&distribution, &mean_of(&paths)), (&pace, rest), settings.seed)?;
+    let outcome = timed_outcome((&distribution, &paths), forces, settings.seed)?;
     Some(ForecastMotion { distribution, paths, outcome, rest: None, applicabilities })
 }
 

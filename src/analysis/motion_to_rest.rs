@@ -34,6 +34,8 @@ pub(super) struct ToRest<'a> {
     /// Whether the vehicles of the predictors are drawn, with the resistance that they have.
     pub(super) has_drawn_vehicles: bool,
     pub(super) limit_s: f64,
+    /// Whether the motion lasts to the limit also where the vehicle has come to rest before.
+    pub(super) lasts_to_limit: bool,
     pub(super) seed: u64,
 }
 
@@ -68,7 +70,10 @@ impl ToRest<'_> {
             draws.extend(part.draws);
         }
         let lengths = draws.iter().map(|draw| draw.states.len()).chain(paths.iter().map(Vec::len));
-        let n_instants = lengths.max()?;
+        let n_instants = match self.lasts_to_limit {
+            true => (self.limit_s / STEP_S).round() as usize + 1,
+            false => lengths.max()?,
+        };
         for path in &mut paths {
             let last = *path.last()?;
             path.resize(n_instants, last);

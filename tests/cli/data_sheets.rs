@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::program::{SCENARIO, program};
+use crate::program::{SCENARIO, answer, program};
 
 /// Standard output of a command that must succeed.
 fn out(args: &[&str]) -> String {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{ArgGroup, Args};
+use clap::Args;
 use serde::Serialize;
 
 use crate::analysis::{MotionForecast, PulseSetup};
@@ -25,7 +25,6 @@ use crate::vehicle::ContactPoint;
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
-#[command(group(ArgGroup::new("steering").args(["steer_angle", "steering_wheel"])))]
 pub(in crate::cli) struct PredictMotionArgs {
     /// The scenario, both vehicles and where they meet: a file, or `pit-right-rear`
     #[arg(long, value_name = "NAME|FILE", required_unless_present_any = ["dataset", "trajectory"])]
@@ -91,8 +90,6 @@ pub(in crate::cli) struct PredictMotionArgs {
     /// Units of text and pictures (JSON and tables are always SI)
     #[arg(long, value_enum, default_value_t)]
     units: UnitsArg,
-    #[command(flatten)]
-    ending: EndingArgs,
 }
 
 const EXAMPLES: &str = "\
@@ -129,12 +126,14 @@ const KNOWN_FILES: [&str; 3] = ["trajectory.csv", "density.csv", "outcome.json"]
 /// Predicts a motion.
 pub(in crate::cli) fn run(
     args: &PredictMotionArgs,
+    ending: &EndingArgs,
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
+    let ending = ending.ending()?;
     let says_itself = args.trajectory.is_some()
         || args.dataset.as_deref().and_then(DatasetKind::of_folder)
             == Some(DatasetKind::Trajectory);
-    if says_itself && args.ending.ending()?.is_some() {
+    if says_itself && ending.is_some() {
         return Err(CliError::EndingOfDataset);
     }
     let asked_s = args.duration.unwrap_or(match args.until_rest {
@@ -147,7 +146,7 @@ pub(in crate::cli) fn run(
             friction: args.friction,
             duration_s: asked_s,
             until_rest: args.until_rest,
-            ending: args.ending.ending()?,
+            ending,
             vehicle_draws: args.vehicle_draws,
             ..SimulateRequest::new(source(args)?)
         },
