@@ -321,9 +321,6 @@ fn a_motion_is_predicted_alike() {
     compare_motion(&mut harness, ForceChoice::Predicted, predicted);
     let rest = state(&harness).motion_forecast().and_then(|of| of.answer.report.rest.clone());
     assert!(rest.is_some_and(|rest| rest.share_at_rest == 1.0));
-    apply(&mut harness, Command::Show(Pane::MotionForecast));
-    harness.run_steps(3);
-    harness.get_by_label_contains("At rest in 100.0 % of 240 draws");
 
     let record = "datasets/trajectories-fea/trajectories/FE_c001.csv";
     let mut harness = open_on(record);
