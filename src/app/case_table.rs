@@ -5,6 +5,7 @@
 
 use std::path::PathBuf;
 
+use crate::app::case_filter::{CaseFilter, FilterError};
 use crate::app::replay::{ReplayStatus, Replays};
 use crate::app::source::{CheckedDataset, Source};
 use crate::app::state::View;
@@ -107,39 +108,6 @@ impl CaseRow<'_> {
             _ => String::new(),
         }
     }
-
-    /// Whether the row passes the filter, that is, matches each of its words.
-    ///
-    /// A word is `key<number`, `key>number`, `key=value`, or a part of the case name, of a text
-    /// attribute or of a flag. Upper and lower case are not distinguished in texts.
-    fn matches(&self, filter: &str) -> bool {
-        filter.split_whitespace().all(|word| self.matches_word(word))
-    }
-
-    fn matches_word(&self, word: &str) -> bool {
-        for (sign, holds) in [
-            ('<', (|a, b| a < b) as fn(f64, f64) -> bool),
-            ('>', |a, b| a > b),
-            ('=', |a, b| a == b),
-        ] {
-            let Some((key, wanted)) = word.split_once(sign) else {
-                continue;
-            };
-            return match (self.number(key), wanted.parse::<f64>()) {
-                (Some(number), Ok(wanted)) => holds(number, wanted),
-                _ => self.case.attributes.text(key).is_some_and(|t| t.eq_ignore_ascii_case(wanted)),
-            };
-        }
-        let word = word.to_lowercase();
-        let contains = |text: &str| text.to_lowercase().contains(&word);
-        let in_attribute = |(_, value): (&str, Option<&Value>)| match value {
-            Some(Value::Text(text)) => contains(text),
-            _ => false,
-        };
-        contains(self.name)
-            || self.case.attributes.iter().any(in_attribute)
-            || self.flags.iter().any(|flag| contains(&flag.to_string()))
-    }
 }
 
 /// The cases that are listed and their order.
@@ -150,6 +118,7 @@ impl CaseRow<'_> {
 pub struct CaseList {
     key: Option<ListKey>,
     order: Vec<usize>,
+    error: Option<FilterError>,
 }
 
 /// The inputs from which the order was computed. The order is computed again when one of them
@@ -170,6 +139,8 @@ pub struct CaseTable<'a> {
     pub checked: &'a CheckedDataset,
     errors: Option<&'a ReplayStatus>,
     order: &'a [usize],
+    /// What is wrong with the filter; the table is empty then.
+    pub error: Option<&'a FilterError>,
 }
 
 impl CaseList {
@@ -191,7 +162,9 @@ impl CaseList {
             sort: view.sort_column.clone().map(|key| (key, view.sort_descending)),
         };
         if self.key.as_ref() != Some(&key) {
-            self.order = order(checked, errors, view);
+            let found = order(checked, errors, view);
+            self.error = found.as_ref().err().cloned();
+            self.order = found.unwrap_or_default();
             self.key = Some(key);
         }
     }
@@ -205,7 +178,7 @@ impl CaseList {
     ) -> Option<CaseTable<'a>> {
         let checked = listed_in(sources, view)?;
         let errors = replays.get(view.listed.as_ref()?);
-        Some(CaseTable { checked, errors, order: &self.order })
+        Some(CaseTable { checked, errors, order: &self.order, error: self.error.as_ref() })
     }
 }
 
@@ -245,16 +218,21 @@ fn row<'a>(
     Some(CaseRow { name: &case.name, case, flags, error })
 }
 
-fn order(checked: &CheckedDataset, errors: Option<&ReplayStatus>, view: &View) -> Vec<usize> {
+fn order(
+    checked: &CheckedDataset,
+    errors: Option<&ReplayStatus>,
+    view: &View,
+) -> Result<Vec<usize>, FilterError> {
+    let filter = CaseFilter::new(&view.filter, &checked.dataset.cases)?;
     let all = 0..checked.dataset.cases.len();
     let mut rows: Vec<(usize, CaseRow<'_>)> = all
         .filter_map(|index| Some((index, row(checked, errors, index)?)))
-        .filter(|(_, row)| row.matches(&view.filter))
+        .filter(|(_, row)| filter.matches(row))
         .collect();
     if let Some(key) = &view.sort_column {
         sort(&mut rows, key, view.sort_descending);
     }
-    rows.into_iter().map(|(index, _)| index).collect()
+    Ok(rows.into_iter().map(|(index, _)| index).collect())
 }
 
 /// Sorts rows by a column. In rising order, rows with a number come first, by value; the others
@@ -299,7 +277,7 @@ mod tests {
 
     fn names(checked: &CheckedDataset, view: &View) -> Vec<String> {
         let name = |index: usize| checked.dataset.cases[index].name.clone();
-        order(checked, None, view).into_iter().map(name).collect()
+        order(checked, None, view).unwrap().into_iter().map(name).collect()
     }
 
     #[test]
@@ -313,7 +291,27 @@ mod tests {
         let heavy = names(&checked, &view("hooked=1 m_b_kg>2000"));
         assert!(!heavy.is_empty() && heavy.len() < hooked.len());
         assert_eq!(names(&checked, &view("side=LEFT")), names(&checked, &view("side=left")));
-        assert!(names(&checked, &view("no_such_column>1")).is_empty());
+        assert_eq!(names(&checked, &view("hooked")), hooked);
+        let n = |filter: &str| names(&checked, &view(filter)).len();
+        assert_eq!(n("hooked!=1"), 88);
+        assert_eq!(n("m_b_kg<=2000") + n("m_b_kg>2000"), 100);
+        assert_eq!(n("m_b_kg>=2000") + n("m_b_kg<2000"), 100);
+        assert_eq!(n("side=left") + n("side!=left"), 100);
+    }
+
+    #[test]
+    fn a_filter_that_makes_no_sense_is_an_error_and_no_empty_list() {
+        let checked = fea();
+        for (filter, named) in [
+            ("no_such_column>1", "there is no column no_such_column; the columns are case, "),
+            ("c007 m_b_kg>heavy", "m_b_kg holds numbers, `heavy` is none"),
+            ("side<left", "side holds texts"),
+            ("m_b_kg>", "`` is none"),
+        ] {
+            let view = View { filter: filter.to_owned(), ..View::default() };
+            let error = order(&checked, None, &view).unwrap_err().to_string();
+            assert!(error.contains(named), "{error}");
+        }
     }
 
     #[test]

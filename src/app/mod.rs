@@ -3,6 +3,7 @@
 //! It edits settings, makes questions of them and shows the answers. The questions are answered by
 //! [`study`](crate::study), on threads that [`jobs`](crate::jobs) starts.
 
+mod case_filter;
 mod case_table;
 mod command;
 mod dialogs;

@@ -32,6 +32,10 @@ pub fn cases_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     else {
         return;
     };
+    if let Some(error) = table.error {
+        ui.colored_label(ui.visuals().error_fg_color, error.to_string());
+        return;
+    }
     ui.weak(format!("{} of {} cases", table.len(), table.checked.dataset.cases.len()));
     let selected = match &project.subject {
         Some(Subject::Case { dataset, case }) if *dataset == path => Some(case.as_str()),
@@ -49,7 +53,7 @@ fn filter_ui(ui: &mut Ui, view: &mut View) {
         let field = egui::TextEdit::singleline(&mut view.filter).hint_text(FILTER_HINT);
         let width = ui.available_width() - 30.0;
         ui.add(field.desired_width(width)).on_hover_text(
-            "Words that must all hold: part of a name or flag, or column=value, column<value, column>value, with the column names of cases.csv in SI units",
+            "Words that must all hold: part of a name or flag, a column of yes and no, or a column and a value with =, !=, <, <=, > or >=, with the column names of cases.csv in SI units",
         );
         if ui.button("×").on_hover_text("Show all cases").clicked() {
             view.filter.clear();
