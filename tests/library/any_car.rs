@@ -161,21 +161,24 @@ fn trajectories_of_a_car_narrow_its_bands_and_leave_other_cars_alone() {
     assert!(matches!(again, LearningError::NothingNew), "{again}");
 }
 
+/// Motions of a car whose tyres grip less than its data sheet says.
+fn slippery_car(mass_kg: f64, grip: f64) -> Vec<ResponseCase> {
+    let vehicle = car(mass_kg, 0.8);
+    let mut truth = vehicle.clone();
+    truth.tires.friction *= grip;
+    let motion = |yaw_rate_rad_s: f64| {
+        let initial = VehicleState { yaw_rate_rad_s, ..VehicleState::driving_straight(20.0) };
+        let inputs = struck([0.0, 2.5], &vehicle, 200);
+        let states = rollout(&truth, initial, &inputs, |_, _| [0.0; 4]);
+        ResponseCase::of_motion(yaw_rate_rad_s.to_string(), vehicle.clone(), states, inputs)
+    };
+    [0.3, -0.6, 0.9].map(motion).into()
+}
+
 /// Motions of four cars whose tyres grip less than their data sheets say, each by a share of its own.
 fn small_fleet() -> TrainingSet<ResponseCase> {
-    let mut train = Vec::new();
-    for (car_idx, grip) in [0.95, 0.9, 0.85, 0.8].into_iter().enumerate() {
-        let vehicle = car(1200.0 + 200.0 * car_idx as f64, 0.8);
-        let mut truth = vehicle.clone();
-        truth.tires.friction *= grip;
-        for yaw_rate_rad_s in [0.3, -0.6, 0.9] {
-            let initial = VehicleState { yaw_rate_rad_s, ..VehicleState::driving_straight(20.0) };
-            let inputs = struck([0.0, 1.0], &vehicle, 150);
-            let states = rollout(&truth, initial, &inputs, |_, _| [0.0; 4]);
-            let name = format!("{car_idx} {yaw_rate_rad_s}");
-            train.push(ResponseCase::of_motion(name, vehicle.clone(), states, inputs));
-        }
-    }
+    let cars = [(1200.0, 0.95), (1400.0, 0.9), (1600.0, 0.85), (1800.0, 0.8)];
+    let train = cars.into_iter().flat_map(|(mass_kg, grip)| slippery_car(mass_kg, grip)).collect();
     TrainingSet { name: "made".to_owned(), train, test: Vec::new() }
 }
 
@@ -218,6 +221,23 @@ fn a_fleet_is_learned_from_saved_and_read_again() {
     let case = &set.train[0];
     let of = |model: &ResponseModel| end(model, (&case.vehicle, &case.states[0], &case.inputs));
     assert_eq!(of(&again), of(&model));
+    // A car that is like them is better predicted than by its data sheet, and better still once two
+    // of its motions are known.
+    let fifth = slippery_car(1500.0, 0.84);
+    let error_m = |model: &ResponseModel| {
+        let predictor = model.predictor(&fifth[2].vehicle).expect("a predictor");
+        average_error_m(
+            &predictor.central_path(&fifth[2].states[0], &fifth[2].inputs),
+            &fifth[2].states,
+        )
+    };
+    let physics = rollout(&fifth[2].vehicle, fifth[2].states[0], &fifth[2].inputs, |_, _| [0.0; 4]);
+    let physics_m = average_error_m(&physics, &fifth[2].states);
+    let two = TrainingSet { train: fifth[..2].to_vec(), ..set.clone() };
+    let told = condition(&model, &two).expect("a conditioned model");
+    let (unseen_m, told_m) = (error_m(&model), error_m(&told));
+    assert!(unseen_m < 0.6 * physics_m, "{unseen_m} m, by the data sheet {physics_m} m");
+    assert!(told_m < 0.8 * unseen_m, "{told_m} m, before {unseen_m} m");
     // One car is no fleet, and a network of one car cannot be told of another.
     let of_one = TrainingSet { train: set.train[..3].to_vec(), ..set.clone() };
     let mut go_on = |_: &TrainingReport| ControlFlow::Continue(());

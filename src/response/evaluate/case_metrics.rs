@@ -9,11 +9,15 @@ use crate::data::{finite_or_null, null_as_nan};
 use crate::learning::LearningError;
 use crate::response::evaluate::MotionModel;
 use crate::response::evaluate::motion_model::PredictedMotion;
-use crate::response::{MotionDistribution, ResponseCase, motion_series};
-use crate::vehicle::VehicleState;
+use crate::response::{MotionDistribution, ResponseCase, STEP_S, average_error_m, motion_series};
+use crate::vehicle::{REST_SPEED_M_S, REST_YAW_RATE_RAD_S, VehicleState};
 
 /// Every how many steps the regions are looked at: 0.1 s.
 const STRIDE: usize = 10;
+/// Steps of the part of a motion that long and short recordings have in common: 4 s.
+const COMMON_STEPS: usize = 400;
+/// How long after the recorded rest a prediction may go on until it rests too, s.
+const REST_SEARCH_S: f64 = 10.0;
 /// Draws behind an energy score.
 const N_DRAWS: usize = 200;
 
@@ -50,6 +54,16 @@ pub struct MotionCaseMetrics {
     /// Errors of the mean path; infinite where it is not finite.
     #[serde(flatten)]
     pub error: MotionError,
+    /// Average error over the first 4 s, or over the whole of a shorter recording, m.
+    #[serde(
+        default = "unmeasured",
+        serialize_with = "finite_or_null",
+        deserialize_with = "null_as_nan"
+    )]
+    pub average_error_4_s_m: f64,
+    /// Distance between the recorded and the predicted rest position, m; `None` where the recording
+    /// does not end at rest.
+    pub rest_error_m: Option<f64>,
     /// Instants at which kinetic energy grows with no force on the vehicle, over all its paths.
     pub violations: usize,
     /// Time for a step of the whole answer, µs.
@@ -77,14 +91,42 @@ impl MotionCaseMetrics {
             })
             .unwrap_or_else(|_| infinite());
         let violations = paths.iter().map(|path| violations(path, case)).sum();
+        let common = &case.states[..case.states.len().min(COMMON_STEPS + 1)];
         let metrics = Self {
             error,
+            average_error_4_s_m: average_error_m(&states, common),
+            rest_error_m: rest_error_m(model, case)?,
             violations,
             time_per_step_us: seconds * 1e6 / case.inputs.len().max(1) as f64,
             coverage: distribution.map(|distribution| coverage(&distribution, case)),
         };
         Ok((metrics, states))
     }
+}
+
+/// What files from before it was measured say of an error.
+fn unmeasured() -> f64 {
+    f64::NAN
+}
+
+/// Distance between the recorded and the predicted rest position, m: the prediction goes on after the
+/// recording as it ends, until the vehicle rests.
+fn rest_error_m(model: &MotionModel, case: &ResponseCase) -> Result<Option<f64>, LearningError> {
+    let is_at_rest = |state: &&VehicleState<f64>| {
+        state.vx_m_s.hypot(state.vy_m_s) < REST_SPEED_M_S
+            && state.yaw_rate_rad_s.abs() < REST_YAW_RATE_RAD_S
+    };
+    let (Some(end), Some(last)) = (case.states.last().filter(is_at_rest), case.inputs.last())
+    else {
+        return Ok(None);
+    };
+    let mut longer = case.clone();
+    longer.inputs.extend(vec![*last; (REST_SEARCH_S / STEP_S) as usize]);
+    let states = model.predict(&longer)?.states;
+    // A vehicle that slows down to nothing before it is struck is not at rest yet.
+    let after_recording = states.iter().skip(case.states.len() / 2);
+    let rest = after_recording.clone().find(is_at_rest).or(states.last());
+    Ok(rest.map(|rest| (rest.x_m - end.x_m).hypot(rest.y_m - end.y_m)))
 }
 
 /// A path whose numbers are not finite breaks mechanics at every step.

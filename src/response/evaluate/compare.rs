@@ -119,6 +119,7 @@ pub(super) fn answers(
         Ok(ComparedCase {
             case: case.name.clone(),
             cluster: *cluster,
+            is_braked: case.is_braked(),
             model: kind.label().to_owned(),
             kind,
             trajectories,

@@ -12,7 +12,7 @@ use crate::jobs::{Progress, ProgressCallback};
 use crate::learning::{LearningError, TEST_SHARE, TrainSettings, TrainingReport, TrainingSet};
 use crate::response::evaluate::compare::{answers, clusters};
 use crate::response::evaluate::{ComparedCase, Comparison, ComparisonSettings, MotionModel};
-use crate::response::train::{FleetParts, train_parts};
+use crate::response::train::train_parts;
 use crate::response::{
     ResponseCase, ResponseModel, ResponseTrainingSet, Tuning, UnseenCars, condition,
     learn_population,
@@ -43,33 +43,22 @@ pub fn compare_on_unseen_cars(
         TrainingReport::Epoch(epoch) => tell(0.8 * epoch.share_done(), "training on other cars"),
         TrainingReport::Fit { .. } => ControlFlow::Continue(()),
     };
-    let FleetParts { parts, members } = train_parts(start, set, &training, &mut told)?;
+    let parts = train_parts(start, set, &training, &mut told)?;
     if is_broken.get() {
         return Ok(None);
     }
-    let case = |idx: &usize| set.train.get(*idx);
-    let cars_of = |part: usize| -> Vec<Vec<&ResponseCase>> {
-        let cars = parts.get(part).into_iter().flatten();
-        cars.map(|cases| cases.iter().filter_map(case).collect()).collect()
-    };
     let mut asked = Asked { settings, test: Vec::new(), rows: Vec::new() };
-    for (part, member) in members.iter().enumerate() {
-        let others = (0..members.len()).filter(|other| *other != part);
-        let unseen: Vec<UnseenCars<'_>> = others
-            .filter_map(|other| {
-                Some(UnseenCars { model: members.get(other)?, cars: cars_of(other) })
-            })
-            .collect();
-        let is_left = |case: &&ResponseCase| {
-            !cars_of(part).iter().flatten().any(|left_out| left_out.digest == case.digest)
-        };
-        let train: Vec<ResponseCase> = set.train.iter().filter(is_left).cloned().collect();
-        let mut model = member.copied()?;
+    for (number, part) in parts.iter().enumerate() {
+        let others = parts.iter().enumerate().filter(|(other, _)| *other != number);
+        let unseen: Vec<UnseenCars<'_>> = others.map(|(_, other)| other.unseen(set)).collect();
+        let is_learned = |case: &&ResponseCase| part.model.is_trained_on(case);
+        let train: Vec<ResponseCase> = set.train.iter().filter(is_learned).cloned().collect();
+        let mut model = part.model.copied()?;
         learn_population(&mut model, &unseen, &train)?;
-        for cases in cars_of(part) {
+        for cases in part.unseen(set).cars {
             asked.ask(&model, &cases)?;
         }
-        let done = 0.8 + 0.2 * (part + 1) as f64 / members.len() as f64;
+        let done = 0.8 + 0.2 * (number + 1) as f64 / parts.len() as f64;
         if tell(done, "cars that were left out").is_break() {
             return Ok(None);
         }

@@ -27,6 +27,15 @@ pub struct MotionMetrics {
     pub n: usize,
     /// Average error, m.
     pub average_error_m: MeanStd,
+    /// Average error over the first 4 s, m.
+    #[serde(default = "MeanStd::of_none")]
+    pub average_error_4_s_m: MeanStd,
+    /// Distance between recorded and predicted rest position, m, where a recording ends at rest.
+    #[serde(default = "MeanStd::of_none")]
+    pub rest_error_m: MeanStd,
+    /// Trajectories that end at rest, counted as in `n`.
+    #[serde(default)]
+    pub n_at_rest: usize,
     /// 1/mean of the average error, 1/m.
     #[serde(serialize_with = "finite_or_null", deserialize_with = "null_as_nan")]
     pub score: f64,
@@ -107,6 +116,11 @@ impl MeanStd {
         Self { mean: mean * factor, std: std * factor, median: median * factor }
     }
 
+    /// The statistics of no values, as in files from before something was measured.
+    fn of_none() -> Self {
+        Self::of([])
+    }
+
     /// The statistics of values; NaN without any.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
         let mut values: Vec<f64> = values.into_iter().collect();
@@ -132,6 +146,9 @@ impl MotionMetrics {
         Self {
             n: cases.len(),
             average_error_m,
+            average_error_4_s_m: over(&|case| case.average_error_4_s_m),
+            rest_error_m: MeanStd::of(cases.iter().filter_map(|case| case.rest_error_m)),
+            n_at_rest: cases.iter().filter(|case| case.rest_error_m.is_some()).count(),
             score: 1.0 / average_error_m.mean,
             rmse: RootMeanSquares {
                 x_m: over(&|case| case.error.rmse_x_m),

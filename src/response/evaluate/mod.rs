@@ -25,6 +25,7 @@ pub use result::{
     ClusterModel, ClusterRow, ComparedCase, ComparedModel, Comparison, PATH_STEP_S, TestCase,
 };
 pub use tables::{
-    ComparisonTable, all_tables, cluster_table, horizon_table, model_table, uncertainty_table,
+    ComparisonTable, all_tables, cluster_table, ending_table, horizon_table, model_table,
+    uncertainty_table,
 };
 pub use write::{to_markdown, write_comparison};

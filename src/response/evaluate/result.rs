@@ -45,6 +45,9 @@ pub struct ComparedCase {
     pub case: String,
     /// Its cluster by impulse.
     pub cluster: usize,
+    /// Whether a wheel is braked, dragged or locked.
+    #[serde(default)]
+    pub is_braked: bool,
     /// The model.
     pub model: String,
     /// Its kind.
@@ -60,14 +63,14 @@ pub struct ComparedCase {
     pub path: Vec<[f64; 3]>,
 }
 
-/// The models on one cluster of trajectories.
+/// The models on a group of trajectories: a cluster by impulse, or those of a kind of ending.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ClusterRow {
-    /// Such as `C0`, by rising impulse.
+    /// Such as `C0`, by rising impulse, or `coasting`.
     pub name: String,
     /// Trajectories in it.
     pub n: usize,
-    /// Impulse at its centre, N s.
+    /// Impulse at the centre of a cluster, N s.
     pub impulse_n_s: Option<f64>,
     /// Each model on them.
     pub models: Vec<ClusterModel>,
@@ -115,6 +118,9 @@ pub struct Comparison {
     pub models: Vec<ComparedModel>,
     /// The models on each cluster of trajectories.
     pub clusters: Vec<ClusterRow>,
+    /// The models on the trajectories of each kind of ending; none where all are of one kind.
+    #[serde(default)]
+    pub endings: Vec<ClusterRow>,
     /// Each model on each trajectory.
     pub cases: Vec<ComparedCase>,
 }
@@ -158,24 +164,33 @@ impl Comparison {
         };
         let models: Vec<ComparedModel> = kinds.iter().map(model).collect();
         let n_clusters = clusters.clusters.as_ref().map_or(1, ImpulseClusters::n_clusters);
-        let cluster = |cluster: usize| {
+        let models_on = |is_in_group: &dyn Fn(&ComparedCase) -> bool| -> Vec<ClusterModel> {
             let of_model = |&(kind, n): &(MotionModelKind, usize)| {
                 let rows = of_kind((kind, n));
-                let metrics: Vec<&MotionCaseMetrics> = rows
-                    .iter()
-                    .filter(|row| row.cluster == cluster)
-                    .map(|row| &row.metrics)
-                    .collect();
+                let metrics: Vec<&MotionCaseMetrics> =
+                    rows.iter().filter(|row| is_in_group(row)).map(|row| &row.metrics).collect();
                 let metrics = MotionMetrics::of(&metrics);
                 ClusterModel { name: kind.label().to_owned(), trajectories: n, metrics }
             };
-            ClusterRow {
-                name: ImpulseClusters::label(cluster),
-                n: clusters.of_case.iter().filter(|of| **of == cluster).count(),
-                impulse_n_s: clusters.clusters.as_ref().and_then(|of| of.impulse_n_s(cluster)),
-                models: kinds.iter().map(of_model).collect(),
-            }
+            kinds.iter().map(of_model).collect()
         };
+        let cluster = |cluster: usize| ClusterRow {
+            name: ImpulseClusters::label(cluster),
+            n: clusters.of_case.iter().filter(|of| **of == cluster).count(),
+            impulse_n_s: clusters.clusters.as_ref().and_then(|of| of.impulse_n_s(cluster)),
+            models: models_on(&|row| row.cluster == cluster),
+        };
+        let ending = |(name, is_braked): (&str, bool)| ClusterRow {
+            name: name.to_owned(),
+            n: test.iter().filter(|case| case.is_braked() == is_braked).count(),
+            impulse_n_s: None,
+            models: models_on(&|row| row.is_braked == is_braked),
+        };
+        let mut endings: Vec<ClusterRow> =
+            [("coasting", false), ("braked", true)].map(ending).into();
+        if endings.iter().any(|row| row.n == 0) {
+            endings.clear();
+        }
         Self {
             data: name.to_owned(),
             seed: settings.seed,
@@ -183,6 +198,7 @@ impl Comparison {
             test: test.iter().zip(&clusters.of_case).map(TestCase::of).collect(),
             models,
             clusters: (0..n_clusters).map(cluster).filter(|row| row.n > 0).collect(),
+            endings,
             cases,
         }
     }

@@ -3,7 +3,8 @@
 use std::fmt::Write;
 
 use crate::response::evaluate::{
-    ClusterModel, ComparedModel, Comparison, MeanStd, RootMeanSquares, paper_metrics,
+    ClusterModel, ComparedModel, Comparison, CoverageMetrics, MeanStd, RootMeanSquares,
+    paper_metrics,
 };
 
 /// A table of words and numbers.
@@ -46,13 +47,17 @@ impl ComparisonTable {
 }
 
 /// Titles, file names and tables of a comparison.
-pub fn all_tables(comparison: &Comparison) -> [(&'static str, &'static str, ComparisonTable); 4] {
-    [
+pub fn all_tables(comparison: &Comparison) -> Vec<(&'static str, &'static str, ComparisonTable)> {
+    let mut tables = vec![
         ("Models", "models.csv", model_table(comparison)),
         ("Distance by horizon", "horizons.csv", horizon_table(comparison)),
         ("Uncertainty", "uncertainty.csv", uncertainty_table(comparison)),
         ("By cluster of impulse", "clusters.csv", cluster_table(comparison)),
-    ]
+    ];
+    if !comparison.endings.is_empty() {
+        tables.push(("By ending", "endings.csv", ending_table(comparison)));
+    }
+    tables
 }
 
 /// Average error, score, time per step and root mean square errors of each model; what the paper
@@ -170,6 +175,52 @@ pub fn cluster_table(comparison: &Comparison) -> ComparisonTable {
             ];
             row.extend(metrics.rmse.named().map(|(_, value)| mean_std(value)));
             rows.push(row);
+        }
+    }
+    ComparisonTable { header, rows }
+}
+
+/// Errors over 4 s, over whole recordings and of the rest position, and coverage, by kind of ending.
+pub fn ending_table(comparison: &Comparison) -> ComparisonTable {
+    let header = words(&[
+        "ending",
+        "cases",
+        "model",
+        "trajectories",
+        "average error over 4 s, m",
+        "median, m",
+        "over all, m",
+        "median, m",
+        "at rest",
+        "rest position, m",
+        "median, m",
+        "in 50 % along the path",
+        "in 90 %",
+    ]);
+    let mut rows = Vec::new();
+    for ending in &comparison.endings {
+        for ClusterModel { name, trajectories, metrics } in &ending.models {
+            let share = |of: fn(&CoverageMetrics) -> f64| {
+                metrics.coverage.map_or(String::new(), |all| format!("{:.0} %", 100.0 * of(&all)))
+            };
+            let median = |of: MeanStd| {
+                if of.median.is_nan() { String::new() } else { number(of.median) }
+            };
+            rows.push(vec![
+                ending.name.clone(),
+                ending.n.to_string(),
+                name.clone(),
+                count(*trajectories),
+                mean_std(metrics.average_error_4_s_m),
+                median(metrics.average_error_4_s_m),
+                mean_std(metrics.average_error_m),
+                median(metrics.average_error_m),
+                metrics.n_at_rest.to_string(),
+                mean_std(metrics.rest_error_m),
+                median(metrics.rest_error_m),
+                share(|of| of.path_50),
+                share(|of| of.path_90),
+            ]);
         }
     }
     ComparisonTable { header, rows }

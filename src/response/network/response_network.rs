@@ -155,6 +155,23 @@ impl ResponseNetwork {
         Ok(())
     }
 
+    /// Leaves a share of what the network adds to the effects.
+    pub(crate) fn keep_remainder(&self, share: f64) -> Result<(), NnError> {
+        let is_correction = |column: usize| column % N_COMPONENT_NUMBERS < N_RESIDUAL;
+        let n = self.config.components * N_COMPONENT_NUMBERS;
+        let shares: Vec<f64> = (0..n).map(|i| if is_correction(i) { share } else { 1.0 }).collect();
+        for (name, variable) in self.parameters.iter() {
+            if name.starts_with("head.") {
+                let shares = Tensor::new(shares.as_slice(), &Device::Cpu)?;
+                let shares = shares.to_dtype(variable.dtype())?;
+                // A weight is [numbers, hidden], a bias [numbers].
+                let shares = if variable.rank() == 2 { shares.unsqueeze(1)? } else { shares };
+                variable.set(&variable.broadcast_mul(&shares)?)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Gives all components these strengths of the effects.
     pub(crate) fn set_strengths(&self, strengths: &[f64]) -> Result<(), NnError> {
         let row = Tensor::new(strengths, &Device::Cpu)?.unsqueeze(0)?;
@@ -163,6 +180,15 @@ impl ResponseNetwork {
             Some(variable) => Ok(variable.set(&all)?),
             None => Ok(()),
         }
+    }
+
+    /// Mean over the components of the strengths of the effects.
+    ///
+    /// # Errors
+    /// [`NnError`] if they cannot be read.
+    pub(crate) fn mean_strengths(&self) -> Result<[f64; N_EFFECTS], NnError> {
+        let mean: Vec<f64> = self.strengths.mean(0)?.to_dtype(DType::F64)?.to_vec1()?;
+        Ok(std::array::from_fn(|k| mean.get(k).copied().unwrap_or(0.0)))
     }
 
     /// Strengths of the effects in each component, `[J, N_EFFECTS]`.

@@ -134,6 +134,12 @@ impl VehicleNetwork {
                 *value = (*value + added) * share;
             }
         }
+        self.with_remainder(share)
+    }
+
+    /// The same network with a share of its remainder, what it adds to the effects.
+    #[must_use]
+    pub(crate) fn with_remainder(mut self, share: f64) -> Self {
         self.unit = self.unit.map(|unit| unit * share);
         self
     }

@@ -20,7 +20,7 @@ use crate::response::network::vehicle_network::{VehicleNetwork, Workspace};
 use crate::response::physics::effects::EffectModel;
 use crate::response::physics::features::features_of;
 use crate::response::physics::step::StepModel;
-use crate::response::{N_EFFECTS, N_RESIDUAL, ResponseCase, STEP_S};
+use crate::response::{N_EFFECTS, N_RESIDUAL, ResponseCase, STEP_S, average_error_m};
 use crate::vehicle::{VehicleInput, VehicleState};
 
 /// Steps of a window; the next one begins where it ends, so that nothing is counted twice.
@@ -53,14 +53,37 @@ pub(super) struct Linearized {
 }
 
 impl<'a> Predicted<'a> {
+    /// - `remainder`: share of the remainder of the network that holds for the car.
+    ///
     /// # Errors
     /// [`NnError`] if a tensor cannot be read.
-    pub fn new(case: &'a ResponseCase, network: &ResponseNetwork) -> Result<Self, NnError> {
-        let network = VehicleNetwork::new(network, &case.vehicle)?;
+    pub fn new(
+        case: &'a ResponseCase,
+        network: &ResponseNetwork,
+        remainder: f64,
+    ) -> Result<Self, NnError> {
+        let network = VehicleNetwork::new(network, &case.vehicle)?.with_remainder(remainder);
         let strengths = DVector::from_row_slice(&network.mean_strengths());
         let model = StepModel::of(&case.vehicle);
         let effects = EffectModel::of(&case.vehicle);
         Ok(Self { case, model, effects, network, strengths })
+    }
+
+    /// Mean distance between the recorded path and that with the strengths of the network, m.
+    ///
+    /// - `last_step`: what comes after it is not looked at.
+    pub fn error_m(&self, last_step: usize) -> f64 {
+        let Some(&initial) = self.case.states.first() else { return 0.0 };
+        let n = self.case.inputs.len().min(last_step);
+        let strengths = std::array::from_fn(|k| self.strengths[k]);
+        let mut work = Workspace::default();
+        let mut path = vec![initial];
+        let mut x = initial;
+        for (i, u) in self.case.inputs[..n].iter().enumerate() {
+            x = self.step((&x, u, i as f64 * STEP_S), &strengths, &mut work);
+            path.push(x);
+        }
+        average_error_m(&path, &self.case.states[..self.case.states.len().min(n + 1)])
     }
 
     /// One step with strengths added, in the mean over the components.

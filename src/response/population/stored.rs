@@ -17,6 +17,7 @@ const NAME: &str = "population";
 #[serde(deny_unknown_fields)]
 struct Stored {
     noise: [f64; N_ROWS],
+    remainder: f64,
     widening: f64,
     step_noise: f64,
     cars: Vec<StoredCar>,
@@ -27,6 +28,8 @@ struct Stored {
 struct StoredCar {
     vehicle: VehicleParameters,
     n_trajectories: usize,
+    remainder: f64,
+    widening: f64,
 }
 
 impl StrengthPopulation {
@@ -40,6 +43,8 @@ impl StrengthPopulation {
             tensors.insert(name, tensor(of)?);
             Ok(())
         };
+        let row = |of: &DVector<f64>| DMatrix::from_column_slice(1, N_EFFECTS, of.as_slice());
+        add("mean".to_owned(), &row(&self.mean))?;
         add("between".to_owned(), &self.between)?;
         add("within".to_owned(), &self.within)?;
         add("bare".to_owned(), &self.bare)?;
@@ -47,13 +52,13 @@ impl StrengthPopulation {
         let mut cars = Vec::new();
         for (i, car) in self.cars.iter().enumerate() {
             add(format!("car{i}.covariance"), &car.strengths.covariance)?;
-            let mean = DMatrix::from_column_slice(1, N_EFFECTS, car.strengths.mean.as_slice());
-            add(format!("car{i}.mean"), &mean)?;
+            add(format!("car{i}.mean"), &row(&car.strengths.mean))?;
             let (vehicle, n_trajectories) = (car.vehicle.clone(), car.n_trajectories);
-            cars.push(StoredCar { vehicle, n_trajectories });
+            let CarStrengths { remainder, widening, .. } = car.strengths;
+            cars.push(StoredCar { vehicle, n_trajectories, remainder, widening });
         }
-        let Self { noise, widening, step_noise, .. } = *self;
-        file.put(NAME, &Stored { noise, widening, step_noise, cars })?;
+        let Self { noise, remainder, widening, step_noise, .. } = *self;
+        file.put(NAME, &Stored { noise, remainder, widening, step_noise, cars })?;
         file.put_group(NAME, tensors);
         Ok(())
     }
@@ -66,6 +71,7 @@ impl StrengthPopulation {
     pub(crate) fn take(file: &mut Checkpoint) -> Result<Option<Self>, NnError> {
         let Some(stored): Option<Stored> = file.find(NAME)? else { return Ok(None) };
         check_numbers("population.noise", &stored.noise, Expected::NotNegative)?;
+        check_number("population.remainder", stored.remainder, Expected::NotNegative)?;
         check_number("population.widening", stored.widening, Expected::NotNegative)?;
         check_number("population.step_noise", stored.step_noise, Expected::NotNegative)?;
         let tensors = file.take_group(NAME);
@@ -80,16 +86,25 @@ impl StrengthPopulation {
             }
             Ok(found)
         };
+        let row = |name: &str| -> Result<DVector<f64>, NnError> {
+            Ok(DVector::from_iterator(N_EFFECTS, matrix(name, 1)?.iter().copied()))
+        };
         let mut cars = Vec::new();
-        for (i, StoredCar { vehicle, n_trajectories }) in stored.cars.into_iter().enumerate() {
-            let mean = matrix(&format!("car{i}.mean"), 1)?;
+        for (i, of) in stored.cars.into_iter().enumerate() {
+            let StoredCar { vehicle, n_trajectories, remainder, widening } = of;
+            check_number("population.car.remainder", remainder, Expected::NotNegative)?;
+            check_number("population.car.widening", widening, Expected::NotNegative)?;
             let strengths = CarStrengths {
-                mean: DVector::from_iterator(N_EFFECTS, mean.iter().copied()),
+                mean: row(&format!("car{i}.mean"))?,
                 covariance: covariance(&format!("car{i}.covariance"))?,
+                remainder,
+                widening,
             };
             cars.push(KnownCar { vehicle, n_trajectories, strengths });
         }
         Ok(Some(Self {
+            mean: row("mean")?,
+            remainder: stored.remainder,
             between: covariance("between")?,
             bare: covariance("bare")?,
             importance: matrix("importance", N_EFFECTS)?,

@@ -11,6 +11,11 @@ pub struct CarStrengths {
     pub mean: DVector<f64>,
     /// Covariance of what is common to all motions of the car, `[N_EFFECTS, N_EFFECTS]`.
     pub covariance: DMatrix<f64>,
+    /// Share of the remainder of the network that holds for the car: 1 for one that the network has
+    /// learned from.
+    pub remainder: f64,
+    /// Factor on all standard deviations with which the regions hold as many motions as they say.
+    pub widening: f64,
 }
 
 /// What trajectories say of strengths: `Jᵀ V⁻¹ J` and `Jᵀ V⁻¹ (e + J d₀)`.
@@ -36,6 +41,10 @@ impl Evidence {
         self
     }
 
+    pub fn is_finite(&self) -> bool {
+        self.precision.iter().chain(&self.weighted).all(|value| value.is_finite())
+    }
+
     pub fn sum(all: impl IntoIterator<Item = Self>) -> Self {
         all.into_iter().fold(Self::none(), |mut sum, one| {
             sum.precision += one.precision;
@@ -54,7 +63,7 @@ impl CarStrengths {
             let root = (&prior + &evidence.precision).cholesky()?;
             let mean = root.solve(&(prior * &self.mean + &evidence.weighted));
             let is_finite = mean.iter().all(|value| value.is_finite());
-            is_finite.then(|| Self { mean, covariance: root.inverse() })
+            is_finite.then(|| Self { mean, covariance: root.inverse(), ..self.clone() })
         };
         updated().unwrap_or_else(|| self.clone())
     }
@@ -69,7 +78,8 @@ mod tests {
         let mut covariance = DMatrix::identity(N_EFFECTS, N_EFFECTS) * 0.04;
         covariance[(0, 1)] = 0.03;
         covariance[(1, 0)] = 0.03;
-        let prior = CarStrengths { mean: DVector::zeros(N_EFFECTS), covariance };
+        let mean = DVector::zeros(N_EFFECTS);
+        let prior = CarStrengths { mean, covariance, remainder: 1.0, widening: 1.0 };
         let mut evidence = Evidence::none();
         // Strength 0 is 0.5, measured with a variance of 0.04.
         evidence.precision[(0, 0)] = 25.0;

@@ -123,14 +123,15 @@ impl ResponseModel {
     /// # Errors
     /// [`LearningError::Network`].
     pub fn predictor(&self, vehicle: &VehicleParameters) -> Result<Predictor, LearningError> {
+        let domain = self.domain.clone().unwrap_or_default();
+        let network = VehicleNetwork::new(&self.network, vehicle)?.learned_for(domain.duration_s());
         let strengths = match &self.population {
             Some(population) => {
-                SourceStrengths::Population(Arc::clone(population), population.of(vehicle))
+                let of_car = population.of(vehicle, &network.mean_strengths());
+                SourceStrengths::Population(Arc::clone(population), of_car)
             }
             None => SourceStrengths::OneCar(self.latents),
         };
-        let domain = self.domain.clone().unwrap_or_default();
-        let network = VehicleNetwork::new(&self.network, vehicle)?.learned_for(domain.duration_s());
         let of_vehicle = match self.known_car(vehicle) {
             // The strengths of the car itself are known.
             Some(_) => domain.of_road(vehicle),

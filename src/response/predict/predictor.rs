@@ -66,15 +66,15 @@ impl PredictorSource {
     fn at(&self, applicability: &Applicability) -> (VehicleNetwork, Latents) {
         let (share, beyond) = (applicability.value, applicability.distance);
         let none = [0.0; N_EFFECTS];
-        let (added, latents) = match &self.strengths {
+        let (added, remainder, latents) = match &self.strengths {
             SourceStrengths::Population(population, of) => {
-                (of.mean.as_slice(), population.latents(of, [share, beyond]))
+                (of.mean.as_slice(), of.remainder, population.latents(of, [share, beyond]))
             }
             SourceStrengths::OneCar(scales) => {
-                (none.as_slice(), scales.faded([share, beyond]).latents())
+                (none.as_slice(), 1.0, scales.faded([share, beyond]).latents())
             }
         };
-        (self.network.clone().adapted(added, share), latents)
+        (self.network.clone().with_remainder(remainder).adapted(added, share), latents)
     }
 }
 

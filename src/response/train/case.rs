@@ -70,6 +70,11 @@ pub enum ResponseCaseError {
 pub(crate) const MIN_SAMPLES: usize = 10;
 
 impl ResponseCase {
+    /// Whether a wheel is driven, braked, dragged or locked.
+    pub fn is_braked(&self) -> bool {
+        self.inputs.iter().any(|input| input.wheels.is_some())
+    }
+
     /// The trajectory of a case of a trajectory data set.
     ///
     /// - `vehicle`: the struck vehicle; its friction is replaced by the case's.

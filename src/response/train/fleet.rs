@@ -4,7 +4,9 @@
 //! The cars are divided into parts. A training leaves out each part, and predicts it: from this the
 //! distribution of the strengths over cars is learned, and how wide the regions have to be. A car with
 //! many more trajectories than the others is left out of none: without it there would be little to
-//! learn from. What is used is a training on all cars, whose trajectories make them known.
+//! learn from. Instead a share of its trajectories is left out of each, by which the regions of a car
+//! that is well known are calibrated. What is used is a training on all cars, whose trajectories make
+//! them known.
 
 use std::cell::Cell;
 
@@ -22,8 +24,11 @@ const N_PARTS: usize = 4;
 /// A car with more than this many times the trajectories of the median car is left out of no training.
 const MANY: usize = 2;
 /// Factors on all deviations that are tried, and the levels at which the regions shall be right.
-const FACTORS: [f64; 9] = [0.6, 0.7, 0.8, 0.9, 1.0, 1.15, 1.3, 1.6, 2.0];
+const FACTORS: [f64; 13] = [0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.15, 1.3, 1.6, 2.0];
 const LEVELS: [f64; 2] = [0.5, 0.9];
+/// How many times what the larger regions hold too little counts: regions that are too narrow mislead,
+/// those that are too wide do not.
+const SHORTFALL: f64 = 3.0;
 /// Steps from one instant at which the regions are looked at to the next: 0.5 s, up to 4 s.
 const STRIDE_STEPS: usize = 50;
 const LAST_STEP: usize = 400;
@@ -35,6 +40,8 @@ pub struct UnseenCars<'a> {
     pub model: &'a ResponseModel,
     /// The trajectories of each car.
     pub cars: Vec<Vec<&'a ResponseCase>>,
+    /// Trajectories that it has not seen of cars that it has learned from.
+    pub motions: Vec<&'a ResponseCase>,
 }
 
 /// Trains a network on a fleet.
@@ -56,21 +63,13 @@ pub fn train_fleet(
         is_cut.set(is_cut.get() || flow.is_break());
         flow
     };
-    let FleetParts { parts, members } = train_parts(start, set, settings, &mut told)?;
+    let parts = train_parts(start, set, settings, &mut told)?;
     let mut last = |of: &TrainingReport| told(&numbered(of, N_PARTS));
     let mut model = fine_tune_once(Some(start), set, settings, &mut last)?;
     if is_cut.get() {
         return Ok(model);
     }
-    let case = |idx: &usize| set.train.get(*idx);
-    let unseen: Vec<UnseenCars<'_>> = members
-        .iter()
-        .zip(&parts)
-        .map(|(model, cars)| {
-            let cars = cars.iter().map(|cases| cases.iter().filter_map(case).collect()).collect();
-            UnseenCars { model, cars }
-        })
-        .collect();
+    let unseen: Vec<UnseenCars<'_>> = parts.iter().map(|part| part.unseen(set)).collect();
     learn_population(&mut model, &unseen, &set.train)?;
     Ok(model)
 }
@@ -102,15 +101,39 @@ pub fn condition(
     Ok(model)
 }
 
-/// The cars of each part, and the network that has not seen them.
-pub(crate) struct FleetParts {
-    /// Of each part, the numbers of the trajectories of each car.
-    pub parts: Vec<Vec<Vec<usize>>>,
-    /// The networks.
-    pub members: Vec<ResponseModel>,
+/// Which trajectories a training leaves out, by their numbers.
+#[derive(Debug, Clone, Default)]
+struct LeftOut {
+    /// Those of each car that is left out whole.
+    cars: Vec<Vec<usize>>,
+    /// Those of cars that are learned from.
+    motions: Vec<usize>,
 }
 
-/// Trains a network for each part of a fleet, on all cars but those of the part. Each has a checkpoint
+/// A part of the fleet, and the network that has not seen it.
+pub(crate) struct FleetPart {
+    left_out: LeftOut,
+    /// The network.
+    pub model: ResponseModel,
+}
+
+impl FleetPart {
+    /// What the network has not seen.
+    ///
+    /// - `set`: the trajectories of the whole fleet.
+    pub fn unseen<'a>(&'a self, set: &'a ResponseTrainingSet) -> UnseenCars<'a> {
+        let of = |numbers: &Vec<usize>| -> Vec<&'a ResponseCase> {
+            numbers.iter().filter_map(|idx| set.train.get(*idx)).collect()
+        };
+        UnseenCars {
+            model: &self.model,
+            cars: self.left_out.cars.iter().map(of).collect(),
+            motions: of(&self.left_out.motions),
+        }
+    }
+}
+
+/// Trains a network for each part of a fleet, on what the part does not leave out. Each has a checkpoint
 /// of its own beside that of the training.
 ///
 /// # Errors
@@ -120,17 +143,20 @@ pub(crate) fn train_parts(
     set: &ResponseTrainingSet,
     settings: &ResponseTrainSettings,
     report: &mut TrainingProgress<'_>,
-) -> Result<FleetParts, LearningError> {
+) -> Result<Vec<FleetPart>, LearningError> {
     settings.config.check()?;
     settings.config.check_memory()?;
     let parts = parts_of(&cars_of(&set.train));
-    if parts.iter().any(Vec::is_empty) {
-        let n_cases = parts.iter().map(Vec::len).sum();
+    if parts.iter().any(|part| part.cars.is_empty()) {
+        let n_cases = parts.iter().map(|part| part.cars.len()).sum();
         return Err(LearningError::TooFewCases { n_cases, least: N_PARTS });
     }
-    let mut members = Vec::new();
-    for (part, left_out) in parts.iter().enumerate() {
-        let is_left = |idx: &usize| !left_out.iter().flatten().any(|left_out| left_out == idx);
+    let mut trained = Vec::new();
+    for (part, left_out) in parts.into_iter().enumerate() {
+        let is_left = |idx: &usize| {
+            let mut left_out = left_out.cars.iter().flatten().chain(&left_out.motions);
+            !left_out.any(|left_out| left_out == idx)
+        };
         let train: Vec<usize> = (0..set.train.len()).filter(is_left).collect();
         let checkpoint = settings.checkpoint.as_ref().map(|path| {
             let mut name = path.as_os_str().to_owned();
@@ -139,9 +165,10 @@ pub(crate) fn train_parts(
         });
         let settings = ResponseTrainSettings { checkpoint, ..settings.clone() };
         let mut told = |of: &TrainingReport| report(&numbered(of, part));
-        members.push(fine_tune_once(Some(start), &set.part(&train), &settings, &mut told)?);
+        let model = fine_tune_once(Some(start), &set.part(&train), &settings, &mut told)?;
+        trained.push(FleetPart { left_out, model });
     }
-    Ok(FleetParts { parts, members })
+    Ok(trained)
 }
 
 /// A report of one of the trainings of a fleet, which says which.
@@ -172,16 +199,17 @@ fn cars_of(cases: &[ResponseCase]) -> Vec<Vec<usize>> {
     cars
 }
 
-/// The cars of each part, by the numbers of their cases.
-fn parts_of(cars: &[Vec<usize>]) -> Vec<Vec<Vec<usize>>> {
+/// What each part leaves out: every car in turn, or the trajectories of a car with many in turn.
+fn parts_of(cars: &[Vec<usize>]) -> Vec<LeftOut> {
     let mut sizes: Vec<usize> = cars.iter().map(Vec::len).collect();
     sizes.sort_unstable();
     let most = MANY * sizes.get(sizes.len() / 2).copied().unwrap_or(0);
-    let mut parts = vec![Vec::new(); N_PARTS];
-    for (i, car) in cars.iter().filter(|car| car.len() <= most).enumerate() {
-        if let Some(part) = parts.get_mut(i % N_PARTS) {
-            part.push(car.clone());
-        }
+    let (well_known, others): (Vec<_>, Vec<_>) = cars.iter().partition(|car| car.len() > most);
+    let mut parts = vec![LeftOut::default(); N_PARTS];
+    for (number, part) in parts.iter_mut().enumerate() {
+        part.cars = others.iter().skip(number).step_by(N_PARTS).copied().cloned().collect();
+        let motions = well_known.iter().flat_map(|car| car.iter().skip(number).step_by(N_PARTS));
+        part.motions = motions.copied().collect();
     }
     parts
 }
@@ -203,34 +231,78 @@ pub fn learn_population(
         .flat_map(|of| of.cars.iter().map(|cases| UnseenCar { cases, network: of.model.network() }))
         .collect();
     let mut population = StrengthPopulation::fit(&cars)?;
-    population.set_widening(widening(&population, unseen)?);
+    let of_unseen: Vec<Asked<'_>> = unseen
+        .iter()
+        .map(|of| {
+            let cases = of.cars.iter().flatten().copied().collect();
+            Ok(Asked { model: of.model.copied()?, population: population.clone(), cases })
+        })
+        .collect::<Result<_, LearningError>>()?;
+    population.set_widening(widening(&of_unseen)?);
+    let well_known = well_known_widening(&population, unseen, train)?;
     for car in cars_of(train) {
         let cases: Vec<&ResponseCase> = car.iter().filter_map(|idx| train.get(*idx)).collect();
-        population = population.with_learned_car(model.network(), &cases)?;
+        let is_of_car = |case: &&ResponseCase| {
+            cases.first().is_some_and(|first| is_same_car(&first.vehicle, &case.vehicle))
+        };
+        let is_well_known = unseen.iter().flat_map(|of| &of.motions).any(is_of_car);
+        let widening = if is_well_known { well_known } else { population.widening() };
+        population = population.with_learned_car((model.network(), widening), &cases)?;
     }
     model.set_domain(MotionDomain::of(train));
     model.set_population(population);
     Ok(())
 }
 
-/// The factor on the deviations with which the regions hold as many of the recorded positions as they
-/// say.
-fn widening(
+/// Trajectories that a model has not seen, with what it knows of their cars.
+struct Asked<'a> {
+    model: ResponseModel,
+    population: StrengthPopulation,
+    cases: Vec<&'a ResponseCase>,
+}
+
+/// The factor on the deviations of cars of which many trajectories are known, by trajectories of theirs
+/// that were left out; that of other cars where there are none.
+fn well_known_widening(
     population: &StrengthPopulation,
     unseen: &[UnseenCars<'_>],
+    train: &[ResponseCase],
 ) -> Result<f64, LearningError> {
+    let mut asked = Vec::new();
+    for of in unseen.iter().filter(|of| !of.motions.is_empty()) {
+        let mut known = population.clone();
+        let learned: Vec<ResponseCase> =
+            train.iter().filter(|case| of.model.is_trained_on(case)).cloned().collect();
+        for car in cars_of(&learned) {
+            let cases: Vec<&ResponseCase> =
+                car.iter().filter_map(|idx| learned.get(*idx)).collect();
+            let is_asked = |asked: &&ResponseCase| {
+                cases.first().is_some_and(|case| is_same_car(&case.vehicle, &asked.vehicle))
+            };
+            if of.motions.iter().any(is_asked) {
+                known = known.with_learned_car((of.model.network(), 1.0), &cases)?;
+            }
+        }
+        let cases = of.motions.clone();
+        asked.push(Asked { model: of.model.copied()?, population: known, cases });
+    }
+    if asked.is_empty() { Ok(population.widening()) } else { widening(&asked) }
+}
+
+/// The factor on the deviations with which the regions hold as many of the recorded positions as they
+/// say.
+fn widening(asked: &[Asked<'_>]) -> Result<f64, LearningError> {
     let mut best = (f64::INFINITY, 1.0);
     for factor in FACTORS {
-        let mut population = population.clone();
-        population.set_widening(factor);
         let (mut inside, mut n) = ([0; LEVELS.len()], 0);
-        for of in unseen {
+        for of in asked {
+            let mut population = of.population.clone();
+            population.set_widening(factor);
             let mut model = of.model.copied()?;
-            model.set_population(population.clone());
+            model.set_population(population);
             let counted: Vec<([usize; LEVELS.len()], usize)> = of
-                .cars
+                .cases
                 .par_iter()
-                .flatten()
                 .map(|case| count_inside(&model, case))
                 .collect::<Result<_, _>>()?;
             for (counted, of_case) in counted {
@@ -238,11 +310,9 @@ fn widening(
                 n += of_case;
             }
         }
-        let off: f64 = inside
-            .iter()
-            .zip(LEVELS)
-            .map(|(inside, level)| (*inside as f64 / f64::max(n as f64, 1.0) - level).abs())
-            .sum();
+        let [half, most] = inside.map(|inside| inside as f64 / f64::max(n as f64, 1.0));
+        let short = (LEVELS[1] - most).max(0.0) * SHORTFALL;
+        let off = (half - LEVELS[0]).abs() + (most - LEVELS[1]).max(short);
         if off < best.0 {
             best = (off, factor);
         }
@@ -266,4 +336,27 @@ fn count_inside(
         .collect();
     let inside = LEVELS.map(|level| levels.iter().filter(|of| **of <= level).count());
     Ok((inside, levels.len()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_car_is_left_out_once_and_of_a_well_known_one_every_trajectory() {
+        let mut cars: Vec<Vec<usize>> = (0..6).map(|car| vec![2 * car, 2 * car + 1]).collect();
+        cars.push((12..23).collect());
+        let parts = parts_of(&cars);
+        let mut left_out: Vec<usize> =
+            parts.iter().flat_map(|part| part.cars.iter().flatten()).copied().collect();
+        left_out.sort_unstable();
+        assert_eq!(left_out, (0..12).collect::<Vec<_>>());
+        let mut motions: Vec<usize> =
+            parts.iter().flat_map(|part| &part.motions).copied().collect();
+        motions.sort_unstable();
+        assert_eq!(motions, (12..23).collect::<Vec<_>>());
+        let sizes: Vec<[usize; 2]> =
+            parts.iter().map(|part| [part.cars.len(), part.motions.len()]).collect();
+        assert_eq!(sizes, [[2, 3], [2, 3], [1, 3], [1, 2]]);
+    }
 }

@@ -19,7 +19,7 @@ mod fleet;
 mod stages;
 
 pub use case::{ResponseCase, ResponseCaseError};
-pub(crate) use fleet::{FleetParts, train_parts};
+pub(crate) use fleet::train_parts;
 pub use fleet::{UnseenCars, condition, learn_population, train_fleet};
 pub use record::{ResponseEpoch, ResponseRecord, ResponseStage, ResponseTraining};
 pub use simulated::ImpactRecord;

@@ -172,6 +172,10 @@ pub(super) fn fine_tune_once(
     let data = TrainingData::of_trajectories(&set.train, config, settings.seed);
     if let Some(population) = start.and_then(ResponseModel::population) {
         let cases: Vec<&ResponseCase> = set.train.iter().collect();
+        if let Some(first) = cases.first() {
+            let of_car = population.of(&first.vehicle, &network.mean_strengths()?);
+            network.keep_remainder(of_car.remainder)?;
+        }
         network.set_strengths(&population.strengths_of(&network, &cases)?)?;
     } else if config.network.effects {
         let rows: Vec<_> =
