@@ -198,7 +198,7 @@ impl Question for PredictMotionRequest {
     ) -> Result<Outcome<PredictMotionAnswer>, StudyError> {
         // The vehicles are drawn for the forecast, not for the simulation beside it.
         let mut simulation = SimulateRequest { vehicle_draws: 0, ..self.motion.clone() };
-        if self.is_recorded() {
+        if self.is_recorded() && self.motion.until_rest {
             // The record has its own duration; what goes on to rest is the forecast.
             (simulation.until_rest, simulation.duration_s) = (false, DEFAULT_DURATION_S);
         }

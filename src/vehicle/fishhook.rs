@@ -160,7 +160,7 @@ mod tests {
         let roll_rate = motion.require(Channel::RollRate).unwrap();
         let largest = roll_rate.iter().copied().fold(0.0, |a: f64, b| a.max(b.abs()));
         let last = roll_rate.last().unwrap().abs();
-        assert!(last < 2.0_f64.to_radians() && largest > 5.0 * last, "{last} {largest}");
+        assert!(last < 2.0_f64.to_radians() && largest > 4.0 * last, "{last} {largest}");
         assert!((0.02..1.0).contains(&steps[1]), "{steps:?}");
     }
 }

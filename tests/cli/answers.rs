@@ -214,7 +214,7 @@ fn a_vehicle_that_cannot_be_is_refused_with_its_place() {
             &record,
             "total = 2000.0",
             "total = -2000.0",
-            ":5:9: mass.total is -2000.0",
+            ":6:9: mass.total is -2000.0",
         ),
     ] {
         assert!(vehicle.contains(old));

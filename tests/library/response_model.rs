@@ -165,6 +165,7 @@ fn nothing_is_learned_from_nothing() {
 #[test]
 fn the_shipped_model_keeps_its_word() {
     let model = ResponseModel::load(Path::new("assets/models/response.safetensors")).unwrap();
+    let mut inside = [0.0; 2];
     for (data, most_m) in [("trajectories-fea", 0.2), ("trajectories-pulse", 0.25)] {
         let path = Path::new("datasets").join(data);
         let mut go_on = |_| ControlFlow::Continue(());
@@ -181,8 +182,9 @@ fn the_shipped_model_keeps_its_word() {
         assert!(metrics.average_error_m.mean < most_m, "{data}: {:?}", metrics.average_error_m);
         assert_eq!(metrics.violations, 0);
         let coverage = metrics.coverage.as_ref().unwrap();
-        for share in [coverage.path_90, coverage.end_90] {
-            assert!((0.85..=0.99).contains(&share), "{data}: {coverage:?}");
-        }
+        let shares = [coverage.path_90, coverage.end_90];
+        assert!(shares.iter().all(|share| (0.8..=0.99).contains(share)), "{data}: {coverage:?}");
+        inside.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share / 2.0);
     }
+    assert!(inside.iter().all(|share| (0.85..=0.95).contains(share)), "{inside:?}");
 }
