@@ -67,7 +67,8 @@ pub struct Manoeuvre {
     pub contact_load: Option<ContactLoad>,
     /// What steers, drives, brakes and locks the wheels.
     pub controls: Controls,
-    /// Duration of the motion, s, in the range [`SIMULATED_DURATION`].
+    /// Duration of the motion, s, in the range
+    /// [`SIMULATED_DURATION`](crate::ranges::SIMULATED_DURATION).
     pub duration_s: f64,
     /// Whether the motion ends before its duration where the vehicle has come to rest: after the end
     /// of the force and the last change of the controls, see [`Motion::rest_s`].

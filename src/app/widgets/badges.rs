@@ -1,6 +1,6 @@
 //! The badges of an answer as coloured chips.
 
-use egui::{Frame, Label, RichText, Sense, Ui};
+use egui::{Color32, Frame, Label, Margin, RichText, Sense, TextStyle, Ui};
 
 use crate::data::Severity;
 use crate::render::theme;
@@ -9,6 +9,8 @@ use crate::units::significant;
 
 /// Opacity of the fill of a chip, 0 to 1.
 const FILL: f32 = 0.16;
+/// Room between the text of a chip and its frame, points.
+const MARGIN: Margin = Margin::symmetric(7, 2);
 
 /// Draws each badge as a chip; hovering over it shows what it says in full. Badges that stand for
 /// assumptions are left to [`assumptions_ui`](crate::app::widgets::assumptions_ui), beside which
@@ -20,10 +22,21 @@ pub fn badges_ui<'a>(ui: &mut Ui, badges: impl IntoIterator<Item = &'a Badge>) {
         return;
     }
     ui.horizontal_wrapped(|ui| {
-        for badge in shown {
+        for (i, badge) in shown.into_iter().enumerate() {
+            // A chip that does not fit beside the others begins a row, instead of breaking its words.
+            if i > 0 && chip_width(ui, badge) > ui.available_size_before_wrap().x {
+                ui.end_row();
+            }
             chip_ui(ui, badge);
         }
     });
+}
+
+/// Width of a chip on a row of its own, points.
+fn chip_width(ui: &Ui, badge: &Badge) -> f32 {
+    let font = TextStyle::Body.resolve(ui.style());
+    let text = ui.painter().layout_no_wrap(chip_text(badge), font, Color32::PLACEHOLDER);
+    text.size().x + 2.0 * f32::from(MARGIN.left) + 2.0
 }
 
 fn chip_ui(ui: &mut Ui, badge: &Badge) {
@@ -33,7 +46,7 @@ fn chip_ui(ui: &mut Ui, badge: &Badge) {
         .fill(color.gamma_multiply(FILL))
         .stroke((1.0, color))
         .corner_radius(8.0)
-        .inner_margin(egui::Margin::symmetric(7, 2));
+        .inner_margin(MARGIN);
     let chip = frame.show(ui, |ui| {
         // Not selectable, so that the pointer over the text is over the chip.
         ui.add(Label::new(RichText::new(chip_text(badge)).color(color)).selectable(false))
@@ -47,5 +60,35 @@ fn chip_text(badge: &Badge) -> String {
     match (&badge.quantity, badge.value) {
         (Some(quantity), Some(value)) => format!("{label}: {quantity} {}", significant(value)),
         _ => label.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::{Context, RawInput};
+
+    use super::*;
+    use crate::uncertainty::BadgeKind;
+
+    #[test]
+    fn a_chip_that_does_not_fit_begins_a_row() {
+        let badges = [
+            (BadgeKind::OutsideDomain, "duration of the motion [s]"),
+            (BadgeKind::NotAtRest, "share of the draws at rest"),
+        ];
+        let badges = badges.map(|(kind, quantity)| Badge {
+            kind,
+            text: String::new(),
+            quantity: Some(quantity.to_owned()),
+            value: Some(120.0),
+            range: None,
+        });
+        let mut height = 0.0;
+        let _ = Context::default().run_ui(RawInput::default(), |ui| {
+            ui.set_max_width(340.0);
+            height = ui.scope(|ui| badges_ui(ui, &badges)).response.rect.height();
+        });
+        // Two rows, and not one letter of the second chip in each.
+        assert!((30.0..80.0).contains(&height), "{height}");
     }
 }
