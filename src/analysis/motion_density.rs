@@ -151,16 +151,17 @@ mod tests {
     use super::*;
     use crate::response::{ComponentMotion, StateDistribution};
     use crate::vehicle::VehicleState;
-    use nalgebra::SMatrix;
+    use nalgebra::{SMatrix, SVector};
 
     /// A motion along X at 10 m/s, whose standard deviation grows from nearly zero to 0.5 m.
     fn motion() -> MotionDistribution {
         let state = |i: usize| StateDistribution {
             mean: VehicleState { x_m: i as f64 * STEP_S * 10.0, ..VehicleState::default() },
             covariance: SMatrix::identity() * (0.005 * i as f64).powi(2).max(1e-12),
+            by_share: SVector::zeros(),
         };
         let states = (0..=100).map(state).collect();
-        MotionDistribution::new(vec![ComponentMotion { weight: 1.0, states }])
+        MotionDistribution::new(vec![ComponentMotion { weight: 1.0, states, tail_ratio: 1.0 }])
     }
 
     fn sum(map: &DensityMap) -> f64 {

@@ -14,7 +14,7 @@ use crate::analysis::{MotionEnd, MotionOutcome, RestOutcome, Spread, StruckVehic
 use crate::data::ForceHistory;
 use crate::response::{
     Applicability, ComponentMotion, MotionDistribution, Predictor, RestSearch, STEP_S,
-    SettledMotion, StateDistribution, weighted_mean,
+    SettledMotion, StateDistribution, Widths, weighted_mean,
 };
 use crate::vehicle::VehicleState;
 
@@ -155,7 +155,8 @@ fn distribution(
         let members: Vec<&SettledMotion> = group.iter().filter_map(|&idx| draws.get(idx)).collect();
         let at = |instant| moments(&members, instant);
         let weight = members.len() as f64;
-        ComponentMotion { weight, states: (0..n_instants).map(at).collect() }
+        let states = (0..n_instants).map(at).collect();
+        ComponentMotion { weight, states, tail_ratio: Widths::NORMAL.tail_ratio }
     };
     MotionDistribution::new(groups(ends).par_iter().map(component).collect())
 }
@@ -171,7 +172,8 @@ fn moments(motions: &[&SettledMotion], instant: usize) -> StateDistribution {
         off * off.transpose()
     };
     let sum: SMatrix<f64, 6, 6> = states().map(squares).sum();
-    StateDistribution { mean, covariance: sum / (motions.len() as f64 - 1.0).max(1.0) }
+    let covariance = sum / (motions.len() as f64 - 1.0).max(1.0);
+    StateDistribution { mean, covariance, by_share: SVector::zeros() }
 }
 
 /// The end of the forecast, over the draws.

@@ -35,7 +35,7 @@ pub(crate) use predict::weighted_mean;
 pub use predict::{
     Applicability, ComponentMotion, ComponentPath, LATENT_NAMES, LatentScales, MotionDistribution,
     MotionDomain, N_LATENTS, N_NAMED_LATENTS, OutsideDomain, Predictor, ResponseModel, RestSearch,
-    SettledMotion, StateDistribution,
+    SettledMotion, StateDistribution, Widths,
 };
 pub use train::{
     ImpactRecord, ResponseCase, ResponseCaseError, ResponseEpoch, ResponseRecord, ResponseStage,

@@ -10,7 +10,7 @@ use crate::response::physics::effects::is_of_collision;
 use crate::response::population::linearized::{Linearized, N_ROWS, Predicted};
 use crate::response::population::strengths::Evidence;
 use crate::response::predict::{Latents, N_OF_COLLISION};
-use crate::response::{CarStrengths, N_EFFECTS, N_LATENTS, ResponseCase, vehicle_tokens};
+use crate::response::{CarStrengths, N_EFFECTS, N_LATENTS, ResponseCase, Widths, vehicle_tokens};
 use crate::vehicle::VehicleParameters;
 
 /// Degrees of freedom of Student's distribution, by which windows that are far off count less.
@@ -50,9 +50,8 @@ pub struct StrengthPopulation {
     /// R: variances of X, Y, ψ, v_x, v_y, r in the middle and at the end of a window about what the
     /// strengths of the car say.
     pub(super) noise: [f64; N_ROWS],
-    /// Factor on the standard deviations with which the regions hold as many motions as they say, of
-    /// cars that a network has not learned from.
-    pub(super) widening: f64,
+    /// How wide the distributions of motions are, of cars that a network has not learned from.
+    pub(super) widths: Widths,
     /// Factor on the standard deviation of each step's noise.
     pub(super) step_noise: f64,
     /// Cars of which trajectories are known.
@@ -119,16 +118,16 @@ impl StrengthPopulation {
         self.remainder
     }
 
-    /// Factor on all standard deviations of cars that a network has not learned from.
-    pub fn widening(&self) -> f64 {
-        self.widening
+    /// How wide the distributions of motions are, of cars that a network has not learned from.
+    pub fn widths(&self) -> Widths {
+        self.widths
     }
 
-    /// Replaces the factor on all standard deviations, also those of the known cars.
-    pub(crate) fn set_widening(&mut self, widening: f64) {
-        self.widening = widening;
+    /// Replaces how wide the distributions of motions are, also those of the known cars.
+    pub(crate) fn set_widths(&mut self, widths: Widths) {
+        self.widths = widths;
         for car in &mut self.cars {
-            car.strengths.widening = widening;
+            car.strengths.widths = widths;
         }
     }
 
@@ -139,7 +138,7 @@ impl StrengthPopulation {
             mean: &self.mean - DVector::from_row_slice(of_network),
             covariance: self.between.clone(),
             remainder: self.remainder,
-            widening: self.widening,
+            widths: self.widths,
         }
     }
 
@@ -173,20 +172,20 @@ impl StrengthPopulation {
     /// The same distribution with a car that the network itself has learned from: what trajectories add
     /// to its strengths is in the network already, and only how well they are known is new.
     ///
-    /// - `widening`: factor on all standard deviations for this car.
+    /// - `widths`: how wide the distribution of a motion of this car is.
     ///
     /// # Errors
     /// [`NnError`] if a tensor cannot be read.
     pub(crate) fn with_learned_car(
         mut self,
-        (network, widening): (&ResponseNetwork, f64),
+        (network, widths): (&ResponseNetwork, Widths),
         cases: &[&ResponseCase],
     ) -> Result<Self, NnError> {
         let Some(first) = cases.first() else { return Ok(self) };
         let mean = DVector::zeros(N_EFFECTS);
         let of_network = network.mean_strengths()?;
         let prior = self.prior(&of_network);
-        let prior = CarStrengths { mean: mean.clone(), remainder: 1.0, widening, ..prior };
+        let prior = CarStrengths { mean: mean.clone(), remainder: 1.0, widths, ..prior };
         let strengths = CarStrengths { mean, ..self.posterior(&prior, network, cases)? };
         self.remember(first, cases.len(), strengths);
         Ok(self)
@@ -272,11 +271,12 @@ impl StrengthPopulation {
             covariance += &self.bare * (fading * growth);
         }
         covariance += &self.within;
-        covariance *= strengths.widening * strengths.widening;
+        covariance *= strengths.widths.widening.powi(2);
         Latents {
             directions: self.principal(&covariance),
             shared_out: 0,
             step_noise: self.step_noise,
+            tail_ratio: strengths.widths.tail_ratio,
         }
     }
 

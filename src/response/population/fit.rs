@@ -8,7 +8,7 @@ use crate::response::network::response_network::ResponseNetwork;
 use crate::response::population::distribution::{EVIDENCE_SHARE, LEARNED_STEPS, window_weights};
 use crate::response::population::linearized::{Linearized, N_ROWS, Predicted};
 use crate::response::population::strengths::Evidence;
-use crate::response::{CarStrengths, N_EFFECTS, ResponseCase, StrengthPopulation};
+use crate::response::{CarStrengths, N_EFFECTS, ResponseCase, StrengthPopulation, Widths};
 
 /// Linearisations of every trajectory, each about what the last one found, and iterations after each.
 const N_LINEARIZATIONS: usize = 2;
@@ -124,7 +124,7 @@ impl StrengthPopulation {
             between,
             within: DMatrix::identity(N_EFFECTS, N_EFFECTS) * PRIOR_WITHIN_STD.powi(2),
             noise: [FIRST_NOISE; N_ROWS],
-            widening: 1.0,
+            widths: Widths::NORMAL,
             step_noise: STEP_NOISE,
             cars: Vec::new(),
         }
@@ -228,7 +228,7 @@ impl<'a> Car<'a> {
                 mean: zero,
                 covariance: DMatrix::identity(N_EFFECTS, N_EFFECTS),
                 remainder,
-                widening: 1.0,
+                widths: Widths::NORMAL,
             },
         })
     }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::nn::{Checkpoint, Expected, NamedTensors, NnError, check_number, check_numbers};
 use crate::response::population::linearized::N_ROWS;
-use crate::response::{CarStrengths, KnownCar, N_EFFECTS, StrengthPopulation};
+use crate::response::{CarStrengths, KnownCar, N_EFFECTS, StrengthPopulation, Widths};
 use crate::vehicle::VehicleParameters;
 
 /// Key of the metadata and group of the tensors.
@@ -19,6 +19,8 @@ struct Stored {
     noise: [f64; N_ROWS],
     remainder: f64,
     widening: f64,
+    #[serde(default = "normal")]
+    tail_ratio: f64,
     step_noise: f64,
     cars: Vec<StoredCar>,
 }
@@ -30,6 +32,8 @@ struct StoredCar {
     n_trajectories: usize,
     remainder: f64,
     widening: f64,
+    #[serde(default = "normal")]
+    tail_ratio: f64,
 }
 
 impl StrengthPopulation {
@@ -54,11 +58,13 @@ impl StrengthPopulation {
             add(format!("car{i}.covariance"), &car.strengths.covariance)?;
             add(format!("car{i}.mean"), &row(&car.strengths.mean))?;
             let (vehicle, n_trajectories) = (car.vehicle.clone(), car.n_trajectories);
-            let CarStrengths { remainder, widening, .. } = car.strengths;
-            cars.push(StoredCar { vehicle, n_trajectories, remainder, widening });
+            let CarStrengths { remainder, widths: Widths { widening, tail_ratio }, .. } =
+                car.strengths;
+            cars.push(StoredCar { vehicle, n_trajectories, remainder, widening, tail_ratio });
         }
-        let Self { noise, remainder, widening, step_noise, .. } = *self;
-        file.put(NAME, &Stored { noise, remainder, widening, step_noise, cars })?;
+        let Self { noise, remainder, step_noise, widths, .. } = *self;
+        let Widths { widening, tail_ratio } = widths;
+        file.put(NAME, &Stored { noise, remainder, widening, tail_ratio, step_noise, cars })?;
         file.put_group(NAME, tensors);
         Ok(())
     }
@@ -72,7 +78,7 @@ impl StrengthPopulation {
         let Some(stored): Option<Stored> = file.find(NAME)? else { return Ok(None) };
         check_numbers("population.noise", &stored.noise, Expected::NotNegative)?;
         check_number("population.remainder", stored.remainder, Expected::NotNegative)?;
-        check_number("population.widening", stored.widening, Expected::NotNegative)?;
+        let widths = checked("population", [stored.widening, stored.tail_ratio])?;
         check_number("population.step_noise", stored.step_noise, Expected::NotNegative)?;
         let tensors = file.take_group(NAME);
         let matrix = |name: &str, n_rows: usize| matrix(&tensors, name, n_rows);
@@ -91,14 +97,13 @@ impl StrengthPopulation {
         };
         let mut cars = Vec::new();
         for (i, of) in stored.cars.into_iter().enumerate() {
-            let StoredCar { vehicle, n_trajectories, remainder, widening } = of;
+            let StoredCar { vehicle, n_trajectories, remainder, widening, tail_ratio } = of;
             check_number("population.car.remainder", remainder, Expected::NotNegative)?;
-            check_number("population.car.widening", widening, Expected::NotNegative)?;
             let strengths = CarStrengths {
                 mean: row(&format!("car{i}.mean"))?,
                 covariance: covariance(&format!("car{i}.covariance"))?,
                 remainder,
-                widening,
+                widths: checked("population.car", [widening, tail_ratio])?,
             };
             cars.push(KnownCar { vehicle, n_trajectories, strengths });
         }
@@ -110,11 +115,22 @@ impl StrengthPopulation {
             importance: matrix("importance", N_EFFECTS)?,
             within: covariance("within")?,
             noise: stored.noise,
-            widening: stored.widening,
+            widths,
             step_noise: stored.step_noise,
             cars,
         }))
     }
+}
+
+/// The ratio of the widths in a file from before there were two.
+fn normal() -> f64 {
+    Widths::NORMAL.tail_ratio
+}
+
+fn checked(name: &str, [widening, tail_ratio]: [f64; 2]) -> Result<Widths, NnError> {
+    check_number(&format!("{name}.widening"), widening, Expected::NotNegative)?;
+    check_number(&format!("{name}.tail_ratio"), tail_ratio, Expected::Positive)?;
+    Ok(Widths { widening, tail_ratio })
 }
 
 fn tensor(of: &DMatrix<f64>) -> Result<Tensor, NnError> {

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::response::N_EFFECTS;
+use crate::response::{N_EFFECTS, Widths};
 
 /// The distribution of what is added to the strengths of the network for one car.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,8 +14,8 @@ pub struct CarStrengths {
     /// Share of the remainder of the network that holds for the car: 1 for one that the network has
     /// learned from.
     pub remainder: f64,
-    /// Factor on all standard deviations with which the regions hold as many motions as they say.
-    pub widening: f64,
+    /// How wide the distribution of a motion of the car is.
+    pub widths: Widths,
 }
 
 /// What trajectories say of strengths: `Jᵀ V⁻¹ J` and `Jᵀ V⁻¹ (e + J d₀)`.
@@ -79,7 +79,7 @@ mod tests {
         covariance[(0, 1)] = 0.03;
         covariance[(1, 0)] = 0.03;
         let mean = DVector::zeros(N_EFFECTS);
-        let prior = CarStrengths { mean, covariance, remainder: 1.0, widening: 1.0 };
+        let prior = CarStrengths { mean, covariance, remainder: 1.0, widths: Widths::NORMAL };
         let mut evidence = Evidence::none();
         // Strength 0 is 0.5, measured with a variance of 0.04.
         evidence.precision[(0, 0)] = 25.0;

@@ -24,7 +24,7 @@ pub(super) mod predictor;
 mod to_rest;
 
 pub use domain::{Applicability, MotionDomain, OutsideDomain};
-pub use latents::{LATENT_NAMES, LatentScales, N_LATENTS, N_NAMED_LATENTS};
+pub use latents::{LATENT_NAMES, LatentScales, N_LATENTS, N_NAMED_LATENTS, Widths};
 pub(crate) use latents::{Latents, N_OF_COLLISION};
 pub use model::ResponseModel;
 pub(crate) use predictor::weighted_mean;

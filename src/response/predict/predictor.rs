@@ -14,6 +14,7 @@ use crate::response::network::vehicle_network::VehicleNetwork;
 use crate::response::predict::Latents;
 use crate::response::predict::dynamics::{Dynamics, NetworkBatch};
 use crate::response::predict::joint_state::N_JOINT;
+use crate::response::predict::propagate::PlanarState;
 use crate::response::{
     Applicability, CarStrengths, ComponentMotion, LatentScales, MotionDomain, N_EFFECTS, N_LATENTS,
     N_RESIDUAL, STEP_S, StrengthPopulation,
@@ -245,11 +246,12 @@ impl Predictor {
             let mut rng = random_stream(seed, "coherent motions", idx as u64);
             let j = drawn(&weights, rng.random());
             let shares = of.latents.of_component(j, weights.len());
+            let width = of.latents.width(rng.random());
             let latents: [f64; N_LATENTS] = std::array::from_fn(|m| {
-                shares[m].mean + shares[m].variance.sqrt() * normal(&mut rng)
+                width * (shares[m].mean + shares[m].variance.sqrt() * normal(&mut rng))
             });
             let mut noise = |std: &mut [f64; N_RESIDUAL]| {
-                std.iter_mut().for_each(|std| *std *= normal(&mut rng));
+                std.iter_mut().for_each(|std| *std *= width * normal(&mut rng));
             };
             let mut batch = NetworkBatch::default();
             path(&dynamics, (j, &latents, &mut noise), (initial, inputs), &mut batch).states
@@ -356,12 +358,11 @@ impl MotionDistribution {
     /// Covariance of [X, Y, ψ, v_x, v_y, r] at an instant, within the components and between them.
     pub fn covariance(&self, instant: usize) -> SMatrix<f64, 6, 6> {
         let mean = SVector::from(self.mean(instant).planar());
-        let part = |component: &ComponentMotion| {
-            let state = component.states.get(instant)?;
-            let off = SVector::from(state.mean.planar()) - mean;
-            Some((state.covariance + off * off.transpose()) * component.weight)
+        let part = |part: PlanarState| {
+            let off = part.mean - mean;
+            (part.covariance + off * off.transpose()) * part.weight
         };
-        self.components.iter().filter_map(part).sum()
+        self.parts(instant).map(part).sum()
     }
 
     /// The distribution of the heading at an instant, rad, beyond a turn; `None` where it is not
@@ -372,26 +373,27 @@ impl MotionDistribution {
 
     /// The distribution of X, Y, ψ, v_x, v_y or r at an instant; `None` where it is not finite.
     pub fn marginal(&self, instant: usize, axis: usize) -> Option<NormalMixture> {
-        let part = |component: &ComponentMotion| {
-            let state = component.states.get(instant)?;
-            let mean = state.mean.planar()[axis];
-            let std = state.covariance[(axis, axis)].max(LEAST_VARIANCE).sqrt();
-            Some(NormalPart { weight: component.weight, mean, std })
+        let part = |part: PlanarState| {
+            let std = part.covariance[(axis, axis)].max(LEAST_VARIANCE).sqrt();
+            NormalPart { weight: part.weight, mean: part.mean[axis], std }
         };
-        NormalMixture::new(self.components.iter().filter_map(part).collect()).ok()
+        NormalMixture::new(self.parts(instant).map(part).collect()).ok()
     }
 
     /// The distribution of the position at an instant.
     pub fn position(&self, instant: usize) -> PlanarMixture {
-        let part = |component: &ComponentMotion| {
-            let state = component.states.get(instant)?;
-            let p = &state.covariance;
-            Some(PlanarPart {
-                weight: component.weight,
-                mean: [state.mean.x_m, state.mean.y_m],
-                covariance: [p[(0, 0)], p[(0, 1)], p[(1, 1)]],
-            })
+        let part = |PlanarState { weight, mean, covariance: p }: PlanarState| PlanarPart {
+            weight,
+            mean: [mean[0], mean[1]],
+            covariance: [p[(0, 0)], p[(0, 1)], p[(1, 1)]],
         };
-        PlanarMixture::new(self.components.iter().filter_map(part).collect())
+        PlanarMixture::new(self.parts(instant).map(part).collect())
+    }
+
+    /// The normal distributions of [X, Y, ψ, v_x, v_y, r] at an instant, of both widths of every
+    /// component.
+    fn parts(&self, instant: usize) -> impl Iterator<Item = PlanarState> + '_ {
+        let of = move |component: &ComponentMotion| component.at(instant);
+        self.components.iter().flat_map(of)
     }
 }

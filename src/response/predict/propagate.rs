@@ -16,7 +16,7 @@
 //! Source: `eq:sigma_points_gmm` to `eq:complete_trajectory_gmm` of
 //! [`PitPinnPaper`](crate::bibliography::PitPinnPaper).
 
-use nalgebra::SMatrix;
+use nalgebra::{SMatrix, SVector};
 
 use crate::numerics::Lanes;
 use crate::response::STEP_S;
@@ -25,7 +25,7 @@ use crate::response::predict::joint_state::{
     Covariance, LEAST_VARIANCE, Mean, N_DYNAMIC, N_JOINT, N_SEEN, NOISY, OF_COLLISION, PSI, X, Y,
     forget, latents_of, mean_of, state_of, turned,
 };
-use crate::response::predict::latents::N_LATENTS;
+use crate::response::predict::latents::{N_LATENTS, width_pair};
 use crate::response::predict::side_by_side::{Advance, EvaluatedPoint, Evaluation, StepStart};
 use crate::uncertainty::{Unscented, UnscentedWeights};
 use crate::vehicle::{N_STATE, VehicleInput, VehicleState};
@@ -43,6 +43,17 @@ pub struct StateDistribution {
     pub mean: VehicleState<f64>,
     /// Covariance of [X, Y, ψ, v_x, v_y, r], m, rad, m/s, rad/s.
     pub covariance: SMatrix<f64, 6, 6>,
+    /// What of the mean of [X, Y, ψ, v_x, v_y, r] comes from the component's part of the latent factor
+    /// that the components share out: `E[z] ∂x/∂z`. It grows with the width of the distribution.
+    pub by_share: SVector<f64, 6>,
+}
+
+/// A normal distribution of [X, Y, ψ, v_x, v_y, r], with its probability.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct PlanarState {
+    pub weight: f64,
+    pub mean: SVector<f64, 6>,
+    pub covariance: SMatrix<f64, 6, 6>,
 }
 
 /// Where the vehicle goes by one component, with how sure that is.
@@ -52,6 +63,30 @@ pub struct ComponentMotion {
     pub weight: f64,
     /// Every [`STEP_S`].
     pub states: Vec<StateDistribution>,
+    /// Ratio of the two widths of the distribution, which are equally likely; see
+    /// [`Widths`](crate::response::Widths).
+    pub tail_ratio: f64,
+}
+
+impl ComponentMotion {
+    /// The normal distributions of both widths at an instant; one where they are equal.
+    ///
+    /// All that is uncertain scales with a width s, to first order also the state:
+    ///
+    /// ```text
+    /// m_s = m + (s − 1) E[z] ∂x/∂z        P_s = s² P
+    /// ```
+    pub(crate) fn at(&self, instant: usize) -> impl Iterator<Item = PlanarState> + use<> {
+        let widths = width_pair(self.tail_ratio);
+        let [narrow, wide] = widths;
+        let n_widths = if narrow < wide { 2 } else { 1 };
+        let (weight, state) = (self.weight / n_widths as f64, self.states.get(instant).copied());
+        widths.into_iter().take(n_widths).filter_map(move |width| {
+            let state = state?;
+            let mean = SVector::from(state.mean.planar()) + state.by_share * (width - 1.0);
+            Some(PlanarState { weight, mean, covariance: state.covariance * (width * width) })
+        })
+    }
 }
 
 /// Buffers that the steps of a motion share.
@@ -143,7 +178,8 @@ impl Dynamics<'_> {
         let last_struck = inputs.iter().rposition(|u| u.collision.is_some());
         let n_struck = last_struck.map_or(0, |last| last + 1);
         let mut states = Vec::with_capacity(inputs.len() + 1);
-        states.push(StateDistribution::of(&mean, &covariance));
+        let (shared_out, tail_ratio) = (self.latents.shared_out, self.latents.tail_ratio);
+        states.push(StateDistribution::of(&mean, &covariance, shared_out));
         let mut weight = 0.0;
         for (i, u) in inputs.iter().enumerate() {
             if i == n_struck {
@@ -153,9 +189,9 @@ impl Dynamics<'_> {
             (mean, covariance) =
                 self.propagate((component, &weights), (&mean, &covariance), at, &mut buffers);
             weight += self.weight(component, &buffers.batch) / inputs.len() as f64;
-            states.push(StateDistribution::of(&mean, &covariance));
+            states.push(StateDistribution::of(&mean, &covariance, shared_out));
         }
-        ComponentMotion { weight, states }
+        ComponentMotion { weight, states, tail_ratio }
     }
 
     /// Mean and covariance after a step.
@@ -328,9 +364,15 @@ fn root_of(covariance: &Covariance) -> Covariance {
 }
 
 impl StateDistribution {
-    fn of(mean: &Mean, covariance: &Covariance) -> Self {
+    /// - `shared_out`: the latent factor that the components share out.
+    fn of(mean: &Mean, covariance: &Covariance, shared_out: usize) -> Self {
         let order = [X, Y, PSI, 0, 1, 2];
-        let covariance = SMatrix::from_fn(|i, j| covariance[(order[i], order[j])]);
-        Self { mean: state_of(mean), covariance }
+        let latent = N_SEEN + shared_out.min(N_LATENTS - 1);
+        let per_variance = mean[latent] / covariance[(latent, latent)];
+        Self {
+            mean: state_of(mean),
+            covariance: SMatrix::from_fn(|i, j| covariance[(order[i], order[j])]),
+            by_share: SVector::from_fn(|i, _| covariance[(order[i], latent)] * per_variance),
+        }
     }
 }

@@ -47,8 +47,10 @@ fn driving(yaw_rate_rad_s: f64) -> VehicleState<f64> {
 
 #[test]
 fn it_agrees_with_ten_thousand_coherent_draws() {
-    let predictor = predictor();
-    for (start, n) in [(driving(0.3), 300), (driving(2.5), 300)] {
+    let n = 300;
+    for (start, tail_ratio) in [(driving(0.3), 1.0), (driving(2.5), 1.0), (driving(0.3), 4.0)] {
+        let mut predictor = predictor();
+        predictor.latents.tail_ratio = tail_ratio;
         let inputs = released(n);
         let motion = predictor.motion(&start, &inputs);
         let draws = predictor.sample((&start, &inputs), (10_000, 5));
@@ -75,6 +77,14 @@ fn it_agrees_with_ten_thousand_coherent_draws() {
                 );
                 let ratio = covariance[(axis, axis)].sqrt() / std;
                 assert!((ratio - 1.0).abs() < 0.15, "{axis} at {at}: deviation off by {ratio}");
+            }
+            // The tails are as long as those of the draws.
+            let position = motion.position(at);
+            let levels: Vec<f64> =
+                positions[..2000].iter().map(|&[x, y, _]| position.level_of([x, y])).collect();
+            for level in [0.5, 0.9] {
+                let held = levels.iter().filter(|of| **of <= level).count() as f64 / 2000.0;
+                assert!((held - level).abs() < 0.05, "{level} at {at}: {held} of the draws");
             }
         }
     }

@@ -71,15 +71,16 @@ impl Predictor {
             let mut rng = random_stream(search.seed, "motions to rest", idx as u64);
             let component = drawn(&weights, rng.random());
             let shares = of.latents.of_component(component, weights.len());
+            let width = of.latents.width(rng.random());
             let latents = std::array::from_fn(|m| {
-                shares[m].mean + shares[m].variance.sqrt() * normal(&mut rng)
+                width * (shares[m].mean + shares[m].variance.sqrt() * normal(&mut rng))
             });
             let [rolling, air] =
                 search.resistance_scatter.map(|scatter| (scatter * normal(&mut rng)).exp());
             let resisted = with_resistance(&of.vehicle, [rolling, air]);
             let beyond = Dynamics::new(&resisted, &of.network, &of.latents);
             let draw = MotionDraw { component, latents };
-            follow([&dynamics, &beyond], &draw, (initial, inputs), || normal(&mut rng))
+            follow([&dynamics, &beyond], &draw, (initial, inputs), || width * normal(&mut rng))
         };
         draws.par_iter().map(draw).collect()
     }
