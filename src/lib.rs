@@ -47,6 +47,7 @@ pub mod analysis;
 #[cfg(feature = "gui")]
 pub mod app;
 pub mod bibliography;
+pub mod case_file;
 pub mod cli;
 pub mod collision;
 pub mod compare;

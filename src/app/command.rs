@@ -7,10 +7,12 @@ use std::path::PathBuf;
 
 use egui::Context;
 
+use crate::app::case::{Leaving, VariantCommand};
 use crate::app::dialogs::{FileDialog, MappingDialog, Purpose};
 use crate::app::export;
 use crate::app::network::Network;
 use crate::app::panes::{Pane, default_layout, show_pane};
+use crate::app::path_dialog::PathDialog;
 use crate::app::state::{Session, State, Subject};
 use crate::data::{ColumnMap, Existing, Severity};
 use crate::error_chain;
@@ -60,6 +62,31 @@ pub enum Command {
     Export(Box<Figure>, PathBuf),
     /// Copy the numbers of a figure to the clipboard, as CSV.
     CopyNumbers(Box<Figure>),
+    /// Begin a new case, after asking if something would be lost.
+    NewCase,
+    /// Write the case to its file; asks for one if it has none.
+    SaveCase,
+    /// Write the case to a file, which becomes its own.
+    SaveCaseAs(PathBuf),
+    /// Write one zip of the case and all its files.
+    PackCase(PathBuf),
+    /// Show, copy, rename or remove a variant of the case.
+    Variant(VariantCommand),
+    /// Quit, or begin or open another case.
+    Leave {
+        /// Where to.
+        to: Leaving,
+        /// Whether to ask first if something would be lost.
+        ask: bool,
+    },
+    /// Save the case and go where the user was asked about.
+    SaveAndLeave,
+    /// Close the question before leaving, and stay.
+    Stay,
+    /// Ask the user for a path within the window.
+    AskPath(Purpose),
+    /// Close the question for a path.
+    CancelPath,
     /// Write the scenario of the scenario pane to a TOML file.
     SaveScenario(PathBuf),
     /// Carry out a command that writes a file or a folder, and replace what is there.
@@ -159,7 +186,28 @@ impl State {
             Command::StepTime(steps) => self.step_time(steps),
             Command::TogglePlay => self.toggle_play(),
             Command::FitPlots => self.session.fit_plots = true,
-            Command::Export(..) | Command::SaveScenario(_) | Command::SaveModel(..) => {
+            Command::NewCase => self.leave(Leaving::New, context),
+            Command::SaveCase => match self.case.path.clone() {
+                None => self.ask(Purpose::SaveCase, context),
+                Some(path) if self.is_case_file_foreign() => {
+                    self.session.replacing = Some(Box::new(Command::SaveCaseAs(path)));
+                }
+                Some(path) => self.save_case((path, Existing::Replace), context),
+            },
+            Command::Variant(command) => self.change_variant(command, context),
+            Command::Leave { to, ask: true } => self.leave(to, context),
+            Command::Leave { to, ask: false } => self.go(to, context),
+            Command::SaveAndLeave => self.save_and_leave(context),
+            Command::Stay => self.session.leaving = None,
+            Command::AskPath(purpose) => {
+                self.session.path_dialog = Some(PathDialog::new(purpose));
+            }
+            Command::CancelPath => self.session.path_dialog = None,
+            Command::Export(..)
+            | Command::SaveScenario(_)
+            | Command::SaveModel(..)
+            | Command::SaveCaseAs(_)
+            | Command::PackCase(_) => {
                 self.write(command, Existing::Refuse, context);
             }
             Command::Replace(command) => self.write(*command, Existing::Replace, context),
@@ -205,6 +253,7 @@ impl State {
         }
         if self.project.subject.as_ref() != Some(&subject) {
             self.project.subject = Some(subject);
+            self.drop_answers();
             self.session.time_s = 0.0;
             self.session.fit_plots = true;
             if self.view.force.follow_case {

@@ -9,15 +9,12 @@ use rfd::AsyncFileDialog;
 
 use crate::app::command::{Command, ComparisonCommand};
 use crate::app::network::Network;
+use crate::case_file::CASE_ENDING;
 use crate::data::{
-    Channel, ColumnMap, ColumnProposal, ColumnRef, ColumnSource, DataError, Severity,
-    propose_columns,
+    Channel, ColumnMap, ColumnProposal, ColumnRef, ColumnSource, DataError, propose_columns,
 };
 use crate::figure::Figure;
 use crate::jobs::{Job, Update};
-
-/// Message that is shown if the desktop has no file dialog.
-const NO_DIALOG: &str = "this system showed no file dialog (xdg-desktop-portal brings one); type the path in the Data pane or drop files here; figures are written by `impactlab render` too";
 
 /// File extension of model files.
 pub const MODEL_ENDING: &str = "safetensors";
@@ -43,6 +40,74 @@ pub enum Purpose {
     OpenComparison,
     /// A folder for the comparison of response models.
     SaveComparison,
+    /// A file for the case.
+    SaveCase,
+    /// A zip for the case and its files.
+    PackCase,
+}
+
+impl Purpose {
+    /// What is asked for.
+    pub(in crate::app) fn title(&self) -> &'static str {
+        match self {
+            Self::Folder => "Open a data set",
+            Self::Files => "Open files",
+            Self::Picture(_) => "Save the picture",
+            Self::Numbers(_) => "Save the numbers",
+            Self::Scenario => "Save the scenario",
+            Self::OpenModel => "Open a model",
+            Self::SaveModel(_) => "Save the model",
+            Self::OpenComparison => "Open a comparison",
+            Self::SaveComparison => "A folder for the comparison",
+            Self::SaveCase => "Save the case",
+            Self::PackCase => "Pack the case and its files",
+        }
+    }
+
+    /// The name that is proposed.
+    pub(in crate::app) fn usual_name(&self) -> &'static str {
+        match self {
+            Self::Folder | Self::Files | Self::OpenModel | Self::OpenComparison => "",
+            Self::Picture(_) => "figure.png",
+            Self::Numbers(_) => "figure.csv",
+            Self::Scenario => "scenario.toml",
+            Self::SaveModel(network) => network.file_name(),
+            Self::SaveComparison => "comparison",
+            Self::SaveCase => "case.impactlab",
+            Self::PackCase => "case.zip",
+        }
+    }
+
+    /// Whether something is written at the path.
+    pub(in crate::app) fn writes(&self) -> bool {
+        !matches!(self, Self::Folder | Self::Files | Self::OpenModel | Self::OpenComparison)
+    }
+
+    /// The commands that follow once paths are known.
+    ///
+    /// - `was_asked`: whether the user was asked already if a file of that name is to be replaced.
+    pub(in crate::app) fn commands(&self, paths: Vec<PathBuf>, was_asked: bool) -> Vec<Command> {
+        let Some(first) = paths.first().cloned() else {
+            return Vec::new();
+        };
+        let written = |ending: &str, command: &dyn Fn(PathBuf) -> Command| {
+            written((&first, ending), was_asked, command)
+        };
+        vec![match self {
+            Self::Folder | Self::Files | Self::OpenModel | Self::OpenComparison => {
+                Command::Open(paths)
+            }
+            Self::SaveComparison => Command::Compare(ComparisonCommand::Save(first)),
+            Self::Picture(figure) => written("png", &|path| Command::Export(figure.clone(), path)),
+            Self::Numbers(figure) => written("csv", &|path| Command::Export(figure.clone(), path)),
+            Self::Scenario => written("toml", &Command::SaveScenario),
+            Self::SaveModel(network) => {
+                written(MODEL_ENDING, &|path| Command::SaveModel(*network, path))
+            }
+            Self::SaveCase => written(CASE_ENDING, &Command::SaveCaseAs),
+            Self::PackCase => written("zip", &Command::PackCase),
+        }]
+    }
 }
 
 /// Shortest time after which a user can have cancelled a dialog. A dialog that returns nothing in
@@ -71,86 +136,64 @@ impl FileDialog {
 
     /// Returns the commands that follow from the user's answer; `None` while the dialog is open.
     ///
-    /// The list is empty if the user cancelled. If the desktop has no file dialog, it holds a
-    /// message that says so.
+    /// The list is empty if the user cancelled. If the desktop has no file dialog, it asks for the path
+    /// within the window.
     pub fn poll(&mut self) -> Option<Vec<Command>> {
         match self.job.poll() {
             Update::Running => None,
             Update::Finished(paths) if paths.is_empty() && self.job.elapsed() < UNSEEN => {
-                Some(vec![Command::Say(Severity::Warning, NO_DIALOG.to_owned())])
+                Some(vec![Command::AskPath(self.purpose.clone())])
             }
-            Update::Finished(paths) => Some(self.commands(paths)),
+            Update::Finished(paths) => Some(self.purpose.commands(paths, true)),
             Update::Panicked(_) | Update::Gone => {
-                Some(vec![Command::Say(Severity::Warning, NO_DIALOG.to_owned())])
+                Some(vec![Command::AskPath(self.purpose.clone())])
             }
         }
     }
-
-    fn commands(&self, paths: Vec<PathBuf>) -> Vec<Command> {
-        let Some(first) = paths.first().cloned() else {
-            return Vec::new();
-        };
-        vec![match &self.purpose {
-            Purpose::Folder | Purpose::Files | Purpose::OpenModel | Purpose::OpenComparison => {
-                Command::Open(paths)
-            }
-            Purpose::SaveComparison => Command::Compare(ComparisonCommand::Save(first)),
-            Purpose::Picture(figure) => {
-                written(&first, "png", |path| Command::Export(figure.clone(), path))
-            }
-            Purpose::Numbers(figure) => {
-                written(&first, "csv", |path| Command::Export(figure.clone(), path))
-            }
-            Purpose::Scenario => written(&first, "toml", Command::SaveScenario),
-            Purpose::SaveModel(network) => {
-                written(&first, MODEL_ENDING, |path| Command::SaveModel(*network, path))
-            }
-        }]
-    }
 }
 
-/// Returns the command that writes a file which the user has chosen in a dialog. The dialog has
+/// Returns the command that writes a file which the user has chosen in a dialog. A native dialog has
 /// asked already whether that file is to be replaced, but not a file with the ending that is added
 /// to a name without one.
-fn written(chosen: &Path, ending: &str, command: impl FnOnce(PathBuf) -> Command) -> Command {
+fn written(
+    (chosen, ending): (&Path, &str),
+    was_asked: bool,
+    command: &dyn Fn(PathBuf) -> Command,
+) -> Command {
     match chosen.extension() {
-        Some(_) => Command::Replace(Box::new(command(chosen.to_owned()))),
+        Some(_) if was_asked => Command::Replace(Box::new(command(chosen.to_owned()))),
+        Some(_) => command(chosen.to_owned()),
         None => command(chosen.with_extension(ending)),
     }
 }
 
 async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
-    let dialog = AsyncFileDialog::new();
+    let (dialog, name) = (AsyncFileDialog::new().set_title(purpose.title()), purpose.usual_name());
     let save = |dialog: AsyncFileDialog, name: &str| dialog.set_file_name(name).save_file();
     let one = match purpose {
-        Purpose::Folder => dialog.set_title("Open a data set").pick_folder().await,
+        Purpose::Folder => dialog.pick_folder().await,
         Purpose::Files => {
             let files = dialog
-                .set_title("Open force, trajectory or scenario files")
-                .add_filter("tables and scenarios", &["csv", "txt", "tsv", "dat", "asc", "toml"])
+                .add_filter(
+                    "cases, tables and scenarios",
+                    &["impactlab", "csv", "txt", "tsv", "dat", "asc", "toml"],
+                )
                 .add_filter("all files", &["*"])
                 .pick_files()
                 .await;
             return files.unwrap_or_default().iter().map(|file| file.path().to_owned()).collect();
         }
-        Purpose::SaveComparison => {
-            dialog.set_title("A folder for the comparison").pick_folder().await
-        }
+        Purpose::SaveComparison => dialog.pick_folder().await,
         Purpose::OpenComparison => {
-            let dialog =
-                dialog.set_title("Open a comparison").add_filter("comparison.json", &["json"]);
-            dialog.pick_file().await
+            dialog.add_filter("comparison.json", &["json"]).pick_file().await
         }
-        Purpose::OpenModel => {
-            let dialog = dialog.set_title("Open a model").add_filter("model", &[MODEL_ENDING]);
-            dialog.pick_file().await
-        }
-        Purpose::SaveModel(network) => {
-            save(dialog.add_filter("model", &[MODEL_ENDING]), network.file_name()).await
-        }
-        Purpose::Picture(_) => save(dialog.add_filter("picture", &["png"]), "figure.png").await,
-        Purpose::Numbers(_) => save(dialog.add_filter("table", &["csv"]), "figure.csv").await,
-        Purpose::Scenario => save(dialog.add_filter("scenario", &["toml"]), "scenario.toml").await,
+        Purpose::OpenModel => dialog.add_filter("model", &[MODEL_ENDING]).pick_file().await,
+        Purpose::SaveModel(_) => save(dialog.add_filter("model", &[MODEL_ENDING]), name).await,
+        Purpose::Picture(_) => save(dialog.add_filter("picture", &["png"]), name).await,
+        Purpose::Numbers(_) => save(dialog.add_filter("table", &["csv"]), name).await,
+        Purpose::Scenario => save(dialog.add_filter("scenario", &["toml"]), name).await,
+        Purpose::SaveCase => save(dialog.add_filter("case", &[CASE_ENDING]), name).await,
+        Purpose::PackCase => save(dialog.add_filter("package", &["zip"]), name).await,
     };
     one.iter().map(|file| file.path().to_owned()).collect()
 }

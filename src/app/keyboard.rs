@@ -16,6 +16,14 @@ pub const OPEN: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key
 pub const OPEN_FOLDER: KeyboardShortcut =
     KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::O);
 
+/// Shortcut that begins a new case.
+pub const NEW: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::N);
+/// Shortcut that saves the case.
+pub const SAVE: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::S);
+/// Shortcut that saves the case under another name.
+pub const SAVE_AS: KeyboardShortcut =
+    KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S);
+
 /// The keys that act without a modifier, with the description that the help menu shows.
 pub const PLAIN_KEYS: [(Key, &str); 7] = [
     (Key::Space, "play or pause"),
@@ -28,13 +36,20 @@ pub const PLAIN_KEYS: [(Key, &str); 7] = [
 ];
 
 /// Adds the commands of the keys that were pressed in this frame. While a text field has the focus,
-/// the keys without a modifier are left to it.
-pub fn commands(context: &Context, commands: &mut Vec<Command>) {
+/// the keys without a modifier are left to it, and Space to any control that has it. While a dialog is
+/// open, all keys are left to that.
+pub fn commands(context: &Context, has_dialog: bool, commands: &mut Vec<Command>) {
+    if has_dialog {
+        return;
+    }
     let shortcuts = [
         (REDO, Command::Redo),
         (UNDO, Command::Undo),
         (OPEN_FOLDER, Command::Ask(Purpose::Folder)),
         (OPEN, Command::Ask(Purpose::Files)),
+        (NEW, Command::NewCase),
+        (SAVE_AS, Command::Ask(Purpose::SaveCase)),
+        (SAVE, Command::SaveCase),
     ];
     for (shortcut, command) in shortcuts {
         if context.input_mut(|input| input.consume_shortcut(&shortcut)) {
@@ -44,7 +59,11 @@ pub fn commands(context: &Context, commands: &mut Vec<Command>) {
     if context.text_edit_focused() {
         return;
     }
+    let has_focus = context.memory(|memory| memory.focused().is_some());
     for (key, _) in PLAIN_KEYS {
+        if key == Key::Space && has_focus {
+            continue;
+        }
         if context.input_mut(|input| input.consume_key(Modifiers::NONE, key)) {
             commands.extend(plain(key));
         }

@@ -6,11 +6,15 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::{Duration, Instant};
 
 use crate::data::Outcome;
 use crate::error_chain;
 use crate::jobs::{Job, Progress, Update};
 use crate::study::{Event, Library, Question};
+
+/// The shortest time for which a person sees something.
+const SEEN: Duration = Duration::from_millis(100);
 
 /// The answer to a question, or a message that says why there is none.
 pub type AnswerResult<Q> = Result<Arc<<Q as Question>::Answer>, String>;
@@ -20,6 +24,10 @@ pub struct Latest<Q: Question> {
     thread: Option<Thread<Q>>,
     n_asked: u64,
     n_answered: u64,
+    /// Number of the latest question whose answer is not to be shown.
+    n_dropped: u64,
+    /// When the question that was asked last was asked.
+    asked_at: Option<Instant>,
     /// The question that was asked last.
     pub asked: Option<Q>,
     /// The latest answer, or the reason why there is none. It belongs to `asked` unless
@@ -35,7 +43,15 @@ struct Thread<Q: Question> {
 
 impl<Q: Question> Default for Latest<Q> {
     fn default() -> Self {
-        Self { thread: None, n_asked: 0, n_answered: 0, asked: None, answer: None }
+        Self {
+            thread: None,
+            n_asked: 0,
+            n_answered: 0,
+            n_dropped: 0,
+            asked_at: None,
+            asked: None,
+            answer: None,
+        }
     }
 }
 
@@ -45,7 +61,10 @@ impl<Q: Question> Latest<Q> {
     pub fn poll(&mut self) {
         let Some(thread) = &mut self.thread else { return };
         if let Some((number, answer)) = thread.answers.try_iter().last() {
-            (self.n_answered, self.answer) = (number, Some(answer));
+            self.n_answered = number;
+            if number > self.n_dropped {
+                self.answer = Some(answer);
+            }
         }
         if let Update::Panicked(text) = thread.job.poll() {
             self.thread = None;
@@ -65,6 +84,7 @@ impl<Q: Question> Latest<Q> {
             return;
         }
         self.n_asked += 1;
+        self.asked_at = Some(Instant::now());
         let numbered = (self.n_asked, question.clone());
         self.asked = Some(question);
         let is_sent = self
@@ -91,6 +111,20 @@ impl<Q: Question> Latest<Q> {
     /// Whether the answer to the latest question has not arrived yet.
     pub fn is_waiting(&self) -> bool {
         self.n_asked != self.n_answered
+    }
+
+    /// Whether the answer to the latest question has not arrived for so long that a person sees it: an
+    /// older answer that is still shown has to be marked then.
+    pub fn is_late(&self) -> bool {
+        self.is_waiting() && self.asked_at.is_some_and(|at| at.elapsed() > SEEN)
+    }
+
+    /// Drops the answer, and that to a question under way, which belong to something else than what is
+    /// asked next.
+    pub fn drop_answer(&mut self) {
+        self.answer = None;
+        self.asked = None;
+        self.n_dropped = self.n_asked;
     }
 
     /// Allows the same question to be asked again, because the files or models that it refers to
@@ -144,8 +178,6 @@ impl<Q: Question> Thread<Q> {
 mod tests {
     use super::*;
     use crate::study::{Observer, StudyError};
-    use std::time::Duration;
-
     #[derive(Clone, PartialEq)]
     struct Halve(i32);
 

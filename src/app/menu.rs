@@ -66,13 +66,29 @@ fn edit_item(
 }
 
 fn file_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
-    let items = [
-        ("Open folder…", keyboard::OPEN_FOLDER, Purpose::Folder),
-        ("Open files…", keyboard::OPEN, Purpose::Files),
-    ];
-    for (label, shortcut, purpose) in items {
-        edit_item(ui, label, shortcut, (true, Command::Ask(purpose)), commands);
+    for (label, shortcut, command) in [
+        ("New case", keyboard::NEW, Command::NewCase),
+        ("Open files…", keyboard::OPEN, Command::Ask(Purpose::Files)),
+        ("Open folder…", keyboard::OPEN_FOLDER, Command::Ask(Purpose::Folder)),
+        ("Save case", keyboard::SAVE, Command::SaveCase),
+        ("Save case as…", keyboard::SAVE_AS, Command::Ask(Purpose::SaveCase)),
+    ] {
+        edit_item(ui, label, shortcut, (true, command), commands);
     }
+    if ui.button("Package…").on_hover_text("One zip of the case and all its files").clicked() {
+        commands.push(Command::Ask(Purpose::PackCase));
+    }
+    ui.add_enabled_ui(!state.view.recent.is_empty(), |ui| {
+        ui.menu_button("Recent cases", |ui| {
+            for path in &state.view.recent {
+                let name = path.file_stem().unwrap_or_default().to_string_lossy();
+                if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
+                    commands.push(Command::Open(vec![path.clone()]));
+                }
+            }
+        });
+    });
+    ui.separator();
     let session = &state.session;
     let has_force = session.force.model.current.is_some();
     let has_response = session.response.model.current.is_some();
@@ -257,6 +273,6 @@ pub fn drop_hint_ui(ui: &Ui) {
         .layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::unique("drop hint")));
     painter.rect_filled(area, 0.0, egui::Color32::from_black_alpha(160));
     let font = egui::TextStyle::Heading.resolve(ui.style());
-    let text = "Drop to open: a data set folder, a force or trajectory file, a scenario, a model, a comparison";
+    let text = "Drop to open: a case, a data set folder, a force or trajectory file, a scenario, a model, a comparison";
     painter.text(area.center(), egui::Align2::CENTER_CENTER, text, font, egui::Color32::WHITE);
 }

@@ -3,6 +3,7 @@
 //! It edits settings, makes questions of them and shows the answers. The questions are answered by
 //! [`study`](crate::study), on threads that [`jobs`](crate::jobs) starts.
 
+mod case;
 mod case_filter;
 mod case_table;
 mod command;
@@ -18,6 +19,7 @@ mod network;
 mod open;
 mod panels;
 mod panes;
+mod path_dialog;
 mod question_job;
 mod replace;
 mod replay;
@@ -37,13 +39,14 @@ use std::sync::Arc;
 use eframe::CreationContext;
 use eframe::wgpu::DeviceType;
 use egui::util::undoer::Undoer;
-use egui::{Context, Ui};
+use egui::{Context, Ui, ViewportCommand};
 use egui_tiles::Tree;
 
 use crate::app::store::{OpenedState, Store, open_state};
 use crate::data::Severity;
 use crate::render::{DensityGpu, theme};
 
+pub use case::{Leaving, OpenCase, VariantCommand};
 pub use command::{Command, ComparisonCommand, TrainingCommand};
 pub use force::ForceSession;
 pub use latest::Latest;
@@ -177,7 +180,7 @@ impl eframe::App for App {
     fn logic(&mut self, context: &Context, _frame: &mut eframe::Frame) {
         let mut commands = Vec::new();
         self.state.update(context, &mut commands);
-        keyboard::commands(context, &mut commands);
+        keyboard::commands(context, self.state.session.has_dialog(), &mut commands);
         let dropped = context.input(|input| input.raw.dropped_files.clone());
         let paths: Vec<PathBuf> = dropped.into_iter().map(|file| file.path().to_owned()).collect();
         if !paths.is_empty() {
@@ -185,6 +188,10 @@ impl eframe::App for App {
         }
         for command in commands {
             self.apply(command, context);
+        }
+        self.ask_before_closing(context);
+        if std::mem::take(&mut self.state.session.history_ends) {
+            self.undoer = Undoer::default();
         }
         let now = context.input(|input| input.time);
         self.undoer.feed_state(now, &self.state.project);
@@ -205,11 +212,14 @@ impl eframe::App for App {
             can_redo: self.undoer.has_redo(&self.state.project),
         };
         menu::menu_ui(ui, &mut self.state, history, &mut commands);
+        case::case_bar_ui(ui, &mut self.state, &mut commands);
         menu::status_ui(ui, &self.state, &mut commands);
         self.panes_ui(ui, &mut commands);
         self.mapping_ui(ui, &mut commands);
         self.licences_ui(ui, &mut commands);
         self.replace_ui(ui, &mut commands);
+        self.leaving_ui(ui, &mut commands);
+        self.path_ui(ui, &mut commands);
         menu::drop_hint_ui(ui);
         for command in commands {
             self.apply(command, ui.ctx());
@@ -225,7 +235,7 @@ impl eframe::App for App {
 
 impl App {
     fn panes_ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        let State { project, view, session } = &mut self.state;
+        let State { project, view, session, .. } = &mut self.state;
         let mut layout =
             std::mem::replace(&mut view.layout, Tree::empty(egui::Id::unique("panes")));
         let mut panes = panes::PaneContext { project, view, session, commands };
@@ -251,6 +261,38 @@ impl App {
             let response = modal.show(ui.ctx(), |ui| licences::licences_ui(ui, commands));
             if response.should_close() {
                 commands.push(Command::ShowLicences(false));
+            }
+        }
+    }
+
+    /// Keeps the window open as long as something would be lost that the user has not given up.
+    fn ask_before_closing(&mut self, context: &Context) {
+        let is_closing = context.input(|input| input.viewport().close_requested());
+        if !is_closing || self.state.session.may_close {
+            return;
+        }
+        if !self.state.reasons_to_stay(&Leaving::Quit).is_empty() {
+            context.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.state.session.leaving = Some(Leaving::Quit);
+        }
+    }
+
+    fn leaving_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        if self.state.session.leaving.is_some() {
+            let modal = egui::Modal::new(egui::Id::unique("leaving dialog"));
+            let response = modal.show(ui.ctx(), |ui| case::leaving_ui(ui, &self.state, commands));
+            if response.should_close() && commands.is_empty() {
+                commands.push(Command::Stay);
+            }
+        }
+    }
+
+    fn path_ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        if let Some(dialog) = &mut self.state.session.path_dialog {
+            let modal = egui::Modal::new(egui::Id::unique("path dialog"));
+            let response = modal.show(ui.ctx(), |ui| dialog.ui(ui, commands));
+            if response.should_close() && commands.is_empty() {
+                commands.push(Command::CancelPath);
             }
         }
     }

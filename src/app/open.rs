@@ -4,12 +4,14 @@ use std::path::{Path, PathBuf};
 
 use egui::Context;
 
+use crate::app::case::Leaving;
 use crate::app::command::{ComparisonCommand, wake};
 use crate::app::dialogs::MODEL_ENDING;
 use crate::app::network::Network;
 use crate::app::panes::{Pane, show_pane};
 use crate::app::source::Source;
 use crate::app::state::{State, Subject};
+use crate::case_file::is_case_file;
 use crate::collision::Scenario;
 use crate::data::{ColumnMap, Existing, Severity};
 use crate::error_chain;
@@ -20,10 +22,16 @@ use crate::study::VehicleChoice;
 use crate::vehicle::VehicleParameters;
 
 impl State {
-    /// Opens paths by their extension: `.toml` is a vehicle or a scenario, `.safetensors` a model
-    /// and `.json` a comparison. Any other path is loaded as data.
+    /// Opens paths by their extension: `.impactlab` is a case, `.toml` a vehicle or a scenario,
+    /// `.safetensors` a model and `.json` a comparison. Any other path is loaded as data.
     pub(super) fn open(&mut self, paths: Vec<PathBuf>, context: &Context) {
         for path in paths {
+            // So that it leads there from every folder that the program is started in.
+            let path = std::path::absolute(&path).unwrap_or(path);
+            if is_case_file(&path) {
+                self.leave(Leaving::Open(path), context);
+                continue;
+            }
             if path.extension().is_some_and(|ending| ending == "toml") {
                 self.open_model(path);
                 continue;
@@ -74,6 +82,13 @@ impl State {
         session.analysis.ask_again();
         session.force.forecast.ask_again();
         session.response.forecast.ask_again();
+    }
+
+    /// Drops the answers about the subject that was selected, so that none of them is shown for another.
+    pub(super) fn drop_answers(&mut self) {
+        let session = &mut self.session;
+        session.analysis.drop_answer();
+        session.response.forecast.drop_answer();
     }
 
     /// Uses the model of a file for the network that the file's header names.

@@ -65,6 +65,11 @@ impl Pane {
         Self::ModelComparison,
     ];
 
+    /// Whether the pane shows nothing but the simulation of the subject.
+    fn is_answer(self) -> bool {
+        matches!(self, Self::Scene | Self::Motion | Self::Force | Self::Comparison)
+    }
+
     /// Returns the title of the pane.
     pub fn title(self) -> &'static str {
         match self {
@@ -156,20 +161,23 @@ pub struct PaneContext<'a> {
 impl Behavior<Pane> for PaneContext<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _tile: TileId, pane: &mut Pane) -> UiResponse {
         let frame = egui::Frame::new().inner_margin(6.0);
-        frame.show(ui, |ui| match pane {
-            Pane::Data => panels::data_ui(ui, self),
-            Pane::Cases => panels::cases_ui(ui, self),
-            Pane::Vehicle => panels::vehicle_ui(ui, self),
-            Pane::Scenario => panels::scenario_ui(ui, self),
-            Pane::Scene => panels::scene_ui(ui, self),
-            Pane::Motion => panels::motion_ui(ui, self),
-            Pane::Force => panels::force_ui(ui, self),
-            Pane::Comparison => panels::comparison_ui(ui, self),
-            Pane::ForcePrediction => panels::prediction_ui(ui, self),
-            Pane::MotionForecast => panels::motion_forecast_ui(ui, self),
-            Pane::Training => panels::training_ui(ui, self),
-            Pane::Evaluation => panels::evaluation_ui(ui, self),
-            Pane::ModelComparison => panels::model_comparison_ui(ui, self),
+        let is_late = pane.is_answer() && self.session.is_simulation_late();
+        frame.show(ui, |ui| {
+            panels::faded(ui, is_late, |ui| match pane {
+                Pane::Data => panels::data_ui(ui, self),
+                Pane::Cases => panels::cases_ui(ui, self),
+                Pane::Vehicle => panels::vehicle_ui(ui, self),
+                Pane::Scenario => panels::scenario_ui(ui, self),
+                Pane::Scene => panels::scene_ui(ui, self),
+                Pane::Motion => panels::motion_ui(ui, self),
+                Pane::Force => panels::force_ui(ui, self),
+                Pane::Comparison => panels::comparison_ui(ui, self),
+                Pane::ForcePrediction => panels::prediction_ui(ui, self),
+                Pane::MotionForecast => panels::motion_forecast_ui(ui, self),
+                Pane::Training => panels::training_ui(ui, self),
+                Pane::Evaluation => panels::evaluation_ui(ui, self),
+                Pane::ModelComparison => panels::model_comparison_ui(ui, self),
+            })
         });
         UiResponse::None
     }

@@ -18,6 +18,8 @@ impl Command {
             Self::Export(_, path)
             | Self::SaveScenario(path)
             | Self::SaveModel(_, path)
+            | Self::SaveCaseAs(path)
+            | Self::PackCase(path)
             | Self::Compare(ComparisonCommand::Save(path)) => Some(path),
             _ => None,
         }
@@ -57,6 +59,8 @@ impl State {
                     Err(error) => self.say(Severity::Error, error_chain(&error)),
                 }
             }
+            Command::SaveCaseAs(path) => self.save_case((path, existing), context),
+            Command::PackCase(path) => self.pack_case((path, existing), context),
             Command::SaveModel(network, path) => {
                 self.save_model(network, (path, existing), context);
             }

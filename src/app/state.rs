@@ -7,6 +7,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::PulseSetup;
+use crate::app::case::{Leaving, OpenCase, SavedCase};
 use crate::app::case_table::CaseList;
 use crate::app::command::Command;
 use crate::app::dialogs::{FileDialog, MappingDialog};
@@ -14,6 +15,7 @@ use crate::app::force::{ForceProject, ForceSession, ForceView};
 use crate::app::latest::Latest;
 use crate::app::network::Network;
 use crate::app::panes::{Layout, default_layout, is_complete};
+use crate::app::path_dialog::PathDialog;
 use crate::app::replay::Replays;
 use crate::app::response::{ResponseProject, ResponseSession, ResponseView};
 use crate::app::source::Source;
@@ -34,6 +36,8 @@ const SAVED_VERSION: u32 = 1;
 pub struct State {
     /// What the user works on. Undo and redo change this part alone.
     pub project: Project,
+    /// The case to whose variant that is shown the project belongs.
+    pub case: OpenCase,
     /// How the project is shown.
     pub view: View,
     /// Loaded data, answers and running work.
@@ -160,6 +164,8 @@ pub struct View {
     pub response: ResponseView,
     /// The network that the training pane shows.
     pub trained: Network,
+    /// The cases that were opened or saved last, the latest first.
+    pub recent: Vec<PathBuf>,
     /// The arrangement of the panes.
     pub layout: Layout,
 }
@@ -176,6 +182,7 @@ impl Default for View {
             force: ForceView::default(),
             response: ResponseView::default(),
             trained: Network::default(),
+            recent: Vec::new(),
             layout: default_layout(),
         }
     }
@@ -208,6 +215,18 @@ pub struct Session {
     pub messages: Vec<Message>,
     /// The native file dialog that is open.
     pub file_dialog: Option<FileDialog>,
+    /// The question for a path, where the desktop has no file dialog.
+    pub path_dialog: Option<PathDialog>,
+    /// Where the user goes once a question is answered: something would be lost.
+    pub leaving: Option<Leaving>,
+    /// Whether the user goes there as soon as the case is saved.
+    pub leaves_when_saved: bool,
+    /// Whether the window may close without a question.
+    pub may_close: bool,
+    /// Whether what was done before cannot be undone any more: the project is of another variant.
+    pub history_ends: bool,
+    /// The case that is being written.
+    pub saving_case: Option<Job<Result<SavedCase, String>>>,
     /// The dialog for the columns of a file that is open.
     pub mapping: Option<MappingDialog>,
     /// Whether the licences of third parties are shown.
@@ -224,6 +243,36 @@ pub struct Session {
     pub fit_plots: bool,
 }
 
+impl Session {
+    /// Whether a dialog is open in the window, to which all keys belong.
+    pub fn has_dialog(&self) -> bool {
+        self.mapping.is_some()
+            || self.replacing.is_some()
+            || self.leaving.is_some()
+            || self.path_dialog.is_some()
+            || self.shows_licences
+    }
+
+    /// Whether an answer is awaited.
+    pub fn is_waiting(&self) -> bool {
+        self.analysis.is_waiting()
+            || self.impact.is_waiting()
+            || self.force.forecast.is_waiting()
+            || self.response.forecast.is_waiting()
+    }
+
+    /// Whether the simulation that is shown is not of what is asked any more.
+    pub fn is_simulation_late(&self) -> bool {
+        self.analysis.is_late() || self.impact.is_late()
+    }
+
+    /// Whether the forecast of the motion that is shown is not of what is asked any more. It is asked
+    /// once the simulation is there.
+    pub fn is_motion_late(&self) -> bool {
+        self.analysis.is_late() || self.response.forecast.is_late()
+    }
+}
+
 /// A message for the user.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Message {
@@ -238,6 +287,8 @@ pub struct Message {
 pub struct Saved {
     version: u32,
     project: Project,
+    #[serde(default)]
+    case: OpenCase,
     view: View,
     sources: Vec<PathBuf>,
 }
@@ -276,6 +327,7 @@ impl State {
         let saved = Saved {
             version: SAVED_VERSION,
             project: self.project.clone(),
+            case: self.case.clone(),
             view: self.view.clone(),
             sources: self.session.sources.iter().map(|source| source.opened.clone()).collect(),
         };
@@ -297,8 +349,8 @@ impl State {
         if !is_complete(&saved.view.layout) {
             saved.view.layout = default_layout(); // It was saved before a pane was added.
         }
-        let state = Self { project: saved.project, view: saved.view, session: Session::default() };
-        let mut sources = saved.sources;
+        let Saved { project, case, view, mut sources, .. } = saved;
+        let state = Self { project, case, view, session: Session::default() };
         sources.dedup();
         Ok((state, sources))
     }

@@ -1,7 +1,7 @@
 //! Stores the state of the application on disk.
 //!
-//! The state is written about one second after its last change, so that little is lost if the
-//! process is killed. It is written to a temporary file that is then renamed, so that the file is
+//! The state is written about one second after a change, also while it goes on changing, so that little
+//! is lost if the process is killed. It is written to a temporary file that is then renamed, so that the file is
 //! never left incomplete.
 
 use std::io::ErrorKind;
@@ -16,8 +16,9 @@ use crate::data::{DataError, Existing, MAX_RESULTS_BYTES, read_utf8, write_atomi
 use crate::error_chain;
 use crate::jobs::{Job, Update};
 
-/// Time for which the state must not have changed before it is written.
-const SETTLING_TIME: Duration = Duration::from_secs(1);
+/// Time from the first change that is not written yet until it is: what is changed all the time is
+/// written as often.
+const WRITING_TIME: Duration = Duration::from_secs(1);
 
 /// The file of the state, what has been written to it, and what is still to be written.
 pub struct Store {
@@ -26,8 +27,8 @@ pub struct Store {
     _lock: WriterLock,
     /// The text that was written last, or the text of the file if nothing has been written yet.
     written: String,
-    /// A newer state that has not been written, and the time since which it has not changed, in
-    /// seconds of the window's clock.
+    /// A newer state that has not been written, and the time of the first change that has not, in seconds
+    /// of the window's clock.
     pending: Option<(String, f64)>,
     job: Option<Job<Result<(), DataError>>>,
 }
@@ -143,7 +144,7 @@ impl Store {
     }
 
     /// Receives the state of this frame and writes it in the background once it has not changed for
-    /// [`SETTLING_TIME`].
+    /// [`WRITING_TIME`].
     ///
     /// - `text`: the state as text;
     /// - returns a message for the user if an earlier write has failed.
@@ -154,13 +155,10 @@ impl Store {
             return failure;
         }
         let now = context.input(|input| input.time);
-        let since = match &self.pending {
-            Some((pending, since)) if *pending == text => *since,
-            _ => now,
-        };
-        if now - since < SETTLING_TIME.as_secs_f64() || self.job.is_some() {
+        let since = self.pending.as_ref().map_or(now, |(_, since)| *since);
+        if now - since < WRITING_TIME.as_secs_f64() || self.job.is_some() {
             self.pending = Some((text, since));
-            context.request_repaint_after(SETTLING_TIME);
+            context.request_repaint_after(WRITING_TIME);
             return failure;
         }
         self.pending = None;

@@ -2,6 +2,7 @@
 //! questions that have changed are asked.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use egui::Context;
 
@@ -10,6 +11,9 @@ use crate::app::source::{Content, Source};
 use crate::app::state::{Session, State, Subject};
 use crate::data::{DatasetKind, Outcome, Severity};
 use crate::jobs::Update;
+
+/// Time after which the window is drawn again while an answer is awaited, so that it can be marked late.
+const WAITING_REPAINT: Duration = Duration::from_millis(120);
 
 impl State {
     /// Receives the results of the jobs, asks the questions that have changed and advances the
@@ -21,6 +25,8 @@ impl State {
         self.poll_sources(commands);
         self.poll_replays();
         self.poll_exports();
+        self.poll_case();
+        self.leave_if_saved(context);
         if let Some(answer) = self.session.file_dialog.as_mut().and_then(|dialog| dialog.poll()) {
             self.session.file_dialog = None;
             commands.extend(answer);
@@ -32,6 +38,9 @@ impl State {
         self.update_force(context);
         self.update_response(context);
         self.advance_time(context);
+        if self.session.is_waiting() {
+            context.request_repaint_after(WAITING_REPAINT);
+        }
     }
 
     fn poll_sources(&mut self, commands: &mut Vec<Command>) {

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
+use crate::case_file::CaseError;
 use crate::collision::FilterError;
 use crate::data::DataError;
 use crate::force::ForceError;
@@ -13,6 +14,9 @@ use crate::study::StudyError;
 /// A command that could not do its work.
 #[derive(Debug, thiserror::Error)]
 pub enum CliError {
+    /// A case cannot be read, written or packed.
+    #[error(transparent)]
+    Case(Box<CaseError>),
     /// Standard output is closed or full.
     #[error("the output cannot be written")]
     Output(#[from] io::Error),
@@ -128,6 +132,12 @@ pub enum CliError {
     /// The work was cancelled.
     #[error("cancelled")]
     Cancelled,
+}
+
+impl From<CaseError> for CliError {
+    fn from(error: CaseError) -> Self {
+        Self::Case(Box::new(error))
+    }
 }
 
 impl From<StudyError> for CliError {

@@ -8,8 +8,8 @@ use clap::{Parser, Subcommand};
 
 use crate::cli::CliError;
 use crate::cli::commands::{
-    app, ask, check, compare, condition, evaluate, fine_tune, impact, licences, predict, ranges,
-    render, simulate, train, vehicles,
+    app, ask, case, check, compare, condition, evaluate, fine_tune, impact, licences, predict,
+    ranges, render, simulate, train, vehicles,
 };
 use crate::cli::console::{Console, Escaped, Verdict, within_line};
 use crate::error_chain;
@@ -46,6 +46,7 @@ enum CliCommand {
     App(app::AppArgs),
     Check(check::CheckArgs),
     Ask(ask::AskArgs),
+    Case(case::CaseArgs),
     Impact(impact::ImpactArgs),
     Simulate(Box<simulate::SimulateArgs>),
     Train(train::TrainArgs),
@@ -115,6 +116,7 @@ fn dispatch(command: Option<CliCommand>, console: &mut Console<'_>) -> Result<Ve
         Some(CliCommand::App(args)) => app::run(args),
         Some(CliCommand::Check(args)) => check::run(&args, console),
         Some(CliCommand::Ask(args)) => ask::run(&args, console),
+        Some(CliCommand::Case(args)) => case::run(&args, console),
         Some(CliCommand::Impact(args)) => impact::run(&args, console),
         Some(CliCommand::Simulate(args)) => simulate::run(&args, console),
         Some(CliCommand::Train(args)) => train::run(&args, console),

@@ -1,7 +1,8 @@
 //! The badges of an answer: what a report says in words of its own, in one form for all reports.
 
-use crate::analysis::RestOutcome;
+use crate::analysis::{Analysis, MotionForecast, RestOutcome};
 use crate::collision::{ScenarioGeometry, TOUCH_TOLERANCE_M};
+use crate::data::Channel;
 use crate::response::{OutsideDomain, STEP_S};
 use crate::study::implied_contact::{LEAST_P_RIGID, MOST_P_ENERGY_GAIN};
 use crate::study::{
@@ -11,6 +12,12 @@ use crate::study::{
 use crate::uncertainty::{Badge, BadgeKind};
 use crate::units::{percent, significant};
 use crate::vehicle::{REST_SPEED_M_S, ROLL_LIMIT_RAD};
+
+/// The region of a forecast in which the 4DOF model ends if the two agree.
+const AGREEMENT_LEVEL: f64 = 0.99;
+/// How far the 4DOF model by data sheet ends from the record, as a share of the way, in three of four
+/// motions of the fleet: what is nearer to it is no disagreement.
+const PHYSICS_ERROR: f64 = 0.125;
 
 /// What was assumed and what is not used, one badge for each.
 pub(super) fn of_assumptions(assumptions: &[Assumption]) -> Vec<Badge> {
@@ -173,6 +180,47 @@ pub(super) fn of_contact(implied: &ImpliedContactReport) -> Option<Badge> {
         let quantity = "share of the impulse that adds kinetic energy";
         badge.with_value(quantity, implied.p_energy_gain).with_range([0.0, MOST_P_ENERGY_GAIN])
     })
+}
+
+/// A forecast in whose bands the 4DOF simulation of the same source does not end, by more than the 4DOF
+/// model is known to err.
+///
+/// - `has_same_force`: whether the simulation has the force of the forecast; else that of the momentum
+///   solution.
+pub(super) fn of_disagreement(
+    (forecast, simulated): (&MotionForecast, &Analysis),
+    has_same_force: bool,
+) -> Option<Badge> {
+    let motion = &simulated.simulation.as_ref()?.series;
+    let n_steps = forecast.distribution.n_instants().checked_sub(1)?;
+    let end_s = motion.time_s().last()?.min(n_steps as f64 * STEP_S);
+    let at = motion.time_s().partition_point(|time_s| *time_s < end_s - 1e-9);
+    let of = |channel| motion.get(channel)?.get(at).copied();
+    let simulated_m = [of(Channel::X)?, of(Channel::Y)?];
+    let instant = ((end_s / STEP_S).round() as usize).min(n_steps);
+    let level = forecast.distribution.position(instant).level_of(simulated_m);
+    let mean = forecast.distribution.mean(instant);
+    let apart_m = (simulated_m[0] - mean.x_m).hypot(simulated_m[1] - mean.y_m);
+    let [xs, ys] = [motion.get(Channel::X)?, motion.get(Channel::Y)?];
+    let steps = xs.iter().zip(ys).zip(xs.iter().zip(ys).skip(1)).take(at);
+    let way_m: f64 = steps.map(|((x0, y0), (x1, y1))| (x1 - x0).hypot(y1 - y0)).sum();
+    let known_m = PHYSICS_ERROR * way_m;
+    if level <= AGREEMENT_LEVEL || apart_m.is_nan() || apart_m <= known_m {
+        return None;
+    }
+    let force = match has_same_force {
+        true => "under the same force",
+        false => "under the impulse of the momentum solution",
+    };
+    let text = format!(
+        "the 4DOF model {force} is {apart_m:.1} m away after {end_s:.2} s, outside the {:.0} % region, more \
+         than it is known to err: network and physics do not say the same",
+        100.0 * AGREEMENT_LEVEL
+    );
+    let badge = Badge::new(BadgeKind::Disagreement, text)
+        .with_value("distance to the 4DOF model [m]", apart_m)
+        .with_range([0.0, known_m]);
+    Some(badge)
 }
 
 /// Cases or draws that could not be used.

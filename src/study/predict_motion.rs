@@ -274,6 +274,9 @@ impl Question for PredictMotionRequest {
             ..self.report(&analysis.name, struck, (&forecast, known))
         };
         report.badges = badges::of_predicted_motion(&report, predicted);
+        let has_same_force = self.force == ForceSource::Given;
+        let apart = badges::of_disagreement((&forecast, &analysis), has_same_force);
+        report.badges.extend(apart);
         report.badges.extend(overlap);
         Ok(Outcome::Complete(PredictMotionAnswer { report, analysis, forecast }))
     }

@@ -13,6 +13,8 @@ pub enum BadgeKind {
     OutsideDomain,
     /// No contact of two bodies brings the predicted impulse about.
     ImplausibleContact,
+    /// The bare physics says something else than the network, beyond the bands of the network.
+    Disagreement,
     /// The outlines of the vehicles overlap where they should touch.
     Overlap,
     /// The vehicles meet again; the motion after that is not theirs.
@@ -58,6 +60,7 @@ impl BadgeKind {
         match self {
             Self::OutsideDomain => "outside the domain",
             Self::ImplausibleContact => "implausible contact",
+            Self::Disagreement => "disagreement",
             Self::Overlap => "overlap",
             Self::SecondContact => "second contact",
             Self::EnergyGain => "energy gain",

@@ -16,8 +16,8 @@ use serde_json::Value;
 
 use crate::harness::{apply, is_idle, open, step_until};
 
-const FORCES: &str = "datasets/fea";
-const TRAJECTORIES: &str = "datasets/trajectories-fea";
+const FORCES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea");
+const TRAJECTORIES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/trajectories-fea");
 const SCENARIO: &str = "assets/scenarios/pit_right_rear.toml";
 
 /// Keys of durations, and of the files that only the command line writes.
@@ -180,7 +180,12 @@ fn write(folder: &Path, name: &str, text: &str) -> String {
 fn what_is_open_is_checked_alike() {
     let folder = tempfile::tempdir().expect("a folder");
     let unclear = write(folder.path(), "unclear.csv", "Zeit;Kraft\n0;0\n1;2,5\n2;0\n");
-    for path in [FORCES, "datasets/fea/forces/c001.csv", TRAJECTORIES, &unclear] {
+    for path in [
+        FORCES,
+        concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea/forces/c001.csv"),
+        TRAJECTORIES,
+        &unclear,
+    ] {
         let mut harness = open(&[path]);
         step_until(&mut harness, "the data", |state| {
             state.session.sources.iter().all(impactlab::app::Source::is_settled)
@@ -236,9 +241,15 @@ fn cases_and_files_are_simulated_alike() {
     CommandLine::of(&["simulate", "--dataset", FORCES, "--case", "c003"])
         .compare(request, &answer.report);
     for (option, path) in [
-        ("--force", "datasets/fea/forces/c001.csv"),
-        ("--force", "datasets/fea-wide/forces/w001.csv"),
-        ("--trajectory", "datasets/trajectories-fea/trajectories/FE_c001.csv"),
+        ("--force", concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea/forces/c001.csv")),
+        ("--force", concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea-wide/forces/w001.csv")),
+        (
+            "--trajectory",
+            concat!(
+                env!("CARGO_MANIFEST_DIR"),
+                "/datasets/trajectories-fea/trajectories/FE_c001.csv"
+            ),
+        ),
     ] {
         let harness = open_on(path);
         let (request, answer) = latest(&state(&harness).session.analysis);
@@ -322,7 +333,8 @@ fn a_motion_is_predicted_alike() {
     let rest = state(&harness).motion_forecast().and_then(|of| of.answer.report.rest.clone());
     assert!(rest.is_some_and(|rest| rest.share_at_rest == 1.0));
 
-    let record = "datasets/trajectories-fea/trajectories/FE_c001.csv";
+    let record =
+        concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/trajectories-fea/trajectories/FE_c001.csv");
     let mut harness = open_on(record);
     few_draws(&mut harness);
     let of_record = [&["predict", "--trajectory", record, "--given-force"][..], &drawn].concat();

@@ -53,7 +53,11 @@ fn small() -> &'static Small {
         let small = Small { folder: tempfile::tempdir().expect("a folder") };
         std::fs::write(small.config(), SMALL).expect("a file");
         let mut go_on = |_| ControlFlow::Continue(());
-        let dataset = Dataset::load(Path::new("datasets/fea"), &mut go_on).expect("shipped data");
+        let dataset = Dataset::load(
+            Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")),
+            &mut go_on,
+        )
+        .expect("shipped data");
         let (cases, _) = ForceCase::of_dataset(&dataset.complete().expect("nothing cancels"));
         let set = TrainingSet::of_split("fea", &cases, 0, 0.25);
         let config = ForceConfig::load(&small.config()).expect("a good file");
@@ -70,10 +74,13 @@ fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
 
 /// Opens the window on the shipped force data with the small model and selects a case.
 fn open_on(case: &str) -> Harness<'static, App> {
-    let mut harness = open(&["datasets/fea"]);
+    let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")]);
     step_until(&mut harness, "the data", is_idle);
     apply(&mut harness, Command::Open(vec![small().model()]));
-    let subject = Subject::Case { dataset: "datasets/fea".into(), case: case.to_owned() };
+    let subject = Subject::Case {
+        dataset: concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea").into(),
+        case: case.to_owned(),
+    };
     apply(&mut harness, Command::Select(subject));
     apply(&mut harness, Command::Show(Pane::ForcePrediction));
     step_until(&mut harness, "a forecast", is_forecast_current);
@@ -169,7 +176,10 @@ fn the_scenario_is_predicted_and_undone() {
 fn a_model_is_trained_paused_cancelled_saved_and_there_after_a_restart() {
     let folder = tempfile::tempdir().expect("a folder");
     let state_file = folder.path().join("state.json");
-    let mut harness = open_with(&["datasets/fea"], Some(state_file.clone()));
+    let mut harness = open_with(
+        &[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")],
+        Some(state_file.clone()),
+    );
     step_until(&mut harness, "the data", is_idle);
     apply(&mut harness, Command::Show(Pane::Training));
     {
@@ -225,7 +235,7 @@ fn a_model_is_trained_paused_cancelled_saved_and_there_after_a_restart() {
 
 #[test]
 fn a_bad_model_and_bad_settings_say_what_is_wrong() {
-    let mut harness = open(&["datasets/fea"]);
+    let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")]);
     step_until(&mut harness, "the data", is_idle);
     apply(&mut harness, Command::Open(vec!["no/such.safetensors".into()]));
     step_until(&mut harness, "the error", |state| {

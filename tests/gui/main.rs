@@ -1,6 +1,7 @@
 //! Tests of the app, which is driven without a display and drawn on the CPU.
 
 mod both_faces;
+mod case;
 mod density_gpu;
 mod force_network;
 mod harness;

@@ -21,8 +21,10 @@ pub fn save(harness: &mut Harness<'_, App>, name: &str) {
 fn the_window_on_the_shipped_data() {
     let mut harness = open(&["datasets"]);
     step_until(&mut harness, "the shipped data", is_idle);
-    let case =
-        Subject::Case { dataset: "datasets/trajectories-fea".into(), case: "FE_c002".into() };
+    let case = Subject::Case {
+        dataset: concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/trajectories-fea").into(),
+        case: "FE_c002".into(),
+    };
     apply(&mut harness, Command::Select(case));
     step_until(&mut harness, "a trajectory case", |state| {
         state.analysis().is_some_and(|answer| answer.report.name == "FE_c002") && is_idle(state)
@@ -30,12 +32,20 @@ fn the_window_on_the_shipped_data() {
     apply(&mut harness, Command::SetTime(2.0));
     harness.step();
     save(&mut harness, "window.png");
-    apply(&mut harness, Command::ReplayDataset("datasets/trajectories-fea".into()));
+    apply(
+        &mut harness,
+        Command::ReplayDataset(
+            concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/trajectories-fea").into(),
+        ),
+    );
     step_until(&mut harness, "the replay", |state| {
         state.session.replays.values().all(|replay| replay.report().is_some())
     });
     harness.state_mut().state_mut().view.dark = true;
-    let fea = Subject::Case { dataset: "datasets/fea".into(), case: "c002".into() };
+    let fea = Subject::Case {
+        dataset: concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea").into(),
+        case: "c002".into(),
+    };
     apply(&mut harness, Command::Select(fea));
     step_until(&mut harness, "a force case", |state| {
         state.analysis().is_some_and(|answer| answer.report.name == "c002") && is_idle(state)

@@ -11,7 +11,7 @@ use impactlab::app::{
 use crate::harness::{apply, is_idle, open, open_with, step_until};
 use crate::pictures::save;
 
-const DATA: &str = "datasets/trajectories-fea";
+const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/trajectories-fea");
 
 /// Settings of a training that takes seconds.
 const SMALL: &str = "\
@@ -89,10 +89,10 @@ fn a_recorded_case_is_forecast_with_density_and_bands() {
 
 #[test]
 fn a_predicted_force_spreads_the_forecast_and_playing_moves_it() {
-    let mut harness = open(&["datasets/fea", DATA]);
+    let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea"), DATA]);
     step_until(&mut harness, "the data", is_idle);
     apply(&mut harness, Command::Show(Pane::MotionForecast));
-    select(&mut harness, "datasets/fea", "c002");
+    select(&mut harness, concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea"), "c002");
     let area = |state: &State| {
         state.motion_forecast().expect("a forecast").answer.report.outcome.region_90_m2
     };

@@ -49,7 +49,7 @@ fn the_help_menu_shows_the_licences_of_crates_and_fonts() {
 
 #[test]
 fn open_pick_simulate_scrub() {
-    let mut harness = open(&["datasets/trajectories-fea"]);
+    let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/trajectories-fea")]);
     step_until(&mut harness, "the first case", shows("FE_c001"));
 
     // A case is selected by its name in the table.
@@ -85,7 +85,7 @@ fn open_pick_simulate_scrub() {
 
 #[test]
 fn the_next_case_comes_with_a_key_and_undo_brings_the_last_one_back() {
-    let mut harness = open(&["datasets/fea"]);
+    let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")]);
     step_until(&mut harness, "the first case", shows("c001"));
     harness.run_steps(90); // the past takes a second to settle
     harness.key_press(Key::ArrowDown);
@@ -97,7 +97,7 @@ fn the_next_case_comes_with_a_key_and_undo_brings_the_last_one_back() {
 
 #[test]
 fn a_filter_narrows_the_table_and_units_change_everywhere() {
-    let mut harness = open(&["datasets/fea"]);
+    let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")]);
     step_until(&mut harness, "the first case", shows("c001"));
     harness.state_mut().state_mut().view.filter = "hooked=1 m_b_kg>2000".to_owned();
     harness.run_steps(2);
@@ -148,9 +148,12 @@ fn a_bad_file_says_where_and_offers_the_mapping() {
 
 #[test]
 fn a_dropped_file_opens_and_a_figure_is_exported() {
-    let mut harness = open(&["datasets/fea"]);
+    let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")]);
     step_until(&mut harness, "the data set", shows("c001"));
-    let dropped = Dropped(PathBuf::from("datasets/fea/forces/c002.csv"));
+    let dropped = Dropped(PathBuf::from(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/datasets/fea/forces/c002.csv"
+    )));
     harness.input_mut().dropped_files.push(Arc::new(dropped));
     step_until(&mut harness, "the drop", |state| {
         state.session.sources.len() == 2 && is_idle(state)
@@ -179,7 +182,10 @@ fn a_dropped_file_opens_and_a_figure_is_exported() {
 fn a_scenario_is_solved_simulated_and_survives_a_kill() {
     let folder = tempfile::tempdir().unwrap();
     let state_file = folder.path().join("new/state.json");
-    let mut harness = open_with(&["datasets/fea"], Some(state_file.clone()));
+    let mut harness = open_with(
+        &[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")],
+        Some(state_file.clone()),
+    );
     step_until(&mut harness, "the first case", shows("c001"));
     apply(&mut harness, Command::Show(impactlab::app::Pane::Scenario));
     step_until(&mut harness, "the solution", |state| state.session.impact.ok().is_some());
@@ -205,7 +211,7 @@ fn a_scenario_is_solved_simulated_and_survives_a_kill() {
 
 #[test]
 fn a_vehicle_file_becomes_the_struck_vehicle_and_a_scenario_file_the_scenario() {
-    let mut harness = open(&["datasets/fea"]);
+    let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")]);
     step_until(&mut harness, "the first case", shows("c001"));
     apply(&mut harness, Command::Open(vec!["assets/vehicles/target-2000.toml".into()]));
     step_until(&mut harness, "the case with the other vehicle", |state| {
@@ -229,9 +235,12 @@ fn a_vehicle_file_becomes_the_struck_vehicle_and_a_scenario_file_the_scenario() 
 
 #[test]
 fn closing_everything_leaves_an_empty_window_that_says_what_to_do() {
-    let mut harness = open(&["datasets/fea"]);
+    let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")]);
     step_until(&mut harness, "the first case", shows("c001"));
-    apply(&mut harness, Command::Close("datasets/fea".into()));
+    apply(
+        &mut harness,
+        Command::Close(concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea").into()),
+    );
     harness.run_steps(4);
     assert!(state(&harness).analysis().is_none());
     harness.get_by_label("Open the shipped data").click();

@@ -20,6 +20,7 @@ const LAYERS: &[&[&str]] = &[
     &["shipped"],
     &["analysis"],
     &["study"],
+    &["case_file"],
     &["figure"],
     &["render"],
     &["cli", "app"],

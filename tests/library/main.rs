@@ -4,6 +4,7 @@
 //! All tests are in one program, because each test program would link all libraries again.
 
 mod any_car;
+mod case_file;
 mod data_bad_input;
 mod data_budgets;
 mod data_dialects;

@@ -51,6 +51,30 @@ use crate::app::state::Session;
 use crate::render::theme;
 use crate::study::SimulateAnswer;
 
+/// Share of its colour that an answer keeps which is not of what is asked any more.
+const FADED: f32 = 0.35;
+
+/// Draws an answer, greyed and marked if it is not of what is asked any more.
+pub fn faded<R>(ui: &mut Ui, is_late: bool, draw: impl FnOnce(&mut Ui) -> R) -> R {
+    let area = ui.available_rect_before_wrap();
+    let drawn = ui.scope(|ui| {
+        if is_late {
+            ui.multiply_opacity(FADED);
+        }
+        draw(ui)
+    });
+    if is_late {
+        let corner = area.right_top() + egui::vec2(-6.0, 4.0);
+        let font = egui::TextStyle::Body.resolve(ui.style());
+        let color = ui.visuals().strong_text_color();
+        let text = ui.painter().layout_no_wrap("computing…".to_owned(), font, color);
+        let place = egui::Align2::RIGHT_TOP.anchor_size(corner, text.size());
+        ui.painter().rect_filled(place.expand(4.0), 3.0, ui.visuals().extreme_bg_color);
+        ui.painter().galley(place.min, text, color);
+    }
+    drawn.inner
+}
+
 /// Returns the simulation of the selected subject. If there is none, it draws the reason (an error,
 /// a simulation that is still running, or no selection) and returns `None`.
 fn analysis_or_hint<'a>(ui: &mut Ui, session: &'a Session) -> Option<&'a SimulateAnswer> {

@@ -63,7 +63,8 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             shown_ui(ui, &mut view.response, session, commands);
             if let Some(answer) = session.response.forecast.ok() {
                 ui.separator();
-                outcome_ui(ui, answer, view.units);
+                let is_late = session.is_motion_late();
+                super::faded(ui, is_late, |ui| outcome_ui(ui, answer, view.units));
             }
         });
     });
@@ -74,7 +75,9 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 return;
             }
             match &session.response.forecast.answer {
-                Some(Ok(answer)) => figures_ui(ui, (answer, session), view, commands),
+                Some(Ok(answer)) => super::faded(ui, session.is_motion_late(), |ui| {
+                    figures_ui(ui, (answer, session), view, commands);
+                }),
                 Some(Err(problem)) => {
                     let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
                     ui.colored_label(color, format!("No forecast: {problem}"));

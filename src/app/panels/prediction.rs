@@ -42,7 +42,8 @@ pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             form_ui(ui, (project, view), &session.force, commands);
             if let Some(answer) = session.force.forecast.ok() {
                 ui.separator();
-                numbers_ui(ui, &answer.report, view.units);
+                let is_late = session.force.forecast.is_late();
+                super::faded(ui, is_late, |ui| numbers_ui(ui, &answer.report, view.units));
             }
         });
     });
@@ -57,7 +58,8 @@ pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             Some(Ok(answer)) => {
                 choices_ui(ui, view);
                 let shown = Shown { answer, session: &session.force, reset: session.fit_plots };
-                plots_ui(ui, shown, view, commands);
+                let is_late = session.force.forecast.is_late();
+                super::faded(ui, is_late, |ui| plots_ui(ui, shown, view, commands));
             }
         },
     );

@@ -6,15 +6,17 @@ use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use egui::emath::Numeric;
-use egui::{DragValue, Response, Slider, SliderClamping, Ui};
+use egui::{DragValue, Response, RichText, Slider, SliderClamping, Ui};
 
+use crate::data::Severity;
 use crate::ranges::Range;
-use crate::units::{Quantity, Unit, UnitSystem};
+use crate::render::theme;
+use crate::units::{Quantity, Unit, UnitSystem, significant};
 
 /// Draws a row of a two-column grid: a label and a number field that edits `value_si`.
 ///
-/// A number that is typed or dragged beyond the range is held at its limit, which the field then
-/// shows; the range stands in the hint of the field.
+/// A number that is typed beyond the range is not taken: the field keeps it and says what is possible
+/// and which value stays. Dragging stops at the limit. The range stands in the hint of the field.
 ///
 /// - `value_si`: the value in SI units; it is written only when the user changes the field.
 /// - `range`: the admissible values.
@@ -28,22 +30,73 @@ pub fn quantity_field(
 ) -> bool {
     let unit = range.quantity.display_unit(units);
     let name = ui.label(label);
-    let mut shown = unit.from_si(*value_si);
-    let [low, high] = [range.low, range.high].map(|limit| unit.from_si(limit));
-    let field = DragValue::new(&mut shown)
-        .range(low..=high)
-        .clamp_existing_to_range(false)
-        .speed(drag_speed(range, &unit))
-        .max_decimals(3)
-        .suffix(suffix(&unit));
-    let response = ui.add(field).labelled_by(name.id);
-    let changed = response.changed();
-    response.on_hover_text(hint(range, &unit));
-    if changed {
+    let limits = [range.low, range.high].map(|limit| unit.from_si(limit));
+    let expected = range.expected(&unit);
+    let (response, taken) =
+        bounded(ui, unit.from_si(*value_si), (limits, &expected), |ui, shown| {
+            let field = DragValue::new(shown)
+                .update_while_editing(false)
+                .speed(drag_speed(range, &unit))
+                .max_decimals(3)
+                .suffix(suffix(&unit));
+            ui.add(field)
+        });
+    response.labelled_by(name.id).on_hover_text(hint(range, &unit));
+    if let Some(shown) = taken {
+        // So that a limit in another unit is the limit.
         *value_si = unit.to_si(shown).clamp(range.low, range.high);
     }
     ui.end_row();
-    changed
+    taken.is_some()
+}
+
+/// A number that was typed and is not possible, and the value that stays in its place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Refused {
+    typed: f64,
+    stays: f64,
+}
+
+/// Draws a control for a number, which keeps what was typed where that is not possible, and says so.
+///
+/// - `value`: the value that stays unless another is taken;
+/// - `limits`: smallest and largest that are taken; `expected`: the same in words;
+/// - returns the response of the control and the number that the user has changed it to in this frame.
+fn bounded(
+    ui: &mut Ui,
+    value: f64,
+    ([low, high], expected): ([f64; 2], &str),
+    control: impl FnOnce(&mut Ui, &mut f64) -> Response,
+) -> (Response, Option<f64>) {
+    let id = ui.next_auto_id().with("refused");
+    let refused = ui.data(|data| data.get_temp::<Refused>(id));
+    let refused = refused.filter(|refused| refused.stays == value);
+    let mut shown = refused.map_or(value, |refused| refused.typed);
+    let response = ui.vertical(|ui| {
+        let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
+        let response = ui.scope(|ui| {
+            if refused.is_some() {
+                ui.visuals_mut().override_text_color = Some(color);
+            }
+            control(ui, &mut shown)
+        });
+        if refused.is_some() {
+            let why = format!("not possible, {} stays; expected {expected}", significant(value));
+            ui.label(RichText::new(why).color(color).small());
+        }
+        response.inner
+    });
+    let response = response.inner;
+    if !response.changed() {
+        return (response, None);
+    }
+    let taken = if response.dragged() { shown.clamp(low, high) } else { shown };
+    if (low..=high).contains(&taken) {
+        ui.data_mut(|data| data.remove::<Refused>(id));
+        return (response, Some(taken));
+    }
+    ui.data_mut(|data| data.insert_temp(id, Refused { typed: shown, stays: value }));
+    (response, None)
 }
 
 /// Change of a number per point that the mouse is dragged, in the shown unit. It also decides how
@@ -71,12 +124,19 @@ fn hint(range: &Range, unit: &Unit) -> String {
     format!("{}: {}", range.meaning, range.expected(unit))
 }
 
-/// Draws a number field that counts something, and returns its response. A number that is typed or
-/// dragged beyond the range is held at its limit, which the field then shows.
+/// Draws a number field that counts something, and returns its response. A number beyond the range is
+/// treated as by [`quantity_field`].
 pub fn count_field<N: Numeric>(ui: &mut Ui, value: &mut N, range: &Range, speed: f64) -> Response {
-    let limits = N::from_f64(range.low)..=N::from_f64(range.high);
-    let field = DragValue::new(value).range(limits).clamp_existing_to_range(false).speed(speed);
-    ui.add(field)
+    let unit = range.quantity.display_unit(UnitSystem::Si);
+    let (limits, expected) = ([range.low, range.high], range.expected(&unit));
+    let (response, taken) = bounded(ui, value.to_f64(), (limits, &expected), |ui, shown| {
+        let field = DragValue::new(shown).update_while_editing(false).speed(speed);
+        ui.add(field.fixed_decimals(0))
+    });
+    if let Some(taken) = taken {
+        *value = N::from_f64(taken.round());
+    }
+    response
 }
 
 /// Formats a duration as “42 s”, “3 min 20 s” or “2 h 5 min”, rounded up to whole seconds. From one
@@ -98,7 +158,7 @@ pub struct SliderRange<'a> {
     pub hint: &'a str,
     /// Values at the two ends of the slider, SI units. A typed number may lie outside of them.
     pub usual: RangeInclusive<f64>,
-    /// Admissible values. A number beyond them is held at the limit, which the field then shows.
+    /// Admissible values. A number beyond them is treated as by [`quantity_field`].
     pub possible: Range,
 }
 
@@ -106,8 +166,8 @@ pub struct SliderRange<'a> {
 ///
 /// - `value_si`: the present value, SI units.
 /// - `units`: the unit system in which the value is shown and typed.
-/// - returns the new value in SI units, held in `range.possible`, or `None` if the user has not
-///   changed it in this frame or has typed a number that is not finite.
+/// - returns the new value in SI units, or `None` if the user has not changed it in this frame or has
+///   typed a number that is not possible.
 pub fn quantity_slider(
     ui: &mut Ui,
     range: &SliderRange<'_>,
@@ -117,16 +177,21 @@ pub fn quantity_slider(
     let unit = range.possible.quantity.display_unit(units);
     let hint = format!("{}\n{}", range.hint, hint(&range.possible, &unit));
     let name = ui.label(range.label).on_hover_text(&hint);
-    let mut shown = unit.from_si(value_si);
     let [low, high] = [range.usual.start(), range.usual.end()].map(|end| unit.from_si(*end));
-    let slider = Slider::new(&mut shown, low..=high)
-        .clamping(SliderClamping::Never)
-        .max_decimals(if high - low > 200.0 { 0 } else { 2 })
-        .suffix(suffix(&unit));
-    let changed = ui.add(slider).labelled_by(name.id).on_hover_text(hint).changed();
+    let limits = [range.possible.low, range.possible.high];
+    let expected = range.possible.expected(&unit);
+    let possible = (limits.map(|limit| unit.from_si(limit)), expected.as_str());
+    let (response, taken) = bounded(ui, unit.from_si(value_si), possible, |ui, shown| {
+        let slider = Slider::new(shown, low..=high)
+            .clamping(SliderClamping::Never)
+            .max_decimals(if high - low > 200.0 { 0 } else { 2 })
+            .suffix(suffix(&unit));
+        ui.add(slider)
+    });
+    response.labelled_by(name.id).on_hover_text(hint);
     ui.end_row();
-    let Range { low, high, .. } = range.possible;
-    (changed && shown.is_finite()).then(|| unit.to_si(shown).clamp(low, high))
+    let [low, high] = limits;
+    taken.map(|shown| unit.to_si(shown).clamp(low, high))
 }
 
 /// Draws a row of a two-column grid: a label and a text that is copied to the clipboard on a click.
@@ -144,12 +209,13 @@ pub fn value_row(ui: &mut Ui, label: &str, text: &str) {
 mod tests {
     use egui::{Event, Grid, Key};
     use egui_kittest::Harness;
+    use egui_kittest::kittest::Queryable;
 
     use super::*;
     use crate::ranges::BODY_MASS;
 
     #[test]
-    fn a_number_beyond_the_range_is_held_at_its_limit() {
+    fn a_number_beyond_the_range_is_kept_and_not_taken() {
         let mut harness = Harness::new_ui_state(
             |ui, mass_kg: &mut f64| {
                 Grid::new("grid").num_columns(2).show(ui, |ui| {
@@ -160,14 +226,25 @@ mod tests {
         );
         harness.run();
         assert_eq!(*harness.state(), 4.5e6, "a barrier keeps its mass");
-        for (typed, held) in [("-3", 1.0), ("1e99", 1e8), ("1800", 1800.0)] {
+        for (typed, stays, is_taken) in [
+            ("-3", 4.5e6, false),
+            ("1e99", 4.5e6, false),
+            ("1800", 1800.0, true),
+            ("0", 1800.0, false),
+        ] {
             harness.key_press(Key::Tab);
             harness.run();
             harness.event(Event::Text(typed.to_owned()));
             harness.run();
             harness.key_press(Key::Enter);
             harness.run();
-            assert_eq!(*harness.state(), held, "{typed}");
+            assert_eq!(*harness.state(), stays, "{typed}");
+            let says = harness.query_by_label_contains("not possible").is_some();
+            assert_eq!(says, !is_taken, "{typed}");
         }
+        // A value from elsewhere, such as by undo, takes the place of what was typed.
+        *harness.state_mut() = 1500.0;
+        harness.run();
+        assert!(harness.query_by_label_contains("not possible").is_none());
     }
 }

@@ -1,0 +1,143 @@
+//! What is asked before the window closes, or another case takes the place of the one that is open.
+
+use std::path::PathBuf;
+
+use egui::{Context, Ui, ViewportCommand};
+
+use crate::app::command::Command;
+use crate::app::state::{Session, State};
+use crate::data::Existing;
+
+/// Where the user goes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Leaving {
+    /// The window closes.
+    Quit,
+    /// A new case.
+    New,
+    /// Another case.
+    Open(PathBuf),
+}
+
+impl Leaving {
+    /// What the button says that goes there without saving.
+    fn label(&self) -> &'static str {
+        match self {
+            Self::Quit => "Quit",
+            Self::New | Self::Open(_) => "Go on without saving",
+        }
+    }
+}
+
+impl State {
+    /// Goes where the user wants, or asks first if something would be lost.
+    pub(in crate::app) fn leave(&mut self, to: Leaving, context: &Context) {
+        let reasons = self.reasons_to_stay(&to);
+        if reasons.is_empty() {
+            self.go(to, context);
+        } else {
+            self.session.leaving = Some(to);
+        }
+    }
+
+    /// Goes where the user wants.
+    pub(in crate::app) fn go(&mut self, to: Leaving, context: &Context) {
+        self.session.leaving = None;
+        match to {
+            Leaving::Quit => {
+                self.session.may_close = true;
+                context.send_viewport_cmd(ViewportCommand::Close);
+            }
+            Leaving::New => self.new_case(context),
+            Leaving::Open(path) => self.open_case(&path, context),
+        }
+    }
+
+    /// What would be lost or stopped, one sentence each. A case without a file is kept over a restart.
+    pub fn reasons_to_stay(&self, to: &Leaving) -> Vec<String> {
+        let mut reasons = Vec::new();
+        let is_quit = *to == Leaving::Quit;
+        if self.is_case_changed() && (!is_quit || self.case.path.is_some()) {
+            let name = &self.case.file.name;
+            reasons.push(format!("The case {name:?} has changes that are not in its file."));
+        }
+        if !is_quit {
+            return reasons;
+        }
+        let Session { force, response, replays, exports, saving_case, .. } = &self.session;
+        for (is_running, what) in [
+            (force.training.run.is_running(), "The training of the force network"),
+            (response.training.run.is_running(), "The training of the response network"),
+        ] {
+            if is_running {
+                reasons.push(format!("{what} is stopped; it can be resumed from its last epoch."));
+            }
+        }
+        for (is_running, what) in [
+            (response.comparison.progress().is_some(), "A comparison or evaluation"),
+            (force.evaluation.is_running(), "The evaluation of the force network"),
+            (
+                replays.values().any(|replay| replay.question.is_running()),
+                "The simulation of a data set",
+            ),
+        ] {
+            if is_running {
+                reasons.push(format!("{what} is stopped, and what it has found is lost."));
+            }
+        }
+        if !exports.is_empty() || saving_case.is_some() {
+            reasons.push("A file is still being written.".to_owned());
+        }
+        reasons
+    }
+
+    /// Saves the case to its own file and goes on once that is done; asks for a file if it has none.
+    pub(in crate::app) fn save_and_leave(&mut self, context: &Context) {
+        let Some(path) = self.case.path.clone() else {
+            self.session.leaving = None;
+            return self.apply(Command::SaveCase, context);
+        };
+        if self.is_case_file_foreign() {
+            self.session.leaving = None;
+            return self.apply(Command::SaveCase, context);
+        }
+        self.session.leaves_when_saved = true;
+        self.save_case((path, Existing::Replace), context);
+    }
+
+    /// Goes on where a case was to be saved first and now is.
+    pub(in crate::app) fn leave_if_saved(&mut self, context: &Context) {
+        let is_waiting = self.session.leaving.is_some() && self.session.leaves_when_saved;
+        if !is_waiting || self.session.saving_case.is_some() {
+            return;
+        }
+        self.session.leaves_when_saved = false;
+        if let Some(to) = self.session.leaving.take() {
+            self.leave(to, context);
+        }
+    }
+}
+
+/// Draws the question before the user leaves, and adds a command with the answer.
+pub fn leaving_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let Some(to) = &state.session.leaving else { return };
+    ui.heading(match to {
+        Leaving::Quit => "Quit impactlab?",
+        Leaving::New | Leaving::Open(_) => "Leave this case?",
+    });
+    for reason in state.reasons_to_stay(to) {
+        ui.label(reason);
+    }
+    ui.separator();
+    ui.horizontal(|ui| {
+        if state.is_case_changed() && ui.button("Save the case").clicked() {
+            commands.push(Command::SaveAndLeave);
+        }
+        if ui.button(to.label()).clicked() {
+            commands.push(Command::Leave { to: to.clone(), ask: false });
+        }
+        if ui.button("Stay").clicked() {
+            commands.push(Command::Stay);
+        }
+    });
+}

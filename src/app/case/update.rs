@@ -1,0 +1,336 @@
+//! Opens, saves and packs cases, and changes between their variants.
+
+use std::path::{Path, PathBuf};
+
+use egui::Context;
+
+use crate::app::case::{Forms, OpenCase, VariantCommand};
+use crate::app::command::wake;
+use crate::app::state::{Project, State, Subject};
+use crate::case_file::{CaseFile, UsedModel, pack};
+use crate::data::write::{ModelDigest, sha256_hex};
+use crate::data::{Existing, MAX_RESULTS_BYTES, Severity, read_utf8};
+use crate::error_chain;
+use crate::jobs::{Job, Update};
+use crate::study::{Request, SeriesFile};
+
+/// The largest number of recent cases that are offered.
+const MAX_RECENT: usize = 10;
+
+/// A case that was written.
+#[derive(Debug)]
+pub struct SavedCase {
+    file: CaseFile,
+    path: PathBuf,
+    on_disk: String,
+    fingerprint: String,
+}
+
+impl State {
+    /// The forms of the window, with the data that the subject needs.
+    pub fn forms(&self) -> Forms {
+        let project = self.project.clone();
+        let start = &project.file_start;
+        let subject = match &project.subject {
+            Some(Subject::Case { dataset, .. }) => Some(dataset),
+            Some(Subject::File(path)) => Some(path),
+            Some(Subject::Scenario) | None => None,
+        };
+        let of = |path: &PathBuf| {
+            let source = self.session.sources.iter().find(|source| source.path == *path);
+            let map = source.and_then(|source| source.map.clone());
+            SeriesFile { path: path.clone(), map }
+        };
+        let paths = subject.into_iter().chain(&start.steer).chain(&start.wheels);
+        let sources = paths.map(of).collect();
+        Forms { project, sources }
+    }
+
+    /// Whether the case has something that is not in its file.
+    pub fn is_case_changed(&self) -> bool {
+        self.case.is_changed(&self.forms())
+    }
+
+    /// The questions that the window asks about the variant that is shown.
+    fn questions(&self) -> Vec<Request> {
+        let is_scenario = matches!(self.project.subject, Some(Subject::Scenario));
+        let impact = is_scenario.then(|| Request::from(self.impact_request()));
+        let simulate = self.simulate_request().map(Request::from);
+        let force = self.force_request().filter(|_| is_scenario).map(Request::from);
+        let motion = self.motion_request().map(Request::from);
+        [impact, simulate, force, motion].into_iter().flatten().collect()
+    }
+
+    /// Writes the forms of the window into the variant that is shown.
+    fn capture(&mut self) {
+        let (forms, questions) = (self.forms(), self.questions());
+        let shown = self.case.file.shown.clone();
+        if let Some(variant) = self.case.file.variant_mut(&shown) {
+            variant.forms = serde_json::to_value(forms).unwrap_or_default();
+            variant.questions = questions;
+        }
+        let models = self.models_in_use();
+        if !models.is_empty() {
+            self.case.file.models = models;
+        }
+    }
+
+    /// The networks of the answers that are shown.
+    fn models_in_use(&self) -> Vec<UsedModel> {
+        let force = self.session.force.forecast.ok();
+        let motion = self.session.response.forecast.ok();
+        let force = force.iter().flat_map(|answer| &answer.report.provenance.model_digests);
+        let motion =
+            motion.iter().flat_map(|answer| &answer.answer.report.provenance.model_digests);
+        let mut models: Vec<UsedModel> = Vec::new();
+        for ModelDigest { network, name, sha256 } in force.chain(motion) {
+            let network = (*network).to_owned();
+            let model = UsedModel { network, name: name.clone(), sha256: sha256.clone() };
+            if !models.contains(&model) {
+                models.push(model);
+            }
+        }
+        models
+    }
+
+    /// Puts forms into the window and opens the data that they need. What was done before cannot be
+    /// undone after that.
+    fn show_forms(&mut self, forms: Forms, context: &Context) {
+        let Forms { project, sources } = forms;
+        let [force, response] =
+            [|p: &Project| p.force.model.clone(), |p: &Project| p.response.model.clone()];
+        let is_same = |of: fn(&Project) -> Option<PathBuf>| of(&project) == of(&self.project);
+        let [is_same_force, is_same_response] = [is_same(force), is_same(response)];
+        self.project = project;
+        self.drop_answers();
+        self.session.force.forecast.drop_answer();
+        if !is_same_force {
+            self.session.force.model.reload();
+        }
+        if !is_same_response {
+            self.session.response.model.reload();
+        }
+        for SeriesFile { path, map } in sources {
+            let is_open = self.session.sources.iter().any(|source| source.path == path);
+            if !is_open {
+                self.load(path, map, context);
+            }
+        }
+        self.session.select_when_loaded = None;
+        self.session.history_ends = true;
+        self.session.time_s = 0.0;
+        self.session.fit_plots = true;
+    }
+
+    /// Carries out an action on the variants.
+    pub(in crate::app) fn change_variant(&mut self, command: VariantCommand, context: &Context) {
+        self.capture();
+        let file = &mut self.case.file;
+        match command {
+            VariantCommand::Show(name) => file.shown = name,
+            VariantCommand::Duplicate => {
+                let Some(mut copy) = file.variant(&file.shown).cloned() else { return };
+                copy.name = file.free_name(&copy.name);
+                file.note(format!("variant {:?} copied from {:?}", copy.name, file.shown));
+                file.shown = copy.name.clone();
+                file.variants.push(copy);
+                return;
+            }
+            VariantCommand::Rename(name) => {
+                let (before, name) = (file.shown.clone(), name.trim().to_owned());
+                if name == before {
+                    return;
+                }
+                if name.is_empty() || file.variant(&name).is_some() {
+                    let why = format!(
+                        "a variant cannot be called {name:?}: expected a name that no other has"
+                    );
+                    return self.say(Severity::Warning, why);
+                }
+                if let Some(variant) = file.variant_mut(&before) {
+                    variant.name = name.clone();
+                }
+                file.note(format!("variant {before:?} renamed to {name:?}"));
+                file.shown = name;
+                return;
+            }
+            VariantCommand::Remove => {
+                if file.variants.len() < 2 {
+                    return self.say(Severity::Warning, "a case has at least one variant");
+                }
+                let removed = file.shown.clone();
+                file.variants.retain(|variant| variant.name != removed);
+                file.note(format!("variant {removed:?} removed"));
+                file.shown = file.variants.first().map_or(removed, |first| first.name.clone());
+            }
+        }
+        self.show_variant(context);
+    }
+
+    /// Puts the forms of the variant that is shown into the window.
+    fn show_variant(&mut self, context: &Context) {
+        let file = &self.case.file;
+        let forms = file.variant(&file.shown).map(|variant| variant.forms.clone());
+        match serde_json::from_value::<Option<Forms>>(forms.unwrap_or_default()) {
+            Ok(forms) => self.show_forms(forms.unwrap_or_default(), context),
+            Err(error) => {
+                let why = format!("the forms of variant {:?} cannot be read: {error}", file.shown);
+                self.say(Severity::Error, why);
+            }
+        }
+    }
+
+    /// Begins a case with nothing in it.
+    pub(in crate::app) fn new_case(&mut self, context: &Context) {
+        self.case = OpenCase::default();
+        let forms = Forms {
+            project: Project { subject: Some(Subject::Scenario), ..Project::default() },
+            sources: Vec::new(),
+        };
+        self.show_forms(forms, context);
+    }
+
+    /// Opens a case in the place of the one that is open.
+    pub(in crate::app) fn open_case(&mut self, path: &Path, context: &Context) {
+        let read = || -> Result<_, String> {
+            let path = std::path::absolute(path).map_err(|error| error.to_string())?;
+            let text = read_utf8(&path, MAX_RESULTS_BYTES).map_err(|error| error_chain(&error))?;
+            let file = CaseFile::parse(&text, &path).map_err(|error| error_chain(&error))?;
+            Ok((path, text, file))
+        };
+        let (path, text, file) = match read() {
+            Ok(read) => read,
+            Err(why) => return self.say(Severity::Error, why),
+        };
+        for change in file.changes() {
+            self.say(Severity::Warning, change.to_string());
+        }
+        let on_disk = Some(sha256_hex(text.as_bytes()));
+        self.case = OpenCase { file, path: Some(path.clone()), on_disk, saved: None };
+        self.show_variant(context);
+        self.case.saved = Some(self.case.fingerprint(&self.stored_forms()));
+        self.case.file.note("opened");
+        self.remember_case(path);
+    }
+
+    /// The forms of the variant that is shown as its file has them. Those of the window may differ while
+    /// data are still being read.
+    fn stored_forms(&self) -> Forms {
+        let file = &self.case.file;
+        let forms = file.variant(&file.shown).map(|variant| variant.forms.clone());
+        serde_json::from_value(forms.unwrap_or_default()).unwrap_or_default()
+    }
+
+    fn remember_case(&mut self, path: PathBuf) {
+        let recent = &mut self.view.recent;
+        recent.retain(|known| *known != path);
+        recent.insert(0, path);
+        recent.truncate(MAX_RECENT);
+    }
+
+    /// Whether saving to the case's own file would replace what somebody else has written there since.
+    pub(in crate::app) fn is_case_file_foreign(&self) -> bool {
+        let Some(path) = &self.case.path else { return false };
+        match read_utf8(path, MAX_RESULTS_BYTES) {
+            Ok(text) => self.case.on_disk.as_ref() != Some(&sha256_hex(text.as_bytes())),
+            Err(_) => path.exists(),
+        }
+    }
+
+    /// Starts to write the case to a file, which becomes its own.
+    pub(in crate::app) fn save_case(
+        &mut self,
+        (path, existing): (PathBuf, Existing),
+        context: &Context,
+    ) {
+        self.capture();
+        let fingerprint = self.case.fingerprint(&self.forms());
+        let mut file = self.case.file.clone();
+        if self.case.path.as_ref() != Some(&path) {
+            file.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        }
+        let fingerprint = match file.name == self.case.file.name {
+            true => fingerprint,
+            false => {
+                OpenCase { file: file.clone(), ..self.case.clone() }.fingerprint(&self.forms())
+            }
+        };
+        file.note("saved");
+        let job = Job::spawn("save case", wake(context), move |_| {
+            file.record_files();
+            let path = std::path::absolute(&path).map_err(|error| error.to_string())?;
+            let text = file.to_text(&path).map_err(|error| error_chain(&error))?;
+            file.save(&path, existing).map_err(|error| error_chain(&error))?;
+            let on_disk = sha256_hex(text.as_bytes());
+            Ok(SavedCase { file, path, on_disk, fingerprint })
+        });
+        match job {
+            Ok(job) => self.session.saving_case = Some(job),
+            Err(error) => self.say(Severity::Error, error.to_string()),
+        }
+    }
+
+    /// Starts to write one zip of the case and its files.
+    pub(in crate::app) fn pack_case(
+        &mut self,
+        (path, existing): (PathBuf, Existing),
+        context: &Context,
+    ) {
+        self.capture();
+        self.case.file.note(format!("packed into {}", path.display()));
+        let file = self.case.file.clone();
+        let job = Job::spawn("pack case", wake(context), move |_| {
+            pack(&file, &path, existing).map_err(|error| error_chain(&error)).map(|()| path)
+        });
+        match job {
+            Ok(job) => self.session.exports.push(job),
+            Err(error) => self.say(Severity::Error, error.to_string()),
+        }
+    }
+
+    /// Receives the case that was written. What was changed since is not in its file.
+    pub(in crate::app) fn poll_case(&mut self) {
+        let Some(job) = &mut self.session.saving_case else { return };
+        let written = match job.poll() {
+            Update::Running => return,
+            Update::Finished(written) => written,
+            Update::Panicked(why) => Err(why),
+            Update::Gone => Err("the case was not written".to_owned()),
+        };
+        self.session.saving_case = None;
+        match written {
+            Ok(SavedCase { file, path, on_disk, fingerprint }) => {
+                let case = &mut self.case;
+                case.file.name = file.name;
+                case.file.files = file.files;
+                case.file.log = file.log;
+                case.path = Some(path.clone());
+                (case.on_disk, case.saved) = (Some(on_disk), Some(fingerprint));
+                self.say(Severity::Info, format!("{} written", path.display()));
+                self.remember_case(path);
+                self.say_unsaved_networks();
+            }
+            Err(why) => {
+                self.session.leaving = None;
+                self.say(Severity::Error, format!("the case was not saved: {why}"));
+            }
+        }
+    }
+
+    /// Says which networks of the case are in no file, so that nobody else can ask them.
+    fn say_unsaved_networks(&mut self) {
+        let is_held =
+            self.case.file.variants.iter().flat_map(|variant| &variant.questions).any(|of| {
+                let model = match of {
+                    Request::PredictForce(of) => Some(&of.model),
+                    Request::PredictMotion(of) => Some(&of.response_model),
+                    _ => None,
+                };
+                matches!(model, Some(crate::study::ModelChoice::Held { .. }))
+            });
+        if is_held {
+            let why = "a network of this case was trained here and is in no file: save it (File, Save … model) so that the case can be run elsewhere";
+            self.say(Severity::Warning, why);
+        }
+    }
+}

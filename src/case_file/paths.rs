@@ -1,0 +1,100 @@
+//! Paths in a case: absolute in memory, relative to the case's folder in its file.
+
+use std::path::{Component, Path, PathBuf};
+
+use serde_json::Value;
+
+/// Beginnings of a path that is relative to the folder of the case.
+const RELATIVE: [&str; 2] = ["./", "../"];
+
+/// Replaces strings in a value, at any depth; keys stay.
+///
+/// - `change`: the new string; `None` keeps the old one.
+pub(super) fn replace_strings(value: &mut Value, change: &impl Fn(&str) -> Option<String>) {
+    match value {
+        Value::String(text) => {
+            if let Some(new) = change(text) {
+                *text = new;
+            }
+        }
+        Value::Array(values) => values.iter_mut().for_each(|value| replace_strings(value, change)),
+        Value::Object(fields) => {
+            fields.values_mut().for_each(|value| replace_strings(value, change));
+        }
+        Value::Null | Value::Bool(_) | Value::Number(_) => {}
+    }
+}
+
+/// Every string in a value that is an absolute path.
+pub(super) fn absolute_paths(value: &Value) -> Vec<PathBuf> {
+    match value {
+        Value::String(text) if Path::new(text).is_absolute() => vec![PathBuf::from(text)],
+        Value::Array(values) => values.iter().flat_map(absolute_paths).collect(),
+        Value::Object(fields) => fields.values().flat_map(absolute_paths).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// A path as the file of a case in `folder` says it, with `/` between its parts; `None` where it is on
+/// another drive.
+pub(super) fn relative(path: &Path, folder: &Path) -> Option<String> {
+    let relative = pathdiff::diff_paths(path, folder)?;
+    if relative.is_absolute() {
+        return None;
+    }
+    let parts: Vec<String> = relative
+        .components()
+        .map(|part| part.as_os_str().to_str().map(str::to_owned))
+        .collect::<Option<_>>()?;
+    let text = parts.join("/");
+    let leads_up = relative.components().next() == Some(Component::ParentDir);
+    Some(if leads_up { text } else { format!("./{text}") })
+}
+
+/// A path that the file of a case in `folder` says; `None` for any other string.
+pub(super) fn absolute(text: &str, folder: &Path) -> Option<PathBuf> {
+    if !RELATIVE.iter().any(|beginning| text.starts_with(beginning)) {
+        return None;
+    }
+    let mut path = folder.to_owned();
+    for part in Path::new(text).components() {
+        match part {
+            Component::ParentDir => {
+                path.pop();
+            }
+            Component::Normal(name) => path.push(name),
+            Component::CurDir | Component::RootDir | Component::Prefix(_) => {}
+        }
+    }
+    Some(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_come_back_from_any_folder() {
+        let folder = Path::new("/cases/crossing");
+        for (path, expected) in [
+            ("/cases/crossing/force.csv", "./force.csv"),
+            ("/cases/crossing/data/fea", "./data/fea"),
+            ("/cases/other/force.csv", "../other/force.csv"),
+            ("/data/force.csv", "../../data/force.csv"),
+        ] {
+            let text = relative(Path::new(path), folder).unwrap();
+            assert_eq!(text, expected);
+            assert_eq!(absolute(&text, folder), Some(PathBuf::from(path)));
+        }
+        assert_eq!(absolute("pit-right-rear", folder), None);
+        assert_eq!(absolute("", folder), None);
+    }
+
+    #[test]
+    fn strings_are_replaced_at_any_depth_and_keys_are_not() {
+        let mut value = serde_json::json!({"/a": ["/a", {"b": "/a"}, 1, null]});
+        replace_strings(&mut value, &|text| (text == "/a").then(|| "./a".to_owned()));
+        assert_eq!(value, serde_json::json!({"/a": ["./a", {"b": "./a"}, 1, null]}));
+        assert!(absolute_paths(&value).is_empty());
+    }
+}

@@ -1,0 +1,200 @@
+//! `impactlab case`: asks a case its questions, and hands it over with its files.
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+use serde::Serialize;
+
+use crate::case_file::{
+    AnsweredQuestion, CaseFile, CaseReport, Change, UsedFile, VariantReport, pack, unpack,
+};
+use crate::cli::CliError;
+use crate::cli::console::{
+    Console, Verdict, print_badges, shown, shown_path, shown_vector, under_bar,
+};
+use crate::cli::options::{OverwriteArg, UnitsArg};
+use crate::cli::text::{print_force_prediction, print_motion_prediction, print_simulation};
+use crate::study::{ImpactReport, Report};
+use crate::units::{Quantity, UnitSystem};
+
+/// Run, check, pack or unpack a case, as the window saves it
+#[derive(Debug, Args)]
+pub(in crate::cli) struct CaseArgs {
+    #[command(subcommand)]
+    command: CaseCommand,
+}
+
+#[derive(Debug, Subcommand)]
+enum CaseCommand {
+    Run(RunArgs),
+    Check(CheckArgs),
+    Pack(PackArgs),
+    Unpack(UnpackArgs),
+}
+
+/// Answer every question of a case
+#[derive(Debug, Args)]
+#[command(after_help = RUN_EXAMPLES)]
+struct RunArgs {
+    /// The case
+    #[arg(value_name = "CASE.impactlab")]
+    case: PathBuf,
+    /// Only this variant; several if given again
+    #[arg(long, value_name = "NAME")]
+    variant: Vec<String>,
+    /// Units of the text
+    #[arg(long, value_enum, default_value_t)]
+    units: UnitsArg,
+}
+
+const RUN_EXAMPLES: &str = "\
+Example:
+  impactlab case run assets/examples/pit.impactlab
+  impactlab case run assets/examples/pit.impactlab --variant \"brakes\" --json
+
+JSON: name; changes [{kind: missing|changed|model, path | network and name}]; variants [{name, answers
+  [{request, report | error}]}]. A report is what the command of its question prints with --json.
+
+Exit code 1 if a question has no answer, or if a file or a network is not what it was when the case was
+saved.";
+
+/// Say what is in a case, and whether its files are what they were
+#[derive(Debug, Args)]
+#[command(after_help = "\
+JSON: name, notes, shown, variants [{name, questions [..]}], files [{path, bytes, sha256}], models
+  [{network, name, sha256}], log [{time, event}], changes [{kind, path}]
+
+Exit code 1 if a file is missing or has changed.")]
+struct CheckArgs {
+    /// The case
+    #[arg(value_name = "CASE.impactlab")]
+    case: PathBuf,
+}
+
+/// Write one zip of a case and every file that it uses
+#[derive(Debug, Args)]
+struct PackArgs {
+    /// The case
+    #[arg(value_name = "CASE.impactlab")]
+    case: PathBuf,
+    /// The zip
+    #[arg(long, value_name = "FILE.zip")]
+    out: PathBuf,
+    #[command(flatten)]
+    overwrite: OverwriteArg,
+}
+
+/// Make a new folder of a zip that `case pack` has written
+#[derive(Debug, Args)]
+struct UnpackArgs {
+    /// The zip
+    #[arg(value_name = "FILE.zip")]
+    package: PathBuf,
+    /// The folder, which must not be there yet
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+}
+
+/// Carries out the command.
+pub(in crate::cli) fn run(args: &CaseArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
+    match &args.command {
+        CaseCommand::Run(args) => run_case(args, console),
+        CaseCommand::Check(args) => check_case(args, console),
+        CaseCommand::Pack(args) => {
+            let case = CaseFile::load(&args.case)?;
+            pack(&case, &args.out, args.overwrite.into())?;
+            writeln!(console.out, "{} written", shown_path(&args.out))?;
+            Ok(Verdict::Clean)
+        }
+        CaseCommand::Unpack(args) => {
+            let case = unpack(&args.package, &args.out)?;
+            writeln!(console.out, "{}", shown_path(&case))?;
+            Ok(Verdict::Clean)
+        }
+    }
+}
+
+fn run_case(args: &RunArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
+    let case = CaseFile::load(&args.case)?;
+    let report = under_bar(|observer| case.ask(&args.variant, &console.library, observer))?;
+    let report = report.complete().ok_or(CliError::Cancelled)?;
+    console.print(&report, |out| print_case(out, &report, args.units.into()))?;
+    Ok(Verdict::of(!report.is_clean()))
+}
+
+/// What `case check` tells.
+#[derive(Serialize)]
+struct CheckedCase<'a> {
+    #[serde(flatten)]
+    case: &'a CaseFile,
+    changes: &'a [Change],
+}
+
+fn check_case(args: &CheckArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
+    let case = CaseFile::load(&args.case)?;
+    let changes = case.changes();
+    console.print(&CheckedCase { case: &case, changes: &changes }, |out| {
+        writeln!(out, "{}", case.name)?;
+        if !case.notes.is_empty() {
+            writeln!(out, "{}", case.notes)?;
+        }
+        for variant in &case.variants {
+            let mark = if variant.name == case.shown { " (shown)" } else { "" };
+            writeln!(out, "variant {}{mark}: {} questions", variant.name, variant.questions.len())?;
+        }
+        for UsedFile { path, bytes, sha256 } in &case.files {
+            writeln!(out, "file {}, {bytes} bytes, SHA-256 {sha256}", shown_path(path))?;
+        }
+        for model in &case.models {
+            writeln!(out, "{} network {}, SHA-256 {}", model.network, model.name, model.sha256)?;
+        }
+        for entry in &case.log {
+            writeln!(out, "{} {}", entry.time, entry.event)?;
+        }
+        print_changes(out, &changes)
+    })?;
+    Ok(Verdict::of(!changes.is_empty()))
+}
+
+fn print_changes(out: &mut dyn Write, changes: &[Change]) -> io::Result<()> {
+    changes.iter().try_for_each(|change| writeln!(out, "warning: {change}"))
+}
+
+fn print_case(out: &mut dyn Write, report: &CaseReport, units: UnitSystem) -> io::Result<()> {
+    writeln!(out, "{}", report.name)?;
+    for VariantReport { name, answers } in &report.variants {
+        writeln!(out, "\n== {name}")?;
+        for answer in answers {
+            writeln!(out)?;
+            print_answer(out, answer, units)?;
+        }
+    }
+    print_changes(out, &report.changes)
+}
+
+fn print_answer(
+    out: &mut dyn Write,
+    answer: &AnsweredQuestion,
+    units: UnitSystem,
+) -> io::Result<()> {
+    match (&answer.report, &answer.error) {
+        (Some(Report::Impact(report)), _) => print_impact(out, report, units),
+        (Some(Report::Simulate(report)), _) => print_simulation(out, (report, None), units),
+        (Some(Report::PredictForce(report)), _) => print_force_prediction(out, report, units),
+        (Some(Report::PredictMotion(report)), _) => print_motion_prediction(out, report, units),
+        (Some(_), _) => writeln!(out, "answered; --json prints it"),
+        (None, error) => writeln!(out, "no answer: {}", error.as_deref().unwrap_or_default()),
+    }
+}
+
+/// The change of velocity of both vehicles.
+fn print_impact(out: &mut dyn Write, report: &ImpactReport, units: UnitSystem) -> io::Result<()> {
+    let impulse = shown_vector(Quantity::Impulse, report.impulse_n_s, ["x", "y"], units);
+    writeln!(out, "{}: impulse on the target {impulse}", report.name)?;
+    for (who, vehicle) in [("target", &report.target), ("bullet", &report.bullet)] {
+        let delta_v = shown(Quantity::Speed, vehicle.delta_v_magnitude_m_s, units);
+        writeln!(out, "{who}: change of velocity {delta_v}")?;
+    }
+    print_badges(out, &report.badges, &report.assumptions)
+}

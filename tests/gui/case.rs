@@ -1,0 +1,353 @@
+//! A case in the window: variants, saving, opening, and what is asked before it is left.
+
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use egui::Key;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use impactlab::app::{App, Command, Leaving, State, Subject, VariantCommand};
+use impactlab::case_file::{CaseFile, unpack};
+use impactlab::study::{Library, Report};
+use impactlab::vehicle::{Braking, Ending};
+
+use crate::harness::{apply, is_idle, open, open_with, step_until};
+
+const SCENARIO: &str = "assets/scenarios/pit_right_rear.toml";
+
+fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
+    harness.state().state()
+}
+
+/// The window with the PIT, all forecasts answered.
+fn pit() -> Harness<'static, App> {
+    let mut harness = open(&[SCENARIO]);
+    step_until(&mut harness, "the forecast", is_answered);
+    harness
+}
+
+fn is_answered(state: &State) -> bool {
+    is_idle(state)
+        && state.session.response.forecast.ok().is_some()
+        && !state.session.response.forecast.is_waiting()
+        && state.session.force.forecast.ok().is_some()
+        && !state.session.force.forecast.is_waiting()
+}
+
+fn save_as(harness: &mut Harness<'_, App>, path: &Path) {
+    apply(harness, Command::SaveCaseAs(path.to_owned()));
+    step_until(harness, "the case on disk", |state| {
+        state.session.saving_case.is_none() && state.case.path.is_some()
+    });
+}
+
+fn variant(harness: &mut Harness<'_, App>, command: VariantCommand) {
+    apply(harness, Command::Variant(command));
+}
+
+/// The answers to a case without a window.
+fn asked(path: &Path) -> Vec<(String, Vec<Report>)> {
+    let case = CaseFile::load(path).expect("a case");
+    let report = case.ask(&[], &Library::default(), &mut |_| ControlFlow::Continue(()));
+    let report = report.expect("asked").complete().expect("answers");
+    assert!(report.is_clean(), "{report:?}");
+    let of = |variant: &impactlab::case_file::VariantReport| {
+        (variant.name.clone(), variant.reports().cloned().collect())
+    };
+    report.variants.iter().map(of).collect()
+}
+
+#[test]
+fn variants_have_the_same_numbers_in_the_window_and_without_it_and_in_a_package() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("pit.impactlab");
+    let mut harness = pit();
+    let speed = |state: &State| state.project.scenario.target.vx_m_s;
+    let before = speed(state(&harness));
+    let mut shown = Vec::new();
+    for (name, factor) in [("base", 1.0), ("slower", 0.9), ("slow", 0.8)] {
+        if name != "base" {
+            variant(&mut harness, VariantCommand::Duplicate);
+            variant(&mut harness, VariantCommand::Rename(name.to_owned()));
+        }
+        harness.state_mut().state_mut().project.scenario.target.vx_m_s = before * factor;
+        harness.run_steps(2);
+        step_until(&mut harness, "the forecast", is_answered);
+        let answer = state(&harness).session.response.forecast.ok().expect("a forecast");
+        shown.push((name.to_owned(), answer.answer.report.clone()));
+    }
+    assert!(state(&harness).is_case_changed());
+    save_as(&mut harness, &path);
+    assert!(!state(&harness).is_case_changed());
+    let answers = asked(&path);
+    assert_eq!(answers.len(), 3);
+    for ((name, motion), (told, reports)) in shown.iter().zip(&answers) {
+        assert_eq!(name, told);
+        let found = reports.iter().find_map(|report| match report {
+            Report::PredictMotion(report) => Some(report),
+            _ => None,
+        });
+        let same = found.expect("a forecast");
+        assert_eq!(serde_json::to_value(same).unwrap(), serde_json::to_value(motion).unwrap());
+    }
+    // The first variant comes back as it was.
+    variant(&mut harness, VariantCommand::Show("base".to_owned()));
+    assert_eq!(speed(state(&harness)), before);
+
+    // The package opens elsewhere, with the same numbers.
+    let zip = folder.path().join("pit.zip");
+    apply(&mut harness, Command::PackCase(zip.clone()));
+    step_until(&mut harness, "the package", |state| state.session.exports.is_empty());
+    let elsewhere = unpack(&zip, &folder.path().join("elsewhere")).expect("unpacked");
+    assert_eq!(asked(&elsewhere), answers);
+}
+
+#[test]
+fn a_change_of_variant_cannot_be_undone_into_another() {
+    let mut harness = pit();
+    variant(&mut harness, VariantCommand::Duplicate);
+    harness.state_mut().state_mut().project.duration_s = 2.0;
+    harness.run_steps(90); // the past takes a second to settle
+    harness.state_mut().state_mut().project.duration_s = 3.0;
+    harness.run_steps(90);
+    variant(&mut harness, VariantCommand::Show("base".to_owned()));
+    let base = state(&harness).project.duration_s;
+    harness.run_steps(90);
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::Z);
+    harness.run_steps(4);
+    assert_eq!(state(&harness).project.duration_s, base);
+    variant(&mut harness, VariantCommand::Show("base 2".to_owned()));
+    assert_eq!(state(&harness).project.duration_s, 3.0);
+    // A name that another variant has is refused, and the last variant stays.
+    variant(&mut harness, VariantCommand::Rename("base".to_owned()));
+    assert_eq!(state(&harness).case.file.shown, "base 2");
+    variant(&mut harness, VariantCommand::Remove);
+    variant(&mut harness, VariantCommand::Remove);
+    assert_eq!(state(&harness).case.file.variants.len(), 1);
+}
+
+#[test]
+fn a_case_that_is_not_saved_is_asked_about_before_it_is_left() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [one, two] = ["one", "two"].map(|name| folder.path().join(format!("{name}.impactlab")));
+    let mut harness = pit();
+    save_as(&mut harness, &one);
+    save_as(&mut harness, &two);
+    harness.state_mut().state_mut().project.duration_s = 2.0;
+    harness.step();
+    apply(&mut harness, Command::Open(vec![one.clone()]));
+    harness.run_steps(3);
+    harness.get_by_label("The case \"two\" has changes that are not in its file.");
+    harness.get_by_label("Stay").click();
+    harness.run_steps(3);
+    assert_eq!(state(&harness).project.duration_s, 2.0);
+    assert_eq!(state(&harness).case.path.as_ref(), Some(&two));
+
+    // Saved on the way, it is found as it was left.
+    apply(&mut harness, Command::Open(vec![one.clone()]));
+    harness.run_steps(3);
+    harness.get_by_label("Save the case").click();
+    step_until(&mut harness, "the other case", |state| state.case.path.as_ref() == Some(&one));
+    assert_ne!(state(&harness).project.duration_s, 2.0);
+    step_until(&mut harness, "nothing unsaved", |state| !state.is_case_changed());
+    apply(&mut harness, Command::Open(vec![two.clone()]));
+    step_until(&mut harness, "the saved case", |state| state.case.path.as_ref() == Some(&two));
+    assert_eq!(state(&harness).project.duration_s, 2.0);
+    assert_eq!(state(&harness).project.subject, Some(Subject::Scenario));
+    assert_eq!(state(&harness).view.recent, [two, one]);
+}
+
+#[test]
+fn a_file_that_somebody_else_has_changed_is_not_replaced_unasked() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("pit.impactlab");
+    let mut harness = pit();
+    save_as(&mut harness, &path);
+    harness.state_mut().state_mut().project.duration_s = 2.0;
+    fs::write(&path, "theirs").expect("written");
+    apply(&mut harness, Command::SaveCase);
+    harness.run_steps(3);
+    harness.get_by_label("Replace pit.impactlab?");
+    harness.get_by_label("Keep it").click();
+    harness.run_steps(3);
+    assert_eq!(fs::read_to_string(&path).expect("text"), "theirs");
+    assert!(state(&harness).is_case_changed());
+}
+
+#[test]
+fn a_training_that_runs_is_asked_about_before_the_window_closes() {
+    let mut harness = open(&["datasets/trajectories-fea"]);
+    step_until(&mut harness, "the data", is_idle);
+    assert!(state(&harness).reasons_to_stay(&Leaving::Quit).is_empty());
+    let path = state(&harness).session.sources[0].path.clone();
+    apply(&mut harness, Command::ReplayDataset(path.clone()));
+    let reasons = state(&harness).reasons_to_stay(&Leaving::Quit);
+    assert!(
+        reasons.iter().any(|reason| reason.contains("simulation of a data set")),
+        "{reasons:?}"
+    );
+    apply(&mut harness, Command::Leave { to: Leaving::Quit, ask: true });
+    harness.run_steps(3);
+    harness.get_by_label("Quit impactlab?");
+    harness.get_by_label("Stay").click();
+    harness.run_steps(3);
+    assert!(!state(&harness).session.may_close);
+    apply(&mut harness, Command::CancelReplay(path));
+    step_until(&mut harness, "the end", |state| state.reasons_to_stay(&Leaving::Quit).is_empty());
+}
+
+#[test]
+fn what_is_not_saved_is_there_again_after_a_restart() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (store, path) = (folder.path().join("state.json"), folder.path().join("pit.impactlab"));
+    let mut harness = open_with(&[SCENARIO], Some(store.clone()));
+    step_until(&mut harness, "the forecast", is_answered);
+    save_as(&mut harness, &path);
+    variant(&mut harness, VariantCommand::Duplicate);
+    harness.state_mut().state_mut().project.duration_s = 2.0;
+    step_until(&mut harness, "the stored state", |_| {
+        fs::read_to_string(&store).is_ok_and(|text| text.contains("\"duration_s\":2.0"))
+    });
+    // Killed: no exit is gone through.
+    std::mem::forget(harness);
+    let copy = folder.path().join("state-2.json");
+    fs::copy(&store, &copy).expect("a copy");
+    let harness = open_with(&[], Some(copy));
+    assert_eq!(state(&harness).project.duration_s, 2.0);
+    assert_eq!(state(&harness).case.file.shown, "base 2");
+    assert_eq!(state(&harness).case.path, Some(path));
+    assert!(state(&harness).is_case_changed());
+}
+
+#[test]
+fn without_a_file_dialog_a_path_is_asked_for_in_the_window() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("typed");
+    let mut harness = pit();
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::S);
+    step_until(&mut harness, "the question for a path", |state| {
+        state.session.path_dialog.is_some()
+    });
+    let field = harness.get_by_label("Path");
+    field.focus();
+    harness.run_steps(2);
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::A);
+    harness.get_by_label("Path").type_text(path.to_str().expect("text"));
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    let written = path.with_extension("impactlab");
+    step_until(&mut harness, "the case", |state| state.case.path.is_some());
+    assert_eq!(state(&harness).case.path.as_ref(), Some(&written));
+    assert!(CaseFile::load(&written).is_ok());
+}
+
+/// The example case as the window makes it: the PIT, with a driver who brakes, and with a lighter car.
+fn example(harness: &mut Harness<'_, App>) {
+    let answered = |harness: &mut Harness<'_, App>| {
+        harness.run_steps(2);
+        step_until(harness, "the forecast", is_answered);
+    };
+    variant(harness, VariantCommand::Rename("coasts".to_owned()));
+    variant(harness, VariantCommand::Duplicate);
+    variant(harness, VariantCommand::Rename("driver brakes".to_owned()));
+    let brake = Braking { start_s: 0.7, share_of_friction: 0.8, rise_s: 0.2 };
+    let ending = Ending { brake: Some(brake), ..Ending::default() };
+    harness.state_mut().state_mut().project.scenario.ending = Some(ending);
+    answered(harness);
+    variant(harness, VariantCommand::Show("coasts".to_owned()));
+    answered(harness);
+    variant(harness, VariantCommand::Duplicate);
+    variant(harness, VariantCommand::Rename("target of 1500 kg".to_owned()));
+    let target = &mut harness.state_mut().state_mut().project.scenario.target;
+    target.yaw_inertia_kg_m2 *= 1500.0 / target.mass_kg;
+    target.mass_kg = 1500.0;
+    answered(harness);
+    variant(harness, VariantCommand::Show("coasts".to_owned()));
+    answered(harness);
+    let notes =
+        "A PIT at 54 km/h: does it matter whether the driver brakes, and how heavy the car is?";
+    harness.state_mut().state_mut().case.file.notes = notes.to_owned();
+}
+
+#[test]
+fn the_example_case_is_what_the_window_saves_and_has_an_answer_to_every_question() {
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/examples/pit.impactlab");
+    let mut harness = open(&[SCENARIO]);
+    step_until(&mut harness, "the forecast", is_answered);
+    example(&mut harness);
+    if std::env::var_os("UPDATE_EXAMPLES").is_some() {
+        apply(&mut harness, Command::SaveCaseAs(shipped.clone()));
+        apply(&mut harness, Command::Replace(Box::new(Command::SaveCaseAs(shipped.clone()))));
+        step_until(&mut harness, "the example", |state| state.session.saving_case.is_none());
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("pit.impactlab");
+    save_as(&mut harness, &path);
+    let [made, found] = [&path, &shipped].map(|path| CaseFile::load(path).expect("a case"));
+    assert_eq!(found.variants, made.variants, "UPDATE_EXAMPLES=1 writes it anew");
+    assert_eq!((&found.models, &found.notes), (&made.models, &made.notes));
+    let answers = asked(&shipped);
+    assert_eq!(answers.len(), 3);
+    assert!(answers.iter().all(|(_, reports)| reports.len() == 4), "{answers:?}");
+}
+
+/// Says to a child process of this test where it stores its state.
+const KILLED_STATE: &str = "IMPACTLAB_TEST_KILLED_STATE";
+/// How often the child is killed; 3 times if this is not set.
+const KILLS: &str = "IMPACTLAB_TEST_KILLS";
+/// Frames in two seconds.
+const TWO_SECONDS: usize = 120;
+
+/// The child: changes a case in every frame, and says beside its state which frame it was.
+#[test]
+fn change_a_case_until_killed() {
+    let Some(store) = std::env::var_os(KILLED_STATE).map(PathBuf::from) else { return };
+    let mut harness = open_with(&[SCENARIO], Some(store.clone()));
+    for frame in 0_usize.. {
+        harness.state_mut().state_mut().case.file.notes = format!("frame {frame}");
+        harness.step();
+        fs::write(store.with_extension("frame"), frame.to_string()).expect("written");
+        std::thread::sleep(Duration::from_millis(16));
+    }
+}
+
+/// The frame that a stored state is of, which is read as the window reads it.
+fn stored_frame(text: &str) -> usize {
+    let (state, _) = State::restore(text).expect("a whole state");
+    let notes = state.case.file.notes;
+    notes.strip_prefix("frame ").and_then(|frame| frame.parse().ok()).expect("a frame")
+}
+
+#[test]
+fn a_kill_at_any_moment_loses_two_seconds_at_the_most() {
+    let n_kills = std::env::var(KILLS).ok().and_then(|n| n.parse().ok()).unwrap_or(3);
+    let folder = tempfile::tempdir().expect("a folder");
+    let store = folder.path().join("state.json");
+    for kill in 0..n_kills {
+        let _ = fs::remove_file(&store);
+        let mut child = std::process::Command::new(std::env::current_exe().expect("this test"))
+            .args(["--exact", "case::change_a_case_until_killed"])
+            .env(KILLED_STATE, &store)
+            .stdout(std::process::Stdio::null())
+            .spawn()
+            .expect("a child");
+        while !store.exists() {
+            std::thread::sleep(Duration::from_millis(10));
+            assert!(child.try_wait().expect("a child").is_none(), "the child has ended");
+        }
+        // A golden ratio spreads the moments evenly over the second between two writes.
+        let after_s = 0.3 + (kill as f64 * 0.618_034).fract();
+        std::thread::sleep(Duration::from_secs_f64(after_s));
+        child.kill().expect("killed");
+        child.wait().expect("ended");
+        let text = fs::read_to_string(&store).expect("a state");
+        let last = fs::read_to_string(store.with_extension("frame")).expect("a frame");
+        // The frame file itself may be cut by the kill.
+        if let Ok(last) = last.parse::<usize>() {
+            let stored = stored_frame(&text);
+            assert!(last - stored.min(last) <= TWO_SECONDS, "{stored} of {last}");
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! Cases: what they hold comes back, what has changed is said, and a package opens elsewhere.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use impactlab::case_file::{CaseError, CaseFile, Change, UsedFile, Variant, pack, unpack};
+use impactlab::data::Existing;
+use impactlab::study::{
+    Drive, Event, ImpactRequest, Library, MotionSource, Report, Request, ScenarioChoice,
+    SeriesFile, SimulateRequest,
+};
+
+/// A folder of the test's own, empty.
+fn folder(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("case_file").join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+/// A pulse of 60 kN over 80 ms.
+fn force_file(folder: &Path) -> PathBuf {
+    let mut text = "t [s],Fx [N],Fy [N]\n".to_owned();
+    for i in 0..=120 {
+        let time_s = i as f64 * 1e-3;
+        let newtons = 60e3 * (std::f64::consts::PI * time_s / 0.08).sin().max(0.0);
+        let newtons = if time_s < 0.08 { newtons } else { 0.0 };
+        text += &format!("{time_s},0,{newtons}\n");
+    }
+    let path = folder.join("force.csv");
+    fs::write(&path, text).expect("written");
+    path
+}
+
+/// A case of two variants: a scenario of the program, and a force file of its own.
+fn case(force: &Path) -> CaseFile {
+    let scenario = ScenarioChoice::File("pit-right-rear".into());
+    let impact = Request::from(ImpactRequest { scenario, paper: false });
+    let drive =
+        Drive { speed_m_s: Some(20.0), force: Some(SeriesFile::new(force)), ..Drive::default() };
+    let simulate = SimulateRequest::new(MotionSource::Drive(drive));
+    let struck =
+        Variant { name: "struck".to_owned(), questions: vec![impact], ..Variant::default() };
+    let mut case = CaseFile::new("Crossing", struck);
+    case.variants.push(Variant {
+        name: "measured".to_owned(),
+        questions: vec![simulate.into()],
+        forms: serde_json::json!({"file": force, "speed": 20.0}),
+    });
+    case.notes = "two lines\nof notes".to_owned();
+    case.record_files();
+    case.note("made");
+    case
+}
+
+#[test]
+fn a_case_is_saved_with_relative_paths_and_comes_back() {
+    let folder = folder("saved");
+    let case = case(&force_file(&folder));
+    let path = folder.join("crossing.impactlab");
+    case.save(&path, Existing::Refuse).expect("saved");
+    let text = fs::read_to_string(&path).expect("text");
+    assert!(text.contains("\"./force.csv\"") && !text.contains(folder.to_str().unwrap()), "{text}");
+    let again = CaseFile::load(&path).expect("loaded");
+    assert_eq!(again, case);
+    assert!(again.changes().is_empty());
+    // What is there is not replaced unless that is said.
+    assert!(matches!(case.save(&path, Existing::Refuse), Err(CaseError::Data(_))));
+    // Saved again it is the same text.
+    again.save(&path, Existing::Replace).expect("saved");
+    assert_eq!(fs::read_to_string(&path).expect("text"), text);
+}
+
+#[test]
+fn a_case_and_its_files_can_be_moved_together() {
+    let [old, new] = [folder("old"), folder("new")];
+    let case = case(&force_file(&old));
+    case.save(&old.join("a.impactlab"), Existing::Refuse).expect("saved");
+    for name in ["a.impactlab", "force.csv"] {
+        fs::rename(old.join(name), new.join(name)).expect("moved");
+    }
+    let moved = CaseFile::load(&new.join("a.impactlab")).expect("loaded");
+    assert_eq!(moved.used_paths(), [new.join("force.csv")]);
+    assert!(moved.changes().is_empty());
+    let report = moved.ask(&[], &Library::default(), &mut |_| std::ops::ControlFlow::Continue(()));
+    let report = report.expect("asked").complete().expect("answers");
+    assert!(report.is_clean(), "{report:?}");
+}
+
+#[test]
+fn every_question_is_answered_as_its_command_answers_it() {
+    let folder = folder("asked");
+    let mut case = case(&force_file(&folder));
+    let library = Library::default();
+    let mut go_on = |_: Event<'_>| std::ops::ControlFlow::Continue(());
+    let report = case.ask(&[], &library, &mut go_on).expect("asked").complete().expect("answers");
+    for (variant, told) in case.variants.iter().zip(&report.variants) {
+        for (request, answer) in variant.questions.iter().zip(&told.answers) {
+            let alone = request.run(&library, &mut go_on).expect("an answer").complete();
+            assert_eq!(answer.report, alone);
+        }
+    }
+    assert!(matches!(report.variants[0].answers[0].report, Some(Report::Impact(_))));
+    // One question without an answer leaves the others theirs.
+    fs::remove_file(folder.join("force.csv")).expect("removed");
+    let report = case.ask(&[], &Library::default(), &mut go_on).expect("asked").complete();
+    let report = report.expect("answers");
+    assert!(report.variants[0].answers[0].error.is_none());
+    let error = report.variants[1].answers[0].error.clone().expect("an error");
+    assert!(error.contains("force.csv"), "{error}");
+    assert!(!report.is_clean());
+    // Of one variant alone.
+    let only = case.ask(&["struck".to_owned()], &library, &mut go_on).expect("asked").complete();
+    assert_eq!(only.expect("answers").variants.len(), 1);
+    let wrong = case.ask(&["strukc".to_owned()], &library, &mut go_on).expect_err("no variant");
+    assert_eq!(
+        wrong.to_string(),
+        "there is no variant \"strukc\", expected one of: struck, measured"
+    );
+    case.variants[1].name = "struck".to_owned();
+    let path = folder.join("twice.impactlab");
+    case.save(&path, Existing::Refuse).expect("saved");
+    assert!(matches!(CaseFile::load(&path), Err(CaseError::SameName { .. })));
+}
+
+#[test]
+fn files_that_are_missing_or_have_changed_are_named() {
+    let folder = folder("changed");
+    let force = force_file(&folder);
+    let case = case(&force);
+    fs::write(&force, "t [s],Fx [N],Fy [N]\n0,0,0\n0.1,0,9\n").expect("changed");
+    assert_eq!(case.changes(), [Change::Changed { path: force.clone() }]);
+    fs::remove_file(&force).expect("removed");
+    assert!(matches!(case.changes()[..], [Change::Missing { .. }]));
+    let error = pack(&case, &folder.join("a.zip"), Existing::Refuse).expect_err("missing");
+    assert!(matches!(error, CaseError::Missing { .. }), "{error}");
+    assert!(!folder.join("a.zip").exists());
+}
+
+#[test]
+fn a_folder_is_known_by_all_files_in_it() {
+    let folder = folder("dataset");
+    fs::create_dir_all(folder.join("set/cases")).expect("a folder");
+    fs::write(folder.join("set/cases.csv"), "a").expect("written");
+    fs::write(folder.join("set/cases/1.csv"), "b").expect("written");
+    let before = UsedFile::read(&folder.join("set")).expect("read");
+    assert_eq!(before.bytes, 2);
+    fs::write(folder.join("set/.hidden"), "x").expect("written");
+    assert_eq!(UsedFile::read(&folder.join("set")).expect("read"), before);
+    fs::write(folder.join("set/cases/1.csv"), "c").expect("written");
+    assert_ne!(UsedFile::read(&folder.join("set")).expect("read").sha256, before.sha256);
+}
+
+#[test]
+fn a_package_opens_in_another_folder_with_the_same_answers() {
+    let [here, there] = [folder("here"), folder("there")];
+    let case = case(&force_file(&here));
+    let zip = here.join("crossing.zip");
+    pack(&case, &zip, Existing::Refuse).expect("packed");
+    let opened = unpack(&zip, &there.join("case")).expect("unpacked");
+    assert_eq!(opened, there.join("case/Crossing.impactlab"));
+    fs::remove_dir_all(&here).expect("gone");
+    let unpacked = CaseFile::load(&opened).expect("loaded");
+    assert!(unpacked.changes().is_empty());
+    let library = Library::default();
+    let mut go_on = |_: Event<'_>| std::ops::ControlFlow::Continue(());
+    let report = unpacked.ask(&[], &library, &mut go_on).expect("asked").complete();
+    assert!(report.expect("answers").is_clean());
+    // A folder that is there is left alone.
+    let error = unpack(&opened, &there.join("case")).expect_err("exists");
+    assert!(matches!(error, CaseError::FolderExists { .. }), "{error}");
+    let error = unpack(&opened, &there.join("b")).expect_err("no zip");
+    assert!(matches!(error, CaseError::Zip { .. }), "{error}");
+    assert!(!there.join("b").exists());
+}
+
+#[test]
+fn what_is_no_case_is_refused_with_its_place() {
+    let path = Path::new("/cases/a.impactlab");
+    let error = |text: &str| CaseFile::parse(text, path).expect_err("no case");
+    let says = |text: &str, said: &str| {
+        let error = error(text).to_string();
+        assert!(error.contains(said), "{error}");
+    };
+    says("{\"format\": \"impactlab case\",\n  \"version\": 1,,", "/cases/a.impactlab:2:");
+    says("{\"format\": \"gpx\", \"version\": 1}", "format is \"gpx\"");
+    says("{\"format\": \"impactlab case\", \"version\": 9}", "version 9");
+    let case = CaseFile::new("a", Variant { name: "b".to_owned(), ..Variant::default() });
+    let text = case.to_text(path).expect("text");
+    says(&text.replace("\"shown\": \"b\"", "\"shown\": \"c\""), "no variant \"c\"");
+    assert!(matches!(error(&text.replace("\"notes\"", "\"note\"")), CaseError::Syntax { .. }));
+}
