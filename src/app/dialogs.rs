@@ -9,7 +9,7 @@ use rfd::AsyncFileDialog;
 
 use crate::app::command::{Command, ComparisonCommand};
 use crate::app::network::Network;
-use crate::case_file::CASE_ENDING;
+use crate::case_file::{CASE_ENDING, file_stem};
 use crate::data::{
     Channel, ColumnMap, ColumnProposal, ColumnRef, ColumnSource, DataError, propose_columns,
 };
@@ -65,17 +65,18 @@ impl Purpose {
     }
 
     /// The name that is proposed.
-    pub(in crate::app) fn usual_name(&self) -> &'static str {
-        match self {
+    pub(in crate::app) fn usual_name(&self) -> String {
+        let fixed = match self {
             Self::Folder | Self::Files | Self::OpenModel | Self::OpenComparison => "",
-            Self::Picture(_) => "figure.png",
-            Self::Numbers(_) => "figure.csv",
+            Self::Picture(figure) => return file_stem(&figure.title) + ".png",
+            Self::Numbers(figure) => return file_stem(&figure.title) + ".csv",
             Self::Scenario => "scenario.toml",
             Self::SaveModel(network) => network.file_name(),
             Self::SaveComparison => "comparison",
             Self::SaveCase => "case.impactlab",
             Self::PackCase => "case.zip",
-        }
+        };
+        fixed.to_owned()
     }
 
     /// Whether something is written at the path.
@@ -169,7 +170,7 @@ fn written(
 
 async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
     let (dialog, name) = (AsyncFileDialog::new().set_title(purpose.title()), purpose.usual_name());
-    let save = |dialog: AsyncFileDialog, name: &str| dialog.set_file_name(name).save_file();
+    let save = |dialog: AsyncFileDialog, name: String| dialog.set_file_name(name).save_file();
     let one = match purpose {
         Purpose::Folder => dialog.pick_folder().await,
         Purpose::Files => {

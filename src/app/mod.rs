@@ -6,6 +6,7 @@
 mod case;
 mod case_filter;
 mod case_table;
+mod chain;
 mod command;
 mod dialogs;
 mod export;
@@ -47,6 +48,7 @@ use crate::data::Severity;
 use crate::render::{DensityGpu, theme};
 
 pub use case::{Leaving, OpenCase, VariantCommand};
+pub use chain::Link;
 pub use command::{Command, ComparisonCommand, TrainingCommand};
 pub use force::ForceSession;
 pub use latest::Latest;
@@ -213,6 +215,7 @@ impl eframe::App for App {
         };
         menu::menu_ui(ui, &mut self.state, history, &mut commands);
         case::case_bar_ui(ui, &mut self.state, &mut commands);
+        chain::chain_ui(ui, &self.state, &mut commands);
         menu::status_ui(ui, &self.state, &mut commands);
         self.panes_ui(ui, &mut commands);
         self.mapping_ui(ui, &mut commands);

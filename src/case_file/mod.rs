@@ -30,7 +30,7 @@ use serde::{Deserialize, Serialize};
 use crate::study::Request;
 
 pub use error::CaseError;
-pub use package::{pack, unpack};
+pub use package::{file_stem, pack, unpack};
 pub use run::{AnsweredQuestion, CaseReport, VariantReport};
 pub use store::{CASE_ENDING, is_case_file};
 pub use used::{Change, UsedFile};

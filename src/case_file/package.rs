@@ -81,8 +81,8 @@ pub fn pack(case: &CaseFile, to: &Path, existing: Existing) -> Result<(), CaseEr
     })?)
 }
 
-/// The name of a case as the name of a file.
-fn file_stem(name: &str) -> String {
+/// A name as that of a file without its ending, such as of a case or of the title of a figure.
+pub fn file_stem(name: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_');
     let plain: String = name.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
     let plain = plain.trim();

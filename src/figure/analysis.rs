@@ -70,7 +70,7 @@ pub fn analysis_scene_figure(analysis: &Analysis, time_s: f64, units: UnitSystem
         footprint: track.footprint,
     });
     let reference = analysis.reference.as_ref().map(|motion| SceneVehicle {
-        name: "reference",
+        name: "recorded",
         role: Role::Reference,
         style: LineStyle::Dashed,
         motion,

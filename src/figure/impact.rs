@@ -30,7 +30,7 @@ pub fn impact_figure(
     let (sin, cos) = geometry.normal_angle_rad.sin_cos();
     let surface = [[cx - sin, cy + cos], [cx + sin, cy - cos]].map(shown).to_vec();
     let vehicles = [
-        ("target", Role::Target, scenario.target.footprint(), geometry.target, solution.target),
+        ("target", Role::Simulation, scenario.target.footprint(), geometry.target, solution.target),
         ("bullet", Role::Bullet, scenario.bullet.footprint(), geometry.bullet, solution.bullet),
     ];
     let [target_dv, bullet_dv] = vehicles.map(|(.., after)| after.delta_v_m_s);

@@ -25,7 +25,7 @@ pub fn motion_figure(
         Some(FigureElement::Line(Series { name: name.to_owned(), role, style, points }))
     };
     let elements = [
-        line("reference", Role::Reference, LineStyle::Dashed, reference),
+        line("recorded", Role::Reference, LineStyle::Dashed, reference),
         line("4DOF simulation", Role::Simulation, LineStyle::Solid, simulation),
     ];
     Figure {

@@ -103,7 +103,7 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
     };
     let others = [
         ("4DOF model", Role::Pulse, LineStyle::Dotted, input.simulation),
-        ("reference", Role::Reference, LineStyle::Dashed, input.reference),
+        ("recorded", Role::Reference, LineStyle::Dashed, input.reference),
     ];
     for (name, role, style, series) in others {
         elements.extend(series.and_then(|series| line(name, role, style, series)));
@@ -119,7 +119,7 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
         elements.extend(vehicle_outline(appearance, (&input.footprint, &pose), x.unit));
     }
     if let Some(pose) = input.reference.and_then(|series| pose_at(series, at as f64 * STEP_S)) {
-        let appearance = ("reference", Role::Reference, LineStyle::Dashed);
+        let appearance = ("recorded", Role::Reference, LineStyle::Dashed);
         elements.extend(vehicle_outline(appearance, (&input.footprint, &pose), x.unit));
     }
     let title = format!("{}: position after {:.2} s", input.title, at as f64 * STEP_S);
@@ -218,7 +218,7 @@ pub fn forecast_channel_figure(
     };
     let others = [
         ("4DOF model", Role::Pulse, LineStyle::Dotted, input.simulation),
-        ("reference", Role::Reference, LineStyle::Dashed, input.reference),
+        ("recorded", Role::Reference, LineStyle::Dashed, input.reference),
     ];
     for (name, role, style, series) in others {
         elements.extend(series.and_then(|series| line(name, role, style, series)));

@@ -251,7 +251,7 @@ fn a_forecast_is_rendered_beside_the_record() {
     };
     ok(render(&["--channel", "yaw"]));
     let text = fs::read_to_string(&out).unwrap();
-    for name in ["90 % band (low)", "reference", "central path", "4DOF model"] {
+    for name in ["90 % band (low)", "recorded", "central path", "4DOF model"] {
         assert!(text.contains(name), "{name}");
     }
     ok(render(&["--window", "0,2"]));

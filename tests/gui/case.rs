@@ -8,9 +8,10 @@ use std::time::Duration;
 use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, Leaving, State, Subject, VariantCommand};
+use impactlab::app::{App, Command, ForceChoice, Leaving, State, Subject, VariantCommand};
 use impactlab::case_file::{CaseFile, unpack};
 use impactlab::study::{Library, Report};
+use impactlab::uncertainty::BadgeKind;
 use impactlab::vehicle::{Braking, Ending};
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
@@ -350,4 +351,39 @@ fn a_kill_at_any_moment_loses_two_seconds_at_the_most() {
             assert!(last - stored.min(last) <= TWO_SECONDS, "{stored} of {last}");
         }
     }
+}
+
+#[test]
+fn the_chain_says_where_each_answer_comes_from_and_marks_what_is_late() {
+    let mut harness = pit();
+    let chain = state(&harness).chain();
+    let titles: Vec<&str> = chain.iter().map(|link| link.title).collect();
+    assert_eq!(titles, ["Scenario", "Impact", "Force", "Motion", "Outcome"]);
+    assert!(chain.iter().all(|link| link.figure.is_some() && !link.is_late), "{chain:?}");
+    let outcome = &state(&harness).session.response.forecast.ok().unwrap().answer.report.outcome;
+    let median = format!("X {:.2} m", outcome.x_m.median);
+    let figure = chain[4].figure.clone().unwrap();
+    assert!(figure.starts_with(&median[..5]), "{figure} {median}");
+    // The second contact is warned of where it matters.
+    assert!(chain[1].warnings.iter().any(|warning| warning.contains("second contact")));
+
+    // The force network's impulse takes the place of the pulse once it drives the forecast.
+    let project = &mut harness.state_mut().state_mut().project;
+    project.response.forecast.force = ForceChoice::Predicted;
+    harness.run_steps(2);
+    step_until(&mut harness, "the forecast", is_answered);
+    let force = &state(&harness).chain()[2];
+    assert!(force.source.starts_with("force network"), "{force:?}");
+    assert!(force.figure.as_ref().unwrap().contains(" to "), "{force:?}");
+    let badges = &state(&harness).session.response.forecast.ok().unwrap().answer.report.badges;
+    assert!(badges.iter().any(|badge| badge.kind == BadgeKind::Disagreement), "{badges:?}");
+
+    // No figure of another subject stands while the new one is computed.
+    apply(&mut harness, Command::Select(Subject::File("nowhere.csv".into())));
+    let chain = state(&harness).chain();
+    assert!(chain[1..].iter().all(|link| link.figure.is_none()), "{chain:?}");
+    // A click leads to the panel.
+    harness.get_by_label_contains("Motion:").click();
+    harness.run_steps(3);
+    harness.get_by_label("components");
 }

@@ -6,6 +6,7 @@ use egui::Context;
 
 use crate::app::case::{Forms, OpenCase, VariantCommand};
 use crate::app::command::wake;
+use crate::app::panes::{Pane, show_pane};
 use crate::app::state::{Project, State, Subject};
 use crate::case_file::{CaseFile, UsedModel, pack};
 use crate::data::write::{ModelDigest, sha256_hex};
@@ -115,6 +116,9 @@ impl State {
             if !is_open {
                 self.load(path, map, context);
             }
+        }
+        if self.project.subject == Some(Subject::Scenario) {
+            show_pane(&mut self.view.layout, Pane::Scenario);
         }
         self.session.select_when_loaded = None;
         self.session.history_ends = true;

@@ -1,0 +1,213 @@
+//! The chain above the panes: scenario, impact, force, motion, outcome. Each link says where it comes from,
+//! its main figure, what restricts it, and whether it is of what is asked.
+
+use egui::{Button, Panel, RichText, Ui};
+
+use crate::app::command::Command;
+use crate::app::model::file_name;
+use crate::app::panes::Pane;
+use crate::app::response::MotionAnswer;
+use crate::app::state::{State, Subject};
+use crate::data::Severity;
+use crate::numerics::quantile_of_sorted;
+use crate::render::theme;
+use crate::study::SimulateReport;
+use crate::uncertainty::Badge;
+use crate::units::{Quantity, UnitSystem, percent};
+
+/// Ends of the interval that is shown with a figure, as probabilities.
+const ENDS: [f64; 2] = [0.05, 0.95];
+
+/// A link of the chain.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Link {
+    /// What it is.
+    pub title: &'static str,
+    /// Its main figure, with the interval of 90 % where it has one; none where it is not known.
+    pub figure: Option<String>,
+    /// Where it comes from.
+    pub source: String,
+    /// What restricts it, a sentence each.
+    pub warnings: Vec<String>,
+    /// Whether it is not of what is asked any more.
+    pub is_late: bool,
+    /// The panel that says more.
+    pub pane: Pane,
+}
+
+impl State {
+    /// The chain of answers about the subject.
+    pub fn chain(&self) -> Vec<Link> {
+        let units = self.view.units;
+        let session = &self.session;
+        let report = self.analysis().map(|answer| &answer.report);
+        let motion = session.response.forecast.ok().map(AsRef::as_ref);
+        let [is_simulation_late, is_motion_late] =
+            [session.is_simulation_late(), session.is_motion_late()];
+        vec![
+            self.subject_link(),
+            Link { is_late: is_simulation_late, ..impact_link(report, units) },
+            Link {
+                is_late: is_simulation_late || is_motion_late,
+                ..force_link(report, motion, units)
+            },
+            Link { is_late: is_motion_late, ..motion_link(motion) },
+            Link { is_late: is_motion_late, ..outcome_link(report, motion, units) },
+        ]
+    }
+
+    fn subject_link(&self) -> Link {
+        let (figure, source, pane) = match &self.project.subject {
+            Some(Subject::Scenario) => {
+                let name = self.project.scenario.name.clone();
+                (Some(name), "as entered".to_owned(), Pane::Scenario)
+            }
+            Some(Subject::Case { dataset, case }) => {
+                (Some(case.clone()), format!("case of {}", file_name(dataset)), Pane::Cases)
+            }
+            Some(Subject::File(path)) => (Some(file_name(path)), "file".to_owned(), Pane::Data),
+            None => (None, "nothing selected".to_owned(), Pane::Data),
+        };
+        Link { title: "Scenario", figure, source, warnings: Vec::new(), is_late: false, pane }
+    }
+}
+
+/// The change of velocity of the struck vehicle.
+fn impact_link(report: Option<&SimulateReport>, units: UnitSystem) -> Link {
+    let delta_v = report.and_then(|report| report.delta_v_magnitude_m_s);
+    let is_momentum = report.is_some_and(|report| report.momentum.is_some());
+    let (source, pane) = match is_momentum {
+        true => ("momentum solution, over the contact with tyres", Pane::Scenario),
+        false => ("4DOF model, over the contact", Pane::Force),
+    };
+    Link {
+        title: "Impact",
+        figure: delta_v.map(|m_s| format!("Δv {}", Quantity::Speed.shown(m_s, units))),
+        source: source.to_owned(),
+        warnings: warnings(report.map(|report| report.badges.as_slice())),
+        is_late: false,
+        pane,
+    }
+}
+
+/// The force that drives the forecast: a distribution where a network predicts it.
+fn force_link(
+    report: Option<&SimulateReport>,
+    motion: Option<&MotionAnswer>,
+    units: UnitSystem,
+) -> Link {
+    let shown = |n_s: f64| Quantity::Impulse.shown(n_s, units);
+    let predicted = motion.filter(|motion| motion.answer.report.force_model.is_some());
+    let (figure, source, pane) = if let Some(motion) = predicted {
+        let forces = &motion.answer.forecast.forces;
+        let mut sizes: Vec<f64> = forces
+            .iter()
+            .map(|force| {
+                let [x, y] = force.impulse_n_s();
+                x.hypot(y)
+            })
+            .collect();
+        sizes.sort_by(f64::total_cmp);
+        let at = |share| quantile_of_sorted(&sizes, share).map(shown);
+        let interval = at(ENDS[0]).zip(at(ENDS[1]));
+        let interval = interval.map(|(low, high)| format!(" ({low} to {high})"));
+        let figure = at(0.5).map(|median| median + &interval.unwrap_or_default());
+        let model = motion.answer.report.force_model.clone().unwrap_or_default();
+        (figure, format!("force network {model}, 90 % of its draws"), Pane::ForcePrediction)
+    } else {
+        let force = report.and_then(|report| report.force.as_ref());
+        let size = force.map(|force| force.impulse_n_s[0].hypot(force.impulse_n_s[1]));
+        let is_pulse = report.is_some_and(|report| report.momentum.is_some());
+        let source =
+            if is_pulse { "pulse with the impulse of the momentum solution" } else { "record" };
+        (size.map(shown), source.to_owned(), Pane::Force)
+    };
+    Link { title: "Force", figure, source, warnings: Vec::new(), is_late: false, pane }
+}
+
+/// Which model says how the vehicle moves, and how far it applies.
+fn motion_link(motion: Option<&MotionAnswer>) -> Link {
+    let figure = motion.map(|motion| {
+        let share = motion.answer.report.applicability;
+        format!("network applies by {}", percent(share))
+    });
+    let source = match motion {
+        Some(motion) => format!("response network {}", motion.answer.report.response_model),
+        None => "no forecast".to_owned(),
+    };
+    let warnings = Vec::new();
+    Link { title: "Motion", figure, source, warnings, is_late: false, pane: Pane::MotionForecast }
+}
+
+/// Where the vehicle is in the end: by the forecast, or by the 4DOF model where there is none.
+fn outcome_link(
+    report: Option<&SimulateReport>,
+    motion: Option<&MotionAnswer>,
+    units: UnitSystem,
+) -> Link {
+    let length = |m: f64| Quantity::Length.shown(m, units);
+    let (figure, source, pane) = match (motion, report.and_then(|report| report.end)) {
+        (Some(motion), _) => {
+            let outcome = &motion.answer.report.outcome;
+            let [low, high] = outcome.x_m.ninety.map(length);
+            let [right, left] = outcome.y_m.ninety.map(length);
+            let figure = format!(
+                "X {} ({low} to {high}), Y {} ({right} to {left})",
+                length(outcome.x_m.median),
+                length(outcome.y_m.median)
+            );
+            let when = format!("forecast after {:.2} s, 90 % intervals", outcome.time_s);
+            (Some(figure), when, Pane::MotionForecast)
+        }
+        (None, Some(end)) => {
+            let figure = format!("X {}, Y {}", length(end.x_m), length(end.y_m));
+            (Some(figure), "4DOF model alone, without an interval".to_owned(), Pane::Scene)
+        }
+        (None, None) => (None, "no motion".to_owned(), Pane::Scene),
+    };
+    let badges = motion.map(|motion| motion.answer.report.badges.as_slice());
+    let warnings = warnings(badges);
+    Link { title: "Outcome", figure, source, warnings, is_late: false, pane }
+}
+
+/// The sentences of the badges that warn.
+fn warnings(badges: Option<&[Badge]>) -> Vec<String> {
+    let badges = badges.unwrap_or_default().iter().filter(|badge| badge.kind.is_warning());
+    badges.map(|badge| format!("{}: {}", badge.kind.label(), badge.text)).collect()
+}
+
+/// Draws the chain; a click on a link shows its panel.
+pub fn chain_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    Panel::top("chain").show(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            for (i, link) in state.chain().into_iter().enumerate() {
+                if i > 0 {
+                    ui.weak("›");
+                }
+                link_ui(ui, &link, commands);
+            }
+        });
+    });
+}
+
+fn link_ui(ui: &mut Ui, link: &Link, commands: &mut Vec<Command>) {
+    let figure = match (&link.figure, link.is_late) {
+        (_, true) => "computing…",
+        (Some(figure), false) => figure.as_str(),
+        (None, false) => "–",
+    };
+    // Not by its colour alone.
+    let mark = if link.warnings.is_empty() { "" } else { " (!)" };
+    let text = RichText::new(format!("{}: {figure}{mark}", link.title));
+    let warning = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+    let text = match (link.is_late || link.figure.is_none(), link.warnings.is_empty()) {
+        (true, _) => text.weak(),
+        (false, true) => text,
+        (false, false) => text.color(warning),
+    };
+    let said = std::iter::once(&link.source).chain(&link.warnings);
+    let hint = said.map(String::as_str).collect::<Vec<_>>().join("\n");
+    if ui.add(Button::new(text).small()).on_hover_text(hint).clicked() {
+        commands.push(Command::Show(link.pane));
+    }
+}
