@@ -5,6 +5,9 @@
 /// Bytes of a table: a force, a motion, a steer angle.
 pub const MAX_TABLE_BYTES: u64 = 256 << 20;
 
+/// Bytes of an Excel workbook. What is in it may have the size of a table when it is unpacked.
+pub const MAX_WORKBOOK_BYTES: u64 = 64 << 20;
+
 /// Bytes of a table of cases, `cases.csv`.
 pub const MAX_CASES_BYTES: u64 = 16 << 20;
 

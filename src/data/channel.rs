@@ -71,19 +71,19 @@ channels! {
     /// Time.
     Time: "time_s", Time, "Time", ["time", "t", "zeit", "temps", "tiempo"];
     /// Position of the centre of gravity along the road, world axes.
-    X: "x_m", Length, "X", ["x", "xpos", "posx", "positionx", "xposition", "xm", "xworld", "easting", "xg"];
+    X: "x_m", Length, "X", ["x", "xpos", "posx", "positionx", "xposition", "xm", "xworld", "easting", "xg", "wegx"];
     /// Position of the centre of gravity to the left of the road, world axes.
-    Y: "y_m", Length, "Y", ["y", "ypos", "posy", "positiony", "yposition", "ym", "yworld", "northing", "yg"];
+    Y: "y_m", Length, "Y", ["y", "ypos", "posy", "positiony", "yposition", "ym", "yworld", "northing", "yg", "wegy"];
     /// Yaw angle ψ of the vehicle, counter-clockwise positive.
     Yaw: "yaw_rad", Angle, "Yaw ψ", ["yaw", "yawangle", "psi", "heading", "headingangle", "gierwinkel"];
     /// Roll angle φ about the forward axis.
     Roll: "roll_rad", Angle, "Roll φ", ["roll", "rollangle", "phi", "wankwinkel"];
     /// Forward velocity of the centre of gravity, body axes.
-    Vx: "vx_m_s", Speed, "v_x", ["vx", "vxbody", "velx", "velocityx", "longitudinalvelocity", "speedx"];
+    Vx: "vx_m_s", Speed, "v_x", ["vx", "vxbody", "velx", "velocityx", "longitudinalvelocity", "speedx", "geschwindigkeitx", "längsgeschwindigkeit"];
     /// Leftward velocity of the centre of gravity, body axes.
-    Vy: "vy_m_s", Speed, "v_y", ["vy", "vybody", "vely", "velocityy", "lateralvelocity", "speedy"];
+    Vy: "vy_m_s", Speed, "v_y", ["vy", "vybody", "vely", "velocityy", "lateralvelocity", "speedy", "geschwindigkeity", "quergeschwindigkeit"];
     /// Yaw rate r.
-    YawRate: "yaw_rate_rad_s", AngularVelocity, "Yaw rate r", ["yawrate", "r", "psidot", "wz", "omegaz", "gyroz", "gierrate"];
+    YawRate: "yaw_rate_rad_s", AngularVelocity, "Yaw rate r", ["yawrate", "r", "psidot", "wz", "omegaz", "gyroz", "gierrate", "giergeschwindigkeit", "gierwinkelgeschwindigkeit"];
     /// Roll rate about the forward axis.
     RollRate: "roll_rate_rad_s", AngularVelocity, "Roll rate", ["rollrate", "p", "phidot", "wx", "omegax", "gyrox"];
     /// Forward acceleration, body axes.
@@ -99,7 +99,7 @@ channels! {
     /// Contact force to the left of the heading of the target.
     FyBody: "fy_body_n", Force, "F_y body", ["fybody", "fyheading", "fylocal"];
     /// Yaw moment of the contact force about the centre of gravity of the target.
-    Mz: "mz_nm", Moment, "M_z", ["mz", "yawmoment", "momentz", "zmoment"];
+    Mz: "mz_nm", Moment, "M_z", ["mz", "yawmoment", "momentz", "zmoment", "giermoment"];
     /// Roll moment of the contact force about the centre of gravity of the target.
     Mx: "mx_nm", Moment, "M_x", ["mx", "rollmoment", "momentx", "xmoment"];
     /// Road-wheel steer angle of the front axle.

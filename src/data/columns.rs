@@ -6,7 +6,10 @@ use std::fmt;
 use std::path::Path;
 
 use crate::data::spelling::{self, Meaning};
-use crate::data::{Channel, ColumnMap, ColumnRef, ColumnSource, DataError, Table};
+use crate::data::{
+    Channel, ColumnMap, ColumnRef, ColumnSource, DataError, SignedColumn, Table, VelocityAxes,
+    VelocityFit,
+};
 use crate::units::{Quantity, Unit};
 
 /// Number of sample values of a column that a mapping dialog shows.
@@ -31,6 +34,20 @@ pub struct ColumnUse {
     pub unit: Unit,
     /// Whether the file or the user states the unit; otherwise the SI unit was assumed.
     pub unit_is_stated: bool,
+    /// The columns that are added up; for most channels there is one, with its sign. A channel that
+    /// is zero throughout has none.
+    pub terms: Vec<Term>,
+}
+
+/// A column whose numbers are a part of a channel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Term {
+    /// The number of the column, counted from 1.
+    pub number: usize,
+    /// The sign with which its numbers count, 1 or −1.
+    pub sign: f64,
+    /// The unit of the numbers.
+    pub unit: Unit,
 }
 
 /// A remark on a file that was read, shown to the user.
@@ -55,6 +72,25 @@ pub enum Note {
         /// The headers of these columns.
         names: Vec<String>,
     },
+    /// Text to the right of the last column was left out.
+    TextBeyond {
+        /// The number of rows with such text.
+        n_rows: usize,
+    },
+    /// The velocities do not fit the path in the axes in which they were read.
+    Velocities {
+        /// How they fit.
+        fit: VelocityFit,
+        /// The axes in which they were read.
+        read_as: VelocityAxes,
+    },
+}
+
+impl Note {
+    /// Whether numbers that were read may be wrong, so that the user should be asked.
+    pub fn is_doubt(&self) -> bool {
+        matches!(self, Self::UnitAssumed(_) | Self::Velocities { .. })
+    }
 }
 
 impl fmt::Display for Note {
@@ -79,6 +115,10 @@ impl fmt::Display for Note {
                     more => write!(f, " and {more} more"),
                 }
             }
+            Self::TextBeyond { n_rows } => {
+                write!(f, "{n_rows} rows have text to the right of the last column; it is not read")
+            }
+            Self::Velocities { fit, read_as } => fit.explain(*read_as, f),
         }
     }
 }
@@ -100,6 +140,26 @@ pub struct ColumnProposal {
     pub samples: Vec<String>,
     /// The channel and unit that the header suggests; the unit is `None` if the file states none.
     pub guess: Option<(Channel, Option<Unit>)>,
+    /// The cell of the column in the row of units.
+    units_cell: Option<String>,
+}
+
+impl ColumnProposal {
+    /// The unit that header or row of units state for a channel of `quantity`; `None` if they state
+    /// none.
+    ///
+    /// # Errors
+    /// The text of a unit that does not measure `quantity`.
+    pub fn stated_unit(&self, quantity: Quantity) -> Result<Option<Unit>, String> {
+        stated_unit((&self.name, self.units_cell.as_deref()), quantity)
+    }
+
+    /// The channel that is worth a proposal in a dialog: the guess, or what words in the header
+    /// suggest, such as a force without a direction. The user has to look at it.
+    pub fn suggestion(&self) -> Option<Channel> {
+        let guessed = self.guess.map(|(channel, _)| channel);
+        guessed.or_else(|| spelling::suggestion(&self.name))
+    }
 }
 
 /// Reads a file and returns its columns, with the channel that each header suggests.
@@ -107,18 +167,23 @@ pub struct ColumnProposal {
 /// # Errors
 /// [`DataError`] if the file cannot be read as a table.
 pub fn propose_columns(path: &Path) -> Result<Vec<ColumnProposal>, DataError> {
-    let table = Table::read(path)?;
+    Ok(proposals(&Table::read(path)?))
+}
+
+/// The columns of a table, with the channel that each header suggests.
+pub fn proposals(table: &Table) -> Vec<ColumnProposal> {
     let rows: Vec<_> = table.rows().take(SHOWN_SAMPLES).map(|(_, cells)| cells).collect();
     let proposal = |(column_idx, name): (usize, &String)| ColumnProposal {
         number: column_idx + 1,
         name: name.clone(),
         samples: rows.iter().filter_map(|cells| Some(cells.get(column_idx)?.to_string())).collect(),
-        guess: match column_meaning(&table, column_idx) {
+        guess: match column_meaning(table, column_idx) {
             Meaning::Channel(channel, unit) => Some((channel, unit)),
             Meaning::WrongUnit(..) | Meaning::Unknown => None,
         },
+        units_cell: table.unit_text(column_idx).map(str::to_owned),
     };
-    Ok(table.header().iter().enumerate().map(proposal).collect())
+    table.header().iter().enumerate().map(proposal).collect()
 }
 
 /// The mapping that accepts the suggested channel and unit of every column.
@@ -155,11 +220,15 @@ impl Columns {
         let assumed = columns.by_channel.values().filter(|column| !column.unit_is_stated);
         let assumed: Vec<Note> = assumed.cloned().map(Note::UnitAssumed).collect();
         columns.notes.splice(0..0, assumed);
+        if let n_rows @ 1.. = table.n_rows_with_text_beyond() {
+            columns.notes.push(Note::TextBeyond { n_rows });
+        }
         Ok(columns)
     }
 
     fn guess_others(&mut self, table: &Table, map: Option<&ColumnMap>) -> Result<(), DataError> {
-        let mapped: Vec<usize> = self.by_channel.values().map(|column| column.number).collect();
+        let terms = self.by_channel.values().flat_map(|column| &column.terms);
+        let mapped: Vec<usize> = terms.map(|term| term.number).collect();
         let is_mapped = |channel| map.is_some_and(|map| map.get(channel).is_some());
         let mut ignored = Vec::new();
         for (column_idx, name) in table.header().iter().enumerate() {
@@ -226,14 +295,10 @@ impl Columns {
     }
 }
 
-fn column_use(channel: Channel, number: usize, name: String, unit: Option<Unit>) -> ColumnUse {
-    ColumnUse {
-        channel,
-        number,
-        name,
-        unit: unit.unwrap_or_else(|| channel.quantity().si_unit()),
-        unit_is_stated: unit.is_some(),
-    }
+fn column_use(channel: Channel, number: usize, name: String, stated: Option<Unit>) -> ColumnUse {
+    let unit = stated.unwrap_or_else(|| channel.quantity().si_unit());
+    let terms = vec![Term { number, sign: 1.0, unit }];
+    ColumnUse { channel, number, name, unit, unit_is_stated: stated.is_some(), terms }
 }
 
 /// The channel and unit that the header of a column names, with the unit from the row of units if
@@ -256,53 +321,94 @@ fn mapped_column(
     channel: Channel,
     source: &ColumnSource,
 ) -> Result<ColumnUse, DataError> {
-    let fits = |name: &String| match &source.column {
-        ColumnRef::Number(_) => false,
-        ColumnRef::Name(wanted) => spelling::same_name(name, wanted),
-    };
-    let column_idx = match &source.column {
-        ColumnRef::Number(number) => number.checked_sub(1),
+    let signed = |number| SignedColumn { number, is_negated: false };
+    let columns = match &source.column {
+        ColumnRef::Number(number) => vec![signed(*number)],
         ColumnRef::Name(wanted) => {
-            let exact = table.header().iter().position(|name| name == wanted);
-            exact.or_else(|| table.header().iter().position(fits))
+            let names = table.header();
+            let exact = names.iter().position(|name| name == wanted);
+            let fits = |name: &String| spelling::same_name(name, wanted);
+            let found = exact.or_else(|| names.iter().position(fits));
+            vec![signed(found.map_or(0, |idx| idx + 1))]
+        }
+        ColumnRef::Sum(columns) => columns.clone(),
+        ColumnRef::Zero => {
+            let unit = channel.quantity().si_unit();
+            let (number, name) = (0, "zero throughout".to_owned());
+            let terms = Vec::new();
+            return Ok(ColumnUse { channel, number, name, unit, unit_is_stated: true, terms });
         }
     };
-    let found = column_idx.and_then(|idx| Some((idx, table.header().get(idx)?.clone())));
-    let (column_idx, name) = found.ok_or_else(|| DataError::NoSuchColumn {
+    let mut used: Option<ColumnUse> = None;
+    for SignedColumn { number, is_negated } in columns {
+        let (name, stated) = unit_of_mapped(table, channel, (source, number))?;
+        let unit = stated.unwrap_or_else(|| channel.quantity().si_unit());
+        let term = Term { number, sign: if is_negated { -1.0 } else { 1.0 }, unit };
+        let sign = if is_negated { "−" } else { "+" };
+        match &mut used {
+            None if is_negated => {
+                let column = column_use(channel, number, format!("{sign}{name}"), stated);
+                used = Some(ColumnUse { terms: vec![term], ..column });
+            }
+            None => used = Some(column_use(channel, number, name, stated)),
+            Some(sum) => {
+                sum.name = format!("{} {sign} {name}", sum.name);
+                sum.unit_is_stated &= stated.is_some();
+                sum.terms.push(term);
+            }
+        }
+    }
+    used.ok_or_else(|| no_such_column(table, channel, source))
+}
+
+fn no_such_column(table: &Table, channel: Channel, source: &ColumnSource) -> DataError {
+    DataError::NoSuchColumn {
         path: table.path().to_owned(),
         line: table.header_line(),
         channel,
         column: source.column.to_string(),
         found: table.header().to_vec(),
-    })?;
-    let number = column_idx + 1;
-    let unit = match source.unit {
-        Some(unit) => Some(unit),
-        None => stated_unit(table, column_idx, channel.quantity()).map_err(|unit| {
-            DataError::UnknownUnit {
-                path: table.path().to_owned(),
-                line: table.header_line(),
-                column: number,
-                name: name.clone(),
-                channel,
-                unit,
-                quantity: channel.quantity(),
-            }
-        })?,
-    };
-    Ok(column_use(channel, number, name, unit))
+    }
+}
+
+/// The header of a mapped column, and the unit that the user or the file states.
+fn unit_of_mapped(
+    table: &Table,
+    channel: Channel,
+    (source, number): (&ColumnSource, usize),
+) -> Result<(String, Option<Unit>), DataError> {
+    let idx = number.checked_sub(1);
+    let found = idx.and_then(|idx| Some((idx, table.header().get(idx)?.clone())));
+    let (idx, name) = found.ok_or_else(|| no_such_column(table, channel, source))?;
+    if source.unit.is_some() {
+        return Ok((name, source.unit));
+    }
+    match stated_unit((&name, table.unit_text(idx)), channel.quantity()) {
+        Ok(unit) => Ok((name, unit)),
+        Err(unit) => Err(DataError::UnknownUnit {
+            path: table.path().to_owned(),
+            line: table.header_line(),
+            column: number,
+            name,
+            channel,
+            unit,
+            quantity: channel.quantity(),
+        }),
+    }
 }
 
 /// The unit that the file states for a column, in the row of units or in the header. The error is
 /// the text of a unit that does not measure `quantity`.
-fn stated_unit(table: &Table, idx: usize, quantity: Quantity) -> Result<Option<Unit>, String> {
-    if let Some(text) = table.unit_text(idx) {
+fn stated_unit(
+    (name, units_cell): (&str, Option<&str>),
+    quantity: Quantity,
+) -> Result<Option<Unit>, String> {
+    if let Some(text) = units_cell {
         return match spelling::unit(quantity, text) {
             Some(unit) => Ok(Some(unit)),
             None => Err(text.to_owned()),
         };
     }
-    let name = table.header().get(idx).map_or("", String::as_str);
     spelling::trailing_unit(name, quantity)
 }
 

@@ -59,7 +59,9 @@ impl Dialect {
     /// there are no numbers, it is the one with most fields in the first line. The decimal sign is
     /// a comma if numbers with a comma occur and numbers with a point do not, and if the comma is
     /// not the separator.
-    pub(crate) fn sniff(lines: &[&str]) -> Self {
+    ///
+    /// - `known`: the separator, if it is known.
+    pub(crate) fn sniff(lines: &[&str], known: Option<Separator>) -> Self {
         let score = |separator: &Separator| {
             let decimal_comma = *separator != Separator::Comma;
             let fields = lines.iter().flat_map(|line| separator.fields(line));
@@ -72,7 +74,8 @@ impl Dialect {
         };
         // `max_by_key` returns the last of several maxima, therefore the order is reversed.
         let last_to_first = Separator::ALL.into_iter().rev();
-        let separator = last_to_first.max_by_key(score).unwrap_or(Separator::Comma);
+        let found = || last_to_first.max_by_key(score).unwrap_or(Separator::Comma);
+        let separator = known.unwrap_or_else(found);
         let fields = || lines.iter().flat_map(|line| separator.fields(line));
         let written_with = |sign: char| {
             fields().any(|field| field.contains(sign) && parse_number(field, sign == ',').is_some())
@@ -171,7 +174,7 @@ mod tests {
         ] {
             let lines: Vec<&str> = text.lines().collect();
             let expected = Dialect { separator, decimal_comma };
-            assert_eq!(Dialect::sniff(&lines), expected, "{text:?}");
+            assert_eq!(Dialect::sniff(&lines, None), expected, "{text:?}");
         }
     }
 }

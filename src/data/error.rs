@@ -117,6 +117,44 @@ pub enum DataError {
         /// The largest number that is read.
         limit: usize,
     },
+    /// The file is of a known format that is not read.
+    #[error("{}: is {format}; {remedy}", path.display())]
+    OtherFormat {
+        /// The file.
+        path: PathBuf,
+        /// What it is, in words.
+        format: &'static str,
+        /// What to do, in words.
+        remedy: &'static str,
+    },
+    /// A workbook is damaged, or protected by a password.
+    #[error("{}: the workbook cannot be read ({why}); save it again as .xlsx or as CSV", path.display())]
+    Workbook {
+        /// The file.
+        path: PathBuf,
+        /// The reason, in words of the library that reads it.
+        why: String,
+    },
+    /// A workbook has no such sheet, or the file is no workbook.
+    #[error("{}: there is no sheet {}; found {}", path.display(), quoted(wanted), list(found))]
+    NoSheet {
+        /// The file.
+        path: PathBuf,
+        /// Name or number of the sheet.
+        wanted: String,
+        /// The names of all sheets; none if the file is no workbook.
+        found: Vec<String>,
+    },
+    /// An error in a sheet of a workbook.
+    #[error("{}", in_sheet(path, sheet, error))]
+    InSheet {
+        /// The workbook.
+        path: PathBuf,
+        /// The name of the sheet.
+        sheet: String,
+        /// The error, whose line and column are those of the sheet.
+        error: Box<DataError>,
+    },
     /// The file contains control characters that do not occur in text.
     #[error("{}: is not text (byte {byte:#04x} at offset {offset}); export it as CSV", path.display())]
     NotText {
@@ -220,6 +258,16 @@ pub enum DataError {
         text: String,
         /// The unit of the column for the message; empty if none is known.
         unit: &'static str,
+    },
+    /// The line that is to hold the header or the units is blank, or too far down.
+    #[error("{}:{line}: nothing is found here, expected {what} in one of the first lines", path.display())]
+    NoSuchLine {
+        /// The file that was read.
+        path: PathBuf,
+        /// The line.
+        line: u64,
+        /// What it is to hold, in words.
+        what: &'static str,
     },
     /// A row has more or fewer fields than the header.
     #[error("{}:{line}: has {got} fields, the header has {expected}; complete the row or remove it", path.display())]
@@ -393,6 +441,9 @@ pub enum DataError {
 impl DataError {
     /// Whether a mapping of columns to channels and units by the user may solve the problem.
     pub fn needs_mapping(&self) -> bool {
+        if let Self::InSheet { error, .. } = self {
+            return error.needs_mapping();
+        }
         matches!(
             self,
             Self::NoHeader { .. }
@@ -400,6 +451,7 @@ impl DataError {
                 | Self::AmbiguousColumn { .. }
                 | Self::UnknownUnit { .. }
                 | Self::ImplausibleValue { .. }
+                | Self::NoSuchLine { .. }
         )
     }
 
@@ -413,6 +465,40 @@ impl DataError {
             _ => Self::Io { path, source },
         }
     }
+}
+
+/// The text of an error in a sheet: instead of `file:line:column`, it names file, sheet and cell.
+fn in_sheet(path: &Path, sheet: &str, error: &DataError) -> String {
+    let (text, file) = (error.to_string(), path.display().to_string());
+    let Some(rest) = text.strip_prefix(&file).and_then(|rest| rest.strip_prefix(':')) else {
+        return format!("{file}, sheet {}: {text}", quoted(sheet));
+    };
+    let number = |text: &str| text.parse::<usize>().ok();
+    let mut parts = rest.splitn(3, ':');
+    let [first, second, third] = [parts.next(), parts.next(), parts.next()];
+    let row = first.and_then(number);
+    let place = match (row, second.and_then(number), second, third) {
+        (Some(row), Some(column), _, Some(text)) => {
+            format!(", cell {}{row}:{text}", column_letters(column))
+        }
+        (Some(row), None, Some(text), third) => {
+            let rest = third.map(|text| format!(":{text}")).unwrap_or_default();
+            format!(", row {row}:{text}{rest}")
+        }
+        _ => format!(":{rest}"),
+    };
+    format!("{file}, sheet {}{place}", quoted(sheet))
+}
+
+/// The letters by which a spreadsheet names a column, such as `AB` for 28.
+fn column_letters(mut number: usize) -> String {
+    let mut letters = Vec::new();
+    while number > 0 {
+        number -= 1;
+        letters.push(char::from(b'A' + (number % 26) as u8));
+        number /= 26;
+    }
+    letters.iter().rev().collect()
 }
 
 /// Number of names that a message lists; of further names it states the count.
@@ -441,5 +527,43 @@ fn in_unit(unit: &str) -> String {
     match unit {
         "" => String::new(),
         _ => format!(" in {unit}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_in_a_sheet_names_the_cell() {
+        let path = PathBuf::from("a:b/test.xlsx");
+        let cell = DataError::Cell {
+            path: path.clone(),
+            line: 12,
+            column: 28,
+            name: "Kraft: X".to_owned(),
+            text: "n/a".to_owned(),
+            unit: "kN",
+        };
+        let empty = DataError::Empty { path: path.clone() };
+        let row = DataError::RaggedRow { path: path.clone(), line: 3, expected: 2, got: 4 };
+        for (error, text) in [
+            (
+                cell,
+                r#"a:b/test.xlsx, sheet "Blatt 1", cell AB12: "Kraft: X" is "n/a", expected a finite number in kN"#,
+            ),
+            (
+                row,
+                r#"a:b/test.xlsx, sheet "Blatt 1", row 3: has 4 fields, the header has 2; complete the row or remove it"#,
+            ),
+            (
+                empty,
+                r#"a:b/test.xlsx, sheet "Blatt 1": is empty, expected a header line and rows of numbers"#,
+            ),
+        ] {
+            let (path, sheet, error) = (path.clone(), "Blatt 1".to_owned(), Box::new(error));
+            assert_eq!(DataError::InSheet { path, sheet, error }.to_string(), text);
+        }
+        assert_eq!([1, 26, 27, 702, 703].map(column_letters), ["A", "Z", "AA", "ZZ", "AAA"]);
     }
 }

@@ -6,14 +6,14 @@ use std::path::Path;
 
 use csv::{ReaderBuilder, StringRecord, Trim};
 
-use crate::data::DataError;
 use crate::data::budget::{MAX_CELL_BYTES, MAX_COLUMNS, MAX_LINE_BYTES};
 use crate::data::dialect::{Dialect, Separator, comment};
 use crate::data::spelling::{self, Meaning};
 use crate::data::table::CASE_COLUMN;
+use crate::data::{DataError, HeaderLine, ReadSettings};
 
 /// Number of lines that are examined to find separator, header and units.
-const SNIFFED_LINES: usize = 64;
+const SNIFFED_LINES: usize = 256;
 
 /// Number of bytes after which no further line is examined: enough for header, units and first row of
 /// the widest table.
@@ -29,6 +29,8 @@ pub(super) struct Header {
     pub names: Vec<String>,
     /// The cells of a row of units beneath the names; empty if there is no such row.
     pub units: Vec<String>,
+    /// Line of this row.
+    pub units_line: Option<u64>,
 }
 
 /// A line of the file, without the sign of a comment.
@@ -46,14 +48,16 @@ pub(super) struct Line<'a> {
 struct SplitLine<'a> {
     line: Line<'a>,
     cells: Vec<String>,
-    /// Whether no field is a number.
+    /// Whether no field is a number, or more fields name channels than are numbers.
     is_text: bool,
 }
 
 impl<'a> SplitLine<'a> {
     fn new(line: Line<'a>, dialect: Dialect) -> Self {
         let cells = split(line.text, dialect.separator);
-        let is_text = cells.iter().all(|cell| dialect.number(cell).is_none());
+        let n_numbers = cells.iter().filter(|cell| dialect.number(cell).is_some()).count();
+        let n_names = || cells.iter().filter(|cell| is_name(cell)).count();
+        let is_text = n_numbers == 0 || n_names() > n_numbers;
         Self { line, cells, is_text }
     }
 
@@ -154,33 +158,87 @@ pub(super) fn check_cells<'a>(
 
 /// Finds the header, the row of units and the first line of the rows; the latter is `None` if there
 /// is no row.
-pub(super) fn find_header<'a>(lines: &[Line<'a>], dialect: Dialect) -> (Header, Option<Line<'a>>) {
+///
+/// - `settings`: the lines of header and units, as far as the user has said them.
+///
+/// # Errors
+/// [`DataError::NoSuchLine`] if a line that the user has said is not among the first lines, or is
+/// blank.
+pub(super) fn find_header<'a>(
+    path: &Path,
+    lines: &[Line<'a>],
+    dialect: Dialect,
+    settings: &ReadSettings,
+) -> Result<(Header, Option<Line<'a>>), DataError> {
     let split: Vec<SplitLine<'a>> =
         lines.iter().map(|line| SplitLine::new(*line, dialect)).collect();
+    let at_line = |wanted: u64, what: &'static str| {
+        let found = split.iter().find(|line| line.line.number == wanted);
+        found.ok_or_else(|| DataError::NoSuchLine { path: path.to_owned(), line: wanted, what })
+    };
+    let units = settings.units_line.map(|line| at_line(line, "units")).transpose()?;
     let width = width(&split);
     let first_number = split.iter().position(|line| line.has_numbers(width));
-    let Some(names) = header_line(&split, width, first_number) else {
-        let mut plain = split.iter().filter(|line| !line.line.is_comment);
-        let first_number = first_number.and_then(|at| split.get(at));
-        let body = first_number.or_else(|| plain.next()).map(|line| line.line);
-        let line = body.map_or(1, |line| line.number);
-        return (Header::unwritten(line, width), body);
+    let names = match settings.header {
+        None => header_line(&split, width, first_number),
+        Some(HeaderLine::Line(line)) => Some(at_line(line, "the header")?),
+        Some(HeaderLine::None) => None,
     };
+    Ok(match names {
+        Some(names) => below_names(&split, names, units),
+        None => without_names(&split, width, (first_number, units)),
+    })
+}
+
+/// The header of a table whose columns have no names, and the first line of its rows.
+fn without_names<'a>(
+    split: &[SplitLine<'a>],
+    width: usize,
+    (first_number, units): (Option<usize>, Option<&SplitLine<'a>>),
+) -> (Header, Option<Line<'a>>) {
+    let mut plain = split.iter().filter(|line| !line.line.is_comment);
+    let first_number = first_number.and_then(|at| split.get(at));
+    let body = first_number.or_else(|| plain.next()).map(|line| line.line);
+    let line = body.map_or(1, |line| line.number);
+    let header = Header {
+        units: units.map(|line| line.cells.clone()).unwrap_or_default(),
+        units_line: units.map(|line| line.line.number),
+        ..Header::unwritten(line, width)
+    };
+    (header, body)
+}
+
+/// The header in the line of the names, and the first line of the rows below it.
+///
+/// - `units`: the line of the units, if the user has said it; otherwise it is the line beneath the
+///   names if that looks like one.
+fn below_names<'s, 'a>(
+    split: &'s [SplitLine<'a>],
+    names: &SplitLine<'a>,
+    mut units: Option<&'s SplitLine<'a>>,
+) -> (Header, Option<Line<'a>>) {
+    let last = units.map_or(0, |line| line.line.number).max(names.line.number);
     let mut below = split
         .iter()
-        .filter(|line| line.line.number > names.line.number)
+        .filter(|line| line.line.number > last)
         .filter(|line| !line.line.is_comment || names.line.is_comment);
     let mut body = below.next();
-    let mut units = Vec::new();
-    if let Some(line) = body
-        && line.is_text
-        && spelling::is_unit_row(line.cells.iter().map(String::as_str))
+    let is_unit_row = |line: &&SplitLine<'_>| {
+        line.is_text && spelling::is_unit_row(line.cells.iter().map(String::as_str))
+    };
+    if units.is_none()
+        && let Some(line) = body.filter(is_unit_row)
     {
-        units = line.cells.clone();
+        units = Some(line);
         body = below.next();
     }
-    let header =
-        Header { line: names.line.number, is_written: true, names: named(&names.cells), units };
+    let header = Header {
+        line: names.line.number,
+        is_written: true,
+        names: named(&names.cells),
+        units: units.map(|line| line.cells.clone()).unwrap_or_default(),
+        units_line: units.map(|line| line.line.number),
+    };
     (header, body.map(|line| line.line))
 }
 
@@ -254,7 +312,7 @@ impl Header {
             line,
             is_written: false,
             names: named(&vec![String::new(); width + 1]),
-            units: Vec::new(),
+            ..Self::default()
         }
     }
 }

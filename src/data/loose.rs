@@ -4,9 +4,10 @@
 
 use std::path::Path;
 
+use crate::data::velocity_fit::in_body_axes;
 use crate::data::{
-    Channel, ColumnMap, ColumnUse, Columns, DataError, Dialect, Note, Sampling, SeriesError, Table,
-    TimeSeries,
+    Channel, ColumnMap, ColumnUse, Columns, DataError, Dialect, Note, ReadSettings, Sampling,
+    SeriesError, Table, TimeSeries, VelocityAxes, velocity_fit,
 };
 use crate::ranges::{
     ACCELERATION_SAMPLE, ANGLE_SAMPLE, ANGULAR_VELOCITY_SAMPLE, BRAKE_TORQUE, FORCE_SAMPLE,
@@ -151,13 +152,13 @@ pub fn read_trajectory_file(path: &Path, map: Option<&ColumnMap>) -> Result<Load
 /// [`DataError`] as for [`read_force_file`]; [`DataError::MissingColumn`] also if there is no yaw
 /// angle.
 pub fn read_motion_log(path: &Path, map: Option<&ColumnMap>) -> Result<Loaded, DataError> {
-    let table = Table::read(path)?;
-    let columns = Columns::of(&table, map)?;
+    let table = read_table(path, map)?;
+    let columns = columns_of(&table, map)?;
     let has_position = FileKind::Trajectory.first_missing(&columns).is_none();
     if has_position && !columns.by_channel.contains_key(&Channel::Yaw) {
-        return Err(columns.missing(&table, Channel::Yaw, "time, x, y and yaw"));
+        return Err(table.placed(columns.missing(&table, Channel::Yaw, "time, x, y and yaw")));
     }
-    load(&table, columns, FileKind::Trajectory, map.is_some())
+    load(&table, columns, FileKind::Trajectory, map)
 }
 
 /// Reads the torques of brakes and drive at the wheels over time.
@@ -191,9 +192,9 @@ pub fn read_series(
     map: Option<&ColumnMap>,
     kind: FileKind,
 ) -> Result<Loaded, DataError> {
-    let table = Table::read(path)?;
-    let columns = Columns::of(&table, map)?;
-    load(&table, columns, kind, map.is_some())
+    let table = read_table(path, map)?;
+    let columns = columns_of(&table, map)?;
+    load(&table, columns, kind, map)
 }
 
 /// Reads a time-series file whose kind is determined from its columns: a motion if it has
@@ -205,21 +206,48 @@ pub fn read_series(
 /// [`DataError`] as for [`read_force_file`]; a file that is of no kind gives the error for a force
 /// file.
 pub fn read_any_series(path: &Path, map: Option<&ColumnMap>) -> Result<Loaded, DataError> {
-    let table = Table::read(path)?;
-    let columns = Columns::of(&table, map)?;
+    series_of_table(&read_table(path, map)?, map)
+}
+
+/// The time series in a table, of the kind that its columns give.
+///
+/// - `map`: columns that the user has chosen; the others are found by their headers. The table has
+///   been read with its settings.
+///
+/// # Errors
+/// The same as for [`read_any_series`].
+pub fn series_of_table(table: &Table, map: Option<&ColumnMap>) -> Result<Loaded, DataError> {
+    let columns = columns_of(table, map)?;
     let is_complete = |kind: &FileKind| kind.first_missing(&columns).is_none();
     let kind = FileKind::ALL.into_iter().find(is_complete);
-    load(&table, columns, kind.unwrap_or(FileKind::Force), map.is_some())
+    load(table, columns, kind.unwrap_or(FileKind::Force), map)
+}
+
+fn read_table(path: &Path, map: Option<&ColumnMap>) -> Result<Table, DataError> {
+    Table::read_as(path, map.map_or(&ReadSettings::default(), |map| &map.settings))
+}
+
+fn columns_of(table: &Table, map: Option<&ColumnMap>) -> Result<Columns, DataError> {
+    Columns::of(table, map).map_err(|error| table.placed(error))
 }
 
 fn load(
     table: &Table,
     columns: Columns,
     kind: FileKind,
-    is_mapped: bool,
+    map: Option<&ColumnMap>,
+) -> Result<Loaded, DataError> {
+    load_columns(table, columns, kind, map).map_err(|error| table.placed(error))
+}
+
+fn load_columns(
+    table: &Table,
+    columns: Columns,
+    kind: FileKind,
+    map: Option<&ColumnMap>,
 ) -> Result<Loaded, DataError> {
     let (path, line) = (|| table.path().to_owned(), table.header_line());
-    if !table.has_header() && !is_mapped {
+    if !table.has_header() && map.is_none_or(|map| map.iter().next().is_none()) {
         let example = kind.example_map();
         return Err(DataError::NoHeader { path: path(), line, example });
     }
@@ -230,21 +258,34 @@ fn load(
         let (expected, got) = (MIN_ROWS, table.n_rows());
         return Err(DataError::TooFewRows { path: path(), line, expected, got });
     }
+    let settings = map.map(|map| (*map.settings).clone()).unwrap_or_default();
     let mut series = TimeSeries::default();
     for column in columns.by_channel.values() {
-        let values = si_values(table, column)?;
+        let values = si_values(table, column, &settings)?;
         match column.channel {
             Channel::Time => {
                 let time = TimeSeries::new(values);
                 series = time.map_err(|error| out_of_order(table, column, error))?;
                 check_steps(table, column, series.time_s())?;
             }
-            channel => series
-                .insert(channel, values)
-                .map_err(|source| DataError::Series { path: path(), source })?,
+            channel => insert(&mut series, (channel, values), table)?,
         }
     }
-    let Columns { by_channel, notes } = columns;
+    let read_as = settings.velocities.unwrap_or(VelocityAxes::Body);
+    let fit = velocity_fit(&series).filter(|fit| !fit.allows(read_as));
+    if read_as == VelocityAxes::World {
+        let needed = [Channel::Yaw, Channel::Vx, Channel::Vy];
+        if let Some(channel) = needed.into_iter().find(|of| series.get(*of).is_none()) {
+            let needed = "velocities in world axes: vx, vy and yaw";
+            return Err(columns.missing(table, channel, needed));
+        }
+        if let Some([vx, vy]) = in_body_axes(&series) {
+            insert(&mut series, (Channel::Vx, vx), table)?;
+            insert(&mut series, (Channel::Vy, vy), table)?;
+        }
+    }
+    let Columns { by_channel, mut notes } = columns;
+    notes.extend(fit.map(|fit| Note::Velocities { fit, read_as }));
     let columns = by_channel.into_values().collect();
     Ok(Loaded {
         kind,
@@ -256,11 +297,39 @@ fn load(
     })
 }
 
-fn si_values(table: &Table, column: &ColumnUse) -> Result<Vec<f64>, DataError> {
-    let mut values = table.numbers(column.number - 1, column.unit.symbol)?;
+fn insert(
+    series: &mut TimeSeries,
+    (channel, values): (Channel, Vec<f64>),
+    table: &Table,
+) -> Result<(), DataError> {
+    let path = || table.path().to_owned();
+    series.insert(channel, values).map_err(|source| DataError::Series { path: path(), source })
+}
+
+/// The numbers of a channel in SI units and in the axes of this program.
+fn si_values(
+    table: &Table,
+    column: &ColumnUse,
+    settings: &ReadSettings,
+) -> Result<Vec<f64>, DataError> {
+    let mut sum: Option<Vec<f64>> = None;
+    for term in &column.terms {
+        let mut values = table.numbers(term.number.saturating_sub(1), term.unit.symbol)?;
+        values.iter_mut().for_each(|value| *value = term.sign * term.unit.to_si(*value));
+        match &mut sum {
+            None => sum = Some(values),
+            Some(sum) => sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += value),
+        }
+    }
+    let mut values = sum.unwrap_or_else(|| vec![0.0; table.n_rows()]);
+    let shift_s = settings.time_shift_s.filter(|_| column.channel == Channel::Time);
+    let is_mirrored = settings.y_to_right && changes_sign_with_y(column.channel);
     let range = samples_range(column.channel);
     for (row_idx, value) in values.iter_mut().enumerate() {
-        *value = column.unit.to_si(*value);
+        *value += shift_s.unwrap_or(0.0);
+        if is_mirrored {
+            *value = 0.0 - *value; // No negative zero.
+        }
         if let Some(range) = range.filter(|range| !range.contains(*value)) {
             return Err(DataError::ImplausibleValue {
                 path: table.path().to_owned(),
@@ -273,6 +342,35 @@ fn si_values(table: &Table, column: &ColumnUse) -> Result<Vec<f64>, DataError> {
         }
     }
     Ok(values)
+}
+
+/// Whether a channel has the other sign in axes whose y points to the right and whose z points down
+/// (SAE J670). A roll is the same in both.
+fn changes_sign_with_y(channel: Channel) -> bool {
+    use Channel::{
+        Ay, BulletVy, BulletYaw, BulletYawRate, Fy, FyBody, Mz, Steer, SteerFl, SteerFr,
+        SteeringWheel, TargetVy, TargetYaw, TargetYawRate, Vy, Y, Yaw, YawRate,
+    };
+    matches!(
+        channel,
+        Y | Yaw
+            | Vy
+            | YawRate
+            | Ay
+            | Fy
+            | FyBody
+            | Mz
+            | Steer
+            | SteerFl
+            | SteerFr
+            | SteeringWheel
+            | TargetVy
+            | TargetYaw
+            | TargetYawRate
+            | BulletVy
+            | BulletYaw
+            | BulletYawRate
+    )
 }
 
 /// Checks the time between the samples.
@@ -289,7 +387,7 @@ fn check_steps(table: &Table, column: &ColumnUse, time_s: &[f64]) -> Result<(), 
 }
 
 /// The values that the samples of a channel may have; `None` for a quantity that no channel has.
-/// Values that are merely unusual are flagged by [`crate::data::check_series`].
+/// Values that are merely unusual are flagged by [`crate::data::check_file`].
 fn samples_range(channel: Channel) -> Option<Range> {
     Some(match (channel, channel.quantity()) {
         (Channel::Steer | Channel::SteerFl | Channel::SteerFr, _) => STEER_ANGLE,

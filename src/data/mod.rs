@@ -24,11 +24,13 @@ mod dialect;
 mod error;
 mod file;
 mod force_history;
+mod foreign;
 mod header;
 mod json;
 mod loose;
 mod open;
 mod quality;
+mod read_settings;
 mod rows;
 mod series;
 mod spelling;
@@ -36,19 +38,24 @@ mod table;
 mod text;
 mod toml_file;
 mod toml_table;
+mod velocity_fit;
+mod workbook;
 pub mod write;
 
 pub use attributes::{Attributes, Value};
 pub use budget::{
     MAX_CASE_CELLS, MAX_CASES, MAX_CASES_BYTES, MAX_CELL_BYTES, MAX_COLUMNS, MAX_DATASET_BYTES,
     MAX_LINE_BYTES, MAX_MODEL_BYTES, MAX_RESULTS_BYTES, MAX_SETTINGS_BYTES, MAX_TABLE_BYTES,
+    MAX_WORKBOOK_BYTES,
 };
 pub use case_attributes::{AttributeColumn, ForceAttributes, StruckSide, TrajectoryAttributes};
 pub use case_braking::CaseBraking;
 pub use channel::Channel;
-pub use column_map::{ColumnMap, ColumnRef, ColumnSource, MapError};
+pub use column_map::{ColumnMap, ColumnRef, ColumnSource, MapError, SignedColumn};
 pub(crate) use columns::Columns;
-pub use columns::{ColumnProposal, ColumnUse, Note, map_from_proposals, propose_columns};
+pub use columns::{
+    ColumnProposal, ColumnUse, Note, Term, map_from_proposals, proposals, propose_columns,
+};
 pub use contact::{
     CONTACT_SHARE_OF_PEAK, ContactOutside, MIN_GAP_S, TIME_TOLERANCE_S, check_contact_within,
     contact_interval, contact_pulses,
@@ -61,12 +68,15 @@ pub use force_history::{CumulativeImpulse, ForceAxes, ForceHistory, Sampling};
 pub(crate) use json::{finite_or_null, finite_or_nulls, null_as_nan, nulls_as_nan};
 pub use loose::{
     FileKind, Loaded, read_any_series, read_force_file, read_motion_log, read_series,
-    read_steer_file, read_trajectory_file, read_wheels_file,
+    read_steer_file, read_trajectory_file, read_wheels_file, series_of_table,
 };
 pub use open::{Opened, open};
-pub use quality::{Flag, FlagKind, Severity, check_case, check_series};
+pub use quality::{Flag, FlagKind, Severity, check_case, check_file, check_series};
+pub use read_settings::{HeaderLine, ReadSettings, SheetRef, VelocityAxes};
 pub use series::{SeriesError, TimeSeries};
 pub use table::Table;
 pub use toml_file::{TomlError, TomlFile};
 pub use toml_table::TomlTable;
+pub use velocity_fit::{VelocityFit, velocity_fit};
+pub use workbook::Sheet;
 pub use write::{Existing, check_target, write_atomically, write_series_csv};

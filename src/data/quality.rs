@@ -9,9 +9,11 @@
 use std::fmt;
 
 use crate::data::{
-    Case, Channel, DatasetKind, ForceAxes, ForceHistory, Sampling, TimeSeries, contact_interval,
+    Case, Channel, DatasetKind, ForceAxes, ForceHistory, Loaded, Sampling, TimeSeries,
+    contact_interval,
 };
 use crate::numerics::quantile_of_sorted;
+use crate::units::significant;
 
 /// Momentum residual above which a warning is raised, as a share of the impulse.
 const MOMENTUM_RESIDUAL: f64 = 0.01;
@@ -40,6 +42,12 @@ const DRIFT_MIN_SAMPLES: usize = 5;
 /// Force above which the unit is doubtful, N: cars in tests against a fixed barrier at 56 km/h have
 /// peaks below 1 MN.
 const IMPLAUSIBLE_FORCE_N: f64 = 2e6;
+/// Peak force below which the unit is doubtful, N: bumpers of cars at walking speed touch with more.
+/// A force in kN that is read in N is below it up to 1 MN.
+const SMALL_FORCE_N: f64 = 1e3;
+/// Impulses outside of which the units of force and time are doubtful, N s. They change the velocity
+/// of a car of 1.5 t by 0.2 km/h and by 480 km/h.
+const PLAUSIBLE_IMPULSE_N_S: [f64; 2] = [100.0, 2e5];
 /// Force at the end of the record above which the vehicles have not separated, as a share of the
 /// peak.
 const NOT_SEPARATED: f64 = 0.01;
@@ -65,6 +73,10 @@ pub enum FlagKind {
     Drift,
     /// Peak force, N.
     ImplausibleForce,
+    /// Peak force, N, which is far below that of a collision. The limit is the smallest one.
+    SmallForce,
+    /// Impulse, N s, which no collision of cars has. The limit is the smallest or the largest one.
+    ImplausibleImpulse,
     /// Duration of the contact, s.
     LongContact,
     /// The force is zero throughout; the value is the peak, N.
@@ -86,6 +98,8 @@ impl FlagKind {
             Self::Spike => "spike",
             Self::Drift => "drift",
             Self::ImplausibleForce => "force?",
+            Self::SmallForce => "small",
+            Self::ImplausibleImpulse => "impulse?",
             Self::LongContact => "long",
             Self::NoForce => "no force",
             Self::NotSeparated => "cut",
@@ -168,6 +182,32 @@ pub fn check_series(series: &TimeSeries, sampling: Sampling) -> Vec<Flag> {
     flags
 }
 
+/// Checks a single file, whose force may be in another unit than it was read in.
+///
+/// - returns the findings of [`check_series`], and whether peak and impulse are those of a collision
+///   of cars.
+pub fn check_file(loaded: &Loaded) -> Vec<Flag> {
+    let sampling = loaded.force_sampling();
+    let mut flags = check_series(&loaded.series, sampling);
+    let force = ForceHistory::from_series(&loaded.series, sampling).ok();
+    let peak = force.as_ref().and_then(ForceHistory::peak).filter(|(peak_n, _)| *peak_n > 0.0);
+    let (Some(force), Some((peak_n, peak_at))) = (force, peak) else {
+        return flags;
+    };
+    let stated = |kind, value, limit| Flag { value, limit, ..stated(kind, Severity::Warning) };
+    if peak_n < SMALL_FORCE_N {
+        flags.push(stated(FlagKind::SmallForce, peak_n, SMALL_FORCE_N).at(peak_at));
+    } else {
+        let [x, y] = force.impulse_n_s();
+        let (impulse, [low, high]) = (x.hypot(y), PLAUSIBLE_IMPULSE_N_S);
+        if !(low..=high).contains(&impulse) {
+            let limit = if impulse < low { low } else { high };
+            flags.push(stated(FlagKind::ImplausibleImpulse, impulse, limit));
+        }
+    }
+    flags
+}
+
 impl Flag {
     /// A flag if the value exceeds the limit.
     fn beyond(kind: FlagKind, severity: Severity, value: f64, limit: f64) -> Option<Self> {
@@ -216,6 +256,19 @@ impl fmt::Display for Flag {
                 "peak force {:.2} MN, limit {} MN; check the unit",
                 value / 1e6,
                 limit / 1e6
+            ),
+            FlagKind::SmallForce => write!(
+                f,
+                "peak force {} N, less than cars have that touch at walking speed ({limit} N); \
+                 is the column in kN?",
+                significant(value)
+            ),
+            FlagKind::ImplausibleImpulse => write!(
+                f,
+                "impulse {} N s, {} {limit} N s of any collision of cars; check the units \
+                 of force and time",
+                significant(value),
+                if value < limit { "below the" } else { "above the" }
             ),
             FlagKind::LongContact => {
                 write!(f, "contact takes {value:.1} s, limit {limit} s; check the unit of time")

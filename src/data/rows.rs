@@ -8,7 +8,7 @@ use std::path::Path;
 use csv::{Reader, ReaderBuilder, StringRecord};
 
 use crate::data::DataError;
-use crate::data::dialect::{Separator, comment};
+use crate::data::dialect::{Dialect, Separator, comment};
 use crate::data::header::check_cells;
 
 /// The rows of a table.
@@ -21,6 +21,8 @@ pub(super) struct Rows {
     /// Offset in the text at which each row starts. The largest file that is read has fewer than
     /// 2³² bytes in UTF-8 too.
     starts: Vec<u32>,
+    /// Number of rows with text to the right of the last column.
+    n_with_text_beyond: usize,
 }
 
 impl Rows {
@@ -29,17 +31,20 @@ impl Rows {
     /// - `(body, first_line)`: the offset at which the rows begin, and the number of this line.
     ///
     /// # Errors
-    /// [`DataError::RaggedRow`] if a row does not have `n_columns` fields, and
+    /// [`DataError::RaggedRow`] if a row does not have `n_columns` fields, except for text to the
+    /// right of them, and
     /// [`DataError::LongCell`] if a cell is too long.
     pub(super) fn read(
         path: &Path,
         text: String,
         (body, first_line): (usize, u64),
-        (separator, n_columns): (Separator, usize),
+        (dialect, n_columns): (Dialect, usize),
     ) -> Result<Self, DataError> {
         let source = text.get(body..).unwrap_or_default();
+        let separator = dialect.separator;
         let mut reader = reader(separator, source);
         let (mut starts, mut cells) = (Vec::new(), StringRecord::new());
+        let mut n_with_text_beyond = 0;
         while reader.read_record(&mut cells).map_err(|error| DataError::io(path, error.into()))? {
             if cells.iter().all(|cell| cell.trim().is_empty())
                 || cells.get(0).is_some_and(|cell| comment(cell).is_some())
@@ -53,13 +58,20 @@ impl Rows {
             };
             check_cells(path, line(), cells.iter())?;
             let got = n_fields(&cells, separator, n_columns);
-            if got != n_columns {
+            if got > n_columns && is_text_beyond(&cells, dialect, n_columns) {
+                n_with_text_beyond += 1;
+            } else if got != n_columns {
                 let (path, line) = (path.to_owned(), line());
                 return Err(DataError::RaggedRow { path, line, expected: n_columns, got });
             }
             starts.push((body + start) as u32);
         }
-        Ok(Self { text, separator, n_columns, starts })
+        Ok(Self { text, separator, n_columns, starts, n_with_text_beyond })
+    }
+
+    /// Number of rows with text to the right of the last column.
+    pub(super) fn n_with_text_beyond(&self) -> usize {
+        self.n_with_text_beyond
     }
 
     pub(super) fn len(&self) -> usize {
@@ -140,6 +152,17 @@ fn n_fields(cells: &StringRecord, separator: Separator, expected: usize) -> usiz
         _ if ends_in_separator(cells, expected) => expected,
         _ => cells.len(),
     }
+}
+
+/// Whether there are only text and blank fields to the right of the last column, and no number that
+/// could belong to a column.
+fn is_text_beyond(cells: &StringRecord, dialect: Dialect, n_columns: usize) -> bool {
+    let is_kept = |cell: &&str| dialect.separator != Separator::Blanks || !cell.is_empty();
+    let mut beyond = cells.iter().filter(is_kept).skip(n_columns).map(str::trim);
+    let is_text = |cell: &str| {
+        dialect.number(cell).is_none() && !cell.starts_with(|c: char| c.is_ascii_digit())
+    };
+    beyond.all(is_text)
 }
 
 /// Whether the row has exactly one field too many, which is empty and comes last.

@@ -97,6 +97,25 @@ pub(crate) fn channel(name: &str) -> Option<Channel> {
     own_channel(name).or_else(|| CHANNELS.get(&letters_and_digits(name)).copied())
 }
 
+/// The channel that words in a header suggest, though they do not say the whole: `Kraft [kN]` is a
+/// force, of unknown direction. A dialog proposes it; no file is read so without being asked.
+pub(crate) fn suggestion(header: &str) -> Option<Channel> {
+    let lower = header.to_lowercase();
+    let name = lower.split(OPENING).next().unwrap_or_default();
+    let has = |words: &[&str]| words.iter().any(|word| name.contains(word));
+    let last = name.trim_end().rsplit(|c: char| !c.is_alphanumeric()).next();
+    let is_lateral = has(&["quer", "later", "seit"]) || last == Some("y");
+    let channels = [
+        (&["zeit", "time"][..], [Channel::Time, Channel::Time]),
+        (&["drehrate", "gierrate", "yaw rate", "giergeschwindigkeit"], [Channel::YawRate; 2]),
+        (&["kraft", "force"], [Channel::Fx, Channel::Fy]),
+        (&["geschwindigkeit", "speed", "velocity"], [Channel::Vx, Channel::Vy]),
+        (&["weg", "position", "displacement"], [Channel::X, Channel::Y]),
+    ];
+    let (_, [along, across]) = channels.into_iter().find(|(words, _)| has(words))?;
+    Some(if is_lateral { across } else { along })
+}
+
 /// The unit of `quantity` with this spelling; `None` if there is none.
 pub(crate) fn unit(quantity: Quantity, text: &str) -> Option<Unit> {
     unit_of_key(quantity, &checked_unit_key(text)?)
@@ -308,6 +327,23 @@ mod tests {
         }
         for header in ["case", "v", "p_kpa", "wheel slip", "", "°", "x1", "ratio [-]"] {
             assert_eq!(meaning(header), Meaning::Unknown, "{header}");
+        }
+    }
+
+    #[test]
+    fn words_suggest_a_channel() {
+        for (header, channel) in [
+            ("Kraft [kN]", Some(Channel::Fx)),
+            ("Kraft quer [kN]", Some(Channel::Fy)),
+            ("Kraft_Y", Some(Channel::Fy)),
+            ("Velocity [m/s]", Some(Channel::Vx)),
+            ("Messzeit", Some(Channel::Time)),
+            ("Weg (m)", Some(Channel::X)),
+            ("Geschwindigkeit", Some(Channel::Vx)),
+            ("Gierrate gefiltert", Some(Channel::YawRate)),
+            ("Temperatur", None),
+        ] {
+            assert_eq!(suggestion(header), channel, "{header}");
         }
     }
 

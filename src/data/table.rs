@@ -4,17 +4,27 @@
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-use crate::data::DataError;
+use sha2::{Digest, Sha256};
+
 use crate::data::budget::{MAX_CASES_BYTES, MAX_LINE_BYTES, MAX_TABLE_BYTES};
 use crate::data::dialect::{Dialect, Separator};
-use crate::data::header::{Header, check_fields, find_header, first_lines};
+use crate::data::foreign::refuse_known_text;
+use crate::data::header::{Header, Line, check_fields, find_header, first_lines};
 use crate::data::rows::Rows;
 use crate::data::spelling;
 use crate::data::text::{Text, read_text};
+use crate::data::workbook::{Sheet, is_archive, read_sheet};
+use crate::data::{DataError, ReadSettings};
 
 /// The column that holds the names in a table of cases; a header with it is recognised by this
 /// name.
 pub(crate) const CASE_COLUMN: &str = "case";
+
+/// Number of lines of which a dialog shows the beginning.
+const SHOWN_LINES: usize = 40;
+
+/// Number of characters of a line that a dialog shows.
+const SHOWN_CHARS: usize = 120;
 
 /// A delimited text file that was read as a table.
 #[derive(Debug, Clone)]
@@ -24,10 +34,14 @@ pub struct Table {
     dialect: Dialect,
     header: Header,
     rows: Rows,
+    /// The numbers and the beginnings of the first lines.
+    beginning: Vec<(u64, String)>,
+    /// The sheet of a workbook.
+    sheet: Option<Sheet>,
 }
 
 impl Table {
-    /// Reads a file as a table. Its encoding is UTF-8, UTF-16 or Windows-1252, its separator comma,
+    /// Reads a file as a table: a text file or a sheet of an Excel workbook. Its encoding is UTF-8, UTF-16 or Windows-1252, its separator comma,
     /// semicolon, tab or blanks, its decimal sign a point or a comma. Comments, text above the
     /// header and a row of units are recognised.
     ///
@@ -35,7 +49,30 @@ impl Table {
     /// [`DataError`] if the file cannot be read, is not text or is empty, or if a row does not have
     /// the number of fields of the header.
     pub fn read(path: &Path) -> Result<Self, DataError> {
-        Self::parse(path, read_text(path, MAX_TABLE_BYTES)?)
+        Self::read_as(path, &ReadSettings::default())
+    }
+
+    /// Reads a file as a table, with the header, the units and the sheet where the settings say.
+    ///
+    /// # Errors
+    /// The same as for [`Table::read`], and [`DataError::NoSuchLine`] if there is nothing in a line
+    /// that the settings name.
+    pub fn read_as(path: &Path, settings: &ReadSettings) -> Result<Self, DataError> {
+        let text = match read_text(path, MAX_TABLE_BYTES) {
+            Err(DataError::NotText { .. }) if is_archive(path)? => {
+                let (text, sheet) = read_sheet(path, settings.sheet.as_ref())?;
+                let table = Self::parse(path, (text, Some(Separator::Tab)), settings);
+                let table = table.map_err(|error| in_sheet(path, &sheet.name, error))?;
+                return Ok(Self { sheet: Some(sheet), ..table });
+            }
+            text => text?,
+        };
+        if let Some(sheet) = &settings.sheet {
+            let (path, wanted, found) = (path.to_owned(), sheet.to_string(), Vec::new());
+            return Err(DataError::NoSheet { path, wanted, found });
+        }
+        refuse_known_text(path, &text.text)?;
+        Self::parse(path, (text, None), settings)
     }
 
     /// Reads a table of cases. It is held cell by cell, so that its size has a lower limit.
@@ -43,10 +80,14 @@ impl Table {
     /// # Errors
     /// The same as for [`Table::read`].
     pub(crate) fn read_cases(path: &Path) -> Result<Self, DataError> {
-        Self::parse(path, read_text(path, MAX_CASES_BYTES)?)
+        Self::parse(path, (read_text(path, MAX_CASES_BYTES)?, None), &ReadSettings::default())
     }
 
-    fn parse(path: &Path, Text { mut text, encoding }: Text) -> Result<Self, DataError> {
+    fn parse(
+        path: &Path,
+        (Text { mut text, encoding }, separator): (Text, Option<Separator>),
+        settings: &ReadSettings,
+    ) -> Result<Self, DataError> {
         check_line_lengths(path, &text)?;
         let dialect = {
             let lines = first_lines(&text);
@@ -56,17 +97,19 @@ impl Table {
                 let path = path.to_owned();
                 return Err(DataError::Empty { path });
             }
-            Dialect::sniff(&texts)
+            Dialect::sniff(&texts, separator)
         };
         if dialect.separator == Separator::Blanks && text.contains('\t') {
             text = text.replace('\t', " ");
         }
         let lines = first_lines(&text);
         check_fields(path, &lines, dialect.separator)?;
-        let (header, body) = find_header(&lines, dialect);
+        let (header, body) = find_header(path, &lines, dialect, settings)?;
         let body = body.map_or((text.len(), 0), |body| (body.start, body.number));
-        let rows = Rows::read(path, text, body, (dialect.separator, header.names.len()))?;
-        Ok(Self { path: path.to_owned(), encoding, dialect, header, rows })
+        let beginning = lines.iter().take(SHOWN_LINES).map(|line| shown_line(line)).collect();
+        let rows = Rows::read(path, text, body, (dialect, header.names.len()))?;
+        let (path, sheet) = (path.to_owned(), None);
+        Ok(Self { path, encoding, dialect, header, rows, beginning, sheet })
     }
 
     /// Path of the file.
@@ -106,6 +149,53 @@ impl Table {
     pub fn unit_text(&self, column_idx: usize) -> Option<&str> {
         let unit = self.header.units.get(column_idx)?;
         spelling::unit_text(unit)
+    }
+
+    /// The sheet from which the table was read; `None` for a text file.
+    pub fn sheet(&self) -> Option<&Sheet> {
+        self.sheet.as_ref()
+    }
+
+    /// An error in this table. In a sheet its place is the cell.
+    pub(crate) fn placed(&self, error: DataError) -> DataError {
+        match &self.sheet {
+            Some(sheet) => in_sheet(&self.path, &sheet.name, error),
+            None => error,
+        }
+    }
+
+    /// Line of the row of units; `None` if there is none.
+    pub fn units_line(&self) -> Option<u64> {
+        self.header.units_line
+    }
+
+    /// The first lines of the file that are not blank: their numbers, counted from 1, and what they
+    /// begin with.
+    pub fn beginning(&self) -> &[(u64, String)] {
+        &self.beginning
+    }
+
+    /// Number of rows with text to the right of the last column, which is not read.
+    pub(crate) fn n_rows_with_text_beyond(&self) -> usize {
+        self.rows.n_with_text_beyond()
+    }
+
+    /// A digest of the names and units of the columns, the same for every file with this header. In
+    /// a file without a header it is of the path and the number of columns.
+    pub fn fingerprint(&self) -> String {
+        let mut digest = Sha256::new();
+        let mut add = |text: &str| {
+            digest.update(text.as_bytes());
+            digest.update([0]);
+        };
+        match self.header.is_written {
+            true => self.header.names.iter().chain(&self.header.units).for_each(|name| add(name)),
+            false => {
+                add(&self.path.to_string_lossy());
+                add(&self.header.names.len().to_string());
+            }
+        }
+        digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
     }
 
     /// Number of rows below the header.
@@ -159,6 +249,16 @@ impl Table {
         }
         Ok(numbers)
     }
+}
+
+fn in_sheet(path: &Path, sheet: &str, error: DataError) -> DataError {
+    let (path, sheet, error) = (path.to_owned(), sheet.to_owned(), Box::new(error));
+    DataError::InSheet { path, sheet, error }
+}
+
+/// The number of a line and as much of it as is shown.
+fn shown_line(line: &Line<'_>) -> (u64, String) {
+    (line.number, line.text.trim_end().replace('\t', "  ").chars().take(SHOWN_CHARS).collect())
 }
 
 /// Refuses a text with a line that is longer than any line of a table.

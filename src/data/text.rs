@@ -6,6 +6,7 @@ use std::path::Path;
 
 use encoding_rs::{Encoding, UTF_8, WINDOWS_1252};
 
+use crate::data::foreign::refuse_known_binary;
 use crate::data::{DataError, open_file};
 
 /// Number of bytes that are checked for binary content before the rest of the file is read.
@@ -31,6 +32,7 @@ pub(crate) fn read_text(path: &Path, limit: u64) -> Result<Text, DataError> {
     let (mut file, bytes) = open_file(path, u64::MAX)?;
     let mut content = Vec::with_capacity(usize::try_from(bytes.min(limit)).unwrap_or(0));
     (&mut file).take(FIRST_BLOCK_BYTES).read_to_end(&mut content).map_err(to_error)?;
+    refuse_known_binary(path, &content)?;
     refuse_binary(path, &content)?;
     if bytes > limit {
         return Err(DataError::TooLarge { path: path.to_owned(), bytes, limit });

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::collision::Scenario;
 use crate::data::{
-    ColumnMap, DataError, Dataset, Flag, Loaded, Opened, Outcome, TomlFile, check_case,
-    check_series, open, propose_columns, read_any_series,
+    ColumnMap, DataError, Dataset, Flag, Loaded, Opened, Outcome, TomlFile, check_case, check_file,
+    open, propose_columns, read_any_series,
 };
 use crate::error_chain;
 use crate::study::question::progress_of;
@@ -134,7 +134,7 @@ fn checked_dataset(dataset: Dataset) -> CheckedItem {
 }
 
 fn checked_file(path: &Path, loaded: Loaded) -> CheckedItem {
-    let flags = check_series(&loaded.series, loaded.force_sampling());
+    let flags = check_file(&loaded);
     CheckedItem { path: path.to_owned(), content: CheckedContent::File(Arc::new(loaded), flags) }
 }
 

@@ -106,8 +106,9 @@ fn bad_force_files_are_refused_with_their_place() {
         ),
         (
             b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR",
-            "f.csv: is not text (byte 0x00 at offset 8); export it as CSV",
+            "f.csv: is a picture (PNG); a curve has to be given as numbers, as CSV",
         ),
+        (b"unknown\x07\0\0", "f.csv: is not text (byte 0x07 at offset 7); export it as CSV"),
         (
             b"time_s,fx_n,fy_n\n0,1,1\n0.1,1e9,1\n",
             r#"f.csv:3:2: "fx_n" is 1e9 N, expected -2e7 to 2e7 N (heavy trucks against rigid barriers reach a few MN); check the unit of the column"#,

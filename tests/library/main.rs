@@ -8,6 +8,7 @@ mod case_file;
 mod data_bad_input;
 mod data_budgets;
 mod data_dialects;
+mod data_import;
 mod data_quality;
 mod data_shipped;
 mod data_writes;

@@ -96,7 +96,7 @@ fn print_file(out: &mut dyn Write, file: &FileReport) -> io::Result<()> {
         let stated = if column.unit_is_stated { "" } else { "assumed" };
         vec![
             String::new(),
-            column.column.to_string(),
+            if column.column > 0 { column.column.to_string() } else { String::new() },
             column.name.clone(),
             column.channel.to_owned(),
             column.unit.to_owned(),

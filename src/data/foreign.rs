@@ -1,0 +1,121 @@
+//! Recognises files that are not read, by their first bytes or lines, so that the user learns what
+//! they are and what to do instead of being told of a control character or a number of fields.
+
+use std::path::Path;
+
+use crate::data::DataError;
+
+/// Number of lines that are examined for the marks of a solver's output.
+const EXAMINED_LINES: usize = 60;
+
+/// What to do with a program that measures or simulates.
+const EXPORT: &str = "export the channels over time as CSV";
+const EXPORT_FORCE: &str = "export the force over time as CSV (time, x, y)";
+const EXPORT_MOTION: &str = "export the motion of a node over time as CSV (time, x, y, yaw)";
+const AS_WORKBOOK: &str = "save the sheet as .xlsx or as CSV";
+
+/// The first bytes of formats that are not read: the bytes, what they are, and what to do.
+const MAGIC: [(&[u8], &str, &str); 26] = [
+    (b"MATLAB 7.3", "a MATLAB file", "save the signals with writetable as CSV"),
+    (b"MATLAB 5.0", "a MATLAB file", "save the signals with writetable as CSV"),
+    (b"\x89HDF\r\n\x1a\n", "an HDF5 file", EXPORT),
+    (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1", "an old Office document (.xls)", AS_WORKBOOK),
+    (b"%PDF", "a PDF document", "take the table from the program that made it, as CSV"),
+    (b"\x89PNG", "a picture (PNG)", "a curve has to be given as numbers, as CSV"),
+    (b"\xff\xd8\xff", "a picture (JPEG)", "a curve has to be given as numbers, as CSV"),
+    (b"GIF8", "a picture (GIF)", "a curve has to be given as numbers, as CSV"),
+    (b"II*\0", "a picture (TIFF)", "a curve has to be given as numbers, as CSV"),
+    (b"MM\0*", "a picture (TIFF)", "a curve has to be given as numbers, as CSV"),
+    (b"RIFF", "a film, sound or picture (RIFF)", "a curve has to be given as numbers, as CSV"),
+    (b"\x1f\x8b", "a compressed file (gzip)", "unpack it"),
+    (b"BZh", "a compressed file (bzip2)", "unpack it"),
+    (b"\xfd7zXZ\0", "a compressed file (xz)", "unpack it"),
+    (b"\x28\xb5\x2f\xfd", "a compressed file (zstd)", "unpack it"),
+    (b"7z\xbc\xaf\x27\x1c", "an archive (7z)", "unpack it and open the files in it"),
+    (b"Rar!", "an archive (RAR)", "unpack it and open the files in it"),
+    (b"SQLite format 3\0", "an SQLite database", EXPORT),
+    (b"PAR1", "a Parquet file", EXPORT),
+    (b"ARROW1", "an Arrow file", EXPORT),
+    (b"\x93NUMPY", "a NumPy file", "save it with numpy.savetxt as CSV"),
+    (b"TDSm", "a TDMS file of LabVIEW", EXPORT),
+    (b"MDF     ", "a measurement file (MDF)", EXPORT),
+    (b"LOGG", "a bus log of Vector (BLF)", EXPORT),
+    (b"\x7fELF", "a program", "is it the right file?"),
+    (b"{\\rtf", "a text document (RTF)", "save the table as CSV"),
+];
+
+/// Beginnings of the first line of text formats that are not read.
+const FIRST_LINES: [(&str, &str, &str); 5] = [
+    ("<?xml", "an XML file", EXPORT),
+    ("<html", "a web page", "save the table as CSV"),
+    ("<!doctype", "a web page", "save the table as CSV"),
+    ("*keyword", "an LS-DYNA input deck", "run it, and export its results as CSV"),
+    ("{", "a JSON file", EXPORT),
+];
+
+/// Refuses a binary format that is known and not read.
+///
+/// - `first`: the first bytes of the file.
+///
+/// # Errors
+/// [`DataError::OtherFormat`] with what the file is.
+pub(crate) fn refuse_known_binary(path: &Path, first: &[u8]) -> Result<(), DataError> {
+    let name = path.file_name().map(|name| name.to_string_lossy().to_lowercase());
+    let is_named = |start: &str| name.as_ref().is_some_and(|name| name.starts_with(start));
+    let is_binary = first.contains(&0);
+    let known = MAGIC.into_iter().find(|(bytes, ..)| first.starts_with(bytes));
+    let solver = match () {
+        () if is_binary && is_named("binout") => Some("LS-DYNA results (binout)"),
+        () if is_binary && is_named("d3plot") => Some("LS-DYNA results (d3plot)"),
+        () => None,
+    };
+    let known = known.map(|(_, format, remedy)| (format, remedy));
+    match known.or(solver.map(|format| (format, EXPORT))) {
+        Some((format, remedy)) => Err(other(path, format, remedy)),
+        None => Ok(()),
+    }
+}
+
+/// Refuses a text format that is known and not read.
+///
+/// # Errors
+/// [`DataError::OtherFormat`] with what the file is.
+pub(crate) fn refuse_known_text(path: &Path, text: &str) -> Result<(), DataError> {
+    let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+    let first = lines.clone().next().unwrap_or_default().to_lowercase();
+    let known = FIRST_LINES.into_iter().find(|(start, ..)| first.starts_with(start));
+    if let Some((_, format, remedy)) = known {
+        return Err(other(path, format, remedy));
+    }
+    match lines.by_ref().take(EXAMINED_LINES).find_map(solver_output) {
+        Some((format, remedy)) => Err(other(path, format, remedy)),
+        None => Ok(()),
+    }
+}
+
+/// The output of LS-DYNA to which a line belongs, and what to do with it.
+fn solver_output(line: &str) -> Option<(&'static str, &'static str)> {
+    let line = line.to_lowercase();
+    let closed: String = line.chars().filter(|c| !c.is_whitespace()).collect();
+    let words: Vec<&str> = line.split_whitespace().collect();
+    let side =
+        words.first().is_some_and(|word| ["slave", "master", "surfa", "surfb"].contains(word));
+    if side && words.contains(&"time") && words.contains(&"x") && words.contains(&"y") {
+        return Some(("an LS-DYNA rcforc file", EXPORT_FORCE));
+    }
+    let titles = [
+        ("nodalprintoutfortimestep", "an LS-DYNA nodout file", EXPORT_MOTION),
+        ("nodalforcegroupoutput", "an LS-DYNA nodfor file", EXPORT_FORCE),
+        ("rigidbodymotionattime", "an LS-DYNA rbdout file", EXPORT_MOTION),
+        ("rigidwallforces", "an LS-DYNA rwforc file", EXPORT_FORCE),
+        ("dtofcyclecontrolledby", "an LS-DYNA glstat file", EXPORT),
+    ];
+    // The titles are written with blanks between the letters.
+    let title = titles.into_iter().find(|(title, ..)| closed.contains(title));
+    title.map(|(_, format, remedy)| (format, remedy))
+}
+
+/// The error for a file that is recognised and not read.
+pub(crate) fn other(path: &Path, format: &'static str, remedy: &'static str) -> DataError {
+    DataError::OtherFormat { path: path.to_owned(), format, remedy }
+}

@@ -1,0 +1,161 @@
+//! How a file is read, apart from which column is which: sheet, header and units, clock and axes.
+//! In the text of a [`ColumnMap`](crate::data::ColumnMap) each of them is a part of its own, such as
+//! `header=5` or `shift=-12:ms`.
+
+use std::fmt;
+
+use crate::data::{MapError, spelling};
+use crate::ranges::INSTANT;
+use crate::units::Quantity;
+
+/// The sheet of a workbook from which a table is read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum SheetRef {
+    /// The number of the sheet, counted from 1.
+    Number(usize),
+    /// The name of the sheet.
+    Name(String),
+}
+
+/// Where the names of the columns stand.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HeaderLine {
+    /// In this line, counted from 1.
+    Line(u64),
+    /// Nowhere: the file begins with numbers.
+    None,
+}
+
+/// The axes in which a file gives the velocities `vx` and `vy`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum VelocityAxes {
+    /// Heading axes of the vehicle: x forward, y left.
+    Body,
+    /// World axes, in which the positions are given.
+    World,
+}
+
+/// How a file is read, apart from its columns. What is `None` is found in the file.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ReadSettings {
+    /// The sheet of a workbook, `sheet=2` or `sheet=NAME`; `None` is the first one.
+    pub sheet: Option<SheetRef>,
+    /// The line of the header, `header=5` or `header=none`.
+    pub header: Option<HeaderLine>,
+    /// The line of the units, `units=6`.
+    pub units_line: Option<u64>,
+    /// What is added to every instant, s: `shift=-12:ms`.
+    pub time_shift_s: Option<f64>,
+    /// Whether y points to the right and yaw is positive clockwise (SAE J670), `y_axis=right`. The
+    /// numbers are turned into the axes of this program, in which y points to the left.
+    pub y_to_right: bool,
+    /// The axes of `vx` and `vy`, `velocities=world`; `None` takes them as body axes and compares
+    /// them with the path.
+    pub velocities: Option<VelocityAxes>,
+}
+
+impl ReadSettings {
+    /// Takes a part of the text of a map if its name is that of a setting.
+    ///
+    /// - returns whether it is.
+    ///
+    /// # Errors
+    /// [`MapError::Setting`] if the value is none of the setting, [`MapError::SettingTwice`] if the
+    /// setting was given before.
+    pub(super) fn take(&mut self, name: &str, value: &str) -> Result<bool, MapError> {
+        let wrong = |expected: &'static str| MapError::Setting {
+            name: name.to_owned(),
+            text: value.to_owned(),
+            expected,
+        };
+        let line = || value.parse().ok().filter(|line| *line > 0);
+        let is_first = match name {
+            "sheet" => self.sheet.replace(sheet(value)).is_none(),
+            "header" => {
+                let expected = "the number of a line or none, e.g. header=5";
+                let header = match value {
+                    "none" => HeaderLine::None,
+                    _ => HeaderLine::Line(line().ok_or_else(|| wrong(expected))?),
+                };
+                self.header.replace(header).is_none()
+            }
+            "units" => {
+                let line = line().ok_or_else(|| wrong("the number of a line, e.g. units=6"))?;
+                self.units_line.replace(line).is_none()
+            }
+            "shift" => {
+                let shift_s = shift_s(value).ok_or_else(|| wrong("a time, e.g. shift=-12:ms"))?;
+                self.time_shift_s.replace(shift_s).is_none()
+            }
+            "y_axis" => {
+                let is_right = match value {
+                    "left" => false,
+                    "right" => true,
+                    _ => return Err(wrong("left or right")),
+                };
+                !std::mem::replace(&mut self.y_to_right, is_right)
+            }
+            "velocities" => {
+                let axes = match value {
+                    "body" => VelocityAxes::Body,
+                    "world" => VelocityAxes::World,
+                    _ => return Err(wrong("body or world")),
+                };
+                self.velocities.replace(axes).is_none()
+            }
+            _ => return Ok(false),
+        };
+        match is_first {
+            true => Ok(true),
+            false => Err(MapError::SettingTwice { name: name.to_owned() }),
+        }
+    }
+}
+
+fn sheet(value: &str) -> SheetRef {
+    match value.parse() {
+        Ok(number) if number > 0 => SheetRef::Number(number),
+        _ => SheetRef::Name(value.to_owned()),
+    }
+}
+
+/// The time in `-12:ms`, or `-0.012` in seconds.
+fn shift_s(value: &str) -> Option<f64> {
+    let (number, unit) = value.rsplit_once(':').unwrap_or((value, "s"));
+    let unit = spelling::unit(Quantity::Time, unit.trim())?;
+    let shift_s = unit.to_si(number.trim().parse().ok()?);
+    INSTANT.contains(shift_s).then_some(shift_s)
+}
+
+impl fmt::Display for SheetRef {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Name(name) => f.write_str(name),
+        }
+    }
+}
+
+impl fmt::Display for ReadSettings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let header = self.header.map(|header| match header {
+            HeaderLine::Line(line) => line.to_string(),
+            HeaderLine::None => "none".to_owned(),
+        });
+        let velocities = self.velocities.map(|axes| match axes {
+            VelocityAxes::Body => "body".to_owned(),
+            VelocityAxes::World => "world".to_owned(),
+        });
+        let parts = [
+            ("sheet", self.sheet.as_ref().map(SheetRef::to_string)),
+            ("header", header),
+            ("units", self.units_line.map(|line| line.to_string())),
+            ("shift", self.time_shift_s.map(|shift_s| format!("{shift_s}:s"))),
+            ("y_axis", self.y_to_right.then(|| "right".to_owned())),
+            ("velocities", velocities),
+        ];
+        let given = parts.into_iter().filter_map(|(name, value)| Some((name, value?)));
+        let text: Vec<String> = given.map(|(name, value)| format!("{name}={value}")).collect();
+        f.write_str(&text.join(","))
+    }
+}
