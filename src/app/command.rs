@@ -8,14 +8,13 @@ use std::path::PathBuf;
 use egui::Context;
 
 use crate::app::case::{Leaving, VariantCommand};
-use crate::app::dialogs::{FileDialog, MappingDialog, Purpose};
+use crate::app::dialogs::{FileDialog, Purpose};
 use crate::app::export;
 use crate::app::network::Network;
 use crate::app::panes::{Pane, default_layout, show_pane};
 use crate::app::path_dialog::PathDialog;
 use crate::app::state::{Session, State, Subject};
 use crate::data::{ColumnMap, Existing, Severity};
-use crate::error_chain;
 use crate::figure::Figure;
 use crate::study::SimulateAnswer;
 
@@ -166,15 +165,12 @@ impl State {
             Command::Select(subject) => self.select(subject),
             Command::SelectNeighbour(step) => self.select_neighbour(step),
             Command::List(path) => self.view.listed = Some(path),
-            Command::AskMapping(path) => match MappingDialog::open(path) {
-                Ok(dialog) => self.session.mapping = Some(dialog),
-                Err(error) => self.say(Severity::Error, error_chain(&error)),
-            },
+            Command::AskMapping(path) => self.ask_mapping(path),
             Command::OpenMapped(path, map) => {
-                self.session.mapping = None;
+                self.end_mapping();
                 self.load(path, Some(map), context);
             }
-            Command::CancelMapping => self.session.mapping = None,
+            Command::CancelMapping => self.cancel_mapping(),
             Command::ShowLicences(shown) => self.session.shows_licences = shown,
             Command::ReplayDataset(path) => self.replay(path, context),
             Command::CancelReplay(path) => {

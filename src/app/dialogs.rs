@@ -1,18 +1,13 @@
-//! The native file dialogs, and the dialog in which the user assigns channels to the columns of a
-//! file.
+//! The native file dialogs.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use egui::{ComboBox, Grid, Ui};
 use rfd::AsyncFileDialog;
 
 use crate::app::command::{Command, ComparisonCommand};
 use crate::app::network::Network;
 use crate::case_file::{CASE_ENDING, file_stem};
-use crate::data::{
-    Channel, ColumnMap, ColumnProposal, ColumnRef, ColumnSource, DataError, propose_columns,
-};
 use crate::figure::Figure;
 use crate::jobs::{Job, Update};
 
@@ -177,7 +172,7 @@ async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
             let files = dialog
                 .add_filter(
                     "cases, tables and scenarios",
-                    &["impactlab", "csv", "txt", "tsv", "dat", "asc", "toml"],
+                    &["impactlab", "csv", "txt", "tsv", "dat", "asc", "xlsx", "xlsm", "toml"],
                 )
                 .add_filter("all files", &["*"])
                 .pick_files()
@@ -197,120 +192,4 @@ async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
         Purpose::PackCase => save(dialog.add_filter("package", &["zip"]), name).await,
     };
     one.iter().map(|file| file.path().to_owned()).collect()
-}
-
-/// The dialog in which the user says which column of a file holds which channel in which unit.
-pub struct MappingDialog {
-    path: PathBuf,
-    proposals: Vec<ColumnProposal>,
-    choices: Vec<Option<Channel>>,
-    units: Vec<usize>,
-}
-
-/// The channels that can be assigned to a column of a single file, in the order of the dialog's
-/// lists.
-const CHOICES: [Channel; 14] = [
-    Channel::Time,
-    Channel::Fx,
-    Channel::Fy,
-    Channel::FxBody,
-    Channel::FyBody,
-    Channel::Mz,
-    Channel::X,
-    Channel::Y,
-    Channel::Yaw,
-    Channel::Roll,
-    Channel::Vx,
-    Channel::Vy,
-    Channel::YawRate,
-    Channel::Steer,
-];
-
-impl MappingDialog {
-    /// Reads the header and the first rows of a file and proposes a channel and a unit for each
-    /// column.
-    ///
-    /// # Errors
-    /// [`DataError`] if the file cannot be read as a table.
-    pub fn open(path: PathBuf) -> Result<Self, DataError> {
-        let proposals = propose_columns(&path)?;
-        let choices = proposals.iter().map(|p| p.guess.map(|(channel, _)| channel)).collect();
-        let unit_index = |proposal: &ColumnProposal| {
-            let (channel, unit) = proposal.guess?;
-            channel.quantity().units().iter().position(|known| Some(*known) == unit)
-        };
-        let units = proposals.iter().map(|p| unit_index(p).unwrap_or(0)).collect();
-        Ok(Self { path, proposals, choices, units })
-    }
-
-    /// Draws the dialog and adds a command when the user confirms or cancels.
-    pub fn ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        ui.heading("Which column is which?");
-        ui.label(self.path.display().to_string());
-        ui.weak("Force columns make it a force file; X, Y and yaw a trajectory; a steer angle a steer file.");
-        ui.separator();
-        egui::ScrollArea::both().max_height(360.0).show(ui, |ui| {
-            Grid::new("mapping").striped(true).show(ui, |ui| {
-                for title in ["Column", "First values", "holds", "in"] {
-                    ui.strong(title);
-                }
-                ui.end_row();
-                for index in 0..self.proposals.len() {
-                    self.row_ui(ui, index);
-                    ui.end_row();
-                }
-            });
-        });
-        ui.separator();
-        ui.horizontal(|ui| {
-            if ui.button("Open with these columns").clicked() {
-                let (path, map) = (self.path.clone(), self.map());
-                commands.push(Command::OpenMapped(path, map));
-            }
-            if ui.button("Cancel").clicked() {
-                commands.push(Command::CancelMapping);
-            }
-        });
-    }
-
-    fn row_ui(&mut self, ui: &mut Ui, index: usize) {
-        let (Some(proposal), Some(choice), Some(unit_idx)) =
-            (self.proposals.get(index), self.choices.get_mut(index), self.units.get_mut(index))
-        else {
-            return;
-        };
-        let name = ui.label(format!("{}: {}", proposal.number, proposal.name));
-        ui.weak(proposal.samples.join("  "));
-        let label = |choice: Option<Channel>| choice.map_or("not used", Channel::label);
-        let channels = ComboBox::from_id_salt(("channel", index)).selected_text(label(*choice));
-        let shown = channels.show_ui(ui, |ui| {
-            for option in std::iter::once(None).chain(CHOICES.map(Some)) {
-                if ui.selectable_value(choice, option, label(option)).clicked() {
-                    *unit_idx = 0;
-                }
-            }
-        });
-        shown.response.labelled_by(name.id);
-        let Some(channel) = *choice else { return };
-        let units = channel.quantity().units();
-        let selected = units.get(*unit_idx).map_or("", |unit| unit.symbol);
-        let combo = ComboBox::from_id_salt(("unit", index)).selected_text(selected).width(64.0);
-        let shown = combo.show_ui(ui, |ui| {
-            for (idx, unit) in units.iter().enumerate() {
-                ui.selectable_value(unit_idx, idx, unit.symbol);
-            }
-        });
-        shown.response.labelled_by(name.id);
-    }
-
-    fn map(&self) -> ColumnMap {
-        let rows = self.proposals.iter().zip(&self.choices).zip(&self.units);
-        rows.filter_map(|((proposal, choice), unit_idx)| {
-            let channel = (*choice)?;
-            let unit = channel.quantity().units().get(*unit_idx).copied();
-            let column = ColumnRef::Number(proposal.number);
-            Some((channel, ColumnSource { column, unit }))
-        })
-        .collect()
-    }
 }

@@ -11,6 +11,7 @@ mod command;
 mod dialogs;
 mod export;
 mod force;
+mod import;
 mod keyboard;
 mod latest;
 mod licences;
@@ -249,10 +250,12 @@ impl App {
     }
 
     fn mapping_ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        if let Some(dialog) = &mut self.state.session.mapping {
+        let State { project, session, .. } = &mut self.state;
+        if let Some(dialog) = &mut session.mapping {
             let modal = egui::Modal::new(egui::Id::unique("mapping dialog"));
-            let response = modal.show(ui.ctx(), |ui| dialog.ui(ui, commands));
-            if response.should_close() {
+            let start = &mut project.file_start;
+            let response = modal.show(ui.ctx(), |ui| dialog.ui(ui, start, commands));
+            if response.should_close() && commands.is_empty() {
                 commands.push(Command::CancelMapping);
             }
         }

@@ -7,9 +7,10 @@ use egui::Context;
 use crate::app::case::Leaving;
 use crate::app::command::{ComparisonCommand, wake};
 use crate::app::dialogs::MODEL_ENDING;
+use crate::app::import::ImportDialog;
 use crate::app::network::Network;
 use crate::app::panes::{Pane, show_pane};
-use crate::app::source::Source;
+use crate::app::source::{Content, Source};
 use crate::app::state::{State, Subject};
 use crate::case_file::is_case_file;
 use crate::collision::Scenario;
@@ -57,8 +58,43 @@ impl State {
     pub(super) fn load(&mut self, path: PathBuf, map: Option<ColumnMap>, context: &Context) {
         self.forget_sources(|source| source.opened == path || source.path == path);
         self.session.select_when_loaded = Some(path.clone());
-        let source = Source::load(path, map, &self.session.library, wake(context));
+        let source =
+            Source::load(path, (map, &self.view.column_maps), &self.session.library, wake(context));
         self.session.sources.push(source);
+    }
+
+    /// Asks how a file is to be read; if a dialog is open, after that.
+    pub(super) fn ask_mapping(&mut self, path: PathBuf) {
+        if self.session.mapping.is_some() {
+            if !self.session.to_map.contains(&path) {
+                self.session.to_map.push_back(path);
+            }
+            return;
+        }
+        let source = self.session.sources.iter().find(|source| source.path == path);
+        let map = source.and_then(|source| source.map.clone());
+        self.session.mapping = Some(ImportDialog::open(path, map));
+    }
+
+    /// Closes the dialog and asks about the next file that waits.
+    pub(super) fn end_mapping(&mut self) {
+        self.session.mapping = None;
+        if let Some(next) = self.session.to_map.pop_front() {
+            self.ask_mapping(next);
+        }
+    }
+
+    /// Closes the dialog without opening the file. If it could not be opened otherwise, it is not
+    /// tried again when the program is started next.
+    pub(super) fn cancel_mapping(&mut self) {
+        if let Some(dialog) = &self.session.mapping {
+            let path = dialog.path().to_owned();
+            let is_failed = |source: &Source| {
+                source.path == path && matches!(source.content, Content::Failed(_))
+            };
+            self.forget_sources(is_failed);
+        }
+        self.end_mapping();
     }
 
     /// Closes the sources for which `is_closed` holds, together with their simulations, and removes

@@ -5,13 +5,15 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::app::import::{ColumnMaps, fingerprint};
 use crate::app::model::file_name;
 use crate::app::question_job::Answered;
-use crate::data::{ColumnMap, Dataset, DatasetKind, Flag, Loaded, Outcome};
+use crate::data::{ColumnMap, Dataset, DatasetKind, Flag, Loaded, Note, Outcome};
 use crate::error_chain;
 use crate::jobs::Job;
 use crate::study::{
-    CheckAnswer, CheckRequest, CheckedContent, CheckedItem, Event, Library, PathProblem, Question,
+    CheckAnswer, CheckRequest, CheckedContent, CheckedItem, Event, Library, Observer, PathProblem,
+    Question,
 };
 use crate::vehicle::VehicleParameters;
 
@@ -101,6 +103,21 @@ pub struct OpenedPath {
     contents: Vec<(PathBuf, Content)>,
     /// The first problem, if nothing at the path can be read.
     pub failure: Option<PathProblem>,
+    /// The map with which a file was read.
+    pub map: Option<OpenedMap>,
+    /// Whether a file was read, but units that it does not state were assumed or the velocities
+    /// contradict the path, so that the user has to be asked.
+    pub is_doubtful: bool,
+}
+
+/// The map with which a file was read.
+pub struct OpenedMap {
+    /// The map.
+    pub map: ColumnMap,
+    /// The digest of the header of the file.
+    pub fingerprint: Option<String>,
+    /// Whether it was chosen for an earlier file, or in an earlier run.
+    pub is_remembered: bool,
 }
 
 impl Source {
@@ -108,23 +125,22 @@ impl Source {
     ///
     /// - `map`: the columns that the user assigned, for a single file whose header does not
     ///   identify them;
+    /// - `maps`: those of earlier files, which serve for a file with the same header;
     /// - `wake`: called after every report of progress and at the end.
     pub fn load(
         path: PathBuf,
-        map: Option<ColumnMap>,
+        (map, maps): (Option<ColumnMap>, &ColumnMaps),
         library: &Arc<Library>,
         wake: impl Fn() + Send + 'static,
     ) -> Self {
-        let question = CheckRequest { paths: vec![path.clone()], all: false, map: map.clone() };
-        let library = Arc::clone(library);
+        let (library, maps, chosen) = (Arc::clone(library), maps.clone(), map.clone());
+        let file = path.clone();
         let job = Job::spawn("load", wake, move |report| {
             let mut observer = |event: Event<'_>| match event {
                 Event::Progress(progress) => report(progress),
                 Event::Training(_) => ControlFlow::Continue(()),
             };
-            let answer = question.answer(&library, &mut observer);
-            let answer = answer.map_err(|error| error_chain(&error))?;
-            Ok(answer.map(|answer| OpenedPath::new(question, answer)))
+            read(&file, (chosen, &maps), &library, &mut observer)
         });
         match job {
             Ok(job) => {
@@ -148,15 +164,16 @@ impl Source {
     /// identifies files by their path alone.
     pub fn opened(self, opened: OpenedPath, library: &Library) -> Vec<Self> {
         let check = Some(Arc::new(opened.check));
+        let map = opened.map.map(|of| of.map);
         let source = |(path, content): (PathBuf, Content)| {
             match &content {
                 Content::Dataset(checked) => library.hold_dataset(Arc::clone(&checked.dataset)),
-                Content::File(file) if self.map.is_none() => {
+                Content::File(file) if map.is_none() => {
                     library.hold_series(path.clone(), Arc::clone(&file.loaded));
                 }
                 Content::File(_) | Content::Loading(_) | Content::Failed(_) => {}
             }
-            let (opened, map) = (self.opened.clone(), self.map.clone());
+            let (opened, map) = (self.opened.clone(), map.clone());
             Self { opened, path, map, check: check.clone(), content }
         };
         opened.contents.into_iter().map(source).collect()
@@ -197,8 +214,52 @@ impl OpenedPath {
         let contents = answer.items.iter().map(content).chain(problems.iter().map(failed));
         let contents = contents.collect();
         let failure = problems.first().filter(|_| answer.items.is_empty()).cloned();
+        let is_doubtful = |item: &CheckedItem| match &item.content {
+            CheckedContent::File(loaded, _) => loaded.notes.iter().any(Note::is_doubt),
+            CheckedContent::Dataset(..) => false,
+        };
+        let is_doubtful = question.map.is_none() && answer.items.iter().any(is_doubtful);
         let check = Answered { question, answer: Ok(Arc::new(answer)) };
-        Self { check, contents, failure }
+        Self { check, contents, failure, map: None, is_doubtful }
+    }
+
+    /// Whether the user, or a map that he chose before, has to say how the file is read.
+    fn needs_map(&self) -> bool {
+        let is_about_columns = |failure: &PathProblem| failure.columns.is_some();
+        self.is_doubtful || self.failure.as_ref().is_some_and(is_about_columns)
+    }
+}
+
+/// Reads and checks a path. Without a map, a file is read with the one that it had before; if its
+/// columns are doubtful, with the one of another file with the same header.
+fn read(
+    path: &Path,
+    (chosen, maps): (Option<ColumnMap>, &ColumnMaps),
+    library: &Library,
+    observer: &mut Observer<'_>,
+) -> Result<Outcome<OpenedPath>, String> {
+    let mut ask = |map: Option<&ColumnMap>| -> Result<Outcome<OpenedPath>, String> {
+        let map = map.cloned();
+        let question = CheckRequest { paths: vec![path.to_owned()], all: false, map };
+        let answer = question.answer(library, observer).map_err(|error| error_chain(&error))?;
+        Ok(answer.map(|answer| OpenedPath::new(question, answer)))
+    };
+    let with_map = |opened: OpenedPath, map: ColumnMap, is_remembered| {
+        let fingerprint = fingerprint(path, &map);
+        OpenedPath { map: Some(OpenedMap { map, fingerprint, is_remembered }), ..opened }
+    };
+    let remembered = if chosen.is_none() { maps.of_path(path) } else { None };
+    let is_remembered = remembered.is_some();
+    if let Some(map) = chosen.or(remembered) {
+        return Ok(ask(Some(&map))?.map(|opened| with_map(opened, map, is_remembered)));
+    }
+    let opened = match ask(None)? {
+        Outcome::Complete(opened) if opened.needs_map() => opened,
+        settled => return Ok(settled),
+    };
+    match maps.of_header(path) {
+        None => Ok(Outcome::Complete(opened)),
+        Some(map) => Ok(ask(Some(&map))?.map(|opened| with_map(opened, map, true))),
     }
 }
 

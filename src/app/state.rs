@@ -1,6 +1,7 @@
 //! The state of the application. The project and the view are saved between runs, the session is
 //! not.
 
+use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -10,8 +11,9 @@ use crate::analysis::PulseSetup;
 use crate::app::case::{Leaving, OpenCase, SavedCase};
 use crate::app::case_table::CaseList;
 use crate::app::command::Command;
-use crate::app::dialogs::{FileDialog, MappingDialog};
+use crate::app::dialogs::FileDialog;
 use crate::app::force::{ForceProject, ForceSession, ForceView};
+use crate::app::import::{ColumnMaps, ImportDialog};
 use crate::app::latest::Latest;
 use crate::app::network::Network;
 use crate::app::panes::{Layout, default_layout, is_complete};
@@ -166,6 +168,8 @@ pub struct View {
     pub trained: Network,
     /// The cases that were opened or saved last, the latest first.
     pub recent: Vec<PathBuf>,
+    /// The column maps of earlier files, by their headers.
+    pub column_maps: ColumnMaps,
     /// The arrangement of the panes.
     pub layout: Layout,
 }
@@ -183,6 +187,7 @@ impl Default for View {
             response: ResponseView::default(),
             trained: Network::default(),
             recent: Vec::new(),
+            column_maps: ColumnMaps::default(),
             layout: default_layout(),
         }
     }
@@ -228,7 +233,9 @@ pub struct Session {
     /// The case that is being written.
     pub saving_case: Option<Job<Result<SavedCase, String>>>,
     /// The dialog for the columns of a file that is open.
-    pub mapping: Option<MappingDialog>,
+    pub mapping: Option<ImportDialog>,
+    /// The files whose dialog follows, in the order of opening.
+    pub to_map: VecDeque<PathBuf>,
     /// Whether the licences of third parties are shown.
     pub shows_licences: bool,
     /// The command that waits for the user's answer whether it may replace what exists.

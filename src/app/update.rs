@@ -7,7 +7,7 @@ use std::time::Duration;
 use egui::Context;
 
 use crate::app::command::{Command, wake};
-use crate::app::source::{Content, Source};
+use crate::app::source::{Content, OpenedMap, OpenedPath, Source};
 use crate::app::state::{Session, State, Subject};
 use crate::data::{DatasetKind, Outcome, Severity};
 use crate::jobs::Update;
@@ -30,6 +30,9 @@ impl State {
         if let Some(answer) = self.session.file_dialog.as_mut().and_then(|dialog| dialog.poll()) {
             self.session.file_dialog = None;
             commands.extend(answer);
+        }
+        if let Some(dialog) = &mut self.session.mapping {
+            dialog.update(self.view.units, wake(context));
         }
         self.select_something();
         let Session { cases, sources, replays, .. } = &mut self.session;
@@ -64,6 +67,11 @@ impl State {
                             commands.push(Command::AskMapping(failure.path.clone()));
                         }
                     }
+                    if opened.is_doubtful {
+                        commands.push(Command::AskMapping(source.path));
+                        continue;
+                    }
+                    self.remember_map(&source, &opened);
                     let library = Arc::clone(&self.session.library);
                     self.session.sources.extend(source.opened(opened, &library));
                 }
@@ -72,6 +80,22 @@ impl State {
                     self.session.sources.push(Source::failed(source.opened, why));
                 }
             }
+        }
+    }
+
+    /// Keeps the map with which a file was opened for files with the same header, and says so if it is
+    /// one that was kept.
+    fn remember_map(&mut self, source: &Source, opened: &OpenedPath) {
+        let Some(OpenedMap { map, fingerprint, is_remembered }) = &opened.map else { return };
+        if *is_remembered {
+            let text = format!(
+                "{}: read as files with this header before, {map}; change it in the Data pane",
+                source.path.display()
+            );
+            self.say(Severity::Info, text);
+        }
+        if let Some(fingerprint) = fingerprint.clone().filter(|_| opened.failure.is_none()) {
+            self.view.column_maps.keep(source.path.clone(), fingerprint, map.clone());
         }
     }
 

@@ -5,6 +5,7 @@ mod case;
 mod density_gpu;
 mod force_network;
 mod harness;
+mod import;
 mod network_figures;
 mod pictures;
 mod response_network;

@@ -194,6 +194,10 @@ fn problem_ui(ui: &mut Ui, text: &str) {
 fn source_menu(response: &Response, source: &Source, commands: &mut Vec<Command>) {
     response.context_menu(|ui| {
         if source.path.is_absolute() || source.path.components().count() > 0 {
+            let is_file = matches!(source.content, Content::File(_) | Content::Failed(_));
+            if is_file && ui.button("Columns…").clicked() {
+                commands.push(Command::AskMapping(source.path.clone()));
+            }
             if ui.button("Load again").clicked() {
                 commands.push(Command::Open(vec![source.opened.clone()]));
             }

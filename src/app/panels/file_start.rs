@@ -25,8 +25,7 @@ pub(super) fn file_start_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     ui.strong("For single files");
     Grid::new("file start").num_columns(2).show(ui, |ui| {
         let start = &mut project.file_start;
-        speed_ui(ui, start, view.units);
-        contact_ui(ui, start, view.units);
+        start_fields(ui, start, view.units);
         let files = |kind| open_files(&session.sources, kind);
         file_ui(ui, "Steering", (&mut start.steer, &files(FileKind::Steer)), commands);
         ratio_ui(ui, start, view.units);
@@ -41,6 +40,12 @@ pub(super) fn file_start_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     ui.strong("For single files and cases of a force");
     let ending = (&mut project.ending, &mut project.steering_ratio);
     ending_form(ui, "struck vehicle", ending, view.units);
+}
+
+/// Draws rows of a two-column grid with the speed before the impact and the contact point.
+pub(in crate::app) fn start_fields(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
+    speed_ui(ui, start, units);
+    contact_ui(ui, start, units);
 }
 
 /// The open files of a kind.

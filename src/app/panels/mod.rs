@@ -35,6 +35,7 @@ pub use cases::cases_ui;
 pub use comparison::comparison_ui;
 pub use data::data_ui;
 pub use evaluation::evaluation_ui;
+pub(in crate::app) use file_start::start_fields;
 pub use force::force_ui;
 pub use model_comparison::model_comparison_ui;
 pub use motion::motion_ui;

@@ -1,0 +1,11 @@
+//! The dialog in which the user says how a file is read, with the curve as it will be read, and the
+//! choices of earlier files.
+
+mod choices;
+mod dialog;
+mod preview;
+mod remembered;
+
+pub use dialog::ImportDialog;
+pub use remembered::ColumnMaps;
+pub(in crate::app) use remembered::fingerprint;
