@@ -17,8 +17,10 @@ const N_WINDOWS: usize = 12;
 /// and the noise of receivers give some per cent.
 const FITTING: f64 = 0.2;
 
-/// Ratio of the errors up to which both axes fit equally well, as in straight motion along x.
+/// Ratio of the errors up to which both axes fit equally well, and errors up to which they do
+/// whatever the ratio, as in straight motion along x.
 const UNDECIDED: f64 = 2.0;
+const BOTH_SMALL: f64 = 0.05;
 
 /// Length of the path below which nothing is compared, m.
 const SHORTEST_PATH_M: f64 = 1.0;
@@ -75,7 +77,9 @@ pub fn velocity_fit(series: &TimeSeries) -> Option<VelocityFit> {
     }
     let [body, world] = [body, world].map(|squares: f64| (squares / moved).sqrt());
     let fit = match (body < FITTING, world < FITTING) {
-        (true, true) if body < UNDECIDED * world && world < UNDECIDED * body => VelocityFit::Both,
+        (true, true) if body.max(world) < BOTH_SMALL.max(UNDECIDED * body.min(world)) => {
+            VelocityFit::Both
+        }
         (false, false) => VelocityFit::Neither(speeds[1] / speeds[0]),
         _ if body < world => VelocityFit::Body,
         _ => VelocityFit::World,
@@ -182,6 +186,11 @@ mod tests {
         for channel in [Channel::Y, Channel::Yaw] {
             straight.insert(channel, vec![0.0; time_s.len()]).unwrap();
         }
+        assert_eq!(velocity_fit(&straight), Some(VelocityFit::Both));
+        // Steps that are exact, and a yaw that is hardly one.
+        straight.insert(Channel::X, (0..200).map(|i| f64::from(i) * 0.2).collect()).unwrap();
+        assert_eq!(velocity_fit(&straight), Some(VelocityFit::Both));
+        straight.insert(Channel::Yaw, vec![0.01; time_s.len()]).unwrap();
         assert_eq!(velocity_fit(&straight), Some(VelocityFit::Both));
         straight.insert(Channel::X, vec![0.0; time_s.len()]).unwrap();
         assert_eq!(velocity_fit(&straight), None);
