@@ -46,7 +46,7 @@ impl State {
             [session.is_simulation_late(), session.is_motion_late()];
         vec![
             self.subject_link(),
-            Link { is_late: is_simulation_late, ..impact_link(report, units) },
+            Link { is_late: is_simulation_late, ..self.impact_link(report) },
             Link {
                 is_late: is_simulation_late || is_motion_late,
                 ..force_link(report, motion, units)
@@ -54,6 +54,32 @@ impl State {
             Link { is_late: is_motion_late, ..motion_link(motion) },
             Link { is_late: is_motion_late, ..outcome_link(report, motion, units) },
         ]
+    }
+
+    /// The change of velocity of the struck vehicle: of a scenario by the momentum solution, which the
+    /// scenario panel shows; of a recorded force over its contact, with what the tyres add.
+    fn impact_link(&self, report: Option<&SimulateReport>) -> Link {
+        let is_scenario = self.project.subject == Some(Subject::Scenario);
+        let solved = self.session.impact.ok().filter(|_| is_scenario && report.is_some());
+        let (delta_v, source, pane) = match (is_scenario, solved) {
+            (true, solved) => {
+                let delta_v = solved.map(|answer| answer.report.target.delta_v_magnitude_m_s);
+                (delta_v, "momentum solution", Pane::Scenario)
+            }
+            (false, _) => {
+                let delta_v = report.and_then(|report| report.delta_v_magnitude_m_s);
+                (delta_v, "4DOF model, over the contact, with what the tyres add", Pane::Force)
+            }
+        };
+        let units = self.view.units;
+        Link {
+            title: "Impact",
+            figure: delta_v.map(|m_s| format!("Δv {}", Quantity::Speed.shown(m_s, units))),
+            source: source.to_owned(),
+            warnings: warnings(report.map(|report| report.badges.as_slice())),
+            is_late: false,
+            pane,
+        }
     }
 
     fn subject_link(&self) -> Link {
@@ -69,24 +95,6 @@ impl State {
             None => (None, "nothing selected".to_owned(), Pane::Data),
         };
         Link { title: "Scenario", figure, source, warnings: Vec::new(), is_late: false, pane }
-    }
-}
-
-/// The change of velocity of the struck vehicle.
-fn impact_link(report: Option<&SimulateReport>, units: UnitSystem) -> Link {
-    let delta_v = report.and_then(|report| report.delta_v_magnitude_m_s);
-    let is_momentum = report.is_some_and(|report| report.momentum.is_some());
-    let (source, pane) = match is_momentum {
-        true => ("momentum solution, over the contact with tyres", Pane::Scenario),
-        false => ("4DOF model, over the contact", Pane::Force),
-    };
-    Link {
-        title: "Impact",
-        figure: delta_v.map(|m_s| format!("Δv {}", Quantity::Speed.shown(m_s, units))),
-        source: source.to_owned(),
-        warnings: warnings(report.map(|report| report.badges.as_slice())),
-        is_late: false,
-        pane,
     }
 }
 

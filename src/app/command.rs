@@ -118,8 +118,10 @@ pub enum Command {
     ResetLayout,
     /// Show a message in the status line.
     Say(Severity, String),
-    /// Clear the messages of the status line.
-    DismissMessages,
+    /// Take the latest message out of the status line. It stays in the list of all messages.
+    DismissMessage,
+    /// Show the list of all messages (`true`) or close it (`false`).
+    ShowMessages(bool),
     /// Undo the last change of the project.
     Undo,
     /// Redo the change of the project that was undone last.
@@ -228,7 +230,8 @@ impl State {
             Command::Show(pane) => show_pane(&mut self.view.layout, pane),
             Command::ResetLayout => self.view.layout = default_layout(),
             Command::Say(severity, text) => self.say(severity, text),
-            Command::DismissMessages => self.session.messages.clear(),
+            Command::DismissMessage => drop(self.session.messages.pop()),
+            Command::ShowMessages(shown) => self.session.shows_log = shown,
             Command::Undo | Command::Redo => {}
         }
     }

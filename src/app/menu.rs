@@ -127,6 +127,9 @@ fn view_menu_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
     if ui.button("Fit plots to their data").clicked() {
         commands.push(Command::FitPlots);
     }
+    if ui.button("Messages…").clicked() {
+        commands.push(Command::ShowMessages(true));
+    }
     if ui.button("Put panes back").clicked() {
         commands.push(Command::ResetLayout);
     }
@@ -190,13 +193,16 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         };
         ui.horizontal(|ui| {
             if ui.small_button("Dismiss").clicked() {
-                commands.push(Command::DismissMessages);
+                commands.push(Command::DismissMessage);
             }
             let older = state.session.messages.len() - 1;
             if older > 0 {
                 let others = state.session.messages.iter().rev().skip(1).take(20);
                 let text: Vec<&str> = others.map(|message| message.text.as_str()).collect();
-                ui.weak(format!("+{older}")).on_hover_text(text.join("\n"));
+                let all = ui.small_button(format!("+{older}")).on_hover_text(text.join("\n"));
+                if all.clicked() {
+                    commands.push(Command::ShowMessages(true));
+                }
             }
             let color = theme::severity_color(latest.severity, state.view.dark);
             let text = match latest.severity {
@@ -207,6 +213,27 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             ui.add(egui::Label::new(RichText::new(text).color(color)).wrap());
         });
     });
+}
+
+/// Draws the list of all messages since the start, the newest first.
+pub fn messages_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    ui.heading("Messages");
+    egui::ScrollArea::vertical().max_height(480.0).show(ui, |ui| {
+        if state.session.log.is_empty() {
+            ui.weak("Nothing has been said since the start.");
+        }
+        for (time, message) in state.session.log.iter().rev() {
+            let color = theme::severity_color(message.severity, state.view.dark);
+            ui.horizontal_wrapped(|ui| {
+                ui.monospace(time);
+                ui.label(RichText::new(&message.text).color(color));
+            });
+        }
+    });
+    ui.separator();
+    if ui.button("Close").clicked() {
+        commands.push(Command::ShowMessages(false));
+    }
 }
 
 /// Draws a row for a training in progress, with a button that brings the training pane to the

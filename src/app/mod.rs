@@ -221,6 +221,7 @@ impl eframe::App for App {
         self.panes_ui(ui, &mut commands);
         self.mapping_ui(ui, &mut commands);
         self.licences_ui(ui, &mut commands);
+        self.messages_ui(ui, &mut commands);
         self.replace_ui(ui, &mut commands);
         self.leaving_ui(ui, &mut commands);
         self.path_ui(ui, &mut commands);
@@ -257,6 +258,16 @@ impl App {
             let response = modal.show(ui.ctx(), |ui| dialog.ui(ui, start, commands));
             if response.should_close() && commands.is_empty() {
                 commands.push(Command::CancelMapping);
+            }
+        }
+    }
+
+    fn messages_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        if self.state.session.shows_log {
+            let modal = egui::Modal::new(egui::Id::unique("messages"));
+            let response = modal.show(ui.ctx(), |ui| menu::messages_ui(ui, &self.state, commands));
+            if response.should_close() {
+                commands.push(Command::ShowMessages(false));
             }
         }
     }

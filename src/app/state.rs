@@ -216,8 +216,12 @@ pub struct Session {
     pub time_s: f64,
     /// Whether the playback is running.
     pub playing: bool,
-    /// Messages for the user, the newest last.
+    /// Messages for the user that were not dismissed, the newest last.
     pub messages: Vec<Message>,
+    /// All messages since the program was started, each with the time of day in UTC, the newest last.
+    pub log: Vec<(String, Message)>,
+    /// Whether that list is shown.
+    pub shows_log: bool,
     /// The native file dialog that is open.
     pub file_dialog: Option<FileDialog>,
     /// The question for a path, where the desktop has no file dialog.
@@ -258,6 +262,7 @@ impl Session {
             || self.leaving.is_some()
             || self.path_dialog.is_some()
             || self.shows_licences
+            || self.shows_log
     }
 
     /// Whether an answer is awaited.
@@ -370,7 +375,10 @@ impl State {
 
     /// Adds a message for the user.
     pub fn say(&mut self, severity: Severity, text: impl Into<String>) {
-        self.session.messages.push(Message { severity, text: text.into() });
+        let message = Message { severity, text: text.into() };
+        let now = humantime::format_rfc3339_seconds(std::time::SystemTime::now()).to_string();
+        self.session.log.push((now, message.clone()));
+        self.session.messages.push(message);
     }
 }
 

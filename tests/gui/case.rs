@@ -10,8 +10,10 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, ForceChoice, Leaving, State, Subject, VariantCommand};
 use impactlab::case_file::{CaseFile, unpack};
+use impactlab::data::Severity;
 use impactlab::study::{Library, Report};
 use impactlab::uncertainty::BadgeKind;
+use impactlab::units::{Quantity, UnitSystem};
 use impactlab::vehicle::{Braking, Ending};
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
@@ -364,6 +366,11 @@ fn the_chain_says_where_each_answer_comes_from_and_marks_what_is_late() {
     let median = format!("X {:.2} m", outcome.x_m.median);
     let figure = chain[4].figure.clone().unwrap();
     assert!(figure.starts_with(&median[..5]), "{figure} {median}");
+    // Two figures of one quantity do not differ: that of the scenario panel is the chain's.
+    let delta_v_m_s =
+        state(&harness).session.impact.ok().unwrap().report.target.delta_v_magnitude_m_s;
+    let delta_v = Quantity::Speed.shown(delta_v_m_s, UnitSystem::Si);
+    assert_eq!(chain[1].figure, Some(format!("Δv {delta_v}")));
     // The second contact is warned of where it matters.
     assert!(chain[1].warnings.iter().any(|warning| warning.contains("second contact")));
 
@@ -386,4 +393,22 @@ fn the_chain_says_where_each_answer_comes_from_and_marks_what_is_late() {
     harness.get_by_label_contains("Motion:").click();
     harness.run_steps(3);
     harness.get_by_label("components");
+}
+
+#[test]
+fn a_message_that_is_dismissed_stays_in_the_list() {
+    let mut harness = open(&[SCENARIO]);
+    step_until(&mut harness, "the scenario", is_idle);
+    for text in ["the first", "the second"] {
+        apply(&mut harness, Command::Say(Severity::Warning, text.to_owned()));
+    }
+    harness.get_by_label("Dismiss").click();
+    harness.run_steps(3);
+    harness.get_by_label("Warning: the first");
+    apply(&mut harness, Command::ShowMessages(true));
+    harness.run_steps(3);
+    harness.get_by_label("the second");
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    assert!(!state(&harness).session.shows_log);
 }
