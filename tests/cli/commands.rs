@@ -339,7 +339,7 @@ fn figures_are_written_as_numbers() {
         (
             [&["motion", TRAJECTORIES][..], &yaw_rate].concat(),
             "series,Time [s],Yaw rate r [deg/s]",
-            "reference,",
+            "recorded,",
         ),
         (
             vec!["scene", TRAJECTORIES, "--case", "FE_c002", "--time", "1.5"],
