@@ -35,6 +35,9 @@ struct Entry {
 /// # Errors
 /// [`CaseError::Missing`] for a file that is not there, [`CaseError::Zip`], [`CaseError::Data`].
 pub fn pack(case: &CaseFile, to: &Path, existing: Existing) -> Result<(), CaseError> {
+    if let Some(path) = case.missing_inputs().into_iter().next() {
+        return Err(CaseError::Missing { path });
+    }
     let mut case = case.clone();
     case.record_files();
     let mut entries = Vec::new();

@@ -9,6 +9,10 @@ use serde::{Deserialize, Serialize};
 use crate::case_file::paths::absolute_paths;
 use crate::case_file::{CaseError, CaseFile};
 use crate::data::write::{FileDigest, sha256_hex};
+use crate::study::Request;
+
+/// Why a file is missing that the case has no content of.
+const NOT_THERE: &str = "it was not there when the case was saved either";
 
 /// A file or a folder that a case uses, by its content.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -137,7 +141,24 @@ impl CaseFile {
             Ok(now) if now != *file => Some(Change::Changed { path: file.path.clone() }),
             Ok(_) => None,
         };
-        self.files.iter().filter_map(change).collect()
+        let is_known = |path: &PathBuf| self.files.iter().any(|file| file.path == *path);
+        let missing = self.missing_inputs().into_iter().filter(|path| !is_known(path));
+        let never_there = missing.map(|path| Change::Missing { path, why: NOT_THERE.to_owned() });
+        self.files.iter().filter_map(change).chain(never_there).collect()
+    }
+
+    /// The files that questions name and that are not there, also those that never were.
+    pub(super) fn missing_inputs(&self) -> Vec<PathBuf> {
+        let questions = || self.variants.iter().flat_map(|variant| &variant.questions);
+        let value = |question| serde_json::to_value(question).unwrap_or_default();
+        // Networks are named by their paths alone; all else a question says itself.
+        let mut paths: Vec<PathBuf> =
+            questions().flat_map(|question| absolute_paths(&value(question))).collect();
+        paths.extend(questions().flat_map(Request::input_files));
+        paths.retain(|path| !path.exists());
+        paths.sort();
+        paths.dedup();
+        paths
     }
 
     /// Refuses a case in which two variants have the same name, or that shows none of them.

@@ -138,6 +138,19 @@ fn files_that_are_missing_or_have_changed_are_named() {
 }
 
 #[test]
+fn a_file_that_never_was_there_is_missing_too() {
+    let folder = folder("never");
+    let case = case(&folder.join("nowhere.csv"));
+    assert!(case.files.is_empty());
+    assert!(
+        matches!(&case.changes()[..], [Change::Missing { path, .. }] if path.ends_with("nowhere.csv"))
+    );
+    let error = pack(&case, &folder.join("a.zip"), Existing::Refuse).expect_err("missing");
+    assert!(matches!(error, CaseError::Missing { .. }), "{error}");
+    assert!(!folder.join("a.zip").exists());
+}
+
+#[test]
 fn a_folder_is_known_by_all_files_in_it() {
     let folder = folder("dataset");
     fs::create_dir_all(folder.join("set/cases")).expect("a folder");
