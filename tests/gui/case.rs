@@ -108,6 +108,26 @@ fn variants_have_the_same_numbers_in_the_window_and_without_it_and_in_a_package(
 }
 
 #[test]
+fn a_case_that_is_saved_before_its_data_are_read_keeps_its_questions() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [force, one, two] =
+        ["force.csv", "one.impactlab", "two.impactlab"].map(|name| folder.path().join(name));
+    fs::copy("datasets/fea/forces/c001.csv", &force).expect("a force");
+    let mut harness = open(&[force.to_str().unwrap()]);
+    step_until(&mut harness, "the forecast", |state| {
+        is_idle(state) && state.session.response.forecast.ok().is_some()
+    });
+    save_as(&mut harness, &one);
+    let questions = CaseFile::load(&one).expect("a case").variants[0].questions.clone();
+    assert_eq!(questions.len(), 2, "{questions:?}");
+    // Another window saves it again before it has read anything.
+    let mut harness = open(&[one.to_str().unwrap()]);
+    apply(&mut harness, Command::SaveCaseAs(two.clone()));
+    step_until(&mut harness, "the case on disk", |state| state.case.path.as_ref() == Some(&two));
+    assert_eq!(CaseFile::load(&two).expect("a case").variants[0].questions, questions);
+}
+
+#[test]
 fn a_change_of_variant_cannot_be_undone_into_another() {
     let mut harness = pit();
     variant(&mut harness, VariantCommand::Duplicate);

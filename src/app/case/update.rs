@@ -7,7 +7,8 @@ use egui::Context;
 use crate::app::case::{Forms, OpenCase, VariantCommand};
 use crate::app::command::wake;
 use crate::app::panes::{Pane, show_pane};
-use crate::app::state::{Project, State, Subject};
+use crate::app::source::Source;
+use crate::app::state::{Project, Session, State, Subject};
 use crate::case_file::{CaseFile, UsedModel, pack};
 use crate::data::write::{ModelDigest, sha256_hex};
 use crate::data::{Existing, MAX_RESULTS_BYTES, Severity, read_utf8};
@@ -62,13 +63,24 @@ impl State {
         [impact, simulate, force, motion].into_iter().flatten().collect()
     }
 
-    /// Writes the forms of the window into the variant that is shown.
+    /// Whether data or networks are still being read, so that not every question can be asked yet.
+    fn is_loading(&self) -> bool {
+        let Session { sources, force, response, .. } = &self.session;
+        let is_settled = sources.iter().all(Source::is_settled);
+        !is_settled || force.model.current.is_none() || response.model.current.is_none()
+    }
+
+    /// Writes the forms of the window into the variant that is shown. While data are still being read, a
+    /// variant whose forms are those of its file keeps its questions.
     fn capture(&mut self) {
-        let (forms, questions) = (self.forms(), self.questions());
+        let (forms, questions, is_loading) = (self.forms(), self.questions(), self.is_loading());
+        let forms = serde_json::to_value(forms).unwrap_or_default();
         let shown = self.case.file.shown.clone();
         if let Some(variant) = self.case.file.variant_mut(&shown) {
-            variant.forms = serde_json::to_value(forms).unwrap_or_default();
-            variant.questions = questions;
+            if !(is_loading && variant.forms == forms) {
+                variant.questions = questions;
+            }
+            variant.forms = forms;
         }
         let models = self.models_in_use();
         if !models.is_empty() {
