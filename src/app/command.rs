@@ -11,12 +11,14 @@ use crate::app::case::{Leaving, VariantCommand};
 use crate::app::dialogs::{FileDialog, Purpose};
 use crate::app::export;
 use crate::app::network::Network;
-use crate::app::panes::{Pane, default_layout, show_pane};
+use crate::app::panes::Pane;
 use crate::app::path_dialog::PathDialog;
 use crate::app::state::{Session, State, Subject};
+use crate::app::workspaces::Workspace;
 use crate::data::{ColumnMap, Existing, Severity};
 use crate::figure::Figure;
 use crate::study::SimulateAnswer;
+use crate::vehicle::DataSheet;
 
 /// Time step of the left and right arrow keys in the scene, s.
 const TIME_STEP_S: f64 = 0.05;
@@ -88,6 +90,8 @@ pub enum Command {
     CancelPath,
     /// Write the scenario of the scenario pane to a TOML file.
     SaveScenario(PathBuf),
+    /// Write a vehicle to a TOML file.
+    SaveVehicle(Box<DataSheet>, PathBuf),
     /// Carry out a command that writes a file or a folder, and replace what is there.
     Replace(Box<Command>),
     /// Close the question whether something is to be replaced, and leave it as it is.
@@ -114,7 +118,11 @@ pub enum Command {
     Show(Pane),
     /// Bring the training pane to the front and show this network in it.
     ShowTraining(Network),
-    /// Restore the default layout of the panes.
+    /// Show a workspace.
+    ShowWorkspace(Workspace),
+    /// Show the three ways to begin.
+    ShowDoors,
+    /// Restore the default layout of the panes of the workspace that is shown.
     ResetLayout,
     /// Show a message in the status line.
     Say(Severity, String),
@@ -203,6 +211,7 @@ impl State {
             Command::CancelPath => self.session.path_dialog = None,
             Command::Export(..)
             | Command::SaveScenario(_)
+            | Command::SaveVehicle(..)
             | Command::SaveModel(..)
             | Command::SaveCaseAs(_)
             | Command::PackCase(_) => {
@@ -225,15 +234,22 @@ impl State {
             Command::CancelEvaluation => self.session.force.evaluation.cancel(),
             Command::ShowTraining(network) => {
                 self.view.trained = network;
-                show_pane(&mut self.view.layout, Pane::Training);
+                self.view.workspaces.show_pane(Pane::Training);
             }
-            Command::Show(pane) => show_pane(&mut self.view.layout, pane),
-            Command::ResetLayout => self.view.layout = default_layout(),
+            Command::ShowDoors => self.session.shows_doors = true,
+            Command::Show(pane) => self.view.workspaces.show_pane(pane),
+            Command::ResetLayout => self.view.workspaces.reset_shown(),
+            Command::ShowWorkspace(workspace) => self.show_workspace(workspace),
             Command::Say(severity, text) => self.say(severity, text),
             Command::DismissMessage => drop(self.session.messages.pop()),
             Command::ShowMessages(shown) => self.session.shows_log = shown,
             Command::Undo | Command::Redo => {}
         }
+    }
+
+    fn show_workspace(&mut self, workspace: Workspace) {
+        self.view.workspaces.shown = workspace;
+        self.session.shows_doors = false;
     }
 
     fn ask(&mut self, purpose: Purpose, context: &Context) {

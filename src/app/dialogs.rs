@@ -10,6 +10,7 @@ use crate::app::network::Network;
 use crate::case_file::{CASE_ENDING, file_stem};
 use crate::figure::Figure;
 use crate::jobs::{Job, Update};
+use crate::vehicle::DataSheet;
 
 /// File extension of model files.
 pub const MODEL_ENDING: &str = "safetensors";
@@ -27,6 +28,8 @@ pub enum Purpose {
     Numbers(Box<Figure>),
     /// A TOML file for the scenario.
     Scenario,
+    /// A TOML file for a vehicle.
+    Vehicle(Box<DataSheet>),
     /// A model file to open.
     OpenModel,
     /// A file for the current model of a network.
@@ -50,6 +53,7 @@ impl Purpose {
             Self::Picture(_) => "Save the picture",
             Self::Numbers(_) => "Save the numbers",
             Self::Scenario => "Save the scenario",
+            Self::Vehicle(_) => "Save the vehicle",
             Self::OpenModel => "Open a model",
             Self::SaveModel(_) => "Save the model",
             Self::OpenComparison => "Open a comparison",
@@ -66,6 +70,7 @@ impl Purpose {
             Self::Picture(figure) => return file_stem(&figure.title) + ".png",
             Self::Numbers(figure) => return file_stem(&figure.title) + ".csv",
             Self::Scenario => "scenario.toml",
+            Self::Vehicle(sheet) => return file_stem(&sheet.name) + ".toml",
             Self::SaveModel(network) => network.file_name(),
             Self::SaveComparison => "comparison",
             Self::SaveCase => "case.impactlab",
@@ -97,6 +102,9 @@ impl Purpose {
             Self::Picture(figure) => written("png", &|path| Command::Export(figure.clone(), path)),
             Self::Numbers(figure) => written("csv", &|path| Command::Export(figure.clone(), path)),
             Self::Scenario => written("toml", &Command::SaveScenario),
+            Self::Vehicle(sheet) => {
+                written("toml", &|path| Command::SaveVehicle(sheet.clone(), path))
+            }
             Self::SaveModel(network) => {
                 written(MODEL_ENDING, &|path| Command::SaveModel(*network, path))
             }
@@ -187,6 +195,7 @@ async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
         Purpose::SaveModel(_) => save(dialog.add_filter("model", &[MODEL_ENDING]), name).await,
         Purpose::Picture(_) => save(dialog.add_filter("picture", &["png"]), name).await,
         Purpose::Numbers(_) => save(dialog.add_filter("table", &["csv"]), name).await,
+        Purpose::Vehicle(_) => save(dialog.add_filter("vehicle", &["toml"]), name).await,
         Purpose::Scenario => save(dialog.add_filter("scenario", &["toml"]), name).await,
         Purpose::SaveCase => save(dialog.add_filter("case", &[CASE_ENDING]), name).await,
         Purpose::PackCase => save(dialog.add_filter("package", &["zip"]), name).await,

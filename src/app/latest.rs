@@ -138,6 +138,11 @@ impl<Q: Question> Latest<Q> {
         *self = Self::default();
     }
 
+    /// Why there is no answer to the latest question that was answered.
+    pub fn problem(&self) -> Option<&str> {
+        self.answer.as_ref()?.as_ref().err().map(String::as_str)
+    }
+
     /// Returns the latest answer, if it is not an error. While [`Latest::is_waiting`], it belongs
     /// to an earlier question.
     pub fn ok(&self) -> Option<&Arc<Q::Answer>> {

@@ -12,6 +12,7 @@ use crate::app::panes::Pane;
 use crate::app::source::{Content, Source};
 use crate::app::state::{Session, State};
 use crate::app::widgets::duration_text;
+use crate::app::workspaces::Workspace;
 use crate::data::Severity;
 use crate::jobs::{Job, Progress};
 use crate::render::theme;
@@ -37,6 +38,8 @@ pub fn menu_ui(ui: &mut Ui, state: &mut State, history: History, commands: &mut 
             });
             ui.menu_button("View", |ui| view_menu_ui(ui, state, commands));
             ui.menu_button("Help", |ui| help_menu_ui(ui, commands));
+            ui.separator();
+            workspaces_ui(ui, state, commands);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 for (system, label) in [(UnitSystem::Us, "US"), (UnitSystem::Si, "SI")] {
                     ui.selectable_value(&mut state.view.units, system, label)
@@ -50,6 +53,18 @@ pub fn menu_ui(ui: &mut Ui, state: &mut State, history: History, commands: &mut 
             });
         });
     });
+}
+
+/// Draws the workspaces, one of which is shown.
+fn workspaces_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
+    let shown = (!state.session.shows_doors).then_some(state.view.workspaces.shown);
+    for workspace in Workspace::ALL {
+        let text = RichText::new(workspace.title()).strong();
+        let label = ui.selectable_label(shown == Some(workspace), text);
+        if label.on_hover_text(workspace.purpose()).clicked() {
+            commands.push(Command::ShowWorkspace(workspace));
+        }
+    }
 }
 
 fn edit_item(
@@ -137,6 +152,10 @@ fn view_menu_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
 }
 
 fn help_menu_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
+    if ui.button("Ways to begin").clicked() {
+        commands.push(Command::ShowDoors);
+    }
+    ui.separator();
     ui.strong("Keys");
     egui::Grid::new("keys").show(ui, |ui| {
         for (key, what) in keyboard::PLAIN_KEYS {

@@ -8,6 +8,7 @@ mod case_filter;
 mod case_table;
 mod chain;
 mod command;
+mod contents;
 mod dialogs;
 mod export;
 mod force;
@@ -33,7 +34,9 @@ mod store;
 mod training;
 mod training_status;
 mod update;
+mod variants;
 mod widgets;
+mod workspaces;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -51,6 +54,7 @@ use crate::render::{DensityGpu, theme};
 pub use case::{Leaving, OpenCase, VariantCommand};
 pub use chain::Link;
 pub use command::{Command, ComparisonCommand, TrainingCommand};
+pub use contents::{ContentsEntry, Group};
 pub use force::ForceSession;
 pub use latest::Latest;
 pub use network::Network;
@@ -60,6 +64,8 @@ pub use replay::ReplayStatus;
 pub use response::{DensityChoice, ForceChoice, MotionAnswer, ResponseSession, TrainingMode};
 pub use source::{Content, Source};
 pub use state::{FileStart, Project, RestoreError, State, Subject, View};
+pub use variants::AnsweredVariant;
+pub use workspaces::{Layout, Workspace, Workspaces};
 
 /// The icon of the window, which is also the icon of the desktop entry.
 const ICON: &[u8] = include_bytes!("../../assets/desktop/impactlab.png");
@@ -129,6 +135,7 @@ impl App {
         let OpenedState { store, restored, message } = open_state(state_file);
         let beside = |name| Some(store.as_ref()?.path().with_file_name(name));
         let [force, response] = TRAINING_FILES.map(beside);
+        let (is_asked, is_restored) = (!paths.is_empty(), restored.is_some());
         let (mut state, last_open) = restored.unwrap_or_default();
         if let Some(message) = message {
             state.say(Severity::Warning, message);
@@ -144,7 +151,12 @@ impl App {
         if to_open.is_empty() && state.project.subject.is_none() {
             state.project.subject = Some(Subject::Scenario);
         }
+        let shown = state.view.workspaces.shown;
         state.apply(Command::Open(to_open), &cc.egui_ctx);
+        if !is_asked {
+            state.view.workspaces.shown = shown;
+            state.session.shows_doors = !is_restored;
+        }
         if state.project.subject.is_some() {
             state.session.select_when_loaded = None; // The subject of the last run stays.
         }
@@ -240,13 +252,24 @@ impl eframe::App for App {
 
 impl App {
     fn panes_ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        let State { project, view, session, .. } = &mut self.state;
-        let mut layout =
-            std::mem::replace(&mut view.layout, Tree::empty(egui::Id::unique("panes")));
-        let mut panes = panes::PaneContext { project, view, session, commands };
         let frame = egui::Frame::new().fill(ui.visuals().panel_fill);
-        egui::CentralPanel::no_frame().frame(frame).show(ui, |ui| layout.ui(&mut panes, ui));
-        self.state.view.layout = layout;
+        let central = egui::CentralPanel::no_frame().frame(frame);
+        if self.state.session.shows_doors {
+            central.show(ui, |ui| panels::doors_ui(ui, &self.state.view.recent, commands));
+            return;
+        }
+        let (variants, contents) = (self.state.answered_variants(), self.state.contents());
+        let State { project, view, session, .. } = &mut self.state;
+        let shown = view.workspaces.shown;
+        let empty = Tree::empty(egui::Id::unique("panes"));
+        let mut layout = std::mem::replace(view.workspaces.layout_mut(shown), empty);
+        let between = std::mem::take(&mut session.between);
+        let mut panes =
+            panes::PaneContext { project, view, session, between, variants, contents, commands };
+        central.show(ui, |ui| layout.ui(&mut panes, ui));
+        panes.between.ui(ui);
+        panes.session.between = panes.between;
+        *self.state.view.workspaces.layout_mut(shown) = layout;
         self.state.session.fit_plots = false;
     }
 

@@ -9,9 +9,10 @@ use crate::app::command::{ComparisonCommand, wake};
 use crate::app::dialogs::MODEL_ENDING;
 use crate::app::import::ImportDialog;
 use crate::app::network::Network;
-use crate::app::panes::{Pane, show_pane};
+use crate::app::panes::Pane;
 use crate::app::source::{Content, Source};
 use crate::app::state::{State, Subject};
+use crate::app::workspaces::Workspace;
 use crate::case_file::is_case_file;
 use crate::collision::Scenario;
 use crate::data::{ColumnMap, Existing, Severity};
@@ -24,7 +25,8 @@ use crate::vehicle::VehicleParameters;
 
 impl State {
     /// Opens paths by their extension: `.impactlab` is a case, `.toml` a vehicle or a scenario,
-    /// `.safetensors` a model and `.json` a comparison. Any other path is loaded as data.
+    /// `.safetensors` a model and `.json` a comparison. Any other path is loaded as data; a folder
+    /// is shown in the Data workspace, where its cases are chosen.
     pub(super) fn open(&mut self, paths: Vec<PathBuf>, context: &Context) {
         for path in paths {
             // So that it leads there from every folder that the program is started in.
@@ -43,9 +45,13 @@ impl State {
             }
             if path.extension().is_some_and(|ending| ending == "json") {
                 self.compare(ComparisonCommand::Open(path), context);
-                show_pane(&mut self.view.layout, Pane::ModelComparison);
+                self.view.workspaces.show_pane(Pane::ModelComparison);
                 continue;
             }
+            if path.is_dir() && self.view.workspaces.shown == Workspace::Case {
+                self.view.workspaces.shown = Workspace::Data; // Where a case of it is chosen.
+            }
+            self.session.shows_doors = false;
             self.load(path, None, context);
         }
     }

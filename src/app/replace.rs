@@ -17,6 +17,7 @@ impl Command {
         match self {
             Self::Export(_, path)
             | Self::SaveScenario(path)
+            | Self::SaveVehicle(_, path)
             | Self::SaveModel(_, path)
             | Self::SaveCaseAs(path)
             | Self::PackCase(path)
@@ -51,13 +52,10 @@ impl State {
                 }
             }
             Command::SaveScenario(path) => {
-                let text = self.project.scenario.to_toml();
-                let written =
-                    write_atomically(&path, existing, |out| out.write_all(text.as_bytes()));
-                match written {
-                    Ok(()) => self.say(Severity::Info, format!("{} written", path.display())),
-                    Err(error) => self.say(Severity::Error, error_chain(&error)),
-                }
+                self.write_text(&self.project.scenario.to_toml(), (&path, existing));
+            }
+            Command::SaveVehicle(sheet, path) => {
+                self.write_text(&sheet.to_toml(), (&path, existing));
             }
             Command::SaveCaseAs(path) => self.save_case((path, existing), context),
             Command::PackCase(path) => self.pack_case((path, existing), context),
@@ -68,6 +66,15 @@ impl State {
                 self.save_comparison((folder, existing), context);
             }
             other => self.apply(other, context),
+        }
+    }
+
+    /// Writes a short text and tells the user that it has been written, or why it could not be.
+    fn write_text(&mut self, text: &str, (path, existing): (&Path, Existing)) {
+        let written = write_atomically(path, existing, |out| out.write_all(text.as_bytes()));
+        match written {
+            Ok(()) => self.say(Severity::Info, format!("{} written", path.display())),
+            Err(error) => self.say(Severity::Error, error_chain(&error)),
         }
     }
 }

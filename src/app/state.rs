@@ -16,11 +16,13 @@ use crate::app::force::{ForceProject, ForceSession, ForceView};
 use crate::app::import::{ColumnMaps, ImportDialog};
 use crate::app::latest::Latest;
 use crate::app::network::Network;
-use crate::app::panes::{Layout, default_layout, is_complete};
 use crate::app::path_dialog::PathDialog;
 use crate::app::replay::Replays;
 use crate::app::response::{ResponseProject, ResponseSession, ResponseView};
 use crate::app::source::Source;
+use crate::app::variants::OtherVariants;
+use crate::app::widgets::BetweenCursors;
+use crate::app::workspaces::Workspaces;
 use crate::collision::{ChannelClass, Scenario};
 use crate::data::Severity;
 use crate::jobs::Job;
@@ -170,8 +172,10 @@ pub struct View {
     pub recent: Vec<PathBuf>,
     /// The column maps of earlier files, by their headers.
     pub column_maps: ColumnMaps,
-    /// The arrangement of the panes.
-    pub layout: Layout,
+    /// Whether the answers of all variants are shown, not only those of the one in the forms.
+    pub shows_all_variants: bool,
+    /// The arrangement of the panes in each workspace.
+    pub workspaces: Workspaces,
 }
 
 impl Default for View {
@@ -188,7 +192,8 @@ impl Default for View {
             trained: Network::default(),
             recent: Vec::new(),
             column_maps: ColumnMaps::default(),
-            layout: default_layout(),
+            shows_all_variants: true,
+            workspaces: Workspaces::default(),
         }
     }
 }
@@ -204,6 +209,8 @@ pub struct Session {
     pub analysis: Latest<SimulateRequest>,
     /// The impulse solution of the scenario in the scenario pane.
     pub impact: Latest<ImpactRequest>,
+    /// The answers of the variants that are not in the forms.
+    pub other_variants: OtherVariants,
     /// The simulations of whole data sets.
     pub replays: Replays,
     /// Model, forecast, training and evaluation of the force network.
@@ -214,6 +221,8 @@ pub struct Session {
     pub cases: CaseList,
     /// The time that is shown in the scene, s.
     pub time_s: f64,
+    /// The two cursors of the figures over time.
+    pub between: BetweenCursors,
     /// Whether the playback is running.
     pub playing: bool,
     /// Messages for the user that were not dismissed, the newest last.
@@ -240,6 +249,8 @@ pub struct Session {
     pub mapping: Option<ImportDialog>,
     /// The files whose dialog follows, in the order of opening.
     pub to_map: VecDeque<PathBuf>,
+    /// Whether the three ways to begin are shown in the place of the panes.
+    pub shows_doors: bool,
     /// Whether the licences of third parties are shown.
     pub shows_licences: bool,
     /// The command that waits for the user's answer whether it may replace what exists.
@@ -347,7 +358,7 @@ impl State {
     }
 
     /// Reads the state that [`save`](Self::save) has written and returns it with the paths that
-    /// were open. A layout that lacks a pane is replaced by the default one.
+    /// were open. A workspace that lacks a pane gets its default arrangement.
     ///
     /// # Errors
     /// [`RestoreError`] if the text is damaged or of another version; the application then starts
@@ -358,9 +369,7 @@ impl State {
             return Err(RestoreError::Version { version });
         }
         let mut saved: Saved = serde_json::from_str(text)?;
-        if !is_complete(&saved.view.layout) {
-            saved.view.layout = default_layout(); // It was saved before a pane was added.
-        }
+        saved.view.workspaces.complete();
         let Saved { project, case, view, mut sources, .. } = saved;
         let state = Self { project, case, view, session: Session::default() };
         sources.dedup();
@@ -385,7 +394,7 @@ impl State {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::Pane;
+    use crate::app::{Pane, Workspace};
 
     #[test]
     fn project_and_view_survive_a_restart() {
@@ -409,13 +418,13 @@ mod tests {
     #[test]
     fn a_layout_without_the_newer_panes_is_put_back() {
         let mut state = State::default();
-        let tiles = &mut state.view.layout.tiles;
+        let tiles = &mut state.view.workspaces.layout_mut(Workspace::Models).tiles;
         let pane =
             |tile: &egui_tiles::Tile<Pane>| matches!(tile, egui_tiles::Tile::Pane(Pane::Training));
         let training = tiles.iter().find(|(_, tile)| pane(tile)).map(|(id, _)| *id).unwrap();
         tiles.remove(training);
         let (restored, _) = State::restore(&state.save().unwrap()).unwrap();
-        assert_eq!(restored.view.layout, default_layout());
+        assert_eq!(restored.view.workspaces, Workspaces::default());
     }
 
     #[test]

@@ -40,6 +40,7 @@ impl State {
         self.update_simulation(context);
         self.update_force(context);
         self.update_response(context);
+        self.update_variants(context);
         self.advance_time(context);
         if self.session.is_waiting() {
             context.request_repaint_after(WAITING_REPAINT);

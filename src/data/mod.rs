@@ -76,7 +76,7 @@ pub use read_settings::{HeaderLine, ReadSettings, SheetRef, VelocityAxes};
 pub use series::{SeriesError, TimeSeries};
 pub use table::Table;
 pub use toml_file::{TomlError, TomlFile};
-pub use toml_table::TomlTable;
+pub use toml_table::{TomlTable, key_with_unit};
 pub use velocity_fit::{VelocityFit, velocity_fit};
 pub use workbook::Sheet;
 pub use write::{Existing, check_target, write_atomically, write_series_csv};

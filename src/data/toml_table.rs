@@ -101,7 +101,7 @@ impl<'a> TomlTable<'a> {
     pub fn number(&mut self, base: &str, range: &Range) -> Result<Option<f64>, TomlError> {
         let mut found: Option<(String, f64)> = None;
         for unit in range.quantity.units() {
-            let key = key_of(base, unit);
+            let key = key_with_unit(base, unit);
             let Some((_, value)) = self.take(&key) else {
                 continue;
             };
@@ -134,7 +134,7 @@ impl<'a> TomlTable<'a> {
     /// The same as for [`TomlTable::number`], and [`TomlError::MissingKey`] if the number is
     /// missing.
     pub fn require(&mut self, base: &str, range: &Range) -> Result<f64, TomlError> {
-        let key = key_of(base, &range.quantity.si_unit());
+        let key = key_with_unit(base, &range.quantity.si_unit());
         self.number(base, range)?.ok_or_else(|| self.missing(&key))
     }
 
@@ -236,7 +236,7 @@ impl<'a> TomlTable<'a> {
 
 /// The name of a key: `speed` in km/h is `speed_km_h`, `yaw_inertia` in kg m² is
 /// `yaw_inertia_kg_m2`, `torque` in N m is `torque_n_m`, a ratio `e` is `e`, or `e_percent` in per cent.
-fn key_of(base: &str, unit: &Unit) -> String {
+pub fn key_with_unit(base: &str, unit: &Unit) -> String {
     match unit.symbol {
         "" => base.to_owned(),
         "%" => format!("{base}_percent"),

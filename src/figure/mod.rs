@@ -12,6 +12,7 @@ mod model_comparison;
 mod motion;
 mod motion_forecast;
 mod scene;
+mod statistics;
 mod training;
 
 pub use analysis::{
@@ -33,4 +34,5 @@ pub use motion_forecast::{
     forecast_readout, forecast_scene_figure, forecast_surroundings,
 };
 pub use scene::{SceneFigure, SceneVehicle, pose_at, scene_figure, vehicle_outline};
+pub use statistics::{CurveStatistics, curve_statistics};
 pub use training::{LossCurve, balance_figure, loss_figure};

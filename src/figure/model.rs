@@ -21,6 +21,41 @@ pub struct Figure {
     pub elements: Vec<FigureElement>,
 }
 
+impl Figure {
+    /// Draws what another variant of the case computes over this figure: the lines and outlines that are
+    /// simulated or predicted, and the components of its force.
+    ///
+    /// - `(name, idx)`: name of the variant and its number among the others, which gives its colour.
+    pub fn overlay(&mut self, (name, idx): (&str, usize), other: &Self) {
+        let is_computed = |role| {
+            matches!(
+                role,
+                Role::Simulation | Role::Model | Role::Target | Role::ComponentX | Role::ComponentY
+            )
+        };
+        let of_variant = |series: &Series| Series {
+            name: format!("{}, {name}", series.name),
+            role: Role::Variant(idx),
+            style: if series.role == Role::ComponentY {
+                LineStyle::Dotted
+            } else {
+                LineStyle::Dashed
+            },
+            points: series.points.clone(),
+        };
+        let overlaid = other.elements.iter().filter_map(|element| match element {
+            FigureElement::Line(series) if is_computed(series.role) => {
+                Some(FigureElement::Line(of_variant(series)))
+            }
+            FigureElement::Polygon(series) if is_computed(series.role) => {
+                Some(FigureElement::Polygon(of_variant(series)))
+            }
+            _ => None,
+        });
+        self.elements.extend(overlaid);
+    }
+}
+
 /// Label and unit of an axis, and the names at its ticks if it has any.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
@@ -81,6 +116,8 @@ pub enum Role {
     Model,
     /// The second of two kinds of cases or curves, such as validation cases beside training cases.
     Validation,
+    /// The same quantity in another variant of the case; the number counts the variants.
+    Variant(usize),
     /// An element in the background: raw data behind filtered data, grid and help lines.
     Muted,
 }

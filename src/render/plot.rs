@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use egui::{Color32, ColorImage, Id, Stroke, TextureHandle, TextureOptions, Ui, Vec2b};
+use egui::{Color32, ColorImage, Id, Pos2, Stroke, TextureHandle, TextureOptions, Ui, Vec2b};
 use egui_plot::{
     Arrows, FilledArea, Legend, Line, LineStyle as PlotLineStyle, Plot, PlotBounds, PlotImage,
     PlotPoint, PlotPoints, PlotUi, Points, Polygon, VLine,
@@ -37,6 +37,8 @@ pub struct FigureOptions {
     pub link: Option<Id>,
     /// Position of the cursor along x, in the unit of the axis.
     pub cursor_x: Option<f64>,
+    /// Two cursors along x, in the unit of the axis.
+    pub span: Option<[f64; 2]>,
     /// Height of the plot, points; `None` for all the space that is available.
     pub height: Option<f32>,
     /// Whether the view is fitted to the data again.
@@ -46,12 +48,24 @@ pub struct FigureOptions {
     pub view: Option<[[f64; 2]; 2]>,
     /// Whether a legend names the elements.
     pub legend: bool,
+    /// Whether the primary pointer button moves the view of a figure seen from above.
+    pub pans: bool,
 }
 
 impl Default for FigureOptions {
     fn default() -> Self {
-        let (id, link, cursor_x, height) = (String::new(), None, None, None);
-        Self { id, link, cursor_x, height, reset: false, view: None, legend: true }
+        let (id, link, cursor_x, span, height) = (String::new(), None, None, None, None);
+        Self {
+            id,
+            link,
+            cursor_x,
+            span,
+            height,
+            reset: false,
+            view: None,
+            legend: true,
+            pans: true,
+        }
     }
 }
 
@@ -61,6 +75,13 @@ pub struct FigureResponse {
     /// Position along x at which the user presses a pointer button, in the unit of the axis, to set
     /// the cursor.
     pub picked_x: Option<f64>,
+    /// Where the user has pressed the primary pointer button in the figure, and where the pointer is
+    /// now, while the button is down: [x, y] in the units of the axes.
+    pub drag: Option<[[f64; 2]; 2]>,
+    /// View `[lowest, highest]` of [x, y] in the units of the axes.
+    pub view: [[f64; 2]; 2],
+    /// Distance along x that a point of the screen is wide, in the unit of the axis.
+    pub x_per_point: f64,
 }
 
 /// Draws a figure into the space that is available. Hovering shows values in the units of the axes.
@@ -108,10 +129,31 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
             let stroke = Stroke::new(theme::LINE_WIDTH, theme::cursor_color(dark));
             plot_ui.vline(VLine::new("", x).stroke(stroke).allow_hover(false));
         }
+        for x in options.span.into_iter().flatten() {
+            let stroke = Stroke::new(theme::THIN_LINE_WIDTH, theme::cursor_color(dark));
+            let line = VLine::new("", x).stroke(stroke).style(PlotLineStyle::dashed_loose());
+            plot_ui.vline(line.allow_hover(false));
+        }
         let picking = plot_ui.response().is_pointer_button_down_on();
         plot_ui.pointer_coordinate().filter(|_| picking).map(|point| point.x)
     });
-    FigureResponse { picked_x: response.inner }
+    let transform = response.transform;
+    let at = |point: Pos2| {
+        let value = transform.value_from_position(point);
+        [value.x, value.y]
+    };
+    let pressed = ui.input(|input| {
+        let pointer = &input.pointer;
+        let is_down = pointer.primary_down() && response.response.is_pointer_button_down_on();
+        pointer.press_origin().zip(pointer.latest_pos()).filter(|_| is_down)
+    });
+    let bounds = transform.bounds();
+    FigureResponse {
+        picked_x: response.inner,
+        drag: pressed.map(|(from, to)| [at(from), at(to)]),
+        view: [bounds.min(), bounds.max()],
+        x_per_point: transform.dvalue_dpos()[0].abs(),
+    }
 }
 
 /// A plot with the labels and ticks of the axes and the text shown on hovering.
@@ -158,7 +200,7 @@ fn plot_with_axes<'a>(figure: &Figure, options: &FigureOptions) -> Plot<'a> {
             false => name_label(mark, &names),
         })
         .allow_scroll(false)
-        .allow_drag(Vec2b::new(figure.equal_aspect, figure.equal_aspect))
+        .allow_drag(Vec2b::from(figure.equal_aspect && options.pans))
 }
 
 /// The texture of a heat map, which is kept from frame to frame, and the data from which it was

@@ -16,6 +16,13 @@ pub const THIN_LINE_WIDTH: f32 = 1.0;
 /// Opacity of the fill of an outline, 0 to 1.
 pub const FILL_OPACITY: f32 = 0.18;
 
+/// Colours of the variants beside the one in the forms, for a light and a dark ground.
+const VARIANTS: [([u8; 3], [u8; 3]); 3] = [
+    ([150, 110, 0], [225, 190, 80]),
+    ([120, 70, 20], [205, 155, 110]),
+    ([110, 70, 170], [170, 140, 230]),
+];
+
 /// Colour of a role.
 ///
 /// - `dark`: whether the background is dark.
@@ -27,6 +34,7 @@ pub fn color(role: Role, dark: bool) -> Color32 {
         Role::Bullet | Role::ComponentY | Role::Validation => ([213, 94, 0], [240, 130, 50]),
         Role::Resultant => ([60, 60, 60], [225, 225, 225]),
         Role::Pulse => ([170, 80, 140], [220, 145, 190]),
+        Role::Variant(idx) => VARIANTS[idx % VARIANTS.len()],
         Role::Muted => ([150, 150, 150], [120, 120, 120]),
     };
     let [r, g, b] = if dark { dark_ground } else { light_ground };

@@ -44,7 +44,7 @@ pub use parameters::{GeometryParameters, MassParameters, SuspensionParameters, V
 pub use preset::{Preset, built_in_vehicle};
 pub(crate) use rest::RestWatch;
 pub use rest::{REST_DURATION_S, REST_SPEED_M_S, REST_YAW_RATE_RAD_S};
-pub use sheet::{DataSheet, LibraryVehicle};
+pub use sheet::{DataSheet, LibraryVehicle, SheetQuantity, VehicleClass};
 pub use simulate::{
     ContactLoad, Integrator, Manoeuvre, Motion, MotionFlag, OUTPUT_INTERVAL_S, ROLL_LIMIT_RAD,
     SimulationError,

@@ -244,7 +244,7 @@ impl VehicleParameters {
     }
 
     /// Every value with its range, which other values of the vehicle may limit further.
-    fn ranges(&self) -> Vec<(&'static str, f64, Range)> {
+    pub(in crate::vehicle) fn ranges(&self) -> Vec<(&'static str, f64, Range)> {
         let Self { mass, geometry, suspension, tires, .. } = self;
         let coupling = (mass.yaw_inertia_kg_m2 * mass.roll_inertia_kg_m2).max(0.0).sqrt() * 0.95;
         let roll_yaw_product = ROLL_YAW_PRODUCT.within([-coupling, coupling]);

@@ -410,7 +410,8 @@ fn the_chain_says_where_each_answer_comes_from_and_marks_what_is_late() {
     let chain = state(&harness).chain();
     assert!(chain[1..].iter().all(|link| link.figure.is_none()), "{chain:?}");
     // A click leads to the panel.
-    harness.get_by_label_contains("Motion:").click();
+    let motion = harness.query_all_by_label_contains("Motion:").next().expect("the link");
+    motion.click();
     harness.run_steps(3);
     harness.get_by_label("components");
 }

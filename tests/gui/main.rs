@@ -1,5 +1,6 @@
 //! Tests of the app, which is driven without a display and drawn on the CPU.
 
+mod arrangement;
 mod both_faces;
 mod case;
 mod density_gpu;

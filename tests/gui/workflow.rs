@@ -200,12 +200,12 @@ fn a_scenario_is_solved_simulated_and_survives_a_kill() {
     harness.run_steps(90);
     step_until(&mut harness, "the saved state", |_| state_file.exists());
     let before = state(&harness).project.clone();
-    let layout = state(&harness).view.layout.clone();
+    let layout = state(&harness).view.workspaces.clone();
     drop(harness);
     let mut harness = open_with(&[], Some(state_file));
     step_until(&mut harness, "the scenario again", shows("PIT, right rear quarter"));
     assert_eq!(state(&harness).project, before);
-    assert_eq!(state(&harness).view.layout, layout);
+    assert_eq!(state(&harness).view.workspaces, layout);
     assert_eq!(state(&harness).session.sources.len(), 1);
 }
 

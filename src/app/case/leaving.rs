@@ -15,6 +15,10 @@ pub enum Leaving {
     Quit,
     /// A new case.
     New,
+    /// A new case with a PIT, ready to play.
+    Pit,
+    /// The finished example case that comes with the program.
+    Example,
     /// Another case.
     Open(PathBuf),
 }
@@ -24,7 +28,7 @@ impl Leaving {
     fn label(&self) -> &'static str {
         match self {
             Self::Quit => "Quit",
-            Self::New | Self::Open(_) => "Go on without saving",
+            Self::New | Self::Pit | Self::Example | Self::Open(_) => "Go on without saving",
         }
     }
 }
@@ -49,6 +53,8 @@ impl State {
                 context.send_viewport_cmd(ViewportCommand::Close);
             }
             Leaving::New => self.new_case(context),
+            Leaving::Pit => self.open_pit(context),
+            Leaving::Example => self.open_example(context),
             Leaving::Open(path) => self.open_case(&path, context),
         }
     }
@@ -123,7 +129,7 @@ pub fn leaving_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let Some(to) = &state.session.leaving else { return };
     ui.heading(match to {
         Leaving::Quit => "Quit impactlab?",
-        Leaving::New | Leaving::Open(_) => "Leave this case?",
+        Leaving::New | Leaving::Pit | Leaving::Example | Leaving::Open(_) => "Leave this case?",
     });
     for reason in state.reasons_to_stay(to) {
         ui.label(reason);

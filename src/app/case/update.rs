@@ -6,15 +6,19 @@ use egui::Context;
 
 use crate::app::case::{Forms, OpenCase, VariantCommand};
 use crate::app::command::wake;
-use crate::app::panes::{Pane, show_pane};
+use crate::app::panes::Pane;
 use crate::app::source::Source;
 use crate::app::state::{Project, Session, State, Subject};
+use crate::app::workspaces::Workspace;
 use crate::case_file::{CaseFile, UsedModel, pack};
 use crate::data::write::{ModelDigest, sha256_hex};
 use crate::data::{Existing, MAX_RESULTS_BYTES, Severity, read_utf8};
 use crate::error_chain;
 use crate::jobs::{Job, Update};
 use crate::study::{Request, SeriesFile};
+
+/// The finished example case.
+const EXAMPLE: &str = include_str!("../../../assets/examples/pit.impactlab");
 
 /// The largest number of recent cases that are offered.
 const MAX_RECENT: usize = 10;
@@ -129,8 +133,10 @@ impl State {
                 self.load(path, map, context);
             }
         }
+        self.session.shows_doors = false;
+        self.view.workspaces.shown = Workspace::Case;
         if self.project.subject == Some(Subject::Scenario) {
-            show_pane(&mut self.view.layout, Pane::Scenario);
+            self.view.workspaces.show_pane(Pane::Scenario);
         }
         self.session.select_when_loaded = None;
         self.session.history_ends = true;
@@ -204,6 +210,26 @@ impl State {
             sources: Vec::new(),
         };
         self.show_forms(forms, context);
+    }
+
+    /// Begins a case with a PIT, and shows its scene.
+    pub(in crate::app) fn open_pit(&mut self, context: &Context) {
+        self.new_case(context);
+        self.view.workspaces.show_pane(Pane::Scene);
+    }
+
+    /// Opens the finished example case, which has no file of its own yet.
+    pub(in crate::app) fn open_example(&mut self, context: &Context) {
+        let beside = std::env::current_dir().unwrap_or_default().join("example.impactlab");
+        match CaseFile::parse(EXAMPLE, &beside) {
+            Ok(file) => {
+                self.case = OpenCase { file, path: None, on_disk: None, saved: None };
+                self.show_variant(context);
+                self.case.saved = Some(self.case.fingerprint(&self.stored_forms()));
+                self.view.workspaces.show_pane(Pane::MotionForecast);
+            }
+            Err(error) => self.say(Severity::Error, error_chain(&error)),
+        }
     }
 
     /// Opens a case in the place of the one that is open.

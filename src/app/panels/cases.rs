@@ -19,7 +19,7 @@ const FILTER_HINT: &str = "Filter: c012, hooked, spin=1, m_b_kg>2000";
 /// case. The table scrolls to the selected case when the filter changes and when the plots fit
 /// their view again, as they do after a selection.
 pub fn cases_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext { project, view, session, commands } = pane;
+    let PaneContext { project, view, session, commands, .. } = pane;
     if listed_in(&session.sources, view).is_none() {
         ui.label("No data set is open. The cases of a data set are listed here.");
         return;

@@ -20,7 +20,7 @@ pub fn comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { view, session, commands, .. } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         if let Some(answer) = analysis_or_hint(ui, session) {
-            case_ui(ui, &answer.report, view.units);
+            case_ui(ui, &answer.report, view.units, commands);
         }
         ui.separator();
         let (Some(path), Some(checked)) = (&view.listed, listed_in(&session.sources, view)) else {
@@ -33,7 +33,7 @@ pub fn comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         let replay = session.replays.get(path);
         let report = replay.and_then(|replay| replay.report());
         if let Some(report) = report {
-            dataset_ui(ui, report, view.units);
+            dataset_ui(ui, report, view.units, commands);
         }
         if replay.is_some_and(|replay| replay.question.is_running()) {
             ui.horizontal(|ui| (ui.spinner(), ui.label("Simulating…")));
@@ -49,10 +49,10 @@ pub fn comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     });
 }
 
-fn case_ui(ui: &mut Ui, report: &SimulateReport, units: UnitSystem) {
+fn case_ui(ui: &mut Ui, report: &SimulateReport, units: UnitSystem, commands: &mut Vec<Command>) {
     ui.strong(format!("{} with {}", report.name, report.vehicle));
     badges_ui(ui, &report.badges);
-    assumptions_ui(ui, &report.assumptions);
+    assumptions_ui(ui, &report.assumptions, commands);
     for note in &report.notes {
         ui.weak(note);
     }
@@ -96,11 +96,16 @@ fn error_rows(error: &MotionError, units: UnitSystem) -> Vec<(String, String)> {
 
 /// Draws the average position error over all cases, and separately over the cases that spin and
 /// those that do not.
-fn dataset_ui(ui: &mut Ui, report: &SimulateDatasetReport, units: UnitSystem) {
+fn dataset_ui(
+    ui: &mut Ui,
+    report: &SimulateDatasetReport,
+    units: UnitSystem,
+    commands: &mut Vec<Command>,
+) {
     let violations: usize = report.cases.iter().map(|case| case.violations).sum();
     ui.strong(format!("All {} cases, average position error", report.cases.len()));
     badges_ui(ui, &report.badges);
-    assumptions_ui(ui, &report.assumptions);
+    assumptions_ui(ui, &report.assumptions, commands);
     let unit = Quantity::Length.display_unit(units);
     Grid::new("dataset error").striped(true).show(ui, |ui| {
         for title in ["", "n", "mean", "std", "median", "p90"] {

@@ -18,7 +18,7 @@ const SHOWN_PROBLEMS: usize = 50;
 
 /// Draws the buttons that open data, and below them the tree of everything that is open.
 pub fn data_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext { project, view, session, commands } = pane;
+    let PaneContext { project, view, session, commands, .. } = pane;
     ui.horizontal(|ui| {
         let folder =
             ui.button("Open folder…").on_hover_text("A data set, or a folder of data sets");

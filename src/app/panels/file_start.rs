@@ -21,7 +21,7 @@ use crate::vehicle::{ContactPoint, USUAL_STEERING_RATIO};
 
 /// Draws speed, contact point, files of steering and torques, and what happens after the impact.
 pub(super) fn file_start_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext { project, view, session, commands } = pane;
+    let PaneContext { project, view, session, commands, .. } = pane;
     ui.strong("For single files");
     Grid::new("file start").num_columns(2).show(ui, |ui| {
         let start = &mut project.file_start;

@@ -3,9 +3,11 @@
 
 use egui::{ComboBox, Grid, Id, Ui};
 
+use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
-use crate::app::widgets::{figure_frame, value_row};
+use crate::app::variants::other_simulations;
+use crate::app::widgets::{time_figure, value_row};
 use crate::collision::{ChannelClass, Pulse, PulseShape};
 use crate::data::{ForceHistory, contact_interval};
 use crate::figure::analysis_force_figure;
@@ -19,7 +21,7 @@ const PULSE_INTERVAL_S: f64 = 5e-4;
 /// Draws the choice of the SAE J211 filter and of the classic pulses, the characteristic numbers of
 /// the force, and the plot.
 pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext { project, view, session, commands } = pane;
+    let PaneContext { project, view, session, between, variants, commands, .. } = pane;
     let Some(SimulateAnswer { report, analysis }) = analysis_or_hint(ui, session) else {
         return;
     };
@@ -49,14 +51,25 @@ pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let pulses = if project.show_pulses { pulses(force) } else { Vec::new() };
     let figure = analysis_force_figure(analysis, project.channel_class, &pulses, view.units);
     match figure {
-        Ok(Some(figure)) => {
+        Ok(Some(mut figure)) => {
+            for (i, (name, other)) in other_simulations(variants).enumerate() {
+                let class = project.channel_class;
+                let other = analysis_force_figure(&other.analysis, class, &[], view.units);
+                if let Ok(Some(other)) = other {
+                    figure.overlay((name, i), &other);
+                }
+            }
             let options = FigureOptions {
                 id: "force".to_owned(),
                 link: Some(Id::unique("force")),
+                cursor_x: Some(figure.x.unit.from_si(session.time_s)),
                 reset: session.fit_plots,
                 ..FigureOptions::default()
             };
-            figure_frame(ui, (&figure.title, &figure), &options, commands);
+            let picked = time_figure(ui, (&figure.title, &figure), options, between, commands);
+            if let Some(x) = picked.picked_x {
+                commands.push(Command::SetTime(figure.x.unit.to_si(x).max(0.0)));
+            }
         }
         Ok(None) => {}
         Err(error) => {

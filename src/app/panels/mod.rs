@@ -6,7 +6,9 @@
 
 mod cases;
 mod comparison;
+mod contents;
 mod data;
+mod doors;
 mod ending;
 mod evaluation;
 mod evaluation_plots;
@@ -23,17 +25,22 @@ mod prediction;
 mod prediction_form;
 mod prediction_numbers;
 mod scenario;
+mod scenario_plan;
 mod scene;
 mod training;
 mod training_force;
 mod training_losses;
 mod training_parts;
 mod training_response;
+mod variants;
 mod vehicle;
+mod vehicle_form;
 
 pub use cases::cases_ui;
 pub use comparison::comparison_ui;
+pub use contents::contents_ui;
 pub use data::data_ui;
+pub use doors::doors_ui;
 pub use evaluation::evaluation_ui;
 pub(in crate::app) use file_start::start_fields;
 pub use force::force_ui;
@@ -44,6 +51,7 @@ pub use prediction::prediction_ui;
 pub use scenario::scenario_ui;
 pub use scene::scene_ui;
 pub use training::training_ui;
+pub use variants::variants_ui;
 pub use vehicle::vehicle_ui;
 
 use egui::{RichText, Ui};

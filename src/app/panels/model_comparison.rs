@@ -25,7 +25,7 @@ use crate::study::{CompareReport, EvaluatedCases};
 /// Draws the settings and buttons, and of the last comparison the figures, the case browser and the
 /// tables.
 pub fn model_comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext { project, view, session, commands } = pane;
+    let PaneContext { project, view, session, commands, .. } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let has_data = form_ui(ui, &mut project.response.comparison, &session.sources);
         let response = &mut session.response;
@@ -42,7 +42,7 @@ pub fn model_comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             Some(Ok(answer)) => {
                 let comparison = &answer.report.comparison;
                 ui.separator();
-                heading_ui(ui, &answer.report);
+                heading_ui(ui, &answer.report, commands);
                 overview_ui(ui, comparison, (view.units, session.fit_plots), commands);
                 ui.separator();
                 browser_ui(ui, comparison, (view, session.fit_plots), commands);
@@ -149,7 +149,7 @@ fn buttons_ui(
 
 /// Draws the title, what was assumed, the cases that were left out, and the errors that the paper
 /// prints for the models that it has.
-fn heading_ui(ui: &mut Ui, report: &CompareReport) {
+fn heading_ui(ui: &mut Ui, report: &CompareReport, commands: &mut Vec<Command>) {
     let comparison = &report.comparison;
     ui.horizontal_wrapped(|ui| {
         let n_test = comparison.test.len();
@@ -165,7 +165,7 @@ fn heading_ui(ui: &mut Ui, report: &CompareReport) {
         }
     });
     badges_ui(ui, &report.badges);
-    assumptions_ui(ui, &report.assumptions);
+    assumptions_ui(ui, &report.assumptions, commands);
     let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
     for why in &report.left_out {
         ui.colored_label(color, format!("Left out: {why}"));

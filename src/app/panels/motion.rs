@@ -6,7 +6,8 @@ use egui::{Id, Ui};
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
-use crate::app::widgets::{assumptions_ui, badges_ui, figure_frame};
+use crate::app::variants::other_simulations;
+use crate::app::widgets::{assumptions_ui, badges_ui, time_figure};
 use crate::figure::{MOTION_CHANNELS, analysis_motion_figure, analysis_readout};
 use crate::render::FigureOptions;
 use crate::study::SimulateAnswer;
@@ -19,17 +20,21 @@ const TITLE_HEIGHT: f32 = 30.0;
 /// Draws v_x, v_y, yaw rate and roll over time, with a cursor at the time of the scene. A click or
 /// a drag in a plot sets this time.
 pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext { view, session, commands, .. } = pane;
+    let PaneContext { view, session, between, variants, commands, .. } = pane;
     let Some(SimulateAnswer { report, analysis }) = analysis_or_hint(ui, session) else {
         return;
     };
     badges_ui(ui, &report.badges);
-    assumptions_ui(ui, &report.assumptions);
+    assumptions_ui(ui, &report.assumptions, commands);
     let two_columns = ui.available_width() > 560.0;
     let rows = if two_columns { 2.0 } else { 4.0 };
     let height = (ui.available_height() / rows - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT);
     let mut plot = |ui: &mut Ui, channel| {
-        let figure = analysis_motion_figure(analysis, channel, view.units);
+        let mut figure = analysis_motion_figure(analysis, channel, view.units);
+        for (i, (name, other)) in other_simulations(variants).enumerate() {
+            let other = analysis_motion_figure(&other.analysis, channel, view.units);
+            figure.overlay((name, i), &other);
+        }
         let options = FigureOptions {
             id: channel.label().to_owned(),
             link: Some(Id::unique("motion")),
@@ -40,7 +45,7 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             ..FigureOptions::default()
         };
         let heading = analysis_readout(analysis, channel, (session.time_s, view.units));
-        let response = figure_frame(ui, (&heading, &figure), &options, commands);
+        let response = time_figure(ui, (&heading, &figure), options, between, commands);
         if let Some(time_s) = response.picked_x {
             let last = figure_end(&figure);
             commands.push(Command::SetTime(time_s.clamp(0.0, last)));

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use egui::{DragValue, Id, Panel, ScrollArea, Ui};
 
-use crate::analysis::DensityMap;
+use crate::analysis::{Analysis, DensityMap};
 use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
 use crate::app::panels::analysis_or_hint;
@@ -18,8 +18,9 @@ use crate::app::response::{
     DensityChoice, ForceChoice, MotionAnswer, ResponseProject, ResponseSession, ResponseView,
 };
 use crate::app::state::{Session, View};
+use crate::app::variants::{AnsweredVariant, other_forecasts};
 use crate::app::widgets::{count_field, figure_frame};
-use crate::data::Severity;
+use crate::data::{Severity, TimeSeries};
 use crate::figure::{
     FORECAST_CHANNELS, MotionForecastFigure, forecast_channel_figure, forecast_readout,
     forecast_scene_figure, forecast_surroundings,
@@ -28,6 +29,7 @@ use crate::ranges::DRAWS;
 use crate::render::{FigureOptions, theme};
 use crate::response::STEP_S;
 use crate::study::PredictMotionAnswer;
+use crate::units::UnitSystem;
 
 /// Width of the form before the user resizes it, points.
 const FORM_WIDTH: f32 = 330.0;
@@ -46,7 +48,7 @@ const N_COLUMNS: usize = 3;
 /// Draws the form and the outcome on the left, and on the right the plan view and the predicted
 /// quantities over time.
 pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext { project, view, session, commands } = pane;
+    let PaneContext { project, view, session, variants, commands, .. } = pane;
     if session.response.model.current.is_none() {
         let use_of_it = "A response model says where a struck vehicle goes after the impact, and how sure that is.";
         no_model_ui(ui, &session.response.model, use_of_it, commands);
@@ -64,7 +66,7 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             if let Some(answer) = session.response.forecast.ok() {
                 ui.separator();
                 let is_late = session.is_motion_late();
-                super::faded(ui, is_late, |ui| outcome_ui(ui, answer, view.units));
+                super::faded(ui, is_late, |ui| outcome_ui(ui, answer, view.units, commands));
             }
         });
     });
@@ -76,7 +78,7 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             }
             match &session.response.forecast.answer {
                 Some(Ok(answer)) => super::faded(ui, session.is_motion_late(), |ui| {
-                    figures_ui(ui, (answer, session), view, commands);
+                    figures_ui(ui, (answer, session, variants), view, commands);
                 }),
                 Some(Err(problem)) => {
                     let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
@@ -216,12 +218,12 @@ fn end_s(answer: &MotionAnswer) -> f64 {
 /// Draws the clock, the plan view with the density, and the bands of each quantity over time.
 fn figures_ui(
     ui: &mut Ui,
-    (answer, session): (&MotionAnswer, &Session),
+    (answer, session, variants): (&MotionAnswer, &Session, &[AnsweredVariant]),
     view: &View,
     commands: &mut Vec<Command>,
 ) {
     let choice = &view.response;
-    let PredictMotionAnswer { analysis, forecast, .. } = &answer.answer;
+    let analysis = &answer.answer.analysis;
     let time_s = session.time_s.min(end_s(answer));
     let is_shown = |map: &&Arc<DensityMap>| match choice.density {
         DensityChoice::Hidden => false,
@@ -229,23 +231,22 @@ fn figures_ui(
         DensityChoice::Window => true,
     };
     let density = session.response.density.ok().filter(is_shown);
-    let simulation = analysis.simulation.as_ref().map(|motion| &motion.series);
     let input = MotionForecastFigure {
-        title: &analysis.name,
-        distribution: &forecast.distribution,
-        central: &forecast.central,
-        bands: &answer.bands,
         density: density.map(|map| &**map),
         components: choice.components,
         reference: analysis.reference.as_ref().filter(|_| choice.reference),
-        simulation: simulation.filter(|_| choice.simulation),
-        footprint: analysis.footprint,
-        time_s,
-        units: view.units,
+        simulation: motion_of(analysis).filter(|_| choice.simulation),
+        ..bare_figure(answer, (time_s, view.units))
     };
+    let others: Vec<_> = other_forecasts(variants)
+        .map(|(name, answer)| (name, bare_figure(answer, (time_s, view.units))))
+        .collect();
     clock_ui(ui, (time_s, end_s(answer)), session.playing, commands);
     let all = ui.available_height();
-    let scene = forecast_scene_figure(&input);
+    let mut scene = forecast_scene_figure(&input);
+    for (i, (name, other)) in others.iter().enumerate() {
+        scene.overlay((name, i), &forecast_scene_figure(other));
+    }
     let options = FigureOptions {
         view: choice.follow.then(|| forecast_surroundings(&input)),
         id: "forecast scene".to_owned(),
@@ -261,7 +262,10 @@ fn figures_ui(
         for channels in FORECAST_CHANNELS.chunks(N_COLUMNS) {
             ui.columns(N_COLUMNS, |columns| {
                 for (ui, &channel) in columns.iter_mut().zip(channels) {
-                    let figure = forecast_channel_figure(&input, channel);
+                    let mut figure = forecast_channel_figure(&input, channel);
+                    for (i, (name, other)) in others.iter().enumerate() {
+                        figure.overlay((name, i), &forecast_channel_figure(other, channel));
+                    }
                     let options = FigureOptions {
                         id: format!("forecast of {}", channel.channel.label()),
                         link: Some(Id::unique("motion forecast")),
@@ -281,4 +285,30 @@ fn figures_ui(
             });
         }
     });
+}
+
+/// The figure of a forecast without density, components, recorded and simulated motion.
+fn bare_figure(
+    answer: &MotionAnswer,
+    (time_s, units): (f64, UnitSystem),
+) -> MotionForecastFigure<'_> {
+    let PredictMotionAnswer { analysis, forecast, .. } = &answer.answer;
+    MotionForecastFigure {
+        title: &analysis.name,
+        distribution: &forecast.distribution,
+        central: &forecast.central,
+        bands: &answer.bands,
+        density: None,
+        components: false,
+        reference: None,
+        simulation: None,
+        footprint: analysis.footprint,
+        time_s,
+        units,
+    }
+}
+
+/// The motion by the 4DOF model, if there is one.
+fn motion_of(analysis: &Analysis) -> Option<&TimeSeries> {
+    analysis.simulation.as_ref().map(|motion| &motion.series)
 }

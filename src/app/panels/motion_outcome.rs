@@ -3,6 +3,7 @@
 
 use egui::{Grid, Ui};
 
+use crate::app::command::Command;
 use crate::app::response::MotionAnswer;
 use crate::app::widgets::{
     SpreadRow, assumptions_ui, badges_ui, sensitivity_ui, spread_table_ui, value_row,
@@ -11,7 +12,12 @@ use crate::units::{Quantity, UnitSystem, percent};
 
 /// Draws the time at which the vehicle comes to rest (or at which the forecast ends), the
 /// assumptions, and the state of the vehicle at that time.
-pub fn outcome_ui(ui: &mut Ui, answer: &MotionAnswer, units: UnitSystem) {
+pub fn outcome_ui(
+    ui: &mut Ui,
+    answer: &MotionAnswer,
+    units: UnitSystem,
+    commands: &mut Vec<Command>,
+) {
     let report = &answer.answer.report;
     let outcome = &report.outcome;
     let when = match (&report.rest, outcome.is_at_rest) {
@@ -56,7 +62,7 @@ pub fn outcome_ui(ui: &mut Ui, answer: &MotionAnswer, units: UnitSystem) {
         ]);
     }
     badges_ui(ui, &report.badges);
-    assumptions_ui(ui, &report.assumptions);
+    assumptions_ui(ui, &report.assumptions, commands);
     spread_table_ui(ui, &report.scenario, &rows);
     Grid::new("motion outcome").num_columns(2).show(ui, |ui| {
         value_row(ui, "Speed", &Quantity::Speed.shown(outcome.speed_m_s, units));

@@ -28,7 +28,7 @@ const TITLE_HEIGHT: f32 = 30.0;
 
 /// Draws the form and the numbers on the left, and the plots on the right.
 pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext { project, view, session, commands } = pane;
+    let PaneContext { project, view, session, commands, .. } = pane;
     if session.force.model.current.is_none() {
         let use_of_it =
             "A force model predicts the contact force of a collision, and how sure that is.";
@@ -43,7 +43,9 @@ pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             if let Some(answer) = session.force.forecast.ok() {
                 ui.separator();
                 let is_late = session.force.forecast.is_late();
-                super::faded(ui, is_late, |ui| numbers_ui(ui, &answer.report, view.units));
+                super::faded(ui, is_late, |ui| {
+                    numbers_ui(ui, &answer.report, view.units, commands)
+                });
             }
         });
     });

@@ -4,6 +4,7 @@
 use egui::{Grid, Ui};
 
 use crate::analysis::Estimate;
+use crate::app::command::Command;
 use crate::app::widgets::{SpreadRow, assumptions_ui, badges_ui, spread_table_ui, value_row};
 use crate::study::PredictForceReport;
 use crate::units::{Quantity, UnitSystem, percent, significant};
@@ -15,9 +16,14 @@ const LEAST_WEIGHT: f64 = 0.01;
 
 /// Draws the badges and what is not used, the table of the numbers, which can be copied, the impulse of the momentum solution, the
 /// clock direction, the probability of hooking, and the components of the mixture.
-pub fn numbers_ui(ui: &mut Ui, report: &PredictForceReport, units: UnitSystem) {
+pub fn numbers_ui(
+    ui: &mut Ui,
+    report: &PredictForceReport,
+    units: UnitSystem,
+    commands: &mut Vec<Command>,
+) {
     badges_ui(ui, &report.badges);
-    assumptions_ui(ui, &report.assumptions);
+    assumptions_ui(ui, &report.assumptions, commands);
     spread_table_ui(ui, &report.scenario, &rows(report, units));
     Grid::new("force momentum").num_columns(2).show(ui, |ui| {
         let momentum = Quantity::Impulse.shown_vector(report.momentum_impulse_n_s, units);

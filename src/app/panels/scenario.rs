@@ -5,33 +5,30 @@ use egui::{ComboBox, Grid, ScrollArea, Ui};
 use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
 use crate::app::panels::ending::ending_form;
+use crate::app::panels::scenario_plan::scenario_plan_ui;
 use crate::app::panes::PaneContext;
 use crate::app::state::{Project, Subject};
-use crate::app::widgets::{assumptions_ui, badges_ui, figure_frame, quantity_field, value_row};
+use crate::app::widgets::{assumptions_ui, badges_ui, quantity_field, value_row};
 use crate::collision::{
     ContactLocation, PulseShape, RestitutionForm, Scenario, ScenarioContact, ScenarioVehicle, Side,
 };
 use crate::data::Severity;
-use crate::figure::impact_figure;
 use crate::ranges::{
     BODY_CG, BODY_LENGTH, BODY_MASS, BODY_WIDTH, BODY_YAW_INERTIA, CONTACT_COORDINATE,
     CONTACT_HEIGHT, CONTACT_OFFSET, FRICTION_LIMIT, FRICTION_OF_CRITICAL, HEADING, POSITION,
     PULSE_DURATION, RESTITUTION, Range, SPEED, YAW_RATE,
 };
-use crate::render::{FigureOptions, theme};
-use crate::study::{BodyReport, ImpactAnswer, ImpactReport};
+use crate::render::theme;
+use crate::study::{BodyReport, ImpactReport};
 use crate::units::{Quantity, UnitSystem};
 
 /// Overlap of the outlines below which they just touch, m.
 const SHOWN_OVERLAP_M: f64 = 5e-4;
 
-/// Height of the plan view, points.
-const PLAN_HEIGHT: f32 = 200.0;
-
 /// Draws the plan view of the vehicles at first contact, the momentum solution, and the form that
 /// edits the scenario.
 pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext { project, view, session, commands } = pane;
+    let PaneContext { project, view, session, commands, .. } = pane;
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
             ui.strong(&project.scenario.name);
@@ -48,20 +45,11 @@ pub fn scenario_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             }
         });
         let answer = session.impact.answer.as_ref();
-        if let Some(Ok(ImpactAnswer { scenario, solution, .. })) = answer.map(|a| a.as_deref())
-            && let Ok(figure) = impact_figure(scenario, solution, view.units)
-        {
-            let options = FigureOptions {
-                id: "impact".to_owned(),
-                height: Some(PLAN_HEIGHT),
-                reset: session.fit_plots,
-                legend: false,
-                ..FigureOptions::default()
-            };
-            figure_frame(ui, (&figure.title, &figure), &options, commands);
-        }
+        let solved = answer.and_then(|answer| answer.as_deref().ok());
+        let plan = (solved, view.units, session.fit_plots);
+        scenario_plan_ui(ui, &mut project.scenario, plan, commands);
         match answer {
-            Some(Ok(answer)) => solution_ui(ui, &answer.report, view.units),
+            Some(Ok(answer)) => solution_ui(ui, &answer.report, view.units, commands),
             Some(Err(problem)) => {
                 let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
                 ui.colored_label(color, problem);
@@ -215,7 +203,7 @@ fn location_form(ui: &mut Ui, location: &mut ContactLocation, units: UnitSystem)
 
 /// Draws the momentum solution: impulse, regime of the contact, closing speed, dissipated energy,
 /// and the motion of each vehicle after the impact.
-fn solution_ui(ui: &mut Ui, report: &ImpactReport, units: UnitSystem) {
+fn solution_ui(ui: &mut Ui, report: &ImpactReport, units: UnitSystem, commands: &mut Vec<Command>) {
     let impulse = |vector| Quantity::Impulse.shown_vector(vector, units);
     ui.strong("Momentum solution");
     Grid::new("solution").striped(true).num_columns(2).show(ui, |ui| {
@@ -246,7 +234,7 @@ fn solution_ui(ui: &mut Ui, report: &ImpactReport, units: UnitSystem) {
         }
     });
     badges_ui(ui, &report.badges);
-    assumptions_ui(ui, &report.assumptions);
+    assumptions_ui(ui, &report.assumptions, commands);
 }
 
 /// Labels and values of the change of velocity and of the motion of one vehicle after the impact.

@@ -6,6 +6,7 @@ use egui::{Slider, Ui};
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
+use crate::app::variants::other_simulations;
 use crate::app::widgets::{badges_ui, figure_frame};
 use crate::figure::analysis_scene_figure;
 use crate::render::FigureOptions;
@@ -14,7 +15,7 @@ use crate::units::Quantity;
 
 /// Draws the time slider and the plan view.
 pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext { view, session, commands, .. } = pane;
+    let PaneContext { view, session, variants, commands, .. } = pane;
     let Some(SimulateAnswer { analysis, report }) = analysis_or_hint(ui, session) else {
         return;
     };
@@ -31,7 +32,11 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         let position = Quantity::Length.shown_vector([rest.x_m, rest.y_m], view.units);
         ui.label(format!("At rest after {:.2} s and {distance}, at {position}", rest.time_s));
     }
-    let figure = analysis_scene_figure(analysis, session.time_s, view.units);
+    let mut figure = analysis_scene_figure(analysis, session.time_s, view.units);
+    for (i, (name, other)) in other_simulations(variants).enumerate() {
+        let other = analysis_scene_figure(&other.analysis, session.time_s, view.units);
+        figure.overlay((name, i), &other);
+    }
     let options = FigureOptions {
         id: "scene".to_owned(),
         reset: session.fit_plots,

@@ -28,7 +28,7 @@ pub fn training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 }
 
 fn force_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext { project, view, session, commands } = pane;
+    let PaneContext { project, view, session, commands, .. } = pane;
     let has_data = force_form_ui(ui, &mut project.force.training, &session.sources);
     if !has_data {
         no_dataset_ui(ui, DatasetKind::Force);
@@ -41,7 +41,7 @@ fn force_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 }
 
 fn response_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext { project, view, session, commands } = pane;
+    let PaneContext { project, view, session, commands, .. } = pane;
     let has_data = response_form_ui(ui, &mut project.response.training, &session.sources);
     if !has_data {
         no_dataset_ui(ui, DatasetKind::Trajectory);

@@ -33,7 +33,7 @@ pub fn network_training_ui<M: TrainedModel>(
         run_progress_ui(ui, &status.doing(), status.progress());
     }
     let notes = status.report.as_ref().map(M::notes).unwrap_or_default();
-    run_record_ui(ui, status.problem.as_deref(), notes);
+    run_record_ui(ui, status.problem.as_deref(), notes, commands);
     save_model_ui(ui, model, commands);
     ui.separator();
     match &model.current {
@@ -149,6 +149,7 @@ fn run_record_ui(
     ui: &mut Ui,
     problem: Option<&str>,
     (left_out, assumptions): (&[String], &[Assumption]),
+    commands: &mut Vec<Command>,
 ) {
     let dark = ui.visuals().dark_mode;
     if let Some(problem) = problem {
@@ -159,5 +160,5 @@ fn run_record_ui(
         let color = theme::severity_color(Severity::Warning, dark);
         ui.colored_label(color, format!("Left out: {why}"));
     }
-    assumptions_ui(ui, assumptions);
+    assumptions_ui(ui, assumptions, commands);
 }

@@ -1,27 +1,34 @@
 //! The “Vehicle” pane: the struck and the striking vehicle, the settings of the simulation, and the
 //! speed and contact point for files that contain only a force.
 
-use egui::{ComboBox, Grid, ScrollArea, Ui};
+use egui::{ComboBox, Grid, Response, ScrollArea, Ui};
 
+use crate::app::command::Command;
 use crate::app::model::file_name;
 use crate::app::panels::file_start::file_start_ui;
+use crate::app::panels::vehicle_form::vehicle_form_ui;
 use crate::app::panes::PaneContext;
 use crate::app::state::Project;
 use crate::app::widgets::{SpreadRow, quantity_field, sensitivity_ui, spread_table_ui, value_row};
+use crate::data::Severity;
+use crate::error_chain;
 use crate::ranges::{REST_LIMIT, SIMULATED_DURATION};
 use crate::study::{DEFAULT_BULLET, DEFAULT_DURATION_S, DEFAULT_VEHICLE, VehicleChoice};
 use crate::units::Quantity;
 use crate::vehicle::{
-    Equations, Integrator, LibraryVehicle, Preset, VehicleParameters, built_in_vehicle,
+    DataSheet, Equations, Integrator, LibraryVehicle, Preset, VehicleParameters, built_in_vehicle,
 };
+
+/// Width of the lists of vehicles, points.
+const LIST_WIDTH: f32 = 150.0;
 
 /// Draws the choice of the vehicles, the equations and the integrator, the start of single force
 /// files, and, if the struck vehicle is a preset, its parameters.
 pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        let PaneContext { project, view, .. } = &mut *pane;
+        let PaneContext { project, view, commands, .. } = &mut *pane;
         Grid::new("vehicle choice").num_columns(2).show(ui, |ui| {
-            choice_ui(ui, project);
+            choice_ui(ui, project, commands);
             let equations = [None, Some(Equations::Corrected), Some(Equations::Paper)];
             list_ui(ui, "Equations", &mut project.equations, (&equations, equations_label));
             let integrators = [Integrator::Rk4, Integrator::Euler];
@@ -32,6 +39,14 @@ pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             until_rest_ui(ui, project);
             ui.end_row();
         });
+        for (title, choice) in
+            [("Struck vehicle", &mut project.vehicle), ("Striking vehicle", &mut project.bullet)]
+        {
+            if let VehicleChoice::Sheet(sheet) = choice {
+                ui.separator();
+                vehicle_form_ui(ui, (title, sheet), view.units, commands);
+            }
+        }
         ui.separator();
         file_start_ui(ui, pane);
         uncertainty_ui(ui, pane);
@@ -91,32 +106,80 @@ pub(super) fn until_rest_ui(ui: &mut Ui, project: &mut Project) {
 }
 
 /// Draws the choice of the struck and of the striking vehicle.
-fn choice_ui(ui: &mut Ui, project: &mut Project) {
+fn choice_ui(ui: &mut Ui, project: &mut Project, commands: &mut Vec<Command>) {
     let open = format!("as the data set says, else {}", DEFAULT_VEHICLE.id());
     let hint = "A vehicle file of your own: open it, or drop it here";
-    vehicle_choice_ui(ui, ("Struck vehicle", hint), (&mut project.vehicle, &open));
+    let default = DEFAULT_VEHICLE.parameters();
+    vehicle_choice_ui(
+        ui,
+        ("Struck vehicle", hint),
+        (&mut project.vehicle, &open, &default),
+        commands,
+    );
     let open = format!("not known, assumed to be {}", DEFAULT_BULLET.id());
     let hint = "With the mass and yaw inertia of the case or the scenario";
-    vehicle_choice_ui(ui, ("Striking vehicle", hint), (&mut project.bullet, &open));
+    let default = DEFAULT_BULLET.parameters();
+    vehicle_choice_ui(
+        ui,
+        ("Striking vehicle", hint),
+        (&mut project.bullet, &open, &default),
+        commands,
+    );
 }
 
 /// Draws a row of a two-column grid with the choice of a vehicle among those that come with the
 /// program.
 ///
-/// - `open`: text that tells which vehicle is used if the user chooses none.
+/// - `open`, `default`: which vehicle is used if the user chooses none, as text and itself.
 fn vehicle_choice_ui(
     ui: &mut Ui,
     (title, hint): (&str, &str),
-    (choice, open): (&mut VehicleChoice, &str),
+    (choice, open, default): (&mut VehicleChoice, &str, &VehicleParameters),
+    commands: &mut Vec<Command>,
 ) {
     let name = ui.label(title);
     let label = match choice {
         VehicleChoice::Automatic => open.to_owned(),
         VehicleChoice::Preset(id) => id.clone(),
         VehicleChoice::File(path) => file_name(path),
+        VehicleChoice::Sheet(sheet) => format!("{} (edited below)", sheet.name),
     };
+    ui.horizontal(|ui| {
+        choice_list_ui(ui, (title, &name, hint), (choice, open), &label);
+        if matches!(choice, VehicleChoice::Sheet(_)) {
+            return;
+        }
+        let hint = "A copy with fields for every value: known, or estimated by rule with scatter";
+        if ui.button("Edit a copy").on_hover_text(hint).clicked() {
+            match edited_copy(choice, default) {
+                Ok(sheet) => *choice = VehicleChoice::Sheet(Box::new(sheet)),
+                Err(why) => commands.push(Command::Say(Severity::Error, why)),
+            }
+        }
+    });
+    ui.end_row();
+}
+
+/// A data sheet that leads to the chosen vehicle, to be edited.
+fn edited_copy(choice: &VehicleChoice, default: &VehicleParameters) -> Result<DataSheet, String> {
+    let chosen = choice.chosen().map_err(|error| error_chain(&error))?;
+    let vehicle = chosen.as_ref().unwrap_or(default);
+    DataSheet::of(vehicle).ok_or_else(|| {
+        format!("no data sheet leads to all parameters of {}: edit its file instead", vehicle.name)
+    })
+}
+
+/// Draws the list of the vehicles that come with the program.
+fn choice_list_ui(
+    ui: &mut Ui,
+    (title, name, hint): (&str, &Response, &str),
+    (choice, open): (&mut VehicleChoice, &str),
+    label: &str,
+) {
     ComboBox::from_id_salt(title)
         .selected_text(label)
+        .width(LIST_WIDTH)
+        .truncate()
         .show_ui(ui, |ui| {
             ui.selectable_value(choice, VehicleChoice::Automatic, open);
             let presets = Preset::ALL.iter().map(|preset| preset.id());
@@ -127,7 +190,6 @@ fn vehicle_choice_ui(
         .response
         .labelled_by(name.id)
         .on_hover_text(hint);
-    ui.end_row();
 }
 
 /// Draws a row of a two-column grid: a label and a drop-down list of a few values.

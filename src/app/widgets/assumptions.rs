@@ -1,38 +1,64 @@
 //! The list of the values that the program assumed because the question left them open.
 
-use egui::{RichText, Ui};
+use egui::{CollapsingHeader, Label, RichText, Sense, Ui};
 
+use crate::app::command::Command;
+use crate::app::panes::Pane;
 use crate::study::{AssumedQuantity, Assumption};
 
-/// Lists the assumptions, one wrapped line each. Hovering over a line shows the reason and the
-/// place in the window where the user can set the value. An empty list draws nothing.
-pub fn assumptions_ui(ui: &mut Ui, assumptions: &[Assumption]) {
+/// Largest number of assumptions that are listed without a click.
+const MAX_OPEN: usize = 6;
+
+/// Lists the assumptions, one wrapped line each. Hovering over a line shows the reason; a click shows
+/// the panel in which the user can set the value. An empty list draws
+/// nothing; a long one only their number, until it is opened.
+pub fn assumptions_ui(ui: &mut Ui, assumptions: &[Assumption], commands: &mut Vec<Command>) {
+    if assumptions.len() <= MAX_OPEN {
+        return lines_ui(ui, assumptions, commands);
+    }
+    let title = RichText::new(format!("{} assumptions", assumptions.len())).italics();
+    let header = CollapsingHeader::new(title).id_salt("assumptions");
+    header.show(ui, |ui| lines_ui(ui, assumptions, commands));
+}
+
+fn lines_ui(ui: &mut Ui, assumptions: &[Assumption], commands: &mut Vec<Command>) {
     for assumption in assumptions {
         let Assumption { quantity, value, reason } = assumption;
         let text = match quantity {
             AssumedQuantity::NotUsed => format!("not used: {value}"),
             quantity => format!("assumed: {}: {value}", quantity.label()),
         };
-        let label = egui::Label::new(RichText::new(text).italics()).wrap();
-        let hint = place(*quantity).map_or(String::new(), |place| format!("\n{place}"));
-        ui.add(label).on_hover_text(format!("{reason}{hint}"));
+        let (hint, pane) = match place(*quantity) {
+            Some((hint, pane)) => (format!("\n{hint}"), pane),
+            None => (String::new(), None),
+        };
+        let sense = if pane.is_some() { Sense::click() } else { Sense::hover() };
+        let label = Label::new(RichText::new(text).italics()).wrap().sense(sense);
+        let line = ui.add(label).on_hover_text(format!("{reason}{hint}"));
+        if line.clicked() {
+            commands.extend(pane.map(Command::Show));
+        }
     }
 }
 
-/// The place in the window where the user sets the quantity instead of having it assumed; `None` for
+/// How the user sets the quantity instead of having it assumed, and the panel in which; `None` for
 /// what only a file says.
-fn place(quantity: AssumedQuantity) -> Option<&'static str> {
+fn place(quantity: AssumedQuantity) -> Option<(&'static str, Option<Pane>)> {
     Some(match quantity {
         AssumedQuantity::Vehicle
         | AssumedQuantity::Bullet
         | AssumedQuantity::Speed
-        | AssumedQuantity::ContactPoint => "In this window: the Vehicle pane",
+        | AssumedQuantity::ContactPoint => {
+            ("Click to set it in the Vehicle pane", Some(Pane::Vehicle))
+        }
         AssumedQuantity::FirstTouch
         | AssumedQuantity::Restitution
         | AssumedQuantity::ContactHeight
-        | AssumedQuantity::Pulse => "In this window: Contact in the Scenario pane",
+        | AssumedQuantity::Pulse => {
+            ("Click to set it: Contact in the Scenario pane", Some(Pane::Scenario))
+        }
         AssumedQuantity::VehicleParameter | AssumedQuantity::BulletParameter => {
-            "A data sheet that states it: open the file, or drop it here"
+            ("Click, and state it in a copy of the vehicle: Edit a copy", Some(Pane::Vehicle))
         }
         AssumedQuantity::StartOfRecord | AssumedQuantity::Steer | AssumedQuantity::NotUsed => {
             return None;

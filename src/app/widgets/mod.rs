@@ -8,6 +8,7 @@ mod figure_frame;
 mod quantity;
 mod sensitivity;
 mod spread_table;
+mod time_figure;
 
 pub use assumptions::assumptions_ui;
 pub use bad_cases::bad_cases_ui;
@@ -15,7 +16,9 @@ pub use badges::badges_ui;
 pub use dataset_choice::{dataset_choice, no_dataset_ui};
 pub use figure_frame::figure_frame;
 pub use quantity::{
-    SliderRange, count_field, duration_text, quantity_field, quantity_slider, value_row,
+    SliderRange, count_field, duration_text, quantity_field, quantity_slider, quantity_value,
+    value_row,
 };
 pub use sensitivity::sensitivity_ui;
 pub use spread_table::{SpreadRow, spread_table_ui};
+pub use time_figure::{BetweenCursors, time_figure};

@@ -28,8 +28,22 @@ pub fn quantity_field(
     value_si: &mut f64,
     (range, units): (&Range, UnitSystem),
 ) -> bool {
-    let unit = range.quantity.display_unit(units);
     let name = ui.label(label);
+    let (response, is_changed) = quantity_value(ui, value_si, (range, units));
+    response.labelled_by(name.id);
+    ui.end_row();
+    is_changed
+}
+
+/// Draws a number field as [`quantity_field`] does, without a label and a row of its own.
+///
+/// - returns the response of the field and whether the user changed the value in this frame.
+pub fn quantity_value(
+    ui: &mut Ui,
+    value_si: &mut f64,
+    (range, units): (&Range, UnitSystem),
+) -> (Response, bool) {
+    let unit = range.quantity.display_unit(units);
     let limits = [range.low, range.high].map(|limit| unit.from_si(limit));
     let expected = range.expected(&unit);
     let (response, taken) =
@@ -41,13 +55,12 @@ pub fn quantity_field(
                 .suffix(suffix(&unit));
             ui.add(field)
         });
-    response.labelled_by(name.id).on_hover_text(hint(range, &unit));
+    let response = response.on_hover_text(hint(range, &unit));
     if let Some(shown) = taken {
         // So that a limit in another unit is the limit.
         *value_si = unit.to_si(shown).clamp(range.low, range.high);
     }
-    ui.end_row();
-    taken.is_some()
+    (response, taken.is_some())
 }
 
 /// A number that was typed and is not possible, and the value that stays in its place.

@@ -30,7 +30,7 @@ impl From<UnitsArg> for UnitSystem {
 }
 
 /// A vehicle by name or file.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(in crate::cli) struct VehicleArg(VehicleChoice);
 
 impl FromStr for VehicleArg {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::study::{AssumedQuantity, Assumption, StudyError};
-use crate::vehicle::{Preset, VehicleParameters, built_in_vehicle};
+use crate::vehicle::{DataSheet, Preset, VehicleParameters, built_in_vehicle};
 
 /// The struck vehicle where neither the question nor the data set says which it is: the car that
 /// the shipped response network has learned.
@@ -15,7 +15,7 @@ pub const DEFAULT_VEHICLE: Preset = Preset::Reference;
 pub const DEFAULT_BULLET: Preset = Preset::Bullet2000;
 
 /// Which vehicle it is.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub enum VehicleChoice {
     /// The data set's own, else [`DEFAULT_VEHICLE`] or [`DEFAULT_BULLET`], which is then listed as
     /// an assumption.
@@ -25,6 +25,8 @@ pub enum VehicleChoice {
     Preset(String),
     /// A vehicle file.
     File(PathBuf),
+    /// A data sheet that was filled in.
+    Sheet(Box<DataSheet>),
 }
 
 impl VehicleChoice {
@@ -37,7 +39,10 @@ impl VehicleChoice {
     }
 
     /// The vehicle that was chosen; `None` if it was left open.
-    fn chosen(&self) -> Result<Option<VehicleParameters>, StudyError> {
+    ///
+    /// # Errors
+    /// [`StudyError`] if there is no such vehicle, or its file or sheet is wrong.
+    pub fn chosen(&self) -> Result<Option<VehicleParameters>, StudyError> {
         match self {
             Self::Automatic => Ok(None),
             Self::Preset(id) => match built_in_vehicle(id) {
@@ -45,6 +50,7 @@ impl VehicleChoice {
                 None => Err(StudyError::unknown_vehicle(id)),
             },
             Self::File(path) if path.exists() => Ok(Some(VehicleParameters::load(path)?)),
+            Self::Sheet(sheet) => Ok(Some(sheet.checked_vehicle()?)),
             Self::File(path) => Err(StudyError::unknown_vehicle(&path.display().to_string())),
         }
     }

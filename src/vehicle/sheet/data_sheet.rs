@@ -99,6 +99,16 @@ impl DataSheet {
         self.known.insert(quantity, value);
     }
 
+    /// Leaves a quantity to its rule.
+    pub fn forget(&mut self, quantity: SheetQuantity) {
+        self.known.remove(&quantity);
+        match quantity {
+            SheetQuantity::RollGradient => self.roll_stiffness_n_m_rad = None,
+            SheetQuantity::RollDampingRatio => self.roll_damping_n_m_s_rad = None,
+            _ => {}
+        }
+    }
+
     /// Takes over a value that was stated elsewhere, as in a scenario. One that is the median of the
     /// estimate, from which the scenario has it, remains an estimate. The value is not checked.
     pub(in crate::vehicle) fn state(&mut self, quantity: SheetQuantity, value: f64) {

@@ -32,7 +32,6 @@ use crate::data::{TomlError, TomlFile, TomlTable};
 use crate::ranges::{
     CG_TO_AXLE, ROLL_DAMPING, ROLL_STIFFNESS, STATIC_STABILITY_FACTOR, TRACK_WIDTH, VEHICLE_MASS,
 };
-use crate::units::Quantity;
 use crate::vehicle::Equations;
 use crate::vehicle::sheet::{DataSheet, Drive, SheetQuantity as Q, VehicleClass};
 
@@ -83,8 +82,7 @@ impl DataSheet {
     fn read_quantities(&mut self, table: &mut TomlTable<'_>) -> Result<(), TomlError> {
         for &quantity in Q::ALL {
             let range = quantity.range();
-            let has_units = range.quantity != Quantity::Ratio || quantity.unit().is_empty();
-            let value = match has_units {
+            let value = match quantity.has_units() {
                 true => table.number(quantity.key(), &range)?,
                 false => table.plain(quantity.key(), &range)?,
             };

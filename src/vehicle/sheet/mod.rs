@@ -7,6 +7,7 @@ mod rules;
 mod data_sheet;
 mod derive;
 mod file;
+mod write;
 
 mod library;
 

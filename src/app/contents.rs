@@ -1,0 +1,201 @@
+//! What the case consists of, as the tree at the left of the Case workspace shows it.
+
+use crate::app::command::Command;
+use crate::app::model::{ModelStatus, file_name};
+use crate::app::network::TrainedModel;
+use crate::app::panes::Pane;
+use crate::app::source::{Content, Source};
+use crate::app::state::{Project, State, Subject};
+use crate::study::{DEFAULT_BULLET, DEFAULT_VEHICLE, VehicleChoice};
+use crate::units::Quantity;
+
+/// A part of the case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Group {
+    /// The vehicles.
+    Vehicles,
+    /// Road, duration and what happens after the impact.
+    Scene,
+    /// What hits the struck vehicle.
+    Impact,
+    /// Recordings and data sets.
+    Data,
+    /// The trained networks that answer.
+    Models,
+    /// What was found.
+    Results,
+}
+
+impl Group {
+    /// Every part, from top to bottom.
+    pub const ALL: [Self; 6] =
+        [Self::Vehicles, Self::Scene, Self::Impact, Self::Data, Self::Models, Self::Results];
+
+    /// The name that is shown.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Vehicles => "Vehicles",
+            Self::Scene => "Scene",
+            Self::Impact => "Impact",
+            Self::Data => "Data",
+            Self::Models => "Models",
+            Self::Results => "Results",
+        }
+    }
+}
+
+/// A line of the tree.
+#[derive(Debug, Clone)]
+pub struct ContentsEntry {
+    /// The part it belongs to.
+    pub group: Group,
+    /// What it is.
+    pub label: String,
+    /// Its value, source or figure.
+    pub detail: String,
+    /// What is missing or wrong.
+    pub missing: Option<String>,
+    /// What a click does: it shows the panel in which it is changed.
+    pub command: Command,
+}
+
+impl ContentsEntry {
+    fn new(group: Group, (label, detail): (&str, String), command: Command) -> Self {
+        Self { group, label: label.to_owned(), detail, missing: None, command }
+    }
+
+    fn missing(self, why: Option<String>) -> Self {
+        Self { missing: why, ..self }
+    }
+}
+
+impl State {
+    /// What the case consists of, part by part, with what is missing for the next answer.
+    pub fn contents(&self) -> Vec<ContentsEntry> {
+        let mut entries = Vec::new();
+        entries.extend(self.vehicle_entries());
+        entries.extend(self.scene_entries());
+        entries.push(self.impact_entry());
+        entries.extend(self.session.sources.iter().map(|source| self.source_entry(source)));
+        if self.session.sources.is_empty() {
+            let text = ("nothing open", String::new());
+            entries.push(ContentsEntry::new(Group::Data, text, Command::Show(Pane::Data)));
+        }
+        entries.push(model_entry("Force network", &self.session.force.model));
+        entries.push(model_entry("Response network", &self.session.response.model));
+        entries.extend(self.result_entries());
+        entries
+    }
+
+    fn vehicle_entries(&self) -> [ContentsEntry; 2] {
+        let Project { vehicle, bullet, .. } = &self.project;
+        let struck = choice_text(vehicle, DEFAULT_VEHICLE.id());
+        let striking = choice_text(bullet, DEFAULT_BULLET.id());
+        [("Struck", struck), ("Striking", striking)].map(|(label, detail)| {
+            let show = Command::Show(Pane::Vehicle);
+            ContentsEntry::new(Group::Vehicles, (label, detail), show)
+        })
+    }
+
+    fn scene_entries(&self) -> [ContentsEntry; 2] {
+        let report = self.analysis().map(|answer| &answer.report);
+        let road = report.map_or("–".to_owned(), |report| format!("μ {:.2}", report.friction));
+        let until = match self.project.until_rest {
+            true => "until rest".to_owned(),
+            false => Quantity::Time.shown(self.project.duration_s, self.view.units),
+        };
+        let ending = match &self.project.subject {
+            Some(Subject::Scenario) => self.project.scenario.ending.is_some(),
+            _ => self.project.ending.is_some(),
+        };
+        let after = match ending {
+            true => format!("{until}, wheels as entered"),
+            false => format!("{until}, coasting"),
+        };
+        let pane = match self.project.subject {
+            Some(Subject::Scenario) => Pane::Scenario,
+            _ => Pane::Vehicle,
+        };
+        [
+            ContentsEntry::new(Group::Scene, ("Road", road), Command::Show(Pane::Vehicle)),
+            ContentsEntry::new(Group::Scene, ("After the impact", after), Command::Show(pane)),
+        ]
+    }
+
+    fn impact_entry(&self) -> ContentsEntry {
+        let (label, detail, pane) = match &self.project.subject {
+            Some(Subject::Scenario) => {
+                ("Scenario", self.project.scenario.name.clone(), Pane::Scenario)
+            }
+            Some(Subject::Case { dataset, case }) => {
+                ("Recorded case", format!("{case} of {}", file_name(dataset)), Pane::Cases)
+            }
+            Some(Subject::File(path)) => ("File", file_name(path), Pane::Vehicle),
+            None => ("nothing selected", String::new(), Pane::Scenario),
+        };
+        let missing = match (&self.project.subject, self.session.analysis.problem()) {
+            (None, _) => {
+                Some("choose a scenario, a case of a data set, or a file with a force".to_owned())
+            }
+            (Some(_), problem) => problem.map(str::to_owned),
+        };
+        ContentsEntry::new(Group::Impact, (label, detail), Command::Show(pane)).missing(missing)
+    }
+
+    fn source_entry(&self, source: &Source) -> ContentsEntry {
+        let (detail, missing, command) = match &source.content {
+            Content::Loading(_) => ("loading…".to_owned(), None, Command::Show(Pane::Data)),
+            Content::Dataset(checked) => {
+                let detail = format!("{} cases", checked.dataset.cases.len());
+                let n_problems = checked.dataset.problems.len();
+                let problems = (n_problems > 0).then(|| format!("{n_problems} problems"));
+                (detail, problems, Command::Show(Pane::Data))
+            }
+            Content::File(file) => {
+                let detail = format!("{} samples", file.loaded.series.n_samples());
+                let flag = file.flags.first().map(ToString::to_string);
+                (detail, flag, Command::Select(Subject::File(source.path.clone())))
+            }
+            Content::Failed(why) => {
+                ("not read".to_owned(), Some(why.clone()), Command::Show(Pane::Data))
+            }
+        };
+        ContentsEntry::new(Group::Data, (&source.name(), detail), command).missing(missing)
+    }
+
+    /// The figures of the chain that were found, each with its warnings.
+    fn result_entries(&self) -> Vec<ContentsEntry> {
+        let links = self.chain().into_iter().filter(|link| link.title != "Scenario");
+        let entry = |link: crate::app::chain::Link| {
+            let (label, detail) = match (&link.figure, link.is_late) {
+                (_, true) => (link.title, "computing…".to_owned()),
+                (Some(figure), false) => (link.title, figure.clone()),
+                (None, false) => (link.title, link.source.clone()),
+            };
+            let missing = (!link.warnings.is_empty()).then(|| link.warnings.join("\n"));
+            let show = Command::Show(link.pane);
+            ContentsEntry::new(Group::Results, (label, detail), show).missing(missing)
+        };
+        links.map(entry).collect()
+    }
+}
+
+fn choice_text(choice: &VehicleChoice, assumed: &str) -> String {
+    match choice {
+        VehicleChoice::Automatic => format!("left open (else {assumed})"),
+        VehicleChoice::Preset(id) => id.clone(),
+        VehicleChoice::File(path) => file_name(path),
+        VehicleChoice::Sheet(sheet) => sheet.name.clone(),
+    }
+}
+
+fn model_entry<M: TrainedModel>(label: &str, status: &ModelStatus<M>) -> ContentsEntry {
+    let detail = match &status.current {
+        Some(current) if current.is_saved => current.name.clone(),
+        Some(current) => format!("{}, not saved", current.name),
+        None if status.is_loading() => "loading…".to_owned(),
+        None => "none".to_owned(),
+    };
+    let show = Command::Show(Pane::Training);
+    ContentsEntry::new(Group::Models, (label, detail), show).missing(status.problem.clone())
+}

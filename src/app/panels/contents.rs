@@ -1,0 +1,52 @@
+//! The “Contents” pane: the case as a tree, with what is missing for the next answer.
+
+use egui::{CollapsingHeader, Label, RichText, ScrollArea, Sense, Ui};
+
+use crate::app::command::Command;
+use crate::app::contents::{ContentsEntry, Group};
+use crate::app::panes::PaneContext;
+use crate::data::Severity;
+use crate::render::theme;
+
+/// Draws the parts of the case; a click on one shows the panel in which it is changed.
+pub fn contents_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
+    let PaneContext { contents, commands, .. } = pane;
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        for group in Group::ALL {
+            let entries: Vec<_> = contents.iter().filter(|entry| entry.group == group).collect();
+            let n_missing = entries.iter().filter(|entry| entry.missing.is_some()).count();
+            let warning = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+            let title = match n_missing {
+                0 => RichText::new(group.title()),
+                n => RichText::new(format!("{} ({n} !)", group.title())).color(warning),
+            };
+            let header = CollapsingHeader::new(title.strong()).id_salt(group.title());
+            header.default_open(true).show(ui, |ui| {
+                for entry in entries {
+                    entry_ui(ui, entry, commands);
+                }
+            });
+        }
+    });
+}
+
+fn entry_ui(ui: &mut Ui, entry: &ContentsEntry, commands: &mut Vec<Command>) {
+    let text = match entry.detail.is_empty() {
+        true => entry.label.clone(),
+        false => format!("{}: {}", entry.label, entry.detail),
+    };
+    let warning = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+    let text = match entry.missing {
+        Some(_) => RichText::new(text).color(warning),
+        None => RichText::new(text),
+    };
+    let line = ui.add(Label::new(text).wrap().selectable(false).sense(Sense::click()));
+    let line = line.on_hover_cursor(egui::CursorIcon::PointingHand);
+    let line = match &entry.missing {
+        Some(missing) => line.on_hover_text(missing),
+        None => line.on_hover_text("Click to show the panel in which it is changed"),
+    };
+    if line.clicked() {
+        commands.push(entry.command.clone());
+    }
+}

@@ -1,0 +1,124 @@
+//! The “Variants” pane: the answers of all variants of the case in one table.
+
+use egui::{Grid, RichText, ScrollArea, Ui};
+
+use crate::analysis::Spread;
+use crate::app::case::VariantCommand;
+use crate::app::command::Command;
+use crate::app::panes::PaneContext;
+use crate::app::variants::AnsweredVariant;
+use crate::data::Severity;
+use crate::render::theme;
+use crate::units::{Quantity, UnitSystem};
+
+/// The columns of the table.
+const COLUMNS: [&str; 8] = [
+    "Variant",
+    "Δv",
+    "4DOF: X, Y at the end",
+    "4DOF: at rest after",
+    "Forecast: X (90 %)",
+    "Forecast: Y (90 %)",
+    "Heading (90 %)",
+    "Warnings",
+];
+/// What stands where a variant has no such figure.
+const NONE: &str = "–";
+
+/// Draws the table, in which a click on the name of a variant shows it.
+pub fn variants_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
+    let PaneContext { view, variants, commands, .. } = pane;
+    ui.horizontal_wrapped(|ui| {
+        ui.checkbox(&mut view.shows_all_variants, "Show all variants in plots and tables");
+        let rows: Vec<_> = variants.iter().map(|variant| cells(variant, view.units)).collect();
+        if ui.button("Copy table").on_hover_text("Tab-separated, for a spreadsheet").clicked() {
+            let line = |row: &[String; 8]| row.join("\t");
+            let lines: Vec<_> = rows.iter().map(line).collect();
+            ui.ctx().copy_text(format!("{}\n{}\n", COLUMNS.join("\t"), lines.join("\n")));
+        }
+    });
+    if variants.len() < 2 {
+        ui.weak("This case has one variant. Copy in the bar above makes another, to be changed.");
+    }
+    ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+        Grid::new("variants").num_columns(COLUMNS.len()).striped(true).show(ui, |ui| {
+            for column in COLUMNS {
+                ui.strong(column);
+            }
+            ui.end_row();
+            for variant in variants.iter() {
+                row_ui(ui, variant, view.units, commands);
+            }
+        });
+    });
+}
+
+fn row_ui(ui: &mut Ui, variant: &AnsweredVariant, units: UnitSystem, commands: &mut Vec<Command>) {
+    let name = ui.selectable_label(variant.is_shown, &variant.name);
+    if name.on_hover_text("Show it in the forms").clicked() && !variant.is_shown {
+        commands.push(Command::Variant(VariantCommand::Show(variant.name.clone())));
+    }
+    if let Some(problem) = &variant.problem {
+        let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
+        ui.colored_label(color, "not computed").on_hover_text(problem);
+        ui.end_row();
+        return;
+    }
+    let [_, figures @ .., warnings] = cells(variant, units);
+    for cell in figures {
+        let text = RichText::new(cell).monospace();
+        ui.label(if variant.is_waiting { text.weak() } else { text });
+    }
+    let said = warning_texts(variant);
+    let warning = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+    match said.is_empty() {
+        true => ui.label(warnings),
+        false => ui.colored_label(warning, warnings).on_hover_text(said.join("\n")),
+    };
+    ui.end_row();
+}
+
+/// The figures of a variant, as the table shows them.
+fn cells(variant: &AnsweredVariant, units: UnitSystem) -> [String; 8] {
+    let report = variant.simulation.as_ref().map(|answer| &answer.report);
+    let outcome = variant.forecast.as_ref().map(|answer| &answer.answer.report.outcome);
+    let of = |text: Option<String>| match text {
+        Some(text) => text,
+        None if variant.is_waiting => "computing…".to_owned(),
+        None => NONE.to_owned(),
+    };
+    let delta_v = report.and_then(|report| report.delta_v_magnitude_m_s);
+    let end = report.and_then(|report| report.end);
+    let rest = report.and_then(|report| report.rest.as_ref());
+    let spread = |spread: Spread, quantity: Quantity| {
+        let [low, high] = spread.ninety.map(|value| quantity.shown(value, units));
+        format!("{} ({low} to {high})", quantity.shown(spread.median, units))
+    };
+    [
+        variant.name.clone(),
+        of(delta_v.map(|m_s| Quantity::Speed.shown(m_s, units))),
+        of(end.map(|end| Quantity::Length.shown_vector([end.x_m, end.y_m], units))),
+        of(rest.map(|rest| Quantity::Time.shown(rest.time_s, units))),
+        of(outcome.map(|outcome| spread(outcome.x_m, Quantity::Length))),
+        of(outcome.map(|outcome| spread(outcome.y_m, Quantity::Length))),
+        of(outcome.map(|outcome| spread(outcome.heading_change_rad, Quantity::Angle))),
+        match warning_texts(variant).len() {
+            0 => NONE.to_owned(),
+            n => n.to_string(),
+        },
+    ]
+}
+
+/// What restricts the answers of a variant, a sentence each.
+fn warning_texts(variant: &AnsweredVariant) -> Vec<String> {
+    let simulated = variant.simulation.iter().flat_map(|answer| &answer.report.badges);
+    let forecast = variant.forecast.iter().flat_map(|answer| &answer.answer.report.badges);
+    let mut said: Vec<String> = Vec::new();
+    for badge in simulated.chain(forecast).filter(|badge| badge.kind.is_warning()) {
+        let text = format!("{}: {}", badge.kind.label(), badge.text);
+        if !said.contains(&text) {
+            said.push(text);
+        }
+    }
+    said
+}

@@ -1,0 +1,135 @@
+//! The form of a vehicle: what is known of it, and what is estimated by rule with its scatter.
+
+use egui::{CollapsingHeader, ComboBox, Grid, RichText, Ui};
+
+use crate::app::command::Command;
+use crate::app::dialogs::Purpose;
+use crate::app::widgets::quantity_value;
+use crate::data::Severity;
+use crate::ranges::Range;
+use crate::render::theme;
+use crate::units::{Quantity, UnitSystem, significant};
+use crate::vehicle::sheet::{Drive, Estimate};
+use crate::vehicle::{DataSheet, SheetQuantity, VehicleClass};
+
+/// Draws the form of a data sheet.
+///
+/// - `title`: which vehicle it is.
+pub fn vehicle_form_ui(
+    ui: &mut Ui,
+    (title, sheet): (&str, &mut DataSheet),
+    units: UnitSystem,
+    commands: &mut Vec<Command>,
+) {
+    let header = CollapsingHeader::new(format!("{title}: {}", sheet.name)).id_salt(title);
+    header.default_open(true).show(ui, |ui| {
+        ui.horizontal_wrapped(|ui| {
+            ui.weak("Tick what you know. The rest is estimated by rule, and its scatter is in the bands.");
+            let hint = "As a vehicle file, for other cases and the command line";
+            if ui.button("Save vehicle…").on_hover_text(hint).clicked() {
+                commands.push(Command::Ask(Purpose::Vehicle(Box::new(sheet.clone()))));
+            }
+        });
+        if let Err(error) = sheet.checked_vehicle() {
+            let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
+            ui.colored_label(color, format!("These values do not go together: {error}"));
+        }
+        Grid::new((title, "head")).num_columns(2).show(ui, |ui| head_ui(ui, title, sheet));
+        let estimates = sheet.estimates();
+        Grid::new((title, "quantities")).num_columns(2).striped(true).show(ui, |ui| {
+            for &quantity in SheetQuantity::ALL {
+                let estimate = estimates.iter().find(|estimate| estimate.quantity == quantity);
+                quantity_ui(ui, sheet, (quantity, estimate), units);
+            }
+        });
+    });
+}
+
+/// Draws name, source, class and drive.
+fn head_ui(ui: &mut Ui, title: &str, sheet: &mut DataSheet) {
+    for (label, text) in [("Name", &mut sheet.name), ("Source", &mut sheet.source)] {
+        let name = ui.label(label);
+        let field = egui::TextEdit::singleline(text).desired_width(260.0);
+        ui.add(field).labelled_by(name.id);
+        ui.end_row();
+    }
+    let name = ui.label("Class");
+    let class = ComboBox::from_id_salt((title, "class")).selected_text(sheet.class.word());
+    let class = class.show_ui(ui, |ui| {
+        for class in VehicleClass::ALL {
+            ui.selectable_value(&mut sheet.class, class, class.word());
+        }
+    });
+    class.response.labelled_by(name.id).on_hover_text("Says which rules estimate the rest");
+    ui.end_row();
+    let name = ui.label("Driven axle");
+    let choices = [None, Some(Drive::Front), Some(Drive::Rear), Some(Drive::All)];
+    let words = ["not known", "front", "rear", "both"];
+    let word = |drive: Option<Drive>| {
+        let at = choices.iter().position(|choice| *choice == drive);
+        at.map_or("not known", |at| words[at])
+    };
+    ComboBox::from_id_salt((title, "drive"))
+        .selected_text(word(sheet.drive))
+        .show_ui(ui, |ui| {
+            for choice in choices {
+                ui.selectable_value(&mut sheet.drive, choice, word(choice));
+            }
+        })
+        .response
+        .labelled_by(name.id);
+    ui.end_row();
+}
+
+/// Draws a row with one quantity: its value if it is known, else its estimate.
+///
+/// - `estimate`: by which rule it is estimated; `None` if it, or what stands for it, is known.
+fn quantity_ui(
+    ui: &mut Ui,
+    sheet: &mut DataSheet,
+    (quantity, estimate): (SheetQuantity, Option<&Estimate>),
+    units: UnitSystem,
+) {
+    let range = quantity.range();
+    let symbol = range.quantity.display_unit(units).symbol;
+    let label = match (symbol, quantity.unit()) {
+        ("", unit) if !unit.is_empty() => format!("{} [{unit}]", quantity.label()),
+        _ => quantity.label().to_owned(),
+    };
+    let mut is_known = estimate.is_none();
+    let known = ui.checkbox(&mut is_known, label).on_hover_text("Ticked: known. Else: estimated");
+    if known.changed() {
+        match estimate {
+            Some(estimate) => sheet.set(quantity, estimate.median),
+            None => sheet.forget(quantity),
+        }
+    }
+    match (sheet.known(quantity), estimate) {
+        (Some(mut value), _) => {
+            let (field, is_changed) = quantity_value(ui, &mut value, (&range, units));
+            field.labelled_by(known.id);
+            if is_changed {
+                sheet.set(quantity, value);
+            }
+        }
+        (None, Some(estimate)) => estimate_ui(ui, (estimate, &range), units),
+        (None, None) => {
+            ui.weak("follows from the stiffness or damping of its file");
+        }
+    }
+    ui.end_row();
+}
+
+/// Draws an estimate with the range that holds it with a probability of 90 %.
+fn estimate_ui(ui: &mut Ui, (estimate, range): (&Estimate, &Range), units: UnitSystem) {
+    let unit = range.quantity.display_unit(units);
+    let shown = |value: f64| match range.quantity {
+        Quantity::Ratio => significant(value),
+        _ => significant(unit.from_si(value)),
+    };
+    let [low, high] = estimate.ninety.map(shown);
+    let text = format!("{} ({low} to {high}) {}", shown(estimate.median), unit.symbol);
+    let hint =
+        format!("Estimated: {}\nSource: {}\nIn brackets: 90 %", estimate.rule, estimate.source);
+    ui.label(RichText::new(text).italics()).on_hover_text(hint);
+}

@@ -1,0 +1,200 @@
+//! Workspaces, the ways to begin, the contents of the case, variants side by side, and vehicles and
+//! scenarios that are changed by hand.
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use impactlab::app::{App, Command, Group, Pane, Subject, VariantCommand, Workspace};
+use impactlab::study::VehicleChoice;
+use impactlab::vehicle::{DataSheet, LibraryVehicle, SheetQuantity};
+
+use crate::harness::{apply, is_idle, open, open_with, step_until};
+use crate::pictures::save;
+
+const SCENARIO: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenarios/pit_right_rear.toml");
+const FEA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea");
+
+fn state<'a>(harness: &'a Harness<'_, App>) -> &'a impactlab::app::State {
+    harness.state().state()
+}
+
+fn is_forecast(state: &impactlab::app::State) -> bool {
+    let forecast = &state.session.response.forecast;
+    is_idle(state) && forecast.ok().is_some() && !forecast.is_waiting()
+}
+
+#[test]
+fn a_newcomer_gets_to_a_forecast_by_each_of_the_three_doors() {
+    let mut harness = open(&[]);
+    harness.run_steps(3);
+    save(&mut harness, "doors.png");
+    harness.get_by_label("Set up a collision").click();
+    harness.run_steps(3);
+    step_until(&mut harness, "the forecast of the PIT", is_forecast);
+    assert_eq!(state(&harness).project.subject, Some(Subject::Scenario));
+    assert_eq!(state(&harness).view.workspaces.shown, Workspace::Case);
+    save(&mut harness, "workspace-case.png");
+    harness.get_by_label("Motion forecast").click();
+    harness.run_steps(4);
+    assert!(harness.query_all_by_label("components").next().is_some());
+    save(&mut harness, "workspace-case-forecast.png");
+
+    apply(&mut harness, Command::ShowDoors);
+    harness.get_by_label("Look at the example").click();
+    harness.run_steps(3);
+    step_until(&mut harness, "all variants of the example", |state| {
+        let variants = state.answered_variants();
+        variants.len() == 3 && variants.iter().all(|of| of.forecast.is_some() && !of.is_waiting)
+    });
+    assert!(!state(&harness).is_case_changed(), "the example is as it was opened");
+    apply(&mut harness, Command::Show(Pane::Variants));
+    harness.run_steps(3);
+    save(&mut harness, "variants.png");
+
+    apply(&mut harness, Command::ShowDoors);
+    harness.get_by_label("Look through the shipped data").click();
+    harness.run_steps(3);
+    assert_eq!(state(&harness).view.workspaces.shown, Workspace::Data);
+    apply(&mut harness, Command::Open(vec![FEA.into()]));
+    step_until(&mut harness, "a case", |state| {
+        matches!(state.project.subject, Some(Subject::Case { .. })) && is_forecast(state)
+    });
+}
+
+#[test]
+fn the_ways_to_begin_are_shown_at_the_first_start_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("state.json");
+    let mut harness = open_with(&[], Some(file.clone()));
+    harness.run_steps(2);
+    assert!(state(&harness).session.shows_doors);
+    harness.get_by_label("Set up a collision").click();
+    harness.run_steps(90);
+    step_until(&mut harness, "the stored state", |_| file.exists());
+    drop(harness);
+    let mut harness = open_with(&[], Some(file));
+    harness.run_steps(2);
+    assert!(!state(&harness).session.shows_doors);
+    assert_eq!(state(&harness).view.workspaces.shown, Workspace::Case);
+}
+
+#[test]
+fn the_contents_name_what_is_missing_and_lead_to_it() {
+    let mut harness = open(&[SCENARIO]);
+    step_until(&mut harness, "the forecast", is_forecast);
+    let contents = state(&harness).contents();
+    for group in Group::ALL {
+        assert!(contents.iter().any(|entry| entry.group == group), "{group:?}");
+    }
+    let impact = contents.iter().find(|entry| entry.group == Group::Impact).unwrap();
+    assert_eq!((impact.detail.as_str(), &impact.missing), ("PIT, right rear quarter", &None));
+    harness.get_by_label_contains("Struck: left open").click();
+    harness.run_steps(3);
+    harness.get_by_label("Integration");
+    harness.state_mut().state_mut().project.subject = None;
+    harness.run_steps(3);
+    let contents = state(&harness).contents();
+    let impact = contents.iter().find(|entry| entry.group == Group::Impact).unwrap();
+    assert!(impact.missing.as_ref().unwrap().contains("choose a scenario"), "{impact:?}");
+}
+
+#[test]
+fn variants_are_drawn_over_each_other_and_the_choice_is_kept() {
+    let mut harness = open(&[SCENARIO]);
+    step_until(&mut harness, "the forecast", is_forecast);
+    apply(&mut harness, Command::Variant(VariantCommand::Duplicate));
+    harness.state_mut().state_mut().project.scenario.bullet.vy_m_s *= 1.3;
+    harness.run_steps(2);
+    step_until(&mut harness, "both variants", |state| {
+        let variants = state.answered_variants();
+        variants.iter().all(|of| of.simulation.is_some() && of.forecast.is_some())
+            && is_forecast(state)
+    });
+    let ends: Vec<_> = state(&harness)
+        .answered_variants()
+        .iter()
+        .map(|of| of.simulation.as_ref().unwrap().report.end.unwrap().x_m)
+        .collect();
+    assert!((ends[1] - ends[0]).abs() > 0.5, "the harder hit ends elsewhere: {ends:?}");
+    harness.run_steps(3);
+    save(&mut harness, "variants-overlaid.png");
+    // What is shown beside is what the other variant answers by itself.
+    let beside = ends[0];
+    apply(&mut harness, Command::Variant(VariantCommand::Show("base".to_owned())));
+    step_until(&mut harness, "the first variant", is_idle);
+    assert_eq!(state(&harness).analysis().unwrap().report.end.unwrap().x_m, beside);
+    harness.state_mut().state_mut().view.shows_all_variants = false;
+    harness.run_steps(3);
+    assert!(state(&harness).session.other_variants.is_empty());
+}
+
+#[test]
+fn a_vehicle_is_edited_in_a_form_and_the_answer_is_that_of_its_saved_file() {
+    let mut harness = open(&[SCENARIO]);
+    step_until(&mut harness, "the simulation", is_idle);
+    apply(&mut harness, Command::Show(Pane::Vehicle));
+    let id = LibraryVehicle::ALL[0].id();
+    harness.state_mut().state_mut().project.vehicle = VehicleChoice::Preset(id.to_owned());
+    harness.run_steps(3);
+    let buttons: Vec<_> = harness.query_all_by_label("Edit a copy").collect();
+    buttons[0].click();
+    drop(buttons);
+    harness.run_steps(4);
+    let VehicleChoice::Sheet(sheet) = &mut harness.state_mut().state_mut().project.vehicle else {
+        panic!("a copy is in the form")
+    };
+    assert_eq!(Some(&**sheet), DataSheet::of(&LibraryVehicle::ALL[0].parameters()).as_ref());
+    sheet.set(SheetQuantity::CgHeight, 0.6);
+    let sheet = sheet.clone();
+    step_until(&mut harness, "the edited vehicle", is_forecast);
+    save(&mut harness, "vehicle-form.png");
+    let in_form = state(&harness).analysis().unwrap().report.clone();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("edited.toml");
+    apply(&mut harness, Command::SaveVehicle(sheet, path.clone()));
+    harness.state_mut().state_mut().project.vehicle = VehicleChoice::File(path);
+    harness.run_steps(3);
+    step_until(&mut harness, "the saved vehicle", is_idle);
+    let of_file = state(&harness).analysis().unwrap().report.clone();
+    assert_eq!(of_file.end, in_form.end);
+    assert_eq!(of_file.vehicle, in_form.vehicle);
+    assert_eq!(of_file.uncertainty, in_form.uncertainty);
+}
+
+#[test]
+fn cars_are_dragged_in_the_plan() {
+    let mut harness = open(&[SCENARIO]);
+    step_until(&mut harness, "the simulation", is_idle);
+    apply(&mut harness, Command::Show(Pane::Scenario));
+    harness.run_steps(4);
+    let before = state(&harness).project.scenario.clone();
+    // The target's CG is in the middle between its ends; the plan is the only plot of the pane.
+    let plan = harness.get_by_label_contains("Drag a dot").rect();
+    let centre = egui::pos2(plan.center().x, plan.min.y - 120.0);
+    let mut n_changed = 0;
+    for dx in [-90.0_f32, -60.0, -30.0, 0.0, 30.0, 60.0, 90.0] {
+        let from = centre + egui::vec2(dx, 0.0);
+        drag(&mut harness, from, from + egui::vec2(14.0, 9.0));
+        n_changed += usize::from(state(&harness).project.scenario != before);
+        harness.state_mut().state_mut().project.scenario = before.clone();
+        harness.run_steps(2);
+    }
+    assert!(n_changed > 0, "no handle was met");
+    save(&mut harness, "scenario-plan.png");
+}
+
+fn drag(harness: &mut Harness<'_, App>, from: egui::Pos2, to: egui::Pos2) {
+    let button = |pos, pressed| egui::Event::PointerButton {
+        pos,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: egui::Modifiers::NONE,
+    };
+    harness.event(egui::Event::PointerMoved(from));
+    harness.run_steps(1);
+    harness.event(button(from, true));
+    harness.run_steps(2);
+    harness.event(egui::Event::PointerMoved(to));
+    harness.run_steps(2);
+    harness.event(button(to, false));
+    harness.run_steps(2);
+}
