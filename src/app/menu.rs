@@ -149,6 +149,9 @@ fn view_menu_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
         commands.push(Command::ResetLayout);
     }
     ui.checkbox(&mut state.view.dark, "Dark theme");
+    let shown = &mut state.session.shows_frame_times;
+    ui.checkbox(shown, "Frames a second")
+        .on_hover_text("While something moves, in the status line");
 }
 
 fn help_menu_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
@@ -205,6 +208,9 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             let what = format!("{what}, {}", progress.message);
             let cancel = Command::Compare(ComparisonCommand::Cancel);
             progress_ui(ui, &what, (progress, elapsed), cancel, commands);
+        }
+        if state.session.shows_frame_times {
+            ui.weak(state.session.frame_times.text());
         }
         let Some(latest) = state.session.messages.last() else {
             ui.weak("Ready. Drop a folder or a file here to open it.");

@@ -12,6 +12,7 @@ mod contents;
 mod dialogs;
 mod export;
 mod force;
+mod frame_times;
 mod import;
 mod keyboard;
 mod latest;
@@ -217,7 +218,9 @@ impl eframe::App for App {
         }
     }
 
-    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+        let now = ui.input(|input| input.time);
+        self.state.session.frame_times.add(now, frame.info().cpu_usage);
         if ui.visuals().dark_mode != self.state.view.dark {
             ui.ctx().set_visuals(theme::visuals(self.state.view.dark));
         }

@@ -13,6 +13,7 @@ use crate::app::case_table::CaseList;
 use crate::app::command::Command;
 use crate::app::dialogs::FileDialog;
 use crate::app::force::{ForceProject, ForceSession, ForceView};
+use crate::app::frame_times::FrameTimes;
 use crate::app::import::{ColumnMaps, ImportDialog};
 use crate::app::latest::Latest;
 use crate::app::network::Network;
@@ -24,7 +25,8 @@ use crate::app::variants::OtherVariants;
 use crate::app::widgets::BetweenCursors;
 use crate::app::workspaces::Workspaces;
 use crate::collision::{ChannelClass, Scenario};
-use crate::data::Severity;
+use crate::data::{Channel, Severity};
+use crate::figure::MOTION_CHANNELS;
 use crate::jobs::Job;
 use crate::study::{
     DEFAULT_DURATION_S, ImpactRequest, Library, SimulateAnswer, SimulateRequest, VehicleChoice,
@@ -172,6 +174,8 @@ pub struct View {
     pub recent: Vec<PathBuf>,
     /// The column maps of earlier files, by their headers.
     pub column_maps: ColumnMaps,
+    /// The curves of the motion pane.
+    pub motion_channels: Vec<Channel>,
     /// Whether the answers of all variants are shown, not only those of the one in the forms.
     pub shows_all_variants: bool,
     /// The arrangement of the panes in each workspace.
@@ -192,6 +196,7 @@ impl Default for View {
             trained: Network::default(),
             recent: Vec::new(),
             column_maps: ColumnMaps::default(),
+            motion_channels: MOTION_CHANNELS.to_vec(),
             shows_all_variants: true,
             workspaces: Workspaces::default(),
         }
@@ -261,6 +266,10 @@ pub struct Session {
     pub select_when_loaded: Option<PathBuf>,
     /// The path in the text field of the data pane, as the user has typed it so far.
     pub typed_path: String,
+    /// How long the window takes to draw itself.
+    pub frame_times: FrameTimes,
+    /// Whether that is shown.
+    pub shows_frame_times: bool,
     /// Whether the plots fit their axes to their data in this frame.
     pub fit_plots: bool,
 }

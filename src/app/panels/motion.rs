@@ -3,12 +3,14 @@
 
 use egui::{Id, Ui};
 
+use crate::analysis::Analysis;
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
 use crate::app::variants::other_simulations;
 use crate::app::widgets::{assumptions_ui, badges_ui, time_figure};
-use crate::figure::{MOTION_CHANNELS, analysis_motion_figure, analysis_readout};
+use crate::data::{Channel, TimeSeries};
+use crate::figure::{analysis_motion_figure, analysis_readout};
 use crate::render::FigureOptions;
 use crate::study::SimulateAnswer;
 
@@ -26,6 +28,10 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     };
     badges_ui(ui, &report.badges);
     assumptions_ui(ui, &report.assumptions, commands);
+    ui.horizontal_wrapped(|ui| {
+        curves_menu_ui(ui, analysis, &mut view.motion_channels);
+        ui.weak("Shift + drag in a plot: numbers between two cursors");
+    });
     let two_columns = ui.available_width() > 560.0;
     let rows = if two_columns { 2.0 } else { 4.0 };
     let height = (ui.available_height() / rows - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT);
@@ -41,7 +47,7 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             cursor_x: Some(session.time_s),
             height: Some(height),
             reset: session.fit_plots,
-            legend: channel == MOTION_CHANNELS[0],
+            legend: Some(&channel) == view.motion_channels.first(),
             ..FigureOptions::default()
         };
         let heading = analysis_readout(analysis, channel, (session.time_s, view.units));
@@ -53,12 +59,28 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     };
     egui::ScrollArea::vertical().show(ui, |ui| {
         let n_columns = if two_columns { 2 } else { 1 };
-        for row in MOTION_CHANNELS.chunks(n_columns) {
+        for row in view.motion_channels.chunks(n_columns) {
             ui.columns(n_columns, |columns| {
                 for (column, &channel) in columns.iter_mut().zip(row) {
                     plot(column, channel);
                 }
             });
+        }
+    });
+}
+
+/// Draws the menu in which the curves are chosen, of those that there are.
+fn curves_menu_ui(ui: &mut Ui, analysis: &Analysis, chosen: &mut Vec<Channel>) {
+    let simulation = analysis.simulation.as_ref().map(|motion| &motion.series);
+    let motions: Vec<&TimeSeries> = simulation.into_iter().chain(&analysis.reference).collect();
+    let has = |channel: Channel| motions.iter().any(|motion| motion.get(channel).is_some());
+    ui.menu_button("Curves", |ui| {
+        for &channel in Channel::ALL.iter().filter(|channel| has(**channel)) {
+            let mut is_chosen = chosen.contains(&channel);
+            if ui.checkbox(&mut is_chosen, channel.label()).changed() {
+                chosen.retain(|other| *other != channel);
+                chosen.extend(is_chosen.then_some(channel));
+            }
         }
     });
 }
