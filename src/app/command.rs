@@ -14,6 +14,7 @@ use crate::app::network::Network;
 use crate::app::panes::Pane;
 use crate::app::path_dialog::PathDialog;
 use crate::app::state::{Session, State, Subject};
+use crate::app::widgets::OUTDATED;
 use crate::app::workspaces::Workspace;
 use crate::data::{ColumnMap, Existing, Severity};
 use crate::figure::Figure;
@@ -162,6 +163,18 @@ pub enum ComparisonCommand {
     Save(PathBuf),
 }
 
+impl Command {
+    /// Whether it saves or copies a figure that is not of what is asked any more.
+    fn exports_outdated(&self) -> bool {
+        match self {
+            Self::Ask(Purpose::Picture(figure) | Purpose::Numbers(figure))
+            | Self::Export(figure, _)
+            | Self::CopyNumbers(figure) => figure.trust.is_outdated,
+            _ => false,
+        }
+    }
+}
+
 impl State {
     /// Carries out a command.
     ///
@@ -171,6 +184,7 @@ impl State {
         match command {
             Command::Open(paths) => self.open(paths, context),
             Command::Close(path) => self.close(&path),
+            command if command.exports_outdated() => self.say(Severity::Warning, OUTDATED),
             Command::Ask(purpose) => self.ask(purpose, context),
             Command::Select(subject) => self.select(subject),
             Command::SelectNeighbour(step) => self.select_neighbour(step),

@@ -19,7 +19,7 @@ use crate::app::latest::Latest;
 use crate::app::network::Network;
 use crate::app::path_dialog::PathDialog;
 use crate::app::replay::Replays;
-use crate::app::response::{ResponseProject, ResponseSession, ResponseView};
+use crate::app::response::{DensityChoice, ResponseProject, ResponseSession, ResponseView};
 use crate::app::source::Source;
 use crate::app::variants::OtherVariants;
 use crate::app::widgets::BetweenCursors;
@@ -29,7 +29,8 @@ use crate::data::{Channel, Severity};
 use crate::figure::MOTION_CHANNELS;
 use crate::jobs::Job;
 use crate::study::{
-    DEFAULT_DURATION_S, ImpactRequest, Library, SimulateAnswer, SimulateRequest, VehicleChoice,
+    DEFAULT_DURATION_S, ImpactRequest, Library, SimulateAnswer, SimulateReport, SimulateRequest,
+    Trust, VehicleChoice,
 };
 use crate::units::UnitSystem;
 use crate::vehicle::{ContactPoint, Ending, Equations, Integrator};
@@ -296,6 +297,20 @@ impl Session {
     /// Whether the simulation that is shown is not of what is asked any more.
     pub fn is_simulation_late(&self) -> bool {
         self.analysis.is_late() || self.impact.is_late()
+    }
+
+    /// What restricts the simulation that is shown.
+    pub fn simulation_trust(&self, report: &SimulateReport) -> Trust {
+        let trust = Trust::new(&report.badges, &report.assumptions);
+        trust.outdated_if(self.analysis.is_waiting())
+    }
+
+    /// Whether the forecast of the motion, or its density over a window of time, is awaited.
+    pub fn is_motion_awaited(&self, density: DensityChoice) -> bool {
+        let response = &self.response;
+        self.analysis.is_waiting()
+            || response.forecast.is_waiting()
+            || (density == DensityChoice::Window && response.density.is_waiting())
     }
 
     /// Whether the forecast of the motion that is shown is not of what is asked any more. It is asked

@@ -128,6 +128,12 @@ impl AnsweredVariant {
     }
 }
 
+/// Whether an answer about a variant that is not in the forms is awaited, so that figures over which
+/// these are drawn are not complete.
+pub fn are_others_awaited(variants: &[AnsweredVariant]) -> bool {
+    variants.iter().any(|variant| !variant.is_shown && variant.is_waiting)
+}
+
 /// The simulations of the variants that are not in the forms, by the names of these.
 pub fn other_simulations(
     variants: &[AnsweredVariant],

@@ -7,8 +7,8 @@ use std::path::Path;
 
 use crate::data::spelling::{self, Meaning};
 use crate::data::{
-    Channel, ColumnMap, ColumnRef, ColumnSource, DataError, SignedColumn, Table, VelocityAxes,
-    VelocityFit,
+    Channel, ColumnMap, ColumnRef, ColumnSource, DataError, RESTRICTIONS_COLUMN, SignedColumn,
+    Table, VelocityAxes, VelocityFit,
 };
 use crate::units::{Quantity, Unit};
 
@@ -72,6 +72,11 @@ pub enum Note {
         /// The headers of these columns.
         names: Vec<String>,
     },
+    /// What the file says restricts its numbers: it was written by this program.
+    Restrictions {
+        /// The text of the column [`RESTRICTIONS_COLUMN`].
+        text: String,
+    },
     /// Text to the right of the last column was left out.
     TextBeyond {
         /// The number of rows with such text.
@@ -115,6 +120,7 @@ impl fmt::Display for Note {
                     more => write!(f, " and {more} more"),
                 }
             }
+            Self::Restrictions { text } => write!(f, "the file says of itself: {text}"),
             Self::TextBeyond { n_rows } => {
                 write!(f, "{n_rows} rows have text to the right of the last column; it is not read")
             }
@@ -234,6 +240,13 @@ impl Columns {
         for (column_idx, name) in table.header().iter().enumerate() {
             let number = column_idx + 1;
             if mapped.contains(&number) {
+                continue;
+            }
+            if name == RESTRICTIONS_COLUMN {
+                let first = table.rows().next();
+                let cell = first.and_then(|(_, cells)| Some(cells.get(column_idx)?.to_string()));
+                let text = cell.filter(|text| !text.is_empty());
+                self.notes.extend(text.map(|text| Note::Restrictions { text }));
                 continue;
             }
             let name = name.clone();

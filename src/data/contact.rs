@@ -70,6 +70,15 @@ pub fn contact_interval(force: &ForceHistory) -> Option<(f64, f64)> {
     Some((pulses.first()?.0, pulses.last()?.1))
 }
 
+/// Time of the last sample of a record that ends during the contact, s; `None` if the force has come
+/// to zero, or is zero throughout.
+pub fn cut_at_s(force: &ForceHistory) -> Option<f64> {
+    let (peak_n, _) = force.peak().filter(|(peak_n, _)| *peak_n > 0.0)?;
+    let (x, y) = force.fx_n.last().zip(force.fy_n.last())?;
+    let is_cut = x.hypot(*y) > CONTACT_SHARE_OF_PEAK * peak_n;
+    force.time_s.last().copied().filter(|_| is_cut)
+}
+
 /// The time interval `(start, end)` that a sample with force stands for, s. With
 /// [`Sampling::Instant`] it extends to both neighbouring samples, because the force reaches zero
 /// there.

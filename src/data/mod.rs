@@ -58,7 +58,7 @@ pub use columns::{
 };
 pub use contact::{
     CONTACT_SHARE_OF_PEAK, ContactOutside, MIN_GAP_S, TIME_TOLERANCE_S, check_contact_within,
-    contact_interval, contact_pulses,
+    contact_interval, contact_pulses, cut_at_s,
 };
 pub use dataset::{Case, Dataset, DatasetKind, Outcome};
 pub use dialect::{Dialect, Separator};
@@ -79,4 +79,7 @@ pub use toml_file::{TomlError, TomlFile};
 pub use toml_table::{TomlTable, key_with_unit};
 pub use velocity_fit::{VelocityFit, velocity_fit};
 pub use workbook::Sheet;
-pub use write::{Existing, check_target, write_atomically, write_series_csv};
+pub use write::{
+    Existing, RESTRICTIONS_COLUMN, check_target, write_atomically, write_restricted_series_csv,
+    write_restricted_table, write_series_csv,
+};

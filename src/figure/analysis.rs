@@ -7,6 +7,7 @@ use crate::figure::{
     Figure, FigureElement, ForceFigure, LineStyle, Role, SceneFigure, SceneVehicle, Series,
     force_figure, motion_figure, motion_readout, scene_figure,
 };
+use crate::study::Trust;
 use crate::units::{Unit, UnitSystem};
 
 /// Half the width of the cross at a second contact, m.
@@ -18,11 +19,12 @@ const CROSS_M: f64 = 0.6;
 /// - `class`: channel frequency class with which the force is filtered; the raw force is then drawn
 ///   behind it.
 /// - `pulses`: pulses to draw, by name.
+/// - `trust`: what restricts the answer.
 ///
 /// # Errors
 /// [`FilterError`] if the channel class does not fit the sampling of the force.
 pub fn analysis_force_figure(
-    analysis: &Analysis,
+    (analysis, trust): (&Analysis, &Trust),
     class: Option<ChannelClass>,
     pulses: &[(String, ForceHistory)],
     units: UnitSystem,
@@ -38,12 +40,17 @@ pub fn analysis_force_figure(
         contact_s: contact_interval(raw),
         pulses,
         units,
+        trust,
     })))
 }
 
 /// One channel of the simulated and of the recorded motion over time.
-pub fn analysis_motion_figure(analysis: &Analysis, channel: Channel, units: UnitSystem) -> Figure {
-    motion_figure((&analysis.name, channel), motions(analysis), units)
+pub fn analysis_motion_figure(
+    (analysis, trust): (&Analysis, &Trust),
+    channel: Channel,
+    units: UnitSystem,
+) -> Figure {
+    motion_figure((&analysis.name, channel), motions(analysis), units).with_trust(trust)
 }
 
 /// One line of text with the values of a channel in the simulated and in the recorded motion.
@@ -60,7 +67,11 @@ fn motions(analysis: &Analysis) -> [Option<&TimeSeries>; 2] {
 }
 
 /// The scene from above: the paths of all vehicles, and their outlines at the time `time_s`, s.
-pub fn analysis_scene_figure(analysis: &Analysis, time_s: f64, units: UnitSystem) -> Figure {
+pub fn analysis_scene_figure(
+    (analysis, trust): (&Analysis, &Trust),
+    time_s: f64,
+    units: UnitSystem,
+) -> Figure {
     let footprint = analysis.footprint;
     let bullet = analysis.bullet.as_ref().map(|track| SceneVehicle {
         name: "bullet",
@@ -89,7 +100,8 @@ pub fn analysis_scene_figure(analysis: &Analysis, time_s: f64, units: UnitSystem
     let after = if met.is_some() { ", after a second contact that is not computed" } else { "" };
     let title = format!("{}: scene from above at {time_s:.2} s{after}", analysis.name);
     let mut figure =
-        scene_figure(&SceneFigure { title: &title, vehicles: &vehicles, time_s, units });
+        scene_figure(&SceneFigure { title: &title, vehicles: &vehicles, time_s, units })
+            .with_trust(trust);
     if let Some(second) = second {
         figure.elements.extend(second_contact_mark(second.point_m, figure.x.unit));
     }

@@ -70,7 +70,7 @@ pub fn parity_figure(
             elements.push(FigureElement::points(name, role, of_kind));
         }
     }
-    Figure { title: title.to_owned(), x, y, equal_aspect: false, log_y: false, elements }
+    Figure::new(title, [x, y], elements)
 }
 
 /// Histogram of the probability integral transform as a density. It is flat for a calibrated
@@ -90,7 +90,7 @@ pub fn pit_figure(title: &str, counts: &[u32]) -> Figure {
     };
     let mut elements: Vec<FigureElement> = counts.iter().enumerate().map(bar).collect();
     elements.push(FigureElement::dashed("honest", Role::Reference, vec![[0.0, 1.0], [1.0, 1.0]]));
-    Figure { title: title.to_owned(), x, y, equal_aspect: false, log_y: false, elements }
+    Figure::new(title, [x, y], elements)
 }
 
 /// Share of observed values inside the predicted intervals over the nominal level of the intervals,
@@ -116,7 +116,7 @@ pub fn coverage_figure(title: &str, rows: &[(&str, Role, Vec<CoveragePoint>)]) -
         elements.push(FigureElement::points(*name, *role, curve));
     }
     let [x, y] = [axis("Interval should hold"), axis("Interval holds")];
-    Figure { title: title.to_owned(), x, y, equal_aspect: false, log_y: false, elements }
+    Figure::new(title, [x, y], elements)
 }
 
 /// The unit per cent.

@@ -2,6 +2,7 @@
 
 use crate::data::{ForceAxes, ForceHistory};
 use crate::figure::{Axis, Figure, FigureElement, Role};
+use crate::study::Trust;
 use crate::units::{Quantity, UnitSystem};
 
 /// Data that the force figure shows.
@@ -19,6 +20,8 @@ pub struct ForceFigure<'a> {
     pub pulses: &'a [(String, ForceHistory)],
     /// System of units of the axes.
     pub units: UnitSystem,
+    /// What restricts the force.
+    pub trust: &'a Trust,
 }
 
 /// Time shown after the end of contact, as a share of the contact duration.
@@ -64,14 +67,8 @@ pub fn force_figure(input: &ForceFigure<'_>) -> Figure {
             elements.push(FigureElement::VerticalLine { name, role: Role::Muted, x });
         }
     }
-    Figure {
-        title: format!("{}: contact force on the target, {axes}", input.name),
-        x,
-        y,
-        equal_aspect: false,
-        log_y: false,
-        elements,
-    }
+    let title = format!("{}: contact force on the target, {axes}", input.name);
+    Figure::new(title, [x, y], elements).with_trust(input.trust)
 }
 
 /// The unit millisecond.

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::analysis::ForceForecast;
 use crate::collision::PulseShape;
 use crate::figure::{Axis, Band, Figure, FigureElement, LineStyle, Role, Series, milliseconds};
+use crate::study::Trust;
 use crate::uncertainty::{CurveBand, ForceCurve};
 use crate::units::{Quantity, UnitSystem};
 
@@ -38,14 +39,28 @@ pub struct ForecastFigure<'a> {
     pub forecast: &'a ForceForecast,
     /// Levels whose bands are shown, each 0 to 1; others are left out.
     pub levels: &'a [f64],
-    /// Name and values of the recorded force.
-    pub recorded: Option<(&'a str, &'a ForceCurve)>,
+    /// The recorded force.
+    pub recorded: Option<RecordedCurve<'a>>,
     /// Force curve of the physics and regressions, which the network corrects: its centre.
     pub physics: Option<&'a ForceCurve>,
     /// Classic pulses with their shapes.
     pub pulses: &'a [(PulseShape, ForceCurve)],
     /// System of units of the axes.
     pub units: UnitSystem,
+    /// What restricts the prediction.
+    pub trust: &'a Trust,
+}
+
+/// A recorded force beside a predicted one.
+#[derive(Debug, Clone, Copy)]
+pub struct RecordedCurve<'a> {
+    /// Name in the legend.
+    pub name: &'a str,
+    /// The force, which is zero where nothing was recorded.
+    pub curve: &'a ForceCurve,
+    /// Time of the last sample, s, of a record that ends during the contact: the curve is drawn up to
+    /// there. `None` for a force that has come to zero.
+    pub cut_at_s: Option<f64>,
 }
 
 impl ForceComponent {
@@ -143,11 +158,19 @@ pub fn forecast_figure(component: ForceComponent, input: &ForecastFigure<'_>) ->
     }
     let mean = points(&input.forecast.mean);
     elements.push(FigureElement::line("mean", component.role(), mean));
-    if let Some((name, curve)) = input.recorded {
-        elements.push(FigureElement::line(name, Role::Reference, points(curve)));
+    if let Some(RecordedCurve { name, curve, cut_at_s }) = input.recorded {
+        let mut points = points(curve);
+        let name = match cut_at_s.map(|at_s| x.unit.from_si(at_s)) {
+            Some(cut_at) => {
+                points.retain(|[at, _]| *at <= cut_at);
+                format!("{name}, cut at {cut_at:.1} ms")
+            }
+            None => name.to_owned(),
+        };
+        elements.push(FigureElement::line(name, Role::Reference, points));
     }
     let title = format!("{}: predicted {} on the target", input.name, component.label());
-    Figure { title, x, y, equal_aspect: false, log_y: false, elements }
+    Figure::new(title, [x, y], elements).with_trust(input.trust)
 }
 
 /// Line style of a pulse shape.
@@ -165,7 +188,7 @@ fn pulse_style(shape: PulseShape) -> LineStyle {
 fn shown_until_s(input: &ForecastFigure<'_>) -> f64 {
     let widest = input.forecast.bands.magnitude.iter().max_by(|a, b| a.level.total_cmp(&b.level));
     let pulses = input.pulses.iter().map(|(_, curve)| curve);
-    let curves = input.recorded.iter().map(|(_, curve)| *curve).chain(pulses);
+    let curves = input.recorded.iter().map(|recorded| recorded.curve).chain(pulses);
     let magnitudes = curves.map(ForceCurve::magnitude_n);
     let rows = magnitudes.chain(widest.map(|band| band.upper_n.clone()));
     let last = rows.map(|row| {

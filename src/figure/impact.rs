@@ -2,6 +2,7 @@
 
 use crate::collision::{ImpactSolution, Scenario, ScenarioError};
 use crate::figure::{Axis, Figure, FigureElement, LineStyle, Role, vehicle_outline};
+use crate::study::Trust;
 use crate::units::{Quantity, UnitSystem};
 
 /// Length of the longest velocity arrow and of the impulse arrow, m.
@@ -14,8 +15,8 @@ const ARROW_LENGTH_M: f64 = 3.0;
 /// # Errors
 /// [`ScenarioError`] if the vehicles make no contact.
 pub fn impact_figure(
-    scenario: &Scenario,
-    solution: &ImpactSolution,
+    (scenario, solution): (&Scenario, &ImpactSolution),
+    trust: &Trust,
     units: UnitSystem,
 ) -> Result<Figure, ScenarioError> {
     let geometry = scenario.geometry()?;
@@ -50,5 +51,5 @@ pub fn impact_figure(
     let impulse = scaled([px, py], px.hypot(py));
     elements.push(arrow("impulse on the target", Role::Resultant, contact, impulse));
     let title = format!("{}: impulse and Δv at first contact", scenario.name);
-    Ok(Figure { title, x, y, equal_aspect: true, log_y: false, elements })
+    Ok(Figure::new(title, [x, y], elements).plan().with_trust(trust))
 }

@@ -22,9 +22,9 @@ pub use calibration::{CoveragePoint, ParityPoint, coverage_figure, parity_figure
 pub use export::write_figure_csv;
 use force::milliseconds;
 pub use force::{ForceFigure, force_figure};
-pub use forecast::{ForceComponent, ForecastFigure, forecast_figure};
+pub use forecast::{ForceComponent, ForecastFigure, RecordedCurve, forecast_figure};
 pub use impact::impact_figure;
-pub use model::{Axis, Band, Figure, FigureElement, HeatMap, LineStyle, Role, Series};
+pub use model::{Axis, Band, Figure, FigureElement, HeatMap, LineStyle, Path, Role, Series};
 pub use model_comparison::{
     cluster_figure, compared_case_figure, horizon_figure, model_name, ranking_figure,
 };

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::study::Trust;
 use crate::units::{Quantity, Unit, UnitSystem};
 
 /// A plot: axes and elements, all numbers in the units of the axes.
@@ -19,11 +20,34 @@ pub struct Figure {
     pub log_y: bool,
     /// Elements in drawing order, from back to front.
     pub elements: Vec<FigureElement>,
+    /// What restricts the answer that is shown and what it rests on: in every picture and every table
+    /// of the figure.
+    pub trust: Trust,
+}
+
+impl Figure {
+    /// A figure with linear axes, of nothing that is restricted.
+    pub fn new(title: impl Into<String>, [x, y]: [Axis; 2], elements: Vec<FigureElement>) -> Self {
+        let (equal_aspect, log_y, trust) = (false, false, Trust::default());
+        Self { title: title.into(), x, y, equal_aspect, log_y, elements, trust }
+    }
+
+    /// The same as a plan from above, whose axes have the same scale.
+    #[must_use]
+    pub fn plan(self) -> Self {
+        Self { equal_aspect: true, ..self }
+    }
+
+    /// The same with what restricts it.
+    #[must_use]
+    pub fn with_trust(self, trust: &Trust) -> Self {
+        Self { trust: trust.clone(), ..self }
+    }
 }
 
 impl Figure {
     /// Draws what another variant of the case computes over this figure: the lines and outlines that are
-    /// simulated or predicted, and the components of its force.
+    /// simulated or predicted, and the components of its force, with what restricts them.
     ///
     /// - `(name, idx)`: name of the variant and its number among the others, which gives its colour.
     pub fn overlay(&mut self, (name, idx): (&str, usize), other: &Self) {
@@ -47,12 +71,16 @@ impl Figure {
             FigureElement::Line(series) if is_computed(series.role) => {
                 Some(FigureElement::Line(of_variant(series)))
             }
+            FigureElement::Path(path) if is_computed(path.series.role) => {
+                Some(FigureElement::Path(Path { series: of_variant(&path.series), ..path.clone() }))
+            }
             FigureElement::Polygon(series) if is_computed(series.role) => {
                 Some(FigureElement::Polygon(of_variant(series)))
             }
             _ => None,
         });
         self.elements.extend(overlaid);
+        self.trust.add_variant(name, &other.trust);
     }
 }
 
@@ -147,6 +175,17 @@ pub struct Series {
     pub points: Vec<[f64; 2]>,
 }
 
+/// The path of a vehicle in a plan from above: where its CG is, when, and which way it points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Path {
+    /// The line that is drawn; its points are those of the CG.
+    pub series: Series,
+    /// Time of each point, s.
+    pub time_s: Vec<f64>,
+    /// Heading at each point, rad, counter-clockwise from the x axis; empty if it is not known.
+    pub yaw_rad: Vec<f64>,
+}
+
 /// A named area between two curves over x, in the units of the axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Band {
@@ -189,6 +228,8 @@ pub enum FigureElement {
     HeatMap(HeatMap),
     /// A polyline.
     Line(Series),
+    /// The path of a vehicle in a plan from above.
+    Path(Path),
     /// Points that are not connected.
     Points(Series),
     /// A closed outline with a translucent fill.
@@ -241,6 +282,7 @@ impl FigureElement {
             Self::Line(series)
             | Self::Points(series)
             | Self::Polygon(series)
+            | Self::Path(Path { series, .. })
             | Self::Arrow(series) => &series.name,
             Self::HeatMap(map) => &map.name,
             Self::Band(band) => &band.name,
@@ -254,6 +296,7 @@ impl FigureElement {
             Self::Line(series)
             | Self::Points(series)
             | Self::Polygon(series)
+            | Self::Path(Path { series, .. })
             | Self::Arrow(series) => series.role,
             Self::HeatMap(map) => map.role,
             Self::Band(band) => band.role,

@@ -42,7 +42,7 @@ fn rows_figure<'a>(
     let y = Axis::named("", names.collect());
     let of_row = |(row, model): (usize, &'a ComparedModel)| elements(model, row as f64);
     let elements = from_below.enumerate().flat_map(of_row).collect();
-    Figure { title, x, y, equal_aspect: false, log_y: false, elements }
+    Figure::new(title, [x, y], elements)
 }
 
 /// A vertical line at x through the row, which extends by `half` to either side.
@@ -143,7 +143,7 @@ pub fn horizon_figure(comparison: &Comparison, units: UnitSystem) -> Figure {
     };
     let elements = comparison.models.iter().map(line).collect();
     let title = "Error by horizon".to_owned();
-    Figure { title, x, y, equal_aspect: false, log_y: false, elements }
+    Figure::new(title, [x, y], elements)
 }
 
 /// Dashed for a model that was fine-tuned on fewer trajectories than others, else solid.
@@ -185,5 +185,5 @@ pub fn compared_case_figure(
     }
     elements.extend(of("recorded", Role::Reference, LineStyle::Solid, &case.path));
     let title = format!("{name}, {}", if case.spins { "spins" } else { "does not spin" });
-    Some(Figure { title, x, y, equal_aspect: true, log_y: false, elements })
+    Some(Figure::new(title, [x, y], elements).plan())
 }

@@ -28,14 +28,8 @@ pub fn motion_figure(
         line("recorded", Role::Reference, LineStyle::Dashed, reference),
         line("4DOF simulation", Role::Simulation, LineStyle::Solid, simulation),
     ];
-    Figure {
-        title: format!("{name}: {} over time", channel.label()),
-        x: x.clone(),
-        y: y.clone(),
-        equal_aspect: false,
-        log_y: false,
-        elements: elements.into_iter().flatten().collect(),
-    }
+    let elements: Vec<FigureElement> = elements.into_iter().flatten().collect();
+    Figure::new(format!("{name}: {} over time", channel.label()), [x, y], elements)
 }
 
 /// Values of a channel in both motions at a time, for example “v_x 31.2 · reference 30.4 km/h”. If

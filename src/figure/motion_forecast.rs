@@ -5,9 +5,12 @@ use std::sync::Arc;
 use crate::analysis::{DensityMap, MOTION_BAND_LEVELS, MotionBands};
 use crate::collision::{Footprint, Pose};
 use crate::data::{Channel, TimeSeries};
-use crate::figure::scene::vehicle_outline;
-use crate::figure::{Axis, Band, Figure, FigureElement, HeatMap, LineStyle, Role, Series, pose_at};
+use crate::figure::scene::{path_of, vehicle_outline};
+use crate::figure::{
+    Axis, Band, Figure, FigureElement, HeatMap, LineStyle, Path, Role, Series, pose_at,
+};
 use crate::response::{MotionDistribution, STEP_S};
+use crate::study::Trust;
 use crate::units::{Quantity, UnitSystem};
 use crate::vehicle::VehicleState;
 
@@ -44,6 +47,8 @@ pub struct MotionForecastFigure<'a> {
     pub time_s: f64,
     /// System of units of the axes.
     pub units: UnitSystem,
+    /// What restricts the forecast.
+    pub trust: &'a Trust,
 }
 
 /// A quantity of a forecast that is shown over time.
@@ -71,8 +76,13 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
     let x = Axis::shown("X, along the road", Quantity::Length, input.units);
     let y = Axis::shown("Y, to the left", Quantity::Length, input.units);
     let shown = |[px, py]: [f64; 2]| [x.unit.from_si(px), y.unit.from_si(py)];
-    let path = |states: &mut dyn Iterator<Item = &VehicleState<f64>>| -> Vec<[f64; 2]> {
-        states.map(|state| shown([state.x_m, state.y_m])).collect()
+    let path = |(name, role): (&str, Role), states: &[&VehicleState<f64>]| {
+        let points = states.iter().map(|state| shown([state.x_m, state.y_m])).collect();
+        FigureElement::Path(Path {
+            series: Series { name: name.to_owned(), role, style: LineStyle::Solid, points },
+            time_s: (0..states.len()).map(|i| i as f64 * STEP_S).collect(),
+            yaw_rad: states.iter().map(|state| state.yaw_rad).collect(),
+        })
     };
     let at = instant(input);
     let mut elements: Vec<FigureElement> = input
@@ -92,14 +102,14 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
         let components = &input.distribution.components;
         let stride = components.len().div_ceil(MAX_PATHS).max(1);
         for component in components.iter().step_by(stride) {
-            let points = path(&mut component.states.iter().map(|state| &state.mean));
-            elements.push(FigureElement::line("components", Role::Muted, points));
+            let means: Vec<_> = component.states.iter().map(|state| &state.mean).collect();
+            elements.push(path(("components", Role::Muted), &means));
         }
     }
     let line = |name: &str, role, style, series: &TimeSeries| -> Option<FigureElement> {
         let points = series.get(Channel::X)?.iter().zip(series.get(Channel::Y)?);
         let points = points.map(|(px, py)| shown([*px, *py])).collect();
-        Some(FigureElement::Line(Series { name: name.to_owned(), role, style, points }))
+        Some(path_of(Series { name: name.to_owned(), role, style, points }, series))
     };
     let others = [
         ("4DOF model", Role::Pulse, LineStyle::Dotted, input.simulation),
@@ -108,11 +118,8 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
     for (name, role, style, series) in others {
         elements.extend(series.and_then(|series| line(name, role, style, series)));
     }
-    elements.push(FigureElement::line(
-        "central path",
-        Role::Target,
-        path(&mut input.central.iter()),
-    ));
+    let central: Vec<_> = input.central.iter().collect();
+    elements.push(path(("central path", Role::Target), &central));
     if let Some(state) = input.central.get(at) {
         let pose = Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad };
         let appearance = ("central path", Role::Target, LineStyle::Solid);
@@ -123,7 +130,7 @@ pub fn forecast_scene_figure(input: &MotionForecastFigure<'_>) -> Figure {
         elements.extend(vehicle_outline(appearance, (&input.footprint, &pose), x.unit));
     }
     let title = format!("{}: position after {:.2} s", input.title, at as f64 * STEP_S);
-    Figure { title, x, y, equal_aspect: true, log_y: false, elements }
+    Figure::new(title, [x, y], elements).plan().with_trust(input.trust)
 }
 
 /// View around the vehicle at the time of the figure, which holds its outline and nearly all of the
@@ -229,5 +236,5 @@ pub fn forecast_channel_figure(
     });
     elements.push(FigureElement::line("central path", Role::Target, central.collect()));
     let title = format!("{}: {} over time", input.title, channel.label());
-    Figure { title, x, y, equal_aspect: false, log_y: false, elements }
+    Figure::new(title, [x, y], elements).with_trust(input.trust)
 }

@@ -2,7 +2,7 @@
 
 use crate::collision::{Footprint, Pose};
 use crate::data::{Channel, TimeSeries};
-use crate::figure::{Axis, Figure, FigureElement, LineStyle, Role, Series};
+use crate::figure::{Axis, Figure, FigureElement, LineStyle, Path, Role, Series};
 use crate::numerics::interpolate;
 use crate::units::{Quantity, Unit, UnitSystem};
 
@@ -71,7 +71,7 @@ pub fn scene_figure(input: &SceneFigure<'_>) -> Figure {
     for vehicle in input.vehicles {
         elements.extend(vehicle_elements(vehicle, input.time_s, x.unit));
     }
-    Figure { title: input.title.to_owned(), x, y, equal_aspect: true, log_y: false, elements }
+    Figure::new(input.title, [x, y], elements).plan()
 }
 
 /// Path, heading ticks and outline of a vehicle; nothing if its motion has no X or Y.
@@ -90,7 +90,7 @@ fn vehicle_elements(vehicle: &SceneVehicle<'_>, time_s: f64, unit: Unit) -> Vec<
         points: shown(unit, points),
     };
     let path = x.iter().zip(y).map(|(&x, &y)| [x, y]).collect();
-    let mut elements = vec![FigureElement::Line(series(vehicle.style, path))];
+    let mut elements = vec![path_of(series(vehicle.style, path), motion)];
     let end = motion.time_s().last().copied().unwrap_or(0.0);
     let start = motion.time_s().first().copied().unwrap_or(0.0);
     let n_ticks = ((end - start) / HEADING_TICK_INTERVAL_S).floor() as usize;
@@ -107,6 +107,12 @@ fn vehicle_elements(vehicle: &SceneVehicle<'_>, time_s: f64, unit: Unit) -> Vec<
         elements.extend(vehicle_outline(appearance, (&vehicle.footprint, &pose), unit));
     }
     elements
+}
+
+/// The path of a motion with its times and headings.
+pub(super) fn path_of(series: Series, motion: &TimeSeries) -> FigureElement {
+    let yaw_rad = motion.get(Channel::Yaw).map(<[f64]>::to_vec).unwrap_or_default();
+    FigureElement::Path(Path { series, time_s: motion.time_s().to_vec(), yaw_rad })
 }
 
 /// Position and heading of a motion at a time, interpolated linearly. The heading is 0 without a
@@ -149,5 +155,8 @@ mod tests {
         };
         let elements = vehicle_elements(&vehicle, 1.5, Quantity::Length.si_unit());
         assert_eq!(elements.len(), 1 + 4 + 2, "a path, four ticks, an outline with its chevron");
+        let FigureElement::Path(path) = &elements[0] else { unreachable!() };
+        assert_eq!(path.time_s, [0.0, 1.0, 2.0]);
+        assert_eq!(path.yaw_rad, [0.0, 0.0, 1.0]);
     }
 }

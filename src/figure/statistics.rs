@@ -66,17 +66,11 @@ mod tests {
     fn a_straight_line_between_two_of_its_samples() {
         let axis = |quantity| Axis::shown("", quantity, UnitSystem::Si);
         let line = |points| FigureElement::line("line", Role::Simulation, points);
-        let figure = Figure {
-            title: String::new(),
-            x: axis(Quantity::Time),
-            y: axis(Quantity::Force),
-            equal_aspect: false,
-            log_y: false,
-            elements: vec![
-                line(vec![[0.0, 0.0], [1.0, 2.0], [2.0, 4.0], [3.0, 6.0]]),
-                line(vec![[0.0, 0.0], [1.0, 2.0]]),
-            ],
-        };
+        let elements = vec![
+            line(vec![[0.0, 0.0], [1.0, 2.0], [2.0, 4.0], [3.0, 6.0]]),
+            line(vec![[0.0, 0.0], [1.0, 2.0]]),
+        ];
+        let figure = Figure::new("", [axis(Quantity::Time), axis(Quantity::Force)], elements);
         let [found] = curve_statistics(&figure, [0.5, 2.5]).try_into().unwrap();
         assert_eq!(
             found,

@@ -65,7 +65,7 @@ pub fn loss_figure(
         curve.train.iter().chain(&curve.validation).all(|loss| *loss > 0.0 && loss.is_finite())
     };
     let log_y = log && curves.iter().all(is_positive);
-    Figure { title: title.to_owned(), x, y, equal_aspect: false, log_y, elements }
+    Figure { log_y, ..Figure::new(title, [x, y], elements) }
 }
 
 /// Share of the data in the loss, and weight of the physics, over the epochs. The vertical axis is
@@ -73,18 +73,14 @@ pub fn loss_figure(
 ///
 /// - `balances`, `physics_weights`: points [epoch, value].
 pub fn balance_figure(balances: Vec<[f64; 2]>, physics_weights: Vec<[f64; 2]>) -> Figure {
-    let mut all = balances.iter().chain(&physics_weights);
-    Figure {
-        log_y: all.all(|[_, value]| *value > 0.0),
-        title: "Balance of data and physics".to_owned(),
-        x: Axis::shown("Epoch", Quantity::Ratio, UnitSystem::Si),
-        y: Axis::shown("Share, weight", Quantity::Ratio, UnitSystem::Si),
-        equal_aspect: false,
-        elements: vec![
-            FigureElement::line("share of data in the loss", Role::Model, balances),
-            FigureElement::dashed("weight of physics", Role::Validation, physics_weights),
-        ],
-    }
+    let log_y = balances.iter().chain(&physics_weights).all(|[_, value]| *value > 0.0);
+    let axes =
+        ["Epoch", "Share, weight"].map(|label| Axis::shown(label, Quantity::Ratio, UnitSystem::Si));
+    let elements = vec![
+        FigureElement::line("share of data in the loss", Role::Model, balances),
+        FigureElement::dashed("weight of physics", Role::Validation, physics_weights),
+    ];
+    Figure { log_y, ..Figure::new("Balance of data and physics", axes, elements) }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use egui_plot::Corner;
 
-use crate::figure::{Figure, FigureElement, Series};
+use crate::figure::{Figure, FigureElement, Path, Series};
 
 /// Share of the width and of the height of the plot that a legend is assumed to take.
 const LEGEND_SHARE: [f64; 2] = [0.4, 0.45];
@@ -48,7 +48,8 @@ fn points(element: &FigureElement) -> Vec<[f64; 2]> {
         FigureElement::Points(series) => series.points.clone(),
         FigureElement::Line(series)
         | FigureElement::Polygon(series)
-        | FigureElement::Arrow(series) => along(series),
+        | FigureElement::Arrow(series)
+        | FigureElement::Path(Path { series, .. }) => along(series),
         FigureElement::HeatMap(_) => Vec::new(),
         FigureElement::Band(band) => {
             let edge = |edge: &[f64]| band.x.iter().copied().zip(edge.iter().copied()).collect();
@@ -81,14 +82,8 @@ mod tests {
 
     fn figure(points: Vec<[f64; 2]>) -> Figure {
         let axis = Axis::shown("x", Quantity::Ratio, UnitSystem::Si);
-        Figure {
-            title: String::new(),
-            x: axis.clone(),
-            y: axis,
-            equal_aspect: false,
-            log_y: false,
-            elements: vec![FigureElement::line("line", Role::Simulation, points)],
-        }
+        let line = FigureElement::line("line", Role::Simulation, points);
+        Figure::new("", [axis.clone(), axis], vec![line])
     }
 
     #[test]

@@ -10,8 +10,10 @@ mod software;
 pub mod theme;
 mod thin;
 mod ticks;
+mod trust;
 
 pub use density::{DensityError, DensityGpu};
 pub use offscreen::{Canvas, RenderError, draw_offscreen, figure_image, save_png};
 pub use plot::{FigureOptions, FigureResponse, figure_ui};
 pub use software::SoftwareRenderer;
+pub use trust::picture_ui;

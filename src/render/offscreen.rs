@@ -8,7 +8,7 @@ use image::RgbaImage;
 use crate::data::{DataError, Existing, write_atomically};
 use crate::figure::Figure;
 use crate::ranges::{OutOfRange, PICTURE_SIDE};
-use crate::render::{FigureOptions, SoftwareRenderer, figure_ui, theme};
+use crate::render::{SoftwareRenderer, picture_ui, theme};
 
 /// Number of passes after which fonts, plot bounds and layout no longer change.
 const SETTLING_PASSES: usize = 4;
@@ -77,17 +77,14 @@ pub fn draw_offscreen(
     Ok(image)
 }
 
-/// Draws a figure below its title.
+/// Draws a figure below its title and above what restricts it ([`picture_ui`]).
 ///
 /// # Errors
 /// [`RenderError::Size`] for a width or height outside [`PICTURE_SIDE`].
 pub fn figure_image(figure: &Figure, canvas: Canvas) -> Result<RgbaImage, RenderError> {
     draw_offscreen(canvas, |ui| {
         let frame = egui::Frame::new().inner_margin(12.0);
-        frame.show(ui, |ui| {
-            ui.label(egui::RichText::new(&figure.title).strong().size(15.0));
-            figure_ui(ui, figure, &FigureOptions::default());
-        });
+        frame.show(ui, |ui| picture_ui(ui, figure));
     })
 }
 

@@ -9,7 +9,7 @@ use egui_plot::{
     PlotPoint, PlotPoints, PlotUi, Points, Polygon, VLine,
 };
 
-use crate::figure::{Figure, FigureElement, HeatMap, LineStyle, Series};
+use crate::figure::{Figure, FigureElement, HeatMap, LineStyle, Path, Series};
 use crate::render::legend::emptiest_corner;
 use crate::render::theme;
 use crate::render::thin::thinned;
@@ -275,7 +275,7 @@ fn draw_element<'a>(
         PlotPoints::from(points)
     };
     match element {
-        FigureElement::Line(series) => {
+        FigureElement::Line(series) | FigureElement::Path(Path { series, .. }) => {
             plot.line(Line::new(&series.name, points(series)).stroke(stroke).style(style(series)));
         }
         FigureElement::Points(series) => {

@@ -2,7 +2,7 @@
 
 use crate::analysis::{Analysis, MotionForecast, RestOutcome};
 use crate::collision::{ScenarioGeometry, TOUCH_TOLERANCE_M};
-use crate::data::Channel;
+use crate::data::{CONTACT_SHARE_OF_PEAK, Channel, ForceHistory, cut_at_s};
 use crate::response::{OutsideDomain, STEP_S};
 use crate::study::implied_contact::{LEAST_P_RIGID, MOST_P_ENERGY_GAIN};
 use crate::study::{
@@ -41,6 +41,23 @@ pub(super) fn of_overlap(geometry: &ScenarioGeometry) -> Option<Badge> {
     let badge = Badge::new(BadgeKind::Overlap, text)
         .with_value("overlap of the outlines [m]", overlap_m)
         .with_range([f64::NEG_INFINITY, TOUCH_TOLERANCE_M]);
+    Some(badge)
+}
+
+/// A record of a force that ends during the contact.
+pub(super) fn of_cut_record(force: &ForceHistory) -> Option<Badge> {
+    let at_s = cut_at_s(force)?;
+    let (peak_n, _) = force.peak()?;
+    let (x, y) = force.fx_n.last().zip(force.fy_n.last())?;
+    let share = x.hypot(*y) / peak_n;
+    let text = format!(
+        "the record ends after {at_s:.3} s at {} of the peak, with the vehicles in contact: its \
+         impulse is not complete, nor the motion that follows from it",
+        percent(share)
+    );
+    let badge = Badge::new(BadgeKind::ContactNotEnded, text)
+        .with_value("force at the end as a share of the peak", share)
+        .with_range([0.0, CONTACT_SHARE_OF_PEAK]);
     Some(badge)
 }
 

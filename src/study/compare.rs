@@ -16,7 +16,7 @@ use crate::study::inputs::{UsableCases, data_name, dataset_folders, response_cas
 use crate::study::question::progress_of;
 use crate::study::{
     Assumption, BadCases, ConfigChoice, Library, ModelChoice, Observer, Provenance, Question,
-    StudyError, VehicleChoice, badges,
+    StudyError, Trust, VehicleChoice, badges,
 };
 use crate::uncertainty::Badge;
 
@@ -87,6 +87,11 @@ impl CompareRequest {
 }
 
 impl CompareReport {
+    /// What restricts it.
+    pub fn trust(&self) -> Trust {
+        Trust::new(&self.badges, &self.assumptions)
+    }
+
     /// Version of the program, seed and the networks that were given.
     pub fn provenance_with_seed(&self) -> Provenance {
         Provenance { seed: Some(self.comparison.seed), ..self.provenance.clone() }

@@ -20,7 +20,7 @@ use crate::study::question::progress_of;
 use crate::study::unused::not_used;
 use crate::study::{
     Assumption, BadCases, EvaluatedCases, Event, Library, ModelChoice, Observer, Provenance,
-    Question, StudyError, badges,
+    Question, StudyError, Trust, badges,
 };
 use crate::uncertainty::{Badge, CurveMixture};
 
@@ -122,6 +122,13 @@ pub struct EvaluateForceReport {
     /// Version of the program, seed and trained networks.
     #[serde(flatten)]
     pub provenance: Provenance,
+}
+
+impl EvaluateForceReport {
+    /// What restricts it.
+    pub fn trust(&self) -> Trust {
+        Trust::new(&self.badges, &self.assumptions)
+    }
 }
 
 /// A cross-validation over the training cases of a force network.

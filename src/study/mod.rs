@@ -52,6 +52,7 @@ mod simulate_dataset;
 mod simulate_report;
 mod train_force;
 mod train_response;
+mod trust;
 mod unused;
 mod vehicle_uncertainty;
 
@@ -99,5 +100,6 @@ pub use simulate_dataset::{
 pub use simulate_report::{EndState, FlagReport, ForceReport, RestState, SimulateReport};
 pub use train_force::{TrainForceAnswer, TrainForceReport, TrainForceRequest};
 pub use train_response::{ResponseTrainingAnswer, ResponseTrainingReport, TrainResponseRequest};
+pub use trust::{Trust, TrustLine};
 pub use vehicle_uncertainty::VehicleUncertainty;
 pub(crate) use word::word;

@@ -76,6 +76,11 @@ impl MotionSource {
         }
     }
 
+    /// Whether its force was recorded; that of a scenario is a pulse.
+    pub(super) fn is_recorded(&self) -> bool {
+        !matches!(self, Self::Scenario { .. })
+    }
+
     /// What a title calls it.
     pub fn name(&self) -> String {
         match self {

@@ -235,20 +235,16 @@ impl Question for PredictMotionRequest {
             seed: self.seed,
         };
         let failed = |source| StudyError::Forecast { name: name(), source: Box::new(source) };
+        let mut cut = None;
         let forecast = match &self.force {
             ForceSource::Given => {
+                let own = Some(own_force).filter(|_| self.motion.source.is_recorded());
+                cut = own.and_then(badges::of_cut_record);
                 forecast_forces(std::slice::from_ref(own_force), &model, struck, &settings)
             }
             ForceSource::File(path) => {
-                let force = given_force(path, library)?;
-                // A recorded yaw moment acts about the CG: it does not say where another force acts.
-                let has_contact = [struck.contact.x_m, struck.contact.y_m] != [0.0; 2];
-                if force.mz_n_m.is_none() && !has_contact {
-                    return Err(StudyError::NoYawMoment { path: path.clone() });
-                }
-                check_contact_within(&force, settings.duration_s).map_err(|outside| {
-                    StudyError::ContactOutside { name: path.display().to_string(), outside }
-                })?;
+                let force = given_force(path, (struck, settings.duration_s), library)?;
+                cut = badges::of_cut_record(&force);
                 forecast_forces(&[force], &model, struck, &settings)
             }
             ForceSource::Predicted(choice) => {
@@ -277,16 +273,32 @@ impl Question for PredictMotionRequest {
         let has_same_force = self.force == ForceSource::Given;
         let apart = badges::of_disagreement((&forecast, &analysis), has_same_force);
         report.badges.extend(apart);
+        report.badges.extend(cut);
         report.badges.extend(overlap);
         Ok(Outcome::Complete(PredictMotionAnswer { report, analysis, forecast }))
     }
 }
 
 /// The force of a file. Where it acts without a yaw moment of its own, the source of the motion says.
-fn given_force(path: &Path, library: &Library) -> Result<ForceHistory, StudyError> {
+///
+/// - `duration_s`: duration of the motion, s, within which the contact lies.
+fn given_force(
+    path: &Path,
+    (struck, duration_s): (&StruckVehicle, f64),
+    library: &Library,
+) -> Result<ForceHistory, StudyError> {
     let loaded = library.series(&SeriesFile::new(path))?;
-    ForceHistory::from_series(&loaded.series, loaded.force_sampling())
-        .map_err(|source| StudyError::Series { path: path.to_owned(), source })
+    let force = ForceHistory::from_series(&loaded.series, loaded.force_sampling())
+        .map_err(|source| StudyError::Series { path: path.to_owned(), source })?;
+    // A recorded yaw moment acts about the CG: it does not say where another force acts.
+    let has_contact = [struck.contact.x_m, struck.contact.y_m] != [0.0; 2];
+    if force.mz_n_m.is_none() && !has_contact {
+        return Err(StudyError::NoYawMoment { path: path.to_owned() });
+    }
+    let outside =
+        |outside| StudyError::ContactOutside { name: path.display().to_string(), outside };
+    check_contact_within(&force, duration_s).map_err(outside)?;
+    Ok(force)
 }
 
 impl PredictMotionRequest {

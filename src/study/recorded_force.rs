@@ -2,7 +2,10 @@
 
 use crate::data::{ForceHistory, Outcome};
 use crate::study::simulate_dataset::take_case;
-use crate::study::{Library, MotionSource, Observer, Question, SeriesFile, StudyError};
+use crate::study::{
+    Library, MotionSource, Observer, Question, SeriesFile, StudyError, Trust, badges,
+};
+use crate::uncertainty::Badge;
 
 /// Asks for a recorded force, to be shown.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,6 +23,15 @@ pub struct RecordedForceAnswer {
     pub force: ForceHistory,
     /// What a person should know about how the file was read.
     pub notes: Vec<String>,
+    /// What restricts it.
+    pub trust: Trust,
+}
+
+impl RecordedForceAnswer {
+    fn new(name: String, force: ForceHistory, notes: Vec<String>) -> Self {
+        let badges: Vec<Badge> = badges::of_cut_record(&force).into_iter().collect();
+        Self { name, force, notes, trust: Trust::new(&badges, &[]) }
+    }
 }
 
 impl Question for RecordedForceRequest {
@@ -48,8 +60,8 @@ impl Question for RecordedForceRequest {
                 let force = take_case(&dataset, case)?.force_history();
                 let force =
                     force.map_err(|source| StudyError::Series { path: root.clone(), source })?;
-                let (name, notes) = (case.clone(), Vec::new());
-                return Ok(Outcome::Complete(RecordedForceAnswer { name, force, notes }));
+                let answer = RecordedForceAnswer::new(case.clone(), force, Vec::new());
+                return Ok(Outcome::Complete(answer));
             }
             MotionSource::Trajectory { file, .. } => Some(file),
             MotionSource::Drive(drive) => drive.force.as_ref().or(drive.steer.as_ref()),
@@ -61,6 +73,6 @@ impl Question for RecordedForceRequest {
         let force = ForceHistory::from_series(&loaded.series, loaded.force_sampling())
             .map_err(|source| StudyError::Series { path: file.path.clone(), source })?;
         let notes = loaded.notes.iter().map(ToString::to_string).collect();
-        Ok(Outcome::Complete(RecordedForceAnswer { name: file.title(), force, notes }))
+        Ok(Outcome::Complete(RecordedForceAnswer::new(file.title(), force, notes)))
     }
 }

@@ -249,6 +249,8 @@ impl Question for SimulateRequest {
         }
         report.badges = badges::of_simulation(&report, self.until_rest);
         report.badges.extend(overlap);
+        let recorded = analysis.force.as_ref().filter(|_| self.source.is_recorded());
+        report.badges.extend(recorded.and_then(badges::of_cut_record));
         Ok(Outcome::Complete(SimulateAnswer { report, analysis }))
     }
 }

@@ -11,7 +11,7 @@ use crate::study::inputs::{OpenVehicle, struck_vehicle};
 use crate::study::question::progress_of;
 use crate::study::{
     AssumedQuantity, Assumption, FlagReport, Library, Observer, Provenance, Question, StudyError,
-    VehicleChoice, badges, word,
+    Trust, VehicleChoice, badges, word,
 };
 use crate::uncertainty::Badge;
 use crate::vehicle::{Equations, Integrator};
@@ -158,6 +158,15 @@ impl Question for SimulateDatasetRequest {
             provenance: Provenance::default(),
         };
         Ok(Outcome::Complete(SimulateDatasetAnswer { report, replay }))
+    }
+}
+
+impl SimulateDatasetReport {
+    /// What restricts the motion of one case.
+    pub fn trust_of(&self, case: &str) -> Trust {
+        let flags = self.cases.iter().filter(|of| of.case == case).flat_map(|of| &of.flags);
+        let badges: Vec<Badge> = flags.map(badges::of_flag).collect();
+        Trust::new(&badges, &self.assumptions)
     }
 }
 

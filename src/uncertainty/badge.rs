@@ -19,6 +19,9 @@ pub enum BadgeKind {
     Overlap,
     /// The vehicles meet again; the motion after that is not theirs.
     SecondContact,
+    /// The record of a force ends while the vehicles are still in contact: its impulse is not
+    /// complete.
+    ContactNotEnded,
     /// A computed motion gains energy without a force.
     EnergyGain,
     /// A wheel lifts off.
@@ -63,6 +66,7 @@ impl BadgeKind {
             Self::Disagreement => "disagreement",
             Self::Overlap => "overlap",
             Self::SecondContact => "second contact",
+            Self::ContactNotEnded => "contact not ended",
             Self::EnergyGain => "energy gain",
             Self::WheelLift => "wheel lift",
             Self::RollLimit => "roll limit",

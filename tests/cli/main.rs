@@ -16,5 +16,6 @@ mod log;
 mod program;
 mod ranges;
 mod response;
+mod restrictions;
 mod writes;
 mod writes_killed;

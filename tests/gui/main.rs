@@ -12,4 +12,5 @@ mod pictures;
 mod response_network;
 mod snapshots;
 mod stored;
+mod trust;
 mod workflow;

@@ -8,11 +8,12 @@ use egui_kittest::image_snapshot;
 use impactlab::analysis::{ForceForecast, ForecastSettings, pulse_curves};
 use impactlab::data::Dataset;
 use impactlab::figure::{
-    CoveragePoint, Figure, ForceComponent, ForecastFigure, LossCurve, ParityPoint, Role,
-    coverage_figure, forecast_figure, loss_figure, parity_figure, pit_figure,
+    CoveragePoint, Figure, ForceComponent, ForecastFigure, LossCurve, ParityPoint, RecordedCurve,
+    Role, coverage_figure, forecast_figure, loss_figure, parity_figure, pit_figure,
 };
 use impactlab::force::ForceCase;
 use impactlab::render::{Canvas, figure_image};
+use impactlab::study::Trust;
 use impactlab::uncertainty::{CurveComponent, CurveMixture, ForceCurve};
 use impactlab::units::{Quantity, UnitSystem};
 use nalgebra::DMatrix;
@@ -68,6 +69,7 @@ fn a_forecast_with_everything_over_it() {
     let settings = ForecastSettings { n_curves: 12, seed: 1 };
     let forecast = ForceForecast::of(&about(&case.curve), settings).expect("a forecast");
     let pulses = pulse_curves(case.impulse_n_s, 0.09).expect("pulses");
+    let recorded = RecordedCurve { name: "c003, FEA", curve: &case.curve, cut_at_s: None };
     for component in ForceComponent::ALL {
         let figure = forecast_figure(
             component,
@@ -75,10 +77,11 @@ fn a_forecast_with_everything_over_it() {
                 name: "c003",
                 forecast: &forecast,
                 levels: &[0.5, 0.8, 0.9, 0.95],
-                recorded: Some(("c003, FEA", &case.curve)),
+                recorded: Some(recorded),
                 pulses: &pulses,
                 physics: Some(&case.curve),
                 units: UnitSystem::Si,
+                trust: &Trust::default(),
             },
         );
         save(&figure, &format!("forecast-{component:?}"));
@@ -89,10 +92,11 @@ fn a_forecast_with_everything_over_it() {
             name: "c003",
             forecast: &ForceForecast { curves: Vec::new(), ..forecast },
             levels: &[0.5, 0.9],
-            recorded: Some(("c003, FEA", &case.curve)),
+            recorded: Some(recorded),
             pulses: &[],
             physics: None,
             units: UnitSystem::Si,
+            trust: &Trust::default(),
         },
     );
     let canvas = Canvas { size_px: [360, 220], scale: 1.0, dark: false };

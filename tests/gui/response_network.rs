@@ -52,7 +52,7 @@ fn select(harness: &mut Harness<'_, App>, dataset: &str, case: &str) {
 /// Whether the density that is shown is that of the current time or window.
 fn is_density_current(state: &State, window_s: [f64; 2]) -> bool {
     let density = state.session.response.density.ok();
-    density.is_some_and(|map| {
+    density.map(|density| &density.map).is_some_and(|map| {
         map.window_s.iter().zip(window_s).all(|(got, asked)| (got - asked).abs() < 0.006)
     })
 }

@@ -12,6 +12,7 @@ use impactlab::figure::{
     Figure, analysis_force_figure, analysis_motion_figure, analysis_scene_figure, impact_figure,
 };
 use impactlab::render::{Canvas, figure_image};
+use impactlab::study::Trust;
 use impactlab::units::UnitSystem;
 use impactlab::vehicle::{Integrator, Preset};
 
@@ -40,28 +41,32 @@ fn check(figure: &Figure, dark: bool, name: &str) {
 fn force() {
     let analysis = analysis("fea", "c002");
     let class = Some(ChannelClass::Cfc60);
-    let figure = analysis_force_figure(&analysis, class, &[], UnitSystem::Si).expect("it filters");
+    let shown = (&analysis, &Trust::default());
+    let figure = analysis_force_figure(shown, class, &[], UnitSystem::Si).expect("it filters");
     check(&figure.expect("a force"), false, "force");
 }
 
 #[test]
 fn motion() {
     let analysis = analysis("trajectories-pulse", "P001");
-    check(&analysis_motion_figure(&analysis, Channel::YawRate, UnitSystem::Us), true, "motion");
+    let shown = (&analysis, &Trust::default());
+    check(&analysis_motion_figure(shown, Channel::YawRate, UnitSystem::Us), true, "motion");
 }
 
 #[test]
 fn scene_with_bullet_and_scene_with_reference() {
     let force_case = analysis("fea", "c002");
-    check(&analysis_scene_figure(&force_case, 0.4, UnitSystem::Si), false, "scene_bullet");
+    let shown = (&force_case, &Trust::default());
+    check(&analysis_scene_figure(shown, 0.4, UnitSystem::Si), false, "scene_bullet");
     let trajectory = analysis("trajectories-fea", "FE_c002");
-    check(&analysis_scene_figure(&trajectory, 2.0, UnitSystem::Us), true, "scene_reference");
+    let shown = (&trajectory, &Trust::default());
+    check(&analysis_scene_figure(shown, 2.0, UnitSystem::Us), true, "scene_reference");
 }
 
 #[test]
 fn impact() {
     let scenario = Scenario::example();
     let solution = scenario.solve().expect("the example is solved");
-    let figure = impact_figure(&scenario, &solution, UnitSystem::Si).expect("they touch");
-    check(&figure, false, "impact");
+    let figure = impact_figure((&scenario, &solution), &Trust::default(), UnitSystem::Si);
+    check(&figure.expect("they touch"), false, "impact");
 }

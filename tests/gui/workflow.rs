@@ -8,6 +8,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, ReplayStatus, State};
 use impactlab::data::Severity;
+use impactlab::study::Trust;
 use impactlab::units::UnitSystem;
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
@@ -161,7 +162,11 @@ fn a_dropped_file_opens_and_a_figure_is_exported() {
     step_until(&mut harness, "the file, which is selected by itself", shows("c002"));
     harness.get_by_label_contains("c002.csv · force");
     let analysis = state(&harness).analysis().unwrap().analysis.clone();
-    let figure = impactlab::figure::analysis_scene_figure(&analysis, 1.0, UnitSystem::Si);
+    let figure = impactlab::figure::analysis_scene_figure(
+        (&analysis, &Trust::default()),
+        1.0,
+        UnitSystem::Si,
+    );
     let folder = tempfile::tempdir().unwrap();
     for name in ["scene.png", "scene.csv"] {
         let path = folder.path().join(name);

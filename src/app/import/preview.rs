@@ -6,6 +6,7 @@ use crate::data::{
 };
 use crate::figure::{Axis, Figure, FigureElement, ForceFigure, Role, force_figure};
 use crate::numerics::quantile_of_sorted;
+use crate::study::Trust;
 use crate::units::{Quantity, UnitSystem, significant};
 
 /// Time from the first row over which the first speed of a path is taken, s.
@@ -64,6 +65,7 @@ fn figure(loaded: &Loaded, units: UnitSystem) -> Figure {
                 contact_s,
                 pulses: &[],
                 units,
+                trust: &Trust::default(),
             })
         }
         _ => channel_figure(series, units),
@@ -78,17 +80,11 @@ fn path_figure(series: &TimeSeries, units: UnitSystem) -> Figure {
     let points: Vec<[f64; 2]> =
         points.map(|(at_x, at_y)| [x.unit.from_si(*at_x), y.unit.from_si(*at_y)]).collect();
     let start = points.first().copied().into_iter().collect();
-    Figure {
-        title: "path, from above".to_owned(),
-        x,
-        y,
-        equal_aspect: true,
-        log_y: false,
-        elements: vec![
-            FigureElement::line("path", Role::Reference, points),
-            FigureElement::points("first row", Role::Reference, start),
-        ],
-    }
+    let elements = vec![
+        FigureElement::line("path", Role::Reference, points),
+        FigureElement::points("first row", Role::Reference, start),
+    ];
+    Figure::new("path, from above", [x, y], elements).plan()
 }
 
 /// The first channel of a file of controls over time.
@@ -99,8 +95,7 @@ fn channel_figure(series: &TimeSeries, units: UnitSystem) -> Figure {
     let values = series.get(channel).unwrap_or_default();
     let points = series.time_s().iter().zip(values).map(|(t, v)| [*t, y.unit.from_si(*v)]);
     let elements = vec![FigureElement::line(channel.label(), Role::Reference, points.collect())];
-    let title = channel.label().to_owned();
-    Figure { title, x, y, equal_aspect: false, log_y: false, elements }
+    Figure::new(channel.label(), [x, y], elements)
 }
 
 fn numbers(loaded: &Loaded, units: UnitSystem) -> Vec<(&'static str, String)> {

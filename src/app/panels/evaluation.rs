@@ -102,10 +102,10 @@ fn heading_ui(ui: &mut Ui, report: &EvaluateForceReport) {
         ui.strong(format!("{model} on {} cases of {data}", report.n_test));
         ui.weak(format!("baselines fitted to its {} training cases", evaluation.n_train));
         if ui.button("Copy as text").clicked() {
-            ui.ctx().copy_text(evaluation.to_text());
+            ui.ctx().copy_text(report.trust().appended_to(evaluation.to_text()));
         }
         if ui.button("Copy as Markdown").clicked() {
-            ui.ctx().copy_text(evaluation.to_markdown());
+            ui.ctx().copy_text(report.trust().appended_to(evaluation.to_markdown()));
         }
     });
     let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);

@@ -8,8 +8,8 @@ use crate::app::command::Command;
 use crate::app::state::View;
 use crate::app::widgets::figure_frame;
 use crate::figure::{
-    CoveragePoint, Figure, ForceComponent, ForecastFigure, ParityPoint, Role, coverage_figure,
-    forecast_figure, parity_figure, pit_figure,
+    CoveragePoint, Figure, ForceComponent, ForecastFigure, ParityPoint, RecordedCurve, Role,
+    coverage_figure, forecast_figure, parity_figure, pit_figure,
 };
 use crate::force::ForceCase;
 use crate::force::metrics::{BAND_LEVELS, IntervalCoverage};
@@ -31,11 +31,14 @@ pub fn plots_ui(
     (view, reset): (&mut View, bool),
     commands: &mut Vec<Command>,
 ) {
+    let trust = report.trust();
     let mut figures = vec![
         parity(cases, ("Impulse", "|P|", Quantity::Impulse), view),
         parity(cases, ("Peak force", "Peak |F|", Quantity::Force), view),
     ];
     figures.extend(calibration(report));
+    let figures: Vec<Figure> =
+        figures.into_iter().map(|figure| figure.with_trust(&trust)).collect();
     rows_ui(ui, &figures, (None, reset), commands);
     ui.horizontal(|ui| {
         ui.strong("Sample cases, from the smallest to the largest impulse");
@@ -51,10 +54,15 @@ pub fn plots_ui(
                 name: &case.name,
                 forecast,
                 levels: &BAND_LEVELS,
-                recorded: Some(("recorded", &case.curve)),
+                recorded: Some(RecordedCurve {
+                    name: "recorded",
+                    curve: &case.curve,
+                    cut_at_s: case.cut_at_s(),
+                }),
                 physics: None,
                 pulses: &[],
                 units: view.units,
+                trust: &trust,
             };
             let figure = forecast_figure(view.force.sample_component, &input);
             let kind = if case.is_clean() { "" } else { ", hooked or cut" };

@@ -6,13 +6,13 @@ use egui::{ComboBox, Grid, Id, Ui};
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
-use crate::app::variants::other_simulations;
+use crate::app::variants::{are_others_awaited, other_simulations};
 use crate::app::widgets::{time_figure, value_row};
 use crate::collision::{ChannelClass, Pulse, PulseShape};
 use crate::data::{ForceHistory, contact_interval};
 use crate::figure::analysis_force_figure;
 use crate::render::FigureOptions;
-use crate::study::{ForceReport, SimulateAnswer};
+use crate::study::{ForceReport, SimulateAnswer, Trust};
 use crate::units::{Quantity, UnitSystem};
 
 /// Sample interval at which the classic pulses are drawn, s.
@@ -49,12 +49,16 @@ pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     });
     readouts_ui(ui, numbers, view.units);
     let pulses = if project.show_pulses { pulses(force) } else { Vec::new() };
-    let figure = analysis_force_figure(analysis, project.channel_class, &pulses, view.units);
+    let trust = session.simulation_trust(report).outdated_if(are_others_awaited(variants));
+    let figure =
+        analysis_force_figure((analysis, &trust), project.channel_class, &pulses, view.units);
     match figure {
         Ok(Some(mut figure)) => {
             for (i, (name, other)) in other_simulations(variants).enumerate() {
                 let class = project.channel_class;
-                let other = analysis_force_figure(&other.analysis, class, &[], view.units);
+                let of_other = Trust::new(&other.report.badges, &other.report.assumptions);
+                let shown = (&other.analysis, &of_other);
+                let other = analysis_force_figure(shown, class, &[], view.units);
                 if let Ok(Some(other)) = other {
                     figure.overlay((name, i), &other);
                 }

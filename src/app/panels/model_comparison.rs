@@ -17,9 +17,7 @@ use crate::data::{DatasetKind, Severity};
 use crate::figure::model_name;
 use crate::ranges::CHOICES;
 use crate::render::theme;
-use crate::response::evaluate::{
-    Comparison, ComparisonTable, all_tables, paper_metrics, to_markdown,
-};
+use crate::response::evaluate::{ComparisonTable, all_tables, paper_metrics, to_markdown};
 use crate::study::{CompareReport, EvaluatedCases};
 
 /// Draws the settings and buttons, and of the last comparison the figures, the case browser and the
@@ -40,14 +38,14 @@ pub fn model_comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
                 ui.colored_label(color, format!("Not compared: {problem}"));
             }
             Some(Ok(answer)) => {
-                let comparison = &answer.report.comparison;
+                let report = &answer.report;
                 ui.separator();
-                heading_ui(ui, &answer.report, commands);
-                overview_ui(ui, comparison, (view.units, session.fit_plots), commands);
+                heading_ui(ui, report, commands);
+                overview_ui(ui, report, (view.units, session.fit_plots), commands);
                 ui.separator();
-                browser_ui(ui, comparison, (view, session.fit_plots), commands);
+                browser_ui(ui, report, (view, session.fit_plots), commands);
                 ui.separator();
-                tables_ui(ui, comparison);
+                tables_ui(ui, report);
             }
         }
     });
@@ -161,7 +159,7 @@ fn heading_ui(ui: &mut Ui, report: &CompareReport, commands: &mut Vec<Command>) 
             ),
         });
         if ui.button("Copy as Markdown").clicked() {
-            ui.ctx().copy_text(to_markdown(comparison));
+            ui.ctx().copy_text(report.trust().appended_to(to_markdown(comparison)));
         }
     });
     badges_ui(ui, &report.badges);
@@ -184,18 +182,19 @@ fn heading_ui(ui: &mut Ui, report: &CompareReport, commands: &mut Vec<Command>) 
     }
 }
 
-fn tables_ui(ui: &mut Ui, comparison: &Comparison) {
-    for (title, _, table) in all_tables(comparison) {
+fn tables_ui(ui: &mut Ui, report: &CompareReport) {
+    let restrictions = report.trust().text();
+    for (title, _, table) in all_tables(&report.comparison) {
         if table.rows.is_empty() {
             continue;
         }
-        ui.collapsing(title, |ui| table_ui(ui, title, &table));
+        ui.collapsing(title, |ui| table_ui(ui, title, (&table, restrictions.as_deref())));
     }
 }
 
-fn table_ui(ui: &mut Ui, id: &str, table: &ComparisonTable) {
+fn table_ui(ui: &mut Ui, id: &str, (table, restrictions): (&ComparisonTable, Option<&str>)) {
     if ui.small_button("Copy table").on_hover_text("As CSV").clicked() {
-        ui.ctx().copy_text(table.to_csv());
+        ui.ctx().copy_text(table.to_csv(restrictions));
     }
     ScrollArea::horizontal().id_salt(id).show(ui, |ui| {
         Grid::new(id).striped(true).show(ui, |ui| {

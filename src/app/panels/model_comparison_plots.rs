@@ -13,6 +13,7 @@ use crate::render::FigureOptions;
 use crate::response::evaluate::{
     ComparedModel, Comparison, CoverageMetrics, MeanStd, MotionModelKind, TestCase,
 };
+use crate::study::CompareReport;
 use crate::units::{Quantity, UnitSystem, significant};
 
 /// Height of a plot, points.
@@ -30,23 +31,28 @@ const KM_H_PER_M_S: f64 = 3.6;
 /// - `reset`: whether the plots fit their view to the data again.
 pub fn overview_ui(
     ui: &mut Ui,
-    comparison: &Comparison,
+    report: &CompareReport,
     (units, reset): (UnitSystem, bool),
     commands: &mut Vec<Command>,
 ) {
+    let (comparison, trust) = (&report.comparison, &report.trust());
+    let mut row_ui = |ui: &mut Ui, id: &str, figures: Vec<Figure>| {
+        let figures: Vec<Figure> =
+            figures.into_iter().map(|figure| figure.with_trust(trust)).collect();
+        row_ui(ui, (id, &figures), reset, commands);
+    };
     ui.weak("Point: mean over trajectories; bar: ± standard deviation; tick: median.");
-    let first = [ranking(comparison, units), horizon_figure(comparison, units)];
-    row_ui(ui, ("ranking", &first), reset, commands);
-    let variables = variables(comparison, units);
-    row_ui(ui, ("variables", &variables), reset, commands);
+    let first = vec![ranking(comparison, units), horizon_figure(comparison, units)];
+    row_ui(ui, "ranking", first);
+    row_ui(ui, "variables", variables(comparison, units));
     ui.weak("By cluster of impulse. Box: quartiles; line: median; whiskers: least and largest.");
     let clusters = 0..comparison.clusters.len();
     let clusters: Vec<Figure> = clusters.map(|of| cluster_figure(comparison, of, units)).collect();
-    row_ui(ui, ("clusters", &clusters), reset, commands);
+    row_ui(ui, "clusters", clusters);
     let calibration = calibration(comparison);
     if !calibration.is_empty() {
         ui.weak("Whether regions hold as many positions as they say.");
-        row_ui(ui, ("calibration", &calibration), reset, commands);
+        row_ui(ui, "calibration", calibration);
     }
 }
 
@@ -154,10 +160,11 @@ fn calibration(comparison: &Comparison) -> Vec<Figure> {
 /// - `reset`: whether the plot fits its view to the data again.
 pub fn browser_ui(
     ui: &mut Ui,
-    comparison: &Comparison,
+    report: &CompareReport,
     (view, reset): (&mut View, bool),
     commands: &mut Vec<Command>,
 ) {
+    let comparison = &report.comparison;
     let units = view.units;
     let view = &mut view.response;
     ui.horizontal(|ui| {
@@ -176,6 +183,7 @@ pub fn browser_ui(
     ui.columns(2, |columns| {
         clicked = cases_ui(&mut columns[0], comparison, (case, choice, units));
         if let Some(figure) = compared_case_figure(comparison, (&case.name, choice), units) {
+            let figure = figure.with_trust(&report.trust());
             let options = FigureOptions {
                 id: "compared case".to_owned(),
                 height: Some(BROWSER_HEIGHT),

@@ -7,12 +7,12 @@ use crate::analysis::Analysis;
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
-use crate::app::variants::other_simulations;
+use crate::app::variants::{are_others_awaited, other_simulations};
 use crate::app::widgets::{assumptions_ui, badges_ui, time_figure};
 use crate::data::{Channel, TimeSeries};
 use crate::figure::{analysis_motion_figure, analysis_readout};
 use crate::render::FigureOptions;
-use crate::study::SimulateAnswer;
+use crate::study::{SimulateAnswer, Trust};
 
 /// Smallest height of a plot, points.
 const MIN_PLOT_HEIGHT: f32 = 110.0;
@@ -35,10 +35,12 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let two_columns = ui.available_width() > 560.0;
     let rows = if two_columns { 2.0 } else { 4.0 };
     let height = (ui.available_height() / rows - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT);
+    let trust = session.simulation_trust(report).outdated_if(are_others_awaited(variants));
     let mut plot = |ui: &mut Ui, channel| {
-        let mut figure = analysis_motion_figure(analysis, channel, view.units);
+        let mut figure = analysis_motion_figure((analysis, &trust), channel, view.units);
         for (i, (name, other)) in other_simulations(variants).enumerate() {
-            let other = analysis_motion_figure(&other.analysis, channel, view.units);
+            let of_other = Trust::new(&other.report.badges, &other.report.assumptions);
+            let other = analysis_motion_figure((&other.analysis, &of_other), channel, view.units);
             figure.overlay((name, i), &other);
         }
         let options = FigureOptions {

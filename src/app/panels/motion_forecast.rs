@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use egui::{DragValue, Id, Panel, ScrollArea, Ui};
 
-use crate::analysis::{Analysis, DensityMap};
+use crate::analysis::Analysis;
 use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
 use crate::app::panels::analysis_or_hint;
@@ -15,10 +15,11 @@ use crate::app::panels::scene::clock_ui;
 use crate::app::panels::vehicle::until_rest_ui;
 use crate::app::panes::PaneContext;
 use crate::app::response::{
-    DensityChoice, ForceChoice, MotionAnswer, ResponseProject, ResponseSession, ResponseView,
+    DensityAnswer, DensityChoice, ForceChoice, MotionAnswer, ResponseProject, ResponseSession,
+    ResponseView,
 };
 use crate::app::state::{Session, View};
-use crate::app::variants::{AnsweredVariant, other_forecasts};
+use crate::app::variants::{AnsweredVariant, are_others_awaited, other_forecasts};
 use crate::app::widgets::{count_field, figure_frame};
 use crate::data::{Severity, TimeSeries};
 use crate::figure::{
@@ -28,7 +29,7 @@ use crate::figure::{
 use crate::ranges::DRAWS;
 use crate::render::{FigureOptions, theme};
 use crate::response::STEP_S;
-use crate::study::PredictMotionAnswer;
+use crate::study::{PredictMotionAnswer, Trust};
 use crate::units::UnitSystem;
 
 /// Width of the form before the user resizes it, points.
@@ -218,28 +219,42 @@ fn end_s(answer: &MotionAnswer) -> f64 {
 /// Draws the clock, the plan view with the density, and the bands of each quantity over time.
 fn figures_ui(
     ui: &mut Ui,
-    (answer, session, variants): (&MotionAnswer, &Session, &[AnsweredVariant]),
+    (answer, session, variants): (&Arc<MotionAnswer>, &Session, &[AnsweredVariant]),
     view: &View,
     commands: &mut Vec<Command>,
 ) {
     let choice = &view.response;
-    let analysis = &answer.answer.analysis;
+    let PredictMotionAnswer { report, analysis, .. } = &answer.answer;
+    let trust = Trust::new(&report.badges, &report.assumptions)
+        .outdated_if(session.is_motion_awaited(choice.density) || are_others_awaited(variants));
     let time_s = session.time_s.min(end_s(answer));
-    let is_shown = |map: &&Arc<DensityMap>| match choice.density {
-        DensityChoice::Hidden => false,
-        DensityChoice::Moment => (map.window_s[0] - time_s).abs() < STALE_S,
-        DensityChoice::Window => true,
+    let is_shown = |density: &&Arc<DensityAnswer>| {
+        // That of an earlier forecast is not drawn over the paths of this one.
+        let is_of_this = Arc::ptr_eq(&density.motion, answer);
+        is_of_this
+            && match choice.density {
+                DensityChoice::Hidden => false,
+                DensityChoice::Moment => (density.map.window_s[0] - time_s).abs() < STALE_S,
+                DensityChoice::Window => true,
+            }
     };
     let density = session.response.density.ok().filter(is_shown);
     let input = MotionForecastFigure {
-        density: density.map(|map| &**map),
+        density: density.map(|density| &density.map),
         components: choice.components,
         reference: analysis.reference.as_ref().filter(|_| choice.reference),
         simulation: motion_of(analysis).filter(|_| choice.simulation),
-        ..bare_figure(answer, (time_s, view.units))
+        ..bare_figure((answer, &trust), (time_s, view.units))
     };
     let others: Vec<_> = other_forecasts(variants)
-        .map(|(name, answer)| (name, bare_figure(answer, (time_s, view.units))))
+        .map(|(name, answer)| {
+            let report = &answer.answer.report;
+            (name, answer, Trust::new(&report.badges, &report.assumptions))
+        })
+        .collect();
+    let others: Vec<_> = others
+        .iter()
+        .map(|(name, answer, trust)| (*name, bare_figure((*answer, trust), (time_s, view.units))))
         .collect();
     clock_ui(ui, (time_s, end_s(answer)), session.playing, commands);
     let all = ui.available_height();
@@ -288,10 +303,10 @@ fn figures_ui(
 }
 
 /// The figure of a forecast without density, components, recorded and simulated motion.
-fn bare_figure(
-    answer: &MotionAnswer,
+fn bare_figure<'a>(
+    (answer, trust): (&'a MotionAnswer, &'a Trust),
     (time_s, units): (f64, UnitSystem),
-) -> MotionForecastFigure<'_> {
+) -> MotionForecastFigure<'a> {
     let PredictMotionAnswer { analysis, forecast, .. } = &answer.answer;
     MotionForecastFigure {
         title: &analysis.name,
@@ -305,6 +320,7 @@ fn bare_figure(
         footprint: analysis.footprint,
         time_s,
         units,
+        trust,
     }
 }
 

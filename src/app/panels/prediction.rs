@@ -13,11 +13,11 @@ use crate::app::panes::PaneContext;
 use crate::app::state::View;
 use crate::app::widgets::{count_field, figure_frame};
 use crate::data::Severity;
-use crate::figure::{ForceComponent, ForecastFigure, forecast_figure};
+use crate::figure::{ForceComponent, ForecastFigure, RecordedCurve, forecast_figure};
 use crate::force::metrics::BAND_LEVELS;
 use crate::ranges::SAMPLES;
 use crate::render::{FigureOptions, theme};
-use crate::study::PredictForceAnswer;
+use crate::study::{PredictForceAnswer, Trust};
 
 /// Width of the form before the user resizes it, points.
 const FORM_WIDTH: f32 = 340.0;
@@ -154,14 +154,21 @@ fn plots_ui(ui: &mut Ui, shown: Shown<'_>, view: &View, commands: &mut Vec<Comma
     } else {
         Vec::new()
     };
+    let trust = Trust::new(&report.badges, &report.assumptions)
+        .outdated_if(shown.session.forecast.is_waiting());
     let input = ForecastFigure {
         name: &report.scenario,
         forecast,
         levels: &levels,
-        recorded: recorded_name.as_deref().zip(recorded.map(|recorded| &recorded.curve)),
+        recorded: recorded_name.as_deref().zip(recorded).map(|(name, recorded)| RecordedCurve {
+            name,
+            curve: &recorded.curve,
+            cut_at_s: recorded.canonical.cut_at_s(),
+        }),
         pulses: &pulses,
         physics: view.force.physics.then_some(&prediction.centre),
         units: view.units,
+        trust: &trust,
     };
     let components: Vec<ForceComponent> = ForceComponent::ALL
         .into_iter()

@@ -8,7 +8,7 @@ use crate::collision::{ContactLocation, Pose, Scenario, ScenarioVehicle, Side};
 use crate::figure::{Axis, Figure, FigureElement, LineStyle, Role, impact_figure, vehicle_outline};
 use crate::ranges::{HEADING, POSITION, SPEED};
 use crate::render::FigureOptions;
-use crate::study::ImpactAnswer;
+use crate::study::{ImpactAnswer, Trust};
 use crate::units::{Quantity, UnitSystem};
 
 /// Height of the plan, points.
@@ -53,8 +53,9 @@ pub fn scenario_plan_ui(
     let drag = ui.data(|data| data.get_temp::<Drag>(id));
     let solved = solved.filter(|answer| answer.scenario == *scenario);
     let figure = solved
-        .and_then(|ImpactAnswer { scenario, solution, .. }| {
-            impact_figure(scenario, solution, units).ok()
+        .and_then(|ImpactAnswer { scenario, solution, report }| {
+            let trust = Trust::new(&report.badges, &report.assumptions);
+            impact_figure((scenario, solution), &trust, units).ok()
         })
         .unwrap_or_else(|| outlines_figure(scenario, units));
     let figure = with_handles(figure, scenario);
@@ -220,7 +221,7 @@ fn outlines_figure(scenario: &Scenario, units: UnitSystem) -> Figure {
     });
     let elements = elements.flatten().collect();
     let title = format!("{}: no solution here", scenario.name);
-    Figure { title, x, y, equal_aspect: true, log_y: false, elements }
+    Figure::new(title, [x, y], elements).plan()
 }
 
 /// The figure with the velocities of both vehicles and the dots by which they are dragged.

@@ -6,11 +6,11 @@ use egui::{Slider, Ui};
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
-use crate::app::variants::other_simulations;
+use crate::app::variants::{are_others_awaited, other_simulations};
 use crate::app::widgets::{badges_ui, figure_frame};
 use crate::figure::analysis_scene_figure;
 use crate::render::FigureOptions;
-use crate::study::SimulateAnswer;
+use crate::study::{SimulateAnswer, Trust};
 use crate::units::Quantity;
 
 /// Draws the time slider and the plan view.
@@ -32,10 +32,12 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         let position = Quantity::Length.shown_vector([rest.x_m, rest.y_m], view.units);
         ui.label(format!("At rest after {:.2} s and {distance}, at {position}", rest.time_s));
     }
-    let mut figure = analysis_scene_figure(analysis, session.time_s, view.units);
+    let trust = session.simulation_trust(report).outdated_if(are_others_awaited(variants));
+    let mut figure = analysis_scene_figure((analysis, &trust), session.time_s, view.units);
     for (i, (name, other)) in other_simulations(variants).enumerate() {
-        let other = analysis_scene_figure(&other.analysis, session.time_s, view.units);
-        figure.overlay((name, i), &other);
+        let of_other = Trust::new(&other.report.badges, &other.report.assumptions);
+        let shown = (&other.analysis, &of_other);
+        figure.overlay((name, i), &analysis_scene_figure(shown, session.time_s, view.units));
     }
     let options = FigureOptions {
         id: "scene".to_owned(),

@@ -152,7 +152,8 @@ impl ComparisonStatus {
 /// Writes a comparison into a folder with a manifest.
 fn write(folder: &Path, existing: Existing, report: &CompareReport) -> Result<(), DataError> {
     let output = OutputFolder::begin(folder, existing, &["comparison.json", "comparison.md"])?;
-    write_comparison(output.staging(), &report.comparison)?;
+    let said = report.trust().text();
+    write_comparison(output.staging(), &report.comparison, said.as_deref())?;
     let Provenance { seed, model_digests: models, .. } = report.provenance_with_seed();
     output.finish(RunRecord { seed, models, ..RunRecord::default() })
 }

@@ -7,7 +7,7 @@ mod settings;
 mod update;
 
 pub use comparison::ComparisonStatus;
-pub use motion::{DensityQuestion, MotionAnswer, MotionQuestion};
+pub use motion::{DensityAnswer, DensityQuestion, MotionAnswer, MotionQuestion};
 pub use settings::{
     ComparisonForm, DensityChoice, ForceChoice, ResponseProject, ResponseTrainingForm,
     ResponseView, TrainingMode,

@@ -73,6 +73,14 @@ pub struct DensityQuestion {
     pub gpu: Option<Arc<DensityGpu>>,
 }
 
+/// The density of a predicted position.
+pub struct DensityAnswer {
+    /// The prediction to which it belongs.
+    pub motion: Arc<MotionAnswer>,
+    /// The density.
+    pub map: DensityMap,
+}
+
 /// Two questions are equal if they refer to the same prediction in memory and the same times. The
 /// processor is left out, because it does not change the answer.
 impl PartialEq for DensityQuestion {
@@ -82,7 +90,7 @@ impl PartialEq for DensityQuestion {
 }
 
 impl Question for DensityQuestion {
-    type Answer = DensityMap;
+    type Answer = DensityAnswer;
     type Report = ();
     const NAME: &'static str = "density";
 
@@ -100,13 +108,14 @@ impl Question for DensityQuestion {
         &self,
         _library: &Library,
         _observer: &mut Observer<'_>,
-    ) -> Result<Outcome<DensityMap>, StudyError> {
+    ) -> Result<Outcome<DensityAnswer>, StudyError> {
         let task = DensityTask::new(&self.motion.answer.forecast.distribution, self.window_s);
         let computed =
             self.gpu.as_ref().and_then(|gpu| gpu.density_on(&task.position, &task.grid).ok());
-        Ok(Outcome::Complete(match computed {
+        let map = match computed {
             Some(values) => task.with(values),
             None => task.on_cpu(),
-        }))
+        };
+        Ok(Outcome::Complete(DensityAnswer { motion: Arc::clone(&self.motion), map }))
     }
 }

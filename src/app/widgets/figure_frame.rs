@@ -7,8 +7,12 @@ use crate::app::dialogs::Purpose;
 use crate::figure::Figure;
 use crate::render::{FigureOptions, FigureResponse, figure_ui};
 
+/// Why a figure is not exported that is not of what is asked any more.
+pub const OUTDATED: &str = "This figure is not the answer to what is asked now: it can be saved as soon as that is computed";
+
 /// Draws a figure under a heading, with a menu that saves the picture as PNG, saves the numbers as
-/// CSV or copies the numbers.
+/// CSV or copies the numbers, each with what restricts the figure. A figure that is not of what is
+/// asked any more cannot be saved or copied.
 ///
 /// - returns what the user did in the figure, such as the abscissa that was clicked.
 pub fn figure_frame(
@@ -19,9 +23,12 @@ pub fn figure_frame(
 ) -> FigureResponse {
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            ui.menu_button("Export", |ui| export_menu_ui(ui, figure, commands))
-                .response
-                .on_hover_text("Save or copy this figure");
+            ui.add_enabled_ui(!figure.trust.is_outdated, |ui| {
+                ui.menu_button("Export", |ui| export_menu_ui(ui, figure, commands))
+                    .response
+                    .on_hover_text("Save or copy this figure")
+                    .on_disabled_hover_text(OUTDATED);
+            });
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 ui.add(egui::Label::new(RichText::new(heading).strong()).truncate());
             });

@@ -14,7 +14,7 @@ pub use assumptions::assumptions_ui;
 pub use bad_cases::bad_cases_ui;
 pub use badges::badges_ui;
 pub use dataset_choice::{dataset_choice, no_dataset_ui};
-pub use figure_frame::figure_frame;
+pub use figure_frame::{OUTDATED, figure_frame};
 pub use quantity::{
     SliderRange, count_field, duration_text, quantity_field, quantity_slider, quantity_value,
     value_row,

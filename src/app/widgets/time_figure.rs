@@ -1,5 +1,7 @@
 //! A figure over time in which two cursors can be set, and what its curves do between them.
 
+use std::collections::BTreeSet;
+
 use egui::{Grid, Modifiers, Ui, Window};
 
 use crate::app::command::Command;
@@ -18,6 +20,8 @@ pub struct BetweenCursors {
     pub span_s: Option<[f64; 2]>,
     /// Figures that were drawn in this frame: quantity, units of ordinate and abscissa, and curves.
     figures: Vec<(String, [&'static str; 2], Vec<CurveStatistics>)>,
+    /// What restricts them.
+    restrictions: BTreeSet<String>,
 }
 
 /// Draws a figure over time. A drag with Shift sets the two cursors.
@@ -36,6 +40,7 @@ pub fn time_figure(
         let units = [figure.y.unit.symbol, unit.symbol];
         let curves = curve_statistics(figure, span);
         between.figures.push((figure.y.label.clone(), units, curves));
+        between.restrictions.extend(figure.trust.text());
     }
     let is_selecting = ui.input(|input| input.modifiers.matches_exact(Modifiers::SHIFT));
     if let Some([from, to]) = response.drag.filter(|_| is_selecting) {
@@ -51,13 +56,14 @@ impl BetweenCursors {
     /// frame.
     pub fn ui(&mut self, ui: &mut Ui) {
         let figures = std::mem::take(&mut self.figures);
+        let restrictions = std::mem::take(&mut self.restrictions);
         let Some([from, to]) = self.span_s else { return };
         let mut is_open = true;
         let title = format!("Between {} and {} s", significant(from), significant(to));
         let window = Window::new(title).id(egui::Id::unique("between cursors")).open(&mut is_open);
         window.resizable(true).default_width(420.0).show(ui.ctx(), |ui| {
             if ui.button("Copy").on_hover_text("Tab-separated, for a spreadsheet").clicked() {
-                ui.ctx().copy_text(table(&figures));
+                ui.ctx().copy_text(table(&figures, &restrictions));
             }
             Grid::new("between cursors").striped(true).num_columns(COLUMNS.len()).show(ui, |ui| {
                 COLUMNS.iter().for_each(|column| drop(ui.strong(*column)));
@@ -95,8 +101,12 @@ fn rows(
     curves.iter().map(row).collect()
 }
 
-fn table(figures: &[(String, [&'static str; 2], Vec<CurveStatistics>)]) -> String {
+fn table(
+    figures: &[(String, [&'static str; 2], Vec<CurveStatistics>)],
+    restrictions: &BTreeSet<String>,
+) -> String {
     let rows = figures.iter().flat_map(rows).map(|row| row.join("\t"));
-    let lines: Vec<String> = std::iter::once(COLUMNS.join("\t")).chain(rows).collect();
+    let said = restrictions.iter().map(|text| format!("Restrictions\t{text}"));
+    let lines: Vec<String> = std::iter::once(COLUMNS.join("\t")).chain(rows).chain(said).collect();
     lines.join("\n") + "\n"
 }

@@ -94,7 +94,9 @@ pub(in crate::cli) fn run(
     let known = &["comparison.json", "comparison.md"][..];
     let out = args.out.as_deref().map(|folder| (folder, args.overwrite.into(), known));
     let answer = console.ask_into(&request, out, |output, answer| {
-        write_comparison(output.staging(), &answer.report.comparison)?;
+        let report = &answer.report;
+        let said = report.trust().text();
+        write_comparison(output.staging(), &report.comparison, said.as_deref())?;
         Ok(answer.report.provenance_with_seed())
     })?;
     let Some(answer) = answer else { return Ok(Verdict::Clean) };

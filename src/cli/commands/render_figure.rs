@@ -10,7 +10,7 @@ use crate::figure::{
 };
 use crate::study::{
     Assumption, Drive, ImpactRequest, RecordedForceRequest, SimulateAnswer, SimulateRequest,
-    StudyError,
+    StudyError, Trust,
 };
 use crate::uncertainty::Badge;
 use crate::units::UnitSystem;
@@ -52,8 +52,9 @@ pub(super) fn force(
         contact_s: contact_interval(&raw),
         pulses: &[],
         units,
+        trust: &recorded.trust,
     });
-    Ok((figure, recorded.notes))
+    Ok((figure, noted(&recorded.notes, (&recorded.trust.badges, &[]))))
 }
 
 /// One channel of the motion of a case or a file.
@@ -64,7 +65,8 @@ pub(super) fn motion(
     console: &mut Console<'_>,
 ) -> Result<Noted, CliError> {
     let SimulateAnswer { report, analysis } = console.answer(request)?;
-    let figure = analysis_motion_figure(&analysis, channel, units);
+    let trust = Trust::new(&report.badges, &report.assumptions);
+    let figure = analysis_motion_figure((&analysis, &trust), channel, units);
     if figure.elements.is_empty() {
         let (name, channel) = (request.source.name(), channel.header());
         return Err(CliError::NothingToShow { name, channel });
@@ -88,7 +90,8 @@ pub(super) fn scene(
             return Err(CliError::TimeOutside { time_s, start_s, end_s });
         }
     }
-    let figure = analysis_scene_figure(&analysis, time_s, units);
+    let trust = Trust::new(&report.badges, &report.assumptions);
+    let figure = analysis_scene_figure((&analysis, &trust), time_s, units);
     Ok((figure, noted(&report.notes, (&report.badges, &report.assumptions))))
 }
 
@@ -100,7 +103,8 @@ pub(super) fn impact(
 ) -> Result<Noted, CliError> {
     let answer = console.answer(request)?;
     let name = answer.report.name.clone();
-    let figure = impact_figure(&answer.scenario, &answer.solution, units)
+    let trust = Trust::new(&answer.report.badges, &answer.report.assumptions);
+    let figure = impact_figure((&answer.scenario, &answer.solution), &trust, units)
         .map_err(|source| StudyError::Scenario { name, source })?;
     Ok((figure, noted(&[], (&answer.report.badges, &answer.report.assumptions))))
 }

@@ -15,7 +15,7 @@ use crate::figure::{
 };
 use crate::ranges::INSTANT;
 use crate::shipped::ModelSource;
-use crate::study::{ForceSource, PredictMotionRequest};
+use crate::study::{ForceSource, PredictMotionRequest, Trust};
 use crate::units::UnitSystem;
 
 /// Every how many steps the bands over time have an edge.
@@ -90,6 +90,7 @@ pub(super) fn figure(
     }
     let density = DensityTask::new(&forecast.distribution, args.window.unwrap_or([at_s; 2]));
     let (density, bands) = (density.on_cpu(), MotionBands::of(&forecast.distribution, BAND_STRIDE));
+    let trust = Trust::new(&answer.report.badges, &answer.report.assumptions);
     let input = MotionForecastFigure {
         title: &analysis.name,
         distribution: &forecast.distribution,
@@ -102,6 +103,7 @@ pub(super) fn figure(
         footprint: analysis.footprint,
         time_s: at_s,
         units,
+        trust: &trust,
     };
     let wanted = args.channel.map(Channel::from);
     let channel = FORECAST_CHANNELS.into_iter().find(|of| Some(of.channel) == wanted);

@@ -14,13 +14,13 @@ use crate::cli::options::{
     contact_point, count, number,
 };
 use crate::cli::text::{print_dataset_simulation, print_simulation};
-use crate::data::{ColumnMap, DatasetKind, Existing, write_series_csv};
+use crate::data::{ColumnMap, DatasetKind, Existing, write_restricted_series_csv};
 use crate::ranges::{
     REST_LIMIT, ROAD_FRICTION, SIMULATED_DURATION, SPEED, VEHICLE_DRAWS, YAW_RATE,
 };
 use crate::study::{
     DEFAULT_DURATION_S, DEFAULT_VEHICLE_DRAWS, Drive, MotionSource, ScenarioChoice, SeriesFile,
-    SimulateDatasetRequest, SimulateRequest,
+    SimulateDatasetRequest, SimulateRequest, Trust,
 };
 use crate::vehicle::{ContactPoint, Equations};
 
@@ -231,7 +231,8 @@ fn simulate_one(
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
     let (report, out) = (&answer.report, args.out.as_deref());
     if let (Some(path), Some(motion)) = (out, &answer.analysis.simulation) {
-        write_series_csv(path, existing, &motion.series)?;
+        let said = Trust::new(&report.badges, &report.assumptions).text();
+        write_restricted_series_csv(path, existing, (&motion.series, said.as_deref()))?;
     }
     let printed = PrintedSimulation { report, out };
     console.print(&printed, |text| print_simulation(text, (report, out), args.units.into()))?;
@@ -255,7 +256,9 @@ fn simulate_dataset(
     let answer = console.ask_into(&request, into, |output, answer| {
         for case in &answer.replay.cases {
             let path = output.staging().join(format!("{}.csv", case.case));
-            write_series_csv(&path, Existing::Refuse, &case.motion.series)?;
+            let said = answer.report.trust_of(&case.case).text();
+            let restricted = (&case.motion.series, said.as_deref());
+            write_restricted_series_csv(&path, Existing::Refuse, restricted)?;
         }
         Ok(answer.report.provenance.clone())
     })?;

@@ -5,8 +5,10 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::cli::CliError;
-use crate::data::{Existing, write_atomically, write_series_csv};
-use crate::study::{PredictForceAnswer, StudyError};
+use crate::data::{
+    Existing, write_atomically, write_restricted_series_csv, write_restricted_table,
+};
+use crate::study::{PredictForceAnswer, StudyError, Trust};
 use crate::uncertainty::{CurveBands, ForceCurve};
 
 /// Writes bands, mean and samples as CSV, and the report as JSON, into a folder that exists.
@@ -16,12 +18,14 @@ pub(in crate::cli) fn write_force_prediction(
     report: &impl Serialize,
 ) -> Result<(), CliError> {
     let forecast = &answer.forecast;
-    write_bands(&path.join("bands.csv"), &forecast.mean, &forecast.bands)?;
+    let restrictions = Trust::new(&answer.report.badges, &answer.report.assumptions).text();
+    let said = restrictions.as_deref();
+    write_bands(&path.join("bands.csv"), (&forecast.mean, &forecast.bands), said)?;
     let write_curve = |name: String, curve: &ForceCurve| -> Result<(), CliError> {
         let path = path.join(name);
         let unwritable = |source| StudyError::Series { path: path.clone(), source };
         let series = curve.to_history().to_series().map_err(unwritable)?;
-        Ok(write_series_csv(&path, Existing::Refuse, &series)?)
+        Ok(write_restricted_series_csv(&path, Existing::Refuse, (&series, said))?)
     };
     write_curve("mean.csv".to_owned(), &forecast.mean)?;
     for (i, sample) in forecast.curves.iter().enumerate() {
@@ -35,34 +39,33 @@ pub(in crate::cli) fn write_force_prediction(
 }
 
 /// One row per instant: time, then mean and edges of each force.
-fn write_bands(path: &Path, mean: &ForceCurve, bands: &CurveBands) -> Result<(), CliError> {
+fn write_bands(
+    path: &Path,
+    (mean, bands): (&ForceCurve, &CurveBands),
+    restrictions: Option<&str>,
+) -> Result<(), CliError> {
     let magnitude = mean.magnitude_n();
     let forces = [
         ("fx", &mean.fx_n, &bands.fx),
         ("fy", &mean.fy_n, &bands.fy),
         ("f", &magnitude, &bands.magnitude),
     ];
-    write_atomically(path, Existing::Refuse, |out| {
-        write!(out, "time_s")?;
-        for (name, _, bands) in &forces {
-            write!(out, ",{name}_mean_n")?;
-            for band in *bands {
-                let percent = (band.level * 100.0).round();
-                write!(out, ",{name}_low_{percent}_n,{name}_high_{percent}_n")?;
-            }
+    let mut header = vec!["time_s".to_owned()];
+    for (name, _, bands) in &forces {
+        header.push(format!("{name}_mean_n"));
+        for band in *bands {
+            let percent = (band.level * 100.0).round();
+            header.extend(["low", "high"].map(|edge| format!("{name}_{edge}_{percent}_n")));
         }
-        writeln!(out)?;
-        for (i, time) in mean.time_s().iter().enumerate() {
-            write!(out, "{time}")?;
-            for (_, mean, bands) in &forces {
-                write!(out, ",{}", mean[i])?;
-                for band in *bands {
-                    write!(out, ",{},{}", band.lower_n[i], band.upper_n[i])?;
-                }
-            }
-            writeln!(out)?;
+    }
+    let rows = mean.time_s().into_iter().enumerate().map(|(i, time)| {
+        let mut row = vec![time.to_string()];
+        for (_, mean, bands) in &forces {
+            row.push(mean[i].to_string());
+            let edges = bands.iter().flat_map(|band| [band.lower_n[i], band.upper_n[i]]);
+            row.extend(edges.map(|edge| edge.to_string()));
         }
-        Ok(())
-    })?;
-    Ok(())
+        row
+    });
+    Ok(write_restricted_table(path, Existing::Refuse, (&header, rows), restrictions)?)
 }

@@ -4,13 +4,13 @@ use std::path::Path;
 
 use crate::analysis::{DensityMap, DensityTask, MOTION_BAND_LEVELS, MotionBands, MotionForecast};
 use crate::cli::CliError;
-use crate::data::{Existing, write_atomically};
+use crate::data::{Existing, write_atomically, write_restricted_table};
 use crate::figure::{
     FORECAST_CHANNELS, Figure, MotionForecastFigure, forecast_channel_figure,
     forecast_scene_figure, write_figure_csv,
 };
 use crate::response::STEP_S;
-use crate::study::PredictMotionAnswer;
+use crate::study::{PredictMotionAnswer, Trust};
 use crate::units::UnitSystem;
 
 /// Where the files go, and what they show.
@@ -32,10 +32,13 @@ pub(in crate::cli) fn write_motion_prediction(
     let path = |name: &str| wanted.folder.join(name);
     let (trajectory, map) = ("trajectory.csv".to_owned(), "density.csv".to_owned());
     let bands = MotionBands::of(&forecast.distribution, 1);
-    write_trajectory(&path(&trajectory), forecast, &bands)?;
+    let trust = Trust::new(&answer.report.badges, &answer.report.assumptions);
+    let restrictions = trust.text();
+    let said = restrictions.as_deref();
+    write_trajectory(&path(&trajectory), (forecast, &bands), said)?;
     let window_s = wanted.window_s.unwrap_or([forecast.outcome.time_s; 2]);
     let density = DensityTask::new(&forecast.distribution, window_s).on_cpu();
-    write_density(&path(&map), &density)?;
+    write_density(&path(&map), &density, said)?;
     let mut files = vec![trajectory, map];
     let input = MotionForecastFigure {
         title: &answer.report.scenario,
@@ -49,6 +52,7 @@ pub(in crate::cli) fn write_motion_prediction(
         footprint: answer.analysis.footprint,
         time_s: forecast.outcome.time_s,
         units: wanted.units,
+        trust: &trust,
     };
     let mut figures = vec![("scene".to_owned(), forecast_scene_figure(&input))];
     for channel in FORECAST_CHANNELS {
@@ -85,10 +89,9 @@ fn write_png(_figure: &Figure, _path: &Path) -> Result<bool, CliError> {
 
 fn write_trajectory(
     path: &Path,
-    forecast: &MotionForecast,
-    bands: &MotionBands,
+    (forecast, bands): (&MotionForecast, &MotionBands),
+    restrictions: Option<&str>,
 ) -> Result<(), CliError> {
-    let mut csv = csv::Writer::from_writer(Vec::new());
     let mut header = vec!["time_s".to_owned()];
     for channel in FORECAST_CHANNELS {
         let name = channel.channel.header();
@@ -98,10 +101,8 @@ fn write_trajectory(
             header.extend([format!("{name}_low_{percent}"), format!("{name}_high_{percent}")]);
         }
     }
-    let failed = |error: csv::Error| CliError::Output(std::io::Error::other(error));
-    csv.write_record(&header).map_err(failed)?;
     let distribution = &forecast.distribution;
-    for (at, central) in forecast.central.iter().enumerate() {
+    let rows = forecast.central.iter().enumerate().map(|(at, central)| {
         let covariance = distribution.covariance(at);
         let (central, mean) = (central.planar(), distribution.mean(at).planar());
         let mut row = vec![format!("{:.2}", at as f64 * STEP_S)];
@@ -112,23 +113,22 @@ fn write_trajectory(
                 row.extend(edges.map(|edge| format!("{edge:.6}")));
             }
         }
-        csv.write_record(&row).map_err(failed)?;
-    }
-    let bytes = csv.into_inner().map_err(|error| std::io::Error::other(error.to_string()))?;
-    write_atomically(path, Existing::Refuse, |out| out.write_all(&bytes))?;
-    Ok(())
+        row
+    });
+    Ok(write_restricted_table(path, Existing::Refuse, (&header, rows), restrictions)?)
 }
 
-fn write_density(path: &Path, map: &DensityMap) -> Result<(), CliError> {
+fn write_density(
+    path: &Path,
+    map: &DensityMap,
+    restrictions: Option<&str>,
+) -> Result<(), CliError> {
     let [width, _] = map.grid.size;
-    write_atomically(path, Existing::Refuse, |out| {
-        writeln!(out, "x_m,y_m,density_1_m2")?;
-        for (i, value) in map.values.iter().enumerate() {
-            let x = map.grid.low_m[0] + (i % width) as f64 * map.grid.step_m[0];
-            let y = map.grid.low_m[1] + (i / width) as f64 * map.grid.step_m[1];
-            writeln!(out, "{x:.4},{y:.4},{value:.6e}")?;
-        }
-        Ok(())
-    })?;
-    Ok(())
+    let header = ["x_m", "y_m", "density_1_m2"].map(str::to_owned);
+    let rows = map.values.iter().enumerate().map(|(i, value)| {
+        let x = map.grid.low_m[0] + (i % width) as f64 * map.grid.step_m[0];
+        let y = map.grid.low_m[1] + (i / width) as f64 * map.grid.step_m[1];
+        vec![format!("{x:.4}"), format!("{y:.4}"), format!("{value:.6e}")]
+    });
+    Ok(write_restricted_table(path, Existing::Refuse, (&header, rows), restrictions)?)
 }

@@ -21,4 +21,6 @@ pub use file::{Existing, check_target, write_atomically};
 pub use folder::OutputFolder;
 pub use lock::WriterLock;
 pub use manifest::{MANIFEST_FILE, Manifest, ModelDigest, RunRecord};
-pub use series::write_series_csv;
+pub use series::{
+    RESTRICTIONS_COLUMN, write_restricted_series_csv, write_restricted_table, write_series_csv,
+};

@@ -21,6 +21,10 @@ const DIGEST_STEP: f64 = 1e-4;
 /// Step to which forces are rounded before they are hashed, N. Peaks are some 50 kN.
 const DIGEST_STEP_N: f64 = 1.0;
 
+/// Mean force in the last millisecond of a contact above which the record was cut, as a share of the
+/// peak: a force that comes to zero has at most a few per cent there.
+const CUT_SHARE_OF_PEAK: f64 = 0.1;
+
 /// A collision with its force curve, in the canonical form of [`ForceScenario::canonical`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForceCase {
@@ -150,6 +154,19 @@ impl ForceCase {
     /// Whether the vehicles part for good: they do not hook and are separated at the end.
     pub fn is_clean(&self) -> bool {
         self.separated && !self.hooked
+    }
+
+    /// Time of the end of a record that ends during the contact, s from its start; `None` if the
+    /// vehicles have separated.
+    pub fn cut_at_s(&self) -> Option<f64> {
+        let end_s = self.onset_s + self.curve.duration_s;
+        // The cell in which the contact ends is filled in part.
+        let last = (end_s / CURVE_INTERVAL_S).floor() as usize;
+        let cells = [last.saturating_sub(1), last];
+        let force_n = |i: usize| Some(self.curve.fx_n.get(i)?.hypot(*self.curve.fy_n.get(i)?));
+        let last_n = cells.into_iter().filter_map(force_n).fold(0.0, f64::max);
+        let ends_early = !self.separated || last_n > CUT_SHARE_OF_PEAK * self.peak_n;
+        ends_early.then_some(end_s)
     }
 
     /// A canonical curve in the axes of the recorded case.

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use crate::data::RESTRICTIONS_COLUMN;
 use crate::response::evaluate::{
     ClusterModel, ComparedModel, Comparison, CoverageMetrics, MeanStd, RootMeanSquares,
     paper_metrics,
@@ -34,11 +35,15 @@ impl ComparisonTable {
     }
 
     /// The table as CSV.
-    pub fn to_csv(&self) -> String {
+    ///
+    /// - `restrictions`: what restricts its numbers, for the first row of [`RESTRICTIONS_COLUMN`].
+    pub fn to_csv(&self, restrictions: Option<&str>) -> String {
         let mut writer = csv::Writer::from_writer(Vec::new());
-        // Writing to a vector does not fail.
-        for row in std::iter::once(&self.header).chain(&self.rows) {
-            let _ = writer.write_record(row);
+        let texts = [RESTRICTIONS_COLUMN, restrictions.unwrap_or_default()];
+        for (i, row) in std::iter::once(&self.header).chain(&self.rows).enumerate() {
+            let text = restrictions.map(|_| texts.get(i).copied().unwrap_or_default());
+            // Writing to a vector does not fail.
+            let _ = writer.write_record(row.iter().map(String::as_str).chain(text));
         }
         writer
             .into_inner()
