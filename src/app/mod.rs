@@ -26,6 +26,7 @@ mod panes;
 mod path_dialog;
 mod question_job;
 mod replace;
+mod renderer;
 mod replay;
 mod requests;
 mod response;
@@ -109,7 +110,7 @@ pub fn run(paths: Vec<PathBuf>) -> Result<(), WindowError> {
         .with_inner_size([1440.0, 900.0])
         .with_min_inner_size([900.0, 600.0])
         .with_drag_and_drop(true);
-    let options = eframe::NativeOptions { viewport, ..eframe::NativeOptions::default() };
+    let options = eframe::NativeOptions { viewport, ..renderer::options() };
     let state_file = eframe::storage_dir(APP_ID).map(|folder| folder.join(STATE_FILE));
     let create = |cc: &CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
         Ok(Box::new(App::new(cc, paths, state_file)))
@@ -246,7 +247,7 @@ impl eframe::App for App {
         }
     }
 
-    fn on_exit(&mut self) {
+    fn on_exit(&mut self, _gl: Option<&eframe::glow::Context>) {
         if let (Some(store), Some(text)) = (&mut self.store, self.state.save()) {
             store.finish(&text);
         }
