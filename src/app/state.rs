@@ -18,6 +18,7 @@ use crate::app::import::{ColumnMaps, ImportDialog};
 use crate::app::latest::Latest;
 use crate::app::network::Network;
 use crate::app::path_dialog::PathDialog;
+use crate::app::recording::OverlaidRecording;
 use crate::app::replay::Replays;
 use crate::app::response::{DensityChoice, ResponseProject, ResponseSession, ResponseView};
 use crate::app::source::Source;
@@ -106,6 +107,8 @@ pub struct Project {
     /// The filter of the force plot by its channel frequency class; `None` shows the force
     /// unfiltered.
     pub channel_class: Option<ChannelClass>,
+    /// A recording that is drawn over the motion.
+    pub recording: Option<OverlaidRecording>,
     /// Whether pulses of classic shapes with the same impulse are drawn over the force.
     pub show_pulses: bool,
     /// The scenario in the scenario pane.
@@ -137,6 +140,7 @@ impl Default for Project {
             duration_s: DEFAULT_DURATION_S,
             until_rest: false,
             channel_class: None,
+            recording: None,
             show_pulses: false,
             scenario: Scenario::example(),
             pulse: PulseSetup::default(),

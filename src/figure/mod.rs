@@ -28,7 +28,7 @@ pub use model::{Axis, Band, Figure, FigureElement, HeatMap, LineStyle, Path, Rol
 pub use model_comparison::{
     cluster_figure, compared_case_figure, horizon_figure, model_name, ranking_figure,
 };
-pub use motion::{MOTION_CHANNELS, motion_figure, motion_readout};
+pub use motion::{MOTION_CHANNELS, motion_figure, motion_readout, recording_line, recording_path};
 pub use motion_forecast::{
     FORECAST_CHANNELS, ForecastChannel, MotionForecastFigure, forecast_channel_figure,
     forecast_readout, forecast_scene_figure, forecast_surroundings,

@@ -32,7 +32,34 @@ pub fn motion_figure(
     Figure::new(format!("{name}: {} over time", channel.label()), [x, y], elements)
 }
 
-/// Values of a channel in both motions at a time, for example “v_x 31.2 · reference 30.4 km/h”. If
+/// A recording of a channel over time, to be drawn over a figure of that channel; `None` without it.
+///
+/// - `offset_s`: time of the figure at which the recording has its time zero, s.
+pub fn recording_line(
+    (name, series, offset_s): (&str, &TimeSeries, f64),
+    channel: Channel,
+    units: UnitSystem,
+) -> Option<FigureElement> {
+    let [x, y] = [Quantity::Time, channel.quantity()].map(|of| of.display_unit(units));
+    let samples = series.time_s().iter().zip(series.get(channel)?);
+    let points = samples.map(|(t, v)| [x.from_si(t + offset_s), y.from_si(*v)]).collect();
+    let (role, style) = (Role::Reference, LineStyle::Dotted);
+    Some(FigureElement::Line(Series { name: name.to_owned(), role, style, points }))
+}
+
+/// The path of a recording, to be drawn over a scene; `None` without a position.
+pub fn recording_path(
+    (name, series): (&str, &TimeSeries),
+    units: UnitSystem,
+) -> Option<FigureElement> {
+    let unit = Quantity::Length.display_unit(units);
+    let positions = series.get(Channel::X)?.iter().zip(series.get(Channel::Y)?);
+    let points = positions.map(|(x, y)| [unit.from_si(*x), unit.from_si(*y)]).collect();
+    let (role, style) = (Role::Reference, LineStyle::Dotted);
+    Some(FigureElement::Line(Series { name: name.to_owned(), role, style, points }))
+}
+
+/// Values of a channel in both motions at a time, for example “v_x 31.2 · recorded 30.4 km/h”. If
 /// neither motion has the channel, the text is its label alone.
 ///
 /// - `time_s`: time of the values, s; the motions are interpolated linearly.
@@ -48,7 +75,7 @@ pub fn motion_readout(
         Some(significant(unit.from_si(value)))
     };
     let values = match (at(simulation), at(reference)) {
-        (Some(simulated), Some(recorded)) => format!("{simulated} · reference {recorded}"),
+        (Some(simulated), Some(recorded)) => format!("{simulated} · recorded {recorded}"),
         (Some(value), None) | (None, Some(value)) => value,
         (None, None) => return channel.label().to_owned(),
     };

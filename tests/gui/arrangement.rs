@@ -198,3 +198,41 @@ fn drag(harness: &mut Harness<'_, App>, from: egui::Pos2, to: egui::Pos2) {
     harness.event(button(to, false));
     harness.run_steps(2);
 }
+
+#[test]
+fn a_recording_is_drawn_over_the_motion_with_an_offset_and_kept_with_the_case() {
+    const RECORD: &str =
+        concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/trajectories-fea/trajectories/FE_c001.csv");
+    let mut harness = open(&[RECORD]);
+    step_until(&mut harness, "the recording", is_idle);
+    apply(&mut harness, Command::Open(vec![SCENARIO.into()]));
+    step_until(&mut harness, "the scenario", is_forecast);
+    apply(&mut harness, Command::Show(Pane::Motion));
+    harness.run_steps(3);
+    harness.get_by_label("Recording").click();
+    harness.run_steps(3);
+    harness.get_by_label("FE_c001.csv").click();
+    harness.run_steps(3);
+    let chosen = &mut harness.state_mut().state_mut().project.recording;
+    chosen.as_mut().expect("the recording is chosen").offset_s = 0.5;
+    harness.run_steps(3);
+    save(&mut harness, "recording-overlaid.png");
+    let sources = state(&harness).forms().sources;
+    assert!(sources.iter().any(|file| file.path.ends_with("FE_c001.csv")), "{sources:?}");
+}
+
+#[test]
+fn two_cursors_give_the_numbers_between_them() {
+    let mut harness = open(&[SCENARIO]);
+    step_until(&mut harness, "the simulation", is_idle);
+    harness.run_steps(4);
+    let hint = harness.get_by_label_contains("Shift + drag").rect();
+    let from = egui::pos2(hint.min.x, hint.max.y + 70.0);
+    harness.event(egui::Event::ModifiersChanged(egui::Modifiers::SHIFT));
+    drag(&mut harness, from, from + egui::vec2(90.0, 0.0));
+    let span = state(&harness).session.between.span_s;
+    let [start, end] = span.expect("two cursors");
+    assert!(end > start && start >= 0.0, "{start} to {end}");
+    assert!(harness.query_all_by_label("Integral").next().is_some());
+    save(&mut harness, "two-cursors.png");
+}

@@ -47,7 +47,8 @@ impl State {
             let map = source.and_then(|source| source.map.clone());
             SeriesFile { path: path.clone(), map }
         };
-        let paths = subject.into_iter().chain(&start.steer).chain(&start.wheels);
+        let recording = project.recording.as_ref().map(|recording| &recording.path);
+        let paths = subject.into_iter().chain(&start.steer).chain(&start.wheels).chain(recording);
         let sources = paths.map(of).collect();
         Forms { project, sources }
     }

@@ -7,10 +7,11 @@ use crate::analysis::Analysis;
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
+use crate::app::recording::{overlaid, recording_menu_ui};
 use crate::app::variants::{are_others_awaited, other_simulations};
 use crate::app::widgets::{assumptions_ui, badges_ui, time_figure};
 use crate::data::{Channel, TimeSeries};
-use crate::figure::{analysis_motion_figure, analysis_readout};
+use crate::figure::{analysis_motion_figure, analysis_readout, recording_line};
 use crate::render::FigureOptions;
 use crate::study::{SimulateAnswer, Trust};
 
@@ -22,7 +23,7 @@ const TITLE_HEIGHT: f32 = 30.0;
 /// Draws v_x, v_y, yaw rate and roll over time, with a cursor at the time of the scene. A click or
 /// a drag in a plot sets this time.
 pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext { view, session, between, variants, commands, .. } = pane;
+    let PaneContext { project, view, session, between, variants, commands, .. } = pane;
     let Some(SimulateAnswer { report, analysis }) = analysis_or_hint(ui, session) else {
         return;
     };
@@ -30,8 +31,10 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     assumptions_ui(ui, &report.assumptions, commands);
     ui.horizontal_wrapped(|ui| {
         curves_menu_ui(ui, analysis, &mut view.motion_channels);
+        recording_menu_ui(ui, &mut project.recording, &session.sources);
         ui.weak("Shift + drag in a plot: numbers between two cursors");
     });
+    let recording = overlaid(project.recording.as_ref(), &session.sources);
     let two_columns = ui.available_width() > 560.0;
     let rows = if two_columns { 2.0 } else { 4.0 };
     let height = (ui.available_height() / rows - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT);
@@ -42,6 +45,10 @@ pub fn motion_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             let of_other = Trust::new(&other.report.badges, &other.report.assumptions);
             let other = analysis_motion_figure((&other.analysis, &of_other), channel, view.units);
             figure.overlay((name, i), &other);
+        }
+        if let Some((name, series, offset_s)) = &recording {
+            let line = recording_line((name, series, *offset_s), channel, view.units);
+            figure.elements.extend(line);
         }
         let options = FigureOptions {
             id: channel.label().to_owned(),

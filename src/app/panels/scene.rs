@@ -6,16 +6,17 @@ use egui::{Slider, Ui};
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
+use crate::app::recording::overlaid;
 use crate::app::variants::{are_others_awaited, other_simulations};
 use crate::app::widgets::{badges_ui, figure_frame};
-use crate::figure::analysis_scene_figure;
+use crate::figure::{analysis_scene_figure, recording_path};
 use crate::render::FigureOptions;
 use crate::study::{SimulateAnswer, Trust};
 use crate::units::Quantity;
 
 /// Draws the time slider and the plan view.
 pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext { view, session, variants, commands, .. } = pane;
+    let PaneContext { project, view, session, variants, commands, .. } = pane;
     let Some(SimulateAnswer { analysis, report }) = analysis_or_hint(ui, session) else {
         return;
     };
@@ -38,6 +39,9 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         let of_other = Trust::new(&other.report.badges, &other.report.assumptions);
         let shown = (&other.analysis, &of_other);
         figure.overlay((name, i), &analysis_scene_figure(shown, session.time_s, view.units));
+    }
+    if let Some((name, series, _)) = overlaid(project.recording.as_ref(), &session.sources) {
+        figure.elements.extend(recording_path((&name, series), view.units));
     }
     let options = FigureOptions {
         id: "scene".to_owned(),
