@@ -150,6 +150,27 @@ impl Quantity {
         if unit.symbol.is_empty() { number } else { format!("{number} {}", unit.symbol) }
     }
 
+    /// A median with the interval around it as text for the user, such as `31 (27 to 57) m`. The interval
+    /// decides the digits: two of its width, and none that it makes meaningless.
+    pub fn shown_interval(self, median_si: f64, ends_si: [f64; 2], system: UnitSystem) -> String {
+        let unit = self.display_unit(system);
+        let [low, high] = ends_si.map(|end| unit.from_si(end));
+        let median = unit.from_si(median_si);
+        let width = (high - low).abs();
+        let decimals = match width.is_finite() && width > 0.0 {
+            true => (1 - width.log10().floor() as i32).clamp(0, 6) as usize,
+            false => return self.shown(median_si, system),
+        };
+        // Adding zero turns a negative zero into a positive one.
+        let text = |value: f64| {
+            let scale = 10.0_f64.powi(decimals as i32);
+            format!("{:.decimals$}", (value * scale).round() / scale + 0.0)
+        };
+        format!("{} ({} to {}) {}", text(median), text(low), text(high), unit.symbol)
+            .trim_end()
+            .to_owned()
+    }
+
     /// The two components of a vector in SI units as text for the user with one unit, such as
     /// `(1.124, 2.810) kN s`.
     pub fn shown_vector(self, [x_si, y_si]: [f64; 2], system: UnitSystem) -> String {
@@ -248,6 +269,15 @@ mod tests {
             assert_eq!(significant(value), expected);
         }
         assert_eq!(Quantity::Force.shown(12_345.0, UnitSystem::Si), "12.35 kN");
+    }
+
+    #[test]
+    fn an_interval_decides_the_digits() {
+        let shown = |median, ends| Quantity::Length.shown_interval(median, ends, UnitSystem::Si);
+        assert_eq!(shown(30.741, [26.52, 57.24]), "31 (27 to 57) m");
+        assert_eq!(shown(-0.004, [-0.31, 0.27]), "0.00 (-0.31 to 0.27) m");
+        assert_eq!(shown(52.22, [51.55, 52.86]), "52.2 (51.6 to 52.9) m");
+        assert_eq!(shown(2.0, [2.0, 2.0]), "2.000 m");
     }
 
     #[test]

@@ -3,6 +3,7 @@
 
 use egui::{Button, Panel, RichText, Ui};
 
+use crate::analysis::Spread;
 use crate::app::command::Command;
 use crate::app::model::file_name;
 use crate::app::panes::Pane;
@@ -116,10 +117,12 @@ fn force_link(
             })
             .collect();
         sizes.sort_by(f64::total_cmp);
-        let at = |share| quantile_of_sorted(&sizes, share).map(shown);
-        let interval = at(ENDS[0]).zip(at(ENDS[1]));
-        let interval = interval.map(|(low, high)| format!(" ({low} to {high})"));
-        let figure = at(0.5).map(|median| median + &interval.unwrap_or_default());
+        let at = |share| quantile_of_sorted(&sizes, share);
+        let [low, median, high] = [ENDS[0], 0.5, ENDS[1]].map(at);
+        let ends = low.zip(high).zip(median);
+        let figure = ends.map(|((low, high), median)| {
+            Quantity::Impulse.shown_interval(median, [low, high], units)
+        });
         let model = motion.answer.report.force_model.clone().unwrap_or_default();
         (figure, format!("force network {model}, 90 % of its draws"), Pane::ForcePrediction)
     } else {
@@ -157,13 +160,10 @@ fn outcome_link(
     let (figure, source, pane) = match (motion, report.and_then(|report| report.end)) {
         (Some(motion), _) => {
             let outcome = &motion.answer.report.outcome;
-            let [low, high] = outcome.x_m.ninety.map(length);
-            let [right, left] = outcome.y_m.ninety.map(length);
-            let figure = format!(
-                "X {} ({low} to {high}), Y {} ({right} to {left})",
-                length(outcome.x_m.median),
-                length(outcome.y_m.median)
-            );
+            let shown = |spread: Spread| {
+                Quantity::Length.shown_interval(spread.median, spread.ninety, units)
+            };
+            let figure = format!("X {}, Y {}", shown(outcome.x_m), shown(outcome.y_m));
             let when = format!("forecast after {:.2} s, 90 % intervals", outcome.time_s);
             (Some(figure), when, Pane::MotionForecast)
         }

@@ -22,7 +22,7 @@ use crate::study::SimulateAnswer;
 use crate::vehicle::DataSheet;
 
 /// Time step of the left and right arrow keys in the scene, s.
-const TIME_STEP_S: f64 = 0.05;
+pub(in crate::app) const TIME_STEP_S: f64 = 0.05;
 
 /// An action that the user requests.
 #[derive(Debug, Clone)]
@@ -56,6 +56,8 @@ pub enum Command {
     /// Move the time by this number of arrow-key steps of 0.05 s and stop playback; negative values
     /// move back.
     StepTime(f64),
+    /// Play this many seconds of the motion in a second.
+    SetSpeed(f64),
     /// Start or stop the playback. At the end of the motion it starts again from zero.
     TogglePlay,
     /// Fit the axes of all plots to their data.
@@ -203,6 +205,7 @@ impl State {
                 }
             }
             Command::SetTime(time_s) => self.session.time_s = time_s,
+            Command::SetSpeed(speed) => self.view.playback_speed = speed,
             Command::StepTime(steps) => self.step_time(steps),
             Command::TogglePlay => self.toggle_play(),
             Command::FitPlots => self.session.fit_plots = true,

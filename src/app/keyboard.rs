@@ -2,8 +2,9 @@
 
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
-use crate::app::command::Command;
+use crate::app::command::{Command, TIME_STEP_S};
 use crate::app::dialogs::Purpose;
+use crate::app::workspaces::Workspace;
 
 /// Shortcut that undoes the last change of the project.
 pub const UNDO: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND, Key::Z);
@@ -35,6 +36,16 @@ pub const PLAIN_KEYS: [(Key, &str); 7] = [
     (Key::F, "fit plots to their data"),
 ];
 
+/// The keys that act with Shift, likewise.
+pub const SHIFT_KEYS: [(Key, &str); 2] =
+    [(Key::ArrowLeft, "a millisecond back"), (Key::ArrowRight, "a millisecond on")];
+
+/// The keys that show a workspace with Ctrl, in the order of [`Workspace::ALL`].
+const WORKSPACE_KEYS: [Key; Workspace::ALL.len()] = [Key::Num1, Key::Num2, Key::Num3];
+
+/// Number of steps of an arrow key in a millisecond.
+const STEPS_PER_MS: f64 = 1e-3 / TIME_STEP_S;
+
 /// Adds the commands of the keys that were pressed in this frame. While a text field has the focus,
 /// the keys without a modifier are left to it, and Space to any control that has it. While a dialog is
 /// open, all keys are left to that.
@@ -56,8 +67,18 @@ pub fn commands(context: &Context, has_dialog: bool, commands: &mut Vec<Command>
             commands.push(command);
         }
     }
+    for (workspace, key) in Workspace::ALL.into_iter().zip(WORKSPACE_KEYS) {
+        if context.input_mut(|input| input.consume_key(Modifiers::COMMAND, key)) {
+            commands.push(Command::ShowWorkspace(workspace));
+        }
+    }
     if context.text_edit_focused() {
         return;
+    }
+    for (key, sign) in [(Key::ArrowLeft, -1.0), (Key::ArrowRight, 1.0)] {
+        if context.input_mut(|input| input.consume_key(Modifiers::SHIFT, key)) {
+            commands.push(Command::StepTime(sign * STEPS_PER_MS));
+        }
     }
     let has_focus = context.memory(|memory| memory.focused().is_some());
     for (key, _) in PLAIN_KEYS {

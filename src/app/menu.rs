@@ -166,11 +166,22 @@ fn help_menu_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
             ui.label(what);
             ui.end_row();
         }
+        for (key, what) in keyboard::SHIFT_KEYS {
+            ui.monospace(format!("Shift+{}", key.name()));
+            ui.label(what);
+            ui.end_row();
+        }
+        ui.monospace("Ctrl+1, 2, 3");
+        ui.label("workspaces");
+        ui.end_row();
     });
     ui.separator();
     ui.strong("Plots");
     ui.label("Hover to read values, click or drag in a time plot to move the cursor,");
-    ui.label("Ctrl + wheel to zoom, right-drag for a zoom box, double click to fit.");
+    ui.label("Shift + drag for the numbers between two cursors,");
+    ui.label(
+        "wheel in a plan or Ctrl + wheel to zoom, right-drag for a zoom box, double click to fit.",
+    );
     ui.separator();
     ui.label(format!("impactlab {}", env!("CARGO_PKG_VERSION")));
     ui.label("The shipped data are simulations, not measurements.");

@@ -179,6 +179,8 @@ pub struct View {
     pub recent: Vec<PathBuf>,
     /// The column maps of earlier files, by their headers.
     pub column_maps: ColumnMaps,
+    /// Seconds of the motion that are played in a second.
+    pub playback_speed: f64,
     /// The curves of the motion pane.
     pub motion_channels: Vec<Channel>,
     /// Whether the answers of all variants are shown, not only those of the one in the forms.
@@ -201,6 +203,7 @@ impl Default for View {
             trained: Network::default(),
             recent: Vec::new(),
             column_maps: ColumnMaps::default(),
+            playback_speed: 1.0,
             motion_channels: MOTION_CHANNELS.to_vec(),
             shows_all_variants: true,
             workspaces: Workspaces::default(),

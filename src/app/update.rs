@@ -175,7 +175,8 @@ impl State {
             return;
         }
         let end = self.end_time_s();
-        self.session.time_s += f64::from(context.input(|input| input.unstable_dt.min(0.5)));
+        let passed_s = f64::from(context.input(|input| input.unstable_dt.min(0.5)));
+        self.session.time_s += passed_s * self.view.playback_speed;
         if self.session.time_s >= end {
             self.session.time_s = end;
             self.session.playing = false;

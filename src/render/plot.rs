@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use egui::{Color32, ColorImage, Id, Pos2, Stroke, TextureHandle, TextureOptions, Ui, Vec2b};
+use egui::{Color32, ColorImage, Id, Pos2, Stroke, TextureHandle, TextureOptions, Ui, Vec2, Vec2b};
 use egui_plot::{
     Arrows, FilledArea, Legend, Line, LineStyle as PlotLineStyle, Plot, PlotBounds, PlotImage,
     PlotPoint, PlotPoints, PlotUi, Points, Polygon, VLine,
@@ -24,6 +24,9 @@ const HEAT_OPACITY: f32 = 0.85;
 /// Smallest width of the labels of the vertical axis, and width of a character of a name, points.
 const LEAST_Y_AXIS_WIDTH: f32 = 44.0;
 const CHARACTER_WIDTH: f32 = 6.5;
+
+/// Logarithm of the zoom for each point that the wheel scrolls.
+const ZOOM_PER_POINT: f32 = 0.004;
 
 /// Number of names in a legend above which it is written in small type.
 const LONG_LEGEND: usize = 8;
@@ -134,6 +137,9 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
             let line = VLine::new("", x).stroke(stroke).style(PlotLineStyle::dashed_loose());
             plot_ui.vline(line.allow_hover(false));
         }
+        if figure.equal_aspect && options.pans {
+            zoom_by_wheel(plot_ui);
+        }
         let picking = plot_ui.response().is_pointer_button_down_on();
         plot_ui.pointer_coordinate().filter(|_| picking).map(|point| point.x)
     });
@@ -153,6 +159,24 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         drag: pressed.map(|(from, to)| [at(from), at(to)]),
         view: [bounds.min(), bounds.max()],
         x_per_point: transform.dvalue_dpos()[0].abs(),
+    }
+}
+
+/// Zooms about the pointer as the wheel is turned, which then scrolls nothing else.
+fn zoom_by_wheel(plot: &mut PlotUi<'_>) {
+    if !plot.response().contains_pointer() {
+        return;
+    }
+    let turned = plot.ctx().input_mut(|input| {
+        let is_zoom_already = input.modifiers.command;
+        let turned = if is_zoom_already { 0.0 } else { input.smooth_scroll_delta().y };
+        if turned != 0.0 {
+            input.smooth_scroll_delta = Vec2::ZERO;
+        }
+        turned
+    });
+    if turned != 0.0 {
+        plot.zoom_bounds_around_hovered(Vec2::splat((turned * ZOOM_PER_POINT).exp()));
     }
 }
 

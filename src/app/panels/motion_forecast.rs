@@ -256,7 +256,8 @@ fn figures_ui(
         .iter()
         .map(|(name, answer, trust)| (*name, bare_figure((*answer, trust), (time_s, view.units))))
         .collect();
-    clock_ui(ui, (time_s, end_s(answer)), session.playing, commands);
+    let playback = (session.playing, view.playback_speed);
+    clock_ui(ui, (time_s, end_s(answer)), playback, commands);
     let all = ui.available_height();
     let mut scene = forecast_scene_figure(&input);
     for (i, (name, other)) in others.iter().enumerate() {

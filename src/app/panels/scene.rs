@@ -14,6 +14,9 @@ use crate::render::FigureOptions;
 use crate::study::{SimulateAnswer, Trust};
 use crate::units::Quantity;
 
+/// Seconds of the motion that can be played in a second.
+const SPEEDS: [f64; 5] = [0.05, 0.1, 0.25, 0.5, 1.0];
+
 /// Draws the time slider and the plan view.
 pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, variants, commands, .. } = pane;
@@ -26,7 +29,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         return;
     };
     let end_s = series.time_s().last().copied().unwrap_or(0.0);
-    clock_ui(ui, (session.time_s, end_s), session.playing, commands);
+    clock_ui(ui, (session.time_s, end_s), (session.playing, view.playback_speed), commands);
     badges_ui(ui, &report.badges);
     if let Some(rest) = &report.rest {
         let distance = Quantity::Length.shown(rest.distance_m, view.units);
@@ -55,10 +58,11 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
 ///
 /// - `time_s`: the present time, s.
 /// - `end_s`: the end of the motion and of the slider, s; the slider starts at 0.
+/// - `speed`: seconds of the motion that are played in a second.
 pub fn clock_ui(
     ui: &mut Ui,
     (time_s, end_s): (f64, f64),
-    is_playing: bool,
+    (is_playing, speed): (bool, f64),
     commands: &mut Vec<Command>,
 ) {
     ui.horizontal(|ui| {
@@ -66,10 +70,20 @@ pub fn clock_ui(
         if ui.button(label).on_hover_text("Space").clicked() {
             commands.push(Command::TogglePlay);
         }
+        let text = |speed: f64| format!("× {speed}");
+        let list = egui::ComboBox::from_id_salt("playback speed").width(58.0);
+        let list = list.selected_text(text(speed)).show_ui(ui, |ui| {
+            for other in SPEEDS {
+                if ui.selectable_label(other == speed, text(other)).clicked() {
+                    commands.push(Command::SetSpeed(other));
+                }
+            }
+        });
+        list.response.on_hover_text("Speed of the playback");
         let name = ui.label("Time");
         let mut time_s = time_s;
         ui.spacing_mut().slider_width = (ui.available_width() - 90.0).max(80.0);
-        let slider = Slider::new(&mut time_s, 0.0..=end_s).suffix(" s").fixed_decimals(2);
+        let slider = Slider::new(&mut time_s, 0.0..=end_s).suffix(" s").fixed_decimals(3);
         if ui.add(slider).labelled_by(name.id).changed() {
             commands.push(Command::SetTime(time_s));
         }

@@ -14,7 +14,7 @@ use crate::units::{Quantity, UnitSystem};
 /// The columns of the table.
 const COLUMNS: [&str; 8] = [
     "Variant",
-    "Δv",
+    "Δv with tyres",
     "4DOF: X, Y at the end",
     "4DOF: at rest after",
     "Forecast: X (90 %)",
@@ -22,6 +22,10 @@ const COLUMNS: [&str; 8] = [
     "Heading (90 %)",
     "Warnings",
 ];
+/// What the columns are, as the hint of their headings.
+const MEANING: &str = "Δv: of the 4DOF model over the contact, with what the tyres add (the momentum \
+    solution alone stands in the Scenario panel). 4DOF: without an interval. Forecast: median and \
+    interval of 90 % where the car is at the end.";
 /// What stands where a variant has no such figure.
 const NONE: &str = "–";
 
@@ -43,7 +47,7 @@ pub fn variants_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     ScrollArea::both().auto_shrink(false).show(ui, |ui| {
         Grid::new("variants").num_columns(COLUMNS.len()).striped(true).show(ui, |ui| {
             for column in COLUMNS {
-                ui.strong(column);
+                ui.strong(column).on_hover_text(MEANING);
             }
             ui.end_row();
             for variant in variants.iter() {
@@ -91,8 +95,7 @@ fn cells(variant: &AnsweredVariant, units: UnitSystem) -> [String; 8] {
     let end = report.and_then(|report| report.end);
     let rest = report.and_then(|report| report.rest.as_ref());
     let spread = |spread: Spread, quantity: Quantity| {
-        let [low, high] = spread.ninety.map(|value| quantity.shown(value, units));
-        format!("{} ({low} to {high})", quantity.shown(spread.median, units))
+        quantity.shown_interval(spread.median, spread.ninety, units)
     };
     [
         variant.name.clone(),

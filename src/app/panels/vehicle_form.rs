@@ -12,6 +12,9 @@ use crate::units::{Quantity, UnitSystem, significant};
 use crate::vehicle::sheet::{Drive, Estimate};
 use crate::vehicle::{DataSheet, SheetQuantity, VehicleClass};
 
+/// Largest width of a label and of a value, points.
+const LABEL_WIDTH: f32 = 165.0;
+
 /// Draws the form of a data sheet.
 ///
 /// - `title`: which vehicle it is.
@@ -24,7 +27,10 @@ pub fn vehicle_form_ui(
     let header = CollapsingHeader::new(format!("{title}: {}", sheet.name)).id_salt(title);
     header.default_open(true).show(ui, |ui| {
         ui.horizontal_wrapped(|ui| {
-            ui.weak("Tick what you know. The rest is estimated by rule, and its scatter is in the bands.");
+            ui.weak(
+                "Tick what you know. The rest is estimated by rule, and its scatter is in the bands. \
+                 Mass, yaw inertia and outline of a scenario or a case come before those here.",
+            );
             let hint = "As a vehicle file, for other cases and the command line";
             if ui.button("Save vehicle…").on_hover_text(hint).clicked() {
                 commands.push(Command::Ask(Purpose::Vehicle(Box::new(sheet.clone()))));
@@ -36,7 +42,8 @@ pub fn vehicle_form_ui(
         }
         Grid::new((title, "head")).num_columns(2).show(ui, |ui| head_ui(ui, title, sheet));
         let estimates = sheet.estimates();
-        Grid::new((title, "quantities")).num_columns(2).striped(true).show(ui, |ui| {
+        let grid = Grid::new((title, "quantities")).num_columns(2).striped(true);
+        grid.max_col_width(LABEL_WIDTH).show(ui, |ui| {
             for &quantity in SheetQuantity::ALL {
                 let estimate = estimates.iter().find(|estimate| estimate.quantity == quantity);
                 quantity_ui(ui, sheet, (quantity, estimate), units);
@@ -131,5 +138,5 @@ fn estimate_ui(ui: &mut Ui, (estimate, range): (&Estimate, &Range), units: UnitS
     let text = format!("{} ({low} to {high}) {}", shown(estimate.median), unit.symbol);
     let hint =
         format!("Estimated: {}\nSource: {}\nIn brackets: 90 %", estimate.rule, estimate.source);
-    ui.label(RichText::new(text).italics()).on_hover_text(hint);
+    ui.add(egui::Label::new(RichText::new(text).italics()).wrap()).on_hover_text(hint);
 }

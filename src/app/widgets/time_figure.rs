@@ -61,7 +61,8 @@ impl BetweenCursors {
         let mut is_open = true;
         let title = format!("Between {} and {} s", significant(from), significant(to));
         let window = Window::new(title).id(egui::Id::unique("between cursors")).open(&mut is_open);
-        window.resizable(true).default_width(420.0).show(ui.ctx(), |ui| {
+        let beside = ui.ctx().content_rect().left_bottom() + egui::vec2(24.0, -340.0);
+        window.resizable(true).default_width(420.0).default_pos(beside).show(ui.ctx(), |ui| {
             if ui.button("Copy").on_hover_text("Tab-separated, for a spreadsheet").clicked() {
                 ui.ctx().copy_text(table(&figures, &restrictions));
             }
