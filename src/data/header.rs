@@ -246,6 +246,10 @@ fn below_names<'s, 'a>(
 ///
 /// 1. the first line with the width of the table in which a field names a channel or is `case`;
 /// 2. the first line with the width of the table above the first row of numbers;
+///
+/// (in both, a line of which one field alone is written is none of a table of several columns, and a
+/// last column without values counts)
+///
 /// 3. the last line with several fields above the first row of numbers, whose width differs from
 ///    that of the rows, so that the rows are then refused.
 ///
@@ -259,7 +263,12 @@ fn header_line<'s, 'a>(
     [false, true].into_iter().find_map(|is_comment| {
         let is_candidate =
             move |line: &&SplitLine<'_>| line.is_text && line.line.is_comment == is_comment;
-        let fits = |line: &&SplitLine<'_>| n_named(&line.cells) == width;
+        let all = full_width(split);
+        let fits = move |line: &&SplitLine<'_>| {
+            let n_written = line.cells.iter().filter(|cell| !cell.trim().is_empty()).count();
+            let has_width = n_named(&line.cells) == width || line.cells.len() == all;
+            has_width && (n_written > 1 || width < 2)
+        };
         let mut fitting = split.iter().filter(is_candidate).filter(fits);
         let has_several = |line: &&SplitLine<'_>| first_number.is_some() && line.cells.len() > 1;
         fitting
@@ -267,6 +276,16 @@ fn header_line<'s, 'a>(
             .or_else(|| above().filter(is_candidate).find(fits))
             .or_else(|| above().filter(is_candidate).rfind(has_several))
     })
+}
+
+/// The most frequent number of fields among lines that contain a number, those without a value counted;
+/// 0 if there is no such line.
+fn full_width(split: &[SplitLine<'_>]) -> usize {
+    let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
+    for line in split.iter().filter(|line| !line.line.is_comment && !line.is_text) {
+        *counts.entry(line.cells.len()).or_default() += 1;
+    }
+    counts.iter().max_by_key(|(_, count)| **count).map_or(0, |(width, _)| *width)
 }
 
 /// The width of the table: the most frequent number of fields among lines that contain a number,

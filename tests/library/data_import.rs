@@ -32,6 +32,17 @@ fn peak_n(loaded: &Loaded) -> f64 {
     force.peak().unwrap().0
 }
 
+#[test]
+fn a_title_row_and_a_column_of_empty_remarks_do_not_hide_the_header() {
+    let mut text = "Messung 17;;;\r\nZeit [ms];Fx [kN];Fy [kN];Bemerkung\r\n".to_owned();
+    for (t_ms, fy) in [("0,0", "0,0"), ("0,1", "31,0"), ("0,2", "0,0")] {
+        text += &format!("{t_ms};1,5;{fy};\r\n");
+    }
+    let loaded = read(text, "").unwrap();
+    assert!((peak_n(&loaded) - 31_036.3).abs() < 0.1, "{}", peak_n(&loaded));
+    assert_eq!(loaded.series.time_s().last(), Some(&0.000_2));
+}
+
 /// An archive with these parts.
 fn archive(parts: &[(&str, &str)]) -> Vec<u8> {
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
