@@ -224,7 +224,9 @@ pub fn significant(value: f64) -> String {
         return format!("{value}");
     }
     let decimals = (3 - value.abs().log10().floor() as i32).clamp(0, 6) as usize;
-    format!("{value:.decimals$}")
+    let text = format!("{value:.decimals$}");
+    let is_zero = text.chars().all(|character| !('1'..='9').contains(&character));
+    if is_zero { "0".to_owned() } else { text }
 }
 
 /// A share of 1 as text in per cent with one decimal, such as `12.3 %`. A value that rounds to zero
@@ -263,9 +265,13 @@ mod tests {
 
     #[test]
     fn numbers_are_shown_with_four_digits() {
-        for (value, expected) in
-            [(123_456.7, "123457"), (12.3456, "12.35"), (-0.012_345_6, "-0.01235"), (0.0, "0")]
-        {
+        for (value, expected) in [
+            (123_456.7, "123457"),
+            (12.3456, "12.35"),
+            (-0.012_345_6, "-0.01235"),
+            (0.0, "0"),
+            (-1e-9, "0"),
+        ] {
             assert_eq!(significant(value), expected);
         }
         assert_eq!(Quantity::Force.shown(12_345.0, UnitSystem::Si), "12.35 kN");

@@ -64,6 +64,9 @@ impl State {
     pub(super) fn load(&mut self, path: PathBuf, map: Option<ColumnMap>, context: &Context) {
         self.forget_sources(|source| source.opened == path || source.path == path);
         self.session.select_when_loaded = Some(path.clone());
+        // Why it could not be read before is out of date.
+        let of_path = path.display().to_string();
+        self.session.messages.retain(|message| !message.text.starts_with(&of_path));
         let source =
             Source::load(path, (map, &self.view.column_maps), &self.session.library, wake(context));
         self.session.sources.push(source);

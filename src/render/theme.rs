@@ -19,8 +19,8 @@ pub const FILL_OPACITY: f32 = 0.18;
 /// Colours of the variants beside the one in the forms, for a light and a dark ground.
 const VARIANTS: [([u8; 3], [u8; 3]); 3] = [
     ([150, 110, 0], [225, 190, 80]),
-    ([120, 70, 20], [205, 155, 110]),
     ([110, 70, 170], [170, 140, 230]),
+    ([165, 30, 60], [235, 110, 130]),
 ];
 
 /// Colour of a role.
