@@ -10,7 +10,7 @@ use std::fmt;
 
 use crate::data::{
     Case, Channel, DatasetKind, ForceAxes, ForceHistory, Loaded, Sampling, TimeSeries,
-    contact_interval,
+    contact_interval, cut_at_s,
 };
 use crate::numerics::quantile_of_sorted;
 use crate::units::significant;
@@ -317,7 +317,8 @@ fn check_force(force: &ForceHistory) -> Vec<Flag> {
     [
         implausible.map(|flag| flag.at(peak_at)),
         warning(FlagKind::LongContact, end - start, LONG_CONTACT_S),
-        warning(FlagKind::NotSeparated, last_n / peak_n, NOT_SEPARATED),
+        cut_at_s(force)
+            .and_then(|_| warning(FlagKind::NotSeparated, last_n / peak_n, NOT_SEPARATED)),
         warning(FlagKind::Drift, drift(force, &magnitude_n, peak_n), DRIFT),
         spike(force, &magnitude_n),
     ]
