@@ -283,8 +283,8 @@ impl App {
         let State { project, session, .. } = &mut self.state;
         if let Some(dialog) = &mut session.mapping {
             let modal = egui::Modal::new(egui::Id::unique("mapping dialog"));
-            let start = &mut project.file_start;
-            let response = modal.show(ui.ctx(), |ui| dialog.ui(ui, start, commands));
+            let asked = (&mut project.file_start, &mut project.vehicle);
+            let response = modal.show(ui.ctx(), |ui| dialog.ui(ui, asked, commands));
             if response.should_close() && commands.is_empty() {
                 commands.push(Command::CancelMapping);
             }

@@ -82,6 +82,13 @@ pub enum Note {
         /// The number of rows with such text.
         n_rows: usize,
     },
+    /// The two components of a vector are stated in different units.
+    MixedUnits {
+        /// The component along x.
+        x: ColumnUse,
+        /// The component along y.
+        y: ColumnUse,
+    },
     /// The velocities do not fit the path in the axes in which they were read.
     Velocities {
         /// How they fit.
@@ -94,7 +101,7 @@ pub enum Note {
 impl Note {
     /// Whether numbers that were read may be wrong, so that the user should be asked.
     pub fn is_doubt(&self) -> bool {
-        matches!(self, Self::UnitAssumed(_) | Self::Velocities { .. })
+        matches!(self, Self::UnitAssumed(_) | Self::Velocities { .. } | Self::MixedUnits { .. })
     }
 }
 
@@ -120,6 +127,12 @@ impl fmt::Display for Note {
                     more => write!(f, " and {more} more"),
                 }
             }
+            Self::MixedUnits { x, y } => write!(
+                f,
+                "column {} {:?} is read in {} and column {} {:?} in {}: two components of one \
+                 vector are rarely recorded in different units; check the header",
+                x.number, x.name, x.unit.symbol, y.number, y.name, y.unit.symbol
+            ),
             Self::Restrictions { text } => write!(f, "the file says of itself: {text}"),
             Self::TextBeyond { n_rows } => {
                 write!(f, "{n_rows} rows have text to the right of the last column; it is not read")
@@ -226,10 +239,30 @@ impl Columns {
         let assumed = columns.by_channel.values().filter(|column| !column.unit_is_stated);
         let assumed: Vec<Note> = assumed.cloned().map(Note::UnitAssumed).collect();
         columns.notes.splice(0..0, assumed);
+        columns.notes.extend(columns.mixed_units());
         if let n_rows @ 1.. = table.n_rows_with_text_beyond() {
             columns.notes.push(Note::TextBeyond { n_rows });
         }
         Ok(columns)
+    }
+
+    /// Pairs of components that are read in different units. A channel that is zero has no unit.
+    fn mixed_units(&self) -> Vec<Note> {
+        let stated = |channel| {
+            let column: &ColumnUse = self.by_channel.get(&channel)?;
+            (column.unit_is_stated && !column.terms.is_empty()).then(|| column.clone())
+        };
+        let pair = |(x, y)| {
+            let (x, y) = stated(x).zip(stated(y))?;
+            (x.unit != y.unit).then_some(Note::MixedUnits { x, y })
+        };
+        let pairs = [
+            (Channel::Fx, Channel::Fy),
+            (Channel::FxBody, Channel::FyBody),
+            (Channel::X, Channel::Y),
+            (Channel::Vx, Channel::Vy),
+        ];
+        pairs.into_iter().filter_map(pair).collect()
     }
 
     fn guess_others(&mut self, table: &Table, map: Option<&ColumnMap>) -> Result<(), DataError> {

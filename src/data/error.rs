@@ -1,5 +1,8 @@
 //! The errors of reading and writing files. Their texts start with the place as `file:line:column`,
 //! with line and column counted from 1, as far as it is known.
+//!
+//! The file is long because it is a list: one variant for each way in which a file can be wrong, with its
+//! text beside its values, so that all texts can be read in one place.
 
 use std::io;
 use std::path::{Path, PathBuf};

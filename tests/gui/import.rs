@@ -234,3 +234,33 @@ fn a_list_opens_above_the_dialog_and_takes_the_pointer() {
     harness.run_steps(10);
     assert_eq!(map(&harness), "time=1:ms,fy=2:kN");
 }
+
+/// What a force does not say was asked, but for the vehicle.
+#[test]
+fn the_vehicle_of_a_file_is_asked_for_beside_its_curve() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (_, path) = write(folder.path(), "f.csv", &german_export("Zeit [ms];Kraft [kN];Status"));
+    let mut harness = open(&[&path]);
+    settle(&mut harness);
+    harness.get_by_label("F_y is zero throughout").click();
+    harness.run_steps(2);
+    settle(&mut harness);
+    choose(&mut harness, ("Struck vehicle", 0), "target-2000");
+    let chosen = &state(&harness).project.vehicle;
+    assert_eq!(*chosen, impactlab::study::VehicleChoice::Preset("target-2000".to_owned()));
+    harness.get_by_label("Open with these columns").click();
+    step_until(&mut harness, "the force", |state| state.analysis().is_some() && is_idle(state));
+    let report = &state(&harness).analysis().expect("it is simulated").report;
+    assert!(report.vehicle.starts_with("FEA target"), "{}", report.vehicle);
+}
+
+/// A pulse with 60 kN along x and 2 kN along y opened without a word if y was in N.
+#[test]
+fn components_in_different_units_are_asked_about() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let text = "Time [s],Fx [kN],Fy [N]\n0,0,0\n0.05,60,2000\n0.1,0,0\n";
+    let (_, path) = write(folder.path(), "f.csv", text);
+    let mut harness = open(&[&path]);
+    settle(&mut harness);
+    harness.get_by_label_contains("two components of one vector are rarely recorded in different");
+}

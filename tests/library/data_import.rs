@@ -404,3 +404,21 @@ fn a_header_is_known_again_by_its_fingerprint() {
     assert_ne!(first, fingerprint("c.csv", "Versuch 1\nKraft;Zeit\n0;1\n1;2\n"));
     assert_ne!(first, fingerprint("d.csv", "Versuch 1\nZeit;Kraft\nms;kN\n0;1\n1;2\n"));
 }
+
+/// F_x in kN beside F_y in N was taken without a word.
+#[test]
+fn components_in_different_units_are_doubted() {
+    let folder = tempfile::tempdir().unwrap();
+    let read = |header: &str| {
+        let path = folder.path().join("f.csv");
+        std::fs::write(&path, format!("{header}\n0,0,0\n0.1,40,2000\n0.2,0,0\n")).unwrap();
+        impactlab::data::read_force_file(&path, None).unwrap()
+    };
+    let mixed = read("Time [s],Fx [kN],Fy [N]");
+    let doubts: Vec<String> =
+        mixed.notes.iter().filter(|note| note.is_doubt()).map(ToString::to_string).collect();
+    let [said] = doubts.as_slice() else { panic!("{doubts:?}") };
+    let expected = "column 2 \"Fx [kN]\" is read in kN and column 3 \"Fy [N]\" in N";
+    assert!(said.starts_with(expected), "{said}");
+    assert!(!read("Time [s],Fx [kN],Fy [kN]").notes.iter().any(impactlab::data::Note::is_doubt));
+}

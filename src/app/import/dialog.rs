@@ -7,10 +7,11 @@ use std::sync::Arc;
 use egui::{ComboBox, Grid, RichText, ScrollArea, Ui};
 
 use crate::app::command::Command;
-use crate::app::import::choices::{Choices, ColumnChoice};
+use crate::app::import::choices::Choices;
+use crate::app::import::column_row::column_ui;
 use crate::app::import::preview::Preview;
 use crate::app::model::file_name;
-use crate::app::panels::start_fields;
+use crate::app::panels::{file_vehicle_ui, start_fields};
 use crate::app::state::FileStart;
 use crate::data::{
     Channel, ColumnMap, FileKind, HeaderLine, ReadSettings, Severity, Sheet, SheetRef, Table,
@@ -19,31 +20,8 @@ use crate::data::{
 use crate::error_chain;
 use crate::jobs::{Job, Update};
 use crate::render::{FigureOptions, figure_ui, theme};
-use crate::units::{Quantity, UnitSystem};
-
-/// The channels that can be assigned to a column, in the order of the dialog's lists, with what they
-/// are.
-const CHOICES: [(Channel, &str); 16] = [
-    (Channel::Time, "Time"),
-    (Channel::Fx, "F_x, force along the road"),
-    (Channel::Fy, "F_y, force to the left of the road"),
-    (Channel::FxBody, "F_x body, force along the heading"),
-    (Channel::FyBody, "F_y body, force to the left of the heading"),
-    (Channel::Mz, "M_z, yaw moment of the force"),
-    (Channel::X, "X, position along the road"),
-    (Channel::Y, "Y, position to the left of the road"),
-    (Channel::Yaw, "Yaw ψ, heading"),
-    (Channel::Vx, "v_x, velocity"),
-    (Channel::Vy, "v_y, velocity"),
-    (Channel::YawRate, "Yaw rate r"),
-    (Channel::Roll, "Roll φ"),
-    (Channel::RollRate, "Roll rate"),
-    (Channel::Steer, "Steer δ, angle of the road wheels"),
-    (Channel::SteeringWheel, "Steering wheel, its angle"),
-];
-
-/// Text of a unit that nobody has said.
-const NO_UNIT: &str = "not stated: choose";
+use crate::study::VehicleChoice;
+use crate::units::UnitSystem;
 
 /// Size of the dialog and of its parts, points.
 const WIDTH: f32 = 1060.0;
@@ -54,10 +32,6 @@ const GAP: f32 = 16.0;
 const LINES_HEIGHT: f32 = 110.0;
 const COLUMNS_HEIGHT: f32 = 220.0;
 const CURVE_HEIGHT: f32 = 260.0;
-
-/// Number of characters of a header and of a value that a row shows.
-const SHOWN_NAME: usize = 24;
-const SHOWN_VALUE: usize = 7;
 
 /// What the dialog reads in the background.
 enum Answer {
@@ -206,8 +180,14 @@ impl ImportDialog {
 
     /// Draws the dialog and adds a command when the user confirms or cancels.
     ///
-    /// - `start`: what a file does not say about the struck vehicle, which is asked beside a force.
-    pub fn ui(&mut self, ui: &mut Ui, start: &mut FileStart, commands: &mut Vec<Command>) {
+    /// - `asked`: what a file does not say: how the struck vehicle moves and where the force acts, and
+    ///   which vehicle it is.
+    pub fn ui(
+        &mut self,
+        ui: &mut Ui,
+        asked: (&mut FileStart, &mut VehicleChoice),
+        commands: &mut Vec<Command>,
+    ) {
         let window = ui.ctx().content_rect().size();
         let width = WIDTH.min(window.x - WINDOW_MARGIN);
         ui.set_width(width);
@@ -230,7 +210,7 @@ impl ImportDialog {
                 ui.add_space(GAP);
                 ui.vertical(|ui| {
                     self.preview_ui(ui);
-                    self.start_ui(ui, start);
+                    self.asked_ui(ui, asked);
                 });
             });
         });
@@ -469,16 +449,22 @@ impl ImportDialog {
         }
     }
 
-    /// Draws what a force file does not say about the struck vehicle.
-    fn start_ui(&self, ui: &mut Ui, start: &mut FileStart) {
-        let is_force = matches!(&self.preview, Some((_, Ok(of))) if of.kind == FileKind::Force);
-        if is_force {
-            ui.separator();
-            ui.strong("What a force does not say about the struck vehicle");
-            Grid::new("import start").num_columns(2).show(ui, |ui| {
+    /// Draws what a force or a motion does not say about the struck vehicle.
+    fn asked_ui(&self, ui: &mut Ui, (start, vehicle): (&mut FileStart, &mut VehicleChoice)) {
+        let Some((_, Ok(preview))) = &self.preview else { return };
+        let title = match preview.kind {
+            FileKind::Force => "What a force does not say about the struck vehicle",
+            FileKind::Trajectory => "What a motion does not say about the vehicle",
+            FileKind::Steer | FileKind::Wheels => return,
+        };
+        ui.separator();
+        ui.strong(title);
+        Grid::new("import start").num_columns(2).show(ui, |ui| {
+            file_vehicle_ui(ui, vehicle);
+            if preview.kind == FileKind::Force {
                 start_fields(ui, start, self.units);
-            });
-        }
+            }
+        });
     }
 
     fn buttons_ui(&self, ui: &mut Ui, commands: &mut Vec<Command>) {
@@ -497,52 +483,4 @@ impl ImportDialog {
             }
         });
     }
-}
-
-/// Draws the row of one column.
-fn column_ui(ui: &mut Ui, column: &mut ColumnChoice) {
-    let number = column.proposal.number;
-    let shown: String = column.proposal.name.chars().take(SHOWN_NAME).collect();
-    let name = ui.label(format!("{number}: {shown}")).on_hover_text(&column.proposal.name);
-    let samples = column.proposal.samples.iter().take(3);
-    let samples: Vec<String> =
-        samples.map(|sample| sample.chars().take(SHOWN_VALUE).collect()).collect();
-    ui.weak(samples.join("  ")).on_hover_text(column.proposal.samples.join("\n"));
-    let text = |choice: Option<Channel>| choice.map_or("not used", described);
-    let combo = ComboBox::from_id_salt(("channel", number)).width(170.0);
-    let selected = column.channel.map_or("not used", Channel::label);
-    let shown = combo.selected_text(selected).height(400.0).show_ui(ui, |ui| {
-        let all = CHOICES.iter().map(|(channel, _)| Some(*channel));
-        for option in std::iter::once(None).chain(all) {
-            if ui.selectable_label(column.channel == option, text(option)).clicked() {
-                column.choose(option);
-            }
-        }
-    });
-    shown.response.labelled_by(name.id);
-    let Some(channel) = column.channel else { return };
-    let units = channel.quantity().units();
-    ui.horizontal(|ui| {
-        let warning = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
-        let selected = match column.unit {
-            Some(unit) => RichText::new(unit.symbol),
-            None => RichText::new(NO_UNIT).color(warning),
-        };
-        let combo = ComboBox::from_id_salt(("unit", number)).selected_text(selected).width(64.0);
-        let shown = combo.show_ui(ui, |ui| {
-            for unit in units {
-                ui.selectable_value(&mut column.unit, Some(*unit), unit.symbol);
-            }
-        });
-        shown.response.labelled_by(name.id);
-        if matches!(channel.quantity(), Quantity::Force | Quantity::Moment) {
-            let hint = "Change the sign: the file has the force on the other vehicle";
-            ui.checkbox(&mut column.is_negated, "−").on_hover_text(hint);
-        }
-    });
-}
-
-fn described(channel: Channel) -> &'static str {
-    let known = CHOICES.iter().find(|(of, _)| *of == channel);
-    known.map_or(channel.label(), |(_, text)| text)
 }

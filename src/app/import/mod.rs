@@ -2,6 +2,7 @@
 //! choices of earlier files.
 
 mod choices;
+mod column_row;
 mod dialog;
 mod preview;
 mod remembered;

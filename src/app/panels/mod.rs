@@ -52,6 +52,7 @@ pub use scenario::scenario_ui;
 pub use scene::scene_ui;
 pub use training::training_ui;
 pub use variants::variants_ui;
+pub(in crate::app) use vehicle::file_vehicle_ui;
 pub use vehicle::vehicle_ui;
 
 use egui::{RichText, Ui};

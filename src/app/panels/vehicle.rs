@@ -138,12 +138,7 @@ fn vehicle_choice_ui(
     commands: &mut Vec<Command>,
 ) {
     let name = ui.label(title);
-    let label = match choice {
-        VehicleChoice::Automatic => open.to_owned(),
-        VehicleChoice::Preset(id) => id.clone(),
-        VehicleChoice::File(path) => file_name(path),
-        VehicleChoice::Sheet(sheet) => format!("{} (edited below)", sheet.name),
-    };
+    let label = chosen_label(choice, open);
     ui.horizontal(|ui| {
         choice_list_ui(ui, (title, &name, hint), (choice, open), &label);
         if matches!(choice, VehicleChoice::Sheet(_)) {
@@ -157,6 +152,26 @@ fn vehicle_choice_ui(
             }
         }
     });
+    ui.end_row();
+}
+
+/// What a choice is called.
+fn chosen_label(choice: &VehicleChoice, open: &str) -> String {
+    match choice {
+        VehicleChoice::Automatic => open.to_owned(),
+        VehicleChoice::Preset(id) => id.clone(),
+        VehicleChoice::File(path) => file_name(path),
+        VehicleChoice::Sheet(sheet) => format!("{} (edited)", sheet.name),
+    }
+}
+
+/// Draws a row of a two-column grid with the vehicle that a file is about, which it does not say.
+pub(in crate::app) fn file_vehicle_ui(ui: &mut Ui, choice: &mut VehicleChoice) {
+    let name = ui.label("Struck vehicle");
+    let open = format!("{} (assumed)", DEFAULT_VEHICLE.id());
+    let label = chosen_label(choice, &open);
+    let hint = "Its mass, inertia and tyres: the file does not say them";
+    choice_list_ui(ui, ("vehicle of the file", &name, hint), (choice, &open), &label);
     ui.end_row();
 }
 
