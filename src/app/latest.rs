@@ -1,7 +1,8 @@
 //! Answers short questions on a separate thread, so that the window does not wait for them.
 //!
 //! If questions arrive faster than they are answered, as while a slider is moved, only the latest
-//! one is answered. The last answer remains available until the next one arrives.
+//! one is answered. The last answer remains available until the next one arrives. A question whose
+//! answer takes long is first answered coarsely ([`Question::coarse`]).
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -33,12 +34,20 @@ pub struct Latest<Q: Question> {
     /// The latest answer, or the reason why there is none. It belongs to `asked` unless
     /// [`Latest::is_waiting`].
     pub answer: Option<AnswerResult<Q>>,
+    /// The latest coarse answer with the number of its question, until that is answered in full.
+    coarse: Option<(u64, Arc<Q::Answer>)>,
+}
+
+/// An answer on its way from the thread.
+enum Sent<Q: Question> {
+    Coarse(Arc<Q::Answer>),
+    Full(AnswerResult<Q>),
 }
 
 struct Thread<Q: Question> {
     job: Job<()>,
     questions: Sender<(u64, Q)>,
-    answers: Receiver<(u64, AnswerResult<Q>)>,
+    answers: Receiver<(u64, Sent<Q>)>,
 }
 
 impl<Q: Question> Default for Latest<Q> {
@@ -51,6 +60,7 @@ impl<Q: Question> Default for Latest<Q> {
             asked_at: None,
             asked: None,
             answer: None,
+            coarse: None,
         }
     }
 }
@@ -60,14 +70,21 @@ impl<Q: Question> Latest<Q> {
     /// an answer with an error, and the next question starts a new thread.
     pub fn poll(&mut self) {
         let Some(thread) = &mut self.thread else { return };
-        if let Some((number, answer)) = thread.answers.try_iter().last() {
-            self.n_answered = number;
-            if number > self.n_dropped {
-                self.answer = Some(answer);
+        for (number, sent) in thread.answers.try_iter() {
+            let is_shown = number > self.n_dropped;
+            match sent {
+                Sent::Coarse(answer) if is_shown => self.coarse = Some((number, answer)),
+                Sent::Coarse(_) => {}
+                Sent::Full(answer) => {
+                    (self.n_answered, self.coarse) = (number, None);
+                    if is_shown {
+                        self.answer = Some(answer);
+                    }
+                }
             }
         }
         if let Update::Panicked(text) = thread.job.poll() {
-            self.thread = None;
+            (self.thread, self.coarse) = (None, None);
             self.n_answered = self.n_asked;
             self.answer = Some(Err(format!("internal error: {text}")));
         }
@@ -119,9 +136,16 @@ impl<Q: Question> Latest<Q> {
         self.is_waiting() && self.asked_at.is_some_and(|at| at.elapsed() > SEEN)
     }
 
+    /// The coarse answer that there is until the question is answered in full, and whether it is to the
+    /// question that was asked last.
+    pub fn coarse(&self) -> Option<(&Arc<Q::Answer>, bool)> {
+        self.coarse.as_ref().map(|(number, answer)| (answer, *number == self.n_asked))
+    }
+
     /// Drops the answer, and that to a question under way, which belong to something else than what is
     /// asked next.
     pub fn drop_answer(&mut self) {
+        self.coarse = None;
         self.answer = None;
         self.asked = None;
         self.n_dropped = self.n_asked;
@@ -155,7 +179,8 @@ impl<Q: Question> Thread<Q> {
         let (questions, asked) = channel::<(u64, Q)>();
         let (answer, answers) = channel();
         let job = Job::spawn(Q::NAME, wake, move |report| {
-            while let Ok(mut latest) = asked.recv() {
+            let mut next = None;
+            while let Some(mut latest) = next.take().or_else(|| asked.recv().ok()) {
                 while let Ok(newer) = asked.try_recv() {
                     latest = newer;
                 }
@@ -164,12 +189,25 @@ impl<Q: Question> Thread<Q> {
                     Event::Progress(progress) => report(progress),
                     Event::Training(_) => ControlFlow::Continue(()),
                 };
+                // What is wrong with the question is said by the full answer.
+                let coarse = question.coarse().map(|coarse| coarse.answer(&library, &mut observer));
+                if let Some(Ok(Outcome::Complete(found))) = coarse {
+                    let is_sent = answer.send((number, Sent::Coarse(Arc::new(found)))).is_ok();
+                    if !is_sent || observer(Event::Progress(Progress::default())).is_break() {
+                        break;
+                    }
+                    next = asked.try_recv().ok();
+                    if next.is_some() {
+                        continue;
+                    }
+                }
                 let result = match question.answer(&library, &mut observer) {
                     Ok(Outcome::Complete(found)) => Ok(Arc::new(found)),
                     Ok(Outcome::Cancelled) => break,
                     Err(error) => Err(error_chain(&error)),
                 };
-                if answer.send((number, result)).is_err() || report(Progress::default()).is_break()
+                if answer.send((number, Sent::Full(result))).is_err()
+                    || report(Progress::default()).is_break()
                 {
                     break;
                 }
@@ -195,6 +233,10 @@ mod tests {
             Ok(())
         }
 
+        fn coarse(&self) -> Option<Self> {
+            (self.0 >= 100 && self.0 % 2 == 0 && self.0 % 20 != 0).then(|| Self(self.0 / 20 * 20))
+        }
+
         fn report(answer: &i32) -> &i32 {
             answer
         }
@@ -205,6 +247,9 @@ mod tests {
             _observer: &mut Observer<'_>,
         ) -> Result<Outcome<i32>, StudyError> {
             assert!(self.0 >= 0, "negative");
+            if self.0 >= 100 && self.coarse().is_some() {
+                std::thread::sleep(Duration::from_millis(500));
+            }
             match self.0 % 2 {
                 0 => Ok(Outcome::Complete(self.0 / 2)),
                 _ => Err(StudyError::NotHeld { name: self.0.to_string() }),
@@ -225,6 +270,28 @@ mod tests {
             std::thread::sleep(Duration::from_millis(2));
         }
         None
+    }
+
+    /// A number from 100 on is halved coarsely first: to a multiple of 10.
+    #[test]
+    fn a_coarse_answer_comes_first_and_goes_with_the_full_one() {
+        let mut latest = Latest::default();
+        ask(&mut latest, 146);
+        for _ in 0..1000 {
+            latest.poll();
+            if latest.coarse().is_some() || !latest.is_waiting() {
+                break;
+            }
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        let (answer, is_latest) = latest.coarse().expect("the coarse answer");
+        assert_eq!((**answer, is_latest), (70, true));
+        assert!(latest.is_waiting() && latest.ok().is_none());
+        assert_eq!(settled(&mut latest), Some(Ok(Arc::new(73))));
+        assert!(latest.coarse().is_none());
+        // A question that cannot be answered coarsely is answered in full.
+        ask(&mut latest, 147);
+        assert_eq!(settled(&mut latest), Some(Err("there is no model \"147\"".to_owned())));
     }
 
     #[test]

@@ -87,7 +87,8 @@ pub use predict_force::{
     ForceQuestion, ImpulseReport, PredictForceAnswer, PredictForceReport, PredictForceRequest,
 };
 pub use predict_motion::{
-    DEFAULT_DRAWS, ForceSource, PredictMotionAnswer, PredictMotionReport, PredictMotionRequest,
+    COARSE_DRAWS, DEFAULT_DRAWS, ForceSource, PredictMotionAnswer, PredictMotionReport,
+    PredictMotionRequest,
 };
 pub use provenance::Provenance;
 pub use question::{Event, Observer, Question};

@@ -26,6 +26,9 @@ use crate::uncertainty::{Badge, BadgeKind};
 /// Force curves drawn from a predicted force where nobody says how many.
 pub const DEFAULT_DRAWS: usize = 30;
 
+/// How many force curves and vehicles the coarse answer draws.
+pub const COARSE_DRAWS: usize = 5;
+
 /// Asks where the struck vehicle goes, by the response network, and how sure that is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PredictMotionRequest {
@@ -185,6 +188,16 @@ impl Question for PredictMotionRequest {
             check("motion.duration_s", &FORECAST_DURATION, self.motion.duration_s)?;
         }
         check_count("draws", &DRAWS, self.draws)
+    }
+
+    /// Fewer draws; `None` for a forecast to rest, which is made of draws alone.
+    fn coarse(&self) -> Option<Self> {
+        let motion = SimulateRequest {
+            vehicle_draws: self.motion.vehicle_draws.min(COARSE_DRAWS),
+            ..self.motion.clone()
+        };
+        let coarse = Self { draws: self.draws.min(COARSE_DRAWS), motion, ..self.clone() };
+        (coarse != *self && !self.motion.until_rest).then_some(coarse)
     }
 
     fn report(answer: &Self::Answer) -> &PredictMotionReport {

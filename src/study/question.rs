@@ -53,6 +53,15 @@ pub trait Question: Clone + PartialEq + Send + 'static {
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<Self::Answer>, StudyError>;
 
+    /// The same question with a coarser answer that comes much sooner, for a person to see until this
+    /// one is answered; `None` if there is none.
+    fn coarse(&self) -> Option<Self>
+    where
+        Self: Sized,
+    {
+        None
+    }
+
     /// The report of an answer.
     fn report(answer: &Self::Answer) -> &Self::Report;
 

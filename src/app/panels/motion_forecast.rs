@@ -32,6 +32,10 @@ use crate::response::STEP_S;
 use crate::study::{PredictMotionAnswer, Trust};
 use crate::units::UnitSystem;
 
+/// What stands above a coarse forecast.
+const COARSE: &str =
+    "Of few draws, so that regions and bands are rough: the full forecast is being computed";
+
 /// Width of the form before the user resizes it, points.
 const FORM_WIDTH: f32 = 330.0;
 /// Share of the available height that the plan view takes.
@@ -64,10 +68,10 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             until_rest_ui(ui, project);
             ui.separator();
             shown_ui(ui, &mut view.response, session, commands);
-            if let Some(answer) = session.response.forecast.ok() {
+            if let Some(shown) = shown_forecast(session) {
                 ui.separator();
-                let is_late = session.is_motion_late();
-                super::faded(ui, is_late, |ui| outcome_ui(ui, answer, view.units, commands));
+                let answer = shown.answer;
+                super::faded(ui, shown.is_late, |ui| outcome_ui(ui, answer, view.units, commands));
             }
         });
     });
@@ -77,10 +81,18 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             if analysis_or_hint(ui, session).is_none() {
                 return;
             }
+            if let Some(shown) = shown_forecast(session) {
+                return super::faded(ui, shown.is_late, |ui| {
+                    if shown.is_coarse {
+                        let color =
+                            theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+                        ui.colored_label(color, COARSE);
+                    }
+                    figures_ui(ui, (shown.answer, session, variants), view, commands);
+                });
+            }
             match &session.response.forecast.answer {
-                Some(Ok(answer)) => super::faded(ui, session.is_motion_late(), |ui| {
-                    figures_ui(ui, (answer, session, variants), view, commands);
-                }),
+                Some(Ok(_)) => {}
                 Some(Err(problem)) => {
                     let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
                     ui.colored_label(color, format!("No forecast: {problem}"));
@@ -94,6 +106,26 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             }
         },
     );
+}
+
+/// The forecast that is shown.
+struct ShownForecast<'a> {
+    answer: &'a Arc<MotionAnswer>,
+    /// Whether it is not of what is asked any more.
+    is_late: bool,
+    /// Whether it is of few draws, and the full one is being computed.
+    is_coarse: bool,
+}
+
+/// The newest forecast that there is; a coarse one until the full one comes.
+fn shown_forecast(session: &Session) -> Option<ShownForecast<'_>> {
+    let forecast = &session.response.forecast;
+    let is_late = session.is_motion_late();
+    if let Some((answer, is_of_latest)) = forecast.coarse() {
+        let is_late = is_late && (!is_of_latest || session.analysis.is_late());
+        return Some(ShownForecast { answer, is_late, is_coarse: true });
+    }
+    Some(ShownForecast { answer: forecast.ok()?, is_late, is_coarse: false })
 }
 
 /// Names the current response model, describes its training on hover, and warns of a model that was

@@ -45,6 +45,10 @@ impl Question for MotionQuestion {
         self.request.check()
     }
 
+    fn coarse(&self) -> Option<Self> {
+        Some(Self { request: self.request.coarse()? })
+    }
+
     fn report(answer: &Self::Answer) -> &PredictMotionReport {
         &answer.answer.report
     }
