@@ -128,6 +128,7 @@ fn a_record_that_ends_during_the_contact_is_said_to_be_cut() {
     let said = "contact not ended: the record ends after 0.040 s at 75.0 % of the peak";
     assert!(told.contains(said), "{told}");
     assert!(n_warning_pixels(&picture) > 100);
-    let told = run(&["simulate", "--force", text(&path), "--speed", "15", "--contact=-1.5,0.5"]);
+    let told =
+        run(&["simulate", "--force", text(&path), "--speed", "15", "--contact=-1.5,-0.9,0.5"]);
     assert!(told.contains(&format!("warning: {said}")), "{told}");
 }

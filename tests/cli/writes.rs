@@ -260,3 +260,16 @@ fn a_question_that_is_only_printed_writes_nothing() {
     }
     assert!(names(folder.path()).is_empty());
 }
+
+/// A folder in which nobody may write was said not to exist.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_folder_without_the_right_to_write_is_named_with_the_true_cause() {
+    let ran = program().args(["render", "impact", SCENARIO, "--out", "/sys/impact.csv"]).output();
+    let ran = ran.unwrap();
+    let said = String::from_utf8(ran.stderr).unwrap();
+    assert!(!ran.status.success(), "{said}");
+    assert!(said.starts_with("error: /sys/impact.csv: cannot be written: "), "{said}");
+    assert!(said.contains("ermission") || said.contains("not permitted"), "{said}");
+    assert!(!said.contains("does not exist"), "{said}");
+}
