@@ -1,6 +1,7 @@
 //! The response network beside the tuned and the untuned 4DOF model and a plain network: `compare`.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +11,7 @@ use crate::ranges::{CHOICES, TRAJECTORIES, TRAJECTORY_SETS};
 use crate::response::evaluate::{
     Comparison, ComparisonSettings, compare_models, compare_on_unseen_cars,
 };
-use crate::response::{ResponseConfig, ResponseTrainingSet};
+use crate::response::{ResponseCase, ResponseConfig, ResponseModel, ResponseTrainingSet};
 use crate::study::checks::{check, check_count};
 use crate::study::inputs::{UsableCases, data_name, dataset_folders, response_cases};
 use crate::study::question::progress_of;
@@ -86,6 +87,45 @@ impl CompareRequest {
     }
 }
 
+impl CompareRequest {
+    /// The settings of the networks, and the network that was given, if one was.
+    pub(in crate::study) fn settings(
+        &self,
+        library: &Library,
+    ) -> Result<(ResponseConfig, Option<Arc<ResponseModel>>), StudyError> {
+        let start = self.model.as_ref().map(|model| library.response_model(model)).transpose()?;
+        let config = match (self.config.file(), &start) {
+            (Some(path), _) => ResponseConfig::load(path)?,
+            (None, Some(start)) => start.config().clone(),
+            (None, None) => ResponseConfig::default(),
+        };
+        Ok((config, start))
+    }
+
+    /// The trajectories, and why others are left out.
+    pub(in crate::study) fn cases(
+        &self,
+        assumptions: &mut Vec<Assumption>,
+        (library, observer): (&Library, &mut Observer<'_>),
+    ) -> Result<Outcome<UsableCases<ResponseCase>>, StudyError> {
+        let folders = match self.leave_one_car_out {
+            true => {
+                [self.beside.clone(), dataset_folders(std::slice::from_ref(&self.data))?].concat()
+            }
+            false => vec![self.data.clone()],
+        };
+        let mut usable = UsableCases { cases: Vec::new(), left_out: Vec::new() };
+        for folder in folders {
+            let chosen = (folder.as_path(), &self.vehicle);
+            let cases = response_cases(chosen, self.bad_cases, assumptions, (library, observer))?;
+            let Outcome::Complete(of_folder) = cases else { return Ok(Outcome::Cancelled) };
+            usable.cases.extend(of_folder.cases);
+            usable.left_out.extend(of_folder.left_out);
+        }
+        Ok(Outcome::Complete(usable))
+    }
+}
+
 impl CompareReport {
     /// What restricts it.
     pub fn trust(&self) -> Trust {
@@ -99,7 +139,7 @@ impl CompareReport {
 }
 
 /// A finished comparison, or the evaluation of one model.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CompareReport {
     /// The models, their metrics and the cases.
     #[serde(flatten)]
@@ -158,30 +198,12 @@ impl Question for CompareRequest {
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<CompareAnswer>, StudyError> {
-        let start = self.model.as_ref().map(|model| library.response_model(model)).transpose()?;
+        let (config, start) = self.settings(library)?;
         let digest = |model| library.response_model_digest(model);
         let digest = self.model.as_ref().map(digest).transpose()?;
-        let config = match (self.config.file(), &start) {
-            (Some(path), _) => ResponseConfig::load(path)?,
-            (None, Some(start)) => start.config().clone(),
-            (None, None) => ResponseConfig::default(),
-        };
         let mut assumptions = Vec::new();
-        let folders = match self.leave_one_car_out {
-            true => {
-                [self.beside.clone(), dataset_folders(std::slice::from_ref(&self.data))?].concat()
-            }
-            false => vec![self.data.clone()],
-        };
-        let mut usable = UsableCases { cases: Vec::new(), left_out: Vec::new() };
-        for folder in folders {
-            let chosen = (folder.as_path(), &self.vehicle);
-            let cases =
-                response_cases(chosen, self.bad_cases, &mut assumptions, (library, observer))?;
-            let Outcome::Complete(of_folder) = cases else { return Ok(Outcome::Cancelled) };
-            usable.cases.extend(of_folder.cases);
-            usable.left_out.extend(of_folder.left_out);
-        }
+        let cases = self.cases(&mut assumptions, (library, observer))?;
+        let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
         let settings = ComparisonSettings {
             config,
             trajectories: self.trajectories.clone(),

@@ -15,7 +15,7 @@ use crate::jobs::Progress;
 use crate::nn::random_stream;
 use crate::ranges::FOLDS;
 use crate::study::checks::check_count;
-use crate::study::inputs::force_cases;
+use crate::study::inputs::{UsableCases, force_cases};
 use crate::study::question::progress_of;
 use crate::study::unused::not_used;
 use crate::study::{
@@ -75,6 +75,23 @@ impl EvaluateForceRequest {
             for_figures: false,
         }
     }
+
+    /// The cases that the model is evaluated on, and why others are left out.
+    pub(in crate::study) fn test_cases(
+        &self,
+        model: &ForceModel,
+        (library, observer): (&Library, &mut Observer<'_>),
+    ) -> Result<Outcome<UsableCases<ForceCase>>, StudyError> {
+        let cases = force_cases(&self.data, self.bad_cases, (library, observer))?;
+        let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
+        let is_wanted =
+            |case: &ForceCase| self.split == EvaluatedCases::All || !model.is_trained_on(case);
+        let cases: Vec<ForceCase> = usable.cases.into_iter().filter(is_wanted).collect();
+        if cases.is_empty() {
+            return Err(StudyError::NoTestCase { path: self.data.clone() });
+        }
+        Ok(Outcome::Complete(UsableCases { cases, left_out: usable.left_out }))
+    }
 }
 
 /// What is told of an evaluation or a cross-validation.
@@ -98,7 +115,7 @@ impl ForceEvaluation {
 }
 
 /// A force network on cases of a data set.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EvaluateForceReport {
     /// The force network.
     pub model_file: String,
@@ -211,15 +228,11 @@ impl Question for EvaluateForceRequest {
                 }
             }));
         }
-        let cases = force_cases(&self.data, self.bad_cases, (library, observer))?;
-        let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
-        let n_left_out = usable.left_out.len();
-        let is_wanted =
-            |case: &ForceCase| self.split == EvaluatedCases::All || !model.is_trained_on(case);
-        let test: Vec<ForceCase> = usable.cases.into_iter().filter(is_wanted).collect();
-        if test.is_empty() {
-            return Err(StudyError::NoTestCase { path: self.data.clone() });
-        }
+        let cases = self.test_cases(&model, (library, observer))?;
+        let Outcome::Complete(UsableCases { cases: test, left_out }) = cases else {
+            return Ok(Outcome::Cancelled);
+        };
+        let n_left_out = left_out.len();
         let evaluated = evaluate_model(&model, &test, &settings, &mut progress_of(observer))?;
         let Outcome::Complete(evaluation) = evaluated else { return Ok(Outcome::Cancelled) };
         let cases = if self.for_figures {
@@ -239,7 +252,7 @@ impl Question for EvaluateForceRequest {
             n_test: test.len(),
             n_trained_on,
             evaluation,
-            left_out: usable.left_out,
+            left_out,
             assumptions: Vec::new(),
             badges: trained_on.chain(badges::of_left_out(n_left_out, "cases")).collect(),
             provenance,
@@ -250,7 +263,8 @@ impl Question for EvaluateForceRequest {
 }
 
 impl EvaluatedForceCases {
-    fn of(
+    /// Draws curves of all cases and computes the bands of some.
+    pub(in crate::study) fn of(
         model: &ForceModel,
         cases: &[ForceCase],
         seed: u64,

@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 use crate::data::Outcome;
 use crate::response::evaluate::{MotionModel, evaluate_motion_model};
 use crate::response::{Correction, ResponseCase, ResponseModel};
-use crate::study::inputs::{data_name, response_cases};
+use crate::study::inputs::{UsableCases, data_name, response_cases};
 use crate::study::{
-    BadCases, CompareAnswer, CompareReport, EvaluatedCases, Library, ModelChoice, Observer,
-    Question, StudyError, VehicleChoice,
+    Assumption, BadCases, CompareAnswer, CompareReport, EvaluatedCases, Library, ModelChoice,
+    Observer, Question, StudyError, VehicleChoice,
 };
 
 /// Asks how well a response network predicts the motions of a data set.
@@ -33,6 +33,37 @@ pub struct EvaluateResponseRequest {
     /// What happens to cases that cannot be used.
     #[serde(default)]
     pub bad_cases: BadCases,
+}
+
+impl EvaluateResponseRequest {
+    /// The trajectories that the model is evaluated on, and why others are left out.
+    pub(in crate::study) fn cases(
+        &self,
+        model: &ResponseModel,
+        assumptions: &mut Vec<Assumption>,
+        (library, observer): (&Library, &mut Observer<'_>),
+    ) -> Result<Outcome<UsableCases<ResponseCase>>, StudyError> {
+        let chosen = (self.data.as_path(), &self.vehicle);
+        let cases = response_cases(chosen, self.bad_cases, assumptions, (library, observer))?;
+        let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
+        let cases = match self.split {
+            EvaluatedCases::All => usable.cases,
+            EvaluatedCases::Test => test_cases(model, usable.cases),
+        };
+        if cases.is_empty() {
+            return Err(StudyError::NoTestCase { path: self.data.clone() });
+        }
+        Ok(Outcome::Complete(UsableCases { cases, left_out: usable.left_out }))
+    }
+
+    /// The network as one of the models that are compared.
+    pub(in crate::study) fn motion_model(model: &ResponseModel) -> Result<MotionModel, StudyError> {
+        let own = Box::new(model.copied()?);
+        Ok(match model.config().network.correction {
+            Correction::Whole => MotionModel::Plain(own),
+            _ => MotionModel::Network(own),
+        })
+    }
 }
 
 /// A finished evaluation: a comparison with one model.
@@ -59,37 +90,27 @@ impl Question for EvaluateResponseRequest {
         let model = library.response_model(&self.model)?;
         let digest = library.response_model_digest(&self.model)?;
         let mut assumptions = Vec::new();
-        let chosen = (self.data.as_path(), &self.vehicle);
-        let cases = response_cases(chosen, self.bad_cases, &mut assumptions, (library, observer))?;
-        let Outcome::Complete(usable) = cases else { return Ok(Outcome::Cancelled) };
-        let chosen: Vec<&ResponseCase> = match self.split {
-            EvaluatedCases::All => usable.cases.iter().collect(),
-            EvaluatedCases::Test => test_cases(&model, &usable.cases),
+        let cases = self.cases(&model, &mut assumptions, (library, observer))?;
+        let Outcome::Complete(UsableCases { cases, left_out }) = cases else {
+            return Ok(Outcome::Cancelled);
         };
-        if chosen.is_empty() {
-            return Err(StudyError::NoTestCase { path: self.data.clone() });
-        }
+        let chosen: Vec<&ResponseCase> = cases.iter().collect();
         let trajectories = model.record().train.len();
-        let own = Box::new(model.copied()?);
-        let compared = match model.config().network.correction {
-            Correction::Whole => MotionModel::Plain(own),
-            _ => MotionModel::Network(own),
-        };
+        let compared = Self::motion_model(&model)?;
         let name = data_name(&self.data);
         let comparison =
             evaluate_motion_model((&name, &chosen), &compared, (trajectories, self.seed))?;
-        let answer = CompareAnswer::new(comparison, (usable.left_out, assumptions), [digest]);
+        let answer = CompareAnswer::new(comparison, (left_out, assumptions), [digest]);
         Ok(Outcome::Complete(answer))
     }
 }
 
 /// Those kept for the test of the model, or, of other data, all that it was not trained on.
-fn test_cases<'a>(model: &ResponseModel, cases: &'a [ResponseCase]) -> Vec<&'a ResponseCase> {
+fn test_cases(model: &ResponseModel, cases: Vec<ResponseCase>) -> Vec<ResponseCase> {
     let test = &model.record().test;
-    let kept: Vec<&ResponseCase> =
-        cases.iter().filter(|case| test.iter().any(|id| id.digest == case.digest)).collect();
-    if !kept.is_empty() {
-        return kept;
+    let is_kept = |case: &ResponseCase| test.iter().any(|id| id.digest == case.digest);
+    if cases.iter().any(is_kept) {
+        return cases.into_iter().filter(is_kept).collect();
     }
-    cases.iter().filter(|case| !model.is_trained_on(case)).collect()
+    cases.into_iter().filter(|case| !model.is_trained_on(case)).collect()
 }

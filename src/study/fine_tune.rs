@@ -112,7 +112,8 @@ impl FineTuneRequest {
         Ok((config, start))
     }
 
-    fn training_set(
+    /// The trajectories to learn from.
+    pub(in crate::study) fn training_set(
         &self,
         notes: &mut TrainingNotes,
         (library, observer): (&Library, &mut Observer<'_>),

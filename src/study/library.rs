@@ -211,5 +211,5 @@ where
         Some(sha256) => sha256.clone(),
         None => held.model.sha256()?,
     };
-    Ok(ModelDigest { network, name: choice.to_string(), sha256 })
+    Ok(ModelDigest { network: network.into(), name: choice.to_string(), sha256 })
 }

@@ -56,6 +56,7 @@ mod trust;
 mod unused;
 mod vehicle_uncertainty;
 
+mod cost;
 mod request;
 
 pub use assumption::{AssumedQuantity, Assumption};
@@ -66,6 +67,7 @@ pub use check_report::{
 };
 pub use checks::check_window;
 pub use compare::{CompareAnswer, CompareReport, CompareRequest, DEFAULT_CHOICES};
+pub use cost::{Cost, CostPart};
 pub use drive::{ASSUMED_SPEED_M_S, Drive};
 pub use error::StudyError;
 pub use evaluate_force::{

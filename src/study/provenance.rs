@@ -1,6 +1,8 @@
 //! Where an answer comes from: what makes it possible to ask again and get the same.
 
-use serde::Serialize;
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
 
 use crate::data::write::ModelDigest;
 use crate::learning::ModelFile;
@@ -16,22 +18,22 @@ pub(super) const RESPONSE_NETWORK: &str = "response";
 const TRAINED: &str = "trained";
 
 /// Version of the program, seed and trained networks of an answer. It is part of every report.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
     /// Version of the program that answered.
-    pub version: &'static str,
+    pub version: Cow<'static, str>,
     /// The seed of all draws, where there are any and the report does not have it elsewhere.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
     /// The trained networks that answered, or that were trained, by the content of their files.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub model_digests: Vec<ModelDigest>,
 }
 
 impl Default for Provenance {
     /// An answer of this program without draws and networks.
     fn default() -> Self {
-        Self { version: env!("CARGO_PKG_VERSION"), seed: None, model_digests: Vec::new() }
+        Self { version: env!("CARGO_PKG_VERSION").into(), seed: None, model_digests: Vec::new() }
     }
 }
 
@@ -56,7 +58,7 @@ impl Provenance {
         StudyError: From<M::Error>,
     {
         let (name, sha256) = (TRAINED.to_owned(), model.sha256()?);
-        self.model_digests.push(ModelDigest { network, name, sha256 });
+        self.model_digests.push(ModelDigest { network: network.into(), name, sha256 });
         Ok(self)
     }
 }

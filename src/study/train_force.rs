@@ -96,6 +96,26 @@ impl TrainForceRequest {
         config.training.epochs = self.epochs.unwrap_or(config.training.epochs);
         Ok(config)
     }
+
+    /// The cases to learn from, and why others are left out.
+    pub(in crate::study) fn training_set(
+        &self,
+        (library, observer): (&Library, &mut Observer<'_>),
+    ) -> Result<Outcome<(ForceTrainingSet, Vec<String>)>, StudyError> {
+        let cases = force_cases(&self.data, self.training.bad_cases, (library, observer))?;
+        let Outcome::Complete(mut usable) = cases else { return Ok(Outcome::Cancelled) };
+        let mut extra = Vec::new();
+        for root in &self.extra {
+            let cases = force_cases(root, self.training.bad_cases, (library, observer))?;
+            let Outcome::Complete(more) = cases else { return Ok(Outcome::Cancelled) };
+            extra.extend(more.cases);
+            usable.left_out.extend(more.left_out);
+        }
+        let name = data_names(std::iter::once(&self.data).chain(&self.extra));
+        let share = self.settings()?.training.test_share;
+        let set = ForceTrainingSet::of_split(name, &usable.cases, self.training.seed, share);
+        Ok(Outcome::Complete((set.with_extra(&extra), usable.left_out)))
+    }
 }
 
 impl Question for TrainForceRequest {
@@ -119,19 +139,8 @@ impl Question for TrainForceRequest {
         // Held until the training is over.
         let _claim = self.training.claim()?;
         let config = self.settings()?;
-        let cases = force_cases(&self.data, self.training.bad_cases, (library, observer))?;
-        let Outcome::Complete(mut usable) = cases else { return Ok(Outcome::Cancelled) };
-        let mut extra = Vec::new();
-        for root in &self.extra {
-            let cases = force_cases(root, self.training.bad_cases, (library, observer))?;
-            let Outcome::Complete(more) = cases else { return Ok(Outcome::Cancelled) };
-            extra.extend(more.cases);
-            usable.left_out.extend(more.left_out);
-        }
-        let name = data_names(std::iter::once(&self.data).chain(&self.extra));
-        let share = config.training.test_share;
-        let set = ForceTrainingSet::of_split(name, &usable.cases, self.training.seed, share);
-        let set = set.with_extra(&extra);
+        let set = self.training_set((library, observer))?;
+        let Outcome::Complete((set, left_out)) = set else { return Ok(Outcome::Cancelled) };
         let settings = ForceTrainSettings {
             config,
             seed: self.training.seed,
@@ -143,7 +152,7 @@ impl Question for TrainForceRequest {
         let seconds = started.elapsed().as_secs_f64();
         let provenance = Provenance::of_seed(self.training.seed);
         let provenance = provenance.with_trained(FORCE_NETWORK, &model)?;
-        let report = TrainForceReport::of(&model, seconds, (usable.left_out, provenance));
+        let report = TrainForceReport::of(&model, seconds, (left_out, provenance));
         Ok(Outcome::Complete(TrainForceAnswer { report, model }))
     }
 }

@@ -103,7 +103,7 @@ impl TrainResponseRequest {
     }
 
     /// The forces of the cases that are not kept for a test.
-    fn records(
+    pub(in crate::study) fn records(
         &self,
         notes: &mut TrainingNotes,
         (library, observer): (&Library, &mut Observer<'_>),

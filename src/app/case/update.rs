@@ -102,7 +102,7 @@ impl State {
             motion.iter().flat_map(|answer| &answer.answer.report.provenance.model_digests);
         let mut models: Vec<UsedModel> = Vec::new();
         for ModelDigest { network, name, sha256 } in force.chain(motion) {
-            let network = (*network).to_owned();
+            let network = network.to_string();
             let model = UsedModel { network, name: name.clone(), sha256: sha256.clone() };
             if !models.contains(&model) {
                 models.push(model);

@@ -1,5 +1,6 @@
 //! What an output folder holds and how it was made.
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Component, Path};
@@ -34,10 +35,10 @@ pub struct RunRecord {
 }
 
 /// A trained network by the content of its file.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ModelDigest {
     /// Which network it is.
-    pub network: &'static str,
+    pub network: Cow<'static, str>,
     /// What it was asked for by: a word, a file or what the window calls it.
     pub name: String,
     /// SHA-256 of the file, hexadecimal; of a network that stands in no file yet, of the file that

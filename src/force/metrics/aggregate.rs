@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::force::metrics::{
     BAND_LEVELS, CaseCoverage, N_PIT_BINS, PointErrors, ProbabilisticScores,
@@ -10,7 +10,7 @@ use crate::force::metrics::{
 use crate::numerics::Summary;
 
 /// Statistics of [`PointErrors`] over several cases, all of the same weight.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CurveMetrics {
     /// Number of cases.
     pub n_cases: usize,
@@ -38,7 +38,7 @@ pub struct CurveMetrics {
 }
 
 /// How often the intervals of one level contain the observed values.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct IntervalCoverage {
     /// Nominal share.
     pub level: f64,
@@ -52,7 +52,7 @@ pub struct IntervalCoverage {
 }
 
 /// Statistics of [`ProbabilisticScores`] over several cases.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DistributionMetrics {
     /// Observed shares of F_x(t) and F_y(t) by nominal level in percent.
     pub coverage: BTreeMap<String, f64>,

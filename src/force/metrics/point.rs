@@ -1,12 +1,12 @@
 //! Errors of the point estimates of one case.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::force::{CurvePrediction, ForceCase};
 use crate::uncertainty::distance_n;
 
 /// Errors of one case, as shares unless the name has a unit.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PointErrors {
     /// Root mean square error over the peak of `|F|`.
     ///
