@@ -10,6 +10,7 @@ use egui::Context;
 use crate::app::case::{Leaving, VariantCommand};
 use crate::app::dialogs::{FileDialog, Purpose};
 use crate::app::export;
+use crate::app::kept::{KeptEntry, ModelsDialog, Removal};
 use crate::app::network::Network;
 use crate::app::panes::Pane;
 use crate::app::path_dialog::PathDialog;
@@ -113,6 +114,10 @@ pub enum Command {
     Train(Network, TrainingCommand),
     /// Compare response models, evaluate the current one, or open or save a comparison.
     Compare(ComparisonCommand),
+    /// Act on what is kept of models, comparisons and trainings.
+    Models(ModelsCommand),
+    /// Write a copy of a kept model, the first path, to a file of the user, the second one.
+    SaveKept(PathBuf, PathBuf),
     /// Evaluate the current force model on the chosen data set.
     Evaluate,
     /// Cancel the evaluation of the force model.
@@ -148,6 +153,26 @@ pub enum TrainingCommand {
     Pause(bool),
     /// End the training and keep the weights reached so far.
     Cancel,
+}
+
+/// An action on models, comparisons and evaluations that are kept, and on trainings that have not
+/// ended.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ModelsCommand {
+    /// Ask the user for a name or whether to remove something.
+    Ask(ModelsDialog),
+    /// Close that question.
+    CloseDialog,
+    /// Give something another name.
+    Rename(Box<KeptEntry>, String),
+    /// Remove files.
+    Remove(Removal),
+    /// Show a comparison or an evaluation again.
+    Open(Box<KeptEntry>),
+    /// Go on with the training of this checkpoint.
+    Resume(PathBuf),
+    /// Do not speak of interrupted trainings in the status line any more.
+    HideInterrupted,
 }
 
 /// An action on the comparison of response models.
@@ -230,6 +255,7 @@ impl State {
             | Command::SaveScenario(_)
             | Command::SaveVehicle(..)
             | Command::SaveModel(..)
+            | Command::SaveKept(..)
             | Command::SaveCaseAs(_)
             | Command::PackCase(_) => {
                 self.write(command, Existing::Refuse, context);
@@ -247,6 +273,7 @@ impl State {
             Command::Train(Network::Force, command) => self.train_force(command, context),
             Command::Train(Network::Response, command) => self.train_response(command, context),
             Command::Compare(command) => self.compare(command, context),
+            Command::Models(command) => self.change_models(command, context),
             Command::Evaluate => self.evaluate(context),
             Command::CancelEvaluation => self.session.force.evaluation.cancel(),
             Command::ShowTraining(network) => {

@@ -34,6 +34,8 @@ pub enum Purpose {
     OpenModel,
     /// A file for the current model of a network.
     SaveModel(Network),
+    /// A file for a copy of a kept model.
+    SaveKept(Network, PathBuf),
     /// A `comparison.json` file to open.
     OpenComparison,
     /// A folder for the comparison of response models.
@@ -55,7 +57,7 @@ impl Purpose {
             Self::Scenario => "Save the scenario",
             Self::Vehicle(_) => "Save the vehicle",
             Self::OpenModel => "Open a model",
-            Self::SaveModel(_) => "Save the model",
+            Self::SaveModel(_) | Self::SaveKept(..) => "Save the model",
             Self::OpenComparison => "Open a comparison",
             Self::SaveComparison => "A folder for the comparison",
             Self::SaveCase => "Save the case",
@@ -71,7 +73,7 @@ impl Purpose {
             Self::Numbers(figure) => return file_stem(&figure.title) + ".csv",
             Self::Scenario => "scenario.toml",
             Self::Vehicle(sheet) => return file_stem(&sheet.name) + ".toml",
-            Self::SaveModel(network) => network.file_name(),
+            Self::SaveModel(network) | Self::SaveKept(network, _) => network.file_name(),
             Self::SaveComparison => "comparison",
             Self::SaveCase => "case.impactlab",
             Self::PackCase => "case.zip",
@@ -107,6 +109,9 @@ impl Purpose {
             }
             Self::SaveModel(network) => {
                 written(MODEL_ENDING, &|path| Command::SaveModel(*network, path))
+            }
+            Self::SaveKept(_, kept) => {
+                written(MODEL_ENDING, &|path| Command::SaveKept(kept.clone(), path))
             }
             Self::SaveCase => written(CASE_ENDING, &Command::SaveCaseAs),
             Self::PackCase => written("zip", &Command::PackCase),
@@ -192,7 +197,9 @@ async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
             dialog.add_filter("comparison.json", &["json"]).pick_file().await
         }
         Purpose::OpenModel => dialog.add_filter("model", &[MODEL_ENDING]).pick_file().await,
-        Purpose::SaveModel(_) => save(dialog.add_filter("model", &[MODEL_ENDING]), name).await,
+        Purpose::SaveModel(_) | Purpose::SaveKept(..) => {
+            save(dialog.add_filter("model", &[MODEL_ENDING]), name).await
+        }
         Purpose::Picture(_) => save(dialog.add_filter("picture", &["png"]), name).await,
         Purpose::Numbers(_) => save(dialog.add_filter("table", &["csv"]), name).await,
         Purpose::Vehicle(_) => save(dialog.add_filter("vehicle", &["toml"]), name).await,

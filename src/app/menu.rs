@@ -8,6 +8,7 @@ use crate::app::command::{Command, ComparisonCommand};
 use crate::app::dialogs::Purpose;
 use crate::app::keyboard;
 use crate::app::network::Network;
+use crate::app::panels;
 use crate::app::panes::Pane;
 use crate::app::source::{Content, Source};
 use crate::app::state::{Session, State};
@@ -223,6 +224,7 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         if state.session.shows_frame_times {
             ui.weak(state.session.frame_times.text());
         }
+        panels::interrupted_ui(ui, &state.session, commands);
         let Some(latest) = state.session.messages.last() else {
             ui.weak("Ready. Drop a folder or a file here to open it.");
             return;

@@ -9,11 +9,13 @@ mod case_table;
 mod chain;
 mod command;
 mod contents;
+mod cost;
 mod dialogs;
 mod export;
 mod force;
 mod frame_times;
 mod import;
+mod kept;
 mod keyboard;
 mod latest;
 mod licences;
@@ -36,12 +38,13 @@ mod state;
 mod store;
 mod training;
 mod training_status;
+mod unfinished;
 mod update;
 mod variants;
 mod widgets;
 mod workspaces;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use eframe::CreationContext;
@@ -56,9 +59,11 @@ use crate::render::{DensityGpu, theme};
 
 pub use case::{Leaving, OpenCase, VariantCommand};
 pub use chain::Link;
-pub use command::{Command, ComparisonCommand, TrainingCommand};
+pub use command::{Command, ComparisonCommand, ModelsCommand, TrainingCommand};
 pub use contents::{ContentsEntry, Group};
+pub use cost::{CostPlace, Costs};
 pub use force::ForceSession;
+pub use kept::{KeptEntry, KeptKind, KeptStatus, ModelsDialog, Removal};
 pub use latest::Latest;
 pub use network::Network;
 pub use panes::Pane;
@@ -68,6 +73,7 @@ pub use replay::ReplayStatus;
 pub use response::{DensityChoice, ForceChoice, MotionAnswer, ResponseSession, TrainingMode};
 pub use source::{Content, Source};
 pub use state::{FileStart, Project, RestoreError, State, Subject, View};
+pub use unfinished::{Unfinished, UnfinishedTrainings};
 pub use variants::AnsweredVariant;
 pub use workspaces::{Layout, Workspace, Workspaces};
 
@@ -78,9 +84,6 @@ const ICON: &[u8] = include_bytes!("../../assets/desktop/impactlab.png");
 const APP_ID: &str = "impactlab";
 /// Name of the file that stores the project and the view between runs.
 const STATE_FILE: &str = "state.json";
-/// Names of the files, beside the state file, that store the state of a running training: of the
-/// force network and of the response network.
-const TRAINING_FILES: [&str; 2] = ["force-training.safetensors", "response-training.safetensors"];
 
 /// The window could not be opened, with the message of the windowing system.
 #[derive(Debug, thiserror::Error)]
@@ -136,9 +139,8 @@ impl App {
     ///   keeps its state there, or if it was written by a later version of the program, nothing is
     ///   stored either, and a message says so.
     pub fn new(cc: &CreationContext<'_>, paths: Vec<PathBuf>, state_file: Option<PathBuf>) -> Self {
+        let data_folder = state_file.as_deref().and_then(Path::parent).map(Path::to_owned);
         let OpenedState { store, restored, message } = open_state(state_file);
-        let beside = |name| Some(store.as_ref()?.path().with_file_name(name));
-        let [force, response] = TRAINING_FILES.map(beside);
         let (is_asked, is_restored) = (!paths.is_empty(), restored.is_some());
         let (mut state, last_open) = restored.unwrap_or_default();
         if let Some(message) = message {
@@ -149,8 +151,10 @@ impl App {
             (true, false) => last_open,
             (true, true) => shipped_datasets().into_iter().collect(),
         };
-        state.session.force.checkpoint = force;
-        state.session.response.checkpoint = response;
+        if let Some(folder) = data_folder {
+            // Trainings are stored by the window that stores its state.
+            state.open_data_folder((folder, store.is_some()), &cc.egui_ctx);
+        }
         state.session.response.gpu = graphics_processor(cc);
         if to_open.is_empty() && state.project.subject.is_none() {
             state.project.subject = Some(Subject::Scenario);
@@ -243,6 +247,7 @@ impl eframe::App for App {
         self.replace_ui(ui, &mut commands);
         self.leaving_ui(ui, &mut commands);
         self.path_ui(ui, &mut commands);
+        self.models_dialog_ui(ui, &mut commands);
         menu::drop_hint_ui(ui);
         for command in commands {
             self.apply(command, ui.ctx());
@@ -329,6 +334,17 @@ impl App {
             let response = modal.show(ui.ctx(), |ui| case::leaving_ui(ui, &self.state, commands));
             if response.should_close() && commands.is_empty() {
                 commands.push(Command::Stay);
+            }
+        }
+    }
+
+    fn models_dialog_ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        if let Some(dialog) = &mut self.state.session.models_dialog {
+            let modal = egui::Modal::new(egui::Id::unique("models dialog"));
+            let show = |ui: &mut Ui| panels::models_dialog_ui(ui, dialog, commands);
+            let response = modal.show(ui.ctx(), show);
+            if response.should_close() && commands.is_empty() {
+                commands.push(Command::Models(ModelsCommand::CloseDialog));
             }
         }
     }

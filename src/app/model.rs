@@ -4,10 +4,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::app::kept::{KeptEntry, KeptError, KeptFolder, NOTE_ENDING, name_of};
 use crate::app::network::TrainedModel;
 use crate::data::Existing;
 use crate::error_chain;
 use crate::jobs::Job;
+use crate::shipped::ModelSource;
 use crate::study::{Library, ModelChoice};
 
 /// A model in use or ready for use, and its origin.
@@ -28,6 +30,13 @@ struct Saving<M> {
     job: Job<Result<PathBuf, String>>,
 }
 
+/// A model that is being kept in the user's data folder.
+struct Keeping<M> {
+    model: Arc<M>,
+    /// Why the model is not kept, with its name.
+    job: Job<Result<(KeptEntry, PathBuf), String>>,
+}
+
 /// The state of the model of one network: the model in use, the one that is being loaded or saved,
 /// and the one that a cancelled training has left.
 pub struct ModelStatus<M> {
@@ -36,6 +45,7 @@ pub struct ModelStatus<M> {
     requested: Option<Option<PathBuf>>,
     job: Option<Job<Result<CurrentModel<M>, String>>>,
     saving: Option<Saving<M>>,
+    keeping: Vec<Keeping<M>>,
     /// Number of models that trainings have given since the start of the program.
     n_trained: usize,
     /// The model that answers questions; `None` before the first one is loaded.
@@ -55,6 +65,7 @@ impl<M> Default for ModelStatus<M> {
             requested: None,
             job: None,
             saving: None,
+            keeping: Vec::new(),
             n_trained: 0,
             current: None,
             set_aside: None,
@@ -104,8 +115,14 @@ impl<M: TrainedModel> ModelStatus<M> {
     ///
     /// - `name`: description of the training, shown to the user; a number is appended from the
     ///   second training on;
-    /// - `is_used`: whether the model answers questions from now on; otherwise it is set aside.
-    pub fn take_trained(&mut self, model: M, name: String, (library, is_used): (&Library, bool)) {
+    /// - `is_used`: whether the model answers questions from now on; otherwise it is set aside;
+    /// - returns the model and the name that it has got.
+    pub fn take_trained(
+        &mut self,
+        model: M,
+        name: String,
+        (library, is_used): (&Library, bool),
+    ) -> (Arc<M>, String) {
         self.n_trained += 1;
         // The library identifies a model by its name. Two models of the same name would make the
         // answers of one pass for those of the other.
@@ -115,19 +132,117 @@ impl<M: TrainedModel> ModelStatus<M> {
         };
         let (choice, model) = (ModelChoice::held(&name), Arc::new(model));
         M::hold(library, choice.clone(), Arc::clone(&model));
+        let taken = (Arc::clone(&model), name.clone());
         self.set_aside = Some(CurrentModel { choice, model, name, is_saved: false });
         if is_used {
             self.use_trained();
         }
+        taken
+    }
+
+    /// Starts to keep a model that was just trained in the user's data folder. Once it is kept, its
+    /// training cannot be lost any more, and the checkpoint of a completed training is removed.
+    ///
+    /// - `draft`: its note;
+    /// - `checkpoint`: the files of the training, if this window stores any;
+    /// - `wake`: called when it is kept.
+    ///
+    /// # Errors
+    /// The error of the operating system, if the thread cannot be started.
+    pub fn keep(
+        &mut self,
+        (model, draft): (Arc<M>, KeptEntry),
+        (folder, checkpoint): (KeptFolder, Option<PathBuf>),
+        wake: impl Fn() + Send + 'static,
+    ) -> std::io::Result<()> {
+        let written = Arc::clone(&model);
+        let job = Job::spawn("keep model", wake, move |_| {
+            let (name, is_complete) = (draft.name.clone(), !draft.is_cancelled);
+            let entry = keep(&*written, draft, &folder)
+                .map_err(|error| format!("{name} is not kept: {}", error_chain(&error)))?;
+            for file in checkpoint.filter(|_| is_complete).iter() {
+                // What cannot be removed is offered as a training that can go on, to its end.
+                let _ = std::fs::remove_file(file);
+                let _ = std::fs::remove_file(file.with_extension(NOTE_ENDING));
+            }
+            let path = folder.path_of(&entry);
+            Ok((entry, path))
+        })?;
+        self.keeping.push(Keeping { model, job });
+        Ok(())
+    }
+
+    /// Whether a model is being kept.
+    pub fn is_keeping(&self) -> bool {
+        !self.keeping.is_empty()
+    }
+
+    /// Returns the name of a model that is in no file: the one in use or the one that was set aside.
+    pub fn unsaved(&self) -> Option<&str> {
+        let mut models = [&self.current, &self.set_aside].into_iter().flatten();
+        models.find(|model| !model.is_saved).map(|model| model.name.as_str())
+    }
+
+    /// Returns the note of a model that has just been kept, or why it could not be; `None` otherwise.
+    /// The model is identified by its file from then on.
+    ///
+    /// - `wanted`: file of the model that the project requests, which becomes that of the kept one
+    ///   if it is in use.
+    pub fn poll_keeping(
+        &mut self,
+        library: &Library,
+        wanted: &mut Option<PathBuf>,
+    ) -> Option<Result<KeptEntry, String>> {
+        let poll = |keeping: &mut Keeping<M>| keeping.job.poll().into_result("the writer");
+        let (idx, result) = self
+            .keeping
+            .iter_mut()
+            .enumerate()
+            .find_map(|(idx, keeping)| Some((idx, poll(keeping)?)))?;
+        let Keeping { model, .. } = self.keeping.remove(idx);
+        Some(result.map(|(entry, path)| {
+            self.identify((&model, &path), entry.name.clone(), (library, wanted));
+            entry
+        }))
+    }
+
+    /// Identifies a model by a file that holds it from now on, also if it is not in use.
+    fn identify(
+        &mut self,
+        (model, path): (&Arc<M>, &Path),
+        name: String,
+        (library, wanted): (&Library, &mut Option<PathBuf>),
+    ) {
+        let choice = ModelChoice::file(path);
+        let is_it = |of: &&mut CurrentModel<M>| Arc::ptr_eq(&of.model, model);
+        if let Some(current) = self.current.as_mut().filter(is_it) {
+            *wanted = Some(path.to_owned());
+            self.requested = Some(wanted.clone());
+            current.choice = choice.clone();
+            (current.name, current.is_saved) = (name, true);
+        } else if let Some(set_aside) = self.set_aside.as_mut().filter(is_it) {
+            set_aside.choice = choice.clone();
+            (set_aside.name, set_aside.is_saved) = (name, true);
+        }
+        M::hold(library, choice, Arc::clone(model));
     }
 
     /// Puts the model that was set aside into use and stops loading another one.
-    pub fn use_trained(&mut self) {
-        if let Some(trained) = self.set_aside.take() {
-            self.job = None;
-            self.problem = None;
-            self.current = Some(trained);
+    ///
+    /// - returns the file that holds it, if there is one: what the project requests from now on.
+    pub fn use_trained(&mut self) -> Option<PathBuf> {
+        let trained = self.set_aside.take()?;
+        self.job = None;
+        self.problem = None;
+        let path = match &trained.choice {
+            ModelChoice::Source(ModelSource::File(path)) => Some(path.clone()),
+            _ => None,
+        };
+        if path.is_some() {
+            self.requested = Some(path.clone());
         }
+        self.current = Some(trained);
+        path
     }
 
     /// Makes the next update read the requested file again.
@@ -175,25 +290,28 @@ impl<M: TrainedModel> ModelStatus<M> {
         let result = self.saving.as_mut()?.job.poll().into_result("the writer")?;
         let model = self.saving.take()?.model;
         if let Ok(path) = &result {
-            let choice = ModelChoice::file(path);
-            let in_use = self.current.as_mut().filter(|of| Arc::ptr_eq(&of.model, &model));
-            if let Some(current) = in_use {
-                *wanted = Some(path.clone());
-                self.requested = Some(wanted.clone());
-                current.choice = choice.clone();
-                (current.name, current.is_saved) = (file_name(path), true);
-            }
-            M::hold(library, choice, model);
+            self.identify((&model, path), file_name(path), (library, wanted));
         }
         Some(result)
     }
+}
+
+/// Writes a model into the folder of kept models.
+fn keep<M: TrainedModel>(
+    model: &M,
+    draft: KeptEntry,
+    folder: &KeptFolder,
+) -> Result<KeptEntry, KeptError> {
+    let sha256 = model.digest().map_err(KeptError::Content)?;
+    let write = |path: &Path| model.write(path, Existing::Replace).map_err(KeptError::Content);
+    folder.put(KeptEntry { sha256, ..draft }, write)
 }
 
 fn load<M: TrainedModel>(
     path: Option<PathBuf>,
     library: &Library,
 ) -> Result<CurrentModel<M>, String> {
-    let name = path.as_deref().map(file_name);
+    let name = path.as_deref().map(|path| name_of(path).unwrap_or_else(|| file_name(path)));
     let choice = path.map_or_else(ModelChoice::default, ModelChoice::file);
     let name = name.unwrap_or_else(|| choice.to_string());
     match M::of_library(library, &choice) {
@@ -211,7 +329,6 @@ pub fn file_name(path: &Path) -> String {
 mod tests {
     use super::*;
     use crate::force::ForceModel;
-    use crate::shipped::ModelSource;
 
     #[test]
     fn a_model_that_comes_into_use_while_another_is_written_is_not_taken_for_the_written_one() {

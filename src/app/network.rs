@@ -5,15 +5,17 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::app::kept::{Fact, differences};
 use crate::data::Existing;
 use crate::error_chain;
-use crate::force::ForceModel;
+use crate::force::{ForceConfig, ForceModel};
 use crate::learning::{EpochRecord, EpochSummary, ModelFile};
-use crate::response::ResponseModel;
+use crate::response::{ResponseConfig, ResponseModel};
 use crate::study::{
     Assumption, Library, ModelChoice, ResponseTrainingAnswer, ResponseTrainingReport, StudyError,
     TrainForceAnswer, TrainForceReport,
 };
+use crate::units::significant;
 
 /// One of the two networks.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -91,6 +93,21 @@ pub trait TrainedModel: Sized + Send + Sync + 'static {
     /// the training.
     fn notes(report: &Self::Report) -> (&[String], &[Assumption]);
 
+    /// Returns the duration of a training, s.
+    fn seconds(report: &Self::Report) -> f64;
+
+    /// Returns the SHA-256 of the file that [`write`](Self::write) writes, hexadecimal.
+    ///
+    /// # Errors
+    /// A message for the user, if the content of the file cannot be made.
+    fn digest(&self) -> Result<String, String>;
+
+    /// Returns what is known of the training in numbers.
+    fn facts(&self) -> Vec<Fact>;
+
+    /// Returns the settings that are not the usual ones.
+    fn settings(&self) -> Vec<Fact>;
+
     /// Returns the name of the data that the model was trained on.
     fn data(&self) -> &str;
 
@@ -126,6 +143,40 @@ impl TrainedModel for ForceModel {
 
     fn notes(report: &TrainForceReport) -> (&[String], &[Assumption]) {
         (&report.left_out, &report.assumptions)
+    }
+
+    fn seconds(report: &TrainForceReport) -> f64 {
+        report.seconds
+    }
+
+    fn digest(&self) -> Result<String, String> {
+        self.sha256().map_err(|error| error_chain(&error))
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        let record = self.record();
+        let (n_train, n_validation) = (record.train.len(), record.detail.validation.len());
+        let best = record.detail.best_epoch.checked_sub(1).and_then(|idx| record.history.get(idx));
+        let loss = best
+            .map(|epoch| Fact::new("Validation loss", significant(epoch.detail.validation.total)));
+        let mut facts = vec![
+            Fact::new("Cases learned from", n_train),
+            Fact::new("Cases for validation", n_validation),
+            Fact::new("Cases kept for the test", record.test.len()),
+            Fact::new(
+                "Best epoch",
+                format!("{} of {}", record.detail.best_epoch, record.history.len()),
+            ),
+        ];
+        facts.extend(loss);
+        facts.push(Fact::new("Weights", self.n_parameters()));
+        facts.push(Fact::new("Seed", record.seed));
+        facts.push(Fact::new("Program", &record.version));
+        facts
+    }
+
+    fn settings(&self) -> Vec<Fact> {
+        differences(self.config(), &ForceConfig::default())
     }
 
     fn data(&self) -> &str {
@@ -165,6 +216,43 @@ impl TrainedModel for ResponseModel {
 
     fn notes(report: &ResponseTrainingReport) -> (&[String], &[Assumption]) {
         (&report.left_out, &report.assumptions)
+    }
+
+    fn seconds(report: &ResponseTrainingReport) -> f64 {
+        report.seconds
+    }
+
+    fn digest(&self) -> Result<String, String> {
+        self.sha256().map_err(|error| error_chain(&error))
+    }
+
+    fn facts(&self) -> Vec<Fact> {
+        let record = self.record();
+        let mut facts = vec![
+            Fact::new("Simulations learned from", record.detail.n_simulated),
+            Fact::new("Trajectories learned from", record.train.len()),
+            Fact::new("Trajectories kept for the test", record.test.len()),
+        ];
+        // What is uncertain is known of a fleet by its cars, of a single car by its trajectories.
+        facts.push(match (self.population(), self.latents().n_calibrated) {
+            (Some(population), _) => Fact::new("Cars that it knows", population.cars().len()),
+            (None, 0) => Fact::new("Uncertainty", "not calibrated"),
+            (None, n) if record.detail.keeps_latents => {
+                Fact::new("Uncertainty calibrated on", format!("{n} trajectories, model before"))
+            }
+            (None, n) => Fact::new("Uncertainty calibrated on", format!("{n} trajectories")),
+        });
+        facts.push(Fact::new("Epochs", record.history.len()));
+        let last = record.history.last().map(|epoch| significant(epoch.detail.loss.total));
+        facts.extend(last.map(|loss| Fact::new("Last loss", loss)));
+        facts.push(Fact::new("Weights", self.n_parameters()));
+        facts.push(Fact::new("Seed", record.seed));
+        facts.push(Fact::new("Program", &record.version));
+        facts
+    }
+
+    fn settings(&self) -> Vec<Fact> {
+        differences(self.config(), &ResponseConfig::default())
     }
 
     fn data(&self) -> &str {

@@ -172,8 +172,16 @@ impl State {
     /// Puts the model of a cancelled training, which was set aside, into use.
     pub(super) fn use_trained(&mut self, network: Network) {
         match network {
-            Network::Force => self.session.force.model.use_trained(),
-            Network::Response => self.session.response.model.use_trained(),
+            Network::Force => {
+                if let Some(path) = self.session.force.model.use_trained() {
+                    self.project.force.model = Some(path);
+                }
+            }
+            Network::Response => {
+                if let Some(path) = self.session.response.model.use_trained() {
+                    self.project.response.model = Some(path);
+                }
+            }
         }
     }
 

@@ -41,6 +41,8 @@ pub enum Pane {
     MotionForecast,
     /// The variants of the case side by side.
     Variants,
+    /// Models in use, work under way, and what has been finished.
+    Models,
     /// The training of either network.
     Training,
     /// The evaluation of the force network on a data set.
@@ -51,7 +53,7 @@ pub enum Pane {
 
 impl Pane {
     /// Every pane, in the order of the menu.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Case,
         Self::Data,
         Self::Cases,
@@ -64,6 +66,7 @@ impl Pane {
         Self::ForcePrediction,
         Self::MotionForecast,
         Self::Variants,
+        Self::Models,
         Self::Training,
         Self::Evaluation,
         Self::ModelComparison,
@@ -89,6 +92,7 @@ impl Pane {
             Self::ForcePrediction => "Force prediction",
             Self::MotionForecast => "Motion forecast",
             Self::Variants => "Variants",
+            Self::Models => "Models",
             Self::Training => "Training",
             Self::Evaluation => "Force evaluation",
             Self::ModelComparison => "Compare models",
@@ -132,6 +136,7 @@ impl Behavior<Pane> for PaneContext<'_> {
                 Pane::ForcePrediction => panels::prediction_ui(ui, self),
                 Pane::MotionForecast => panels::motion_forecast_ui(ui, self),
                 Pane::Variants => panels::variants_ui(ui, self),
+                Pane::Models => panels::models_ui(ui, self),
                 Pane::Training => panels::training_ui(ui, self),
                 Pane::Evaluation => panels::evaluation_ui(ui, self),
                 Pane::ModelComparison => panels::model_comparison_ui(ui, self),

@@ -19,6 +19,7 @@ impl Command {
             | Self::SaveScenario(path)
             | Self::SaveVehicle(_, path)
             | Self::SaveModel(_, path)
+            | Self::SaveKept(_, path)
             | Self::SaveCaseAs(path)
             | Self::PackCase(path)
             | Self::Compare(ComparisonCommand::Save(path)) => Some(path),
@@ -62,6 +63,7 @@ impl State {
             Command::SaveModel(network, path) => {
                 self.save_model(network, (path, existing), context);
             }
+            Command::SaveKept(kept, path) => self.copy_kept((kept, path), existing, context),
             Command::Compare(ComparisonCommand::Save(folder)) => {
                 self.save_comparison((folder, existing), context);
             }

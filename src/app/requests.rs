@@ -155,9 +155,7 @@ impl State {
                 config: config(&form.config),
                 seed: form.seed,
                 bad_cases: form.bad_cases,
-                checkpoint: self.session.force.checkpoint.clone(),
-                resume: form.resume,
-                overwrite: true, // The window's own files, which nobody has named.
+                ..TrainingOptions::default() // The window chooses the checkpoint at the start.
             },
         }
     }
@@ -174,9 +172,7 @@ impl State {
                 config: config(&form.config),
                 seed: form.seed,
                 bad_cases: form.bad_cases,
-                checkpoint: self.session.response.checkpoint.clone(),
-                resume: form.resume,
-                overwrite: true, // The window's own files, which nobody has named.
+                ..TrainingOptions::default() // The window chooses the checkpoint at the start.
             },
         }
     }
@@ -207,9 +203,7 @@ impl State {
                 config: config(&form.config),
                 seed: form.seed,
                 bad_cases: form.bad_cases,
-                checkpoint: self.session.response.checkpoint.clone(),
-                resume: form.resume,
-                overwrite: true, // The window's own files, which nobody has named.
+                ..TrainingOptions::default() // The window chooses the checkpoint at the start.
             },
             ..FineTuneRequest::default()
         })

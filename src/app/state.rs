@@ -11,10 +11,12 @@ use crate::analysis::PulseSetup;
 use crate::app::case::{Leaving, OpenCase, SavedCase};
 use crate::app::case_table::CaseList;
 use crate::app::command::Command;
+use crate::app::cost::Costs;
 use crate::app::dialogs::FileDialog;
 use crate::app::force::{ForceProject, ForceSession, ForceView};
 use crate::app::frame_times::FrameTimes;
 use crate::app::import::{ColumnMaps, ImportDialog};
+use crate::app::kept::{KeptStatus, ModelsDialog};
 use crate::app::latest::Latest;
 use crate::app::network::Network;
 use crate::app::path_dialog::PathDialog;
@@ -22,6 +24,7 @@ use crate::app::recording::OverlaidRecording;
 use crate::app::replay::Replays;
 use crate::app::response::{DensityChoice, ResponseProject, ResponseSession, ResponseView};
 use crate::app::source::Source;
+use crate::app::unfinished::UnfinishedTrainings;
 use crate::app::variants::OtherVariants;
 use crate::app::widgets::BetweenCursors;
 use crate::app::workspaces::Workspaces;
@@ -230,6 +233,14 @@ pub struct Session {
     pub force: ForceSession,
     /// Model, forecast, training and comparison of the response network.
     pub response: ResponseSession,
+    /// Models, comparisons and evaluations that are kept in the user's data folder.
+    pub kept: KeptStatus,
+    /// Trainings that have not ended and can go on.
+    pub unfinished: UnfinishedTrainings,
+    /// What the work of the forms will cost.
+    pub costs: Costs,
+    /// The question of the Models pane that waits for an answer.
+    pub models_dialog: Option<ModelsDialog>,
     /// The cases that the case table lists, in their order.
     pub cases: CaseList,
     /// The time that is shown in the scene, s.
@@ -289,6 +300,7 @@ impl Session {
             || self.replacing.is_some()
             || self.leaving.is_some()
             || self.path_dialog.is_some()
+            || self.models_dialog.is_some()
             || self.shows_licences
             || self.shows_log
     }

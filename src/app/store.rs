@@ -78,11 +78,6 @@ impl Store {
         Ok(Self { path, _lock: lock, written: String::new(), pending: None, job: None })
     }
 
-    /// Returns the file.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
     /// Restores the state that is in the file.
     fn restore(mut self) -> OpenedState {
         let why = match read_utf8(&self.path, MAX_RESULTS_BYTES) {

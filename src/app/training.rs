@@ -8,6 +8,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use crate::app::unfinished::TrainingDiary;
 use crate::data::Outcome;
 use crate::error_chain;
 use crate::jobs::{Job, Progress, ProgressCallback};
@@ -45,6 +46,8 @@ struct Gate {
 #[derive(Default)]
 struct GateState {
     is_closed: bool,
+    /// Whether the user has cancelled the training, as opposed to closing the window.
+    is_given_up: bool,
     /// Whether a thread is waiting at the gate.
     is_held: bool,
 }
@@ -57,6 +60,16 @@ impl Gate {
     fn set_closed(&self, is_closed: bool) {
         self.state().is_closed = is_closed;
         self.changed.notify_all();
+    }
+
+    /// Opens the gate for a training that the user has cancelled.
+    fn give_up(&self) {
+        self.state().is_given_up = true;
+        self.set_closed(false);
+    }
+
+    fn is_given_up(&self) -> bool {
+        self.state().is_given_up
     }
 
     fn is_closed(&self) -> bool {
@@ -88,7 +101,7 @@ impl<A> Drop for Training<A> {
 
 impl<A: Send + 'static> Training<A> {
     fn start<Q: Question<Answer = A>>(
-        question: Q,
+        (question, mut diary): (Q, Option<TrainingDiary>),
         library: Arc<Library>,
         wake: impl Fn() + Send + 'static,
     ) -> std::io::Result<Self> {
@@ -96,8 +109,20 @@ impl<A: Send + 'static> Training<A> {
         let gate = Arc::new(Gate::default());
         let own_gate = Arc::clone(&gate);
         let job = Job::spawn_in_background(Q::NAME, wake, move |report| {
-            let mut observer = |event: Event<'_>| tell(&event, (&sender, &own_gate), report);
-            question.answer(&library, &mut observer).map_err(|error| error_chain(&error))
+            if let Some(diary) = &diary {
+                diary.begin()?;
+            }
+            let mut observer = |event: Event<'_>| {
+                if let (Event::Training(told), Some(diary)) = (&event, &mut diary) {
+                    diary.told(told);
+                }
+                tell(&event, (&sender, &own_gate), report)
+            };
+            let answer = question.answer(&library, &mut observer);
+            if let Some(diary) = diary {
+                diary.end(own_gate.is_given_up());
+            }
+            answer.map_err(|error| error_chain(&error))
         })?;
         Ok(Self { job, reports, gate })
     }
@@ -161,7 +186,7 @@ impl<A> TrainingSlot<A> {
     pub fn cancel(&self) {
         if let Some(training) = &self.0 {
             training.job.cancel();
-            training.gate.set_closed(false);
+            training.gate.give_up();
         }
     }
 }
@@ -169,17 +194,18 @@ impl<A> TrainingSlot<A> {
 impl<A: Send + 'static> TrainingSlot<A> {
     /// Starts a training. A training that is still running is cancelled and its result dropped.
     ///
+    /// - `diary`: writes the note beside the checkpoint; `None` if there is no checkpoint;
     /// - `wake`: called after every report and at the end.
     ///
     /// # Errors
     /// The error of the operating system, if the thread cannot be started.
     pub fn start<Q: Question<Answer = A>>(
         &mut self,
-        question: Q,
+        (question, diary): (Q, Option<TrainingDiary>),
         library: &Arc<Library>,
         wake: impl Fn() + Send + 'static,
     ) -> std::io::Result<()> {
-        self.0 = Some(Training::start(question, Arc::clone(library), wake)?);
+        self.0 = Some(Training::start((question, diary), Arc::clone(library), wake)?);
         Ok(())
     }
 

@@ -1,10 +1,14 @@
 //! The state of a training of either network, as the window shows it.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
+use crate::app::kept::{Fact, KeptEntry, KeptKind};
 use crate::app::network::TrainedModel;
 use crate::app::training::{TrainingEnd, TrainingSlot, time_left};
+use crate::app::unfinished::{TrainingDiary, training_options};
+use crate::app::widgets::duration_text;
 use crate::learning::{EpochSummary, TrainingReport};
 use crate::study::{Library, Question, Request};
 
@@ -33,6 +37,8 @@ pub struct TrainingStatus<M: TrainedModel> {
     pub problem: Option<String>,
     /// The name of the data, shown to the user.
     pub data: String,
+    /// The checkpoint of the training, if this window stores any.
+    pub checkpoint: Option<PathBuf>,
 }
 
 impl<M: TrainedModel> Default for TrainingStatus<M> {
@@ -48,6 +54,7 @@ impl<M: TrainedModel> Default for TrainingStatus<M> {
             seconds: Vec::new(),
             problem: None,
             data: String::new(),
+            checkpoint: None,
         }
     }
 }
@@ -56,18 +63,21 @@ impl<M: TrainedModel> TrainingStatus<M> {
     /// Starts a training. A training that is still running is cancelled and its result dropped.
     ///
     /// - `data`: name of the data, shown to the user;
+    /// - `diary`: writes the note beside the checkpoint; `None` if there is no checkpoint;
     /// - `wake`: called after every report and at the end.
     ///
     /// # Errors
     /// The error of the operating system, if the thread cannot be started.
     pub fn start<Q: Question<Answer = M::Answer> + Into<Request>>(
         &mut self,
-        question: Q,
+        (question, diary): (Q, Option<TrainingDiary>),
         (data, library): (String, &Arc<Library>),
         wake: impl Fn() + Send + 'static,
     ) -> std::io::Result<()> {
-        *self = Self { data, request: Some(question.clone().into()), ..Self::default() };
-        self.run.start(question, library, wake)
+        let checkpoint = diary.as_ref().map(|diary| diary.checkpoint().to_owned());
+        let request = Some(question.clone().into());
+        *self = Self { data, request, checkpoint, ..Self::default() };
+        self.run.start((question, diary), library, wake)
     }
 
     /// Receives the reports. When the training has ended, returns the model and whether the
@@ -108,6 +118,24 @@ impl<M: TrainedModel> TrainingStatus<M> {
             }
         }
         self.latest = Some(report);
+    }
+
+    /// Returns the note with which a model that the training has just given is kept.
+    ///
+    /// - `name`: what the model is called;
+    /// - `is_complete`: whether the training was completed; otherwise it was cancelled.
+    pub fn kept_note(&self, model: &M, name: String, is_complete: bool) -> Option<KeptEntry> {
+        let (report, mut question) = (self.report.as_ref()?, self.request.clone()?);
+        if let Some(options) = training_options(&mut question) {
+            (options.checkpoint, options.resume) = (None, false); // Those of a finished training.
+        }
+        let kind = KeptKind::from(M::NETWORK);
+        let mut entry = KeptEntry::new(kind, (name, model.data().to_owned()), question);
+        entry.is_cancelled = !is_complete;
+        (entry.figures, entry.settings) = (model.facts(), model.settings());
+        let time = Duration::try_from_secs_f64(M::seconds(report)).unwrap_or_default();
+        entry.figures.push(Fact::new("Time", duration_text(time)));
+        Some(entry)
     }
 
     /// Returns the share that is done, 0 to 1, and the remaining time at the pace of the latest

@@ -41,6 +41,8 @@ impl State {
         self.update_force(context);
         self.update_response(context);
         self.update_variants(context);
+        self.update_kept(context);
+        self.update_costs(context);
         self.advance_time(context);
         if self.session.is_waiting() {
             context.request_repaint_after(WAITING_REPAINT);

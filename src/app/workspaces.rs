@@ -193,7 +193,7 @@ fn data_layout() -> Layout {
 fn models_layout() -> Layout {
     let mut build = Builder(Tiles::default());
     let data = build.tabs(&[Pane::Data]);
-    let work = build.tabs(&[Pane::Training, Pane::Evaluation, Pane::ModelComparison]);
+    let work = build.tabs(&[Pane::Models, Pane::Training, Pane::Evaluation, Pane::ModelComparison]);
     let root = build.linear(LinearDir::Horizontal, &[(data, 0.22), (work, 0.78)]);
     build.layout("model panes", root)
 }

@@ -37,6 +37,6 @@ pub use physics::{CentreCurve, CentreFit, CentreModel, MomentumModel, regression
 pub use predict::ForcePrediction;
 pub use regression::ColumnSet;
 pub use train::{
-    ForceEpoch, ForceModel, ForceRecord, ForceTrainSettings, ForceTraining, ForceTrainingSet,
-    LossTerms, VarianceFactors, fit_physics, train, train_around,
+    FORCE_CHECKPOINT, ForceEpoch, ForceModel, ForceRecord, ForceTrainSettings, ForceTraining,
+    ForceTrainingSet, LossTerms, VarianceFactors, fit_physics, train, train_around,
 };

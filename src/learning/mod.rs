@@ -43,5 +43,5 @@ pub use report::{
 pub use setting::{check_relation, check_settings, load_settings};
 pub use split::{Split, TEST_SHARE, folds, split};
 pub use train_settings::TrainSettings;
-pub use training_file::{SavedTraining, TrainingFile};
+pub use training_file::{SavedTraining, TrainingFile, stored_epochs};
 pub use training_set::TrainingSet;

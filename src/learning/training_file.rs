@@ -1,9 +1,9 @@
 //! A training on disk, so that it survives being killed.
 
 use std::error::Error;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use serde::de::DeserializeOwned;
+use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Serialize};
 
 use crate::data::Existing;
@@ -181,4 +181,15 @@ impl<E: Serialize + DeserializeOwned> SavedTraining<E> {
         file.put_group("moments", self.optimizer.moments);
         Ok(())
     }
+}
+
+/// Number of epochs in the history of the checkpoint of a training of either network.
+///
+/// - `kind`: what the checkpoint holds.
+///
+/// # Errors
+/// [`LearningError::Network`] if the file cannot be read or has no history.
+pub fn stored_epochs(path: &Path, kind: ModelKind) -> Result<usize, LearningError> {
+    let file = Checkpoint::read(path, kind)?;
+    Ok(file.get::<Vec<IgnoredAny>>("history")?.len())
 }

@@ -38,7 +38,7 @@ pub use predict::{
     SettledMotion, StateDistribution, Widths,
 };
 pub use train::{
-    ImpactRecord, ResponseCase, ResponseCaseError, ResponseEpoch, ResponseRecord, ResponseStage,
-    ResponseTrainSettings, ResponseTraining, ResponseTrainingSet, UnseenCars, condition, fine_tune,
-    learn_population, pretrain, train_fleet,
+    ImpactRecord, RESPONSE_CHECKPOINT, ResponseCase, ResponseCaseError, ResponseEpoch,
+    ResponseRecord, ResponseStage, ResponseTrainSettings, ResponseTraining, ResponseTrainingSet,
+    UnseenCars, condition, fine_tune, learn_population, pretrain, train_fleet,
 };

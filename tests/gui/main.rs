@@ -7,6 +7,7 @@ mod density_gpu;
 mod force_network;
 mod harness;
 mod import;
+mod models;
 mod network_figures;
 mod pictures;
 mod response_network;

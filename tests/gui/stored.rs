@@ -106,7 +106,7 @@ fn a_second_window_says_that_it_stores_nothing_and_stores_nothing() {
     assert!(text.contains("what is changed in this window will not be kept"), "{text}");
     assert!(text.contains(&who) && text.contains("state.json"), "{text}");
     assert_eq!(state(&second).project.subject, Some(Subject::Scenario), "the state is restored");
-    assert!(state(&second).session.force.checkpoint.is_none(), "nor does it share trainings");
+    assert!(state(&second).session.unfinished.folder().is_none(), "nor does it share trainings");
     second.state_mut().state_mut().project.duration_s = 1.25;
     second.run_steps(180);
     drop(second);

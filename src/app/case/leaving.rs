@@ -76,7 +76,9 @@ impl State {
             (response.training.run.is_running(), "The training of the response network"),
         ] {
             if is_running {
-                reasons.push(format!("{what} is stopped; it can be resumed from its last epoch."));
+                reasons.push(format!(
+                    "{what} is stopped; it can be resumed from its last checkpoint."
+                ));
             }
         }
         for (is_running, what) in [
@@ -89,6 +91,16 @@ impl State {
         ] {
             if is_running {
                 reasons.push(format!("{what} is stopped, and what it has found is lost."));
+            }
+        }
+        for (is_keeping, unsaved, what) in [
+            (force.model.is_keeping(), force.model.unsaved(), "force model"),
+            (response.model.is_keeping(), response.model.unsaved(), "response model"),
+        ] {
+            if is_keeping {
+                reasons.push(format!("A {what} that was trained is still being written."));
+            } else if let Some(name) = unsaved {
+                reasons.push(format!("The {what} {name:?} is in no file and is lost."));
             }
         }
         if !exports.is_empty() || saving_case.is_some() {

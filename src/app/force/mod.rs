@@ -11,8 +11,6 @@ pub use edit::{
 pub use settings::{ForceProject, ForceTrainingForm, ForceView, Statistic};
 pub use update::RecordedCase;
 
-use std::path::PathBuf;
-
 use crate::app::latest::Latest;
 use crate::app::model::ModelStatus;
 use crate::app::question_job::QuestionJob;
@@ -33,7 +31,4 @@ pub struct ForceSession {
     pub training: TrainingStatus<ForceModel>,
     /// The evaluation on a data set, running or finished.
     pub evaluation: QuestionJob<EvaluateForceRequest>,
-    /// The file in which the state of a training is stored while it runs, so that it can be resumed
-    /// after a crash.
-    pub checkpoint: Option<PathBuf>,
 }

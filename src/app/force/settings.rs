@@ -41,8 +41,6 @@ pub struct ForceTrainingForm {
     pub config: String,
     /// How cases that cannot be used are treated.
     pub bad_cases: BadCases,
-    /// Whether to resume a training with the same settings that was interrupted.
-    pub resume: bool,
 }
 
 /// How the force network is shown.

@@ -6,12 +6,14 @@ use std::sync::Arc;
 use egui::Context;
 
 use crate::app::command::{TrainingCommand, wake};
+use crate::app::kept::{KeptEntry, keep_trained};
+use crate::app::network::Network;
 use crate::app::source::{OpenDataset, Source, chosen_dataset, open_datasets};
 use crate::app::state::{State, Subject};
 use crate::data::{DatasetKind, Severity};
 use crate::error_chain;
 use crate::force::{ForceCase, ForceScenario};
-use crate::study::PredictForceAnswer;
+use crate::study::{EvaluateForceRequest, PredictForceAnswer, Request};
 use crate::uncertainty::ForceCurve;
 
 /// The selected case with its recorded force.
@@ -38,13 +40,16 @@ impl State {
         self.say_problem(problem);
         self.say_of_file(saved);
         self.find_recorded_case();
-        self.poll_training();
-        self.session.force.evaluation.poll();
+        self.poll_training(context);
+        if self.session.force.evaluation.poll() {
+            self.keep_force_evaluation(context);
+        }
         self.session.force.forecast.poll();
         self.ask_for_force(context);
     }
 
-    fn poll_training(&mut self) {
+    fn poll_training(&mut self, context: &Context) {
+        let was_running = self.session.force.training.run.is_running();
         let (force, library) = (&mut self.session.force, &self.session.library);
         match force.training.poll() {
             None => {}
@@ -53,10 +58,19 @@ impl State {
                 let name =
                     format!("trained on {}, epoch {}", record.data, record.detail.best_epoch);
                 let of = format!("{name} of {}", record.history.len());
-                force.model.take_trained(model, name, (library, is_complete));
+                let draft = force.training.kept_note(&model, name.clone(), is_complete);
+                let taken = force.model.take_trained(model, name, (library, is_complete));
+                let draft = draft.map(|draft| KeptEntry { name: taken.1, ..draft });
+                let folder = self.session.kept.folder();
+                let trained = (&mut force.model, &force.training);
+                let problem = keep_trained(trained, (taken.0, draft), folder, context);
+                self.say_problem(problem);
                 self.say_of_training(&of, is_complete);
             }
             Some(Err(problem)) => self.say(Severity::Error, format!("training: {problem}")),
+        }
+        if was_running && !self.session.force.training.run.is_running() {
+            self.read_unfinished(context);
         }
     }
 
@@ -128,31 +142,39 @@ impl State {
         }
     }
 
-    /// Starts a training on the chosen data set.
-    fn start_force_training(&mut self, context: &Context) {
+    /// Returns the question of the training form and the name of its data; `None` if no force data
+    /// set is open.
+    pub(in crate::app) fn force_training(&self) -> Option<(Request, String)> {
         let form = &self.project.force.training;
         let datasets = open_datasets(&self.session.sources, &[DatasetKind::Force]);
-        let Some(chosen) = chosen_dataset(&datasets, form.dataset.as_deref()) else {
-            self.say(Severity::Warning, "open a force data set to train on first");
-            return;
-        };
+        let chosen = chosen_dataset(&datasets, form.dataset.as_deref())?;
         let is_extra = |of: &OpenDataset<'_>| form.use_others && of.path != chosen.path;
         let extra: Vec<_> = datasets.iter().copied().filter(is_extra).collect();
         let names = std::iter::once(&chosen).chain(&extra).map(OpenDataset::name);
         let data = names.collect::<Vec<_>>().join(" + ");
-        let request = self.train_force_request((&chosen, &extra));
-        let (force, library) = (&mut self.session.force, &self.session.library);
-        if let Err(error) = force.training.start(request, (data, library), wake(context)) {
-            self.say(Severity::Error, error.to_string());
+        Some((self.train_force_request((&chosen, &extra)).into(), data))
+    }
+
+    /// Starts a training on the chosen data set.
+    fn start_force_training(&mut self, context: &Context) {
+        match self.force_training() {
+            Some((question, data)) => {
+                self.start_training(question, (Network::Force, data), context);
+            }
+            None => self.say(Severity::Warning, "open a force data set to train on first"),
         }
+    }
+
+    /// Returns the question of the evaluation form; `None` if there is no model or no data set.
+    pub(in crate::app) fn force_evaluation(&self) -> Option<EvaluateForceRequest> {
+        let datasets = open_datasets(&self.session.sources, &[DatasetKind::Force]);
+        let chosen = chosen_dataset(&datasets, self.view.force.evaluated.as_deref())?;
+        self.evaluate_force_request(chosen.path.to_owned())
     }
 
     /// Starts an evaluation of the current force model on the chosen data set.
     pub(in crate::app) fn evaluate(&mut self, context: &Context) {
-        let datasets = open_datasets(&self.session.sources, &[DatasetKind::Force]);
-        let chosen = chosen_dataset(&datasets, self.view.force.evaluated.as_deref());
-        let request = chosen.and_then(|of| self.evaluate_force_request(of.path.to_owned()));
-        let Some(request) = request else {
+        let Some(request) = self.force_evaluation() else {
             self.say(Severity::Warning, "an evaluation needs a force model and a force data set");
             return;
         };

@@ -4,13 +4,14 @@
 use egui::{ProgressBar, ScrollArea, Ui};
 
 use crate::app::command::Command;
+use crate::app::cost::CostPlace;
 use crate::app::force::{ForceSession, ForceView};
 use crate::app::model::file_name;
 use crate::app::panels::evaluation_plots::plots_ui;
 use crate::app::panels::evaluation_tables::tables_ui;
 use crate::app::panes::PaneContext;
 use crate::app::source::{Source, open_datasets};
-use crate::app::widgets::{bad_cases_ui, badges_ui, dataset_choice, no_dataset_ui};
+use crate::app::widgets::{bad_cases_ui, badges_ui, cost_ui, dataset_choice, no_dataset_ui};
 use crate::data::{DatasetKind, Severity};
 use crate::render::theme;
 use crate::study::{EvaluateForceReport, EvaluatedCases, ForceEvaluation};
@@ -22,22 +23,30 @@ pub fn evaluation_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let force = &session.force;
         start_ui(ui, (&mut view.force, force), &session.sources, commands);
+        if force.model.current.is_some() && !force.evaluation.is_running() {
+            cost_ui(ui, &mut session.costs, (CostPlace::ForceEvaluation, "Evaluation"));
+        }
         if let Some(problem) = force.evaluation.problem() {
             let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
             ui.colored_label(color, format!("Not evaluated: {problem}"));
             return;
         }
-        let Some(answer) = force.evaluation.ok() else {
+        let latest = force.evaluation.latest.as_ref();
+        let (Some(latest), Some(answer)) = (latest, force.evaluation.ok()) else {
             ui.weak("Errors of the model on cases that it has not seen, beside a classic pulse, the nearest training case and Gaussian processes; how honest its bands are.");
             return;
         };
         let ForceEvaluation::Cases(report) = &answer.report else { return };
         ui.separator();
-        heading_ui(ui, report);
+        let name = session.kept.name_of(&latest.question.model);
+        heading_ui(ui, report, &name);
         tables_ui(ui, &report.evaluation, (&mut view.force, view.units));
-        if let Some(cases) = &answer.cases {
-            ui.separator();
-            plots_ui(ui, (report, cases), (view, session.fit_plots), commands);
+        ui.separator();
+        match &answer.cases {
+            Some(cases) => plots_ui(ui, (report, cases), (view, session.fit_plots), commands),
+            None => drop(ui.weak(
+                "The plots of single cases are not kept with an evaluation; Evaluate draws them.",
+            )),
         }
     });
 }
@@ -95,8 +104,9 @@ fn start_ui(
 
 /// Names the model and the data, offers the results as text, and warns of training cases among the
 /// evaluated ones, of problems and of cases that were left out.
-fn heading_ui(ui: &mut Ui, report: &EvaluateForceReport) {
-    let model = file_name(report.model_file.as_ref());
+///
+/// - `model`: what the user calls the model.
+fn heading_ui(ui: &mut Ui, report: &EvaluateForceReport, model: &str) {
     let (data, evaluation) = (file_name(&report.data), &report.evaluation);
     ui.horizontal_wrapped(|ui| {
         ui.strong(format!("{model} on {} cases of {data}", report.n_test));

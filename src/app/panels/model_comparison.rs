@@ -4,13 +4,14 @@
 use egui::{DragValue, Grid, ProgressBar, ScrollArea, Ui};
 
 use crate::app::command::{Command, ComparisonCommand};
+use crate::app::cost::CostPlace;
 use crate::app::dialogs::Purpose;
 use crate::app::panels::model_comparison_plots::{browser_ui, overview_ui};
 use crate::app::panes::PaneContext;
 use crate::app::response::{ComparisonForm, ComparisonStatus};
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::{
-    assumptions_ui, bad_cases_ui, badges_ui, count_field, dataset_choice, duration_text,
+    assumptions_ui, bad_cases_ui, badges_ui, cost_ui, count_field, dataset_choice, duration_text,
     no_dataset_ui,
 };
 use crate::data::{DatasetKind, Severity};
@@ -29,6 +30,16 @@ pub fn model_comparison_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         let response = &mut session.response;
         let can_start = [has_data, has_data && response.model.current.is_some()];
         buttons_ui(ui, &mut response.comparison, can_start, commands);
+        if !response.comparison.is_running() {
+            for (can, place, label) in [
+                (can_start[0], CostPlace::Comparison, "Comparison"),
+                (can_start[1], CostPlace::ResponseEvaluation, "Evaluation"),
+            ] {
+                if can {
+                    cost_ui(ui, &mut session.costs, (place, label));
+                }
+            }
+        }
         match &response.comparison.shown {
             None => {
                 ui.weak("The 4DOF model by the data sheet and tuned by particle swarm, a plain network, and the response network: fitted to the same trajectories, asked about the same others. Takes some minutes a choice; or open a comparison.json that `impactlab compare --out` has written.");

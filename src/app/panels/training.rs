@@ -2,13 +2,14 @@
 
 use egui::{ScrollArea, Ui};
 
+use crate::app::cost::CostPlace;
 use crate::app::network::Network;
 use crate::app::panels::training_force::force_form_ui;
 use crate::app::panels::training_losses::LossView;
 use crate::app::panels::training_parts::network_training_ui;
 use crate::app::panels::training_response::response_form_ui;
 use crate::app::panes::PaneContext;
-use crate::app::widgets::no_dataset_ui;
+use crate::app::widgets::{cost_ui, no_dataset_ui};
 use crate::data::DatasetKind;
 
 /// Draws the choice between the two networks and the training of the chosen one.
@@ -33,6 +34,9 @@ fn force_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     if !has_data {
         no_dataset_ui(ui, DatasetKind::Force);
     }
+    if has_data && !session.force.training.run.is_running() {
+        cost_ui(ui, &mut session.costs, (CostPlace::ForceTraining, "Training"));
+    }
     let reset = session.fit_plots;
     let view =
         LossView { terms: &mut view.force.loss_terms, log: &mut view.force.log_losses, reset };
@@ -45,6 +49,9 @@ fn response_training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let has_data = response_form_ui(ui, &mut project.response.training, &session.sources);
     if !has_data {
         no_dataset_ui(ui, DatasetKind::Trajectory);
+    }
+    if has_data && !session.response.training.run.is_running() {
+        cost_ui(ui, &mut session.costs, (CostPlace::ResponseTraining, "Training"));
     }
     let (reset, view) = (session.fit_plots, &mut view.response);
     let view = LossView { terms: &mut view.loss_terms, log: &mut view.log_losses, reset };

@@ -38,7 +38,7 @@ pub fn force_form_ui(ui: &mut Ui, form: &mut ForceTrainingForm, sources: &[Sourc
         settings_rows_ui(
             ui,
             "network, loss, training, crush",
-            (&mut form.config, &mut form.bad_cases, &mut form.resume),
+            (&mut form.config, &mut form.bad_cases),
         );
     });
     !datasets.is_empty()

@@ -55,14 +55,13 @@ pub fn network_training_ui<M: TrainedModel>(
     }
 }
 
-/// Draws three rows of a two-column grid: the settings file, whether unusable cases are left out,
-/// and whether an interrupted training is continued from its checkpoint.
+/// Draws two rows of a two-column grid: the settings file, and whether unusable cases are left out.
 ///
 /// - `parts`: the sections that the settings file may have, shown as a hint.
 pub fn settings_rows_ui(
     ui: &mut Ui,
     parts: &str,
-    (config, bad_cases, resume): (&mut String, &mut BadCases, &mut bool),
+    (config, bad_cases): (&mut String, &mut BadCases),
 ) {
     let name = ui.label("Settings file");
     let field = egui::TextEdit::singleline(config).desired_width(320.0);
@@ -72,10 +71,6 @@ pub fn settings_rows_ui(
     ui.end_row();
     ui.label("");
     bad_cases_ui(ui, bad_cases);
-    ui.end_row();
-    ui.label("");
-    ui.checkbox(resume, "go on where a training of these settings was interrupted")
-        .on_hover_text("To the same weights as without the interruption");
     ui.end_row();
 }
 
@@ -118,7 +113,10 @@ fn run_buttons_ui<M: TrainedModel>(
             commands.push(Command::Train(network, TrainingCommand::Pause(!run.is_paused())));
         }
         let cancel = ui.add_enabled(is_running && !run.is_cancelled(), egui::Button::new("Cancel"));
-        if cancel.on_hover_text("Ends the training; the weights so far are set aside").clicked() {
+        if cancel
+            .on_hover_text("Ends the training; what it has reached is kept and not put into use")
+            .clicked()
+        {
             commands.push(Command::Train(network, TrainingCommand::Cancel));
         }
     });
@@ -129,7 +127,7 @@ fn run_buttons_ui<M: TrainedModel>(
 /// - `what`: what the training is doing.
 /// - `fraction`: the share that is done, 0 to 1.
 /// - `left`: the estimated remaining time.
-fn run_progress_ui(ui: &mut Ui, what: &str, (fraction, left): (Option<f32>, Option<Duration>)) {
+pub fn run_progress_ui(ui: &mut Ui, what: &str, (fraction, left): (Option<f32>, Option<Duration>)) {
     let left = left.map_or(String::new(), |left| format!(", {} left", duration_text(left)));
     match fraction {
         Some(fraction) => {

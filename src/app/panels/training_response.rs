@@ -66,6 +66,6 @@ fn numbers_ui(ui: &mut Ui, form: &mut ResponseTrainingForm) {
     settings_rows_ui(
         ui,
         "network, single_steps, rollouts, physics, …",
-        (&mut form.config, &mut form.bad_cases, &mut form.resume),
+        (&mut form.config, &mut form.bad_cases),
     );
 }

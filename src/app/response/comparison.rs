@@ -13,6 +13,7 @@ use crate::jobs::{Job, Progress};
 use crate::response::evaluate::{Comparison, write_comparison};
 use crate::study::{
     CompareAnswer, CompareReport, CompareRequest, EvaluateResponseRequest, Library, Provenance,
+    Question, Request,
 };
 
 /// A comparison or an evaluation, running or finished.
@@ -26,6 +27,8 @@ pub struct ComparisonStatus {
     saving: Option<Job<Result<PathBuf, String>>>,
     /// The latest result of a comparison, an evaluation or a file, or the reason why there is none.
     pub shown: Option<Result<Arc<CompareAnswer>, String>>,
+    /// What was finished since it was asked for last.
+    finished: Option<(Request, Arc<CompareAnswer>)>,
     /// The path in the text field for saving, as the user has typed it so far.
     pub typed_path: String,
 }
@@ -120,9 +123,11 @@ impl ComparisonStatus {
     pub fn poll(&mut self) -> Option<Result<PathBuf, String>> {
         if self.compare.poll() {
             self.shown = self.compare.latest.as_ref().map(|latest| latest.answer.clone());
+            self.finished = finished(&self.compare);
         }
         if self.evaluate.poll() {
             self.shown = self.evaluate.latest.as_ref().map(|latest| latest.answer.clone());
+            self.finished = finished(&self.evaluate);
         }
         let opened = self.opening.as_mut().and_then(|job| job.poll().into_result("the reader"));
         if let Some(opened) = opened {
@@ -143,10 +148,25 @@ impl ComparisonStatus {
         Some(saved)
     }
 
+    /// Returns the comparison or evaluation that has just been finished, once, with its question.
+    pub fn take_finished(&mut self) -> Option<(Request, Arc<CompareAnswer>)> {
+        self.finished.take()
+    }
+
     /// Returns the report of the comparison that is shown, if there is one.
     pub fn report(&self) -> Option<&CompareReport> {
         self.shown.as_ref()?.as_ref().ok().map(|answer| &answer.report)
     }
+}
+
+/// Returns the latest answer with its question; `None` if it is an error.
+fn finished<Q>(job: &QuestionJob<Q>) -> Option<(Request, Arc<CompareAnswer>)>
+where
+    Q: Question<Answer = CompareAnswer> + Into<Request>,
+{
+    let latest = job.latest.as_ref()?;
+    let answer = latest.answer.as_ref().ok()?;
+    Some((latest.question.clone().into(), Arc::clone(answer)))
 }
 
 /// Writes a comparison into a folder with a manifest.

@@ -13,7 +13,6 @@ pub use settings::{
     ResponseView, TrainingMode,
 };
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::app::latest::Latest;
@@ -37,7 +36,4 @@ pub struct ResponseSession {
     pub training: TrainingStatus<ResponseModel>,
     /// The comparison or evaluation, running or finished.
     pub comparison: ComparisonStatus,
-    /// The file in which the state of a training is stored while it runs, so that it can be resumed
-    /// after a crash.
-    pub checkpoint: Option<PathBuf>,
 }

@@ -118,8 +118,6 @@ pub struct ResponseTrainingForm {
     pub config: String,
     /// How cases that cannot be used are treated.
     pub bad_cases: BadCases,
-    /// Whether to resume a training with the same settings that was interrupted.
-    pub resume: bool,
 }
 
 /// Settings of a comparison of response models.

@@ -6,12 +6,15 @@ use std::sync::Arc;
 use egui::Context;
 
 use crate::app::command::{Command, ComparisonCommand, TrainingCommand, wake};
+use crate::app::kept::{KeptEntry, keep_trained};
+use crate::app::network::Network;
 use crate::app::response::{
     DensityChoice, DensityQuestion, MotionAnswer, MotionQuestion, TrainingMode,
 };
 use crate::app::source::{chosen_dataset, open_datasets};
 use crate::app::state::State;
 use crate::data::{DatasetKind, Existing, Severity};
+use crate::study::Request;
 
 impl State {
     /// Receives the results of the loader, the training, the comparison and the forecast, and asks
@@ -24,14 +27,18 @@ impl State {
         self.say_problem(problem);
         self.say_of_file(saved);
         self.say_of_file(written);
-        self.poll_response_training();
+        if let Some(finished) = self.session.response.comparison.take_finished() {
+            self.keep_comparison(finished, context);
+        }
+        self.poll_response_training(context);
         self.session.response.forecast.poll();
         self.ask_for_motion(context);
         self.session.response.density.poll();
         self.ask_for_density(context);
     }
 
-    fn poll_response_training(&mut self) {
+    fn poll_response_training(&mut self, context: &Context) {
+        let was_running = self.session.response.training.run.is_running();
         let (response, library) = (&mut self.session.response, &self.session.library);
         match response.training.poll() {
             None => {}
@@ -41,10 +48,20 @@ impl State {
                     0 => format!("pre-trained on {} simulations", record.detail.n_simulated),
                     n => format!("trained on {n} trajectories of {}", record.data),
                 };
-                response.model.take_trained(model, name.clone(), (library, is_complete));
+                let draft = response.training.kept_note(&model, name.clone(), is_complete);
+                let taken =
+                    response.model.take_trained(model, name.clone(), (library, is_complete));
+                let draft = draft.map(|draft| KeptEntry { name: taken.1, ..draft });
+                let folder = self.session.kept.folder();
+                let trained = (&mut response.model, &response.training);
+                let problem = keep_trained(trained, (taken.0, draft), folder, context);
+                self.say_problem(problem);
                 self.say_of_training(&name, is_complete);
             }
             Some(Err(problem)) => self.say(Severity::Error, format!("training: {problem}")),
+        }
+        if was_running && !self.session.response.training.run.is_running() {
+            self.read_unfinished(context);
         }
     }
 
@@ -90,28 +107,28 @@ impl State {
         }
     }
 
+    /// Returns the question of the training form and the name of its data.
+    ///
+    /// # Errors
+    /// What is missing, as a message for the user.
+    pub(in crate::app) fn response_training(&self) -> Result<(Request, String), &'static str> {
+        let form = &self.project.response.training;
+        let data = self.chosen_data(form.dataset.as_deref(), form.mode.data_kinds());
+        let (data, name) = data.ok_or("open a data set to train on first")?;
+        let question = match form.mode {
+            TrainingMode::Pretrain => Some(self.train_response_request(data).into()),
+            _ => self.fine_tune_request(data).map(Request::from),
+        };
+        Ok((question.ok_or("there is no current response model")?, name))
+    }
+
     /// Starts a training on the chosen data set.
     fn start_response_training(&mut self, context: &Context) {
-        let form = &self.project.response.training;
-        let (mode, kinds) = (form.mode, form.mode.data_kinds());
-        let Some((data, name)) = self.chosen_data(form.dataset.as_deref(), kinds) else {
-            self.say(Severity::Warning, "open a data set to train on first");
-            return;
-        };
-        let started = if mode == TrainingMode::Pretrain {
-            let request = self.train_response_request(data);
-            let (response, library) = (&mut self.session.response, &self.session.library);
-            response.training.start(request, (name, library), wake(context))
-        } else {
-            let Some(request) = self.fine_tune_request(data) else {
-                self.say(Severity::Warning, "there is no current response model");
-                return;
-            };
-            let (response, library) = (&mut self.session.response, &self.session.library);
-            response.training.start(request, (name, library), wake(context))
-        };
-        if let Err(error) = started {
-            self.say(Severity::Error, error.to_string());
+        match self.response_training() {
+            Ok((question, data)) => {
+                self.start_training(question, (Network::Response, data), context);
+            }
+            Err(problem) => self.say(Severity::Warning, problem),
         }
     }
 
@@ -178,12 +195,17 @@ impl State {
     /// Returns the folder of the data set in the comparison form. If there is none, tells the user
     /// to open one.
     fn compared_data(&mut self) -> Option<PathBuf> {
-        let wanted = self.project.response.comparison.dataset.as_deref();
-        let chosen = self.chosen_data(wanted, &[DatasetKind::Trajectory]);
+        let chosen = self.data_to_compare();
         if chosen.is_none() {
             self.say(Severity::Warning, "open a trajectory data set first");
         }
-        chosen.map(|(path, _)| path)
+        chosen
+    }
+
+    /// Returns the folder of the data set in the comparison form, if one is open.
+    pub(in crate::app) fn data_to_compare(&self) -> Option<PathBuf> {
+        let wanted = self.project.response.comparison.dataset.as_deref();
+        self.chosen_data(wanted, &[DatasetKind::Trajectory]).map(|(path, _)| path)
     }
 
     /// Returns the folder and the name of the wanted data set, or of the first open one of the

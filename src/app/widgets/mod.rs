@@ -3,6 +3,7 @@
 mod assumptions;
 mod bad_cases;
 mod badges;
+mod cost;
 mod dataset_choice;
 mod figure_frame;
 mod quantity;
@@ -13,6 +14,7 @@ mod time_figure;
 pub use assumptions::assumptions_ui;
 pub use bad_cases::bad_cases_ui;
 pub use badges::badges_ui;
+pub use cost::cost_ui;
 pub use dataset_choice::{dataset_choice, no_dataset_ui};
 pub use figure_frame::{OUTDATED, figure_frame};
 pub use quantity::{

@@ -17,4 +17,6 @@ pub use calibration::VarianceFactors;
 pub use loss::LossTerms;
 pub use model::ForceModel;
 pub use record::{ForceEpoch, ForceRecord, ForceTraining};
-pub use training::{ForceTrainSettings, ForceTrainingSet, fit_physics, train, train_around};
+pub use training::{
+    FORCE_CHECKPOINT, ForceTrainSettings, ForceTrainingSet, fit_physics, train, train_around,
+};

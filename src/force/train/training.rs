@@ -24,7 +24,8 @@ use crate::nn::{
 use crate::uncertainty::{CurveComponent, CurveMixture};
 
 /// Kind and version of the checkpoints of a training.
-const CHECKPOINT_KIND: ModelKind = ModelKind { name: "training of a force network", version: 1 };
+pub const FORCE_CHECKPOINT: ModelKind =
+    ModelKind { name: "training of a force network", version: 1 };
 /// Smallest number of training cases. With fewer, a fold of the crush model would not have cases of
 /// each kind.
 const LEAST_CASES: usize = 8;
@@ -152,7 +153,7 @@ fn training_file(
     config.training.epochs = 0;
     config.training.patience = 0;
     config.training.checkpoint_epochs = 0;
-    TrainingFile::new(CHECKPOINT_KIND, settings, config, set.digest())
+    TrainingFile::new(FORCE_CHECKPOINT, settings, config, set.digest())
 }
 
 /// The content of a checkpoint.

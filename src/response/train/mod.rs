@@ -25,3 +25,4 @@ pub use record::{ResponseEpoch, ResponseRecord, ResponseStage, ResponseTraining}
 pub use simulated::ImpactRecord;
 pub(crate) use stages::check_start;
 pub use stages::{ResponseTrainSettings, ResponseTrainingSet, fine_tune, pretrain};
+pub use training_run::RESPONSE_CHECKPOINT;

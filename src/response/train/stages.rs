@@ -13,7 +13,7 @@ use crate::response::physics::effects_fit::fit_strengths;
 use crate::response::predict::calibration::{Unseen, calibrate};
 use crate::response::train::simulated::{ImpactRecord, SimulatedMotion, simulate};
 use crate::response::train::training_data::TrainingData;
-use crate::response::train::training_run::{CHECKPOINT_KIND, Planned, TrainingRun};
+use crate::response::train::training_run::{Planned, RESPONSE_CHECKPOINT, TrainingRun};
 use crate::response::{
     Correction, MotionDomain, ResponseCase, ResponseConfig, ResponseEpoch, ResponseModel,
     ResponseRecord, ResponseStage, ResponseTraining,
@@ -204,7 +204,8 @@ fn run(
     data_digest: String,
     report: &mut TrainingProgress<'_>,
 ) -> Result<(ResponseNetwork, Vec<EpochRecord<ResponseEpoch>>), LearningError> {
-    let file = TrainingFile::new(CHECKPOINT_KIND, settings, settings.config.clone(), data_digest);
+    let file =
+        TrainingFile::new(RESPONSE_CHECKPOINT, settings, settings.config.clone(), data_digest);
     let resumed = file.read(|checkpoint| -> Result<(), LearningError> {
         training.resume(SavedTraining::take(checkpoint)?)
     })?;

@@ -18,8 +18,8 @@ use crate::response::{
     ResponseConfig, ResponseEpoch, ResponseLossTerms, ResponseStage, ResponseTrainSettings,
 };
 
-/// The checkpoints of a training.
-pub(super) const CHECKPOINT_KIND: ModelKind =
+/// Kind and version of the checkpoints of a training.
+pub const RESPONSE_CHECKPOINT: ModelKind =
     ModelKind { name: "training of a response network", version: 1 };
 
 /// Share of the optimiser's steps over which the learning rate of single steps rises.

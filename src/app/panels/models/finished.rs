@@ -1,0 +1,159 @@
+//! What has been finished and is kept: models, comparisons and evaluations, the latest first.
+
+use egui::{Frame, Ui};
+
+use crate::app::command::{Command, ModelsCommand};
+use crate::app::dialogs::Purpose;
+use crate::app::kept::{
+    Fact, KeptEntry, KeptFolder, KeptProblem, KeptStatus, LIMIT_BYTES, ModelsDialog, Removal,
+    bytes_text, how_it_was_made,
+};
+use crate::app::network::Network;
+use crate::app::panels::models::facts_ui;
+use crate::app::panes::PaneContext;
+use crate::app::state::Project;
+use crate::data::Severity;
+use crate::render::theme;
+
+/// Number of figures that are shown of an entry without unfolding it.
+const N_MAIN_FIGURES: usize = 4;
+
+/// Draws how much is kept where, what is damaged, and the entries.
+pub fn finished_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
+    let PaneContext { project, session, commands, .. } = pane;
+    let kept = &session.kept;
+    let Some(folder) = kept.folder() else {
+        ui.weak("This window has no folder of its own and keeps nothing: save what you need.");
+        return;
+    };
+    summary_ui(ui, kept);
+    for problem in &kept.list.problems {
+        problem_ui(ui, problem, commands);
+    }
+    for entry in &kept.list.entries {
+        Frame::group(ui.style()).show(ui, |ui| {
+            ui.set_width(ui.available_width());
+            entry_ui(ui, entry, (project, folder), commands);
+        });
+    }
+    if kept.list.entries.is_empty() && !kept.is_reading() {
+        ui.weak("What a training, a comparison or an evaluation gives is kept here when it ends.");
+    }
+}
+
+fn summary_ui(ui: &mut Ui, kept: &KeptStatus) {
+    if kept.is_reading() {
+        ui.horizontal(|ui| (ui.spinner(), ui.label("reading what is kept")));
+        return;
+    }
+    let (n, bytes) = (kept.list.entries.len(), kept.bytes());
+    let limit = bytes_text(LIMIT_BYTES);
+    if bytes > LIMIT_BYTES {
+        let color = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
+        let text = format!(
+            "{n} kept, {}: more than {limit}. Nothing is removed by itself; remove what you do not need.",
+            bytes_text(bytes)
+        );
+        ui.colored_label(color, text);
+    } else if n > 0 {
+        ui.weak(format!(
+            "{n} kept, {} of {limit}; nothing is removed by itself.",
+            bytes_text(bytes)
+        ));
+    }
+}
+
+fn problem_ui(ui: &mut Ui, problem: &KeptProblem, commands: &mut Vec<Command>) {
+    ui.horizontal_wrapped(|ui| {
+        let color = theme::severity_color(Severity::Error, ui.visuals().dark_mode);
+        ui.colored_label(color, format!("Cannot be used: {}", problem.reason));
+        if let Some(first) = problem.files.first()
+            && ui.small_button("Remove…").clicked()
+        {
+            let name = first.display().to_string();
+            let what = "It cannot be used. Its files are removed from the disk.".to_owned();
+            let removal = Removal { name, what, files: problem.files.clone() };
+            commands.push(Command::Models(ModelsCommand::Ask(ModelsDialog::Remove(removal))));
+        }
+    });
+}
+
+fn entry_ui(
+    ui: &mut Ui,
+    entry: &KeptEntry,
+    (project, folder): (&Project, &KeptFolder),
+    commands: &mut Vec<Command>,
+) {
+    let path = folder.path_of(entry);
+    let wanted = match entry.kind.network() {
+        Some(Network::Force) => project.force.model.as_ref(),
+        Some(Network::Response) => project.response.model.as_ref(),
+        None => None,
+    };
+    let is_in_use = wanted == Some(&path);
+    let dark = ui.visuals().dark_mode;
+    ui.horizontal_wrapped(|ui| {
+        ui.strong(&entry.name);
+        if is_in_use {
+            ui.colored_label(theme::severity_color(Severity::Info, dark), "in use");
+        }
+        if entry.is_cancelled {
+            ui.colored_label(theme::severity_color(Severity::Warning, dark), "cancelled");
+        }
+        let (kind, moment) = (entry.kind.label(), entry.finished_text());
+        ui.weak(format!("{kind}, {moment}, {}", bytes_text(entry.bytes)));
+    });
+    ui.horizontal_wrapped(|ui| {
+        ui.label(format!("{}; data {}", how_it_was_made(&entry.question), entry.data));
+    });
+    ui.horizontal_wrapped(|ui| {
+        let text = |fact: &Fact| format!("{} {}", fact.label, fact.text);
+        let main: Vec<String> = entry.figures.iter().take(N_MAIN_FIGURES).map(text).collect();
+        ui.weak(main.join(" · "));
+    });
+    ui.horizontal_wrapped(|ui| buttons_ui(ui, entry, (is_in_use, folder), commands));
+    let id = ("kept", &entry.sha256);
+    egui::CollapsingHeader::new("Figures and settings").id_salt(id).show(ui, |ui| {
+        facts_ui(ui, (id, "figures"), &entry.figures);
+        match entry.settings.is_empty() {
+            true => drop(ui.weak("The usual settings")),
+            false => facts_ui(ui, (id, "settings"), &entry.settings),
+        }
+        ui.weak(format!("SHA-256 {}, program {}", entry.sha256, entry.program));
+        ui.weak(path.display().to_string());
+    });
+}
+
+fn buttons_ui(
+    ui: &mut Ui,
+    entry: &KeptEntry,
+    (is_in_use, folder): (bool, &KeptFolder),
+    commands: &mut Vec<Command>,
+) {
+    let path = folder.path_of(entry);
+    match entry.kind.network() {
+        Some(network) => {
+            if ui.add_enabled(!is_in_use, egui::Button::new("Use")).clicked() {
+                commands.push(Command::UseModel(network, Some(path.clone())));
+            }
+            if ui.button("Save as…").clicked() {
+                commands.push(Command::Ask(Purpose::SaveKept(network, path)));
+            }
+        }
+        None => {
+            if ui.button("Open again").clicked() {
+                commands.push(Command::Models(ModelsCommand::Open(Box::new(entry.clone()))));
+            }
+        }
+    }
+    if ui.button("Rename…").clicked() {
+        let dialog =
+            ModelsDialog::Rename { entry: Box::new(entry.clone()), name: entry.name.clone() };
+        commands.push(Command::Models(ModelsCommand::Ask(dialog)));
+    }
+    let remove = ui.add_enabled(!is_in_use, egui::Button::new("Remove…"));
+    if remove.on_disabled_hover_text("It is in use: use another model first").clicked() {
+        let dialog = ModelsDialog::of_entry(entry, folder);
+        commands.push(Command::Models(ModelsCommand::Ask(dialog)));
+    }
+}

@@ -1,0 +1,85 @@
+//! Which model of each network answers, what it is, and what it is used for.
+
+use egui::Ui;
+
+use crate::app::command::Command;
+use crate::app::kept::{Fact, KeptStatus, how_it_was_made};
+use crate::app::model::{CurrentModel, ModelStatus};
+use crate::app::network::TrainedModel;
+use crate::app::panels::model_row::{model_row_ui, no_model_ui};
+use crate::app::panels::models::facts_ui;
+use crate::app::panes::PaneContext;
+use crate::app::response::ForceChoice;
+use crate::shipped::ModelSource;
+use crate::study::ModelChoice;
+
+/// Draws both networks beside each other.
+pub fn in_use_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
+    let PaneContext { project, session, commands, .. } = pane;
+    let is_chained = project.response.forecast.force == ForceChoice::Predicted;
+    let (force, response, kept) = (&session.force.model, &session.response.model, &session.kept);
+    ui.columns(2, |columns| {
+        let [left, right] = columns else { return };
+        let use_of_it = match is_chained {
+            true => "Answers the force prediction, and gives the motion forecast its force.",
+            false => "Answers the force prediction. The motion forecast takes the given force.",
+        };
+        network_ui(left, (force, use_of_it), kept, commands);
+        let use_of_it = "Answers the motion forecast and the outcome.";
+        network_ui(right, (response, use_of_it), kept, commands);
+    });
+}
+
+fn network_ui<M: TrainedModel>(
+    ui: &mut Ui,
+    (model, use_of_it): (&ModelStatus<M>, &str),
+    kept: &KeptStatus,
+    commands: &mut Vec<Command>,
+) {
+    ui.strong(M::NETWORK.label());
+    let Some(current) = &model.current else {
+        no_model_ui(ui, model, use_of_it, commands);
+        return;
+    };
+    model_row_ui(ui, model, "The model that answers", commands);
+    ui.label(use_of_it);
+    let mut facts = vec![
+        Fact::new("How it came to be", origin(current, kept)),
+        Fact::new("Data", current.model.data()),
+    ];
+    facts.extend(current.model.facts());
+    facts_ui(ui, ("in use", M::NETWORK.model()), &facts);
+    let settings = current.model.settings();
+    if settings.is_empty() {
+        ui.weak("The usual settings");
+    } else {
+        let title = format!("Settings that are not the usual ones: {}", settings.len());
+        ui.collapsing(title, |ui| {
+            facts_ui(ui, ("settings in use", M::NETWORK.model()), &settings);
+        });
+    }
+    if let Some(set_aside) = &model.set_aside {
+        ui.horizontal_wrapped(|ui| {
+            ui.label(format!("Not in use, of the cancelled training: {}", set_aside.name));
+            if ui.button("Use it").clicked() {
+                commands.push(Command::UseTrained(M::NETWORK));
+            }
+        });
+    }
+}
+
+/// Says where a model comes from.
+fn origin<M: TrainedModel>(current: &CurrentModel<M>, kept: &KeptStatus) -> String {
+    match &current.choice {
+        ModelChoice::Source(ModelSource::File(path)) => match kept.entry_of(path) {
+            Some(entry) => {
+                let cancelled = if entry.is_cancelled { ", cancelled" } else { "" };
+                let how = how_it_was_made(&entry.question);
+                format!("{how}{cancelled}, {}", entry.finished_text())
+            }
+            None => path.display().to_string(),
+        },
+        ModelChoice::Source(_) => "comes with the program".to_owned(),
+        ModelChoice::Held { .. } => "trained in this window, in no file".to_owned(),
+    }
+}
