@@ -75,7 +75,7 @@ fn origin<M: TrainedModel>(current: &CurrentModel<M>, kept: &KeptStatus) -> Stri
             Some(entry) => {
                 let cancelled = if entry.is_cancelled { ", cancelled" } else { "" };
                 let how = how_it_was_made(&entry.question);
-                format!("{how}{cancelled}, {}", entry.finished_text())
+                format!("{how}{cancelled}")
             }
             None => path.display().to_string(),
         },

@@ -17,7 +17,7 @@ use crate::app::panes::PaneContext;
 use crate::app::widgets::value_row;
 
 /// Characters of a value that are shown without hovering over it.
-const MAX_CHARS: usize = 32;
+const MAX_CHARS: usize = 40;
 /// Space between two parts of the pane, points.
 const BETWEEN_PARTS: f32 = 12.0;
 
