@@ -3,7 +3,7 @@
 //! A pane edits its own settings directly. For everything else, menus, keys and panes put a
 //! [`Command`] into a list, which is applied after the frame has been drawn.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use egui::Context;
 
@@ -224,11 +224,7 @@ impl State {
             Command::CancelMapping => self.cancel_mapping(),
             Command::ShowLicences(shown) => self.session.shows_licences = shown,
             Command::ReplayDataset(path) => self.replay(path, context),
-            Command::CancelReplay(path) => {
-                if let Some(replay) = self.session.replays.get(&path) {
-                    replay.cancel();
-                }
-            }
+            Command::CancelReplay(path) => self.cancel_replay(&path),
             Command::SetTime(time_s) => self.session.time_s = time_s,
             Command::SetSpeed(speed) => self.view.playback_speed = speed,
             Command::StepTime(steps) => self.step_time(steps),
@@ -344,6 +340,12 @@ impl State {
         let replay = self.session.replays.entry(path).or_default();
         if let Err(error) = replay.start(question, &self.session.library, wake(context)) {
             self.say(Severity::Error, error.to_string());
+        }
+    }
+
+    fn cancel_replay(&self, path: &Path) {
+        if let Some(replay) = self.session.replays.get(path) {
+            replay.cancel();
         }
     }
 
