@@ -317,7 +317,6 @@ fn entry_is_cancelled(harness: &Harness<'_, App>) -> bool {
 }
 
 #[test]
-#[ignore = "needs the evaluation of the force model to be kept, which it has not been seen to be"]
 fn comparisons_and_evaluations_are_opened_again_after_a_restart() {
     let desk = Desk::new();
     let mut harness = desk.open(&[MOTIONS, FORCES]);
@@ -357,14 +356,16 @@ fn comparisons_and_evaluations_are_opened_again_after_a_restart() {
         state.session.response.comparison.report().is_some()
     });
     // With everything: also badges, assumptions and the digests of the models.
-    assert_eq!(state(&harness).session.response.comparison.report(), Some(&compared));
+    // The texts, since the error at a time that was not reached is no number.
+    let again = state(&harness).session.response.comparison.report().expect("one");
+    assert_eq!(format!("{again:?}"), format!("{compared:?}"));
     harness.get_by_label_contains("25 trajectories that no model has seen");
     open(&mut harness, KeptKind::ForceEvaluation);
     step_until(&mut harness, "the evaluation", |state| {
         state.session.force.evaluation.ok().is_some()
     });
     let again = state(&harness).session.force.evaluation.ok().expect("one");
-    assert_eq!(again.report, evaluated);
+    assert_eq!(format!("{:?}", again.report), format!("{evaluated:?}"));
     harness.get_by_label_contains("on 25 cases of fea");
     harness.get_by_label_contains("The plots of single cases are not kept");
 }
