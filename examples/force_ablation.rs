@@ -24,6 +24,7 @@ use impactlab::force::{
     NetworkConfig, TrainingConfig, fit_physics, train_around,
 };
 use impactlab::learning::{TrainSettings, TrainingSet, folds, split};
+use impactlab::nn::sha256_hex;
 
 type Answer<T> = Result<T, Box<dyn Error>>;
 
@@ -164,12 +165,12 @@ fn cross_validate(variants: &mut [Variant], cases: &[ForceCase], n_most: usize) 
         let of = |indices: &[usize]| -> Vec<&ForceCase> {
             indices.iter().filter_map(|&idx| cases.get(idx)).collect()
         };
-        // The half of the cases that a hash selects comes first, because the order of the files is
-        // not always random.
-        let order = split(&of(&fold.train), SEED, 0.5);
-        let order = order.test.into_iter().chain(order.train);
-        let train = of(&fold.train);
-        let seen = order.take(n_most).map(|idx| train[idx].clone()).collect();
+        // In the order of a hash, because the order of the files is not always random.
+        let mut train = of(&fold.train);
+        train.sort_by_cached_key(|case| {
+            sha256_hex([&SEED.to_le_bytes()[..], case.digest.as_bytes()])
+        });
+        let seen = train.into_iter().take(n_most).cloned().collect();
         add_fold(variants, (seen, &of(&fold.test)))?;
     }
     Ok(())

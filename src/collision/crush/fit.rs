@@ -25,6 +25,10 @@ pub struct CrushSample {
     pub weight: f64,
 }
 
+/// Smallest scale of the error of an impulse, as a share of the impulse of |F|. Forces that cancel out
+/// have no relative error of their impulse; a collision that pushes in one direction has a share near 1.
+const LEAST_NET_SHARE: f64 = 0.05;
+
 /// Settings of the fit of a crush law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CrushFit {
@@ -48,8 +52,9 @@ impl CrushLaw {
     /// Σ_cases w² ( ‖F̂ − F‖² / ‖F‖²  +  w_P² |P̂ − P|² / |P|² )  +  w_prior² Σ (p − p_prior)² / scale²
     /// ```
     ///
-    /// where F are the forces of a history averaged over two consecutive steps, P is its impulse, p
-    /// are the parameters of the law and scale is the range over which a parameter is expected to
+    /// where F are the forces of a history averaged over two consecutive steps, P is its impulse (its
+    /// size counted as 5 % of the impulse of |F| at least, for forces that cancel out), p are the
+    /// parameters of the law and scale is the range over which a parameter is expected to
     /// vary.
     ///
     /// - `samples`: histories with a time step of [`CrushFit::dt_s`].
@@ -93,7 +98,10 @@ struct Reference<'a> {
     /// Means of the force along `[x, y]` over pairs of consecutive steps, N.
     means: [Vec<f64>; 2],
     norm: f64,
+    /// Sum of the forces of all steps, N.
     impulse: [f64; 2],
+    /// What the error of this sum is divided by, N.
+    impulse_scale: f64,
 }
 
 impl<'a> Reference<'a> {
@@ -101,20 +109,22 @@ impl<'a> Reference<'a> {
         let axes = [&sample.fx_n, &sample.fy_n];
         let means = axes.map(|force| means(force));
         let norm = means.iter().flatten().map(|f| f * f).sum::<f64>().sqrt();
-        let impulse = axes.map(|force| force.iter().sum());
-        (norm > 0.0 && norm.is_finite()).then_some(Self { sample, settings, means, norm, impulse })
+        let impulse: [f64; 2] = axes.map(|force| force.iter().sum());
+        let total: f64 = sample.fx_n.iter().zip(&sample.fy_n).map(|(x, y)| x.hypot(*y)).sum();
+        let impulse_scale = impulse[0].hypot(impulse[1]).max(LEAST_NET_SHARE * total);
+        let is_usable = norm > 0.0 && norm.is_finite();
+        is_usable.then_some(Self { sample, settings, means, norm, impulse, impulse_scale })
     }
 
     fn residuals(&self, law: &CrushLaw) -> Option<Vec<f64>> {
         let n_steps = self.sample.fx_n.len();
         let history = law.simulate(&self.sample.scenario, n_steps, self.settings.dt_s)?;
         let weight = self.sample.weight;
-        let size = self.impulse[0].hypot(self.impulse[1]);
         let mut residuals = Vec::with_capacity(n_steps + 2);
         for (axis, force) in [&history.fx_n, &history.fy_n].into_iter().enumerate() {
             let errors = means(force).into_iter().zip(&self.means[axis]);
             residuals.extend(errors.map(|(got, known)| weight * (got - known) / self.norm));
-            let error = (force.iter().sum::<f64>() - self.impulse[axis]) / size;
+            let error = (force.iter().sum::<f64>() - self.impulse[axis]) / self.impulse_scale;
             residuals.push(weight * self.settings.impulse_weight * error);
         }
         Some(residuals)
@@ -134,6 +144,24 @@ mod tests {
     fn sample(law: &CrushLaw, scenario: CrushScenario) -> CrushSample {
         let history = law.simulate(&scenario, 150, 1e-3).unwrap();
         CrushSample { scenario, fx_n: history.fx_n, fy_n: history.fy_n, weight: 1.0 }
+    }
+
+    /// The error of the impulse was divided by zero.
+    #[test]
+    fn forces_that_cancel_out_have_finite_residuals() {
+        let settings =
+            CrushFit { dt_s: 1e-3, prior_weight: 0.1, impulse_weight: 1.0, max_steps: 3 };
+        let (mut fx_n, mut fy_n) = (vec![0.0; 150], vec![0.0; 150]);
+        (fx_n[10], fx_n[12], fy_n[20], fy_n[22]) = (3e4, -3e4, 5e4, -5e4);
+        let sample = CrushSample { scenario: example(), fx_n, fy_n, weight: 1.0 };
+        let reference = Reference::new(&sample, settings).unwrap();
+        let residuals = reference.residuals(&law()).unwrap();
+        assert!(residuals.iter().all(|residual| residual.is_finite()), "{residuals:?}");
+        let fitted = law().fit(&[sample], settings, &mut |cost| {
+            assert!(cost.is_finite(), "{cost}");
+            ControlFlow::Continue(())
+        });
+        assert!(fitted.unwrap().to_vector().iter().all(|parameter| parameter.is_finite()));
     }
 
     #[test]

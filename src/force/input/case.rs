@@ -21,6 +21,10 @@ const DIGEST_STEP: f64 = 1e-4;
 /// Step to which forces are rounded before they are hashed, N. Peaks are some 50 kN.
 const DIGEST_STEP_N: f64 = 1.0;
 
+/// Smallest impulse of a collision as a share of the impulse of |F|. What is learned is relative to the
+/// impulse.
+const LEAST_NET_SHARE: f64 = 0.01;
+
 /// Mean force in the last millisecond of a contact above which the record was cut, as a share of the
 /// peak: a force that comes to zero has at most a few per cent there.
 const CUT_SHARE_OF_PEAK: f64 = 0.1;
@@ -74,6 +78,17 @@ pub enum ForceCaseError {
         /// Name of the case.
         case: String,
     },
+    /// The forces cancel out, which those of a collision do not: both vehicles are pushed apart.
+    #[error(
+        "case {case}: the forces cancel out, their impulse is {percent:.2} % of that of |F|; expected \
+         a push in one direction, check the signs"
+    )]
+    NoNetImpulse {
+        /// Name of the case.
+        case: String,
+        /// Impulse as a share of the impulse of the magnitude, %.
+        percent: f64,
+    },
     /// There is no force within the time grid.
     #[error("case {case}: no force in the first {grid_s} s of the record")]
     NoForce {
@@ -114,6 +129,12 @@ impl ForceCase {
                 return Err(ForceCaseError::NoForce { case: name(), grid_s });
             }
         };
+        let total_n_s: f64 = curve.magnitude_n().iter().sum::<f64>() * CURVE_INTERVAL_S;
+        let [px, py] = curve.impulse_n_s();
+        let net_share = px.hypot(py) / total_n_s;
+        if net_share < LEAST_NET_SHARE {
+            return Err(ForceCaseError::NoNetImpulse { case: name(), percent: 100.0 * net_share });
+        }
         let (scenario, mirrored) = scenario.canonical();
         let curve = if mirrored { curve.mirrored() } else { curve };
         let (peak_n, peak_time_s) = curve.peak();
@@ -223,6 +244,7 @@ pub(crate) mod tests {
 
     use super::*;
     use crate::collision::ImpulseFeatures;
+    use crate::data::{Channel, TimeSeries};
     use crate::learning::{TEST_SHARE, split};
 
     /// The cases of a shipped data set.
@@ -263,6 +285,35 @@ pub(crate) mod tests {
         // Where the table gave no times: weak contact at the end is cut.
         let off_s = crate::numerics::Summary::of(off_s).unwrap();
         assert!(off_s.median < 5e-3 && off_s.p90 < 0.025, "{off_s:?}");
+    }
+
+    #[test]
+    fn a_record_that_ends_in_contact_is_cut_and_a_clean_one_is_not() {
+        for case in &shipped("fea") {
+            let cut_at_s = case.cut_at_s();
+            if !case.separated {
+                assert!(cut_at_s.is_some_and(|at_s| at_s > case.peak_time_s), "{}", case.name);
+            } else if case.is_clean() {
+                assert_eq!(cut_at_s, None, "{}", case.name);
+            }
+        }
+    }
+
+    /// What is learned is relative to the impulse, which was zero.
+    #[test]
+    fn forces_that_cancel_out_are_refused() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/fea");
+        let mut report = |_| ControlFlow::Continue(());
+        let dataset = Dataset::load(&root, &mut report).unwrap().complete().unwrap();
+        let mut case = dataset.case("c001").unwrap().clone();
+        let mut series = TimeSeries::new(case.series.time_s().to_vec()).unwrap();
+        let n = series.n_samples();
+        let alternating = |i: usize| if i.is_multiple_of(2) { 1e3 } else { -1e3 };
+        series.insert(Channel::Fx, vec![0.0; n]).unwrap();
+        series.insert(Channel::Fy, (0..n).map(|i| alternating(i / 20)).collect()).unwrap();
+        case.series = series;
+        let error = ForceCase::from_case(&case).unwrap_err().to_string();
+        assert!(error.starts_with("case c001: the forces cancel out"), "{error}");
     }
 
     #[test]
