@@ -200,8 +200,15 @@ impl<M: TrainedModel> ModelStatus<M> {
             .enumerate()
             .find_map(|(idx, keeping)| Some((idx, poll(keeping)?)))?;
         let Keeping { model, .. } = self.keeping.remove(idx);
+        // A file to which the user has saved it meanwhile comes before the kept one.
+        let current = self.current.as_ref();
+        let is_saved = current.is_some_and(|of| Arc::ptr_eq(&of.model, &model) && of.is_saved);
         Some(result.map(|(entry, path)| {
-            self.identify((&model, &path), entry.name.clone(), (library, wanted));
+            if is_saved {
+                M::hold(library, ModelChoice::file(&path), model);
+            } else {
+                self.identify((&model, &path), entry.name.clone(), (library, wanted));
+            }
             entry
         }))
     }

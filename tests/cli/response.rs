@@ -158,7 +158,9 @@ fn a_prediction_writes_trajectory_density_and_outcome() {
     assert_eq!(trajectory.lines().count(), 1 + 201);
     let density = fs::read_to_string(out.join("density.csv")).unwrap();
     let mut points = density.lines().skip(1).map(|line| {
-        let numbers: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        // The last column says what restricts the forecast.
+        let cells = line.split(',').take(3);
+        let numbers: Vec<f64> = cells.map(|cell| cell.parse().unwrap()).collect();
         (numbers[0], numbers[1], numbers[2])
     });
     let (x0, y0, first) = points.next().unwrap();

@@ -383,9 +383,10 @@ fn the_chain_says_where_each_answer_comes_from_and_marks_what_is_late() {
     assert_eq!(titles, ["Scenario", "Impact", "Force", "Motion", "Outcome"]);
     assert!(chain.iter().all(|link| link.figure.is_some() && !link.is_late), "{chain:?}");
     let outcome = &state(&harness).session.response.forecast.ok().unwrap().answer.report.outcome;
-    let median = format!("X {:.2} m", outcome.x_m.median);
     let figure = chain[4].figure.clone().unwrap();
-    assert!(figure.starts_with(&median[..5]), "{figure} {median}");
+    let (median, ends) = (outcome.x_m.median, outcome.x_m.ninety);
+    let x = Quantity::Length.shown_interval(median, ends, UnitSystem::Si);
+    assert!(figure.starts_with(&format!("X {x}")), "{figure} {x}");
     // Two figures of one quantity do not differ: that of the scenario panel is the chain's.
     let delta_v_m_s =
         state(&harness).session.impact.ok().unwrap().report.target.delta_v_magnitude_m_s;

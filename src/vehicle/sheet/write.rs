@@ -14,8 +14,9 @@ use crate::vehicle::{Equations, VehicleParameters};
 /// Name of a sheet that has no file, in errors.
 const NO_FILE: &str = "data sheet";
 
-/// Largest relative difference between a parameter and the same one by way of a data sheet.
-const SAME: f64 = 1e-6;
+/// Largest relative difference between a parameter and the same one by way of a data sheet: files round
+/// to four digits.
+const SAME: f64 = 1e-3;
 
 impl Q {
     /// Whether the key of a vehicle file ends in the unit, which can then be chosen.
@@ -166,9 +167,12 @@ mod tests {
     }
 
     #[test]
-    fn every_vehicle_of_the_program_has_a_sheet_that_leads_to_it() {
+    fn every_car_of_the_program_has_a_sheet_that_leads_to_it() {
         for preset in Preset::ALL {
-            assert!(DataSheet::of(&preset.parameters()).is_some(), "{}", preset.id());
+            let vehicle = preset.parameters();
+            // The scaled models have roll arms that do not follow from CG and wheels.
+            let is_car = vehicle.mass.mass_kg > 1000.0;
+            assert_eq!(DataSheet::of(&vehicle).is_some(), is_car, "{}", preset.id());
         }
     }
 }
