@@ -16,6 +16,7 @@ mod log;
 mod program;
 mod ranges;
 mod response;
+#[cfg(feature = "gui")]
 mod restrictions;
 mod writes;
 mod writes_killed;
