@@ -71,6 +71,9 @@ struct Table<'a> {
     selected: Option<&'a str>,
 }
 
+/// Width and height of the triangle beside the heading that the cases are sorted by, points.
+const ARROW: f32 = 7.0;
+
 impl Table<'_> {
     /// Draws the table and returns the name of the case that the user clicked, if any.
     ///
@@ -115,14 +118,17 @@ impl Table<'_> {
         for (key, title) in fixed.into_iter().chain(attributes) {
             header.col(|ui| {
                 let sorted = view.sort_column.as_deref() == Some(key);
-                let arrow = match (sorted, view.sort_descending) {
+                let order = match (sorted, view.sort_descending) {
                     (false, _) => "",
-                    (true, false) => " ⏶",
-                    (true, true) => " ⏷",
+                    (true, false) => ", now the smallest first",
+                    (true, true) => ", now the largest first",
                 };
-                let text = RichText::new(format!("{title}{arrow}")).strong();
+                if sorted {
+                    arrow_ui(ui, view.sort_descending);
+                }
+                let text = RichText::new(&title).strong();
                 let label = egui::Label::new(text).sense(Sense::click()).truncate();
-                if ui.add(label).on_hover_text(format!("Sort by {title}")).clicked() {
+                if ui.add(label).on_hover_text(format!("Sort by {title}{order}")).clicked() {
                     sort_by(view, key);
                 }
             });
@@ -141,6 +147,17 @@ impl Table<'_> {
             row.col(|ui| drop(ui.label(case.text(column, units))));
         }
     }
+}
+
+/// Draws a triangle that points up where the smallest stands first, else down. The font has none.
+fn arrow_ui(ui: &mut Ui, is_descending: bool) {
+    let (area, _) = ui.allocate_exact_size(egui::vec2(ARROW, ARROW), Sense::hover());
+    let corners = match is_descending {
+        false => [area.left_bottom(), area.center_top(), area.right_bottom()],
+        true => [area.left_top(), area.right_top(), area.center_bottom()],
+    };
+    let color = ui.visuals().strong_text_color();
+    ui.painter().add(egui::Shape::convex_polygon(corners.to_vec(), color, egui::Stroke::NONE));
 }
 
 /// Changes the sorting after a click on the heading of a column: from unsorted to ascending, then

@@ -15,8 +15,8 @@ use crate::vehicle::{Equations, VehicleParameters};
 const NO_FILE: &str = "data sheet";
 
 /// Largest relative difference between a parameter and the same one by way of a data sheet: files round
-/// to four digits.
-const SAME: f64 = 1e-3;
+/// to four digits, and the radius of a wheel that a file leaves open moves the roll arm by 0.2 %.
+const SAME: f64 = 3e-3;
 
 impl Q {
     /// Whether the key of a vehicle file ends in the unit, which can then be chosen.
