@@ -157,10 +157,13 @@ impl Quantity {
         let [low, high] = ends_si.map(|end| unit.from_si(end));
         let median = unit.from_si(median_si);
         let width = (high - low).abs();
-        let decimals = match width.is_finite() && width > 0.0 {
-            true => (1 - width.log10().floor() as i32).clamp(0, 6) as usize,
-            false => return self.shown(median_si, system),
-        };
+        if width == 0.0 {
+            return self.shown(median_si, system);
+        }
+        if !width.is_finite() {
+            return format!("{median} ({low} to {high}) {}", unit.symbol).trim_end().to_owned();
+        }
+        let decimals = (1 - width.log10().floor() as i32).clamp(0, 6) as usize;
         // Adding zero turns a negative zero into a positive one.
         let text = |value: f64| {
             let scale = 10.0_f64.powi(decimals as i32);
@@ -284,6 +287,7 @@ mod tests {
         assert_eq!(shown(-0.004, [-0.31, 0.27]), "0.00 (-0.31 to 0.27) m");
         assert_eq!(shown(52.22, [51.55, 52.86]), "52.2 (51.6 to 52.9) m");
         assert_eq!(shown(2.0, [2.0, 2.0]), "2.000 m");
+        assert_eq!(shown(2.0, [1.0, f64::INFINITY]), "2 (1 to inf) m");
     }
 
     #[test]

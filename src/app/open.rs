@@ -127,6 +127,7 @@ impl State {
         session.analysis.ask_again();
         session.force.forecast.ask_again();
         session.response.forecast.ask_again();
+        session.other_variants.clear();
     }
 
     /// Drops the answers about the subject that was selected, so that none of them is shown for another.
@@ -156,6 +157,7 @@ impl State {
             self.session.library.forget(path);
             self.session.force.forecast.ask_again();
             self.session.response.forecast.ask_again();
+            self.session.other_variants.clear();
         }
         match network {
             Network::Force => {

@@ -19,7 +19,7 @@ use crate::study::unused::{by_force_network, by_forecast};
 use crate::study::{
     AssumedQuantity, Assumption, DEFAULT_DURATION_S, FlagReport, ImpliedContactReport, Library,
     ModelChoice, MotionSource, Observer, Provenance, Question, SeriesFile, SimulateAnswer,
-    SimulateRequest, StudyError, badges,
+    SimulateRequest, StudyError, VehicleChoice, badges,
 };
 use crate::uncertainty::{Badge, BadgeKind};
 
@@ -190,14 +190,17 @@ impl Question for PredictMotionRequest {
         check_count("draws", &DRAWS, self.draws)
     }
 
-    /// Fewer draws; `None` for a forecast to rest, which is made of draws alone.
+    /// Fewer draws; `None` for a forecast to rest, which is made of draws alone, and where neither the
+    /// force nor a vehicle that was chosen may be drawn.
     fn coarse(&self) -> Option<Self> {
         let motion = SimulateRequest {
             vehicle_draws: self.motion.vehicle_draws.min(COARSE_DRAWS),
             ..self.motion.clone()
         };
         let coarse = Self { draws: self.draws.min(COARSE_DRAWS), motion, ..self.clone() };
-        (coarse != *self && !self.motion.until_rest).then_some(coarse)
+        let is_drawn = matches!(self.force, ForceSource::Predicted(_))
+            || self.motion.vehicle != VehicleChoice::Automatic;
+        (coarse != *self && is_drawn && !self.motion.until_rest).then_some(coarse)
     }
 
     fn report(answer: &Self::Answer) -> &PredictMotionReport {
