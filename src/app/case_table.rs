@@ -293,6 +293,10 @@ mod tests {
         assert_eq!(names(&checked, &view("side=LEFT")), names(&checked, &view("side=left")));
         assert_eq!(names(&checked, &view("hooked")), hooked);
         let n = |filter: &str| names(&checked, &view(filter)).len();
+        let is_cut = |flags: &&Vec<Flag>| flags.iter().any(|flag| flag.to_string().contains("cut"));
+        let n_cut = checked.flags.iter().filter(is_cut).count();
+        assert!(n_cut > 0);
+        assert_eq!(n("cut"), n_cut);
         assert_eq!(n("hooked!=1"), 88);
         assert_eq!(n("m_b_kg<=2000") + n("m_b_kg>2000"), 100);
         assert_eq!(n("m_b_kg>=2000") + n("m_b_kg<2000"), 100);

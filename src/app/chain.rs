@@ -5,6 +5,7 @@ use egui::{Button, Panel, RichText, Ui};
 
 use crate::analysis::Spread;
 use crate::app::command::Command;
+use crate::app::looks::{Icon, colored_icon};
 use crate::app::model::file_name;
 use crate::app::panes::Pane;
 use crate::app::response::MotionAnswer;
@@ -204,9 +205,7 @@ fn link_ui(ui: &mut Ui, link: &Link, commands: &mut Vec<Command>) {
         (Some(figure), false) => figure.as_str(),
         (None, false) => "–",
     };
-    // Not by its colour alone.
-    let mark = if link.warnings.is_empty() { "" } else { " (!)" };
-    let text = RichText::new(format!("{}: {figure}{mark}", link.title));
+    let text = RichText::new(format!("{}: {figure}", link.title));
     let warning = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
     let text = match (link.is_late || link.figure.is_none(), link.warnings.is_empty()) {
         (true, _) => text.weak(),
@@ -215,7 +214,12 @@ fn link_ui(ui: &mut Ui, link: &Link, commands: &mut Vec<Command>) {
     };
     let said = std::iter::once(&link.source).chain(&link.warnings);
     let hint = said.map(String::as_str).collect::<Vec<_>>().join("\n");
-    if ui.add(Button::new(text).small()).on_hover_text(hint).clicked() {
+    // Not by its colour alone.
+    let button = match link.warnings.is_empty() {
+        true => Button::new(text),
+        false => Button::new((text, colored_icon(Icon::TriangleAlert, warning))),
+    };
+    if ui.add(button.small()).on_hover_text(hint).clicked() {
         commands.push(Command::Show(link.pane));
     }
 }

@@ -1,6 +1,7 @@
 //! What the case consists of, as the tree at the left of the Case workspace shows it.
 
 use crate::app::command::Command;
+use crate::app::looks::Icon;
 use crate::app::model::{ModelStatus, file_name};
 use crate::app::network::TrainedModel;
 use crate::app::panes::Pane;
@@ -40,6 +41,18 @@ impl Group {
             Self::Data => "Data",
             Self::Models => "Models",
             Self::Results => "Results",
+        }
+    }
+
+    /// The icon beside the name.
+    pub fn icon(self) -> Icon {
+        match self {
+            Self::Vehicles => Icon::Car,
+            Self::Scene => Icon::Map,
+            Self::Impact => Icon::Zap,
+            Self::Data => Icon::Database,
+            Self::Models => Icon::BrainCircuit,
+            Self::Results => Icon::Flag,
         }
     }
 }

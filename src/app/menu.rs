@@ -7,6 +7,7 @@ use egui::{Align, Button, Layout, MenuBar, Panel, ProgressBar, RichText, Ui};
 use crate::app::command::{Command, ComparisonCommand};
 use crate::app::dialogs::Purpose;
 use crate::app::keyboard;
+use crate::app::looks::{self, Icon, icon, icon_button};
 use crate::app::network::Network;
 use crate::app::panels;
 use crate::app::panes::Pane;
@@ -34,8 +35,10 @@ pub fn menu_ui(ui: &mut Ui, state: &mut State, history: History, commands: &mut 
         MenuBar::new().ui(ui, |ui| {
             ui.menu_button("File", |ui| file_menu_ui(ui, state, commands));
             ui.menu_button("Edit", |ui| {
-                edit_item(ui, "Undo", keyboard::UNDO, (history.can_undo, Command::Undo), commands);
-                edit_item(ui, "Redo", keyboard::REDO, (history.can_redo, Command::Redo), commands);
+                let (undo, redo) = ((Icon::Undo2, "Undo"), (Icon::Redo2, "Redo"));
+                let History { can_undo, can_redo } = history;
+                edit_item(ui, undo, keyboard::UNDO, (can_undo, Command::Undo), commands);
+                edit_item(ui, redo, keyboard::REDO, (can_redo, Command::Redo), commands);
             });
             ui.menu_button("View", |ui| view_menu_ui(ui, state, commands));
             ui.menu_button("Help", |ui| help_menu_ui(ui, commands));
@@ -47,8 +50,12 @@ pub fn menu_ui(ui: &mut Ui, state: &mut State, history: History, commands: &mut 
                         .on_hover_text("Units of everything on screen");
                 }
                 ui.separator();
-                let label = if state.view.dark { "Light" } else { "Dark" };
-                if ui.button(label).on_hover_text("Change the theme").clicked() {
+                let (of, label) = match state.view.dark {
+                    true => (Icon::Sun, "Light"),
+                    false => (Icon::Moon, "Dark"),
+                };
+                let button = ui.add(icon_button(of, label));
+                if button.on_hover_text("Change the theme").clicked() {
                     state.view.dark = !state.view.dark;
                 }
             });
@@ -61,7 +68,8 @@ fn workspaces_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     let shown = (!state.session.shows_doors).then_some(state.view.workspaces.shown);
     for workspace in Workspace::ALL {
         let text = RichText::new(workspace.title()).strong();
-        let label = ui.selectable_label(shown == Some(workspace), text);
+        let parts = (icon(workspace.icon()), text);
+        let label = ui.selectable_label(shown == Some(workspace), parts);
         if label.on_hover_text(workspace.purpose()).clicked() {
             commands.push(Command::ShowWorkspace(workspace));
         }
@@ -70,12 +78,12 @@ fn workspaces_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
 
 fn edit_item(
     ui: &mut Ui,
-    label: &str,
+    (of, label): (Icon, &str),
     shortcut: egui::KeyboardShortcut,
     (enabled, command): (bool, Command),
     commands: &mut Vec<Command>,
 ) {
-    let button = Button::new(label).shortcut_text(ui.ctx().format_shortcut(&shortcut));
+    let button = icon_button(of, label).shortcut_text(ui.ctx().format_shortcut(&shortcut));
     if ui.add_enabled(enabled, button).clicked() {
         commands.push(command);
     }
@@ -83,15 +91,16 @@ fn edit_item(
 
 fn file_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     for (label, shortcut, command) in [
-        ("New case", keyboard::NEW, Command::NewCase),
-        ("Open files…", keyboard::OPEN, Command::Ask(Purpose::Files)),
-        ("Open folder…", keyboard::OPEN_FOLDER, Command::Ask(Purpose::Folder)),
-        ("Save case", keyboard::SAVE, Command::SaveCase),
-        ("Save case as…", keyboard::SAVE_AS, Command::Ask(Purpose::SaveCase)),
+        ((Icon::FilePlus, "New case"), keyboard::NEW, Command::NewCase),
+        ((Icon::File, "Open files…"), keyboard::OPEN, Command::Ask(Purpose::Files)),
+        ((Icon::FolderOpen, "Open folder…"), keyboard::OPEN_FOLDER, Command::Ask(Purpose::Folder)),
+        ((Icon::Save, "Save case"), keyboard::SAVE, Command::SaveCase),
+        ((Icon::SaveAll, "Save case as…"), keyboard::SAVE_AS, Command::Ask(Purpose::SaveCase)),
     ] {
         edit_item(ui, label, shortcut, (true, command), commands);
     }
-    if ui.button("Package…").on_hover_text("One zip of the case and all its files").clicked() {
+    let package = ui.add(icon_button(Icon::Archive, "Package…"));
+    if package.on_hover_text("One zip of the case and all its files").clicked() {
         commands.push(Command::Ask(Purpose::PackCase));
     }
     ui.add_enabled_ui(!state.view.recent.is_empty(), |ui| {
@@ -135,7 +144,7 @@ fn file_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
 
 fn view_menu_ui(ui: &mut Ui, state: &mut State, commands: &mut Vec<Command>) {
     for pane in Pane::ALL {
-        if ui.button(pane.title()).clicked() {
+        if ui.add(icon_button(pane.icon(), pane.title())).clicked() {
             commands.push(Command::Show(pane));
         }
     }
@@ -243,6 +252,7 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
                 }
             }
             let color = theme::severity_color(latest.severity, state.view.dark);
+            looks::icon_ui(ui, severity_icon(latest.severity), color);
             let text = match latest.severity {
                 Severity::Error => format!("Error: {}", latest.text),
                 Severity::Warning => format!("Warning: {}", latest.text),
@@ -251,6 +261,15 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             ui.add(egui::Label::new(RichText::new(text).color(color)).wrap());
         });
     });
+}
+
+/// The icon beside a message.
+fn severity_icon(severity: Severity) -> Icon {
+    match severity {
+        Severity::Error => Icon::CircleX,
+        Severity::Warning => Icon::TriangleAlert,
+        Severity::Info => Icon::Info,
+    }
 }
 
 /// Draws the list of all messages since the start, the newest first.

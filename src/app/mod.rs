@@ -19,6 +19,7 @@ mod kept;
 mod keyboard;
 mod latest;
 mod licences;
+mod looks;
 mod menu;
 mod model;
 mod network;
@@ -139,6 +140,7 @@ impl App {
     ///   keeps its state there, or if it was written by a later version of the program, nothing is
     ///   stored either, and a message says so.
     pub fn new(cc: &CreationContext<'_>, paths: Vec<PathBuf>, state_file: Option<PathBuf>) -> Self {
+        looks::install(&cc.egui_ctx);
         let data_folder = state_file.as_deref().and_then(Path::parent).map(Path::to_owned);
         let OpenedState { store, restored, message } = open_state(state_file);
         let (is_asked, is_restored) = (!paths.is_empty(), restored.is_some());

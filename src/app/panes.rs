@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::app::command::Command;
 use crate::app::contents::ContentsEntry;
+use crate::app::looks::{self, Icon};
 use crate::app::panels;
 use crate::app::state::{Project, Session, View};
 use crate::app::variants::AnsweredVariant;
@@ -98,6 +99,28 @@ impl Pane {
             Self::ModelComparison => "Compare models",
         }
     }
+
+    /// The icon beside the title.
+    pub fn icon(self) -> Icon {
+        match self {
+            Self::Case => Icon::ListTree,
+            Self::Data => Icon::Database,
+            Self::Cases => Icon::Table2,
+            Self::Vehicle => Icon::Car,
+            Self::Scenario => Icon::Zap,
+            Self::Scene => Icon::Map,
+            Self::Motion => Icon::ChartLine,
+            Self::Force => Icon::Activity,
+            Self::Comparison => Icon::GitCompare,
+            Self::ForcePrediction => Icon::ChartSpline,
+            Self::MotionForecast => Icon::Route,
+            Self::Variants => Icon::Layers,
+            Self::Models => Icon::BrainCircuit,
+            Self::Training => Icon::GraduationCap,
+            Self::Evaluation => Icon::Gauge,
+            Self::ModelComparison => Icon::ChartBar,
+        }
+    }
 }
 
 /// The context in which the panes are drawn: the parts of the state, and the list of commands.
@@ -120,7 +143,7 @@ pub struct PaneContext<'a> {
 
 impl Behavior<Pane> for PaneContext<'_> {
     fn pane_ui(&mut self, ui: &mut Ui, _tile: TileId, pane: &mut Pane) -> UiResponse {
-        let frame = egui::Frame::new().inner_margin(6.0);
+        let frame = egui::Frame::new().inner_margin(looks::MARGIN);
         let is_late = pane.is_answer() && self.session.is_simulation_late();
         frame.show(ui, |ui| {
             panels::faded(ui, is_late, |ui| match pane {

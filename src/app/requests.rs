@@ -14,11 +14,11 @@ use crate::data::{DatasetKind, FileKind};
 use crate::force::ForceScenario;
 use crate::shipped::ModelSource;
 use crate::study::{
-    CompareRequest, ConfigChoice, DEFAULT_DRAWS, Drive, EvaluateForceRequest,
-    EvaluateResponseRequest, FineTuneRequest, ForceQuestion, ForceSource, ImpactRequest, Learning,
-    ModelChoice, MotionSource, PredictForceRequest, PredictMotionRequest, ScenarioChoice,
-    SeriesFile, SimulateDatasetRequest, SimulateRequest, TrainForceRequest, TrainResponseRequest,
-    TrainingOptions,
+    CompareRequest, ConfigChoice, DEFAULT_DRAWS, DEFAULT_LOG_DURATION_S, Drive,
+    EvaluateForceRequest, EvaluateResponseRequest, FineTuneRequest, ForceQuestion, ForceSource,
+    ImpactRequest, Learning, ModelChoice, MotionLogs, MotionSource, PredictForceRequest,
+    PredictMotionRequest, ScenarioChoice, SeriesFile, SimulateDatasetRequest, SimulateRequest,
+    TrainForceRequest, TrainResponseRequest, TrainingOptions,
 };
 
 impl State {
@@ -177,9 +177,29 @@ impl State {
         }
     }
 
-    /// Returns the question that fine-tunes the response network on a data set; `None` if the
+    /// The log that the response network is to learn from instead of a data set; `None` if none is
+    /// chosen, or if its file is not open any more.
+    pub(in crate::app) fn log_to_learn_from(&self) -> Option<MotionLogs> {
+        let form = &self.project.response.training;
+        let source_of = |path: &PathBuf| self.session.sources.iter().find(|of| of.path == *path);
+        let log = form.log.as_ref().filter(|_| form.mode.takes_log()).and_then(source_of)?;
+        let force = form.log_force.as_ref().and_then(source_of);
+        Some(MotionLogs {
+            logs: vec![log.path.clone()],
+            forces: force.map(|source| source.path.clone()).into_iter().collect(),
+            map: log.map.clone(),
+            contact: force.and(self.project.file_start.contact),
+            impact_s: None,
+            duration_s: DEFAULT_LOG_DURATION_S,
+        })
+    }
+
+    /// Returns the question that fine-tunes the response network on data sets or a log; `None` if the
     /// current model is to be fine-tuned and there is none.
-    pub(in crate::app) fn fine_tune_request(&self, data: PathBuf) -> Option<FineTuneRequest> {
+    pub(in crate::app) fn fine_tune_request(
+        &self,
+        (data, logs): (Vec<PathBuf>, Option<MotionLogs>),
+    ) -> Option<FineTuneRequest> {
         let form: &ResponseTrainingForm = &self.project.response.training;
         let model = match form.mode {
             TrainingMode::FineTuneShipped => Some(ModelSource::ShippedPretrained.into()),
@@ -195,7 +215,8 @@ impl State {
         Some(FineTuneRequest {
             learning,
             model,
-            data: vec![data],
+            data,
+            logs,
             trajectories: form.n_trajectories,
             vehicle: self.project.vehicle.clone(),
             choice: form.choice,

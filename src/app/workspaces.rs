@@ -4,6 +4,7 @@ use egui::Id;
 use egui_tiles::{Container, Linear, LinearDir, Tile, TileId, Tiles, Tree};
 use serde::{Deserialize, Serialize};
 
+use crate::app::looks::Icon;
 use crate::app::panes::Pane;
 
 /// An arrangement of panes.
@@ -31,6 +32,15 @@ impl Workspace {
             Self::Case => "Case",
             Self::Data => "Data",
             Self::Models => "Models",
+        }
+    }
+
+    /// The icon beside its name.
+    pub fn icon(self) -> Icon {
+        match self {
+            Self::Case => Icon::CarFront,
+            Self::Data => Icon::Database,
+            Self::Models => Icon::BrainCircuit,
         }
     }
 

@@ -1,8 +1,11 @@
-//! Placement of the legend in the corner of a plot where it hides least.
+//! Placement of the legend: in the corner of a plot where it hides least, or above a plot that is too low
+//! for it.
 
+use egui::{Color32, Label, RichText, Sense, Ui, Vec2};
 use egui_plot::Corner;
 
 use crate::figure::{Figure, FigureElement, Path, Series};
+use crate::render::theme;
 
 /// Share of the width and of the height of the plot that a legend is assumed to take.
 const LEGEND_SHARE: [f64; 2] = [0.4, 0.45];
@@ -14,6 +17,48 @@ const SEGMENT_POINTS: usize = 16;
 /// Corners in order of preference.
 const CORNERS: [Corner; 4] =
     [Corner::RightTop, Corner::LeftTop, Corner::RightBottom, Corner::LeftBottom];
+
+/// Height of a name in a legend, and the share of the height of a plot that the legend may take, points.
+const NAME_HEIGHT: f32 = 20.0;
+const MAX_HEIGHT_SHARE: f32 = 0.55;
+
+/// The first element of each name of a figure, in their order.
+pub fn named(figure: &Figure) -> Vec<&FigureElement> {
+    let mut named: Vec<&FigureElement> = Vec::new();
+    for element in figure.elements.iter().filter(|element| !element.name().is_empty()) {
+        if named.iter().all(|other| other.name() != element.name()) {
+            named.push(element);
+        }
+    }
+    named
+}
+
+/// Whether the legend of a figure would cover most of a plot of this height, points.
+pub fn is_too_high(figure: &Figure, height: f32) -> bool {
+    named(figure).len() as f32 * NAME_HEIGHT > MAX_HEIGHT_SHARE * height
+}
+
+/// Draws the names of a figure with their colours in rows.
+pub fn legend_row_ui(ui: &mut Ui, figure: &Figure) {
+    let dark = ui.visuals().dark_mode;
+    ui.horizontal_wrapped(|ui| {
+        for element in named(figure) {
+            let color = theme::color(element.role(), dark);
+            let color = match element {
+                FigureElement::Band(band) => color.gamma_multiply(band.opacity),
+                _ => color,
+            };
+            dot_ui(ui, color);
+            ui.add(Label::new(RichText::new(element.name()).small()).extend());
+        }
+    });
+}
+
+fn dot_ui(ui: &mut Ui, color: Color32) {
+    let size = egui::TextStyle::Small.resolve(ui.style()).size;
+    let (rect, _) = ui.allocate_exact_size(Vec2::splat(size), Sense::hover());
+    ui.painter().circle_filled(rect.center(), size / 3.0, color);
+}
 
 /// The corner of a figure where a legend hides the fewest points; among equal corners the first in
 /// the order right top, left top, right bottom, left bottom.
@@ -84,6 +129,19 @@ mod tests {
         let axis = Axis::shown("x", Quantity::Ratio, UnitSystem::Si);
         let line = FigureElement::line("line", Role::Simulation, points);
         Figure::new("", [axis.clone(), axis], vec![line])
+    }
+
+    #[test]
+    fn a_legend_has_a_name_once_and_leaves_a_low_plot() {
+        let mut figure = figure(vec![[0.0, 1.0], [1.0, 0.0]]);
+        let of_line = figure.elements[0].clone();
+        figure.elements.push(of_line);
+        figure.elements.push(FigureElement::line("", Role::Muted, vec![[0.0, 0.0]]));
+        figure.elements.push(FigureElement::line("other", Role::Target, vec![[0.0, 0.0]]));
+        let names: Vec<&str> = named(&figure).iter().map(|element| element.name()).collect();
+        assert_eq!(names, ["line", "other"]);
+        assert!(is_too_high(&figure, 60.0));
+        assert!(!is_too_high(&figure, 200.0));
     }
 
     #[test]

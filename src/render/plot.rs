@@ -1,6 +1,5 @@
 //! Draws a figure with egui_plot.
 
-use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use egui::{Color32, ColorImage, Id, Pos2, Stroke, TextureHandle, TextureOptions, Ui, Vec2, Vec2b};
@@ -9,8 +8,8 @@ use egui_plot::{
     PlotPoint, PlotPoints, PlotUi, Points, Polygon, VLine,
 };
 
-use crate::figure::{Figure, FigureElement, HeatMap, LineStyle, Path, Series};
-use crate::render::legend::emptiest_corner;
+use crate::figure::{Axis, Figure, FigureElement, HeatMap, LineStyle, Path, Series};
+use crate::render::legend::{emptiest_corner, is_too_high, legend_row_ui, named};
 use crate::render::theme;
 use crate::render::thin::thinned;
 use crate::render::ticks::{
@@ -24,6 +23,10 @@ const HEAT_OPACITY: f32 = 0.85;
 /// Smallest width of the labels of the vertical axis, and width of a character of a name, points.
 const LEAST_Y_AXIS_WIDTH: f32 = 44.0;
 const CHARACTER_WIDTH: f32 = 6.5;
+
+/// Height of the labels of the horizontal axis, points, and the smallest height of a plot with them.
+const X_AXIS_HEIGHT: f32 = 36.0;
+const LEAST_HEIGHT: f32 = 2.0 * X_AXIS_HEIGHT;
 
 /// Logarithm of the zoom for each point that the wheel scrolls.
 const ZOOM_PER_POINT: f32 = 0.004;
@@ -89,10 +92,18 @@ pub struct FigureResponse {
 
 /// Draws a figure into the space that is available. Hovering shows values in the units of the axes.
 pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> FigureResponse {
-    let mut plot = plot_with_axes(figure, options);
-    if options.legend {
+    let all = options.height.unwrap_or_else(|| ui.available_height());
+    let is_row = options.legend && is_too_high(figure, all);
+    let top = ui.cursor().top();
+    if is_row {
+        legend_row_ui(ui, figure);
+    }
+    let height = (all - (ui.cursor().top() - top)).max(LEAST_HEIGHT);
+    let y_label = label_that_fits(ui, &figure.y, height - X_AXIS_HEIGHT);
+    let mut plot = plot_with_axes(figure, options, y_label);
+    if options.legend && !is_row {
         let legend = Legend::default().position(emptiest_corner(figure));
-        let legend = match n_legend_names(figure) {
+        let legend = match named(figure).len() {
             ..=LONG_LEGEND => legend,
             _ => legend.text_style(egui::TextStyle::Small),
         };
@@ -101,7 +112,7 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
     if figure.equal_aspect {
         plot = plot.data_aspect(1.0);
     }
-    if let Some(height) = options.height {
+    if options.height.is_some() {
         plot = plot.height(height);
     }
     if let Some(group) = options.link {
@@ -181,7 +192,7 @@ fn zoom_by_wheel(plot: &mut PlotUi<'_>) {
 }
 
 /// A plot with the labels and ticks of the axes and the text shown on hovering.
-fn plot_with_axes<'a>(figure: &Figure, options: &FigureOptions) -> Plot<'a> {
+fn plot_with_axes<'a>(figure: &Figure, options: &FigureOptions, y_label: String) -> Plot<'a> {
     let id = if options.id.is_empty() { &figure.title } else { &options.id };
     let (x, y, log_y) = (figure.x.clone(), figure.y.clone(), figure.log_y);
     let readout = move |name: &str, at: PlotPoint| {
@@ -199,7 +210,7 @@ fn plot_with_axes<'a>(figure: &Figure, options: &FigureOptions) -> Plot<'a> {
     let longest = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
     Plot::new(id.as_str())
         .x_axis_label(figure.x.text())
-        .y_axis_label(figure.y.text())
+        .y_axis_label(y_label)
         .y_axis_min_width(f32::max(LEAST_Y_AXIS_WIDTH, longest as f32 * CHARACTER_WIDTH))
         .label_formatter(move |position| {
             let (name, at) = match position {
@@ -225,6 +236,18 @@ fn plot_with_axes<'a>(figure: &Figure, options: &FigureOptions) -> Plot<'a> {
         })
         .allow_scroll(false)
         .allow_drag(Vec2b::from(figure.equal_aspect && options.pans))
+}
+
+/// The text beside an upright axis; where it is longer than the plot is high, its unit alone, as the
+/// heading above the plot names the quantity.
+fn label_that_fits(ui: &Ui, axis: &Axis, room: f32) -> String {
+    let text = axis.text();
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let length = ui.painter().layout_no_wrap(text.clone(), font, Color32::PLACEHOLDER).size().x;
+    match length > room && !axis.unit.symbol.is_empty() {
+        true => format!("[{}]", axis.unit.symbol),
+        false => text,
+    }
 }
 
 /// The texture of a heat map, which is kept from frame to frame, and the data from which it was
@@ -271,11 +294,6 @@ fn heat_map(plot: &mut PlotUi<'_>, map: &HeatMap, color: Color32) {
     // The legend shows colours of lines only, and a line needs at least one point.
     let point = PlotPoints::from(vec![[at.x, at.y]]);
     plot.line(Line::new(&map.name, point).stroke(Stroke::new(0.0, color)).allow_hover(false));
-}
-
-/// Number of different names in the legend of a figure.
-fn n_legend_names(figure: &Figure) -> usize {
-    figure.elements.iter().map(FigureElement::name).collect::<BTreeSet<_>>().len()
 }
 
 /// Draws an element with the colours of the dark or the light theme; on a logarithmic axis y is

@@ -227,7 +227,7 @@ fn two_cursors_give_the_numbers_between_them() {
     step_until(&mut harness, "the simulation", is_idle);
     harness.run_steps(4);
     let hint = harness.get_by_label_contains("Shift + drag").rect();
-    let from = egui::pos2(hint.min.x, hint.max.y + 70.0);
+    let from = egui::pos2(hint.min.x + 40.0, hint.max.y + 70.0);
     harness.event(egui::Event::ModifiersChanged(egui::Modifiers::SHIFT));
     drag(&mut harness, from, from + egui::vec2(90.0, 0.0));
     let span = state(&harness).session.between.span_s;

@@ -15,6 +15,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::harness::{apply, is_idle, open, step_until};
+use crate::settings::{QUICK_CRUSH, SMALL_FORCE, SMALL_RESPONSE};
 
 const FORCES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea");
 const TRAJECTORIES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/trajectories-fea");
@@ -22,40 +23,6 @@ const SCENARIO: &str = "assets/scenarios/pit_right_rear.toml";
 
 /// Keys of durations, and of the files that only the command line writes.
 const NOT_COMPARED: [&str; 4] = ["seconds", "training_s", "time_per_step_us", "out"];
-
-const TINY_FORCE: &str = "\
-[network]
-encoder_branches = [[8, 8, 8]]
-position_channels = 8
-attention = false
-trunk = [16, 16]
-factors = 2
-[crush]
-folds = 2
-max_steps = 2
-";
-
-const TINY_RESPONSE: &str = "\
-[network]
-encoder = [8]
-token_encoder = [4, 4, 4]
-attention_heads = 2
-trunk = [8]
-components = 2
-[pretraining]
-motions = 4
-epochs = 2
-[single_steps]
-epochs = 2
-[rollouts]
-lengths = [5]
-epochs = 2
-[calibration]
-folds = 2
-[tuning]
-iterations = 2
-particles = 4
-";
 
 /// A question as the command line asks it.
 struct CommandLine<'a> {
@@ -352,7 +319,7 @@ fn train(harness: &mut Harness<'_, App>, network: Network) {
 #[test]
 fn a_force_network_is_trained_and_evaluated_alike() {
     let folder = tempfile::tempdir().expect("a folder");
-    let config = write(folder.path(), "tiny.toml", TINY_FORCE);
+    let config = write(folder.path(), "tiny.toml", &[SMALL_FORCE, QUICK_CRUSH].concat());
     let model = folder.path().join("force.safetensors").display().to_string();
     let mut harness = open_on(FORCES);
     {
@@ -387,7 +354,7 @@ fn a_force_network_is_trained_and_evaluated_alike() {
 #[test]
 fn a_response_network_is_trained_fine_tuned_and_evaluated_alike() {
     let folder = tempfile::tempdir().expect("a folder");
-    let config = write(folder.path(), "tiny.toml", TINY_RESPONSE);
+    let config = write(folder.path(), "tiny.toml", SMALL_RESPONSE);
     let file = |name: &str| folder.path().join(name).display().to_string();
     let (pretrained, tuned) = (file("pretrained.safetensors"), file("tuned.safetensors"));
     let mut harness = open(&[FORCES, TRAJECTORIES]);
@@ -444,7 +411,7 @@ fn a_response_network_is_trained_fine_tuned_and_evaluated_alike() {
 #[test]
 fn models_are_compared_alike() {
     let folder = tempfile::tempdir().expect("a folder");
-    let config = write(folder.path(), "tiny.toml", TINY_RESPONSE);
+    let config = write(folder.path(), "tiny.toml", SMALL_RESPONSE);
     let mut harness = open_on(TRAJECTORIES);
     {
         let form = &mut harness.state_mut().state_mut().project.response.comparison;

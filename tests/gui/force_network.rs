@@ -14,22 +14,14 @@ use impactlab::study::ForceEvaluation;
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
 use crate::pictures::save;
+use crate::settings::{QUICK_CRUSH, SMALL_FORCE};
 
-/// Settings of a network that is trained within a second and is good enough to be drawn.
-const SMALL: &str = "\
-[network]
-encoder_branches = [[8, 8, 8]]
-position_channels = 8
-attention = false
-trunk = [16, 16]
-factors = 2
+/// A training within a second that gives a network good enough to be drawn.
+const EPOCHS: &str = "\
 [training]
 epochs = 8
 learning_rate = 3e-3
 checkpoint_epochs = 1
-[crush]
-folds = 2
-max_steps = 2
 ";
 
 struct Small {
@@ -51,7 +43,8 @@ fn small() -> &'static Small {
     static SMALL_MODEL: OnceLock<Small> = OnceLock::new();
     SMALL_MODEL.get_or_init(|| {
         let small = Small { folder: tempfile::tempdir().expect("a folder") };
-        std::fs::write(small.config(), SMALL).expect("a file");
+        std::fs::write(small.config(), [SMALL_FORCE, EPOCHS, QUICK_CRUSH].concat())
+            .expect("a file");
         let mut go_on = |_| ControlFlow::Continue(());
         let dataset = Dataset::load(
             Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")),

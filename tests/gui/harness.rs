@@ -39,9 +39,21 @@ pub fn open(paths: &[&str]) -> Harness<'static, App> {
 
 /// Opens the app on these paths, with its state stored in a file, if there is one.
 pub fn open_with(paths: &[&str], state_file: Option<PathBuf>) -> Harness<'static, App> {
+    open_at(([1440.0, 900.0], 1.0), paths, state_file)
+}
+
+/// The same in a window of another size.
+///
+/// - `size`: width and height, points, and the pixels of a point.
+pub fn open_at(
+    (size, pixels_per_point): ([f32; 2], f32),
+    paths: &[&str],
+    state_file: Option<PathBuf>,
+) -> Harness<'static, App> {
     let paths: Vec<PathBuf> = paths.iter().map(PathBuf::from).collect();
     Harness::builder()
-        .with_size([1440.0, 900.0])
+        .with_size(size)
+        .with_pixels_per_point(pixels_per_point)
         .with_step_dt(1.0 / 60.0)
         .renderer(SoftwareTestRenderer::default())
         .build_eframe(move |cc| App::new(cc, paths, state_file))

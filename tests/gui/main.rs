@@ -3,14 +3,17 @@
 mod arrangement;
 mod both_faces;
 mod case;
+mod conditioning;
 mod density_gpu;
 mod force_network;
 mod harness;
 mod import;
+mod looks;
 mod models;
 mod network_figures;
 mod pictures;
 mod response_network;
+mod settings;
 mod snapshots;
 mod stored;
 mod trust;

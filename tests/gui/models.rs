@@ -14,47 +14,19 @@ use impactlab::study::ModelChoice;
 
 use crate::harness::{apply, is_idle, open_with, step_until};
 use crate::pictures::save;
+use crate::settings::{SMALL_FORCE, SMALL_RESPONSE};
 
 const FORCES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea");
 const MOTIONS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/trajectories-fea");
 
-/// Settings of a force network that is trained within seconds, with a checkpoint after each epoch.
-const SMALL_FORCE: &str = "\
-[network]
+/// About the momentum solution, with a checkpoint after each epoch.
+const MOMENTUM: &str = "\
 centre = \"momentum\"
-encoder_branches = [[8, 8, 8]]
-position_channels = 8
-attention = false
-trunk = [16, 16]
-factors = 2
 [training]
 epochs = 4
 checkpoint_epochs = 1
 [crush]
 folds = 2
-";
-
-/// Settings of a response network that is trained within seconds.
-const SMALL_RESPONSE: &str = "\
-[network]
-encoder = [8]
-token_encoder = [4, 4, 4]
-attention_heads = 2
-trunk = [8]
-components = 2
-[pretraining]
-motions = 4
-epochs = 2
-[single_steps]
-epochs = 2
-[rollouts]
-lengths = [5]
-epochs = 2
-[calibration]
-folds = 2
-[tuning]
-iterations = 2
-particles = 4
 ";
 
 /// A user's data folder with the settings of small networks.
@@ -65,7 +37,8 @@ struct Desk {
 impl Desk {
     fn new() -> Self {
         let folder = tempfile::tempdir().expect("a folder");
-        fs::write(folder.path().join("force.toml"), SMALL_FORCE).expect("a file");
+        fs::write(folder.path().join("force.toml"), [SMALL_FORCE, MOMENTUM].concat())
+            .expect("a file");
         fs::write(folder.path().join("response.toml"), SMALL_RESPONSE).expect("a file");
         Self { folder }
     }

@@ -8,8 +8,8 @@ use egui_kittest::image_snapshot;
 use impactlab::analysis::{ForceForecast, ForecastSettings, pulse_curves};
 use impactlab::data::Dataset;
 use impactlab::figure::{
-    CoveragePoint, Figure, ForceComponent, ForecastFigure, LossCurve, ParityPoint, RecordedCurve,
-    Role, coverage_figure, forecast_figure, loss_figure, parity_figure, pit_figure,
+    CoveragePoint, Figure, FigureElement, ForceComponent, ForecastFigure, LossCurve, ParityPoint,
+    RecordedCurve, Role, coverage_figure, forecast_figure, loss_figure, parity_figure, pit_figure,
 };
 use impactlab::force::ForceCase;
 use impactlab::render::{Canvas, figure_image};
@@ -86,6 +86,26 @@ fn a_forecast_with_everything_over_it() {
         );
         save(&figure, &format!("forecast-{component:?}"));
     }
+    let cut = RecordedCurve { cut_at_s: Some(0.05), ..recorded };
+    let figure = forecast_figure(
+        ForceComponent::Y,
+        &ForecastFigure {
+            name: "c003",
+            forecast: &forecast,
+            levels: &[],
+            recorded: Some(cut),
+            pulses: &[],
+            physics: None,
+            units: UnitSystem::Si,
+            trust: &Trust::default(),
+        },
+    );
+    let drawn = figure.elements.iter().find_map(|element| match element {
+        FigureElement::Line(series) if series.name == "c003, FEA, cut at 50.0 ms" => Some(series),
+        _ => None,
+    });
+    let last_ms = drawn.expect("the recorded force").points.last().expect("a point")[0];
+    assert!((49.0..=50.0).contains(&last_ms), "drawn until {last_ms} ms");
     let figure = forecast_figure(
         ForceComponent::Y,
         &ForecastFigure {

@@ -10,31 +10,9 @@ use impactlab::app::{
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
 use crate::pictures::save;
+use crate::settings::SMALL_RESPONSE;
 
 const DATA: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/trajectories-fea");
-
-/// Settings of a training that takes seconds.
-const SMALL: &str = "\
-[network]
-encoder = [8]
-token_encoder = [4, 4, 4]
-attention_heads = 2
-trunk = [8]
-components = 2
-[pretraining]
-motions = 4
-epochs = 2
-[single_steps]
-epochs = 2
-[rollouts]
-lengths = [5]
-epochs = 2
-[calibration]
-folds = 2
-[tuning]
-iterations = 2
-particles = 4
-";
 
 fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
     harness.state().state()
@@ -145,7 +123,7 @@ fn forecast_and_density_stay_while_time_runs() {
 fn a_response_model_is_trained_paused_cancelled_and_saved() {
     let folder = tempfile::tempdir().expect("a folder");
     let config = folder.path().join("small.toml");
-    std::fs::write(&config, SMALL.replace("epochs = 2", "epochs = 400")).expect("a file");
+    std::fs::write(&config, SMALL_RESPONSE.replace("epochs = 2", "epochs = 400")).expect("a file");
     let mut harness = open_with(&[DATA], Some(folder.path().join("state.json")));
     step_until(&mut harness, "the data", is_idle);
     apply(&mut harness, Command::ShowTraining(Network::Response));
@@ -199,7 +177,7 @@ fn a_response_model_is_trained_paused_cancelled_and_saved() {
 fn models_are_compared_saved_and_opened_again() {
     let folder = tempfile::tempdir().expect("a folder");
     let config = folder.path().join("small.toml");
-    std::fs::write(&config, SMALL).expect("a file");
+    std::fs::write(&config, SMALL_RESPONSE).expect("a file");
     let mut harness = open(&[DATA]);
     step_until(&mut harness, "the data", is_idle);
     apply(&mut harness, Command::Show(Pane::ModelComparison));

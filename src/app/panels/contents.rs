@@ -4,6 +4,7 @@ use egui::{CollapsingHeader, Label, RichText, ScrollArea, Sense, Ui};
 
 use crate::app::command::Command;
 use crate::app::contents::{ContentsEntry, Group};
+use crate::app::looks::{self, Icon};
 use crate::app::panes::PaneContext;
 use crate::data::Severity;
 use crate::render::theme;
@@ -18,14 +19,18 @@ pub fn contents_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             let warning = theme::severity_color(Severity::Warning, ui.visuals().dark_mode);
             let title = match n_missing {
                 0 => RichText::new(group.title()),
-                n => RichText::new(format!("{} ({n} !)", group.title())).color(warning),
+                1 => RichText::new(format!("{}: 1 open point", group.title())).color(warning),
+                n => RichText::new(format!("{}: {n} open points", group.title())).color(warning),
             };
-            let header = CollapsingHeader::new(title.strong()).id_salt(group.title());
-            header.default_open(true).show(ui, |ui| {
+            let title = title.strong();
+            let header = CollapsingHeader::new(title).id_salt(group.title()).default_open(true);
+            let shown = header.show(ui, |ui| {
                 for entry in entries {
                     entry_ui(ui, entry, commands);
                 }
             });
+            let line = shown.header_response.rect;
+            looks::icon_at(ui, group.icon(), [ui.max_rect().right(), line.center().y]);
         }
     });
 }
@@ -40,7 +45,13 @@ fn entry_ui(ui: &mut Ui, entry: &ContentsEntry, commands: &mut Vec<Command>) {
         Some(_) => RichText::new(text).color(warning),
         None => RichText::new(text),
     };
-    let line = ui.add(Label::new(text).wrap().selectable(false).sense(Sense::click()));
+    let line = ui.horizontal_top(|ui| {
+        if entry.missing.is_some() {
+            looks::icon_ui(ui, Icon::TriangleAlert, warning);
+        }
+        ui.add(Label::new(text).wrap().selectable(false).sense(Sense::click()))
+    });
+    let line = line.inner;
     let line = line.on_hover_cursor(egui::CursorIcon::PointingHand);
     let line = match &entry.missing {
         Some(missing) => line.on_hover_text(missing),

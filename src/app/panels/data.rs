@@ -5,6 +5,7 @@ use egui::{CollapsingHeader, Response, RichText, ScrollArea, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
+use crate::app::looks::{Icon, icon_button};
 use crate::app::panes::PaneContext;
 use crate::app::shipped_datasets;
 use crate::app::source::{CheckedDataset, CheckedFile, Content, Source};
@@ -20,12 +21,13 @@ const SHOWN_PROBLEMS: usize = 50;
 pub fn data_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands, .. } = pane;
     ui.horizontal(|ui| {
-        let folder =
-            ui.button("Open folder…").on_hover_text("A data set, or a folder of data sets");
+        let folder = ui
+            .add(icon_button(Icon::FolderOpen, "Open folder…"))
+            .on_hover_text("A data set, or a folder of data sets");
         if folder.clicked() {
             commands.push(Command::Ask(Purpose::Folder));
         }
-        let files = ui.button("Open files…");
+        let files = ui.add(icon_button(Icon::File, "Open files…"));
         if files.on_hover_text("Force, trajectory, steer or scenario files").clicked() {
             commands.push(Command::Ask(Purpose::Files));
         }

@@ -7,15 +7,19 @@ use egui::{Align, Button, Frame, Layout, RichText, Ui, vec2};
 use crate::app::case::Leaving;
 use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
+use crate::app::looks::{self, Icon};
 use crate::app::workspaces::Workspace;
 
 /// Width and height of a door, points.
 const SIZE: [f32; 2] = [280.0, 190.0];
 /// Space between two doors, points.
-const GAP: f32 = 16.0;
+const GAP: f32 = 4.0 * looks::GRID;
+/// Space between the edge of a door and its text, points.
+const INSIDE: f32 = 4.0 * looks::GRID;
 
 /// A way to begin.
 struct Door {
+    icon: Icon,
     title: &'static str,
     text: &'static str,
     button: &'static str,
@@ -25,6 +29,7 @@ struct Door {
 /// The ways to begin, from left to right.
 const DOORS: [Door; 3] = [
     Door {
+        icon: Icon::CarFront,
         title: "What happens if …",
         text: "Two cars, a PIT at 54 km/h, ready to play. Change speeds, angle, cars and brakes, and \
                see where the struck car goes and how sure that is.",
@@ -32,6 +37,7 @@ const DOORS: [Door; 3] = [
         commands: || vec![Command::Leave { to: Leaving::Pit, ask: true }],
     },
     Door {
+        icon: Icon::History,
         title: "What happened?",
         text: "A finished example case with three variants side by side: the car coasts, its driver \
                brakes, a lighter car.",
@@ -39,6 +45,7 @@ const DOORS: [Door; 3] = [
         commands: || vec![Command::Leave { to: Leaving::Example, ask: true }],
     },
     Door {
+        icon: Icon::FolderOpen,
         title: "Open my data",
         text: "Force curves, trajectories, driving logs: CSV, text or Excel. Every file is shown with \
                its units before it is read. You can also drop files here.",
@@ -84,14 +91,17 @@ pub fn doors_ui(ui: &mut Ui, recent: &[PathBuf], commands: &mut Vec<Command>) {
 }
 
 fn door_ui(ui: &mut Ui, door: &Door, commands: &mut Vec<Command>) {
-    let frame = Frame::group(ui.style()).fill(ui.visuals().extreme_bg_color).inner_margin(14.0);
+    let frame = Frame::group(ui.style()).fill(ui.visuals().extreme_bg_color).inner_margin(INSIDE);
     frame.show(ui, |ui| {
-        let margin = 28.0;
+        let margin = 2.0 * INSIDE;
         let size = vec2(SIZE[0] - margin, SIZE[1] - margin);
         ui.allocate_ui_with_layout(size, Layout::top_down(Align::Min), |ui| {
             ui.set_min_size(size);
-            ui.label(RichText::new(door.title).heading());
-            ui.add_space(6.0);
+            ui.horizontal(|ui| {
+                looks::icon_ui(ui, door.icon, ui.visuals().hyperlink_color);
+                ui.label(RichText::new(door.title).heading());
+            });
+            ui.add_space(looks::PART);
             ui.add(egui::Label::new(door.text).wrap());
             ui.with_layout(Layout::bottom_up(Align::Min), |ui| {
                 let button = Button::new(RichText::new(door.button).strong());

@@ -4,6 +4,7 @@
 use egui::{Grid, Ui};
 
 use crate::app::force::{ForceView, Statistic};
+use crate::app::looks;
 use crate::force::metrics::{BAND_LEVELS, CurveMetrics, DistributionMetrics, IntervalCoverage};
 use crate::force::{Evaluation, ForceMetrics};
 use crate::numerics::Summary;
@@ -71,7 +72,7 @@ fn errors_ui(ui: &mut Ui, models: [(&str, &ForceMetrics); 4], statistic: Statist
 /// Draws the share of the observed values that lie inside the predicted intervals. Models that
 /// predict no distribution have no rows.
 fn coverage_ui(ui: &mut Ui, models: [(&str, &ForceMetrics); 4]) {
-    ui.add_space(6.0);
+    ui.add_space(looks::PART);
     ui.strong("Share of observed values inside the intervals, ± its standard error");
     Grid::new("force coverage").striped(true).show(ui, |ui| {
         let levels = BAND_LEVELS.map(|level| format!("{:.0} %", level * 100.0));
@@ -92,7 +93,7 @@ fn coverage_ui(ui: &mut Ui, models: [(&str, &ForceMetrics); 4]) {
 /// Draws the errors of the model in each cluster of impulse, beside those of the Gaussian
 /// processes.
 fn clusters_ui(ui: &mut Ui, evaluation: &Evaluation, (statistic, units): (Statistic, UnitSystem)) {
-    ui.add_space(6.0);
+    ui.add_space(looks::PART);
     ui.strong("By cluster of impulse")
         .on_hover_text("k-means of the training cases by impulse and force, ordered by impulse");
     Grid::new("force clusters").striped(true).show(ui, |ui| {

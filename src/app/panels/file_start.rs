@@ -1,9 +1,9 @@
 //! What single files do not say about the struck vehicle: its speed, where the force acts, what steers,
 //! brakes and drives it.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use egui::{ComboBox, Grid, Ui};
+use egui::{ComboBox, Grid, RichText, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
@@ -12,7 +12,7 @@ use crate::app::panels::ending::ending_form;
 use crate::app::panes::PaneContext;
 use crate::app::source::{Content, Source};
 use crate::app::state::FileStart;
-use crate::app::widgets::quantity_field;
+use crate::app::widgets::{quantity_field, within_view};
 use crate::data::FileKind;
 use crate::ranges::{CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, SPEED, STEERING_RATIO};
 use crate::study::{ASSUMED_CONTACT, ASSUMED_SPEED_M_S};
@@ -49,7 +49,7 @@ pub(in crate::app) fn start_fields(ui: &mut Ui, start: &mut FileStart, units: Un
 }
 
 /// The open files of a kind.
-fn open_files(sources: &[Source], kind: FileKind) -> Vec<PathBuf> {
+pub(super) fn open_files(sources: &[Source], kind: FileKind) -> Vec<PathBuf> {
     let is_of_kind = |source: &&Source| match &source.content {
         Content::File(file) => file.loaded.kind == kind,
         _ => false,
@@ -61,29 +61,38 @@ fn open_files(sources: &[Source], kind: FileKind) -> Vec<PathBuf> {
 fn file_ui(
     ui: &mut Ui,
     label: &str,
-    (chosen, open): (&mut Option<PathBuf>, &[PathBuf]),
+    chosen: (&mut Option<PathBuf>, &[PathBuf]),
     commands: &mut Vec<Command>,
 ) {
-    let name = ui.label(label);
-    let text = |path: Option<&Path>| path.map_or("none".to_owned(), file_name);
-    ui.horizontal(|ui| {
-        let hint = "A file that goes with the one that is shown. Drop it on the window, or open it";
-        ComboBox::from_id_salt(label)
-            .selected_text(text(chosen.as_deref()))
-            .show_ui(ui, |ui| {
-                ui.selectable_value(chosen, None, "none");
-                for path in open {
-                    ui.selectable_value(chosen, Some(path.clone()), file_name(path));
-                }
-            })
-            .response
-            .labelled_by(name.id)
-            .on_hover_text(hint);
-        if ui.small_button("Open…").clicked() {
-            commands.push(Command::Ask(Purpose::Files));
-        }
-    });
+    let hint = "A file that goes with the one that is shown. Drop it on the window, or open it";
+    file_list_ui(ui, (label, "none", hint), chosen);
     ui.end_row();
+    ui.label("");
+    if ui.small_button("Open…").clicked() {
+        commands.push(Command::Ask(Purpose::Files));
+    }
+    ui.end_row();
+}
+
+/// Draws two cells of a grid with the choice of one of the open files, or of none.
+pub(super) fn file_list_ui(
+    ui: &mut Ui,
+    (label, none, hint): (&str, &str, &str),
+    (chosen, open): (&mut Option<PathBuf>, &[PathBuf]),
+) {
+    let name = ui.label(label).on_hover_text(hint);
+    let text = chosen.as_deref().map_or(none.to_owned(), file_name);
+    ComboBox::from_id_salt(label)
+        .selected_text(text)
+        .show_ui(ui, |ui| {
+            ui.selectable_value(chosen, None, none);
+            for path in open {
+                ui.selectable_value(chosen, Some(path.clone()), file_name(path));
+            }
+        })
+        .response
+        .labelled_by(name.id)
+        .on_hover_text(hint);
 }
 
 /// Draws the steering ratio for files that hold angles of the steering wheel.
@@ -145,15 +154,15 @@ fn contact_ui(ui: &mut Ui, start: &mut FileStart, units: UnitSystem) {
 /// clicked the button to set the value instead.
 fn assumed_ui(ui: &mut Ui, label: &str, assumed: &str) -> bool {
     ui.label(label);
-    let is_clicked = ui
-        .horizontal_wrapped(|ui| {
-            let button = ui.small_button("Set").on_hover_text("Say it instead of assuming it");
-            ui.weak(format!("assumed: {assumed}"));
-            button.clicked()
+    let button = within_view(ui, |ui| {
+        ui.vertical(|ui| {
+            ui.add(egui::Label::new(RichText::new(format!("assumed: {assumed}")).weak()).wrap());
+            ui.small_button("Set").on_hover_text("Say it instead of assuming it")
         })
-        .inner;
+        .inner
+    });
     ui.end_row();
-    is_clicked
+    button.clicked()
 }
 
 /// Draws a row of a two-column grid with a button, and returns whether the user clicked it to have

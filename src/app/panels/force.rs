@@ -1,13 +1,14 @@
 //! The “Force” pane: the contact force of the selected subject over time, its impulse, peak,
 //! duration and principal direction, and classic pulses of the same impulse.
 
-use egui::{ComboBox, Grid, Id, Ui};
+use egui::{ComboBox, Grid, Id, ScrollArea, Ui};
 
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
+use crate::app::state::Project;
 use crate::app::variants::{are_others_awaited, other_simulations};
-use crate::app::widgets::{time_figure, value_row};
+use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, time_figure, value_row};
 use crate::collision::{ChannelClass, Pulse, PulseShape};
 use crate::data::{ForceHistory, contact_interval};
 use crate::figure::analysis_force_figure;
@@ -29,6 +30,46 @@ pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         ui.label("This file holds no contact force.");
         return;
     };
+    settings_ui(ui, project);
+    readouts_ui(ui, numbers, view.units);
+    let pulses = if project.show_pulses { pulses(force) } else { Vec::new() };
+    let trust = session.simulation_trust(report).outdated_if(are_others_awaited(variants));
+    let figure =
+        analysis_force_figure((analysis, &trust), project.channel_class, &pulses, view.units);
+    let height = (ui.available_height() - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT);
+    let mut figure = match figure {
+        Ok(Some(figure)) => figure,
+        Ok(None) => return,
+        Err(error) => {
+            ui.label(format!("{error}. Choose another filter, or none."));
+            return;
+        }
+    };
+    for (i, (name, other)) in other_simulations(variants).enumerate() {
+        let class = project.channel_class;
+        let of_other = Trust::new(&other.report.badges, &other.report.assumptions);
+        let shown = (&other.analysis, &of_other);
+        if let Ok(Some(other)) = analysis_force_figure(shown, class, &[], view.units) {
+            figure.overlay((name, i), &other);
+        }
+    }
+    let options = FigureOptions {
+        id: "force".to_owned(),
+        link: Some(Id::unique("force")),
+        cursor_x: Some(figure.x.unit.from_si(session.time_s)),
+        height: Some(height),
+        reset: session.fit_plots,
+        ..FigureOptions::default()
+    };
+    let drawn = ScrollArea::vertical()
+        .show(ui, |ui| time_figure(ui, (&figure.title, &figure), options, between, commands));
+    if let Some(x) = drawn.inner.picked_x {
+        commands.push(Command::SetTime(figure.x.unit.to_si(x).max(0.0)));
+    }
+}
+
+/// Draws the choice of the SAE J211 filter and of the classic pulses.
+fn settings_ui(ui: &mut Ui, project: &mut Project) {
     ui.horizontal_wrapped(|ui| {
         let name = ui.label("Filter");
         let label = |class: Option<ChannelClass>| class.map_or("none", ChannelClass::label);
@@ -47,39 +88,6 @@ pub fn force_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             "Half-sine, haversine, triangle and square of the same impulse and duration",
         );
     });
-    readouts_ui(ui, numbers, view.units);
-    let pulses = if project.show_pulses { pulses(force) } else { Vec::new() };
-    let trust = session.simulation_trust(report).outdated_if(are_others_awaited(variants));
-    let figure =
-        analysis_force_figure((analysis, &trust), project.channel_class, &pulses, view.units);
-    match figure {
-        Ok(Some(mut figure)) => {
-            for (i, (name, other)) in other_simulations(variants).enumerate() {
-                let class = project.channel_class;
-                let of_other = Trust::new(&other.report.badges, &other.report.assumptions);
-                let shown = (&other.analysis, &of_other);
-                let other = analysis_force_figure(shown, class, &[], view.units);
-                if let Ok(Some(other)) = other {
-                    figure.overlay((name, i), &other);
-                }
-            }
-            let options = FigureOptions {
-                id: "force".to_owned(),
-                link: Some(Id::unique("force")),
-                cursor_x: Some(figure.x.unit.from_si(session.time_s)),
-                reset: session.fit_plots,
-                ..FigureOptions::default()
-            };
-            let picked = time_figure(ui, (&figure.title, &figure), options, between, commands);
-            if let Some(x) = picked.picked_x {
-                commands.push(Command::SetTime(figure.x.unit.to_si(x).max(0.0)));
-            }
-        }
-        Ok(None) => {}
-        Err(error) => {
-            ui.label(format!("{error}. Choose another filter, or none."));
-        }
-    }
 }
 
 /// Draws impulse, peak, contact interval and principal direction of force (PDOF).

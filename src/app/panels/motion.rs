@@ -9,16 +9,11 @@ use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
 use crate::app::recording::{overlaid, recording_menu_ui};
 use crate::app::variants::{are_others_awaited, other_simulations};
-use crate::app::widgets::{assumptions_ui, badges_ui, time_figure};
+use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, assumptions_ui, badges_ui, time_figure};
 use crate::data::{Channel, TimeSeries};
 use crate::figure::{analysis_motion_figure, analysis_readout, recording_line};
 use crate::render::FigureOptions;
 use crate::study::{SimulateAnswer, Trust};
-
-/// Smallest height of a plot, points.
-const MIN_PLOT_HEIGHT: f32 = 110.0;
-/// Height of the heading above a plot, points.
-const TITLE_HEIGHT: f32 = 30.0;
 
 /// Draws v_x, v_y, yaw rate and roll over time, with a cursor at the time of the scene. A click or
 /// a drag in a plot sets this time.

@@ -8,6 +8,7 @@ use egui::{DragValue, Id, Panel, ScrollArea, Ui};
 use crate::analysis::Analysis;
 use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
+use crate::app::looks;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panels::model_row::{model_row_ui, no_model_ui};
 use crate::app::panels::motion_outcome::outcome_ui;
@@ -20,7 +21,7 @@ use crate::app::response::{
 };
 use crate::app::state::{Session, View};
 use crate::app::variants::{AnsweredVariant, are_others_awaited, other_forecasts};
-use crate::app::widgets::{count_field, figure_frame};
+use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, count_field, figure_frame};
 use crate::data::{Severity, TimeSeries};
 use crate::figure::{
     FORECAST_CHANNELS, MotionForecastFigure, forecast_channel_figure, forecast_readout,
@@ -40,15 +41,13 @@ const COARSE: &str =
 const FORM_WIDTH: f32 = 330.0;
 /// Share of the available height that the plan view takes.
 const SCENE_SHARE: f32 = 0.52;
-/// Smallest height of a plot over time, points.
-const MIN_PLOT_HEIGHT: f32 = 110.0;
-/// Height of the heading above a plot, points.
-const TITLE_HEIGHT: f32 = 30.0;
 /// Largest difference between the time of a computed density and the time of the slider, s. A
 /// density further away is not drawn.
 const STALE_S: f64 = 0.15;
 /// Number of plots over time in a row.
-const N_COLUMNS: usize = 3;
+const MAX_COLUMNS: usize = 3;
+/// Smallest width of such a plot with its heading, points.
+const MIN_PLOT_WIDTH: f32 = 190.0;
 
 /// Draws the form and the outcome on the left, and on the right the plan view and the predicted
 /// quantities over time.
@@ -75,7 +74,7 @@ pub fn motion_forecast_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             }
         });
     });
-    egui::CentralPanel::default_margins().frame(egui::Frame::new().inner_margin(4.0)).show(
+    egui::CentralPanel::default_margins().frame(egui::Frame::new().inner_margin(looks::GRID)).show(
         ui,
         |ui| {
             if analysis_or_hint(ui, session).is_none() {
@@ -304,11 +303,12 @@ fn figures_ui(
     };
     figure_frame(ui, (&scene.title, &scene), &options, commands);
     ui.weak("Bands hold 50 and 90 %. Numbers at the cursor: central path, and from where to where 90 %.");
-    let n_rows = FORECAST_CHANNELS.len().div_ceil(N_COLUMNS) as f32;
+    let n_columns = ((ui.available_width() / MIN_PLOT_WIDTH) as usize).clamp(1, MAX_COLUMNS);
+    let n_rows = FORECAST_CHANNELS.len().div_ceil(n_columns) as f32;
     let height = (ui.available_height() / n_rows - TITLE_HEIGHT).max(MIN_PLOT_HEIGHT);
     ScrollArea::vertical().show(ui, |ui| {
-        for channels in FORECAST_CHANNELS.chunks(N_COLUMNS) {
-            ui.columns(N_COLUMNS, |columns| {
+        for channels in FORECAST_CHANNELS.chunks(n_columns) {
+            ui.columns(n_columns, |columns| {
                 for (ui, &channel) in columns.iter_mut().zip(channels) {
                     let mut figure = forecast_channel_figure(&input, channel);
                     for (i, (name, other)) in others.iter().enumerate() {

@@ -6,12 +6,13 @@ use egui::{Id, Panel, ScrollArea, Ui};
 use crate::analysis::pulse_curves;
 use crate::app::command::Command;
 use crate::app::force::ForceSession;
+use crate::app::looks;
 use crate::app::panels::model_row::{model_row_ui, no_model_ui};
 use crate::app::panels::prediction_form::form_ui;
 use crate::app::panels::prediction_numbers::numbers_ui;
 use crate::app::panes::PaneContext;
 use crate::app::state::View;
-use crate::app::widgets::{count_field, figure_frame};
+use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, count_field, figure_frame};
 use crate::data::Severity;
 use crate::figure::{ForceComponent, ForecastFigure, RecordedCurve, forecast_figure};
 use crate::force::metrics::BAND_LEVELS;
@@ -21,10 +22,6 @@ use crate::study::{PredictForceAnswer, Trust};
 
 /// Width of the form before the user resizes it, points.
 const FORM_WIDTH: f32 = 340.0;
-/// Smallest height of a plot, points.
-const MIN_PLOT_HEIGHT: f32 = 120.0;
-/// Height of the heading above a plot, points.
-const TITLE_HEIGHT: f32 = 30.0;
 
 /// Draws the form and the numbers on the left, and the plots on the right.
 pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
@@ -49,7 +46,7 @@ pub fn prediction_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             }
         });
     });
-    egui::CentralPanel::default_margins().frame(egui::Frame::new().inner_margin(4.0)).show(
+    egui::CentralPanel::default_margins().frame(egui::Frame::new().inner_margin(looks::GRID)).show(
         ui,
         |ui| match &session.force.forecast.answer {
             None => drop(ui.horizontal(|ui| (ui.spinner(), ui.label("Predicting…")))),

@@ -4,6 +4,7 @@
 use egui::{Slider, Ui};
 
 use crate::app::command::Command;
+use crate::app::looks::{Icon, icon_button};
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
 use crate::app::recording::overlaid;
@@ -66,8 +67,11 @@ pub fn clock_ui(
     commands: &mut Vec<Command>,
 ) {
     ui.horizontal(|ui| {
-        let label = if is_playing { "Pause" } else { "Play" };
-        if ui.button(label).on_hover_text("Space").clicked() {
+        let (of, label) = match is_playing {
+            true => (Icon::Pause, "Pause"),
+            false => (Icon::Play, "Play"),
+        };
+        if ui.add(icon_button(of, label)).on_hover_text("Space").clicked() {
             commands.push(Command::TogglePlay);
         }
         let text = |speed: f64| format!("× {speed}");

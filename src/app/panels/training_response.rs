@@ -2,44 +2,74 @@
 
 use egui::{ComboBox, DragValue, Grid, Ui};
 
+use crate::app::panels::file_start::{file_list_ui, open_files};
 use crate::app::panels::training_parts::{optional_number_ui, settings_rows_ui};
 use crate::app::response::{ResponseTrainingForm, TrainingMode};
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::dataset_choice;
+use crate::data::FileKind;
 use crate::ranges::TRAJECTORIES;
 
-/// Draws the form and returns whether a data set that suits the training mode is open.
+/// Draws the form and returns whether a data set or a log that suits the training mode is open.
 pub fn response_form_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, sources: &[Source]) -> bool {
     let datasets = open_datasets(sources, form.mode.data_kinds());
-    Grid::new("response training form").num_columns(2).show(ui, |ui| {
-        let name = ui.label("Training mode");
-        ComboBox::from_id_salt("training mode")
-            .selected_text(form.mode.label())
-            .width(320.0)
-            .show_ui(ui, |ui| {
-                for mode in TrainingMode::ALL {
-                    ui.selectable_value(&mut form.mode, mode, mode.label());
-                }
-            })
-            .response
-            .labelled_by(name.id)
-            .on_hover_text("A pre-trained network keeps its first layers");
+    Grid::new("response training form")
+        .num_columns(2)
+        .show(ui, |ui| {
+            let name = ui.label("Training mode");
+            ComboBox::from_id_salt("training mode")
+                .selected_text(form.mode.label())
+                .width(320.0)
+                .show_ui(ui, |ui| {
+                    for mode in TrainingMode::ALL {
+                        ui.selectable_value(&mut form.mode, mode, mode.label());
+                    }
+                })
+                .response
+                .labelled_by(name.id)
+                .on_hover_text("A pre-trained network keeps its first layers");
+            ui.end_row();
+            let is_of_log = log_ui(ui, form, sources);
+            let hint =
+                "A quarter of its cases is kept for the test, chosen by the seed of the split";
+            let name = ui.label("Data set").on_hover_text(hint);
+            ui.add_enabled_ui(!is_of_log, |ui| {
+                dataset_choice(ui, "trajectories", &datasets, &mut form.dataset)
+                    .labelled_by(name.id)
+                    .on_hover_text(hint);
+            });
+            ui.end_row();
+            numbers_ui(ui, form, is_of_log);
+            !datasets.is_empty() || is_of_log
+        })
+        .inner
+}
+
+/// Draws the choice of a log among the open files and returns whether the network learns from one.
+fn log_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, sources: &[Source]) -> bool {
+    let logs = open_files(sources, FileKind::Trajectory);
+    if !form.mode.takes_log() || logs.is_empty() {
+        return false;
+    }
+    let hint = "Learn from a log of one impact instead of a data set: a file that is open, with \
+                time, x, y, yaw. The vehicle is that of the Vehicle pane";
+    file_list_ui(ui, ("Log", "none, from a data set", hint), (&mut form.log, &logs));
+    ui.end_row();
+    let is_of_log = form.log.as_ref().is_some_and(|log| logs.contains(log));
+    if is_of_log {
+        let forces = open_files(sources, FileKind::Force);
+        let hint = "On the clock of the log, at the contact point of the Vehicle pane";
+        let open = "estimated from the motion";
+        file_list_ui(ui, ("Force of the log", open, hint), (&mut form.log_force, &forces));
         ui.end_row();
-        let hint = "A quarter of its cases is kept for the test, chosen by the seed of the split";
-        let name = ui.label("Data set").on_hover_text(hint);
-        dataset_choice(ui, "trajectories", &datasets, &mut form.dataset)
-            .labelled_by(name.id)
-            .on_hover_text(hint);
-        ui.end_row();
-        numbers_ui(ui, form);
-    });
-    !datasets.is_empty()
+    }
+    is_of_log
 }
 
 /// Draws the number of trajectories, the seeds and the settings in a two-column grid. Pre-training
-/// on simulations uses neither the number of trajectories nor the seed of their choice.
-fn numbers_ui(ui: &mut Ui, form: &mut ResponseTrainingForm) {
-    let is_fine_tuning = form.mode != TrainingMode::Pretrain;
+/// on simulations and learning from a log use neither the number of trajectories nor the seed of their choice.
+fn numbers_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, is_of_log: bool) {
+    let is_fine_tuning = form.mode != TrainingMode::Pretrain && !is_of_log;
     let name = ui.label("Trajectories");
     let hint = "To learn from, spinning and others as they occur; 0 for all that are not kept for the test";
     ui.add_enabled_ui(is_fine_tuning, |ui| {

@@ -9,7 +9,9 @@ use crate::app::panels::file_start::file_start_ui;
 use crate::app::panels::vehicle_form::vehicle_form_ui;
 use crate::app::panes::PaneContext;
 use crate::app::state::Project;
-use crate::app::widgets::{SpreadRow, quantity_field, sensitivity_ui, spread_table_ui, value_row};
+use crate::app::widgets::{
+    SpreadRow, quantity_field, sensitivity_ui, spread_table_ui, value_row, within_view,
+};
 use crate::data::Severity;
 use crate::error_chain;
 use crate::ranges::{REST_LIMIT, SIMULATED_DURATION};
@@ -19,13 +21,14 @@ use crate::vehicle::{
     DataSheet, Equations, Integrator, LibraryVehicle, Preset, VehicleParameters, built_in_vehicle,
 };
 
-/// Width of the lists of vehicles, points.
-const LIST_WIDTH: f32 = 150.0;
+/// Largest width and height of the lists of vehicles, points.
+const LIST_WIDTH: f32 = 240.0;
+const LIST_HEIGHT: f32 = 480.0;
 
 /// Draws the choice of the vehicles, the equations and the integrator, the start of single force
 /// files, and, if the struck vehicle is a preset, its parameters.
 pub fn vehicle_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+    ScrollArea::both().auto_shrink(false).show(ui, |ui| {
         let PaneContext { project, view, commands, .. } = &mut *pane;
         Grid::new("vehicle choice").num_columns(2).show(ui, |ui| {
             choice_ui(ui, project, commands);
@@ -139,19 +142,19 @@ fn vehicle_choice_ui(
 ) {
     let name = ui.label(title);
     let label = chosen_label(choice, open);
-    ui.horizontal(|ui| {
-        choice_list_ui(ui, (title, &name, hint), (choice, open), &label);
-        if matches!(choice, VehicleChoice::Sheet(_)) {
-            return;
+    choice_list_ui(ui, (title, &name, hint), (choice, open), &label);
+    ui.end_row();
+    if matches!(choice, VehicleChoice::Sheet(_)) {
+        return;
+    }
+    ui.label("");
+    let hint = "A copy with fields for every value: known, or estimated by rule with scatter";
+    if ui.small_button("Edit a copy").on_hover_text(hint).clicked() {
+        match edited_copy(choice, default) {
+            Ok(sheet) => *choice = VehicleChoice::Sheet(Box::new(sheet)),
+            Err(why) => commands.push(Command::Say(Severity::Error, why)),
         }
-        let hint = "A copy with fields for every value: known, or estimated by rule with scatter";
-        if ui.button("Edit a copy").on_hover_text(hint).clicked() {
-            match edited_copy(choice, default) {
-                Ok(sheet) => *choice = VehicleChoice::Sheet(Box::new(sheet)),
-                Err(why) => commands.push(Command::Say(Severity::Error, why)),
-            }
-        }
-    });
+    }
     ui.end_row();
 }
 
@@ -191,17 +194,15 @@ fn choice_list_ui(
     (choice, open): (&mut VehicleChoice, &str),
     label: &str,
 ) {
-    ComboBox::from_id_salt(title)
-        .selected_text(label)
-        .width(LIST_WIDTH)
-        .truncate()
-        .show_ui(ui, |ui| {
-            ui.selectable_value(choice, VehicleChoice::Automatic, open);
-            let presets = Preset::ALL.iter().map(|preset| preset.id());
-            for id in presets.chain(LibraryVehicle::ALL.iter().map(|vehicle| vehicle.id())) {
-                ui.selectable_value(choice, VehicleChoice::Preset(id.to_owned()), id);
-            }
-        })
+    let list = ComboBox::from_id_salt(title).selected_text(label).truncate().height(LIST_HEIGHT);
+    let options_ui = |ui: &mut Ui| {
+        ui.selectable_value(choice, VehicleChoice::Automatic, open);
+        let presets = Preset::ALL.iter().map(|preset| preset.id());
+        for id in presets.chain(LibraryVehicle::ALL.iter().map(|vehicle| vehicle.id())) {
+            ui.selectable_value(choice, VehicleChoice::Preset(id.to_owned()), id);
+        }
+    };
+    within_view(ui, |ui| list.width(ui.available_width().min(LIST_WIDTH)).show_ui(ui, options_ui))
         .response
         .labelled_by(name.id)
         .on_hover_text(hint);

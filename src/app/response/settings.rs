@@ -87,6 +87,11 @@ impl TrainingMode {
         }
     }
 
+    /// Whether a training in this mode can learn from a log of one impact.
+    pub fn takes_log(self) -> bool {
+        self != Self::Pretrain
+    }
+
     /// Returns the kinds of data sets from which a training in this mode can learn.
     pub fn data_kinds(self) -> &'static [DatasetKind] {
         match self {
@@ -107,6 +112,10 @@ pub struct ResponseTrainingForm {
     pub mode: TrainingMode,
     /// Folder of the data set to train on; `None` takes the first one that is open.
     pub dataset: Option<PathBuf>,
+    /// A log of one impact, open as a file, to learn from instead of a data set.
+    pub log: Option<PathBuf>,
+    /// The file with the contact force of the log; `None` estimates it from the motion.
+    pub log_force: Option<PathBuf>,
     /// Number of trajectories to train on; `None` takes all that are not kept for the test.
     pub n_trajectories: Option<usize>,
     /// Seed of the split into training and test cases.

@@ -7,6 +7,7 @@ use egui::Context;
 
 use crate::app::command::{Command, ComparisonCommand, TrainingCommand, wake};
 use crate::app::kept::{KeptEntry, keep_trained};
+use crate::app::model::file_name;
 use crate::app::network::Network;
 use crate::app::response::{
     DensityChoice, DensityQuestion, MotionAnswer, MotionQuestion, TrainingMode,
@@ -15,6 +16,8 @@ use crate::app::source::{chosen_dataset, open_datasets};
 use crate::app::state::State;
 use crate::data::{DatasetKind, Existing, Severity};
 use crate::study::Request;
+
+const NO_MODEL: &str = "there is no current response model";
 
 impl State {
     /// Receives the results of the loader, the training, the comparison and the forecast, and asks
@@ -113,13 +116,18 @@ impl State {
     /// What is missing, as a message for the user.
     pub(in crate::app) fn response_training(&self) -> Result<(Request, String), &'static str> {
         let form = &self.project.response.training;
+        if let Some(logs) = self.log_to_learn_from() {
+            let name = logs.logs.first().map(|path| file_name(path)).unwrap_or_default();
+            let question = self.fine_tune_request((Vec::new(), Some(logs)));
+            return Ok((question.ok_or(NO_MODEL)?.into(), name));
+        }
         let data = self.chosen_data(form.dataset.as_deref(), form.mode.data_kinds());
         let (data, name) = data.ok_or("open a data set to train on first")?;
         let question = match form.mode {
             TrainingMode::Pretrain => Some(self.train_response_request(data).into()),
-            _ => self.fine_tune_request(data).map(Request::from),
+            _ => self.fine_tune_request((vec![data], None)).map(Request::from),
         };
-        Ok((question.ok_or("there is no current response model")?, name))
+        Ok((question.ok_or(NO_MODEL)?, name))
     }
 
     /// Starts a training on the chosen data set.

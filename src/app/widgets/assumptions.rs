@@ -3,41 +3,50 @@
 use egui::{CollapsingHeader, Label, RichText, Sense, Ui};
 
 use crate::app::command::Command;
+use crate::app::looks;
 use crate::app::panes::Pane;
 use crate::study::{AssumedQuantity, Assumption};
 
 /// Largest number of assumptions that are listed without a click.
 const MAX_OPEN: usize = 6;
 
-/// Lists the assumptions, one wrapped line each. Hovering over a line shows the reason; a click shows
-/// the panel in which the user can set the value. An empty list draws
-/// nothing; a long one only their number, until it is opened.
+/// Lists the assumptions, one beside the other. Hovering over one shows the reason; a click shows
+/// the panel in which the user can set the value. An empty list draws nothing; a long one only their number, until it is opened.
 pub fn assumptions_ui(ui: &mut Ui, assumptions: &[Assumption], commands: &mut Vec<Command>) {
-    if assumptions.len() <= MAX_OPEN {
-        return lines_ui(ui, assumptions, commands);
+    match assumptions.len() {
+        0 => return,
+        1..=MAX_OPEN => return list_ui(ui, assumptions, commands),
+        _ => {}
     }
     let title = RichText::new(format!("{} assumptions", assumptions.len())).italics();
     let header = CollapsingHeader::new(title).id_salt("assumptions");
-    header.show(ui, |ui| lines_ui(ui, assumptions, commands));
+    header.show(ui, |ui| list_ui(ui, assumptions, commands));
 }
 
-fn lines_ui(ui: &mut Ui, assumptions: &[Assumption], commands: &mut Vec<Command>) {
-    for assumption in assumptions {
-        let Assumption { quantity, value, reason } = assumption;
-        let text = match quantity {
-            AssumedQuantity::NotUsed => format!("not used: {value}"),
-            quantity => format!("assumed: {}: {value}", quantity.label()),
-        };
-        let (hint, pane) = match place(*quantity) {
-            Some((hint, pane)) => (format!("\n{hint}"), pane),
-            None => (String::new(), None),
-        };
-        let sense = if pane.is_some() { Sense::click() } else { Sense::hover() };
-        let label = Label::new(RichText::new(text).italics()).wrap().sense(sense);
-        let line = ui.add(label).on_hover_text(format!("{reason}{hint}"));
-        if line.clicked() {
-            commands.extend(pane.map(Command::Show));
+fn list_ui(ui: &mut Ui, assumptions: &[Assumption], commands: &mut Vec<Command>) {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = looks::PART * 2.0;
+        for assumption in assumptions {
+            assumption_ui(ui, assumption, commands);
         }
+    });
+}
+
+fn assumption_ui(ui: &mut Ui, assumption: &Assumption, commands: &mut Vec<Command>) {
+    let Assumption { quantity, value, reason } = assumption;
+    let text = match quantity {
+        AssumedQuantity::NotUsed => format!("not used: {value}"),
+        quantity => format!("assumed: {}: {value}", quantity.label()),
+    };
+    let (hint, pane) = match place(*quantity) {
+        Some((hint, pane)) => (format!("\n{hint}"), pane),
+        None => (String::new(), None),
+    };
+    let sense = if pane.is_some() { Sense::click() } else { Sense::hover() };
+    let label = Label::new(RichText::new(text).italics()).wrap().sense(sense);
+    let line = ui.add(label).on_hover_text(format!("{reason}{hint}"));
+    if line.clicked() {
+        commands.extend(pane.map(Command::Show));
     }
 }
 

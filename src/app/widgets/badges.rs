@@ -2,6 +2,7 @@
 
 use egui::{Color32, Frame, Label, Margin, RichText, Sense, TextStyle, Ui};
 
+use crate::app::looks::{self, Icon};
 use crate::data::Severity;
 use crate::render::theme;
 use crate::uncertainty::Badge;
@@ -10,7 +11,7 @@ use crate::units::significant;
 /// Opacity of the fill of a chip, 0 to 1.
 const FILL: f32 = 0.16;
 /// Room between the text of a chip and its frame, points.
-const MARGIN: Margin = Margin::symmetric(7, 2);
+const MARGIN: Margin = Margin::symmetric(8, 2);
 
 /// Draws each badge as a chip; hovering over it shows what it says in full. Badges that stand for
 /// assumptions are left to [`assumptions_ui`](crate::app::widgets::assumptions_ui), beside which
@@ -36,11 +37,15 @@ pub fn badges_ui<'a>(ui: &mut Ui, badges: impl IntoIterator<Item = &'a Badge>) {
 fn chip_width(ui: &Ui, badge: &Badge) -> f32 {
     let font = TextStyle::Body.resolve(ui.style());
     let text = ui.painter().layout_no_wrap(chip_text(badge), font, Color32::PLACEHOLDER);
-    text.size().x + 2.0 * f32::from(MARGIN.left) + 2.0
+    let icon = looks::icon_size(ui) + looks::GRID;
+    icon + text.size().x + 2.0 * f32::from(MARGIN.left) + 2.0
 }
 
 fn chip_ui(ui: &mut Ui, badge: &Badge) {
-    let severity = if badge.kind.is_warning() { Severity::Warning } else { Severity::Info };
+    let (severity, icon) = match badge.kind.is_warning() {
+        true => (Severity::Warning, Icon::TriangleAlert),
+        false => (Severity::Info, Icon::Info),
+    };
     let color = theme::severity_color(severity, ui.visuals().dark_mode);
     let frame = Frame::new()
         .fill(color.gamma_multiply(FILL))
@@ -48,8 +53,12 @@ fn chip_ui(ui: &mut Ui, badge: &Badge) {
         .corner_radius(8.0)
         .inner_margin(MARGIN);
     let chip = frame.show(ui, |ui| {
-        // Not selectable, so that the pointer over the text is over the chip.
-        ui.add(Label::new(RichText::new(chip_text(badge)).color(color)).selectable(false))
+        ui.spacing_mut().item_spacing.x = looks::GRID;
+        ui.horizontal(|ui| {
+            looks::icon_ui(ui, icon, color);
+            // Not selectable, so that the pointer over the text is over the chip.
+            ui.add(Label::new(RichText::new(chip_text(badge)).color(color)).selectable(false));
+        });
     });
     chip.response.interact(Sense::hover()).on_hover_text(&badge.text);
 }

@@ -40,6 +40,6 @@ pub fn dataset_choice(
 pub fn no_dataset_ui(ui: &mut Ui, kind: DatasetKind) {
     ui.label(match kind {
         DatasetKind::Force => "No force data set is open. Open a folder with cases.csv and forces/, e.g. the shipped datasets/fea.",
-        DatasetKind::Trajectory => "No trajectory data set is open. Open a folder with cases.csv, trajectories/ and vehicle.toml, e.g. the shipped datasets/trajectories-fea.",
+        DatasetKind::Trajectory => "No trajectory data set is open. Open a folder with cases.csv, trajectories/ and vehicle.toml, e.g. the shipped datasets/trajectories-fea, or a log of one impact as a file.",
     });
 }

@@ -4,8 +4,13 @@ use egui::{Align, Layout, RichText, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
+use crate::app::looks::{Icon, icon, icon_button};
 use crate::figure::Figure;
 use crate::render::{FigureOptions, FigureResponse, figure_ui};
+
+/// Height of the heading above a plot, and smallest height of a plot with its axes, points.
+pub const TITLE_HEIGHT: f32 = 30.0;
+pub const MIN_PLOT_HEIGHT: f32 = 120.0;
 
 /// Why a figure is not exported that is not of what is asked any more.
 pub const OUTDATED: &str = "This figure is not the answer to what is asked now: it can be saved as soon as that is computed";
@@ -24,10 +29,12 @@ pub fn figure_frame(
     ui.horizontal(|ui| {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             ui.add_enabled_ui(!figure.trust.is_outdated, |ui| {
-                ui.menu_button("Export", |ui| export_menu_ui(ui, figure, commands))
-                    .response
-                    .on_hover_text("Save or copy this figure")
-                    .on_disabled_hover_text(OUTDATED);
+                ui.menu_button((icon(Icon::Download), "Export"), |ui| {
+                    export_menu_ui(ui, figure, commands)
+                })
+                .response
+                .on_hover_text("Save or copy this figure")
+                .on_disabled_hover_text(OUTDATED);
             });
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 ui.add(egui::Label::new(RichText::new(heading).strong()).truncate());
@@ -38,13 +45,13 @@ pub fn figure_frame(
 }
 
 fn export_menu_ui(ui: &mut Ui, figure: &Figure, commands: &mut Vec<Command>) {
-    if ui.button("Save picture (PNG)…").clicked() {
+    if ui.add(icon_button(Icon::Image, "Save picture (PNG)…")).clicked() {
         commands.push(Command::Ask(Purpose::Picture(Box::new(figure.clone()))));
     }
-    if ui.button("Save numbers (CSV)…").clicked() {
+    if ui.add(icon_button(Icon::Table2, "Save numbers (CSV)…")).clicked() {
         commands.push(Command::Ask(Purpose::Numbers(Box::new(figure.clone()))));
     }
-    if ui.button("Copy numbers").clicked() {
+    if ui.add(icon_button(Icon::Copy, "Copy numbers")).clicked() {
         commands.push(Command::CopyNumbers(Box::new(figure.clone())));
     }
 }

@@ -16,10 +16,10 @@ pub use bad_cases::bad_cases_ui;
 pub use badges::badges_ui;
 pub use cost::cost_ui;
 pub use dataset_choice::{dataset_choice, no_dataset_ui};
-pub use figure_frame::{OUTDATED, figure_frame};
+pub use figure_frame::{MIN_PLOT_HEIGHT, OUTDATED, TITLE_HEIGHT, figure_frame};
 pub use quantity::{
     SliderRange, count_field, duration_text, quantity_field, quantity_slider, quantity_value,
-    value_row,
+    value_row, within_view,
 };
 pub use sensitivity::sensitivity_ui;
 pub use spread_table::{SpreadRow, spread_table_ui};

@@ -13,6 +13,9 @@ use crate::ranges::Range;
 use crate::render::theme;
 use crate::units::{Quantity, Unit, UnitSystem, significant};
 
+/// Smallest width of a cell that ends at the edge of what can be seen, points.
+const LEAST_CELL_WIDTH: f32 = 80.0;
+
 /// Draws a row of a two-column grid: a label and a number field that edits `value_si`.
 ///
 /// A number that is typed beyond the range is not taken: the field keeps it and says what is possible
@@ -207,11 +210,22 @@ pub fn quantity_slider(
     taken.map(|shown| unit.to_si(shown).clamp(low, high))
 }
 
+/// Draws into a cell of a grid what must not go beyond the edge of the part that can be seen, as a grid
+/// gives its last column any width.
+pub fn within_view<R>(ui: &mut Ui, draw: impl FnOnce(&mut Ui) -> R) -> R {
+    let room = ui.clip_rect().right() - ui.cursor().left() - ui.spacing().item_spacing.x;
+    ui.scope(|ui| {
+        ui.set_max_width(room.max(LEAST_CELL_WIDTH));
+        draw(ui)
+    })
+    .inner
+}
+
 /// Draws a row of a two-column grid: a label and a text that is copied to the clipboard on a click.
 pub fn value_row(ui: &mut Ui, label: &str, text: &str) {
     ui.label(label);
     let value = egui::Label::new(egui::RichText::new(text).monospace()).sense(egui::Sense::click());
-    let response = ui.add(value).on_hover_text("Click to copy");
+    let response = within_view(ui, |ui| ui.add(value.wrap())).on_hover_text("Click to copy");
     if response.clicked() {
         ui.ctx().copy_text(text.to_owned());
     }

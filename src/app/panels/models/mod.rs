@@ -13,13 +13,14 @@ pub use unfinished::interrupted_ui;
 use egui::{RichText, ScrollArea, Ui};
 
 use crate::app::kept::Fact;
+use crate::app::looks;
 use crate::app::panes::PaneContext;
 use crate::app::widgets::value_row;
 
 /// Characters of a value that are shown without hovering over it.
 const MAX_CHARS: usize = 40;
 /// Space between two parts of the pane, points.
-const BETWEEN_PARTS: f32 = 12.0;
+const BETWEEN_PARTS: f32 = 3.0 * looks::GRID;
 
 /// Draws the four parts of the pane.
 pub fn models_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {

@@ -1,0 +1,112 @@
+//! Whether the window can be read in a small window and on a dense screen.
+
+use egui::{Rect, Shape};
+use egui_kittest::Harness;
+use impactlab::app::{App, Command, ForceChoice, Pane, State, Subject, Workspace};
+
+use crate::harness::{apply, is_idle, open_at, step_until};
+use crate::pictures::save;
+
+/// Share of the smaller of two texts that another one may cover, as the boxes of lines are higher than
+/// their letters.
+const MAX_COVERED: f32 = 0.25;
+
+/// A text that can be seen.
+struct Seen {
+    text: String,
+    place: Rect,
+}
+
+fn add_texts(shape: &Shape, clip: Rect, texts: &mut Vec<Seen>) {
+    match shape {
+        Shape::Text(shape) => {
+            // A text that begins in the middle of a line leaves the place before it to others.
+            let at = shape.pos.to_vec2();
+            let rows = shape.galley.rows.iter().map(|row| {
+                (row.text(), row.rect_without_leading_space().translate(at).intersect(clip))
+            });
+            let is_seen =
+                |(text, place): &(String, Rect)| !text.trim().is_empty() && place.is_positive();
+            if shape.angle == 0.0 && shape.opacity_factor > 0.0 {
+                texts.extend(rows.filter(is_seen).map(|(text, place)| Seen { text, place }));
+            }
+        }
+        Shape::Vec(shapes) => shapes.iter().for_each(|shape| add_texts(shape, clip, texts)),
+        _ => {}
+    }
+}
+
+/// Pairs of texts of the last frame that stand on each other.
+fn collisions(harness: &Harness<'_, App>) -> Vec<String> {
+    let mut texts = Vec::new();
+    for clipped in &harness.output().shapes {
+        add_texts(&clipped.shape, clipped.clip_rect, &mut texts);
+    }
+    assert!(texts.len() > 20, "nothing is shown");
+    let mut found = Vec::new();
+    for (i, a) in texts.iter().enumerate() {
+        for b in &texts[i + 1..] {
+            let both = a.place.intersect(b.place);
+            let covered = if both.is_positive() { both.area() } else { 0.0 };
+            if covered > MAX_COVERED * a.place.area().min(b.place.area()) {
+                found.push(format!("{:?} on {:?} at {:?}", a.text, b.text, both.center()));
+            }
+        }
+    }
+    found
+}
+
+fn is_answered(state: &State) -> bool {
+    let session = &state.session;
+    is_idle(state)
+        && session.response.forecast.ok().is_some()
+        && !session.response.forecast.is_waiting()
+        && !session.force.forecast.is_waiting()
+}
+
+/// Every view of the window at a size, none of which has texts on each other.
+fn every_view_is_readable(name: &str, size: ([f32; 2], f32)) {
+    let data = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea");
+    let mut harness = open_at(size, &[data], None);
+    step_until(&mut harness, "case", is_idle);
+    apply(&mut harness, Command::Select(Subject::Scenario));
+    apply(&mut harness, Command::PredictScenario);
+    harness.state_mut().state_mut().project.response.forecast.force = ForceChoice::Predicted;
+    let views = [
+        (Workspace::Case, Pane::Scene),
+        (Workspace::Case, Pane::MotionForecast),
+        (Workspace::Case, Pane::ForcePrediction),
+        (Workspace::Case, Pane::Vehicle),
+        (Workspace::Case, Pane::Variants),
+        (Workspace::Data, Pane::Motion),
+        (Workspace::Models, Pane::Models),
+        (Workspace::Models, Pane::Training),
+    ];
+    apply(&mut harness, Command::Show(Pane::MotionForecast));
+    step_until(&mut harness, "forecast", is_answered);
+    let mut found = Vec::new();
+    for dark in [false, true] {
+        harness.state_mut().state_mut().view.dark = dark;
+        for (workspace, pane) in views {
+            apply(&mut harness, Command::ShowWorkspace(workspace));
+            apply(&mut harness, Command::Show(pane));
+            step_until(&mut harness, "view", is_answered);
+            let theme = if dark { "dark" } else { "light" };
+            let file = format!("{name}_{workspace:?}_{pane:?}_{theme}.png").to_lowercase();
+            save(&mut harness, &file);
+            let view = format!("{workspace:?}, {pane:?}");
+            found.extend(collisions(&harness).into_iter().map(|text| format!("{view}: {text}")));
+        }
+    }
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+#[test]
+fn no_text_stands_on_another_in_a_small_window() {
+    every_view_is_readable("small", ([1280.0, 720.0], 1.0));
+}
+
+#[test]
+fn no_text_stands_on_another_on_a_dense_screen() {
+    every_view_is_readable("dense", ([1280.0, 800.0], 2.0));
+}
