@@ -156,7 +156,10 @@ impl Word {
                 };
                 contains(row.name)
                     || attributes.iter().any(in_attribute)
-                    || row.flags.iter().any(|flag| contains(&flag.to_string()))
+                    || row.flags.iter().any(|flag| {
+                        // As the table shows it, or as its sentence says it.
+                        contains(flag.kind.label()) || contains(&flag.to_string())
+                    })
             }
         }
     }
