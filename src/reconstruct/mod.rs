@@ -1,0 +1,3 @@
+//! Reconstruction: from the evidence of a collision back to the speeds before it, as a distribution.
+
+pub mod sampler;

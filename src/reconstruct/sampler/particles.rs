@@ -1,0 +1,30 @@
+//! The particles of a posterior.
+
+use serde::{Deserialize, Serialize};
+
+/// Particles of equal weight from the prior times the likelihood to the power of a temperature.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Particles {
+    /// Standard normal variables of each particle, `[n_particles][dim]`. A particle may occur more
+    /// than once.
+    pub z: Vec<Vec<f64>>,
+    /// Natural logarithm of the likelihood of each particle.
+    pub log_likelihood: Vec<f64>,
+    /// Power β of the likelihood, 0 to 1: at 0 the particles are of the prior, at 1 of the
+    /// posterior.
+    pub temperature: f64,
+    /// Estimate of `ln ∫ N(z; 0, I) L(z)^β dz`, at temperature 1 the log evidence.
+    pub log_evidence: f64,
+    /// Effective sample size: the smallest over the components of z.
+    pub ess: f64,
+    /// Number of evaluations of the likelihood until now.
+    pub n_evaluations: usize,
+}
+
+impl Particles {
+    /// Whether the particles are of the posterior; those of a cancelled run may not be.
+    pub fn of_posterior(&self) -> bool {
+        self.temperature >= 1.0
+    }
+}
