@@ -22,6 +22,9 @@ sources! {
     /// vehicles sold in Canada, as served by the vPIC interface of the NHTSA and collected, rounded to
     /// 1 cm, in the public repository `shifter907/allcarsdb` (`data/body_configs.csv`).
     Cvs2024;
+    /// A. Gelman, X.-L. Meng, H. Stern, *Posterior predictive assessment of model fitness via realized
+    /// discrepancies*, Statistica Sinica 6, 1996.
+    GelmanMengStern1996;
     /// T. D. Gillespie, *Fundamentals of Vehicle Dynamics*, SAE International, 1992. Braking
     /// performance and the distribution of braking forces: chapter 3.
     Gillespie1992;
@@ -60,6 +63,9 @@ sources! {
     /// scales and tilt table, with the weight of a driver; as collected in the public repository
     /// `kktse/stunning-octo-doodle-ncap`.
     Ncap2004;
+    /// M. C. Kennedy, A. O'Hagan, *Bayesian calibration of computer models*, Journal of the Royal
+    /// Statistical Society B 63(3), 2001. Discrepancy between model and reality as a Gaussian process.
+    KennedyOHagan2001;
     /// H. Kudlich, *Beitrag zur Mechanik des Kraftfahrzeug-Verkehrsunfalls*, dissertation, Technische
     /// Hochschule Wien, 1966. Impact with compression to a common velocity and restitution as a
     /// share of the impulse of compression; sliding on a contact plane.

@@ -1,3 +1,28 @@
 //! Reconstruction: from the evidence of a collision back to the speeds before it, as a distribution.
+//!
+//! ```text
+//! p(z | E) ∝ N(z; 0, I) · Π_i p(E_i | motion(z))
+//! ```
+//!
+//! - [`evidence`]: what was found, from a file;
+//! - `cars`: the two vehicles, from data sheets and evidence;
+//! - `prior`: every quantity that the motion depends on, as a transformation of one component of z;
+//! - `forward`: from z to the motion of both cars;
+//! - `likelihood`: how well a motion goes with the evidence;
+//! - [`sampler`]: draws from the posterior;
+//! - `hand`: what one computes by hand, as a baseline.
 
+pub mod evidence;
 pub mod sampler;
+
+mod cars;
+mod distribution;
+mod forward;
+mod likelihood;
+mod prior;
+
+pub use cars::{Car, Cars};
+pub use distribution::Distribution;
+pub use forward::{CollisionMotion, ForwardModel, ImpactState};
+pub use likelihood::{Discrepancy, EvidenceFit, EvidenceTerm, ReconstructionTarget};
+pub use prior::{Latent, LatentValues, Prior, PriorComponent};
