@@ -22,6 +22,13 @@ sources! {
     /// vehicles sold in Canada, as served by the vPIC interface of the NHTSA and collected, rounded to
     /// 1 cm, in the public repository `shifter907/allcarsdb` (`data/body_configs.csv`).
     Cvs2024;
+    /// S. L. Cotter, G. O. Roberts, A. M. Stuart, D. White, *MCMC methods for functions: modifying old
+    /// algorithms to make them faster*, Statistical Science 28(3), 2013. Preconditioned
+    /// Crank–Nicolson proposals.
+    Cotter2013;
+    /// P. Del Moral, A. Doucet, A. Jasra, *Sequential Monte Carlo samplers*, Journal of the Royal
+    /// Statistical Society B 68(3), 2006.
+    DelMoral2006;
     /// A. Gelman, X.-L. Meng, H. Stern, *Posterior predictive assessment of model fitness via realized
     /// discrepancies*, Statistica Sinica 6, 1996.
     GelmanMengStern1996;
@@ -133,4 +140,8 @@ sources! {
     /// I. E. Sutherland, G. W. Hodgman, *Reentrant polygon clipping*, Communications of the ACM
     /// 17(1), 1974.
     SutherlandHodgman1974;
+    /// C. J. F. ter Braak, *A Markov chain Monte Carlo version of the genetic algorithm differential
+    /// evolution: easy Bayesian computing for real parameter spaces*, Statistics and Computing 16,
+    /// 2006.
+    TerBraak2006;
 }

@@ -221,6 +221,8 @@ ranges! {
     TRAJECTORIES: "trajectories" = whole([1, 1_000_000]), "trajectories to learn from";
     TRAJECTORY_SETS: "numbers of trajectories" = whole([1, 100]),
         "how many numbers of trajectories a comparison tries";
+    RECONSTRUCTION_PARTICLES: "particles" = whole([50, 100_000]),
+        "particles of a reconstruction";
     EPOCHS: "epochs" = whole([1, 100_000]), "passes over the training cases";
     TEST_SHARE: "test share" = real(Quantity::Ratio, [0.0, 0.9]),
         "share of the cases that is kept for the test";

@@ -173,8 +173,10 @@ impl ForwardModel {
         let bullet_velocity_m_s =
             [bullet_speed_m_s * course_rad.cos(), bullet_speed_m_s * course_rad.sin()];
         let along_across = [values.get(Latent::ContactAlong), values.get(Latent::ContactAcross)];
-        let (contact_m, normal_rad) = contact(self.side, along_across);
-        let arm_m = self.bullet_arm_m(heading_rad, normal_rad);
+        let (contact_m, side_rad) = contact(self.side, along_across);
+        let to_heading_rad = wrap_angle_rad(heading_rad - side_rad);
+        let normal_rad = side_rad + values.get(Latent::NormalTilt) * to_heading_rad.signum();
+        let arm_m = self.bullet_arm_m(heading_rad, side_rad);
         let inertia = |mass_kg: f64, of: &VehicleParameters| {
             of.mass.yaw_inertia_kg_m2 * mass_kg / of.mass.mass_kg
         };
@@ -308,7 +310,7 @@ impl ForwardModel {
             * values.get(Latent::YawInertiaFactor);
         let mut vehicle = sheet.clone().with_mass(mass_kg, Some(yaw_inertia));
         let tires = &mut vehicle.tires;
-        tires.friction = values.get(Latent::RoadFriction);
+        tires.friction = values.get(Latent::RoadFriction) * values.get(Latent::TireFrictionFactor);
         tires.sliding_friction_ratio = values.get(Latent::SlidingRatio);
         tires.rolling_resistance = values.get(Latent::RollingResistance);
         tires.cornering_coefficient_front_per_rad *= values.get(Latent::FrontCorneringFactor);
@@ -334,7 +336,7 @@ impl ForwardModel {
         let brake = values.brakes().then(|| Braking {
             start_s: values.get(Latent::BrakeStart),
             share_of_friction: values.get(Latent::BrakeShare),
-            rise_s: DEFAULT_BRAKE_RISE_S,
+            rise_s: values.get(Latent::BrakeRise),
         });
         let engine = brake.is_none().then(|| EngineBraking {
             deceleration_m_s2: values.get(Latent::EngineBraking),

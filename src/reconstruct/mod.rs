@@ -18,11 +18,17 @@ pub mod sampler;
 mod cars;
 mod distribution;
 mod forward;
+mod hand;
 mod likelihood;
+mod posterior;
 mod prior;
+mod tempered;
 
 pub use cars::{Car, Cars};
 pub use distribution::Distribution;
 pub use forward::{CollisionMotion, ForwardModel, ImpactState};
+pub use hand::HandCalculation;
 pub use likelihood::{Discrepancy, EvidenceFit, EvidenceTerm, ReconstructionTarget};
+pub use posterior::{BudgetItem, Mode, Posterior, QuantityEstimate, ReconstructedQuantity};
 pub use prior::{Latent, LatentValues, Prior, PriorComponent};
+pub use tempered::{NothingPossible, sample};

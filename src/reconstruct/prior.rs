@@ -9,15 +9,18 @@
 //! | quantity | default | source |
 //! | --- | --- | --- |
 //! | speed of the struck car | uniform, 0 to 60 m/s | nothing is known |
-//! | striking car faster by | normal, 0 ± 4 m/s, hit behind the CG; else its speed uniform, 0 to 60 m/s | in a PIT manoeuvre the speeds are matched |
+//! | striking car faster by | normal, 1 ± 3 m/s, hit behind the CG; else its speed uniform, 0 to 60 m/s | in a PIT manoeuvre the speeds are matched, by a car that comes from behind |
 //! | its heading, turned towards the struck side | normal, 17° ± 14°, hit behind the CG on a flank; else uniform, 0° to 110°; rear 0° ± 17°; front 180° ± 29° | PIT manoeuvre; collisions at an angle; in line |
 //! | its direction of motion beside the heading | normal, −6° ± 11° hit behind the CG, else 0° ± 11° | a car that turns in moves less to the side than it points |
 //! | restitution | uniform, 0.24 to 0.66 up to 5 m/s of approach, falling to 0 to 0.3 at 15 m/s | [`ContactDistribution`], [`Brach2011`](crate::bibliography::Brach2011) |
 //! | friction of the contact | normal, 0.28 ± 0.15 | [`ContactDistribution`] |
+//! | normal of the contact turned towards where the striking car points | normal, 9° ± 7° hit behind the CG, else 0° ± 7° | a corner that digs in: tuning cases |
+//! | friction of the tyres over that of the road | log-normal, 1, factor 1.08 | other tyres, other direction of sliding |
 //! | duration of the contact | log-normal, 0.12 s, factor 1.35 | finite-element runs of the project |
 //! | driver brakes | 3 of 4 | assumed |
 //! | … from | log-normal, 0.9 s, factor 1.6 | assumed: reaction to a surprise |
 //! | … with a share of the largest force | log-normal, 0.8, factor 2.2 | locks the wheels in two of five |
+//! | … that rises within | log-normal, 0.4 s, factor 1.6 | usual emergency braking to half-hearted |
 //! | engine braking where he does not | uniform, 0 to 0.8 m/s² | neutral to third gear |
 //! | front wheels turned by | normal, 0 ± 0.9° | toe, play, a hand on the wheel |
 //! | each wheel near the damage blocked | 1 of 5, if nobody looked | assumed |
@@ -80,10 +83,15 @@ latents! {
     RestitutionShare: "restitution_share", "";
     /// Friction limit of the contact.
     ContactFriction: "contact_friction", "";
+    /// By how much the normal of the contact is turned from that of the struck side towards where the
+    /// striking car points, rad.
+    NormalTilt: "normal_tilt_rad", "rad";
     /// Duration of the contact, s.
     PulseDuration: "pulse_duration_s", "s";
     /// Peak friction of the road.
     RoadFriction: "road_friction", "";
+    /// Friction of the tyres of the struck car over that of the road.
+    TireFrictionFactor: "tire_friction_factor", "";
     /// Mass of the struck car, kg.
     TargetMass: "target_mass_kg", "kg";
     /// Mass of the striking car, kg.
@@ -104,6 +112,8 @@ latents! {
     BrakeStart: "brake_start_s", "s";
     /// Braking force over the largest that the road can hold.
     BrakeShare: "brake_share", "";
+    /// How long the braking force rises, s.
+    BrakeRise: "brake_rise_s", "s";
     /// Deceleration by the engine, m/s².
     EngineBraking: "engine_braking_m_s2", "m/s²";
     /// Angle of the front wheels, rad.
@@ -155,6 +165,12 @@ const HIGHEST_SPEED_M_S: f64 = 60.0;
 
 /// Probability that a driver brakes of whom nothing is known.
 const BRAKE_PROBABILITY: f64 = 0.75;
+
+/// Scatter of the friction of a tyre over that which was measured on the road: other tyres differ, and
+/// a tyre that slides along its plane differs from one that slides across it. Of the multibody cars of
+/// the tuning cases a locked wheel that rolls straight ahead has 0.9 of the peak across, where the
+/// data sheet says 0.8.
+const TIRE_FRICTION_SCATTER: f64 = 0.08;
 
 /// Probability that a wheel near the damage is blocked if nobody looked.
 const BLOCKED_PROBABILITY: f64 = 0.2;
@@ -209,7 +225,7 @@ impl Prior {
         let any = Distribution::Uniform { low: 0.0, high: HIGHEST_SPEED_M_S };
         self.open(Latent::TargetSpeed, ranges.target_speed_m_s, any);
         match ranges.bullet_speed_m_s {
-            None if self.is_pit => self.add(Latent::SpeedDifference, normal(0.0, 4.0, -20.0, 20.0)),
+            None if self.is_pit => self.add(Latent::SpeedDifference, normal(1.0, 3.0, -20.0, 20.0)),
             range => self.open(Latent::BulletSpeed, range, any),
         }
         // Angles are turned towards the struck side, so that the mirror of a case is the same prior.
@@ -244,6 +260,8 @@ impl Prior {
         let [low, high] = ContactDistribution::default().friction_limit;
         let friction = normal((low + high) / 2.0, (high - low) / 2.9, 0.0, 1.0);
         self.open(Latent::ContactFriction, evidence.prior.contact_friction, friction);
+        let mean = if self.is_pit { 0.15 } else { 0.0 };
+        self.add(Latent::NormalTilt, normal(mean, 0.12, -0.5, 0.8));
         self.add(Latent::PulseDuration, log_normal(0.12, 0.30, 0.04, 0.30));
     }
 
@@ -252,6 +270,7 @@ impl Prior {
             .friction
             .unwrap_or(Measured { value: DEFAULT_FRICTION, sigma: DEFAULT_FRICTION_SIGMA });
         self.add(Latent::RoadFriction, normal(friction.value, friction.sigma, 0.03, 1.6));
+        self.add(Latent::TireFrictionFactor, log_normal(1.0, TIRE_FRICTION_SCATTER, 0.7, 1.4));
         for (latent, measured, vehicle) in [
             (Latent::TargetMass, evidence.struck_car.mass_kg, &cars.struck),
             (Latent::BulletMass, evidence.striking_car.mass_kg, &cars.striking),
@@ -308,6 +327,7 @@ impl Prior {
         if evidence.after.driver_braked != DriverBraked::No {
             let start = log_normal(0.9, 0.47, 0.1, 6.0);
             self.open(Latent::BrakeStart, ranges.brake_start_s, start);
+            self.add(Latent::BrakeRise, log_normal(0.4, 0.5, 0.1, 1.5));
             self.open(Latent::BrakeShare, ranges.brake_share, log_normal(0.8, 0.79, 0.05, 3.0));
         }
         self.add(Latent::EngineBraking, Distribution::Uniform { low: 0.0, high: 0.8 });

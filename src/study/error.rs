@@ -9,6 +9,7 @@ use crate::data::{ContactOutside, DataError, SeriesError, TomlError};
 use crate::force::{EvaluateError, ForceError};
 use crate::learning::{LearningError, LoadError};
 use crate::ranges::OutOfRange;
+use crate::reconstruct::NothingPossible;
 use crate::response::LogError;
 use crate::vehicle::{Preset, SimulationError};
 
@@ -206,6 +207,14 @@ pub enum StudyError {
         name: String,
         /// The presets.
         presets: Vec<&'static str>,
+    },
+    /// No motion goes with the evidence.
+    #[error("{name}: cannot be reconstructed")]
+    Reconstruction {
+        /// The evidence.
+        name: String,
+        /// Why.
+        source: NothingPossible,
     },
     /// A scenario has no solution.
     #[error("{name}: cannot be solved")]
