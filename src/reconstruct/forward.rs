@@ -438,3 +438,7 @@ fn wheels_near(side: Side, is_behind_cg: bool) -> [Wheel; 2] {
         (Side::Rear, _) => [Wheel::RearLeft, Wheel::RearRight],
     }
 }
+
+#[cfg(test)]
+#[path = "forward_tests.rs"]
+mod tests;

@@ -15,7 +15,7 @@
 //! | restitution | uniform, 0.24 to 0.66 up to 5 m/s of approach, falling to 0 to 0.3 at 15 m/s | [`ContactDistribution`], [`Brach2011`](crate::bibliography::Brach2011) |
 //! | friction of the contact | normal, 0.28 ± 0.15 | [`ContactDistribution`] |
 //! | normal of the contact turned towards where the striking car points | normal, 9° ± 7° hit behind the CG, else 0° ± 7° | a corner that digs in: tuning cases |
-//! | friction of the tyres over that of the road | log-normal, 1, factor 1.08 | other tyres, other direction of sliding |
+//! | friction of the tyres over that of the road | log-normal, 1.04, factor 1.09 | other tyres, other direction of sliding: tuning cases |
 //! | duration of the contact | log-normal, 0.12 s, factor 1.35 | finite-element runs of the project |
 //! | driver brakes | 3 of 4 | assumed |
 //! | … from | log-normal, 0.9 s, factor 1.6 | assumed: reaction to a surprise |
@@ -166,11 +166,15 @@ const HIGHEST_SPEED_M_S: f64 = 60.0;
 /// Probability that a driver brakes of whom nothing is known.
 const BRAKE_PROBABILITY: f64 = 0.75;
 
-/// Scatter of the friction of a tyre over that which was measured on the road: other tyres differ, and
-/// a tyre that slides along its plane differs from one that slides across it. Of the multibody cars of
-/// the tuning cases a locked wheel that rolls straight ahead has 0.9 of the peak across, where the
+/// Friction of a tyre over that which was measured on the road, and its scatter: other tyres differ,
+/// and a tyre that slides along its plane differs from one that slides across it. Of the multibody cars
+/// of the tuning cases a locked wheel that slides straight ahead has 0.9 of the peak across, where the
 /// data sheet says 0.8.
-const TIRE_FRICTION_SCATTER: f64 = 0.08;
+const TIRE_FRICTION_FACTOR: f64 = 1.04;
+const TIRE_FRICTION_SCATTER: f64 = 0.09;
+
+/// Least scatter of sliding over peak friction, for the same reason.
+const SLIDING_SCATTER: f64 = 0.08;
 
 /// Probability that a wheel near the damage is blocked if nobody looked.
 const BLOCKED_PROBABILITY: f64 = 0.2;
@@ -270,7 +274,10 @@ impl Prior {
             .friction
             .unwrap_or(Measured { value: DEFAULT_FRICTION, sigma: DEFAULT_FRICTION_SIGMA });
         self.add(Latent::RoadFriction, normal(friction.value, friction.sigma, 0.03, 1.6));
-        self.add(Latent::TireFrictionFactor, log_normal(1.0, TIRE_FRICTION_SCATTER, 0.7, 1.4));
+        self.add(
+            Latent::TireFrictionFactor,
+            log_normal(TIRE_FRICTION_FACTOR, TIRE_FRICTION_SCATTER, 0.7, 1.4),
+        );
         for (latent, measured, vehicle) in [
             (Latent::TargetMass, evidence.struck_car.mass_kg, &cars.struck),
             (Latent::BulletMass, evidence.striking_car.mass_kg, &cars.striking),
@@ -309,7 +316,11 @@ impl Prior {
             ),
         ] {
             match cars.struck.scatter(quantity) {
-                Some(sigma) => self.add(latent, log_normal(value, sigma, low, high)),
+                Some(sigma) => {
+                    let is_sliding = latent == Latent::SlidingRatio;
+                    let sigma = if is_sliding { sigma.max(SLIDING_SCATTER) } else { sigma };
+                    self.add(latent, log_normal(value, sigma, low, high));
+                }
                 None => self.fixed.set(latent, value),
             }
         }
