@@ -111,3 +111,39 @@ fn closing(evidence: &Evidence, cars: &Cars) -> Measured {
     let value = delta_v.value * factor;
     Measured { value, sigma: relative * value }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::TomlFile;
+
+    #[test]
+    fn a_car_that_slid_all_the_way_has_the_speed_of_its_marks() {
+        let text = r#"
+            road = { friction = 0.7, friction_sigma = 0.04 }
+            struck_car = { mass_kg = 1500 }
+            striking_car = { mass_kg = 1500 }
+            damage = { side = "right", x_m = -1.5 }
+            rest = { x_m = 30, y_m = 0 }
+            mark = [
+                { wheel = "FL", points_m = [[0, 0], [30, 0]] },
+                { wheel = "FR", points_m = [[0, 0], [30, 0]] },
+                { wheel = "RL", points_m = [[0, 0], [30, 0]] },
+                { wheel = "RR", points_m = [[0, 0], [30, 0]] },
+            ]
+        "#;
+        let file = TomlFile { path: std::path::Path::new("case.toml"), text };
+        let mut evidence = Evidence::from_toml(file).unwrap();
+        let cars = Cars::of(&evidence, None, None);
+        let hand = HandCalculation::of(&evidence, &cars).unwrap().target_speed_m_s;
+        let expected = (2.0 * 9.806_65 * 0.7 * 0.8 * 30.0_f64).sqrt();
+        assert!((hand.value - expected).abs() < 1e-6, "{hand:?}, expected {expected}");
+        // A recorder that is as good moves it half way, and narrows it.
+        evidence.edr.speed_before_m_s = Some(Measured { value: expected + 1.0, ..hand });
+        let both = HandCalculation::of(&evidence, &cars).unwrap().target_speed_m_s;
+        assert!((both.value - expected - 0.5).abs() < 1e-6, "{both:?}");
+        assert!((both.sigma * 2_f64.sqrt() / hand.sigma - 1.0).abs() < 1e-9, "{both:?}");
+        evidence.rest = None;
+        assert_eq!(HandCalculation::of(&evidence, &cars), None);
+    }
+}

@@ -212,6 +212,9 @@ impl<'a> Lane<'a> {
     }
 }
 
+/// Vehicles and inputs of all lanes.
+type PackedLanes<S> = (VehicleConstants<Packed<S>>, StepInputs<Packed<S>>);
+
 /// Runs that one core takes over.
 struct Task<'l, 'a> {
     waiting: &'l [Lane<'a>],
@@ -226,7 +229,7 @@ impl WithSimd for Task<'_, '_> {
         let mut waiting = self.waiting.iter();
         let mut running: Vec<Lane<'_>> = Vec::with_capacity(Packed::<S>::N);
         let mut ended = Vec::with_capacity(self.waiting.len());
-        let mut packed: Option<(VehicleConstants<Packed<S>>, StepInputs<Packed<S>>)> = None;
+        let mut packed: Option<PackedLanes<S>> = None;
         loop {
             let n_running = running.len();
             while running.len() < Packed::<S>::N {

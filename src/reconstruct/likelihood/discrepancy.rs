@@ -60,8 +60,8 @@ impl Default for Discrepancy {
             heading_share: 0.05,
             correlation_share: 0.4,
             own_share: 0.15,
-            onset_m: 0.8,
-            onset_share: 0.03,
+            onset_m: 1.2,
+            onset_share: 0.04,
             delta_v_share: 0.04,
             degrees_of_freedom: 6.0,
         }
