@@ -133,7 +133,7 @@ mod tests {
             let settings = SamplerSettings {
                 n_particles: 200,
                 seed: idx as u64,
-                least_ess: 200.0,
+                least_ess: 60.0,
                 max_evaluations: 4000,
             };
             let target = Function { dim: 3, log_likelihood };

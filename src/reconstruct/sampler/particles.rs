@@ -21,7 +21,8 @@ pub struct Particles {
     /// Estimate of `ln ∫ N(z; 0, I) L(z)^β dz`, at temperature 1 the log evidence.
     pub log_evidence: f64,
     /// Effective sample size of all evaluated particles: the smallest over the components of z. It
-    /// may exceed the number of particles here, which are drawn from those.
+    /// may exceed the number of particles here, which are drawn from those. It is far too large for
+    /// a ridge that folds back on itself (BENCHMARKS.md).
     pub ess: f64,
     /// Number of evaluations of the likelihood until now.
     pub n_evaluations: usize,
