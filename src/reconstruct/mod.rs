@@ -12,23 +12,28 @@
 //! - [`sampler`]: draws from the posterior;
 //! - `hand`: what one computes by hand, as a baseline.
 
+pub mod baseline;
 pub mod evidence;
 pub mod sampler;
 
+mod budget;
+mod calibration;
 mod cars;
 mod distribution;
 mod forward;
 mod hand;
 mod likelihood;
+mod modes;
 mod posterior;
 mod prior;
-mod tempered;
 
+pub use budget::Narrowing;
+pub use calibration::{RankedQuantity, Ranks, ranks_of_cases};
 pub use cars::{Car, Cars};
 pub use distribution::Distribution;
 pub use forward::{CollisionMotion, ForwardModel, ImpactState};
 pub use hand::HandCalculation;
 pub use likelihood::{Discrepancy, EvidenceFit, EvidenceTerm, ReconstructionTarget};
+pub use modes::{ParticleMode, cluster_keys, modes_by};
 pub use posterior::{BudgetItem, Mode, Posterior, QuantityEstimate, ReconstructedQuantity};
 pub use prior::{Latent, LatentValues, Prior, PriorComponent};
-pub use tempered::{NothingPossible, sample};

@@ -9,7 +9,7 @@ use crate::data::{ContactOutside, DataError, SeriesError, TomlError};
 use crate::force::{EvaluateError, ForceError};
 use crate::learning::{LearningError, LoadError};
 use crate::ranges::OutOfRange;
-use crate::reconstruct::NothingPossible;
+use crate::reconstruct::sampler::SamplerError;
 use crate::response::LogError;
 use crate::vehicle::{Preset, SimulationError};
 
@@ -214,7 +214,7 @@ pub enum StudyError {
         /// The evidence.
         name: String,
         /// Why.
-        source: NothingPossible,
+        source: Box<SamplerError>,
     },
     /// A scenario has no solution.
     #[error("{name}: cannot be solved")]
@@ -322,6 +322,12 @@ pub enum StudyError {
     )]
     TrainingExists {
         /// The state of the training that is there.
+        path: PathBuf,
+    },
+    /// A reconstruction was begun where another one should be saved.
+    #[error("{}: exists already; --resume goes on with the reconstruction in it", path.display())]
+    ReconstructionExists {
+        /// The checkpoint.
         path: PathBuf,
     },
     /// Wheels are steered, braked, dragged or locked, of which the response network knows nothing.

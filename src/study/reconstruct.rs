@@ -6,12 +6,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::Outcome;
 use crate::jobs::Progress;
+use crate::nn::sha256_hex;
 use crate::ranges::RECONSTRUCTION_PARTICLES;
 use crate::reconstruct::evidence::Evidence;
-use crate::reconstruct::sampler::{Particles, SamplerReport, SamplerSettings, SamplerStage};
+use crate::reconstruct::sampler::{
+    Particles, SamplerCheckpoint, SamplerReport, SamplerSettings, SamplerStage, sample,
+};
 use crate::reconstruct::{
     BudgetItem, Cars, Discrepancy, EvidenceFit, ForwardModel, HandCalculation, Mode, Posterior,
-    PriorComponent, QuantityEstimate, ReconstructionTarget, sample,
+    PriorComponent, QuantityEstimate, ReconstructionTarget,
 };
 use crate::study::checks::check_count;
 use crate::study::{
@@ -43,6 +46,12 @@ pub struct ReconstructRequest {
     /// Seed of all draws.
     #[serde(default)]
     pub seed: u64,
+    /// File that the run is saved in after each step towards the evidence.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub checkpoint: Option<PathBuf>,
+    /// Whether to go on from that file if it exists.
+    #[serde(default)]
+    pub resume: bool,
 }
 
 fn default_particles() -> usize {
@@ -118,7 +127,24 @@ impl ReconstructRequest {
             striking: VehicleChoice::Automatic,
             particles: Self::DEFAULT_PARTICLES,
             seed: 0,
+            checkpoint: None,
+            resume: false,
         }
+    }
+
+    /// Where the run is saved, with a digest of all that its likelihood is made from.
+    fn checkpoint(
+        &self,
+        evidence: &Evidence,
+        cars: &Cars,
+    ) -> Result<Option<SamplerCheckpoint>, StudyError> {
+        let Some(path) = self.checkpoint.clone() else { return Ok(None) };
+        if path.exists() && !self.resume {
+            return Err(StudyError::ReconstructionExists { path });
+        }
+        let question = format!("{evidence:?} {cars:?} {:?}", Discrepancy::default());
+        let digest = sha256_hex([question.as_bytes()]);
+        Ok(Some(SamplerCheckpoint { path, digest, resume: self.resume }))
     }
 
     fn settings(&self) -> SamplerSettings {
@@ -181,11 +207,16 @@ impl Question for ReconstructRequest {
         let (struck, striking) = (self.vehicle.chosen()?, self.striking.chosen()?);
         let cars = Cars::of(&evidence, struck.as_ref(), striking.as_ref());
         let assumptions = assumptions(&evidence, &cars);
+        let checkpoint = self.checkpoint(&evidence, &cars)?;
         let model = ForwardModel::new(&evidence, cars);
         let target = ReconstructionTarget::new(evidence, model, Discrepancy::default());
         let mut told = |report: SamplerReport<'_>| observer(Event::Progress(progress(&report)));
-        let particles = sample(&target, &self.settings(), &mut told)
-            .map_err(|source| StudyError::Reconstruction { name: self.evidence.name(), source })?;
+        let particles = sample(&target, &self.settings(), checkpoint.as_ref(), &mut told).map_err(
+            |source| StudyError::Reconstruction {
+                name: self.evidence.name(),
+                source: Box::new(source),
+            },
+        )?;
         let posterior = Posterior::of(&target, &particles);
         let (fit, turned_rad) = target.fit(&particles);
         let by_hand = HandCalculation::of(target.evidence(), target.model().cars());

@@ -31,6 +31,12 @@ pub(in crate::cli) struct ReconstructArgs {
     /// Seed of all draws
     #[arg(long, default_value_t = 0)]
     seed: u64,
+    /// Save the run in this file as it goes; another one that exists is not replaced
+    #[arg(long, value_name = "FILE")]
+    checkpoint: Option<PathBuf>,
+    /// Go on from the checkpoint, if it is there
+    #[arg(long, requires = "checkpoint")]
+    resume: bool,
     /// Folder for the report and the particles
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -77,6 +83,8 @@ pub(in crate::cli) fn run(
         striking: VehicleArg::choice(&args.striking),
         particles: args.particles,
         seed: args.seed,
+        checkpoint: args.checkpoint.clone(),
+        resume: args.resume,
         ..ReconstructRequest::new(EvidenceChoice::File(args.evidence.clone()))
     };
     let out = args.out.as_deref();
