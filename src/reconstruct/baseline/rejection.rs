@@ -101,8 +101,8 @@ mod tests {
             let square = z.iter().map(|z| (value(z) - mean).powi(2)).sum::<f64>();
             (mean, (square / z.len() as f64).sqrt())
         };
-        let values: [&dyn Fn(&[f64]) -> f64; 4] =
-            [&|z| z[0], &|z| z[1], &|z| z[0] * z[1], &|z| f64::from(u8::from(z[2] > 0.8))];
+        let values: [fn(&[f64]) -> f64; 4] =
+            [|z| z[0], |z| z[1], |z| z[0] * z[1], |z| f64::from(u8::from(z[2] > 0.8))];
         let n = found.ess.min(found.z.len() as f64);
         for (idx, value) in values.iter().enumerate() {
             let (expected, std) = moments(&reference.z, value);
