@@ -20,13 +20,14 @@
 //! 7. [`learning`]: what the trainings of both networks have in common;
 //! 8. [`force`], [`response`]: the network that predicts the contact force, and the network that
 //!    predicts the motion, each with its baselines;
-//! 9. [`shipped`]: the trained networks and notices that are part of the program;
-//! 10. [`analysis`]: one case, from its file or scenario to a motion;
-//! 11. [`study`]: every question that can be asked, as a request with a report as its answer;
-//! 12. [`figure`]: the content of a plot, as plain data;
-//! 13. `render` (feature `gui`): one drawing function for the window and for pictures without a
+//! 9. [`reconstruct`]: from the evidence back to the speeds: the sampler of a posterior;
+//! 10. [`shipped`]: the trained networks and notices that are part of the program;
+//! 11. [`analysis`]: one case, from its file or scenario to a motion;
+//! 12. [`study`]: every question that can be asked, as a request with a report as its answer;
+//! 13. [`figure`]: the content of a plot, as plain data;
+//! 14. `render` (feature `gui`): one drawing function for the window and for pictures without a
 //!     window;
-//! 14. [`cli`] and `app` (feature `gui`): the command line and the window.
+//! 15. [`cli`] and `app` (feature `gui`): the command line and the window.
 //!
 //! This example simulates a vehicle that drives at 20 m/s with an initial yaw rate of 2 rad/s:
 //!
@@ -60,6 +61,7 @@ pub mod learning;
 pub mod nn;
 pub mod numerics;
 pub mod ranges;
+pub mod reconstruct;
 #[cfg(feature = "gui")]
 pub mod render;
 pub mod response;

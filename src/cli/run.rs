@@ -9,7 +9,7 @@ use clap::{Parser, Subcommand};
 use crate::cli::CliError;
 use crate::cli::commands::{
     app, ask, case, check, compare, condition, evaluate, fine_tune, impact, licences, predict,
-    ranges, render, simulate, train, vehicles,
+    ranges, reconstruct, render, simulate, train, vehicles,
 };
 use crate::cli::console::{Console, Escaped, Verdict, within_line};
 use crate::error_chain;
@@ -55,6 +55,7 @@ enum CliCommand {
     Predict(Box<predict::PredictArgs>),
     Evaluate(evaluate::EvaluateArgs),
     Compare(compare::CompareArgs),
+    Reconstruct(reconstruct::ReconstructArgs),
     Render(render::RenderArgs),
     Vehicles(vehicles::VehiclesArgs),
     #[command(alias = "licenses")]
@@ -125,6 +126,7 @@ fn dispatch(command: Option<CliCommand>, console: &mut Console<'_>) -> Result<Ve
         Some(CliCommand::Compare(args)) => compare::run(&args, console),
         Some(CliCommand::Evaluate(args)) => evaluate::run(&args, console),
         Some(CliCommand::Predict(args)) => predict::run(&args, console),
+        Some(CliCommand::Reconstruct(args)) => reconstruct::run(&args, console),
         Some(CliCommand::Render(args)) => render::run(&args, console),
         Some(CliCommand::Vehicles(args)) => vehicles::run(&args, console),
         Some(CliCommand::Licences(_)) => licences::run(console),

@@ -59,6 +59,133 @@ impl<'a> TomlTable<'a> {
         }
     }
 
+    /// Reads the tables of an array of tables, `[[key]]`; none if there is no such key.
+    ///
+    /// # Errors
+    /// [`TomlError::Value`] if it is not an array of tables.
+    pub fn tables(&mut self, key: &str) -> Result<Vec<Self>, TomlError> {
+        let Some((_, value)) = self.take(key) else { return Ok(Vec::new()) };
+        let wrong = || self.bad_value(key, value, format!("tables, each after [[{key}]]"));
+        let entries = value.get_ref().as_array().ok_or_else(wrong)?;
+        let table = |(idx, entry): (usize, &'a Spanned<DeValue<'a>>)| {
+            let table = entry.get_ref().as_table().ok_or_else(wrong)?;
+            Ok(Self::new(self.file, format!("{key}[{idx}]"), entry.span().start, table))
+        };
+        entries.iter().enumerate().map(table).collect()
+    }
+
+    /// Reads `true` or `false`; `None` if there is no such key.
+    ///
+    /// # Errors
+    /// [`TomlError::Value`] if the value is neither.
+    pub fn flag(&mut self, key: &str) -> Result<Option<bool>, TomlError> {
+        let Some((_, value)) = self.take(key) else { return Ok(None) };
+        match value.get_ref().as_bool() {
+            Some(flag) => Ok(Some(flag)),
+            None => Err(self.bad_value(key, value, "true or false".to_owned())),
+        }
+    }
+
+    /// Reads a list of words, each at most once, as their indices in `words`; `None` if there is no
+    /// such key.
+    ///
+    /// # Errors
+    /// [`TomlError::Value`] at the first entry that is none of them, or stands there twice.
+    pub fn choices(&mut self, key: &str, words: &[&str]) -> Result<Option<Vec<usize>>, TomlError> {
+        let Some((_, value)) = self.take(key) else { return Ok(None) };
+        let quoted: Vec<_> = words.iter().map(|word| format!("{word:?}")).collect();
+        let expected = format!("a list of {}, each once", quoted.join(", "));
+        let Some(entries) = value.get_ref().as_array() else {
+            return Err(self.bad_value(key, value, expected));
+        };
+        let mut found = Vec::new();
+        for entry in entries.iter() {
+            let text = entry.get_ref().as_str();
+            match words.iter().position(|&word| text == Some(word)) {
+                Some(idx) if !found.contains(&idx) => found.push(idx),
+                _ => return Err(self.bad_value(key, entry, expected)),
+            }
+        }
+        Ok(Some(found))
+    }
+
+    /// Reads the lower and the upper end of a range as [`TomlTable::number`] reads a number:
+    /// `speed_km_h = [40, 90]`; `None` if there is no such key.
+    ///
+    /// # Errors
+    /// [`TomlError::Value`] if these are not two numbers in the range, the first one the smaller, and
+    /// [`TomlError::Conflict`] if it is given in two units.
+    pub fn interval(&mut self, base: &str, range: &Range) -> Result<Option<[f64; 2]>, TomlError> {
+        let mut found: Option<(String, [f64; 2])> = None;
+        for unit in range.quantity.units() {
+            let key = key_with_unit(base, unit);
+            let Some((_, value)) = self.take(&key) else { continue };
+            let ends = value
+                .get_ref()
+                .as_array()
+                .map(|ends| ends.iter().map(|end| self.in_range(&key, end, unit, range)).collect());
+            let ends: Option<Vec<f64>> = ends.transpose()?;
+            let Some(&[low, high]) =
+                ends.as_deref().filter(|ends| ends.len() == 2 && ends[0] < ends[1])
+            else {
+                let expected = "the lower and the upper end of a range, [low, high]".to_owned();
+                return Err(self.bad_value(&key, value, expected));
+            };
+            if let Some((other, _)) = found {
+                return Err(self.conflict(&other));
+            }
+            found = Some((key, [low, high]));
+        }
+        Ok(found.map(|(_, ends)| ends))
+    }
+
+    /// Reads a list of points `[[x, y], …]` under a key that has its unit in it; `None` if there is no
+    /// such key.
+    ///
+    /// # Errors
+    /// [`TomlError::Value`] at the first entry that is not a pair of numbers in the range.
+    pub fn points(&mut self, key: &str, range: &Range) -> Result<Option<Vec<[f64; 2]>>, TomlError> {
+        let Some((_, value)) = self.take(key) else { return Ok(None) };
+        let expected = format!("points [x, y], each {}", range.expected_si());
+        let Some(entries) = value.get_ref().as_array() else {
+            return Err(self.bad_value(key, value, expected));
+        };
+        entries
+            .iter()
+            .map(|entry| {
+                self.pair(entry, range).ok_or_else(|| self.bad_value(key, entry, expected.clone()))
+            })
+            .collect::<Result<_, _>>()
+            .map(Some)
+    }
+
+    /// Reads one point `[x, y]` under a key that has its unit in it; `None` if there is no such key.
+    ///
+    /// # Errors
+    /// [`TomlError::Value`] if it is not a pair of numbers in the range.
+    pub fn point(&mut self, key: &str, range: &Range) -> Result<Option<[f64; 2]>, TomlError> {
+        let Some((_, value)) = self.take(key) else { return Ok(None) };
+        match self.pair(value, range) {
+            Some(pair) => Ok(Some(pair)),
+            None => {
+                let expected = format!("a point [x, y], each {}", range.expected_si());
+                Err(self.bad_value(key, value, expected))
+            }
+        }
+    }
+
+    /// A pair of numbers in a range, SI units.
+    fn pair(&self, value: &Spanned<DeValue<'_>>, range: &Range) -> Option<[f64; 2]> {
+        let entries = value.get_ref().as_array()?;
+        let mut numbers = entries
+            .iter()
+            .map(|entry| parse_number(entry.get_ref()).filter(|number| range.contains(*number)));
+        match (numbers.next(), numbers.next(), numbers.next()) {
+            (Some(x), Some(y), None) => Some([x?, y?]),
+            _ => None,
+        }
+    }
+
     /// Reads a text; `None` if there is no such key.
     ///
     /// # Errors

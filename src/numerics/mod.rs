@@ -29,4 +29,4 @@ pub use ode::{Stage, euler_step, rk4_step, rk4_step_from};
 pub use packed::{MAX_LANES, Packed};
 pub use scalar::{Lanes, LanesOver, Scalar};
 pub use smoother::{MeasuredTrack, TrackPoint, TrackSample};
-pub use statistics::{Summary, quantile_of_sorted};
+pub use statistics::{Summary, quantile_of_sorted, quantile_of_weighted};

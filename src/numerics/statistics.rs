@@ -61,9 +61,54 @@ pub fn quantile_of_sorted(values: &[f64], probability: f64) -> Option<f64> {
     Some(below + position.fract() * (above - below))
 }
 
+/// Quantile of weighted values in increasing order, by linear interpolation. With equal weights it is
+/// that of [`quantile_of_sorted`]; a value without weight changes nothing.
+///
+/// ```text
+/// value k stands at (w_1/2 + w_2 + … + w_(k−1) + w_k/2) − w_1/2, the last one at probability 1
+/// ```
+///
+/// - returns `None` if no value has a weight.
+///
+/// ```
+/// # use impactlab::numerics::quantile_of_weighted;
+/// assert_eq!(quantile_of_weighted(&[1.0, 2.0, 4.0], &[1.0, 1.0, 1.0], 0.75), Some(3.0));
+/// assert_eq!(quantile_of_weighted(&[1.0, 2.0, 4.0], &[1.0, 0.0, 1.0], 0.5), Some(2.5));
+/// ```
+pub fn quantile_of_weighted(values: &[f64], weights: &[f64], probability: f64) -> Option<f64> {
+    let weighted = || values.iter().zip(weights).filter(|(_, weight)| **weight > 0.0);
+    let (first, last) = (weighted().next()?, weighted().next_back()?);
+    let total: f64 = weighted().map(|(_, weight)| weight).sum::<f64>() - (first.1 + last.1) / 2.0;
+    let goal = probability.clamp(0.0, 1.0) * total;
+    let (mut position, mut before) = (0.0, first);
+    for value in weighted().skip(1) {
+        let step = (before.1 + value.1) / 2.0;
+        if position + step >= goal {
+            return Some(before.0 + (goal - position) / step * (value.0 - before.0));
+        }
+        position += step;
+        before = value;
+    }
+    Some(*last.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn equal_weights_give_the_quantiles_of_the_values_and_a_weight_of_two_counts_twice() {
+        let values: Vec<f64> = (0..31).map(|i| f64::from(i * i)).collect();
+        for probability in [-1.0, 0.0, 0.05, 0.33, 0.5, 0.95, 1.0, 2.0] {
+            let expected = quantile_of_sorted(&values, probability).unwrap();
+            let found = quantile_of_weighted(&values, &[0.3; 31], probability).unwrap();
+            assert!((found - expected).abs() < 1e-9, "{probability}: {found} for {expected}");
+        }
+        assert_eq!(quantile_of_weighted(&[1.0, 5.0], &[0.0, 2.0], 0.1), Some(5.0));
+        assert_eq!(quantile_of_weighted(&[1.0, 5.0], &[0.0, 0.0], 0.1), None);
+        let twice = quantile_of_weighted(&[0.0, 1.0, 2.0], &[1.0, 2.0, 1.0], 0.5).unwrap();
+        assert!((twice - 1.0).abs() < 1e-12);
+    }
 
     #[test]
     fn a_small_sample_by_hand() {

@@ -221,9 +221,36 @@ ranges! {
     TRAJECTORIES: "trajectories" = whole([1, 1_000_000]), "trajectories to learn from";
     TRAJECTORY_SETS: "numbers of trajectories" = whole([1, 100]),
         "how many numbers of trajectories a comparison tries";
+    RECONSTRUCTION_PARTICLES: "particles" = whole([50, 100_000]),
+        "particles of a reconstruction";
     EPOCHS: "epochs" = whole([1, 100_000]), "passes over the training cases";
     TEST_SHARE: "test share" = real(Quantity::Ratio, [0.0, 0.9]),
         "share of the cases that is kept for the test";
+}
+
+ranges! {
+    /// The evidence of a reconstruction.
+    EVIDENCE = "evidence of a reconstruction";
+    EVIDENCE_POSITION: "position of evidence" = real(Quantity::Length, [-2000.0, 2000.0]),
+        "coordinate of a rest position, a mark or a position in a video, from the impact";
+    EVIDENCE_HEADING: "heading of evidence" = real(Quantity::Angle, [-2.0 * PI, 2.0 * PI]),
+        "heading against that of the struck car before the impact; whole turns do not count";
+    EVIDENCE_SPEED: "speed of evidence" = real(Quantity::Speed, [0.0, 150.0]),
+        "speed before the impact";
+    POSITION_SIGMA: "standard deviation of a position" = real(Quantity::Length, [0.001, 100.0]),
+        "how well a position was measured; nothing is measured exactly";
+    ANGLE_SIGMA: "standard deviation of an angle" = real(Quantity::Angle, [0.0001, PI]),
+        "how well an angle was measured";
+    SPEED_SIGMA: "standard deviation of a speed" = real(Quantity::Speed, [0.001, 50.0]),
+        "how well a speed was measured";
+    MASS_SIGMA: "standard deviation of a mass" = real(Quantity::Mass, [0.01, 10_000.0]),
+        "how well a mass is known";
+    FRICTION_SIGMA: "standard deviation of friction" = real(Quantity::Ratio, [0.001, 1.0]),
+        "how well the friction of the road is known";
+    EVIDENCE_TIME: "time of evidence" = real(Quantity::Time, [0.0, 60.0]),
+        "time after the first contact";
+    PULSE_END: "end of a recorded pulse" = real(Quantity::Time, [0.005, 5.0]),
+        "time after the first contact at which a recorder ends";
 }
 
 ranges! {

@@ -9,6 +9,7 @@ use crate::data::{ContactOutside, DataError, SeriesError, TomlError};
 use crate::force::{EvaluateError, ForceError};
 use crate::learning::{LearningError, LoadError};
 use crate::ranges::OutOfRange;
+use crate::reconstruct::sampler::SamplerError;
 use crate::response::LogError;
 use crate::vehicle::{Preset, SimulationError};
 
@@ -207,6 +208,14 @@ pub enum StudyError {
         /// The presets.
         presets: Vec<&'static str>,
     },
+    /// No motion goes with the evidence.
+    #[error("{name}: cannot be reconstructed")]
+    Reconstruction {
+        /// The evidence.
+        name: String,
+        /// Why.
+        source: Box<SamplerError>,
+    },
     /// A scenario has no solution.
     #[error("{name}: cannot be solved")]
     Scenario {
@@ -313,6 +322,12 @@ pub enum StudyError {
     )]
     TrainingExists {
         /// The state of the training that is there.
+        path: PathBuf,
+    },
+    /// A reconstruction was begun where another one should be saved.
+    #[error("{}: exists already; --resume goes on with the reconstruction in it", path.display())]
+    ReconstructionExists {
+        /// The checkpoint.
         path: PathBuf,
     },
     /// Wheels are steered, braked, dragged or locked, of which the response network knows nothing.

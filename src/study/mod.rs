@@ -46,6 +46,7 @@ mod motion_logs;
 mod motion_source;
 mod predict_force;
 mod predict_motion;
+mod reconstruct;
 mod recorded_force;
 mod simulate;
 mod simulate_dataset;
@@ -94,6 +95,7 @@ pub use predict_motion::{
 };
 pub use provenance::Provenance;
 pub use question::{Event, Observer, Question};
+pub use reconstruct::{EvidenceChoice, ReconstructAnswer, ReconstructReport, ReconstructRequest};
 pub use recorded_force::{RecordedForceAnswer, RecordedForceRequest};
 pub use request::{Report, Request};
 pub use simulate::{DEFAULT_DURATION_S, DEFAULT_VEHICLE_DRAWS, SimulateAnswer, SimulateRequest};

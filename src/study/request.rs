@@ -8,8 +8,9 @@ use crate::study::{
     CheckReport, CheckRequest, CompareRequest, EvaluateForceRequest, EvaluateResponseRequest,
     FineTuneRequest, ForceEvaluation, ImpactReport, ImpactRequest, Library, Observer,
     PredictForceReport, PredictForceRequest, PredictMotionReport, PredictMotionRequest, Question,
-    ResponseTrainingReport, SimulateDatasetReport, SimulateDatasetRequest, SimulateReport,
-    SimulateRequest, StudyError, TrainForceReport, TrainForceRequest, TrainResponseRequest,
+    ReconstructReport, ReconstructRequest, ResponseTrainingReport, SimulateDatasetReport,
+    SimulateDatasetRequest, SimulateReport, SimulateRequest, StudyError, TrainForceReport,
+    TrainForceRequest, TrainResponseRequest,
 };
 
 macro_rules! questions {
@@ -68,6 +69,8 @@ questions! {
     PredictForce(PredictForceRequest) -> PredictForceReport;
     /// The distribution of the motion after an impact.
     PredictMotion(PredictMotionRequest) -> PredictMotionReport;
+    /// How fast both cars were, from the evidence.
+    Reconstruct(ReconstructRequest) -> ReconstructReport;
     /// A training of the force network.
     TrainForce(TrainForceRequest) -> TrainForceReport;
     /// A pre-training of the response network.

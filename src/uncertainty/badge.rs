@@ -30,6 +30,10 @@ pub enum BadgeKind {
     RollLimit,
     /// The motion ends before the vehicle is at rest.
     NotAtRest,
+    /// Nothing in the answer explains an item of the evidence.
+    EvidenceUnexplained,
+    /// The particles are too few, or not of the posterior.
+    FewParticles,
     /// Cases or draws could not be used and are left out.
     LeftOut,
     /// A network is judged by cases that it has learned from.
@@ -71,6 +75,8 @@ impl BadgeKind {
             Self::WheelLift => "wheel lift",
             Self::RollLimit => "roll limit",
             Self::NotAtRest => "not at rest",
+            Self::EvidenceUnexplained => "evidence unexplained",
+            Self::FewParticles => "few particles",
             Self::LeftOut => "left out",
             Self::TrainedOn => "trained on",
             Self::Assumed => "assumed",

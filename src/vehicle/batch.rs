@@ -214,7 +214,7 @@ fn states<S: Simd>(simd: S, running: &[Numbered<Run<'_>>]) -> [Packed<S>; N_STAT
 
 /// The inputs over a step, side by side.
 #[inline(always)]
-fn steps_side_by_side<S: Simd>(
+pub(super) fn steps_side_by_side<S: Simd>(
     simd: S,
     of_lanes: &[StepInputs<f64>; MAX_LANES],
 ) -> StepInputs<Packed<S>> {

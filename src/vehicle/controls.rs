@@ -62,7 +62,7 @@ impl SteerHistory {
 impl WheelHistory {
     /// The wheels at a time; `None` while all of them roll freely, so that the rules for a vehicle
     /// that coasts apply.
-    pub(super) fn at(&self, time_s: f64) -> Option<[WheelEffort<f64>; 4]> {
+    pub(crate) fn at(&self, time_s: f64) -> Option<[WheelEffort<f64>; 4]> {
         let after = self.time_s.partition_point(|&t| t <= time_s);
         let last = self.wheels.len().checked_sub(1)?;
         let (before, after) = (after.saturating_sub(1), after.min(last));

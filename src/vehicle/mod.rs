@@ -26,6 +26,7 @@ mod simulate;
 mod stability;
 
 mod batch;
+mod path_batch;
 
 pub use as_printed::Equations;
 pub use batch::{SimulationRun, simulate_batch};
@@ -41,6 +42,7 @@ pub use four_dof::{CollisionForce, ContactPoint, VehicleEvaluation, VehicleInput
 pub use loads::Wheel;
 pub use multibody_record::MultibodyRecord;
 pub use parameters::{GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters};
+pub use path_batch::{MAX_PATH_STEP_S, Path, PathEnd, PathLimit, PathPoint, simulate_paths};
 pub use preset::{Preset, built_in_vehicle};
 pub(crate) use rest::RestWatch;
 pub use rest::{REST_DURATION_S, REST_SPEED_M_S, REST_YAW_RATE_RAD_S};

@@ -25,11 +25,15 @@ impl RestWatch {
         Self { last_change_s, since_s: None }
     }
 
+    /// Whether both limits hold at an instant.
+    pub(crate) fn is_slow(x: &VehicleState<f64>) -> bool {
+        let speed_m_s = x.vx_m_s.hypot(x.vy_m_s);
+        speed_m_s < REST_SPEED_M_S && x.yaw_rate_rad_s.abs() < REST_YAW_RATE_RAD_S
+    }
+
     /// Whether the vehicle has been at rest for [`REST_DURATION_S`].
     pub(crate) fn has_settled(&mut self, time_s: f64, x: &VehicleState<f64>) -> bool {
-        let speed_m_s = x.vx_m_s.hypot(x.vy_m_s);
-        let is_slow = speed_m_s < REST_SPEED_M_S && x.yaw_rate_rad_s.abs() < REST_YAW_RATE_RAD_S;
-        if !is_slow || time_s < self.last_change_s {
+        if !Self::is_slow(x) || time_s < self.last_change_s {
             self.since_s = None;
             return false;
         }

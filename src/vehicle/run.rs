@@ -163,6 +163,7 @@ fn steps(vehicle: &VehicleParameters, integrator: Integrator, controls: &Control
 }
 
 /// Inputs of a manoeuvre, prepared for evaluation over time steps.
+#[derive(Clone)]
 pub(super) struct Inputs<'a> {
     controls: &'a Controls,
     contact: Option<(CumulativeImpulse, &'a ContactLoad)>,
@@ -213,12 +214,17 @@ impl<'a> Inputs<'a> {
     }
 
     /// The last instant at which force, steer angle or wheels change, s; 0 if nothing acts.
-    fn last_change_s(&self) -> f64 {
+    pub fn last_change_s(&self) -> f64 {
         let Controls { steer, wheels } = self.controls;
         let contact = self.contact.as_ref().map(|(cumulative, _)| cumulative.end_s());
         let steer = steer.as_ref().and_then(|steer| steer.time_s.last().copied());
         let wheels = wheels.as_ref().and_then(|wheels| wheels.time_s.last().copied());
         [contact, steer, wheels].into_iter().flatten().fold(0.0, f64::max)
+    }
+
+    /// The end of the collision force, s; 0 without one.
+    pub fn force_end_s(&self) -> f64 {
+        self.contact.as_ref().map_or(0.0, |(cumulative, _)| cumulative.end_s())
     }
 
     /// Mean collision force over a step. It is `None` if neither force nor moment acts, also if the

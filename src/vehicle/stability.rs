@@ -153,6 +153,11 @@ impl VehicleParameters {
         self.mass.sprung_mass_kg * STANDARD_GRAVITY_M_S2 * self.suspension.roll_arm_m
     }
 
+    /// Longest step that follows the roll of the body, s.
+    pub(super) fn roll_step_s(&self) -> f64 {
+        MAX_RATE_TIMES_STEP / self.roll_rate_bound_1_s()
+    }
+
     fn fastest_rates_1_s(&self) -> Rates {
         let (mass, geometry, tires) = (&self.mass, &self.geometry, &self.tires);
         let yaw_inertia = mass.yaw_inertia_kg_m2 * self.uncoupled_share();

@@ -17,6 +17,7 @@ const LAYERS: &[&[&str]] = &[
     &["nn", "uncertainty", "compare"],
     &["learning"],
     &["force", "response"],
+    &["reconstruct"],
     &["shipped"],
     &["analysis"],
     &["study"],

@@ -16,6 +16,7 @@ pub(super) mod predict;
 mod predict_force;
 mod predict_motion;
 pub(super) mod ranges;
+pub(super) mod reconstruct;
 pub(super) mod render;
 mod render_figure;
 mod render_forecast;

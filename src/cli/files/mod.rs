@@ -3,7 +3,9 @@
 mod force_evaluation;
 mod force_prediction;
 mod motion_prediction;
+mod reconstruction;
 
 pub(super) use force_evaluation::write_force_evaluation;
 pub(super) use force_prediction::write_force_prediction;
 pub(super) use motion_prediction::{MotionFiles, write_motion_prediction};
+pub(super) use reconstruction::write_reconstruction;

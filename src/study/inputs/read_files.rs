@@ -33,6 +33,13 @@ impl Request {
                     files.path(path);
                 }
             }
+            Self::Reconstruct(asked) => {
+                if let Some(path) = asked.evidence.file() {
+                    files.path(path);
+                }
+                files.vehicle(&asked.vehicle);
+                files.vehicle(&asked.striking);
+            }
             Self::TrainForce(asked) => {
                 files.paths(std::iter::once(&asked.data).chain(&asked.extra));
                 files.training(&asked.training);

@@ -1,0 +1,101 @@
+//! `impactlab reconstruct`: from the evidence to the speeds.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde::Serialize;
+
+use crate::cli::CliError;
+use crate::cli::console::{Console, Verdict};
+use crate::cli::files::write_reconstruction;
+use crate::cli::options::{OverwriteArg, UnitsArg, VehicleArg};
+use crate::cli::text::print_reconstruction;
+use crate::study::{EvidenceChoice, ReconstructReport, ReconstructRequest};
+
+/// From the evidence to the speeds before the impact, as a distribution
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(in crate::cli) struct ReconstructArgs {
+    /// The evidence file
+    #[arg(value_name = "EVIDENCE.toml")]
+    evidence: PathBuf,
+    /// The struck car: stands in where the evidence gives no value
+    #[arg(long, value_name = "NAME|FILE")]
+    vehicle: Option<VehicleArg>,
+    /// The striking car, likewise
+    #[arg(long, value_name = "NAME|FILE")]
+    striking: Option<VehicleArg>,
+    /// Number of particles
+    #[arg(long, value_name = "N", default_value_t = ReconstructRequest::DEFAULT_PARTICLES)]
+    particles: usize,
+    /// Seed of all draws
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Save the run in this file as it goes; another one that exists is not replaced
+    #[arg(long, value_name = "FILE")]
+    checkpoint: Option<PathBuf>,
+    /// Go on from the checkpoint, if it is there
+    #[arg(long, requires = "checkpoint")]
+    resume: bool,
+    /// Folder for the report and the particles
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    overwrite: OverwriteArg,
+    /// Units of the text (JSON is always SI)
+    #[arg(long, value_enum, default_value_t)]
+    units: UnitsArg,
+}
+
+const EXAMPLES: &str = "\
+Example:
+  impactlab reconstruct case.toml --out case-result
+
+World axes: origin at the CG of the struck car at first contact, X along its heading, Y to the left.
+Whoever hit a flank behind the CG is taken to have matched the speed, as in a PIT manoeuvre; [prior] in
+the evidence file says otherwise.
+
+JSON: case; quantities [{name, unit, median, interval_50, interval_80, interval_90, interval_95}] with
+  target_speed_m_s, bullet_speed_m_s, closing_speed_m_s, heading_difference_rad, road_friction,
+  delta_v_target_m_s, target_yaw_rate_after_rad_s; modes [{name, probability, quantities}];
+  fit [{evidence, unit, expected, found, p}]; budget [{known, sigma, now_m_s, then_m_s, ess}]; ess,
+  n_simulations, n_particles, log_evidence, by_hand_m_s [value, standard deviation],
+  priors [{latent, distribution}], assumptions, badges, seed";
+
+/// Files that are written.
+const KNOWN_FILES: [&str; 2] = ["particles.csv", "reconstruction.json"];
+
+/// The report, and where its files are.
+#[derive(Debug, Serialize)]
+struct PrintedReconstruction<'a> {
+    #[serde(flatten)]
+    report: &'a ReconstructReport,
+    out: Option<&'a Path>,
+}
+
+/// Reconstructs a case.
+pub(in crate::cli) fn run(
+    args: &ReconstructArgs,
+    console: &mut Console<'_>,
+) -> Result<Verdict, CliError> {
+    let request = ReconstructRequest {
+        vehicle: VehicleArg::choice(&args.vehicle),
+        striking: VehicleArg::choice(&args.striking),
+        particles: args.particles,
+        seed: args.seed,
+        checkpoint: args.checkpoint.clone(),
+        resume: args.resume,
+        ..ReconstructRequest::new(EvidenceChoice::File(args.evidence.clone()))
+    };
+    let out = args.out.as_deref();
+    let into = out.map(|folder| (folder, args.overwrite.into(), &KNOWN_FILES[..]));
+    let answer = console.ask_into(&request, into, |output, answer| {
+        let printed = PrintedReconstruction { report: &answer.report, out };
+        write_reconstruction(output.staging(), answer, &printed)?;
+        Ok(answer.report.provenance.clone())
+    })?;
+    let Some(answer) = answer else { return Ok(Verdict::Clean) };
+    let printed = PrintedReconstruction { report: &answer.report, out };
+    console.print(&printed, |out| print_reconstruction(out, &answer.report, args.units.into()))?;
+    Ok(Verdict::Clean)
+}

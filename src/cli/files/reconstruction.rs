@@ -1,0 +1,50 @@
+//! The files of `impactlab reconstruct`.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::cli::CliError;
+use crate::data::{Existing, write_atomically, write_restricted_table};
+use crate::reconstruct::ReconstructedQuantity;
+use crate::study::{ReconstructAnswer, Trust};
+
+/// Writes the particles as CSV and the report as JSON into a folder that exists.
+pub(in crate::cli) fn write_reconstruction(
+    path: &Path,
+    answer: &ReconstructAnswer,
+    report: &impl Serialize,
+) -> Result<(), CliError> {
+    let restrictions = Trust::new(&answer.report.badges, &answer.report.assumptions).text();
+    let (posterior, particles) = (&answer.posterior, &answer.particles);
+    let components = answer.target.model().prior().components();
+    let quantities = ReconstructedQuantity::ALL;
+    // A quantity that is asked for and open by itself stands there once.
+    let open: Vec<_> = components
+        .iter()
+        .map(|component| component.latent)
+        .filter(|latent| quantities.iter().all(|quantity| quantity.key() != latent.key()))
+        .collect();
+    let header: Vec<String> = (quantities.iter().map(|quantity| quantity.key()))
+        .chain(open.iter().map(|latent| latent.key()))
+        .chain(["log_likelihood"])
+        .map(str::to_owned)
+        .collect();
+    let rows = (0..posterior.values.len()).map(|idx| {
+        let (values, impact) = (&posterior.values[idx], &posterior.impacts[idx]);
+        let asked = quantities.iter().map(|quantity| quantity.of(values, impact));
+        let open = open.iter().map(|latent| values.get(*latent));
+        asked
+            .chain(open)
+            .chain([particles.log_likelihood[idx]])
+            .map(|value| value.to_string())
+            .collect()
+    });
+    let table = path.join("particles.csv");
+    write_restricted_table(&table, Existing::Refuse, (&header, rows), restrictions.as_deref())?;
+    write_atomically(&path.join("reconstruction.json"), Existing::Refuse, |out| {
+        serde_json::to_writer_pretty(&mut *out, report)?;
+        writeln!(out)
+    })?;
+    Ok(())
+}

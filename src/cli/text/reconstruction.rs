@@ -1,0 +1,118 @@
+//! A reconstruction for a person.
+
+use std::io::{self, Write};
+
+use crate::cli::console::{print_badges, print_table};
+use crate::reconstruct::QuantityEstimate;
+use crate::study::ReconstructReport;
+use crate::units::{Quantity, UnitSystem, percent};
+
+/// Effective number of particles below which an item of the budget is left out.
+const LEAST_BUDGET_ESS: f64 = 20.0;
+
+/// Prints quantities, modes, fit and budget.
+pub(in crate::cli) fn print_reconstruction(
+    out: &mut dyn Write,
+    report: &ReconstructReport,
+    units: UnitSystem,
+) -> io::Result<()> {
+    writeln!(out, "{}\n", report.case)?;
+    let rows: Vec<_> = report.quantities.iter().map(|of| quantity_row(of, units)).collect();
+    print_table(out, &["quantity", "unit", "median", "50 %", "90 %", "95 %"], &rows)?;
+    if let Some([value, sigma]) = report.by_hand_m_s {
+        let unit = Quantity::Speed.display_unit(units);
+        let [value, sigma] = [value, sigma].map(|si| unit.from_si(si));
+        let symbol = unit.symbol;
+        writeln!(out, "by hand: struck car {value:.1} ± {sigma:.1} {symbol} (one sigma)")?;
+    }
+    if report.modes.len() > 1 {
+        writeln!(out)?;
+        let rows: Vec<_> = report
+            .modes
+            .iter()
+            .map(|mode| {
+                let first = mode.quantities.first().map(|of| quantity_row(of, units));
+                let [median, ninety] = match first {
+                    Some(row) => [format!("{} {}", row[2], row[1]), row[4].clone()],
+                    None => [String::new(), String::new()],
+                };
+                vec![percent(mode.probability), mode.name.clone(), median, ninety]
+            })
+            .collect();
+        print_table(out, &["", "course of events", "struck car", "90 %"], &rows)?;
+    }
+    writeln!(out)?;
+    let rows: Vec<_> = report
+        .fit
+        .iter()
+        .map(|item| {
+            let numbers = [item.expected, item.found].map(|value| format!("{value:.3}"));
+            let [expected, found] = numbers;
+            let note = if item.is_unexplained() { "unexplained" } else { "" };
+            let p = format!("{:.3}", item.p);
+            vec![item.evidence.clone(), item.unit.into(), expected, found, p, note.into()]
+        })
+        .collect();
+    print_table(out, &["evidence", "unit", "expected", "found", "p", ""], &rows)?;
+    print_budget(out, report, units)?;
+    let (ess, n) = (report.ess, report.n_simulations);
+    writeln!(out, "\n{n} motions, effective sample size {ess:.0}")?;
+    print_badges(out, &report.badges, &report.assumptions)
+}
+
+/// What further evidence would bring, the most useful first.
+fn print_budget(
+    out: &mut dyn Write,
+    report: &ReconstructReport,
+    units: UnitSystem,
+) -> io::Result<()> {
+    let mut items: Vec<_> =
+        report.budget.iter().filter(|item| item.ess >= LEAST_BUDGET_ESS).collect();
+    items.sort_by(|a, b| a.then_m_s.total_cmp(&b.then_m_s));
+    let unit = Quantity::Speed.display_unit(units);
+    let speed = |si: f64| format!("{:.1}", unit.from_si(si));
+    let rows: Vec<_> = items
+        .iter()
+        .map(|item| {
+            let known = format!("{} ± {}", item.known, item.sigma);
+            vec![known, speed(item.now_m_s), speed(item.then_m_s)]
+        })
+        .collect();
+    writeln!(out, "\nspeed of the struck car, half of the 90 % interval, {}", unit.symbol)?;
+    print_table(out, &["if it were known", "now", "then"], &rows)
+}
+
+/// Name, unit, median and intervals in the shown unit.
+fn quantity_row(of: &QuantityEstimate, units: UnitSystem) -> Vec<String> {
+    let quantity = match of.unit {
+        "m/s" => Quantity::Speed,
+        "rad" => Quantity::Angle,
+        "rad/s" => Quantity::AngularVelocity,
+        _ => Quantity::Ratio,
+    };
+    let unit = quantity.display_unit(units);
+    let number = |si: f64| match quantity {
+        Quantity::Ratio => format!("{si:.3}"),
+        _ => format!("{:.1}", unit.from_si(si)),
+    };
+    let interval = |[low, high]: [f64; 2]| format!("{} to {}", number(low), number(high));
+    let name = of.name.strip_suffix(suffix(of.unit)).unwrap_or(of.name).replace('_', " ");
+    vec![
+        name,
+        unit.symbol.to_owned(),
+        number(of.median),
+        interval(of.interval_50),
+        interval(of.interval_90),
+        interval(of.interval_95),
+    ]
+}
+
+/// The unit at the end of a key.
+fn suffix(unit: &str) -> &'static str {
+    match unit {
+        "m/s" => "_m_s",
+        "rad" => "_rad",
+        "rad/s" => "_rad_s",
+        _ => "",
+    }
+}

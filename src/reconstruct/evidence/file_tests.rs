@@ -1,0 +1,121 @@
+use super::*;
+
+const CASE: &str = r#"case = "B 27"
+
+[road]
+friction = 0.72
+
+[struck_car]
+mass_kg = 1520
+mass_sigma_kg = 30
+cg_to_front_axle_m = 1.25
+cg_to_rear_axle_m = 1.45
+
+[striking_car]
+mass_lb = 4000
+
+[damage]
+side = "right"
+x_m = -1.7
+y_m = -0.9
+angle_deg = 20
+
+[rest]
+x_m = 41.2
+y_ft = -20
+heading_deg = 170
+
+[after]
+blocked_wheels = ["RR"]
+driver_braked = "unknown"
+
+[[mark]]
+wheel = "RR"
+kind = "locked"
+start_m = [1.0, -0.7]
+points_m = [[1.0, -0.7], [6, -0.8]]
+
+[edr]
+delta_v_y_min_m_s = 1.0
+delta_v_y_max_m_s = 1.3
+speed_before_km_h = 72
+sensor_x_m = 0.2
+ends_s = 0.25
+
+[[position]]
+time_s = 1.2
+x_m = 20.1
+y_m = -2.0
+
+[prior]
+target_speed_km_h = [18, 180]
+"#;
+
+fn read(text: &str) -> Result<Evidence, String> {
+    let file = TomlFile { path: Path::new("case.toml"), text };
+    Evidence::from_toml(file).map_err(|error| error.to_string())
+}
+
+#[test]
+fn a_file_is_read_with_units_and_defaults() {
+    let evidence = read(CASE).unwrap();
+    assert_eq!(evidence.friction.unwrap().sigma, DEFAULT_FRICTION_SIGMA);
+    assert!((evidence.striking_car.mass_kg.unwrap().value - 1814.4).abs() < 0.1);
+    let rest = evidence.rest.unwrap();
+    assert!((rest.y_m + 6.096).abs() < 1e-9 && rest.position_sigma_m == DEFAULT_REST_SIGMA_M);
+    assert!((rest.heading_rad.unwrap().value - 170_f64.to_radians()).abs() < 1e-9);
+    assert_eq!(evidence.after.blocked_wheels, Some(vec![Wheel::RearRight]));
+    assert_eq!(evidence.marks[0].points_m, [[1.0, -0.7], [6.0, -0.8]]);
+    assert_eq!(evidence.marks[0].sigma_m, DEFAULT_MARK_SIGMA_M);
+    assert_eq!(evidence.edr.delta_v_y_m_s, Some([1.0, 1.3]));
+    assert!((evidence.edr.speed_before_m_s.unwrap().value - 20.0).abs() < 1e-9);
+    assert_eq!(evidence.edr.sensor_m, [0.2, 0.0]);
+    assert_eq!(evidence.positions[0].sigma_m, DEFAULT_VIDEO_SIGMA_M);
+    let [low, high] = evidence.prior.target_speed_m_s.unwrap();
+    assert!((low - 5.0).abs() < 1e-9 && (high - 50.0).abs() < 1e-9);
+    assert_eq!(evidence.mirrored().mirrored(), evidence);
+    assert_ne!(evidence.mirrored(), evidence);
+    let moved = CASE.replace("[rest]", "[rest]\nknown = false");
+    assert_eq!(read(&moved).unwrap().rest, None);
+}
+
+#[test]
+fn an_error_names_file_line_key_and_what_is_expected() {
+    for (good, bad, expected) in [
+        ("friction = 0.72", "friction = 3", "4: road.friction is 3, expected 0.01 to 2"),
+        ("mass_sigma_kg = 30", "mass_sigma_kg = 0", "8: struck_car.mass_sigma_kg is 0, expected"),
+        ("x_m = 41.2", "x_m = 5000", "22: rest.x_m is 5000, expected -2000 to 2000"),
+        ("heading_deg = 170", "heading_deg = 170\nheading_sigma_rad = 0", "25: rest.heading_sigma"),
+        ("case =", "cases =", "1: cases is not known here"),
+        ("side = \"right\"", "side = \"top\"", "16: damage.side is \"top\", expected \"left\" or"),
+        ("side = \"right\"", "", "15: damage.side is missing"),
+        ("x_m = -1.7", "", "15: damage.x_m is missing"),
+        ("y_m = -0.9", "y_m = 0.9", "18: damage.y_m is 0.9, expected a point on the right"),
+        ("cg_to_rear_axle_m = 1.45", "", "6: struck_car.cg_to_rear_axle_m is missing"),
+        ("x_m = 41.2", "", "21: rest.x_m is missing"),
+        ("[\"RR\"]", "[\"RR\", \"RR\"]", "27: after.blocked_wheels is \"RR\", expected a list"),
+        ("[\"RR\"]", "\"RR\"", "27: after.blocked_wheels is \"RR\", expected a list"),
+        ("\"unknown\"", "\"perhaps\"", "28: after.driver_braked is \"perhaps\""),
+        ("wheel = \"RR\"", "wheel = \"R\"", "31: mark[0].wheel is \"R\", expected \"FL\""),
+        ("kind = \"locked\"", "kind = 1", "32: mark[0].kind is 1, expected \"side-slip\""),
+        (", [6, -0.8]]", "]", "34: mark[0].points_m is [[1.0, -0.7]], expected at least two"),
+        ("[6, -0.8]", "[6]", "34: mark[0].points_m is [6], expected points [x, y]"),
+        ("[6, -0.8]", "[6, nan]", "34: mark[0].points_m is [6, nan], expected points"),
+        ("start_m = [1.0, -0.7]", "start_m = [2, 0]", "34: mark[0].points_m is [[1.0,"),
+        ("y_max_m_s = 1.3", "y_max_m_s = 0.3", "38: edr.delta_v_y_max_m_s is 0.3, expected"),
+        ("delta_v_y_max_m_s = 1.3", "", "36: edr.delta_v_y_max_m_s is missing"),
+        ("ends_s = 0.25", "ends_s = 0", "41: edr.ends_s is 0, expected 0.005 to 5 s"),
+        ("time_s = 1.2", "", "43: position[0].time_s is missing"),
+        ("[18, 180]", "[180, 18]", "49: prior.target_speed_km_h is [180, 18], expected the low"),
+        ("[18, 180]", "[18, 1800]", "49: prior.target_speed_km_h is 1800, expected 0 to 540"),
+        ("[18, 180]", "18", "49: prior.target_speed_km_h is 18, expected the lower and"),
+        ("[[mark]]", "[mark]", "30: mark is "),
+        ("[striking_car]", "[struck]", "1: [striking_car] is missing"),
+    ] {
+        assert!(CASE.contains(good), "{good}");
+        let error = read(&CASE.replacen(good, bad, 1)).unwrap_err();
+        let (line, said) = expected.split_once(": ").unwrap();
+        let is_there = error.starts_with(&format!("case.toml:{line}:")) && error.contains(said);
+        assert!(is_there, "{error}\n{expected}");
+    }
+}

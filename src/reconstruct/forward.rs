@@ -1,0 +1,444 @@
+//! From the quantities of a particle to the motion of the cars: the planar impact, its impulse as a
+//! pulse on the struck car, and the 4DOF vehicle to rest.
+//!
+//! World axes: origin at the CG of the struck car at first contact, X along its heading, Y to the left.
+//!
+//! Assumptions: the struck car drives straight ahead before the impact; both cars are rigid during it
+//! and touch at one point; the striking car touches with the corner or the front that its heading turns
+//! towards the struck side; the contact lies 0.55 m above the road.
+
+use rayon::prelude::*;
+
+use crate::collision::{
+    ContactSurface, FrictionModel, Impact, ImpactBody, ImpactSolution, Pulse, PulseShape,
+    RestitutionForm, Side,
+};
+use crate::data::{ForceAxes, ForceHistory, Sampling};
+use crate::numerics::wrap_angle_rad;
+use crate::reconstruct::evidence::Evidence;
+use crate::reconstruct::prior::towards;
+use crate::reconstruct::{Cars, Latent, LatentValues, Prior};
+use crate::vehicle::{
+    Braking, ContactLoad, ContactPoint, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Ending,
+    EngineBraking, HeldSteer, Manoeuvre, Path, PathLimit, SimulationRun, VehicleParameters,
+    VehicleState, Wheel, simulate_paths,
+};
+
+/// Height of the contact above the road, m: sills and bumpers of passenger cars.
+const CONTACT_HEIGHT_M: f64 = 0.55;
+
+/// Depth to which the corner of the striking car is pushed in, m.
+const CRUSH_M: f64 = 0.15;
+
+/// Angle over which the contact moves from the middle of an edge of the striking car to its corner,
+/// as its sine.
+const CORNER_SINE: f64 = 0.3;
+
+/// When a blocked wheel is caught, s after the first contact.
+const BLOCKED_FROM_S: f64 = 0.03;
+
+/// When the front wheels are turned, s after the first contact.
+const STEERED_FROM_S: f64 = 0.1;
+
+/// Longest motion that is followed, s.
+const LONGEST_MOTION_S: f64 = 40.0;
+
+/// Samples of a pulse.
+const PULSE_SAMPLES: f64 = 16.0;
+
+/// Speeds of approach between which the bounds of restitution fall, m/s, and the bounds there.
+const RESTITUTION_OVER_SPEED: [(f64, [f64; 2]); 2] = [(5.0, [0.24, 0.66]), (15.0, [0.0, 0.3])];
+
+/// State of both cars at the impact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ImpactState {
+    /// Speed of the struck car before it, m/s.
+    pub target_speed_m_s: f64,
+    /// Speed of the striking car before it, m/s.
+    pub bullet_speed_m_s: f64,
+    /// Size of the difference of the velocities of both CGs, m/s.
+    pub closing_speed_m_s: f64,
+    /// Heading of the striking car against that of the struck car, rad.
+    pub heading_difference_rad: f64,
+    /// Where the striking car moves, world axes, m/s.
+    pub bullet_velocity_m_s: [f64; 2],
+    /// CG of the striking car at first contact, world axes, m.
+    pub bullet_m: [f64; 2],
+    /// Contact point from the CG of the struck car, m.
+    pub contact_m: [f64; 2],
+    /// Coefficient of restitution.
+    pub restitution: f64,
+    /// Impulse and velocities after it.
+    pub solution: ImpactSolution,
+}
+
+impl ImpactState {
+    /// Size of the change of velocity of the struck car by the contact, m/s.
+    pub fn delta_v_target_m_s(&self) -> f64 {
+        let [x, y] = self.solution.target.delta_v_m_s;
+        x.hypot(y)
+    }
+}
+
+/// A collision that was followed to rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CollisionMotion {
+    /// The quantities that it follows from.
+    pub values: LatentValues,
+    /// The impact.
+    pub impact: ImpactState,
+    /// The struck car as it was simulated.
+    pub vehicle: VehicleParameters,
+    /// What was done to the struck car.
+    pub manoeuvre: Manoeuvre,
+    /// Path of the struck car.
+    pub path: Path,
+    /// Path of the striking car, where its rest pose is evidence.
+    pub bullet_path: Option<Path>,
+}
+
+/// The forward model of a case.
+#[derive(Debug, Clone)]
+pub struct ForwardModel {
+    cars: Cars,
+    prior: Prior,
+    side: Side,
+    blocked: Option<Vec<Wheel>>,
+    near: [Wheel; 2],
+    restitution: Option<[f64; 2]>,
+    follows_bullet: bool,
+    limit: PathLimit,
+}
+
+/// A car and what happens to it, before it is simulated.
+struct Prepared {
+    values: LatentValues,
+    impact: ImpactState,
+    vehicle: VehicleParameters,
+    manoeuvre: Manoeuvre,
+    bullet: Option<(VehicleParameters, Manoeuvre)>,
+}
+
+impl ForwardModel {
+    /// The model of a case.
+    pub fn new(evidence: &Evidence, cars: Cars) -> Self {
+        let prior = Prior::of(evidence, &cars);
+        let side = evidence.damage.side;
+        let of = |pose: &Option<_>| {
+            pose.as_ref()
+                .map(|pose: &crate::reconstruct::evidence::RestPose| pose.x_m.hypot(pose.y_m))
+        };
+        let marks = evidence.marks.iter().flat_map(|mark| &mark.points_m);
+        let farthest_m = marks
+            .map(|[x, y]| x.hypot(*y))
+            .chain(of(&evidence.rest))
+            .chain(of(&evidence.striking_rest))
+            .chain(evidence.positions.iter().map(|at| at.x_m.hypot(at.y_m)))
+            .fold(0.0, f64::max);
+        // Without anything that says where the cars were, they are followed to rest.
+        let distance_m = if farthest_m > 0.0 { 1.5 * farthest_m + 20.0 } else { f64::INFINITY };
+        Self {
+            prior,
+            side,
+            blocked: evidence.after.blocked_wheels.clone(),
+            near: wheels_near(side, cars.is_hit_behind_cg(evidence)),
+            restitution: evidence.prior.restitution,
+            follows_bullet: evidence.striking_rest.is_some(),
+            limit: PathLimit { distance_m },
+            cars,
+        }
+    }
+
+    /// The prior of the case.
+    pub fn prior(&self) -> &Prior {
+        &self.prior
+    }
+
+    /// The vehicles of the case.
+    pub fn cars(&self) -> &Cars {
+        &self.cars
+    }
+
+    /// The impact of a particle, without the motion after it.
+    pub fn impact(&self, values: &LatentValues) -> ImpactState {
+        let target_speed_m_s = values.get(Latent::TargetSpeed);
+        let difference = values.get(Latent::SpeedDifference);
+        let bullet_speed_m_s = match difference.is_nan() {
+            true => values.get(Latent::BulletSpeed),
+            false => (target_speed_m_s + difference).max(0.0),
+        };
+        let sign = towards(self.side);
+        let heading_rad = sign * values.get(Latent::HeadingTowards);
+        let course_rad = heading_rad + sign * values.get(Latent::SideslipTowards);
+        let bullet_velocity_m_s =
+            [bullet_speed_m_s * course_rad.cos(), bullet_speed_m_s * course_rad.sin()];
+        let along_across = [values.get(Latent::ContactAlong), values.get(Latent::ContactAcross)];
+        let (contact_m, side_rad) = contact(self.side, along_across);
+        let to_heading_rad = wrap_angle_rad(heading_rad - side_rad);
+        let normal_rad = side_rad + values.get(Latent::NormalTilt) * to_heading_rad.signum();
+        let arm_m = self.bullet_arm_m(heading_rad, side_rad);
+        let inertia = |mass_kg: f64, of: &VehicleParameters| {
+            of.mass.yaw_inertia_kg_m2 * mass_kg / of.mass.mass_kg
+        };
+        let [target_kg, bullet_kg] =
+            [values.get(Latent::TargetMass), values.get(Latent::BulletMass)];
+        let target = ImpactBody {
+            mass_kg: target_kg,
+            yaw_inertia_kg_m2: inertia(target_kg, &self.cars.struck.parameters)
+                * values.get(Latent::YawInertiaFactor),
+            heading_rad: 0.0,
+            velocity_m_s: [target_speed_m_s, 0.0],
+            yaw_rate_rad_s: 0.0,
+            contact_arm_m: contact_m,
+        };
+        let bullet = ImpactBody {
+            mass_kg: bullet_kg,
+            yaw_inertia_kg_m2: inertia(bullet_kg, &self.cars.striking.parameters),
+            heading_rad,
+            velocity_m_s: bullet_velocity_m_s,
+            yaw_rate_rad_s: 0.0,
+            contact_arm_m: arm_m,
+        };
+        let surface = ContactSurface {
+            normal_angle_rad: normal_rad,
+            restitution: 0.0,
+            restitution_form: RestitutionForm::Normal,
+            friction_limit: values.get(Latent::ContactFriction),
+            friction_model: FrictionModel::Limit,
+        };
+        let mut impact = Impact { target, bullet, surface };
+        let restitution = self.restitution(values, impact.closing_velocity_m_s()[0]);
+        impact.surface.restitution = restitution;
+        let closing = [bullet_velocity_m_s[0] - target_speed_m_s, bullet_velocity_m_s[1]];
+        ImpactState {
+            target_speed_m_s,
+            bullet_speed_m_s,
+            closing_speed_m_s: closing[0].hypot(closing[1]),
+            heading_difference_rad: wrap_angle_rad(heading_rad),
+            bullet_velocity_m_s,
+            bullet_m: [contact_m[0] - arm_m[0], contact_m[1] - arm_m[1]],
+            contact_m,
+            restitution,
+            solution: solved(&impact),
+        }
+    }
+
+    /// Coefficient of restitution at a speed of approach, m/s.
+    fn restitution(&self, values: &LatentValues, approach_m_s: f64) -> f64 {
+        let share = values.get(Latent::RestitutionShare);
+        let [low, high] = self.restitution.unwrap_or_else(|| {
+            let [(slow, of_slow), (fast, of_fast)] = RESTITUTION_OVER_SPEED;
+            let at = ((approach_m_s - slow) / (fast - slow)).clamp(0.0, 1.0);
+            [0, 1].map(|i| of_slow[i] + (of_fast[i] - of_slow[i]) * at)
+        });
+        low + (high - low) * share
+    }
+
+    /// From the CG of the striking car to the contact point, world axes, m: the corner that is nearest
+    /// to the struck side, or the middle of an edge that lies along it.
+    fn bullet_arm_m(&self, heading_rad: f64, normal_rad: f64) -> [f64; 2] {
+        let geometry = &self.cars.striking.parameters.geometry;
+        let (across, ahead) = (normal_rad - heading_rad).sin_cos();
+        let edge = |sine: f64| (sine / CORNER_SINE).clamp(-1.0, 1.0);
+        // In a PIT manoeuvre the front corner touches even where the cars are nearly parallel.
+        let turned_in = if self.prior.is_pit() { 0.2 } else { 0.0 };
+        let front_m = geometry.cg_to_front_end_m - CRUSH_M;
+        let rear_m = geometry.outer_length_m - geometry.cg_to_front_end_m - CRUSH_M;
+        let along = edge(ahead + turned_in);
+        let x_m = if along > 0.0 { along * front_m } else { along * rear_m };
+        let y_m = edge(across) * geometry.outer_width_m / 2.0;
+        let (sin, cos) = heading_rad.sin_cos();
+        [x_m * cos - y_m * sin, x_m * sin + y_m * cos]
+    }
+
+    /// Simulates the motions of particles side by side and on all cores.
+    ///
+    /// - `told`: what is kept of each motion;
+    /// - returns what is kept, in the order of the particles.
+    pub fn motions<R: Send>(
+        &self,
+        z: &[Vec<f64>],
+        told: impl Fn(CollisionMotion) -> R + Sync,
+    ) -> Vec<R> {
+        let prepared: Vec<Prepared> =
+            z.par_iter().map(|z| self.prepared(self.prior.values(z))).collect();
+        let runs: Vec<SimulationRun<'_>> = prepared
+            .iter()
+            .map(|of| SimulationRun { vehicle: &of.vehicle, manoeuvre: &of.manoeuvre })
+            .collect();
+        let bullets: Vec<SimulationRun<'_>> = prepared
+            .iter()
+            .filter_map(|of| of.bullet.as_ref())
+            .map(|(vehicle, manoeuvre)| SimulationRun { vehicle, manoeuvre })
+            .collect();
+        let bullet_paths = simulate_paths(&bullets, self.limit, |_, path| path);
+        simulate_paths(&runs, self.limit, |idx, path| {
+            let of = &prepared[idx];
+            told(CollisionMotion {
+                values: of.values,
+                impact: of.impact,
+                vehicle: of.vehicle.clone(),
+                manoeuvre: of.manoeuvre.clone(),
+                path,
+                bullet_path: bullet_paths.get(idx).cloned(),
+            })
+        })
+    }
+
+    fn prepared(&self, values: LatentValues) -> Prepared {
+        let impact = self.impact(&values);
+        let vehicle = self.vehicle(&values);
+        let ending = self.ending(&values);
+        let [x_m, y_m] = impact.contact_m;
+        let load = contact_load(impact.solution.impulse_n_s, &values, [x_m, y_m]);
+        let manoeuvre = Manoeuvre {
+            initial: VehicleState::driving_straight(impact.target_speed_m_s),
+            contact_load: Some(load),
+            controls: ending.controls(&vehicle),
+            duration_s: LONGEST_MOTION_S,
+            ends_at_rest: true,
+        };
+        let bullet = self.follows_bullet.then(|| self.bullet(&values, &impact));
+        Prepared { values, impact, vehicle, manoeuvre, bullet }
+    }
+
+    /// The struck car of a particle.
+    fn vehicle(&self, values: &LatentValues) -> VehicleParameters {
+        let sheet = &self.cars.struck.parameters;
+        let mass_kg = values.get(Latent::TargetMass);
+        let yaw_inertia = sheet.mass.yaw_inertia_kg_m2 * mass_kg / sheet.mass.mass_kg
+            * values.get(Latent::YawInertiaFactor);
+        let mut vehicle = sheet.clone().with_mass(mass_kg, Some(yaw_inertia));
+        let tires = &mut vehicle.tires;
+        tires.friction = values.get(Latent::RoadFriction) * values.get(Latent::TireFrictionFactor);
+        tires.sliding_friction_ratio = values.get(Latent::SlidingRatio);
+        tires.rolling_resistance = values.get(Latent::RollingResistance);
+        tires.cornering_coefficient_front_per_rad *= values.get(Latent::FrontCorneringFactor);
+        tires.cornering_coefficient_rear_per_rad *= values.get(Latent::RearCorneringFactor);
+        vehicle
+    }
+
+    /// What happens to the wheels of the struck car.
+    fn ending(&self, values: &LatentValues) -> Ending {
+        let locked =
+            |wheel| DamagedWheel { wheel, start_s: BLOCKED_FROM_S, drag_share_of_friction: None };
+        let damage = match &self.blocked {
+            Some(wheels) => wheels.iter().copied().map(locked).collect(),
+            None => {
+                let drag = values.get(Latent::BlockedDrag);
+                let caught = |idx: usize| DamagedWheel {
+                    drag_share_of_friction: (drag < 1.0).then_some(drag),
+                    ..locked(self.near[idx])
+                };
+                values.blocked_of_two().map(caught).into_iter().collect()
+            }
+        };
+        let brake = values.brakes().then(|| Braking {
+            start_s: values.get(Latent::BrakeStart),
+            share_of_friction: values.get(Latent::BrakeShare),
+            rise_s: values.get(Latent::BrakeRise),
+        });
+        let engine = brake.is_none().then(|| EngineBraking {
+            deceleration_m_s2: values.get(Latent::EngineBraking),
+            axle: DrivenAxle::All,
+        });
+        let steer = HeldSteer {
+            start_s: STEERED_FROM_S,
+            rise_s: DEFAULT_BRAKE_RISE_S,
+            road_wheel_rad: values.get(Latent::SteerAngle),
+        };
+        Ending { brake, engine, drive: None, damage, steer: Some(steer) }
+    }
+
+    /// The striking car and what happens to it.
+    fn bullet(
+        &self,
+        values: &LatentValues,
+        impact: &ImpactState,
+    ) -> (VehicleParameters, Manoeuvre) {
+        let mass_kg = values.get(Latent::BulletMass);
+        let mut vehicle = self.cars.striking.parameters.clone().with_mass(mass_kg, None);
+        vehicle.tires.friction = values.get(Latent::RoadFriction);
+        let brake = Some(Braking {
+            start_s: values.get(Latent::BulletBrakeStart),
+            share_of_friction: values.get(Latent::BulletBrakeShare),
+            rise_s: DEFAULT_BRAKE_RISE_S,
+        });
+        let (sin, cos) = impact.heading_difference_rad.sin_cos();
+        let in_body = |[x, y]: [f64; 2]| [x * cos + y * sin, y * cos - x * sin];
+        let [vx_m_s, vy_m_s] = in_body(impact.bullet_velocity_m_s);
+        let arm_m = [0, 1].map(|i| impact.contact_m[i] - impact.bullet_m[i]);
+        let impulse = impact.solution.impulse_n_s.map(|p| -p);
+        let manoeuvre = Manoeuvre {
+            initial: VehicleState {
+                vx_m_s,
+                vy_m_s,
+                yaw_rad: impact.heading_difference_rad,
+                x_m: impact.bullet_m[0],
+                y_m: impact.bullet_m[1],
+                ..VehicleState::default()
+            },
+            contact_load: Some(contact_load(impulse, values, in_body(arm_m))),
+            controls: Ending { brake, ..Ending::default() }.controls(&vehicle),
+            duration_s: LONGEST_MOTION_S,
+            ends_at_rest: true,
+        };
+        (vehicle, manoeuvre)
+    }
+}
+
+/// Contact point from the CG of the struck car, m, and direction of the normal into it, rad.
+fn contact(side: Side, [along_m, across_m]: [f64; 2]) -> ([f64; 2], f64) {
+    use std::f64::consts::{FRAC_PI_2, PI};
+    match side {
+        Side::Left => ([along_m, across_m], -FRAC_PI_2),
+        Side::Right => ([along_m, across_m], FRAC_PI_2),
+        Side::Front => ([across_m, along_m], PI),
+        Side::Rear => ([across_m, along_m], 0.0),
+    }
+}
+
+/// The solution of an impact with friction up to a limit, which always exists.
+fn solved(impact: &Impact) -> ImpactSolution {
+    match impact.solve_unchecked() {
+        Ok(solution) => solution,
+        Err(error) => unreachable!("only the friction model of the paper jams: {error}"),
+    }
+}
+
+/// The impulse as a half-sine pulse at a point of a car.
+///
+/// - `at_m`: from the CG, in the axes of the car.
+fn contact_load(impulse_n_s: [f64; 2], values: &LatentValues, at_m: [f64; 2]) -> ContactLoad {
+    let duration_s = values.get(Latent::PulseDuration);
+    let history = Pulse::new(PulseShape::HalfSine, impulse_n_s, 0.0, duration_s)
+        .and_then(|pulse| pulse.to_history(duration_s / PULSE_SAMPLES));
+    // Impulse and duration are finite; an empty history acts as none.
+    let force = history.unwrap_or_else(|_| ForceHistory {
+        axes: ForceAxes::World,
+        sampling: Sampling::CentredMean,
+        time_s: Vec::new(),
+        fx_n: Vec::new(),
+        fy_n: Vec::new(),
+        mz_n_m: None,
+    });
+    let [x_m, y_m] = at_m;
+    let contact = ContactPoint { x_m, y_m, height_m: CONTACT_HEIGHT_M };
+    ContactLoad { force, contact, recorded_moment: false }
+}
+
+/// The two wheels next to the damage, the nearer one first.
+fn wheels_near(side: Side, is_behind_cg: bool) -> [Wheel; 2] {
+    match (side, is_behind_cg) {
+        (Side::Left, true) => [Wheel::RearLeft, Wheel::FrontLeft],
+        (Side::Left, false) => [Wheel::FrontLeft, Wheel::RearLeft],
+        (Side::Right, true) => [Wheel::RearRight, Wheel::FrontRight],
+        (Side::Right, false) => [Wheel::FrontRight, Wheel::RearRight],
+        (Side::Front, _) => [Wheel::FrontLeft, Wheel::FrontRight],
+        (Side::Rear, _) => [Wheel::RearLeft, Wheel::RearRight],
+    }
+}
+
+#[cfg(test)]
+#[path = "forward_tests.rs"]
+mod tests;

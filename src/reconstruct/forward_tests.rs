@@ -1,0 +1,150 @@
+use super::*;
+use crate::data::{Channel, TomlFile};
+use crate::reconstruct::sampler::Target;
+use crate::reconstruct::{Discrepancy, EvidenceFit, ReconstructionTarget};
+use crate::vehicle::Integrator;
+
+const CASE: &str = r#"
+[road]
+friction = 0.7
+[struck_car]
+mass_kg = 1900
+[striking_car]
+mass_kg = 1700
+[damage]
+side = "right"
+x_m = -1.7
+[rest]
+x_m = 45
+y_m = -6
+heading_rad = -2.9
+[after]
+blocked_wheels = ["RR"]
+[[mark]]
+wheel = "RR"
+kind = "locked"
+points_m = [[1.0, -0.7], [10, -0.8], [20, -1.5], [40, -5.5]]
+[[mark]]
+wheel = "FL"
+points_m = [[8, 0.6], [20, -1.0], [30, -2.5]]
+[edr]
+delta_v_y_min_m_s = 1.0
+delta_v_y_max_m_s = 1.5
+sensor_y_m = 0.3
+"#;
+
+fn evidence() -> Evidence {
+    let file = TomlFile { path: std::path::Path::new("case.toml"), text: CASE };
+    Evidence::from_toml(file).unwrap()
+}
+
+fn target(evidence: &Evidence) -> ReconstructionTarget {
+    let model = ForwardModel::new(evidence, Cars::of(evidence, None, None));
+    ReconstructionTarget::new(evidence.clone(), model, Discrepancy::default())
+}
+
+/// Particles that differ in every component.
+fn particles(dim: usize) -> Vec<Vec<f64>> {
+    let at = |i: usize, k: usize| 0.9 * (1.7 * i as f64 + 2.3 * k as f64 + 0.4).sin();
+    (0..12)
+        .map(|i| {
+            let mut z: Vec<f64> = (0..dim).map(|k| at(i, k)).collect();
+            z[0] = -0.5 + 0.05 * i as f64;
+            z
+        })
+        .collect()
+}
+
+#[test]
+fn a_particle_moves_as_the_simulation_of_its_car() {
+    let target = target(&evidence());
+    let mut z = particles(target.dim());
+    z.truncate(4);
+    for (i, motion) in target.model().motions(&z, |motion| motion).into_iter().enumerate() {
+        let reference = motion.vehicle.simulate(&motion.manoeuvre, Integrator::Rk4).unwrap();
+        let column = |channel| reference.series.require(channel).unwrap();
+        let last = motion.path.points.last().unwrap();
+        let idx = (last.time_s / 0.01).round() as usize;
+        let idx = idx.min(reference.series.n_samples() - 1);
+        let off_m = (last.x_m - column(Channel::X)[idx]).hypot(last.y_m - column(Channel::Y)[idx]);
+        // The last step may end within an interval of 10 ms of the reference.
+        let moved_m = 0.01 * last.vx_m_s.hypot(last.vy_m_s);
+        assert!(off_m < 0.05 + moved_m, "particle {i}: {off_m} m off at {} s", last.time_s);
+        let momentum = motion.impact.solution.impulse_n_s[1];
+        assert!(momentum >= 0.0, "particle {i}: pushed out of the struck side");
+    }
+}
+
+#[test]
+fn a_mirror_scene_has_the_mirror_likelihood() {
+    let (scene, mirror) = (target(&evidence()), target(&evidence().mirrored()));
+    let z = particles(scene.dim());
+    let steer = scene.model().prior().components();
+    let steer = steer.iter().position(|of| of.latent == Latent::SteerAngle).unwrap();
+    let mirrored: Vec<Vec<f64>> = z
+        .iter()
+        .map(|z| {
+            let mut z = z.clone();
+            z[steer] = -z[steer];
+            z
+        })
+        .collect();
+    let likelihoods = [scene.log_likelihoods(&z), mirror.log_likelihoods(&mirrored)];
+    for (i, (a, b)) in likelihoods[0].iter().zip(&likelihoods[1]).enumerate() {
+        assert!(a.is_finite() && (a - b).abs() < 1e-3 * a.abs().max(1.0), "particle {i}: {a} {b}");
+    }
+    assert!(likelihoods[0].iter().any(|a| (a - likelihoods[0][0]).abs() > 1.0));
+}
+
+#[test]
+fn evidence_of_the_own_motion_is_explained_and_other_evidence_is_not() {
+    let mut found = evidence();
+    let before = target(&found);
+    let z = vec![particles(before.dim())[3].clone()];
+    let rest = before.model().motions(&z, |motion| *motion.path.points.last().unwrap());
+    let pose = found.rest.as_mut().unwrap();
+    (pose.x_m, pose.y_m) = (rest[0].x_m, rest[0].y_m);
+    pose.heading_rad.as_mut().unwrap().value = wrap_angle_rad(rest[0].yaw_rad);
+    found.marks.clear();
+    found.edr.delta_v_y_m_s = None;
+    let fit = |found: &Evidence| {
+        let target = target(found);
+        EvidenceFit::of(&target.model().motions(&z, |motion| target.terms(&motion)))
+    };
+    let own = fit(&found);
+    let of_rest = |fit: &[EvidenceFit]| -> Vec<f64> {
+        fit.iter().filter(|item| item.evidence.starts_with("rest")).map(|item| item.p).collect()
+    };
+    assert!(of_rest(&own).iter().all(|p| *p > 0.5), "{own:?}");
+    found.rest.as_mut().unwrap().y_m += 60.0;
+    let other = fit(&found);
+    assert!(
+        other.iter().any(|item| item.evidence == "rest y" && item.is_unexplained()),
+        "{other:?}"
+    );
+}
+
+#[test]
+fn the_quantities_of_the_prior_give_a_closed_collision_at_each_side() {
+    for (side, place) in [
+        ("left", "x_m = 0.5"),
+        ("right", "x_m = 0.5"),
+        ("front", "y_m = 0.2"),
+        ("rear", "y_m = -0.3"),
+    ] {
+        let text =
+            CASE.replace("side = \"right\"\nx_m = -1.7", &format!("side = \"{side}\"\n{place}"));
+        let file = TomlFile { path: std::path::Path::new("case.toml"), text: &text };
+        let target = target(&Evidence::from_toml(file).unwrap());
+        let prior = target.model().prior();
+        let approach = particles(target.dim())
+            .iter()
+            .map(|z| target.model().impact(&prior.values(z)))
+            .filter(|impact| impact.solution.impulse_normal_n_s > 0.0)
+            .inspect(|impact| {
+                assert!(impact.solution.dissipated_energy_j >= 0.0, "{side}: {impact:?}");
+            })
+            .count();
+        assert!(approach > 0, "{side}: no particle touches");
+    }
+}

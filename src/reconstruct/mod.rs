@@ -1,0 +1,39 @@
+//! Reconstruction: from the evidence of a collision back to the speeds before it, as a distribution.
+//!
+//! ```text
+//! p(z | E) ∝ N(z; 0, I) · Π_i p(E_i | motion(z))
+//! ```
+//!
+//! - [`evidence`]: what was found, from a file;
+//! - `cars`: the two vehicles, from data sheets and evidence;
+//! - `prior`: every quantity that the motion depends on, as a transformation of one component of z;
+//! - `forward`: from z to the motion of both cars;
+//! - `likelihood`: how well a motion goes with the evidence;
+//! - [`sampler`]: draws from the posterior;
+//! - `hand`: what one computes by hand, as a baseline.
+
+pub mod baseline;
+pub mod evidence;
+pub mod sampler;
+
+mod budget;
+mod calibration;
+mod cars;
+mod distribution;
+mod forward;
+mod hand;
+mod likelihood;
+mod modes;
+mod posterior;
+mod prior;
+
+pub use budget::Narrowing;
+pub use calibration::{RankedQuantity, Ranks, ranks_of_cases};
+pub use cars::{Car, Cars};
+pub use distribution::Distribution;
+pub use forward::{CollisionMotion, ForwardModel, ImpactState};
+pub use hand::HandCalculation;
+pub use likelihood::{Discrepancy, EvidenceFit, EvidenceTerm, ReconstructionTarget};
+pub use modes::{ParticleMode, cluster_keys, modes_by};
+pub use posterior::{BudgetItem, Mode, Posterior, QuantityEstimate, ReconstructedQuantity};
+pub use prior::{Latent, LatentValues, Prior, PriorComponent};

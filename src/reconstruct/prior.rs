@@ -1,0 +1,390 @@
+//! What is taken to be likely before the motion is looked at: a distribution of each quantity that the
+//! motion depends on, as a transformation of one standard normal variable each.
+//!
+//! What was measured by itself (friction, masses, the place of the first contact) enters here with its
+//! standard deviation; what follows from the motion enters the likelihood.
+//!
+//! Defaults where the evidence file gives nothing, each with its source:
+//!
+//! | quantity | default | source |
+//! | --- | --- | --- |
+//! | speed of the struck car | uniform, 0 to 60 m/s | nothing is known |
+//! | striking car faster by | normal, 1 ± 3 m/s, hit behind the CG; else its speed uniform, 0 to 60 m/s | in a PIT manoeuvre the speeds are matched, by a car that comes from behind |
+//! | its heading, turned towards the struck side | normal, 17° ± 14°, hit behind the CG on a flank; else uniform, 0° to 110°; rear 0° ± 17°; front 180° ± 29° | PIT manoeuvre; collisions at an angle; in line |
+//! | its direction of motion beside the heading | normal, −6° ± 11° hit behind the CG, else 0° ± 11° | a car that turns in moves less to the side than it points |
+//! | restitution | uniform, 0.24 to 0.66 up to 5 m/s of approach, falling to 0 to 0.3 at 15 m/s | [`ContactDistribution`], [`Brach2011`](crate::bibliography::Brach2011) |
+//! | friction of the contact | normal, 0.28 ± 0.15 | [`ContactDistribution`] |
+//! | normal of the contact turned towards where the striking car points | normal, 9° ± 7° hit behind the CG, else 0° ± 7° | a corner that digs in: tuning cases |
+//! | friction of the tyres over that of the road | log-normal, 1.04, factor 1.09 | other tyres, other direction of sliding: tuning cases |
+//! | duration of the contact | log-normal, 0.12 s, factor 1.35 | finite-element runs of the project |
+//! | driver brakes | 3 of 4 | assumed |
+//! | … from | log-normal, 0.9 s, factor 1.6 | assumed: reaction to a surprise |
+//! | … with a share of the largest force | log-normal, 0.8, factor 2.2 | locks the wheels in two of five |
+//! | … that rises within | log-normal, 0.4 s, factor 1.6 | usual emergency braking to half-hearted |
+//! | engine braking where he does not | uniform, 0 to 0.8 m/s² | neutral to third gear |
+//! | front wheels turned by | normal, 0 ± 0.9° | toe, play, a hand on the wheel |
+//! | each wheel near the damage blocked | 1 of 5, if nobody looked | assumed |
+//! | yaw inertia, tyre curves, sliding friction, rolling resistance | the rules of the data sheet with their scatter | [`DataSheet`](crate::vehicle::DataSheet) |
+
+use std::f64::consts::PI;
+
+use serde::Serialize;
+
+use crate::collision::{ContactDistribution, Side};
+use crate::reconstruct::Distribution;
+use crate::reconstruct::cars::Cars;
+use crate::reconstruct::evidence::{
+    DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, DEFAULT_MASS_SHARE, DriverBraked, Evidence, Measured,
+};
+use crate::vehicle::sheet::SheetQuantity;
+
+macro_rules! latents {
+    ($($(#[$doc:meta])* $name:ident: $key:literal, $unit:literal;)+) => {
+        /// A quantity that the motion depends on.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+        #[serde(rename_all = "snake_case")]
+        pub enum Latent {
+            $($(#[$doc])* $name,)+
+        }
+
+        impl Latent {
+            /// All of them.
+            pub const ALL: &'static [Self] = &[$(Self::$name),+];
+
+            /// Name with its unit, as in a table of particles.
+            pub const fn key(self) -> &'static str {
+                match self { $(Self::$name => $key),+ }
+            }
+
+            /// Symbol of the unit; empty for a pure number.
+            pub const fn unit(self) -> &'static str {
+                match self { $(Self::$name => $unit),+ }
+            }
+        }
+    };
+}
+
+latents! {
+    /// Speed of the struck car before the impact, m/s.
+    TargetSpeed: "target_speed_m_s", "m/s";
+    /// Speed of the striking car before the impact, m/s, where it has a range of its own.
+    BulletSpeed: "bullet_speed_m_s", "m/s";
+    /// Speed of the striking car beyond that of the struck car, m/s, where it has none.
+    SpeedDifference: "speed_difference_m_s", "m/s";
+    /// Heading of the striking car, rad, turned towards the struck side.
+    HeadingTowards: "heading_towards_rad", "rad";
+    /// Direction in which the striking car moves beside its heading, rad, towards the struck side.
+    SideslipTowards: "sideslip_towards_rad", "rad";
+    /// First contact along the struck side, from the CG, m.
+    ContactAlong: "contact_along_m", "m";
+    /// First contact at right angles to the struck side, from the CG, m.
+    ContactAcross: "contact_across_m", "m";
+    /// Place of the coefficient of restitution between its bounds, 0 to 1.
+    RestitutionShare: "restitution_share", "";
+    /// Friction limit of the contact.
+    ContactFriction: "contact_friction", "";
+    /// By how much the normal of the contact is turned from that of the struck side towards where the
+    /// striking car points, rad.
+    NormalTilt: "normal_tilt_rad", "rad";
+    /// Duration of the contact, s.
+    PulseDuration: "pulse_duration_s", "s";
+    /// Peak friction of the road.
+    RoadFriction: "road_friction", "";
+    /// Friction of the tyres of the struck car over that of the road.
+    TireFrictionFactor: "tire_friction_factor", "";
+    /// Mass of the struck car, kg.
+    TargetMass: "target_mass_kg", "kg";
+    /// Mass of the striking car, kg.
+    BulletMass: "bullet_mass_kg", "kg";
+    /// Yaw inertia of the struck car over that of its data sheet.
+    YawInertiaFactor: "yaw_inertia_factor", "";
+    /// Cornering coefficient of the front tyres over that of the data sheet.
+    FrontCorneringFactor: "front_cornering_factor", "";
+    /// The same of the rear tyres.
+    RearCorneringFactor: "rear_cornering_factor", "";
+    /// Sliding friction over peak friction.
+    SlidingRatio: "sliding_friction_ratio", "";
+    /// Rolling resistance over vertical load.
+    RollingResistance: "rolling_resistance", "";
+    /// Whether the driver brakes: below its threshold he does.
+    BrakeDecision: "brake_decision", "";
+    /// When he begins, s after the first contact.
+    BrakeStart: "brake_start_s", "s";
+    /// Braking force over the largest that the road can hold.
+    BrakeShare: "brake_share", "";
+    /// How long the braking force rises, s.
+    BrakeRise: "brake_rise_s", "s";
+    /// Deceleration by the engine, m/s².
+    EngineBraking: "engine_braking_m_s2", "m/s²";
+    /// Angle of the front wheels, rad.
+    SteerAngle: "steer_angle_rad", "rad";
+    /// Which wheel is blocked, where nobody looked, 0 to 1.
+    BlockedWheel: "blocked_wheel", "";
+    /// How far it is blocked: drag over what the road can hold; more than 1 is locked.
+    BlockedDrag: "blocked_drag", "";
+    /// When the driver of the striking car brakes, s after the first contact.
+    BulletBrakeStart: "bullet_brake_start_s", "s";
+    /// Its braking force over the largest that the road can hold.
+    BulletBrakeShare: "bullet_brake_share", "";
+}
+
+/// A quantity with its prior distribution.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct PriorComponent {
+    /// The quantity.
+    pub latent: Latent,
+    /// Its distribution.
+    pub distribution: Distribution,
+}
+
+/// The prior: independent distributions of the quantities that are open.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prior {
+    components: Vec<PriorComponent>,
+    fixed: LatentValues,
+    is_pit: bool,
+}
+
+/// A value of each quantity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LatentValues([f64; Latent::ALL.len()]);
+
+impl LatentValues {
+    /// Value of a quantity; NaN where the case does not have it.
+    pub fn get(&self, latent: Latent) -> f64 {
+        self.0[latent as usize]
+    }
+
+    fn set(&mut self, latent: Latent, value: f64) {
+        self.0[latent as usize] = value;
+    }
+}
+
+/// Highest speed that the prior takes to be possible, m/s.
+const HIGHEST_SPEED_M_S: f64 = 60.0;
+
+/// Probability that a driver brakes of whom nothing is known.
+const BRAKE_PROBABILITY: f64 = 0.75;
+
+/// Friction of a tyre over that which was measured on the road, and its scatter: other tyres differ,
+/// and a tyre that slides along its plane differs from one that slides across it. Of the multibody cars
+/// of the tuning cases a locked wheel that slides straight ahead has 0.9 of the peak across, where the
+/// data sheet says 0.8.
+const TIRE_FRICTION_FACTOR: f64 = 1.04;
+const TIRE_FRICTION_SCATTER: f64 = 0.09;
+
+/// Least scatter of sliding over peak friction, for the same reason.
+const SLIDING_SCATTER: f64 = 0.08;
+
+/// Probability that a wheel near the damage is blocked if nobody looked.
+const BLOCKED_PROBABILITY: f64 = 0.2;
+
+impl Prior {
+    /// The prior of a case.
+    pub fn of(evidence: &Evidence, cars: &Cars) -> Self {
+        let is_pit = cars.is_hit_behind_cg(evidence);
+        let mut prior = Self {
+            components: Vec::new(),
+            fixed: LatentValues([f64::NAN; Latent::ALL.len()]),
+            is_pit,
+        };
+        prior.add_speeds(evidence);
+        prior.add_contact(evidence, cars);
+        prior.add_cars(evidence, cars);
+        prior.add_ending(evidence);
+        prior
+    }
+
+    /// Its components, in the order of z.
+    pub fn components(&self) -> &[PriorComponent] {
+        &self.components
+    }
+
+    /// Whether the defaults are those of a push behind the CG, as in a PIT manoeuvre.
+    pub fn is_pit(&self) -> bool {
+        self.is_pit
+    }
+
+    /// The quantities at standard normal variables.
+    pub fn values(&self, z: &[f64]) -> LatentValues {
+        let mut values = self.fixed;
+        for (component, z) in self.components.iter().zip(z) {
+            values.set(component.latent, component.distribution.at(*z));
+        }
+        values
+    }
+
+    fn add(&mut self, latent: Latent, distribution: Distribution) {
+        self.components.push(PriorComponent { latent, distribution });
+    }
+
+    /// A range of the user, or a default.
+    fn open(&mut self, latent: Latent, range: Option<[f64; 2]>, default: Distribution) {
+        let of_user = range.map(|[low, high]| Distribution::Uniform { low, high });
+        self.add(latent, of_user.unwrap_or(default));
+    }
+
+    fn add_speeds(&mut self, evidence: &Evidence) {
+        let ranges = &evidence.prior;
+        let any = Distribution::Uniform { low: 0.0, high: HIGHEST_SPEED_M_S };
+        self.open(Latent::TargetSpeed, ranges.target_speed_m_s, any);
+        match ranges.bullet_speed_m_s {
+            None if self.is_pit => self.add(Latent::SpeedDifference, normal(1.0, 3.0, -20.0, 20.0)),
+            range => self.open(Latent::BulletSpeed, range, any),
+        }
+        // Angles are turned towards the struck side, so that the mirror of a case is the same prior.
+        let turned = |[low, high]: [f64; 2]| match towards(evidence.damage.side) > 0.0 {
+            true => [low, high],
+            false => [-high, -low],
+        };
+        let by_side = match evidence.damage.side {
+            Side::Front => normal(PI, 0.5, PI - 1.6, PI + 1.6),
+            Side::Rear => normal(0.0, 0.3, -1.6, 1.6),
+            Side::Left | Side::Right if self.is_pit => normal(0.30, 0.25, -0.5, 1.6),
+            Side::Left | Side::Right => Distribution::Uniform { low: 0.0, high: 1.92 },
+        };
+        let by_damage = evidence.damage.angle_rad.map(|angle| {
+            let mean = angle.value * towards(evidence.damage.side);
+            normal(mean, angle.sigma, mean - PI, mean + PI)
+        });
+        let heading = ranges.heading_difference_rad.map(turned);
+        self.open(Latent::HeadingTowards, heading, by_damage.unwrap_or(by_side));
+        let sideslip = ranges.bullet_sideslip_rad.map(turned);
+        let mean = if self.is_pit { -0.10 } else { 0.0 };
+        self.open(Latent::SideslipTowards, sideslip, normal(mean, 0.20, -0.8, 0.8));
+    }
+
+    fn add_contact(&mut self, evidence: &Evidence, cars: &Cars) {
+        let damage = &evidence.damage;
+        let Measured { value, sigma } = damage.along_m;
+        self.add(Latent::ContactAlong, normal(value, sigma, value - 2.0, value + 2.0));
+        let across = damage.depth_m.unwrap_or_else(|| cars.depth_of(damage.side));
+        self.fixed.set(Latent::ContactAcross, across);
+        self.add(Latent::RestitutionShare, Distribution::Uniform { low: 0.0, high: 1.0 });
+        let [low, high] = ContactDistribution::default().friction_limit;
+        let friction = normal((low + high) / 2.0, (high - low) / 2.9, 0.0, 1.0);
+        self.open(Latent::ContactFriction, evidence.prior.contact_friction, friction);
+        let mean = if self.is_pit { 0.15 } else { 0.0 };
+        self.add(Latent::NormalTilt, normal(mean, 0.12, -0.5, 0.8));
+        self.add(Latent::PulseDuration, log_normal(0.12, 0.30, 0.04, 0.30));
+    }
+
+    fn add_cars(&mut self, evidence: &Evidence, cars: &Cars) {
+        let friction = evidence
+            .friction
+            .unwrap_or(Measured { value: DEFAULT_FRICTION, sigma: DEFAULT_FRICTION_SIGMA });
+        self.add(Latent::RoadFriction, normal(friction.value, friction.sigma, 0.03, 1.6));
+        self.add(
+            Latent::TireFrictionFactor,
+            log_normal(TIRE_FRICTION_FACTOR, TIRE_FRICTION_SCATTER, 0.7, 1.4),
+        );
+        for (latent, measured, vehicle) in [
+            (Latent::TargetMass, evidence.struck_car.mass_kg, &cars.struck),
+            (Latent::BulletMass, evidence.striking_car.mass_kg, &cars.striking),
+        ] {
+            let kg = vehicle.parameters.mass.mass_kg;
+            let known = Measured { value: kg, sigma: DEFAULT_MASS_SHARE * kg };
+            let Measured { value, sigma } = measured.unwrap_or(known);
+            self.add(latent, normal(value, sigma, 0.5 * value, 1.5 * value));
+        }
+        for (latent, quantity) in [
+            (Latent::YawInertiaFactor, SheetQuantity::YawInertia),
+            (Latent::FrontCorneringFactor, SheetQuantity::FrontCornering),
+            (Latent::RearCorneringFactor, SheetQuantity::RearCornering),
+        ] {
+            match cars.struck.scatter(quantity) {
+                Some(sigma) => {
+                    let reach = (3.0 * sigma).exp();
+                    self.add(latent, log_normal(1.0, sigma, 1.0 / reach, reach));
+                }
+                None => self.fixed.set(latent, 1.0),
+            }
+        }
+        let tires = &cars.struck.parameters.tires;
+        for (latent, quantity, value, [low, high]) in [
+            (
+                Latent::SlidingRatio,
+                SheetQuantity::SlidingRatio,
+                tires.sliding_friction_ratio,
+                [0.5, 1.0],
+            ),
+            (
+                Latent::RollingResistance,
+                SheetQuantity::RollingResistance,
+                tires.rolling_resistance,
+                [0.004, 0.05],
+            ),
+        ] {
+            match cars.struck.scatter(quantity) {
+                Some(sigma) => {
+                    let is_sliding = latent == Latent::SlidingRatio;
+                    let sigma = if is_sliding { sigma.max(SLIDING_SCATTER) } else { sigma };
+                    self.add(latent, log_normal(value, sigma, low, high));
+                }
+                None => self.fixed.set(latent, value),
+            }
+        }
+    }
+
+    fn add_ending(&mut self, evidence: &Evidence) {
+        let ranges = &evidence.prior;
+        match evidence.after.driver_braked {
+            DriverBraked::Unknown => {
+                self.add(Latent::BrakeDecision, Distribution::Uniform { low: 0.0, high: 1.0 });
+            }
+            DriverBraked::Yes => self.fixed.set(Latent::BrakeDecision, 0.0),
+            DriverBraked::No => self.fixed.set(Latent::BrakeDecision, 1.0),
+        }
+        if evidence.after.driver_braked != DriverBraked::No {
+            let start = log_normal(0.9, 0.47, 0.1, 6.0);
+            self.open(Latent::BrakeStart, ranges.brake_start_s, start);
+            self.add(Latent::BrakeRise, log_normal(0.4, 0.5, 0.1, 1.5));
+            self.open(Latent::BrakeShare, ranges.brake_share, log_normal(0.8, 0.79, 0.05, 3.0));
+        }
+        self.add(Latent::EngineBraking, Distribution::Uniform { low: 0.0, high: 0.8 });
+        self.add(Latent::SteerAngle, normal(0.0, 0.015, -0.2, 0.2));
+        if evidence.after.blocked_wheels.is_none() {
+            self.add(Latent::BlockedWheel, Distribution::Uniform { low: 0.0, high: 1.0 });
+            self.add(Latent::BlockedDrag, Distribution::Uniform { low: 0.2, high: 1.6 });
+        }
+        if evidence.striking_rest.is_some() {
+            self.add(Latent::BulletBrakeStart, log_normal(0.9, 0.47, 0.1, 6.0));
+            self.add(Latent::BulletBrakeShare, log_normal(0.6, 0.8, 0.02, 3.0));
+        }
+    }
+}
+
+impl LatentValues {
+    /// Whether the driver of the struck car brakes.
+    pub fn brakes(&self) -> bool {
+        self.get(Latent::BrakeDecision) < BRAKE_PROBABILITY
+    }
+
+    /// Which of two wheels near the damage is blocked, where nobody looked.
+    pub fn blocked_of_two(&self) -> Option<usize> {
+        let at = self.get(Latent::BlockedWheel);
+        if at < BLOCKED_PROBABILITY {
+            Some(0)
+        } else if at < 2.0 * BLOCKED_PROBABILITY {
+            Some(1)
+        } else {
+            None
+        }
+    }
+}
+
+/// The sign of a turn to the left that is a turn towards the struck side.
+pub(super) fn towards(side: Side) -> f64 {
+    match side {
+        Side::Left | Side::Rear => -1.0,
+        Side::Right | Side::Front => 1.0,
+    }
+}
+
+fn normal(mean: f64, sigma: f64, low: f64, high: f64) -> Distribution {
+    Distribution::Normal { mean, sigma, low, high }
+}
+
+fn log_normal(median: f64, sigma: f64, low: f64, high: f64) -> Distribution {
+    Distribution::LogNormal { median, sigma, low, high }
+}

@@ -1,0 +1,345 @@
+//! From the evidence of a collision to the speeds before it: `reconstruct`.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::data::Outcome;
+use crate::jobs::Progress;
+use crate::nn::sha256_hex;
+use crate::ranges::RECONSTRUCTION_PARTICLES;
+use crate::reconstruct::evidence::Evidence;
+use crate::reconstruct::sampler::{
+    Particles, SamplerCheckpoint, SamplerReport, SamplerSettings, SamplerStage, sample,
+};
+use crate::reconstruct::{
+    BudgetItem, Cars, Discrepancy, EvidenceFit, ForwardModel, HandCalculation, Mode, Posterior,
+    PriorComponent, QuantityEstimate, ReconstructionTarget,
+};
+use crate::study::checks::check_count;
+use crate::study::{
+    AssumedQuantity, Assumption, Event, Library, Observer, Provenance, Question, StudyError,
+    VehicleChoice, badges,
+};
+use crate::uncertainty::{Badge, BadgeKind};
+
+/// Effective sample size below which intervals are not to be relied on.
+const LEAST_ESS: f64 = 400.0;
+
+/// Evaluations of the forward model that each particle is worth at the most.
+const EVALUATIONS_PER_PARTICLE: usize = 60;
+
+/// Asks how fast both cars were.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ReconstructRequest {
+    /// What was found.
+    pub evidence: EvidenceChoice,
+    /// The struck car, where the evidence leaves it open.
+    #[serde(default)]
+    pub vehicle: VehicleChoice,
+    /// The striking car, likewise.
+    #[serde(default)]
+    pub striking: VehicleChoice,
+    /// Number of particles.
+    #[serde(default = "default_particles")]
+    pub particles: usize,
+    /// Seed of all draws.
+    #[serde(default)]
+    pub seed: u64,
+    /// File that the run is saved in after each step towards the evidence.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub checkpoint: Option<PathBuf>,
+    /// Whether to go on from that file if it exists.
+    #[serde(default)]
+    pub resume: bool,
+}
+
+fn default_particles() -> usize {
+    ReconstructRequest::DEFAULT_PARTICLES
+}
+
+/// The evidence: a file, or in memory.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EvidenceChoice {
+    /// An evidence file.
+    File(PathBuf),
+    /// The evidence itself.
+    Inline(Box<Evidence>),
+}
+
+/// What the evidence says of the speeds, SI units.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ReconstructReport {
+    /// Name of the case.
+    pub case: String,
+    /// The quantities with their intervals.
+    pub quantities: Vec<QuantityEstimate>,
+    /// Courses of events that the evidence leaves possible, the most probable one first.
+    pub modes: Vec<Mode>,
+    /// How well each item of the evidence is explained.
+    pub fit: Vec<EvidenceFit>,
+    /// What further evidence would bring.
+    pub budget: Vec<BudgetItem>,
+    /// Effective sample size.
+    pub ess: f64,
+    /// Motions that were simulated.
+    pub n_simulations: usize,
+    /// Number of particles.
+    pub n_particles: usize,
+    /// Logarithm of the evidence, up to a constant of the case: tells assumptions about one case apart.
+    pub log_evidence: f64,
+    /// Speed of the struck car by hand, m/s, and its standard deviation, for comparison.
+    pub by_hand_m_s: Option<[f64; 2]>,
+    /// What was taken to be likely before.
+    pub priors: Vec<PriorComponent>,
+    /// What nobody said.
+    pub assumptions: Vec<Assumption>,
+    /// What restricts the answer.
+    pub badges: Vec<Badge>,
+    /// Version of the program, seed.
+    #[serde(flatten)]
+    pub provenance: Provenance,
+}
+
+/// A reconstruction.
+#[derive(Debug, Clone)]
+pub struct ReconstructAnswer {
+    /// What is told.
+    pub report: ReconstructReport,
+    /// The posterior that was sampled.
+    pub target: ReconstructionTarget,
+    /// Its particles.
+    pub particles: Particles,
+    /// What follows from them.
+    pub posterior: Posterior,
+}
+
+impl ReconstructRequest {
+    /// Number of particles where nobody says it.
+    pub const DEFAULT_PARTICLES: usize = 1000;
+
+    /// A reconstruction with everything else left open.
+    pub fn new(evidence: EvidenceChoice) -> Self {
+        Self {
+            evidence,
+            vehicle: VehicleChoice::Automatic,
+            striking: VehicleChoice::Automatic,
+            particles: Self::DEFAULT_PARTICLES,
+            seed: 0,
+            checkpoint: None,
+            resume: false,
+        }
+    }
+
+    /// Where the run is saved, with a digest of all that its likelihood is made from.
+    fn checkpoint(
+        &self,
+        evidence: &Evidence,
+        cars: &Cars,
+    ) -> Result<Option<SamplerCheckpoint>, StudyError> {
+        let Some(path) = self.checkpoint.clone() else { return Ok(None) };
+        if path.exists() && !self.resume {
+            return Err(StudyError::ReconstructionExists { path });
+        }
+        let question = format!("{evidence:?} {cars:?} {:?}", Discrepancy::default());
+        let digest = sha256_hex([question.as_bytes()]);
+        Ok(Some(SamplerCheckpoint { path, digest, resume: self.resume }))
+    }
+
+    fn settings(&self) -> SamplerSettings {
+        SamplerSettings {
+            n_particles: self.particles,
+            seed: self.seed,
+            max_evaluations: self.particles * EVALUATIONS_PER_PARTICLE,
+            ..SamplerSettings::default()
+        }
+    }
+}
+
+impl EvidenceChoice {
+    /// The evidence.
+    ///
+    /// # Errors
+    /// [`StudyError::TomlFile`], with line and column.
+    pub fn load(&self) -> Result<Evidence, StudyError> {
+        match self {
+            Self::File(path) => Ok(Evidence::load(path)?),
+            Self::Inline(evidence) => Ok(evidence.as_ref().clone()),
+        }
+    }
+
+    /// The file, if it is one.
+    pub fn file(&self) -> Option<&Path> {
+        match self {
+            Self::File(path) => Some(path),
+            Self::Inline(_) => None,
+        }
+    }
+
+    fn name(&self) -> String {
+        match self {
+            Self::File(path) => path.display().to_string(),
+            Self::Inline(evidence) => evidence.case.clone(),
+        }
+    }
+}
+
+impl Question for ReconstructRequest {
+    type Answer = ReconstructAnswer;
+    type Report = ReconstructReport;
+    const NAME: &'static str = "reconstruct";
+
+    fn check(&self) -> Result<(), StudyError> {
+        check_count("particles", &RECONSTRUCTION_PARTICLES, self.particles)
+    }
+
+    fn report(answer: &Self::Answer) -> &ReconstructReport {
+        &answer.report
+    }
+
+    fn solve(
+        &self,
+        _library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<ReconstructAnswer>, StudyError> {
+        let evidence = self.evidence.load()?;
+        let (struck, striking) = (self.vehicle.chosen()?, self.striking.chosen()?);
+        let cars = Cars::of(&evidence, struck.as_ref(), striking.as_ref());
+        let assumptions = assumptions(&evidence, &cars);
+        let checkpoint = self.checkpoint(&evidence, &cars)?;
+        let model = ForwardModel::new(&evidence, cars);
+        let target = ReconstructionTarget::new(evidence, model, Discrepancy::default());
+        let mut told = |report: SamplerReport<'_>| observer(Event::Progress(progress(&report)));
+        let particles = sample(&target, &self.settings(), checkpoint.as_ref(), &mut told).map_err(
+            |source| StudyError::Reconstruction {
+                name: self.evidence.name(),
+                source: Box::new(source),
+            },
+        )?;
+        let posterior = Posterior::of(&target, &particles);
+        let (fit, turned_rad) = target.fit(&particles);
+        let by_hand = HandCalculation::of(target.evidence(), target.model().cars());
+        let by_hand_m_s = by_hand.map(|hand| {
+            let speed = hand.target_speed_m_s;
+            [speed.value, speed.sigma]
+        });
+        let mut badges = of_particles(&particles);
+        badges.extend(of_fit(&fit));
+        badges.extend(badges::of_assumptions(&assumptions));
+        let report = ReconstructReport {
+            case: target.evidence().case.clone(),
+            quantities: posterior.quantities(),
+            modes: posterior.modes(&turned_rad),
+            fit,
+            budget: posterior.budget(),
+            ess: particles.ess,
+            n_simulations: particles.n_evaluations + particles.z.len(),
+            n_particles: particles.z.len(),
+            log_evidence: particles.log_evidence,
+            by_hand_m_s,
+            priors: target.model().prior().components().to_vec(),
+            assumptions,
+            badges,
+            provenance: Provenance::of_seed(self.seed),
+        };
+        Ok(Outcome::Complete(ReconstructAnswer { report, target, particles, posterior }))
+    }
+}
+
+/// How far the sampling is: half of it is reaching the posterior.
+fn progress(report: &SamplerReport<'_>) -> Progress {
+    let (share, what) = match report.stage {
+        SamplerStage::Prior | SamplerStage::Tempering => {
+            (0.5 * report.temperature.powf(0.2), "towards the evidence")
+        }
+        SamplerStage::Posterior => {
+            let ess = report.ess.unwrap_or(0.0);
+            (0.5 + 0.5 * (ess / LEAST_ESS).min(1.0), "sampling")
+        }
+    };
+    let message = format!("{what}, {} motions", report.n_evaluations);
+    Progress::new((1000.0 * share) as u64, 1000, message)
+}
+
+/// Whether there are enough particles, and whether they are of the posterior.
+fn of_particles(particles: &Particles) -> Vec<Badge> {
+    let stopped = (!particles.of_posterior()).then(|| {
+        let text = "sampling was stopped before all of the evidence was used: these particles are \
+                    not of the posterior";
+        Badge::new(BadgeKind::FewParticles, text)
+            .with_value("temperature", particles.temperature)
+            .with_range([1.0, f64::INFINITY])
+    });
+    let few = (particles.ess < LEAST_ESS).then(|| {
+        let text = format!(
+            "the particles are worth {:.0} independent ones, expected {LEAST_ESS}: intervals may be \
+             too narrow; more particles: --particles",
+            particles.ess
+        );
+        Badge::new(BadgeKind::FewParticles, text)
+            .with_value("effective sample size", particles.ess)
+            .with_range([LEAST_ESS, f64::INFINITY])
+    });
+    stopped.into_iter().chain(few).collect()
+}
+
+/// Evidence that no particle explains.
+fn of_fit(fit: &[EvidenceFit]) -> Vec<Badge> {
+    let unexplained = fit.iter().filter(|item| item.is_unexplained());
+    unexplained
+        .map(|item| {
+            let text = format!(
+                "{}: found {:.3} {unit}, expected {:.3} {unit}: items of the evidence contradict each \
+                 other, or the course of events is another one",
+                item.evidence,
+                item.found,
+                item.expected,
+                unit = item.unit
+            );
+            Badge::new(BadgeKind::EvidenceUnexplained, text)
+                .with_value(format!("p of {}", item.evidence), item.p)
+                .with_range([0.01, 1.0])
+        })
+        .collect()
+}
+
+/// What the evidence leaves open and the defaults of the prior fill.
+fn assumptions(evidence: &Evidence, cars: &Cars) -> Vec<Assumption> {
+    let mut all = Vec::new();
+    let mut add = |quantity, value: &str, reason: &str| {
+        all.push(Assumption::new(quantity, value, reason));
+    };
+    if evidence.prior.bullet_speed_m_s.is_none() && cars.is_hit_behind_cg(evidence) {
+        let value = "the striking car was faster by 1 ± 3 m/s";
+        let reason = "it hit a flank behind the CG, as in a PIT manoeuvre; otherwise: [prior] \
+                      bullet_speed_m_s";
+        add(AssumedQuantity::Speed, value, reason);
+    }
+    if evidence.damage.angle_rad.is_none() && evidence.prior.heading_difference_rad.is_none() {
+        let reason = "by the struck side; otherwise: [damage] angle_deg or [prior] \
+                      heading_difference_deg";
+        add(AssumedQuantity::ContactPoint, "direction of the striking car", reason);
+    }
+    if evidence.prior.restitution.is_none() {
+        let reason = "finite-element runs; otherwise: [prior] restitution, contact_friction";
+        add(AssumedQuantity::Restitution, "0.24 to 0.66 up to 5 m/s, less beyond", reason);
+    }
+    let estimated = cars.struck.estimated().count();
+    if estimated > 0 {
+        let value = format!("{estimated} estimated from the rest");
+        let reason = "the evidence does not say them; a data sheet: --vehicle";
+        add(AssumedQuantity::VehicleParameter, &value, reason);
+    }
+    let estimated = cars.striking.estimated().count();
+    if estimated > 0 {
+        let value = format!("{estimated} estimated from the rest, at their medians");
+        let reason = "the evidence does not say them; a data sheet: --striking";
+        add(AssumedQuantity::BulletParameter, &value, reason);
+    }
+    all
+}
+
+#[cfg(test)]
+#[path = "reconstruct_tests.rs"]
+mod tests;

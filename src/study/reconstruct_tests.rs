@@ -1,0 +1,117 @@
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use super::*;
+use crate::data::TomlFile;
+use crate::reconstruct::evidence::Measured;
+
+const CASE: &str = r#"
+case = "tiny"
+[road]
+friction = 0.7
+[struck_car]
+mass_kg = 1900
+[striking_car]
+mass_kg = 1700
+[damage]
+side = "right"
+x_m = -1.7
+[rest]
+x_m = 45
+y_m = -6
+heading_rad = -2.9
+[after]
+blocked_wheels = []
+"#;
+
+fn request(particles: usize) -> ReconstructRequest {
+    let file = TomlFile { path: Path::new("case.toml"), text: CASE };
+    let mut evidence = Evidence::from_toml(file).unwrap();
+    evidence.edr.speed_before_m_s = Some(Measured { value: 20.0, sigma: 0.8 });
+    let evidence = EvidenceChoice::Inline(Box::new(evidence));
+    ReconstructRequest { particles, ..ReconstructRequest::new(evidence) }
+}
+
+fn answer(request: &ReconstructRequest) -> ReconstructAnswer {
+    let outcome = request.answer(&Library::default(), &mut |_| ControlFlow::Continue(()));
+    outcome.unwrap().complete().unwrap()
+}
+
+#[test]
+fn a_tiny_case_is_reconstructed_the_same_way_each_time() {
+    let request = request(60);
+    let report = answer(&request).report;
+    assert_eq!(report, answer(&request).report);
+    for name in [
+        "target_speed_m_s",
+        "bullet_speed_m_s",
+        "closing_speed_m_s",
+        "heading_difference_rad",
+        "road_friction",
+        "delta_v_target_m_s",
+    ] {
+        let of = report.quantities.iter().find(|of| of.name == name).unwrap();
+        let [low, high] = of.interval_90;
+        assert!(low <= of.median && of.median <= high && low < high, "{of:?}");
+        assert!(of.interval_95[0] <= low && high <= of.interval_95[1], "{of:?}");
+    }
+    let speed = report.quantities[0].median;
+    assert!((17.0..23.0).contains(&speed), "{speed} m/s where a recorder says 20 ± 0.8");
+    let probability: f64 = report.modes.iter().map(|mode| mode.probability).sum();
+    assert!((0.9..=1.0 + 1e-9).contains(&probability), "{:?}", report.modes);
+    assert!(report.fit.iter().all(|item| !item.is_unexplained()), "{:?}", report.fit);
+    assert!(!report.budget.is_empty() && report.n_simulations > 60);
+    // The request comes back from JSON.
+    let text = serde_json::to_string(&request).unwrap();
+    assert_eq!(serde_json::from_str::<ReconstructRequest>(&text).unwrap(), request);
+}
+
+#[test]
+fn evidence_that_contradicts_itself_is_said() {
+    let mut request = request(60);
+    let EvidenceChoice::Inline(evidence) = &mut request.evidence else { unreachable!() };
+    // The recorder says 5 m/s, and the car came 150 m far on a dry road.
+    evidence.edr.speed_before_m_s = Some(Measured { value: 5.0, sigma: 0.2 });
+    evidence.rest.as_mut().unwrap().x_m = 150.0;
+    let report = answer(&request).report;
+    let said = report.badges.iter().any(|badge| badge.kind == BadgeKind::EvidenceUnexplained);
+    assert!(said, "{:?} {:?}", report.badges, report.fit);
+}
+
+#[test]
+fn a_stop_keeps_what_was_sampled_and_says_that_it_is_not_the_posterior() {
+    let request = request(60);
+    let outcome = request.answer(&Library::default(), &mut |_| ControlFlow::Break(()));
+    let report = outcome.unwrap().complete().unwrap().report;
+    let stopped = report.badges.iter().find(|badge| badge.kind == BadgeKind::FewParticles);
+    assert!(stopped.unwrap().text.contains("stopped"), "{:?}", report.badges);
+}
+
+#[test]
+fn a_run_goes_on_from_its_checkpoint_to_the_same_answer_and_from_no_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.reconstruction");
+    let kept = ReconstructRequest { checkpoint: Some(path.clone()), ..request(60) };
+    let mut n_reports = 0;
+    let stop = &mut |_: Event<'_>| {
+        n_reports += 1;
+        if n_reports > 40 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
+    kept.answer(&Library::default(), stop).unwrap();
+    assert!(path.exists());
+    let go_on = ReconstructRequest { resume: true, ..kept.clone() };
+    assert_eq!(answer(&go_on).report, answer(&request(60)).report);
+    let again = kept.answer(&Library::default(), &mut |_| ControlFlow::Continue(()));
+    assert!(again.unwrap_err().to_string().contains("run.reconstruction"));
+    let other = ReconstructRequest { seed: 7, ..go_on };
+    let refused = other.answer(&Library::default(), &mut |_| ControlFlow::Continue(()));
+    let refused = crate::error_chain(&refused.unwrap_err());
+    assert!(refused.contains("another seed"), "{refused}");
+}
+
+#[test]
+fn numbers_out_of_range_are_refused_before_the_work() {
+    let error = ReconstructRequest { particles: 1, ..request(60) };
+    let outcome = error.answer(&Library::default(), &mut |_| ControlFlow::Continue(()));
+    assert!(outcome.unwrap_err().to_string().starts_with("particles"));
+}

@@ -1,0 +1,332 @@
+//! Many motions of which only the path of the vehicle counts, as particles of a reconstruction: side
+//! by side in the lanes of the vector registers, with steps that follow the speed, and without the
+//! forces that [`simulate_batch`](crate::vehicle::simulate_batch) records.
+//!
+//! Each lane has its own step, so that the path of a run does not depend on those beside it:
+//!
+//! ```text
+//! h = min(h_max, T |v|),   at least h_ref        |v| = √(v_x² + v_y²) + 1.5 m |r|
+//! ```
+//!
+//! The fastest modes are those of the tyres, whose rates fall as 1/|v| (`stability.rs`); h_ref is the
+//! step of [`VehicleParameters::simulate`]. While a contact force acts, h is at most 5 ms; the mean of
+//! the force over a step keeps the impulse exact.
+//! The largest difference to the reference step is measured by the test of this file.
+
+use pulp::{Simd, WithSimd};
+use rayon::prelude::*;
+
+use crate::numerics::{MAX_LANES, Packed, Stage};
+use crate::vehicle::batch::steps_side_by_side;
+use crate::vehicle::run::{Inputs, StepInputs};
+use crate::vehicle::{
+    Integrator, N_STATE, REST_DURATION_S, RestWatch, SimulationRun, VehicleConstants, VehicleInput,
+    VehicleState, WheelEffort,
+};
+
+/// Longest step of a path, s.
+pub const MAX_PATH_STEP_S: f64 = 0.01;
+
+/// Longest step while a contact force acts, s.
+const CONTACT_STEP_S: f64 = 5e-3;
+
+/// Step over speed, s/(m/s).
+const STEP_PER_SPEED_S: f64 = 4e-3;
+
+/// Arm by which the yaw rate counts as a speed, m.
+const YAW_ARM_M: f64 = 1.5;
+
+/// Runs that one task takes over.
+const RUNS_PER_TASK: usize = 64;
+
+/// State of a vehicle on its path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathPoint {
+    /// Time after the start, s.
+    pub time_s: f64,
+    /// X of the CG in world axes, m.
+    pub x_m: f64,
+    /// Y of the CG in world axes, m.
+    pub y_m: f64,
+    /// Heading, rad, counted over whole turns.
+    pub yaw_rad: f64,
+    /// Velocity along the x axis of the vehicle, m/s.
+    pub vx_m_s: f64,
+    /// Velocity along the y axis of the vehicle, m/s.
+    pub vy_m_s: f64,
+    /// Yaw rate, rad/s.
+    pub yaw_rate_rad_s: f64,
+}
+
+/// Why a path ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PathEnd {
+    /// The vehicle is at rest.
+    Rest,
+    /// It is farther from where it started than the limit.
+    Far,
+    /// The duration of the manoeuvre is over.
+    Time,
+    /// The motion cannot be computed.
+    Failed,
+}
+
+/// Path of a vehicle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Path {
+    /// States from the start to the end.
+    pub points: Vec<PathPoint>,
+    /// Why it ends.
+    pub end: PathEnd,
+}
+
+/// How far the vehicles are followed, beside the durations of their manoeuvres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathLimit {
+    /// Distance from the start beyond which a vehicle is followed no further, m.
+    pub distance_m: f64,
+}
+
+/// Simulates paths side by side and on all cores, each to rest, to its duration or to the limit.
+///
+/// - `runs`: their contact forces are all in the same axes and all with or all without a recorded
+///   yaw moment; others are simulated apart;
+/// - `told`: what is kept of the path of the run of a number;
+/// - returns what is kept of each path, in the order of `runs`.
+pub fn simulate_paths<R: Send>(
+    runs: &[SimulationRun<'_>],
+    limit: PathLimit,
+    told: impl Fn(usize, Path) -> R + Sync,
+) -> Vec<R> {
+    let lanes: Vec<Lane<'_>> =
+        runs.iter().enumerate().map(|(idx, run)| Lane::new(idx, run)).collect();
+    let kind = |lane: &Lane<'_>| lane.inputs.kind_of_force();
+    let parts: Vec<&[Lane<'_>]> = lanes
+        .chunk_by(|a, b| kind(a) == kind(b))
+        .flat_map(|alike| alike.chunks(RUNS_PER_TASK))
+        .collect();
+    let ended = parts.into_par_iter().map(|part| {
+        let task = Task { waiting: part, limit };
+        let paths = pulp::Arch::new().dispatch(task);
+        paths.into_iter().map(|(idx, path)| (idx, told(idx, path))).collect::<Vec<_>>()
+    });
+    let mut ended: Vec<(usize, R)> = ended.flatten_iter().collect();
+    ended.sort_by_key(|(idx, _)| *idx);
+    ended.into_iter().map(|(_, kept)| kept).collect()
+}
+
+/// A run that waits for a lane, or is in one.
+#[derive(Clone)]
+struct Lane<'a> {
+    idx: usize,
+    constants: VehicleConstants<f64>,
+    inputs: Inputs<'a>,
+    last_change_s: f64,
+    force_end_s: f64,
+    duration_s: f64,
+    shortest_step_s: f64,
+    longest_step_s: f64,
+    time_s: f64,
+    step_s: f64,
+    start_m: [f64; 2],
+    state: [f64; N_STATE],
+    slow_since_s: Option<f64>,
+    points: Vec<PathPoint>,
+}
+
+impl<'a> Lane<'a> {
+    fn new(idx: usize, run: &SimulationRun<'a>) -> Self {
+        let (vehicle, manoeuvre) = (run.vehicle, run.manoeuvre);
+        let inputs = Inputs::new(manoeuvre);
+        let reference_s = Integrator::Rk4.step_s();
+        let initial = manoeuvre.initial;
+        Self {
+            idx,
+            constants: vehicle.constants(),
+            last_change_s: inputs.last_change_s(),
+            force_end_s: inputs.force_end_s(),
+            inputs,
+            duration_s: manoeuvre.duration_s,
+            shortest_step_s: reference_s / vehicle.braked_substeps(reference_s) as f64,
+            longest_step_s: MAX_PATH_STEP_S.min(vehicle.roll_step_s()),
+            time_s: 0.0,
+            step_s: 0.0,
+            start_m: [initial.x_m, initial.y_m],
+            state: initial.to_array(),
+            slow_since_s: None,
+            points: Vec::new(),
+        }
+    }
+
+    fn now(&self) -> VehicleState<f64> {
+        VehicleState::from_array(self.state)
+    }
+
+    /// Notes where the vehicle is, and says why the path ends, if it does.
+    fn record(&mut self, limit: PathLimit) -> Option<PathEnd> {
+        let x = self.now();
+        if !self.state.iter().all(|value| value.is_finite()) {
+            return Some(PathEnd::Failed);
+        }
+        self.points.push(PathPoint {
+            time_s: self.time_s,
+            x_m: x.x_m,
+            y_m: x.y_m,
+            yaw_rad: x.yaw_rad,
+            vx_m_s: x.vx_m_s,
+            vy_m_s: x.vy_m_s,
+            yaw_rate_rad_s: x.yaw_rate_rad_s,
+        });
+        let is_slow = self.time_s >= self.last_change_s && RestWatch::is_slow(&x);
+        match (is_slow, self.slow_since_s) {
+            (false, _) => self.slow_since_s = None,
+            (true, None) => self.slow_since_s = Some(self.time_s),
+            (true, Some(since_s)) if self.time_s >= since_s + REST_DURATION_S => {
+                return Some(PathEnd::Rest);
+            }
+            (true, Some(_)) => {}
+        }
+        let [x0, y0] = self.start_m;
+        if (x.x_m - x0).hypot(x.y_m - y0) > limit.distance_m {
+            return Some(PathEnd::Far);
+        }
+        if self.time_s >= self.duration_s {
+            return Some(PathEnd::Time);
+        }
+        let speed_m_s = x.vx_m_s.hypot(x.vy_m_s) + YAW_ARM_M * x.yaw_rate_rad_s.abs();
+        let is_pushed = self.time_s < self.force_end_s;
+        let longest_s =
+            if is_pushed { self.longest_step_s.min(CONTACT_STEP_S) } else { self.longest_step_s };
+        self.step_s = (STEP_PER_SPEED_S * speed_m_s).min(longest_s).max(self.shortest_step_s);
+        None
+    }
+
+    /// Inputs over the coming step. Wheels that roll freely are braked by nothing, so that every lane
+    /// takes the same way through the equations.
+    fn coming(&self) -> StepInputs<f64> {
+        let mut inputs = self.inputs.over(self.time_s, self.step_s);
+        for instant in &mut inputs.instants {
+            instant.wheels.get_or_insert([WheelEffort::FREE; 4]);
+        }
+        inputs
+    }
+}
+
+/// Vehicles and inputs of all lanes.
+type PackedLanes<S> = (VehicleConstants<Packed<S>>, StepInputs<Packed<S>>);
+
+/// Runs that one core takes over.
+struct Task<'l, 'a> {
+    waiting: &'l [Lane<'a>],
+    limit: PathLimit,
+}
+
+impl WithSimd for Task<'_, '_> {
+    type Output = Vec<(usize, Path)>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let mut waiting = self.waiting.iter();
+        let mut running: Vec<Lane<'_>> = Vec::with_capacity(Packed::<S>::N);
+        let mut ended = Vec::with_capacity(self.waiting.len());
+        let mut packed: Option<PackedLanes<S>> = None;
+        loop {
+            let n_running = running.len();
+            while running.len() < Packed::<S>::N {
+                let Some(lane) = waiting.next() else { break };
+                settle(lane.clone(), self.limit, &mut running, &mut ended);
+            }
+            let Some(last) = running.len().checked_sub(1) else { return ended };
+            let is_settled = n_running == running.len()
+                && running.iter().all(|lane| lane.time_s >= lane.last_change_s);
+            let (constants, inputs) = match packed.take().filter(|_| is_settled) {
+                Some(packed) => packed,
+                None => {
+                    let of_lane = |lane: usize| &running[lane.min(last)].constants;
+                    let constants = VehicleConstants::packed(simd, of_lane);
+                    let mut of_lanes = [const { StepInputs::RELEASED }; MAX_LANES];
+                    for (of_lane, lane) in of_lanes.iter_mut().zip(&running) {
+                        *of_lane = lane.coming();
+                    }
+                    (constants, steps_side_by_side(simd, &of_lanes))
+                }
+            };
+            step(simd, &constants, &inputs, &mut running);
+            let n_before = running.len();
+            for lane in std::mem::take(&mut running) {
+                settle(lane, self.limit, &mut running, &mut ended);
+            }
+            if running.len() == n_before && is_settled {
+                packed = Some((constants, inputs));
+            }
+        }
+    }
+}
+
+/// Keeps a lane running or takes its path out of it.
+fn settle<'a>(
+    mut lane: Lane<'a>,
+    limit: PathLimit,
+    running: &mut Vec<Lane<'a>>,
+    ended: &mut Vec<(usize, Path)>,
+) {
+    match lane.record(limit) {
+        None => running.push(lane),
+        Some(end) => ended.push((lane.idx, Path { points: lane.points, end })),
+    }
+}
+
+/// Takes one step of the classical Runge–Kutta method in every lane, each of its own length.
+#[inline(always)]
+fn step<S: Simd>(
+    simd: S,
+    constants: &VehicleConstants<Packed<S>>,
+    inputs: &StepInputs<Packed<S>>,
+    running: &mut [Lane<'_>],
+) {
+    let mut steps_s = [0.0; MAX_LANES];
+    let mut values = [[0.0; MAX_LANES]; N_STATE];
+    for (lane, run) in running.iter().enumerate() {
+        steps_s[lane] = run.step_s;
+        for (values, value) in values.iter_mut().zip(run.state) {
+            values[lane] = value;
+        }
+    }
+    let h = Packed::new(simd, &steps_s);
+    let mut x = [h; N_STATE];
+    for (x, values) in x.iter_mut().zip(&values) {
+        *x = Packed::new(simd, values);
+    }
+    let half = h * 0.5;
+    let f = |x: &[Packed<S>; N_STATE], u: &VehicleInput<Packed<S>>| constants.derivative(x, u);
+    let k1 = f(&x, inputs.at(Stage::Start));
+    let k2 = f(&moved(&x, &k1, half), inputs.at(Stage::Middle));
+    let k3 = f(&moved(&x, &k2, half), inputs.at(Stage::Middle));
+    let k4 = f(&moved(&x, &k3, h), inputs.at(Stage::End));
+    let sixth = h * (1.0 / 6.0);
+    for i in 0..N_STATE {
+        let slope = k1[i] + (k2[i] + k3[i]) * 2.0 + k4[i];
+        values[i] = (x[i] + slope * sixth).to_array();
+    }
+    for (lane, run) in running.iter_mut().enumerate() {
+        run.time_s += run.step_s;
+        run.state = values.map(|values| values[lane]);
+    }
+}
+
+#[inline(always)]
+fn moved<S: Simd>(
+    x: &[Packed<S>; N_STATE],
+    slope: &[Packed<S>; N_STATE],
+    h: Packed<S>,
+) -> [Packed<S>; N_STATE] {
+    let mut to = *x;
+    for (to, slope) in to.iter_mut().zip(slope) {
+        *to += *slope * h;
+    }
+    to
+}
+
+#[cfg(test)]
+#[path = "path_batch_tests.rs"]
+mod tests;
