@@ -4,7 +4,7 @@
 //! the true quantity among L independent particles is then uniform on 0 to L. Particles that depend
 //! on each other are thinned to their effective number first.
 //!
-//! Source: [`Talts2018`](crate::bibliography::Talts2018), theorem 1 and section 5.1.
+//! Source: [`Talts2018`](crate::bibliography::Talts2018).
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 

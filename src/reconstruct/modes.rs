@@ -5,9 +5,8 @@ use std::collections::BTreeMap;
 use crate::numerics::{ClusterError, Clusters};
 use crate::reconstruct::sampler::Particles;
 
-/// Mean silhouette from which clusters count as separate: those of one normal distribution reach
-/// 0.35 in one dimension at the most when it is cut into more pieces than there are, and about 0.56
-/// when it is cut in two halves.
+/// Mean silhouette from which clusters count as separate. One normal distribution that is cut into
+/// pieces stays below it.
 const SEPARATE_SILHOUETTE: f64 = 0.7;
 
 /// Largest number of particles that clusters are searched in; the silhouette takes its square.

@@ -92,17 +92,18 @@ mod tests {
 
     #[test]
     fn the_sampler_agrees_with_rejection_on_a_tiny_question() {
+        type Value<'a> = &'a dyn Fn(&[f64]) -> f64;
         let bound = normal(1.0, 1.0, 0.1);
         let reference = rejection_sample(&slide(), bound, 200_000, 1).unwrap();
         let settings = SamplerSettings { seed: 2, ..SamplerSettings::default() };
         let found = sample(&slide(), &settings, None, &mut |_| ControlFlow::Continue(())).unwrap();
-        let moments = |z: &[Vec<f64>], value: &dyn Fn(&[f64]) -> f64| {
+        let moments = |z: &[Vec<f64>], value: Value<'_>| {
             let mean = z.iter().map(|z| value(z)).sum::<f64>() / z.len() as f64;
             let square = z.iter().map(|z| (value(z) - mean).powi(2)).sum::<f64>();
             (mean, (square / z.len() as f64).sqrt())
         };
-        let values: [fn(&[f64]) -> f64; 4] =
-            [|z| z[0], |z| z[1], |z| z[0] * z[1], |z| f64::from(u8::from(z[2] > 0.8))];
+        let values: [Value<'_>; 4] =
+            [&|z| z[0], &|z| z[1], &|z| z[0] * z[1], &|z| f64::from(u8::from(z[2] > 0.8))];
         let n = found.ess.min(found.z.len() as f64);
         for (idx, value) in values.iter().enumerate() {
             let (expected, std) = moments(&reference.z, value);

@@ -15,7 +15,7 @@
 //! ρ follows the share of accepted moves, and the share of either kind follows the mean square of
 //! the distance that its moves cover, [`FearnheadTaylor2013`](crate::bibliography::FearnheadTaylor2013).
 //!
-//! Source: [`Cotter2013`](crate::bibliography::Cotter2013), section 4.2 for one normal.
+//! Source: [`Cotter2013`](crate::bibliography::Cotter2013) for one normal.
 
 use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};

@@ -9,7 +9,7 @@
 //!
 //! with n_s particles of temperature β_s and evidence Z_s. The prior cancels.
 //!
-//! Source: [`KaramanisSeljak2024`](crate::bibliography::KaramanisSeljak2024), section 3.
+//! Source: [`KaramanisSeljak2024`](crate::bibliography::KaramanisSeljak2024).
 
 use std::collections::BTreeMap;
 
