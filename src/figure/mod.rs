@@ -11,6 +11,7 @@ mod model;
 mod model_comparison;
 mod motion;
 mod motion_forecast;
+mod reconstruction;
 mod scene;
 mod statistics;
 mod training;
@@ -32,6 +33,9 @@ pub use motion::{MOTION_CHANNELS, motion_figure, motion_readout, recording_line,
 pub use motion_forecast::{
     FORECAST_CHANNELS, ForecastChannel, MotionForecastFigure, forecast_channel_figure,
     forecast_readout, forecast_scene_figure, forecast_surroundings,
+};
+pub use reconstruction::{
+    ReconstructedPaths, budget_figure, marginal_figure, prior_values, reconstruction_scene_figure,
 };
 pub use scene::{SceneFigure, SceneVehicle, pose_at, scene_figure, vehicle_outline};
 pub use statistics::{CurveStatistics, curve_statistics};

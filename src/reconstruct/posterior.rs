@@ -5,7 +5,10 @@ use serde::Serialize;
 
 use crate::numerics::quantile_of_sorted;
 use crate::reconstruct::sampler::Particles;
-use crate::reconstruct::{EvidenceFit, ImpactState, Latent, LatentValues, ReconstructionTarget};
+use crate::reconstruct::{
+    EvidenceFit, ImpactState, Latent, LatentValues, Narrowing, ReconstructionTarget, modes_by,
+};
+use crate::units::Quantity;
 
 macro_rules! quantities {
     ($($(#[$doc:meta])* $name:ident: $key:literal, $unit:literal, $of:expr;)+) => {
@@ -57,6 +60,33 @@ quantities! {
         |_, impact| impact.solution.target.yaw_rate_rad_s;
 }
 
+impl ReconstructedQuantity {
+    /// What it is called.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::TargetSpeed => "speed of the struck car",
+            Self::BulletSpeed => "speed of the striking car",
+            Self::ClosingSpeed => "closing speed",
+            Self::HeadingDifference => "heading of the striking car against the struck one",
+            Self::RoadFriction => "friction of the road",
+            Self::DeltaVTarget => "Δv of the struck car",
+            Self::TargetYawRate => "yaw rate of the struck car after the impact",
+        }
+    }
+
+    /// What kind of quantity it is.
+    pub fn quantity(self) -> Quantity {
+        match self {
+            Self::TargetSpeed | Self::BulletSpeed | Self::ClosingSpeed | Self::DeltaVTarget => {
+                Quantity::Speed
+            }
+            Self::HeadingDifference => Quantity::Angle,
+            Self::RoadFriction => Quantity::Ratio,
+            Self::TargetYawRate => Quantity::AngularVelocity,
+        }
+    }
+}
+
 /// A quantity with its intervals, which leave out as much below as above.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct QuantityEstimate {
@@ -83,6 +113,8 @@ pub struct Mode {
     pub name: String,
     /// Its probability.
     pub probability: f64,
+    /// Standard error of the probability by the number of particles.
+    pub standard_error: f64,
     /// The quantities within it.
     pub quantities: Vec<QuantityEstimate>,
 }
@@ -100,6 +132,8 @@ pub struct BudgetItem {
     pub then_m_s: f64,
     /// Effective number of particles that the average rests on.
     pub ess: f64,
+    /// Whether these are enough.
+    pub believable: bool,
 }
 
 /// Particles with what follows from them.
@@ -113,9 +147,6 @@ pub struct Posterior {
 
 /// Smallest probability of a mode that is told.
 const SMALLEST_MODE: f64 = 0.01;
-
-/// Outcomes of a measurement over which the budget is averaged.
-const BUDGET_OUTCOMES: usize = 100;
 
 /// Motions by which the fit is judged.
 const FIT_PARTICLES: usize = 300;
@@ -151,35 +182,27 @@ impl Posterior {
     /// The kinds of courses of events, the most probable one first.
     ///
     /// - `turned_rad`: by how much the struck car of each particle has turned at rest, rad.
-    pub fn modes(&self, turned_rad: &[f64]) -> Vec<Mode> {
-        let mut names: Vec<(String, Vec<usize>)> = Vec::new();
-        for (idx, (values, turned)) in self.values.iter().zip(turned_rad).enumerate() {
-            let name = mode_name(values, *turned);
-            match names.iter_mut().find(|(known, _)| *known == name) {
-                Some((_, members)) => members.push(idx),
-                None => names.push((name, vec![idx])),
-            }
-        }
-        let n = self.values.len() as f64;
-        let mut modes: Vec<Mode> = names
+    pub fn modes(&self, particles: &Particles, turned_rad: &[f64]) -> Vec<Mode> {
+        let name = |idx: usize| match (self.values.get(idx), turned_rad.get(idx)) {
+            (Some(values), Some(turned)) => mode_name(values, *turned),
+            _ => String::new(),
+        };
+        modes_by(particles, name)
             .into_iter()
-            .map(|(name, members)| Mode {
-                name,
-                probability: members.len() as f64 / n,
-                quantities: self.quantities_of(&members),
-            })
             .filter(|mode| mode.probability >= SMALLEST_MODE)
-            .collect();
-        modes.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-        modes
+            .map(|mode| Mode {
+                name: mode.key,
+                probability: mode.probability,
+                standard_error: mode.standard_error,
+                quantities: self.quantities_of(&mode.members),
+            })
+            .collect()
     }
 
-    /// What further measurements would bring.
+    /// What further measurements would bring, by [`Narrowing`].
     ///
-    /// ```text
-    /// w_ij ∝ exp(−(x_j − y_i)²/2σ²)      y_i = x_i: outcomes as the particles have them
-    /// ```
-    pub fn budget(&self) -> Vec<BudgetItem> {
+    /// - `(ess, seed)`: effective sample size of the particles, seed of the errors of measurements.
+    pub fn budget(&self, (ess, seed): (f64, u64)) -> Vec<BudgetItem> {
         let speeds = self.of_quantity(ReconstructedQuantity::TargetSpeed);
         let latent = |latent: Latent| self.values.iter().map(|v| v.get(latent)).collect::<Vec<_>>();
         let quantity = |quantity: ReconstructedQuantity| self.of_quantity(quantity);
@@ -195,7 +218,20 @@ impl Posterior {
             ("target_speed_m_s", 0.9, speeds.clone()),
         ]
         .into_iter()
-        .filter_map(|(known, sigma, x)| budget_item((known, sigma), &x, &speeds))
+        .filter_map(|(known, sigma, x)| {
+            if !x.iter().all(|x| x.is_finite()) {
+                return None; // The quantity is not open.
+            }
+            let narrowing = Narrowing::by(&speeds, (&x, sigma), ess, seed)?;
+            Some(BudgetItem {
+                known,
+                sigma,
+                now_m_s: narrowing.width_90_now / 2.0,
+                then_m_s: narrowing.width_90_then / 2.0,
+                ess: narrowing.ess,
+                believable: narrowing.believable(),
+            })
+        })
         .collect()
     }
 }
@@ -249,57 +285,4 @@ fn mode_name(values: &LatentValues, turned_rad: f64) -> String {
         (false, Some(_)) => ", the other wheel near the damage blocked",
     };
     format!("{spin}, {braked}{blocked}")
-}
-
-/// Expected width of the speed if a quantity were measured; `None` where the quantity is not open.
-fn budget_item(
-    (known, sigma): (&'static str, f64),
-    x: &[f64],
-    speeds: &[f64],
-) -> Option<BudgetItem> {
-    let spread = |values: &[f64], weights: &[f64]| {
-        let total: f64 = weights.iter().sum();
-        let mut order: Vec<usize> = (0..values.len()).collect();
-        order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
-        let at = |share: f64| {
-            let mut sum = 0.0;
-            order.iter().find(|&&idx| {
-                sum += weights[idx];
-                sum >= share * total
-            })
-        };
-        Some((values[*at(0.95)?] - values[*at(0.05)?]) / 2.0)
-    };
-    if x.is_empty() || !x.iter().all(|x| x.is_finite()) {
-        return None;
-    }
-    let now_m_s = spread(speeds, &vec![1.0; speeds.len()])?;
-    let every = x.len().div_ceil(BUDGET_OUTCOMES);
-    let (mut sum, mut worth, mut n) = (0.0, 0.0, 0.0);
-    for outcome in x.iter().step_by(every) {
-        let weights: Vec<f64> =
-            x.iter().map(|x| (-0.5 * ((x - outcome) / sigma).powi(2)).exp()).collect();
-        let total: f64 = weights.iter().sum();
-        worth += total * total / weights.iter().map(|w| w * w).sum::<f64>();
-        sum += spread(speeds, &weights)?;
-        n += 1.0;
-    }
-    Some(BudgetItem { known, sigma, now_m_s, then_m_s: sum / n, ess: worth / n })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_decides_the_speed_narrows_it_and_what_does_not_leaves_it() {
-        let speeds: Vec<f64> = (0..2000).map(|i| 10.0 + f64::from(i) * 0.001).collect();
-        let other: Vec<f64> = (0..2000).map(|i| f64::from(i * 7919 % 2000) * 0.001).collect();
-        let same = budget_item(("same", 0.1), &speeds, &speeds).unwrap();
-        let none = budget_item(("other", 0.1), &other, &speeds).unwrap();
-        assert!((same.now_m_s - 0.9).abs() < 0.01, "{same:?}");
-        assert!(same.then_m_s < 0.25 * same.now_m_s, "{same:?}");
-        assert!(none.then_m_s > 0.9 * none.now_m_s, "{none:?}");
-        assert!(budget_item(("open", 0.1), &[f64::NAN; 3], &[1.0; 3]).is_none());
-    }
 }

@@ -230,9 +230,9 @@ impl Question for ReconstructRequest {
         let report = ReconstructReport {
             case: target.evidence().case.clone(),
             quantities: posterior.quantities(),
-            modes: posterior.modes(&turned_rad),
+            modes: posterior.modes(&particles, &turned_rad),
             fit,
-            budget: posterior.budget(),
+            budget: posterior.budget((particles.ess, self.seed)),
             ess: particles.ess,
             n_simulations: particles.n_evaluations + particles.z.len(),
             n_particles: particles.z.len(),

@@ -15,6 +15,7 @@ mod guide;
 mod log;
 mod program;
 mod ranges;
+mod reconstruct;
 mod response;
 #[cfg(feature = "gui")]
 mod restrictions;

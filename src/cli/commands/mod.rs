@@ -20,6 +20,7 @@ pub(super) mod reconstruct;
 pub(super) mod render;
 mod render_figure;
 mod render_forecast;
+mod render_reconstruction;
 pub(super) mod simulate;
 pub(super) mod train;
 mod train_force;

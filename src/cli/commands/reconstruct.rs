@@ -57,8 +57,8 @@ the evidence file says otherwise.
 
 JSON: case; quantities [{name, unit, median, interval_50, interval_80, interval_90, interval_95}] with
   target_speed_m_s, bullet_speed_m_s, closing_speed_m_s, heading_difference_rad, road_friction,
-  delta_v_target_m_s, target_yaw_rate_after_rad_s; modes [{name, probability, quantities}];
-  fit [{evidence, unit, expected, found, p}]; budget [{known, sigma, now_m_s, then_m_s, ess}]; ess,
+  delta_v_target_m_s, target_yaw_rate_after_rad_s; modes [{name, probability, standard_error, quantities}];
+  fit [{evidence, unit, expected, found, p}]; budget [{known, sigma, now_m_s, then_m_s, ess, believable}]; ess,
   n_simulations, n_particles, log_evidence, by_hand_m_s [value, standard deviation],
   priors [{latent, distribution}], assumptions, badges, seed";
 

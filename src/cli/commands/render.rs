@@ -8,6 +8,7 @@ use serde::Serialize;
 use crate::cli::CliError;
 use crate::cli::commands::render_figure;
 use crate::cli::commands::render_forecast::{self, ForecastArgs};
+use crate::cli::commands::render_reconstruction::{self, ReconstructionArgs};
 use crate::cli::console::{Console, Verdict, print_json, shown_path};
 use crate::cli::options::{
     OverwriteArg, SourceArgs, UnitsArg, VehicleArg, contact_point, number, size_px,
@@ -57,6 +58,11 @@ Example:\n  impactlab render scene datasets/trajectories-fea --case FE_c002 --ti
 Example:\n  impactlab render forecast datasets/trajectories-fea --case FE_c002 --time 2 --out forecast.png\n  \
 impactlab render forecast datasets/trajectories-fea --case FE_c002 --channel yaw --out yaw.png")]
     Forecast(ForecastArgs),
+    /// What the evidence of a collision says: paths over the evidence, a quantity before and after it,
+    /// or what further evidence would bring
+    #[command(after_help = "\
+Example:\n  impactlab render reconstruction case.toml --plot target-speed --out speed.png")]
+    Reconstruction(ReconstructionArgs),
     /// The impact of a scenario from above: impulse and delta-v
     #[command(after_help = "\
 Example:\n  impactlab render impact pit-right-rear --out impact.png")]
@@ -232,6 +238,7 @@ pub(in crate::cli) fn run(
         FigureArgs::Motion(args) => &args.output,
         FigureArgs::Scene(args) => &args.output,
         FigureArgs::Forecast(args) => &args.output,
+        FigureArgs::Reconstruction(args) => &args.output,
         FigureArgs::Impact(args) => &args.output,
     };
     let ending = output.out.extension().map(|end| end.to_ascii_lowercase());
@@ -261,6 +268,7 @@ pub(in crate::cli) fn run(
             render_figure::scene(&request, args.time, units, console)?
         }
         FigureArgs::Forecast(args) => render_forecast::figure(args, units, console)?,
+        FigureArgs::Reconstruction(args) => render_reconstruction::figure(args, units, console)?,
         FigureArgs::Impact(args) => {
             let scenario = ScenarioChoice::File(args.scenario.clone());
             let request = ImpactRequest { scenario, paper: args.paper };

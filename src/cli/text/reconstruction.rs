@@ -7,9 +7,6 @@ use crate::reconstruct::QuantityEstimate;
 use crate::study::ReconstructReport;
 use crate::units::{Quantity, UnitSystem, percent};
 
-/// Effective number of particles below which an item of the budget is left out.
-const LEAST_BUDGET_ESS: f64 = 20.0;
-
 /// Prints quantities, modes, fit and budget.
 pub(in crate::cli) fn print_reconstruction(
     out: &mut dyn Write,
@@ -66,8 +63,7 @@ fn print_budget(
     report: &ReconstructReport,
     units: UnitSystem,
 ) -> io::Result<()> {
-    let mut items: Vec<_> =
-        report.budget.iter().filter(|item| item.ess >= LEAST_BUDGET_ESS).collect();
+    let mut items: Vec<_> = report.budget.iter().filter(|item| item.believable).collect();
     items.sort_by(|a, b| a.then_m_s.total_cmp(&b.then_m_s));
     let unit = Quantity::Speed.display_unit(units);
     let speed = |si: f64| format!("{:.1}", unit.from_si(si));

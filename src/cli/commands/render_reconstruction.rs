@@ -1,0 +1,106 @@
+//! `impactlab render reconstruction`: what the evidence of a collision says.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use crate::cli::CliError;
+use crate::cli::commands::render::OutputArgs;
+use crate::cli::commands::render_figure::{Noted, noted};
+use crate::cli::console::Console;
+use crate::cli::options::VehicleArg;
+use crate::figure::{
+    ReconstructedPaths, budget_figure, marginal_figure, prior_values, reconstruction_scene_figure,
+};
+use crate::reconstruct::ReconstructedQuantity;
+use crate::study::{EvidenceChoice, ReconstructRequest, Trust};
+use crate::units::UnitSystem;
+
+/// The evidence, and what is drawn.
+#[derive(Debug, Args)]
+pub(super) struct ReconstructionArgs {
+    /// The evidence file
+    #[arg(value_name = "EVIDENCE.toml")]
+    evidence: PathBuf,
+    /// What is drawn
+    #[arg(long, value_enum, default_value_t)]
+    plot: PlotArg,
+    /// The struck car, as in reconstruct
+    #[arg(long, value_name = "NAME|FILE")]
+    vehicle: Option<VehicleArg>,
+    /// The striking car, as in reconstruct
+    #[arg(long, value_name = "NAME|FILE")]
+    striking: Option<VehicleArg>,
+    /// Number of particles
+    #[arg(long, value_name = "N", default_value_t = ReconstructRequest::DEFAULT_PARTICLES)]
+    particles: usize,
+    /// Seed of all draws
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    #[command(flatten)]
+    pub(super) output: OutputArgs,
+}
+
+/// A figure of a reconstruction.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+enum PlotArg {
+    /// The paths of the struck car over the evidence, from above
+    #[default]
+    Scene,
+    /// The speed of the struck car before and after the evidence
+    TargetSpeed,
+    /// The speed of the striking car
+    BulletSpeed,
+    /// The closing speed
+    ClosingSpeed,
+    /// The friction of the road
+    RoadFriction,
+    /// Δv of the struck car
+    DeltaV,
+    /// What further evidence would bring
+    Budget,
+}
+
+impl PlotArg {
+    /// The quantity whose distribution is drawn, if it is one.
+    fn quantity(self) -> Option<ReconstructedQuantity> {
+        match self {
+            Self::Scene | Self::Budget => None,
+            Self::TargetSpeed => Some(ReconstructedQuantity::TargetSpeed),
+            Self::BulletSpeed => Some(ReconstructedQuantity::BulletSpeed),
+            Self::ClosingSpeed => Some(ReconstructedQuantity::ClosingSpeed),
+            Self::RoadFriction => Some(ReconstructedQuantity::RoadFriction),
+            Self::DeltaV => Some(ReconstructedQuantity::DeltaVTarget),
+        }
+    }
+}
+
+/// Reconstructs the case and draws the figure.
+pub(super) fn figure(
+    args: &ReconstructionArgs,
+    units: UnitSystem,
+    console: &mut Console<'_>,
+) -> Result<Noted, CliError> {
+    let request = ReconstructRequest {
+        vehicle: VehicleArg::choice(&args.vehicle),
+        striking: VehicleArg::choice(&args.striking),
+        particles: args.particles,
+        seed: args.seed,
+        ..ReconstructRequest::new(EvidenceChoice::File(args.evidence.clone()))
+    };
+    let answer = console.answer(&request)?;
+    let (badges, assumptions) = (&answer.report.badges, &answer.report.assumptions);
+    let trust = Trust::new(badges, assumptions);
+    let figure = match (args.plot.quantity(), args.plot) {
+        (Some(quantity), _) => {
+            let prior = prior_values(&answer.target, quantity);
+            marginal_figure(&answer, (quantity, &prior), &trust, units)
+        }
+        (None, PlotArg::Budget) => budget_figure(&answer, &trust, units),
+        (None, _) => {
+            let paths = ReconstructedPaths::of(&answer);
+            reconstruction_scene_figure((&answer, &paths), &trust, units)
+        }
+    };
+    Ok((figure, noted(&[], (badges, assumptions))))
+}
