@@ -1,12 +1,14 @@
 //! `reconstruct`, and the figures of a reconstruction.
 
+#![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
+
 use std::fs;
 use std::path::PathBuf;
 
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::program::{ok, program, text};
+use crate::program::{json, ok, program, text};
 
 /// A car that spun to rest, with few marks.
 const EVIDENCE: &str = r#"
@@ -38,7 +40,7 @@ fn evidence(folder: &TempDir, (from, to): (&str, &str)) -> PathBuf {
 }
 
 fn report(args: &[&str]) -> Value {
-    serde_json::from_str(&ok(program().args(args).output().unwrap())).unwrap()
+    json(&ok(program().args(args).output().unwrap()))
 }
 
 #[test]

@@ -52,6 +52,7 @@ Example:
   impactlab reconstruct case.toml --out case-result
 
 World axes: origin at the CG of the struck car at first contact, X along its heading, Y to the left.
+How often the intervals hold has been tried on 16 simulated collisions only: docs/guide/limits.md.
 Whoever hit a flank behind the CG is taken to have matched the speed, as in a PIT manoeuvre; [prior] in
 the evidence file says otherwise.
 
