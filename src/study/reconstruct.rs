@@ -226,6 +226,7 @@ impl Question for ReconstructRequest {
         });
         let mut badges = of_particles(&particles);
         badges.extend(of_fit(&fit));
+        badges.push(of_validation());
         badges.extend(badges::of_assumptions(&assumptions));
         let report = ReconstructReport {
             case: target.evidence().case.clone(),
@@ -282,6 +283,14 @@ fn of_particles(particles: &Particles) -> Vec<Badge> {
             .with_range([LEAST_ESS, f64::INFINITY])
     });
     stopped.into_iter().chain(few).collect()
+}
+
+/// What the intervals have been tried on, as long as that is not enough.
+fn of_validation() -> Badge {
+    let text = "intervals were tried on 16 simulated collisions, which also decided on what is assumed \
+                beforehand: those of 90 % of the struck car's speed held 14 times; two cars that were \
+                braked to rest with locked wheels had been faster";
+    Badge::new(BadgeKind::HardlyValidated, text)
 }
 
 /// Evidence that no particle explains.

@@ -34,6 +34,8 @@ pub enum BadgeKind {
     EvidenceUnexplained,
     /// The particles are too few, or not of the posterior.
     FewParticles,
+    /// How often the intervals hold the truth has hardly been tried.
+    HardlyValidated,
     /// Cases or draws could not be used and are left out.
     LeftOut,
     /// A network is judged by cases that it has learned from.
@@ -77,6 +79,7 @@ impl BadgeKind {
             Self::NotAtRest => "not at rest",
             Self::EvidenceUnexplained => "evidence unexplained",
             Self::FewParticles => "few particles",
+            Self::HardlyValidated => "hardly validated",
             Self::LeftOut => "left out",
             Self::TrainedOn => "trained on",
             Self::Assumed => "assumed",
