@@ -86,7 +86,7 @@ fn what_cannot_be_is_refused_with_file_line_and_key() {
         (("friction = 0.7", "friction = 3"), 4, "friction"),
         (("x_m = 30", "x_m = 5000"), 13, "x_m"),
         (("y_m = -6", "y_m = -6\nposition_sigma_m = 0"), 15, "position_sigma_m"),
-        (("[edr]", "[edr]\ncolour = 1"), 20, "colour"),
+        (("[edr]", "[edr]\ncolour = 1"), 19, "colour"),
     ] {
         let file = evidence(&folder, change);
         let refused = program().args(["reconstruct", text(&file)]).output().unwrap();
