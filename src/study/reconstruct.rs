@@ -8,7 +8,7 @@ use crate::data::Outcome;
 use crate::jobs::Progress;
 use crate::nn::sha256_hex;
 use crate::ranges::RECONSTRUCTION_PARTICLES;
-use crate::reconstruct::evidence::Evidence;
+use crate::reconstruct::evidence::{DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, Evidence};
 use crate::reconstruct::sampler::{
     Particles, SamplerCheckpoint, SamplerReport, SamplerSettings, SamplerStage, sample,
 };
@@ -333,6 +333,11 @@ fn assumptions(evidence: &Evidence, cars: &Cars) -> Vec<Assumption> {
     if evidence.prior.restitution.is_none() {
         let reason = "finite-element runs; otherwise: [prior] restitution, contact_friction";
         add(AssumedQuantity::Restitution, "0.24 to 0.66 up to 5 m/s, less beyond", reason);
+    }
+    if evidence.friction.is_none() {
+        let value = format!("road friction {DEFAULT_FRICTION} ± {DEFAULT_FRICTION_SIGMA}");
+        let reason = "dry and wet asphalt together; otherwise: [road] friction";
+        add(AssumedQuantity::VehicleParameter, &value, reason);
     }
     let estimated = cars.struck.estimated().count();
     if estimated > 0 {
