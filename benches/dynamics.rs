@@ -73,7 +73,7 @@ fn cars() -> Vec<(VehicleParameters, Manoeuvre)> {
 
 /// The same, braked until they stand.
 fn braked_cars() -> Vec<(VehicleParameters, Manoeuvre)> {
-    let brake = Some(Braking { start_s: 0.5, share_of_friction: 0.6, rise_s: 0.3 });
+    let brake = Some(Braking::new(0.5, 0.6, 0.3));
     let braked = |(vehicle, manoeuvre): (VehicleParameters, Manoeuvre)| {
         let controls = Ending { brake, ..Ending::default() }.controls(&vehicle);
         (vehicle, Manoeuvre { controls, duration_s: 20.0, ends_at_rest: true, ..manoeuvre })

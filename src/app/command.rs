@@ -14,6 +14,7 @@ use crate::app::kept::{KeptEntry, ModelsDialog, Removal};
 use crate::app::network::Network;
 use crate::app::panes::Pane;
 use crate::app::path_dialog::PathDialog;
+use crate::app::reconstruction::ReconstructionCommand;
 use crate::app::state::{Session, State, Subject};
 use crate::app::widgets::OUTDATED;
 use crate::app::workspaces::Workspace;
@@ -122,6 +123,8 @@ pub enum Command {
     Evaluate,
     /// Cancel the evaluation of the force model.
     CancelEvaluation,
+    /// Act on the reconstruction.
+    Reconstruct(ReconstructionCommand),
     /// Bring a pane to the front.
     Show(Pane),
     /// Bring the training pane to the front and show this network in it.
@@ -272,6 +275,7 @@ impl State {
             Command::Models(command) => self.change_models(command, context),
             Command::Evaluate => self.evaluate(context),
             Command::CancelEvaluation => self.session.force.evaluation.cancel(),
+            Command::Reconstruct(command) => self.reconstruct(command, context),
             Command::ShowTraining(network) => {
                 self.view.trained = network;
                 self.view.workspaces.show_pane(Pane::Training);
@@ -364,8 +368,12 @@ impl State {
     }
 
     /// Returns the last time of the simulation of the subject, or of its recorded motion if it is
-    /// not simulated, in seconds; 0 without either.
+    /// not simulated, in seconds; in the workspace of the reconstruction, that of the path that is
+    /// followed; 0 without any.
     pub fn end_time_s(&self) -> f64 {
+        if self.view.workspaces.shown == Workspace::Reconstruct {
+            return self.session.reconstruction.end_time_s();
+        }
         let last = |SimulateAnswer { analysis, .. }: &SimulateAnswer| {
             let simulation = analysis.simulation.as_ref().map(|motion| &motion.series);
             let series = simulation.or(analysis.reference.as_ref())?;

@@ -94,6 +94,7 @@ impl State {
             let text = ("nothing open", String::new());
             entries.push(ContentsEntry::new(Group::Data, text, Command::Show(Pane::Data)));
         }
+        entries.extend(self.evidence_entry());
         entries.push(model_entry("Force network", &self.session.force.model));
         entries.push(model_entry("Response network", &self.session.response.model));
         entries.extend(self.result_entries());
@@ -174,6 +175,19 @@ impl State {
             }
         };
         ContentsEntry::new(Group::Data, (&source.name(), detail), command).missing(missing)
+    }
+
+    /// The evidence of a reconstruction, if there is any.
+    fn evidence_entry(&self) -> Option<ContentsEntry> {
+        self.project.reconstruction.evidence.as_ref()?;
+        let file = self.session.reconstruction.file.as_ref();
+        let problem = file.and_then(|file| file.evidence.as_ref().err().cloned());
+        let (detail, problem) = match self.evidence() {
+            Some(evidence) => (evidence.case.clone(), None),
+            None => ("not read".to_owned(), problem),
+        };
+        let show = Command::Show(Pane::Evidence);
+        Some(ContentsEntry::new(Group::Data, ("Evidence", detail), show).missing(problem))
     }
 
     /// The figures of the chain that were found, each with its warnings.

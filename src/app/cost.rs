@@ -172,7 +172,7 @@ impl State {
         let job = Job::spawn_in_background("measure", wake(context), move |report| {
             let mut observer = |event: Event<'_>| match event {
                 Event::Progress(progress) => report(progress),
-                Event::Training(_) => std::ops::ControlFlow::Continue(()),
+                Event::Training(_) | Event::Sampling(_) => std::ops::ControlFlow::Continue(()),
             };
             asked.cost(&library, &mut observer).map_err(|error| error_chain(&error))
         });

@@ -1,7 +1,7 @@
 //! The native file dialogs.
 
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use rfd::AsyncFileDialog;
 
@@ -119,14 +119,32 @@ impl Purpose {
     }
 }
 
-/// Shortest time after which a user can have cancelled a dialog. A dialog that returns nothing in
-/// less time was not displayed, because the desktop provides none.
-const UNSEEN: Duration = Duration::from_millis(300);
+/// A dialog that returns nothing in less time is taken as one that was not displayed, because the
+/// desktop provides none: the search for one that fails takes milliseconds, and a dialog takes about
+/// as long as this to appear and to be cancelled. If a user is faster, the window asks for the path,
+/// which can be cancelled once more; the other error, a command *Save* that does nothing, is worse.
+const UNSEEN: Duration = Duration::from_secs(1);
+
+/// What a native dialog returned.
+struct Answer {
+    /// The chosen paths; none if the user cancelled or no dialog could be displayed.
+    paths: Vec<PathBuf>,
+    /// Time from the request to the answer, taken on the thread of the dialog, so that a window that
+    /// is late to read the answer does not add to it.
+    took: Duration,
+}
+
+impl Answer {
+    /// Whether no dialog was displayed.
+    fn is_unseen(&self) -> bool {
+        self.paths.is_empty() && self.took < UNSEEN
+    }
+}
 
 /// A native file dialog that waits for the user on its own thread.
 pub struct FileDialog {
     purpose: Purpose,
-    job: Job<Vec<PathBuf>>,
+    job: Job<Answer>,
 }
 
 impl FileDialog {
@@ -139,7 +157,11 @@ impl FileDialog {
     /// The error of the operating system, if the thread cannot be started.
     pub fn open(purpose: Purpose, wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
         let asked = purpose.clone();
-        let job = Job::spawn("file dialog", wake, move |_| pollster::block_on(ask(&asked)))?;
+        let job = Job::spawn("file dialog", wake, move |_| {
+            let start = Instant::now();
+            let paths = pollster::block_on(ask(&asked));
+            Answer { paths, took: start.elapsed() }
+        })?;
         Ok(Self { purpose, job })
     }
 
@@ -150,10 +172,10 @@ impl FileDialog {
     pub fn poll(&mut self) -> Option<Vec<Command>> {
         match self.job.poll() {
             Update::Running => None,
-            Update::Finished(paths) if paths.is_empty() && self.job.elapsed() < UNSEEN => {
+            Update::Finished(answer) if answer.is_unseen() => {
                 Some(vec![Command::AskPath(self.purpose.clone())])
             }
-            Update::Finished(paths) => Some(self.purpose.commands(paths, true)),
+            Update::Finished(answer) => Some(self.purpose.commands(answer.paths, true)),
             Update::Panicked(_) | Update::Gone => {
                 Some(vec![Command::AskPath(self.purpose.clone())])
             }
@@ -184,7 +206,7 @@ async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
         Purpose::Files => {
             let files = dialog
                 .add_filter(
-                    "cases, tables and scenarios",
+                    "cases, tables, scenarios and evidence",
                     &["impactlab", "csv", "txt", "tsv", "dat", "asc", "xlsx", "xlsm", "toml"],
                 )
                 .add_filter("all files", &["*"])

@@ -187,7 +187,7 @@ impl<Q: Question> Thread<Q> {
                 let (number, question) = latest;
                 let mut observer = |event: Event<'_>| match event {
                     Event::Progress(progress) => report(progress),
-                    Event::Training(_) => ControlFlow::Continue(()),
+                    Event::Training(_) | Event::Sampling(_) => ControlFlow::Continue(()),
                 };
                 // What is wrong with the question is said by the full answer.
                 let coarse = question.coarse().map(|coarse| coarse.answer(&library, &mut observer));

@@ -11,6 +11,7 @@ use crate::app::looks::{self, Icon, icon, icon_button};
 use crate::app::network::Network;
 use crate::app::panels;
 use crate::app::panes::Pane;
+use crate::app::reconstruction::ReconstructionCommand;
 use crate::app::source::{Content, Source};
 use crate::app::state::{Session, State};
 use crate::app::widgets::duration_text;
@@ -181,7 +182,7 @@ fn help_menu_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
             ui.label(what);
             ui.end_row();
         }
-        ui.monospace("Ctrl+1, 2, 3");
+        ui.monospace("Ctrl+1, 2, 3, 4");
         ui.label("workspaces");
         ui.end_row();
     });
@@ -229,6 +230,13 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             let what = format!("{what}, {}", progress.message);
             let cancel = Command::Compare(ComparisonCommand::Cancel);
             progress_ui(ui, &what, (progress, elapsed), cancel, commands);
+        }
+        // In its own workspace the reconstruction shows its progress itself.
+        if let Some(job) = state.session.reconstruction.run.job()
+            && state.view.workspaces.shown != Workspace::Reconstruct
+        {
+            let cancel = Command::Reconstruct(ReconstructionCommand::Cancel);
+            job_ui(ui, "Reconstructing", job, cancel, commands);
         }
         if state.session.shows_frame_times {
             ui.weak(state.session.frame_times.text());

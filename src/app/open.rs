@@ -19,12 +19,13 @@ use crate::data::{ColumnMap, Existing, Severity};
 use crate::error_chain;
 use crate::learning::ModelFile;
 use crate::nn::kind_of_file;
+use crate::reconstruct::evidence::Evidence;
 use crate::response::ResponseModel;
 use crate::study::VehicleChoice;
 use crate::vehicle::VehicleParameters;
 
 impl State {
-    /// Opens paths by their extension: `.impactlab` is a case, `.toml` a vehicle or a scenario,
+    /// Opens paths by their extension: `.impactlab` is a case, `.toml` evidence, a vehicle or a scenario,
     /// `.safetensors` a model and `.json` a comparison. Any other path is loaded as data; a folder
     /// is shown in the Data workspace, where its cases are chosen.
     pub(super) fn open(&mut self, paths: Vec<PathBuf>, context: &Context) {
@@ -220,9 +221,13 @@ impl State {
         }
     }
 
-    /// Reads a TOML file as a vehicle or, if it is none, as a scenario. The file is read on the
+    /// Reads a TOML file as evidence, as a vehicle or, if it is neither, as a scenario. The file is read on the
     /// window's thread, because such files are small.
     fn open_model(&mut self, path: PathBuf) {
+        if Evidence::is_meant_by(&path) {
+            self.open_evidence(path);
+            return;
+        }
         if let Ok(vehicle) = VehicleParameters::load(&path) {
             self.project.vehicle = VehicleChoice::File(path);
             self.ask_again();

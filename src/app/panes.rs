@@ -40,6 +40,12 @@ pub enum Pane {
     ForcePrediction,
     /// The predicted motion of the struck vehicle, with its uncertainty.
     MotionForecast,
+    /// What was found after a collision, as the reconstruction takes it.
+    Evidence,
+    /// The evidence from above, with the paths that go with it.
+    ReconstructedScene,
+    /// What the evidence says of the speeds before the impact.
+    Speeds,
     /// The variants of the case side by side.
     Variants,
     /// Models in use, work under way, and what has been finished.
@@ -54,7 +60,7 @@ pub enum Pane {
 
 impl Pane {
     /// Every pane, in the order of the menu.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 19] = [
         Self::Case,
         Self::Data,
         Self::Cases,
@@ -66,6 +72,9 @@ impl Pane {
         Self::Comparison,
         Self::ForcePrediction,
         Self::MotionForecast,
+        Self::Evidence,
+        Self::ReconstructedScene,
+        Self::Speeds,
         Self::Variants,
         Self::Models,
         Self::Training,
@@ -92,6 +101,9 @@ impl Pane {
             Self::Comparison => "Comparison",
             Self::ForcePrediction => "Force prediction",
             Self::MotionForecast => "Motion forecast",
+            Self::Evidence => "Evidence",
+            Self::ReconstructedScene => "Reconstructed scene",
+            Self::Speeds => "Speeds",
             Self::Variants => "Variants",
             Self::Models => "Models",
             Self::Training => "Training",
@@ -114,6 +126,9 @@ impl Pane {
             Self::Comparison => Icon::GitCompare,
             Self::ForcePrediction => Icon::ChartSpline,
             Self::MotionForecast => Icon::Route,
+            Self::Evidence => Icon::ClipboardList,
+            Self::ReconstructedScene => Icon::MapPin,
+            Self::Speeds => Icon::Sigma,
             Self::Variants => Icon::Layers,
             Self::Models => Icon::BrainCircuit,
             Self::Training => Icon::GraduationCap,
@@ -158,6 +173,9 @@ impl Behavior<Pane> for PaneContext<'_> {
                 Pane::Comparison => panels::comparison_ui(ui, self),
                 Pane::ForcePrediction => panels::prediction_ui(ui, self),
                 Pane::MotionForecast => panels::motion_forecast_ui(ui, self),
+                Pane::Evidence => panels::evidence_ui(ui, self),
+                Pane::ReconstructedScene => panels::reconstructed_scene_ui(ui, self),
+                Pane::Speeds => panels::speeds_ui(ui, self),
                 Pane::Variants => panels::variants_ui(ui, self),
                 Pane::Models => panels::models_ui(ui, self),
                 Pane::Training => panels::training_ui(ui, self),

@@ -48,11 +48,28 @@ impl<Q: Question> QuestionJob<Q> {
         library: &Arc<Library>,
         wake: impl Fn() + Send + 'static,
     ) -> std::io::Result<()> {
+        self.start_watched(question, library, wake, |_| {})
+    }
+
+    /// The same with all that happens told to a watcher, on the thread that answers the question.
+    ///
+    /// # Errors
+    /// The error of the operating system, if the thread cannot be started.
+    pub fn start_watched(
+        &mut self,
+        question: Q,
+        library: &Arc<Library>,
+        wake: impl Fn() + Send + 'static,
+        mut watch: impl FnMut(&Event<'_>) + Send + 'static,
+    ) -> std::io::Result<()> {
         let (asked, library) = (question.clone(), Arc::clone(library));
         let job = Job::spawn_in_background(Q::NAME, wake, move |report| {
-            let mut observer = |event: Event<'_>| match event {
-                Event::Progress(progress) => report(progress),
-                Event::Training(_) => ControlFlow::Continue(()),
+            let mut observer = |event: Event<'_>| {
+                watch(&event);
+                match event {
+                    Event::Progress(progress) => report(progress),
+                    Event::Training(_) | Event::Sampling(_) => ControlFlow::Continue(()),
+                }
             };
             asked.answer(&library, &mut observer).map_err(|error| error_chain(&error))
         })?;

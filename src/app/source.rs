@@ -138,7 +138,7 @@ impl Source {
         let job = Job::spawn("load", wake, move |report| {
             let mut observer = |event: Event<'_>| match event {
                 Event::Progress(progress) => report(progress),
-                Event::Training(_) => ControlFlow::Continue(()),
+                Event::Training(_) | Event::Sampling(_) => ControlFlow::Continue(()),
             };
             read(&file, (chosen, &maps), &library, &mut observer)
         });

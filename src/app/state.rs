@@ -20,6 +20,9 @@ use crate::app::kept::{KeptStatus, ModelsDialog};
 use crate::app::latest::Latest;
 use crate::app::network::Network;
 use crate::app::path_dialog::PathDialog;
+use crate::app::reconstruction::{
+    ReconstructionProject, ReconstructionSession, ReconstructionView,
+};
 use crate::app::recording::OverlaidRecording;
 use crate::app::replay::Replays;
 use crate::app::response::{DensityChoice, ResponseProject, ResponseSession, ResponseView};
@@ -130,6 +133,9 @@ pub struct Project {
     pub force: ForceProject,
     /// Settings of the response network: the forecast, the model, the training and the comparison.
     pub response: ResponseProject,
+    /// Evidence and settings of the reconstruction.
+    #[serde(skip_serializing_if = "ReconstructionProject::is_default")]
+    pub reconstruction: ReconstructionProject,
 }
 
 impl Default for Project {
@@ -152,6 +158,7 @@ impl Default for Project {
             steering_ratio: None,
             force: ForceProject::default(),
             response: ResponseProject::default(),
+            reconstruction: ReconstructionProject::default(),
         }
     }
 }
@@ -176,6 +183,8 @@ pub struct View {
     pub force: ForceView,
     /// How the response network is shown.
     pub response: ResponseView,
+    /// How the reconstruction is shown.
+    pub reconstruction: ReconstructionView,
     /// The network that the training pane shows.
     pub trained: Network,
     /// The cases that were opened or saved last, the latest first.
@@ -203,6 +212,7 @@ impl Default for View {
             listed: None,
             force: ForceView::default(),
             response: ResponseView::default(),
+            reconstruction: ReconstructionView::default(),
             trained: Network::default(),
             recent: Vec::new(),
             column_maps: ColumnMaps::default(),
@@ -233,6 +243,8 @@ pub struct Session {
     pub force: ForceSession,
     /// Model, forecast, training and comparison of the response network.
     pub response: ResponseSession,
+    /// Evidence, run and answer of the reconstruction.
+    pub reconstruction: ReconstructionSession,
     /// Models, comparisons and evaluations that are kept in the user's data folder.
     pub kept: KeptStatus,
     /// Trainings that have not ended and can go on.

@@ -237,6 +237,7 @@ fn tell(
             let _ = sender.send((*told).clone());
             Progress::default()
         }
+        Event::Sampling(_) => Progress::default(),
     };
     if report(progress.clone()).is_break() {
         return ControlFlow::Break(());

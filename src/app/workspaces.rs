@@ -16,6 +16,8 @@ pub enum Workspace {
     /// Build a case and see where the struck vehicle goes.
     #[default]
     Case,
+    /// Go from the evidence of a collision back to the speeds before it.
+    Reconstruct,
     /// Look through data sets and recordings.
     Data,
     /// Train, evaluate and compare the networks.
@@ -24,12 +26,13 @@ pub enum Workspace {
 
 impl Workspace {
     /// Every workspace, in the order in which they are offered.
-    pub const ALL: [Self; 3] = [Self::Case, Self::Data, Self::Models];
+    pub const ALL: [Self; 4] = [Self::Case, Self::Reconstruct, Self::Data, Self::Models];
 
     /// The name that is shown.
     pub fn title(self) -> &'static str {
         match self {
             Self::Case => "Case",
+            Self::Reconstruct => "Reconstruct",
             Self::Data => "Data",
             Self::Models => "Models",
         }
@@ -39,6 +42,7 @@ impl Workspace {
     pub fn icon(self) -> Icon {
         match self {
             Self::Case => Icon::CarFront,
+            Self::Reconstruct => Icon::History,
             Self::Data => Icon::Database,
             Self::Models => Icon::BrainCircuit,
         }
@@ -48,6 +52,7 @@ impl Workspace {
     pub fn purpose(self) -> &'static str {
         match self {
             Self::Case => "Build a case and see where the struck vehicle goes",
+            Self::Reconstruct => "Go from the evidence of a collision to the speeds before it",
             Self::Data => "Look through data sets and recordings, and compare them with the model",
             Self::Models => "Train, evaluate and compare the networks",
         }
@@ -57,6 +62,7 @@ impl Workspace {
     pub fn default_layout(self) -> Layout {
         match self {
             Self::Case => case_layout(),
+            Self::Reconstruct => reconstruct_layout(),
             Self::Data => data_layout(),
             Self::Models => models_layout(),
         }
@@ -70,14 +76,15 @@ pub struct Workspaces {
     /// The workspace that is shown.
     pub shown: Workspace,
     case: Layout,
+    reconstruct: Layout,
     data: Layout,
     models: Layout,
 }
 
 impl Default for Workspaces {
     fn default() -> Self {
-        let [case, data, models] = Workspace::ALL.map(Workspace::default_layout);
-        Self { shown: Workspace::default(), case, data, models }
+        let [case, reconstruct, data, models] = Workspace::ALL.map(Workspace::default_layout);
+        Self { shown: Workspace::default(), case, reconstruct, data, models }
     }
 }
 
@@ -86,6 +93,7 @@ impl Workspaces {
     pub fn layout(&self, workspace: Workspace) -> &Layout {
         match workspace {
             Workspace::Case => &self.case,
+            Workspace::Reconstruct => &self.reconstruct,
             Workspace::Data => &self.data,
             Workspace::Models => &self.models,
         }
@@ -95,6 +103,7 @@ impl Workspaces {
     pub fn layout_mut(&mut self, workspace: Workspace) -> &mut Layout {
         match workspace {
             Workspace::Case => &mut self.case,
+            Workspace::Reconstruct => &mut self.reconstruct,
             Workspace::Data => &mut self.data,
             Workspace::Models => &mut self.models,
         }
@@ -179,6 +188,17 @@ fn case_layout() -> Layout {
     let parts = [(tree, 0.16), (middle, 0.59), (forms, 0.25)];
     let root = build.linear(LinearDir::Horizontal, &parts);
     build.layout("case panes", root)
+}
+
+/// The evidence at the left, the scene in the middle, the speeds at the right.
+fn reconstruct_layout() -> Layout {
+    let mut build = Builder(Tiles::default());
+    let evidence = build.tabs(&[Pane::Evidence]);
+    let scene = build.tabs(&[Pane::ReconstructedScene]);
+    let speeds = build.tabs(&[Pane::Speeds]);
+    let parts = [(evidence, 0.24), (scene, 0.34), (speeds, 0.42)];
+    let root = build.linear(LinearDir::Horizontal, &parts);
+    build.layout("reconstruction panes", root)
 }
 
 /// Data sets and their cases at the left, the plots of one case beside them.

@@ -123,10 +123,8 @@ mod tests {
         scenario.name = "a \"quoted\"\nname \\ µ".to_owned();
         scenario.target_y_m = -1e-9;
         scenario.contact.friction_model = FrictionModel::Paper;
-        scenario.ending = Some(Ending {
-            brake: Some(Braking { start_s: 0.1 + 0.2, share_of_friction: 1.2, rise_s: 0.5 }),
-            ..Ending::default()
-        });
+        scenario.ending =
+            Some(Ending { brake: Some(Braking::new(0.1 + 0.2, 1.2, 0.5)), ..Ending::default() });
         scenario.bullet_ending = scenario.ending.clone();
         scenario.contact.restitution_form = RestitutionForm::CommonVelocity;
         for location in [

@@ -12,6 +12,7 @@ mod model_comparison;
 mod motion;
 mod motion_forecast;
 mod reconstruction;
+mod reconstruction_scene;
 mod scene;
 mod statistics;
 mod training;
@@ -34,8 +35,10 @@ pub use motion_forecast::{
     FORECAST_CHANNELS, ForecastChannel, MotionForecastFigure, forecast_channel_figure,
     forecast_readout, forecast_scene_figure, forecast_surroundings,
 };
-pub use reconstruction::{
-    ReconstructedPaths, budget_figure, marginal_figure, prior_values, reconstruction_scene_figure,
+pub use reconstruction::{budget_figure, marginal_figure, pair_figure, prior_values};
+pub use reconstruction_scene::{
+    FollowedPath, ReconstructedPaths, ReconstructionScene, STRIKING_AT_REST, STRUCK_AT_REST,
+    reconstruction_scene_figure,
 };
 pub use scene::{SceneFigure, SceneVehicle, pose_at, scene_figure, vehicle_outline};
 pub use statistics::{CurveStatistics, curve_statistics};

@@ -52,6 +52,8 @@ ranges! {
         "angle of the steering wheel over that of the road wheels; 12 to 20 in cars";
     BRAKE_SHARE: "braking" = real(Quantity::Ratio, [0.0, 3.0]),
         "braking force over the largest that the road can hold; more than 1 locks the wheels";
+    BRAKE_FRONT_SHARE: "front share of the braking" = real(Quantity::Ratio, [0.0, 1.0]),
+        "share of the front axle in the braking force";
     BRAKE_RISE: "rise of a control" = real(Quantity::Time, [0.01, 60.0]),
         "time over which brake or steering reach their full value";
     DRAG_SHARE: "drag" = real(Quantity::Ratio, [0.0, 3.0]),
@@ -157,6 +159,8 @@ ranges! {
         "cornering stiffness over vertical load";
     SLIDING_FRICTION_RATIO: "sliding friction ratio" = real(Quantity::Ratio, [0.1, 1.0]),
         "sliding friction over peak friction";
+    LONGITUDINAL_FRICTION_RATIO: "longitudinal friction ratio" = real(Quantity::Ratio, [0.5, 2.0]),
+        "friction of a wheel along its plane over that across it";
     ROLLING_RADIUS: "rolling radius" = real(Quantity::Length, [0.02, 1.0]),
         "rolling radius of the tyres";
     WHEEL_INERTIA: "wheel inertia" = in_unit("kg m²", [0.0, 100.0]),
@@ -245,6 +249,8 @@ ranges! {
         "how well a speed was measured";
     MASS_SIGMA: "standard deviation of a mass" = real(Quantity::Mass, [0.01, 10_000.0]),
         "how well a mass is known";
+    SCALE_SIGMA: "standard deviation of a scale" = real(Quantity::Ratio, [1e-4, 0.2]),
+        "error that two masses share, as a share of them";
     FRICTION_SIGMA: "standard deviation of friction" = real(Quantity::Ratio, [0.001, 1.0]),
         "how well the friction of the road is known";
     EVIDENCE_TIME: "time of evidence" = real(Quantity::Time, [0.0, 60.0]),

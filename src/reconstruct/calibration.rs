@@ -41,20 +41,25 @@ impl Ranks {
         self.0.len()
     }
 
+    /// How many ranks fall into each of some bins.
+    pub fn counts(&self, n_bins: usize) -> Vec<usize> {
+        let mut counts = vec![0; n_bins];
+        self.0.iter().for_each(|rank| counts[rank * n_bins / (RANKED + 1)] += 1);
+        counts
+    }
+
     /// Probability that uniform ranks differ from uniformity by as much as these, by Pearson's χ²
     /// over bins of the ranks.
     ///
     /// - `n_bins`: 2, 4, 5, 10 or 20; each should hold five cases or more on average.
     /// - returns `None` for another number of bins, or without cases.
     pub fn p_value(&self, n_bins: usize) -> Option<f64> {
-        let n_ranks = RANKED + 1;
-        if self.0.is_empty() || n_bins < 2 || !n_ranks.is_multiple_of(n_bins) {
+        if self.0.is_empty() || n_bins < 2 || !(RANKED + 1).is_multiple_of(n_bins) {
             return None;
         }
-        let mut counts = vec![0.0; n_bins];
-        self.0.iter().for_each(|rank| counts[rank * n_bins / n_ranks] += 1.0);
         let expected = self.0.len() as f64 / n_bins as f64;
-        let chi_square: f64 = counts.iter().map(|n| (n - expected).powi(2) / expected).sum();
+        let square = |n: usize| (n as f64 - expected).powi(2) / expected;
+        let chi_square: f64 = self.counts(n_bins).into_iter().map(square).sum();
         Some(ChiSquared::new((n_bins - 1) as f64).ok()?.sf(chi_square))
     }
 }

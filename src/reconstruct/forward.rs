@@ -18,6 +18,7 @@ use crate::numerics::wrap_angle_rad;
 use crate::reconstruct::evidence::Evidence;
 use crate::reconstruct::prior::towards;
 use crate::reconstruct::{Cars, Latent, LatentValues, Prior};
+use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::{
     Braking, ContactLoad, ContactPoint, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Ending,
     EngineBraking, HeldSteer, Manoeuvre, Path, PathLimit, SimulationRun, VehicleParameters,
@@ -42,6 +43,9 @@ const STEERED_FROM_S: f64 = 0.1;
 
 /// Longest motion that is followed, s.
 const LONGEST_MOTION_S: f64 = 40.0;
+
+/// Longest time that wheels need to stop turning, s.
+const LONGEST_LOCK_DELAY_S: f64 = 1.0;
 
 /// Samples of a pulse.
 const PULSE_SAMPLES: f64 = 16.0;
@@ -288,7 +292,7 @@ impl ForwardModel {
     fn prepared(&self, values: LatentValues) -> Prepared {
         let impact = self.impact(&values);
         let vehicle = self.vehicle(&values);
-        let ending = self.ending(&values);
+        let ending = self.ending(&values, &vehicle);
         let [x_m, y_m] = impact.contact_m;
         let load = contact_load(impact.solution.impulse_n_s, &values, [x_m, y_m]);
         let manoeuvre = Manoeuvre {
@@ -312,6 +316,7 @@ impl ForwardModel {
         let tires = &mut vehicle.tires;
         tires.friction = values.get(Latent::RoadFriction) * values.get(Latent::TireFrictionFactor);
         tires.sliding_friction_ratio = values.get(Latent::SlidingRatio);
+        tires.longitudinal_friction_ratio = values.get(Latent::LongitudinalFrictionRatio);
         tires.rolling_resistance = values.get(Latent::RollingResistance);
         tires.cornering_coefficient_front_per_rad *= values.get(Latent::FrontCorneringFactor);
         tires.cornering_coefficient_rear_per_rad *= values.get(Latent::RearCorneringFactor);
@@ -319,7 +324,7 @@ impl ForwardModel {
     }
 
     /// What happens to the wheels of the struck car.
-    fn ending(&self, values: &LatentValues) -> Ending {
+    fn ending(&self, values: &LatentValues, vehicle: &VehicleParameters) -> Ending {
         let locked =
             |wheel| DamagedWheel { wheel, start_s: BLOCKED_FROM_S, drag_share_of_friction: None };
         let damage = match &self.blocked {
@@ -333,10 +338,18 @@ impl ForwardModel {
                 values.blocked_of_two().map(caught).into_iter().collect()
             }
         };
-        let brake = values.brakes().then(|| Braking {
-            start_s: values.get(Latent::BrakeStart),
-            share_of_friction: values.get(Latent::BrakeShare),
-            rise_s: values.get(Latent::BrakeRise),
+        let brake = values.brakes().then(|| {
+            let brake = Braking::new(
+                values.get(Latent::BrakeStart),
+                values.get(Latent::BrakeShare) * values.get(Latent::LongitudinalFrictionRatio),
+                values.get(Latent::BrakeRise),
+            );
+            let shift = values.get(Latent::FrontBrakeShift);
+            Braking {
+                front_share: Some(brake.ideal_front_share(vehicle) + shift),
+                lock_delay_s: lock_delay_s(vehicle, &brake, values.get(Latent::TargetSpeed)),
+                ..brake
+            }
         });
         let engine = brake.is_none().then(|| EngineBraking {
             deceleration_m_s2: values.get(Latent::EngineBraking),
@@ -359,11 +372,11 @@ impl ForwardModel {
         let mass_kg = values.get(Latent::BulletMass);
         let mut vehicle = self.cars.striking.parameters.clone().with_mass(mass_kg, None);
         vehicle.tires.friction = values.get(Latent::RoadFriction);
-        let brake = Some(Braking {
-            start_s: values.get(Latent::BulletBrakeStart),
-            share_of_friction: values.get(Latent::BulletBrakeShare),
-            rise_s: DEFAULT_BRAKE_RISE_S,
-        });
+        let brake = Some(Braking::new(
+            values.get(Latent::BulletBrakeStart),
+            values.get(Latent::BulletBrakeShare),
+            DEFAULT_BRAKE_RISE_S,
+        ));
         let (sin, cos) = impact.heading_difference_rad.sin_cos();
         let in_body = |[x, y]: [f64; 2]| [x * cos + y * sin, y * cos - x * sin];
         let [vx_m_s, vy_m_s] = in_body(impact.bullet_velocity_m_s);
@@ -385,6 +398,25 @@ impl ForwardModel {
         };
         (vehicle, manoeuvre)
     }
+}
+
+/// Time that wheels need to stop turning under a force that the road cannot hold, s:
+///
+/// ```text
+/// t = 4 m_w v / (F_b − (1 − d/2) κ μ m g)        m_w = I_w/R²
+/// ```
+///
+/// d: share of the friction that is lost while the wheel goes over from turning to sliding.
+fn lock_delay_s(vehicle: &VehicleParameters, brake: &Braking, speed_m_s: f64) -> f64 {
+    let tires = &vehicle.tires;
+    let lost = 1.0 - tires.sliding_friction_ratio.min(1.0);
+    let held = tires.longitudinal_friction_ratio * (1.0 - (lost / 2.0).max(0.05));
+    let beyond = brake.share_of_friction - held;
+    if beyond <= 0.0 {
+        return 0.0;
+    }
+    let beyond_n = beyond * tires.friction * vehicle.mass.mass_kg * STANDARD_GRAVITY_M_S2;
+    (4.0 * tires.wheel_mass_kg() * speed_m_s / beyond_n).min(LONGEST_LOCK_DELAY_S)
 }
 
 /// Contact point from the CG of the struck car, m, and direction of the normal into it, rad.

@@ -1,25 +1,15 @@
 use super::*;
-use crate::data::{Channel, TomlFile};
+use crate::data::Channel;
+use crate::reconstruct::evidence::examples::{SPIN, read};
 use crate::reconstruct::sampler::Target;
-use crate::reconstruct::{Discrepancy, EvidenceFit, ReconstructionTarget};
+use crate::reconstruct::{Discrepancy, EvidenceFit, PriorComponent, ReconstructionTarget};
 use crate::vehicle::Integrator;
 
-const CASE: &str = r#"
-[road]
-friction = 0.7
-[struck_car]
-mass_kg = 1900
-[striking_car]
-mass_kg = 1700
-[damage]
-side = "right"
-x_m = -1.7
-[rest]
-x_m = 45
-y_m = -6
-heading_rad = -2.9
-[after]
-blocked_wheels = ["RR"]
+/// What is found beside the rest pose: a locked wheel, marks and a change of velocity.
+const FOUND: &str = r#"
+delta_v_y_min_m_s = 1.0
+delta_v_y_max_m_s = 1.5
+sensor_y_m = 0.3
 [[mark]]
 wheel = "RR"
 kind = "locked"
@@ -27,15 +17,15 @@ points_m = [[1.0, -0.7], [10, -0.8], [20, -1.5], [40, -5.5]]
 [[mark]]
 wheel = "FL"
 points_m = [[8, 0.6], [20, -1.0], [30, -2.5]]
-[edr]
-delta_v_y_min_m_s = 1.0
-delta_v_y_max_m_s = 1.5
-sensor_y_m = 0.3
 "#;
 
+fn case() -> String {
+    let (before, _) = SPIN.split_once("speed_before").unwrap();
+    before.replace("blocked_wheels = []", "blocked_wheels = [\"RR\"]") + FOUND
+}
+
 fn evidence() -> Evidence {
-    let file = TomlFile { path: std::path::Path::new("case.toml"), text: CASE };
-    Evidence::from_toml(file).unwrap()
+    read(&case())
 }
 
 fn target(evidence: &Evidence) -> ReconstructionTarget {
@@ -72,6 +62,27 @@ fn a_particle_moves_as_the_simulation_of_its_car() {
         assert!(off_m < 0.05 + moved_m, "particle {i}: {off_m} m off at {} s", last.time_s);
         let momentum = motion.impact.solution.impulse_n_s[1];
         assert!(momentum >= 0.0, "particle {i}: pushed out of the struck side");
+    }
+}
+
+#[test]
+fn one_scale_that_weighed_both_cars_errs_for_both_alike() {
+    let mut weighed = evidence();
+    weighed.shared_scale_sigma = Some(0.01);
+    let target = target(&weighed);
+    let prior = target.model().prior();
+    let is_scale = |of: &PriorComponent| of.latent == Latent::MassScaleFactor;
+    let scale = prior.components().iter().position(is_scale).unwrap();
+    let mut z = particles(target.dim()).swap_remove(0);
+    let masses = |z: &[f64]| {
+        let values = prior.values(z);
+        [Latent::TargetMass, Latent::BulletMass].map(|mass| values.get(mass))
+    };
+    z[scale] = 0.0;
+    let before = masses(&z);
+    z[scale] = 2.0;
+    for (after, before) in masses(&z).iter().zip(before) {
+        assert!((after / before / 0.02_f64.exp() - 1.0).abs() < 1e-4, "{after} {before}");
     }
 }
 
@@ -133,9 +144,8 @@ fn the_quantities_of_the_prior_give_a_closed_collision_at_each_side() {
         ("rear", "y_m = -0.3"),
     ] {
         let text =
-            CASE.replace("side = \"right\"\nx_m = -1.7", &format!("side = \"{side}\"\n{place}"));
-        let file = TomlFile { path: std::path::Path::new("case.toml"), text: &text };
-        let target = target(&Evidence::from_toml(file).unwrap());
+            case().replace("side = \"right\"\nx_m = -1.7", &format!("side = \"{side}\"\n{place}"));
+        let target = target(&read(&text));
         let prior = target.model().prior();
         let approach = particles(target.dim())
             .iter()

@@ -10,9 +10,11 @@
 //! - `forward`: from z to the motion of both cars;
 //! - `likelihood`: how well a motion goes with the evidence;
 //! - [`sampler`]: draws from the posterior;
-//! - `hand`: what one computes by hand, as a baseline.
+//! - `hand`: what one computes by hand, as a baseline;
+//! - [`evaluate`]: how well all of these do on staged collisions, of which the truth is known.
 
 pub mod baseline;
+pub mod evaluate;
 pub mod evidence;
 pub mod sampler;
 

@@ -1,19 +1,20 @@
 //! What the particles say: quantities with their intervals, modes, fit, and what further evidence
 //! would bring.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::numerics::quantile_of_sorted;
 use crate::reconstruct::sampler::Particles;
 use crate::reconstruct::{
-    EvidenceFit, ImpactState, Latent, LatentValues, Narrowing, ReconstructionTarget, modes_by,
+    EvidenceFit, ForwardModel, ImpactState, Latent, LatentValues, Narrowing, ReconstructionTarget,
+    modes_by,
 };
-use crate::units::Quantity;
+use crate::units::{Quantity, UnitSystem};
 
 macro_rules! quantities {
     ($($(#[$doc:meta])* $name:ident: $key:literal, $unit:literal, $of:expr;)+) => {
         /// A quantity that a reconstruction asks for.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
         #[serde(rename_all = "snake_case")]
         pub enum ReconstructedQuantity {
             $($(#[$doc])* $name,)+
@@ -67,10 +68,10 @@ impl ReconstructedQuantity {
             Self::TargetSpeed => "speed of the struck car",
             Self::BulletSpeed => "speed of the striking car",
             Self::ClosingSpeed => "closing speed",
-            Self::HeadingDifference => "heading of the striking car against the struck one",
+            Self::HeadingDifference => "relative heading of the cars",
             Self::RoadFriction => "friction of the road",
             Self::DeltaVTarget => "Δv of the struck car",
-            Self::TargetYawRate => "yaw rate of the struck car after the impact",
+            Self::TargetYawRate => "yaw rate after the impact",
         }
     }
 
@@ -117,6 +118,9 @@ pub struct Mode {
     pub standard_error: f64,
     /// The quantities within it.
     pub quantities: Vec<QuantityEstimate>,
+    /// Indices of its particles, which are not told.
+    #[serde(skip)]
+    pub members: Vec<usize>,
 }
 
 /// What one more piece of evidence would bring.
@@ -154,9 +158,14 @@ const FIT_PARTICLES: usize = 300;
 impl Posterior {
     /// What follows from particles.
     pub fn of(target: &ReconstructionTarget, particles: &Particles) -> Self {
-        let model = target.model();
-        let values: Vec<LatentValues> =
-            particles.z.iter().map(|z| model.prior().values(z)).collect();
+        Self::of_points(target.model(), &particles.z)
+    }
+
+    /// What follows from points.
+    ///
+    /// - `z`: standard normal variables of each point, `[n][dim]`.
+    pub fn of_points(model: &ForwardModel, z: &[Vec<f64>]) -> Self {
+        let values: Vec<LatentValues> = z.iter().map(|z| model.prior().values(z)).collect();
         let impacts = values.iter().map(|values| model.impact(values)).collect();
         Self { values, impacts }
     }
@@ -164,6 +173,15 @@ impl Posterior {
     /// Values of a quantity, one for each particle.
     pub fn of_quantity(&self, quantity: ReconstructedQuantity) -> Vec<f64> {
         self.values.iter().zip(&self.impacts).map(|(v, impact)| quantity.of(v, impact)).collect()
+    }
+
+    /// The interval that holds 90 % of a quantity that the motion depends on; `None` where the case does
+    /// not have it.
+    pub fn interval_90_of(&self, latent: Latent) -> Option<[f64; 2]> {
+        let mut values: Vec<f64> = self.values.iter().map(|values| values.get(latent)).collect();
+        values.sort_by(f64::total_cmp);
+        let ends = [quantile_of_sorted(&values, 0.05)?, quantile_of_sorted(&values, 0.95)?];
+        ends.iter().all(|end| end.is_finite()).then_some(ends)
     }
 
     /// Every quantity with its intervals.
@@ -195,6 +213,7 @@ impl Posterior {
                 probability: mode.probability,
                 standard_error: mode.standard_error,
                 quantities: self.quantities_of(&mode.members),
+                members: mode.members,
             })
             .collect()
     }
@@ -236,11 +255,55 @@ impl Posterior {
     }
 }
 
+impl BudgetItem {
+    /// The measurement that would give the quantity.
+    pub fn measurement(&self) -> &'static str {
+        match self.known {
+            "road_friction" => "friction test",
+            "tire_friction_factor" => "tyre test",
+            "target_mass_kg" => "struck car weighed",
+            "bullet_mass_kg" => "striking car weighed",
+            "contact_along_m" => "damage measured",
+            "brake_start_s" => "braking timed",
+            "delta_v_target_m_s" => "Δv recorded",
+            "heading_difference_rad" => "angle measured",
+            "target_speed_m_s" => "speed recorded",
+            other => other,
+        }
+    }
+
+    /// What kind of quantity it is.
+    pub fn quantity(&self) -> Quantity {
+        let asked = ReconstructedQuantity::ALL.iter().find(|of| of.key() == self.known);
+        let open = Latent::ALL.iter().find(|of| of.key() == self.known);
+        let open = open.map_or(Quantity::Ratio, |latent| latent.quantity());
+        asked.map_or(open, |quantity| quantity.quantity())
+    }
+
+    /// The measurement with its standard deviation, such as `friction test, ± 0.02`.
+    pub fn shown(&self, units: UnitSystem) -> String {
+        let unit = self.quantity().display_unit(units);
+        let sigma = unit.from_si(self.sigma);
+        let decimals = (1 - sigma.log10().floor() as i32).clamp(0, 6) as usize;
+        let mut text = format!("{sigma:.decimals$}");
+        if text.contains('.') {
+            text.truncate(text.trim_end_matches('0').trim_end_matches('.').len());
+        }
+        format!("{}, ± {text} {}", self.measurement(), unit.symbol).trim_end().to_owned()
+    }
+}
+
 impl QuantityEstimate {
     /// Intervals of equally likely values; `None` without values.
     fn of(quantity: ReconstructedQuantity, mut values: Vec<f64>) -> Option<Self> {
         values.sort_by(f64::total_cmp);
-        let at = |share: f64| quantile_of_sorted(&values, share);
+        Self::by(quantity, |share| quantile_of_sorted(&values, share))
+    }
+
+    /// Median and intervals of a distribution; `None` if it has no quantiles.
+    ///
+    /// - `at`: the value below which the quantity lies with a probability.
+    pub fn by(quantity: ReconstructedQuantity, at: impl Fn(f64) -> Option<f64>) -> Option<Self> {
         let interval = |share: f64| Some([at((1.0 - share) / 2.0)?, at((1.0 + share) / 2.0)?]);
         Some(Self {
             name: quantity.key(),

@@ -15,15 +15,18 @@
 //! | restitution | uniform, 0.24 to 0.66 up to 5 m/s of approach, falling to 0 to 0.3 at 15 m/s | [`ContactDistribution`], [`Brach2011`](crate::bibliography::Brach2011) |
 //! | friction of the contact | normal, 0.28 ± 0.15 | [`ContactDistribution`] |
 //! | normal of the contact turned towards where the striking car points | normal, 9° ± 7° hit behind the CG, else 0° ± 7° | a corner that digs in: tuning cases |
-//! | friction of the tyres over that of the road | log-normal, 1.04, factor 1.09 | other tyres, other direction of sliding: tuning cases |
+//! | friction of the tyres over that of the road | log-normal, 1.02, factor 1.09 | other tyres: tuning cases |
+//! | friction of a wheel along its plane over that across it | log-normal, 1.15, factor 1.07 | tuning cases |
 //! | duration of the contact | log-normal, 0.12 s, factor 1.35 | finite-element runs of the project |
 //! | driver brakes | 3 of 4 | assumed |
 //! | … from | log-normal, 0.9 s, factor 1.6 | assumed: reaction to a surprise |
 //! | … with a share of the largest force | log-normal, 0.8, factor 2.2 | locks the wheels in two of five |
 //! | … that rises within | log-normal, 0.4 s, factor 1.6 | usual emergency braking to half-hearted |
+//! | … more of it on the front axle than where both axles reach the limit together | normal, 0 ± 0.05 of the whole | either axle may lock first |
 //! | engine braking where he does not | uniform, 0 to 0.8 m/s² | neutral to third gear |
 //! | front wheels turned by | normal, 0 ± 0.9° | toe, play, a hand on the wheel |
 //! | each wheel near the damage blocked | 1 of 5, if nobody looked | assumed |
+//! | one scale that weighed both cars, over what it shows | log-normal, 1, as said | [`Evidence::shared_scale_sigma`] |
 //! | yaw inertia, tyre curves, sliding friction, rolling resistance | the rules of the data sheet with their scatter | [`DataSheet`](crate::vehicle::DataSheet) |
 
 use std::f64::consts::PI;
@@ -36,10 +39,11 @@ use crate::reconstruct::cars::Cars;
 use crate::reconstruct::evidence::{
     DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, DEFAULT_MASS_SHARE, DriverBraked, Evidence, Measured,
 };
+use crate::units::Quantity;
 use crate::vehicle::sheet::SheetQuantity;
 
 macro_rules! latents {
-    ($($(#[$doc:meta])* $name:ident: $key:literal, $unit:literal;)+) => {
+    ($($(#[$doc:meta])* $name:ident: $key:literal, $unit:literal, $label:literal;)+) => {
         /// A quantity that the motion depends on.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
         #[serde(rename_all = "snake_case")]
@@ -60,72 +64,99 @@ macro_rules! latents {
             pub const fn unit(self) -> &'static str {
                 match self { $(Self::$name => $unit),+ }
             }
+
+            /// What it is called.
+            pub const fn label(self) -> &'static str {
+                match self { $(Self::$name => $label),+ }
+            }
         }
     };
 }
 
 latents! {
     /// Speed of the struck car before the impact, m/s.
-    TargetSpeed: "target_speed_m_s", "m/s";
+    TargetSpeed: "target_speed_m_s", "m/s", "speed of the struck car";
     /// Speed of the striking car before the impact, m/s, where it has a range of its own.
-    BulletSpeed: "bullet_speed_m_s", "m/s";
+    BulletSpeed: "bullet_speed_m_s", "m/s", "speed of the striking car";
     /// Speed of the striking car beyond that of the struck car, m/s, where it has none.
-    SpeedDifference: "speed_difference_m_s", "m/s";
+    SpeedDifference: "speed_difference_m_s", "m/s", "striking car faster by";
     /// Heading of the striking car, rad, turned towards the struck side.
-    HeadingTowards: "heading_towards_rad", "rad";
+    HeadingTowards: "heading_towards_rad", "rad", "striking car turned in by";
     /// Direction in which the striking car moves beside its heading, rad, towards the struck side.
-    SideslipTowards: "sideslip_towards_rad", "rad";
+    SideslipTowards: "sideslip_towards_rad", "rad", "striking car moves inwards by";
     /// First contact along the struck side, from the CG, m.
-    ContactAlong: "contact_along_m", "m";
+    ContactAlong: "contact_along_m", "m", "contact along the side";
     /// First contact at right angles to the struck side, from the CG, m.
-    ContactAcross: "contact_across_m", "m";
+    ContactAcross: "contact_across_m", "m", "contact across the side";
     /// Place of the coefficient of restitution between its bounds, 0 to 1.
-    RestitutionShare: "restitution_share", "";
+    RestitutionShare: "restitution_share", "", "restitution within its bounds";
     /// Friction limit of the contact.
-    ContactFriction: "contact_friction", "";
+    ContactFriction: "contact_friction", "", "friction of the contact";
     /// By how much the normal of the contact is turned from that of the struck side towards where the
     /// striking car points, rad.
-    NormalTilt: "normal_tilt_rad", "rad";
+    NormalTilt: "normal_tilt_rad", "rad", "normal of the contact turned by";
     /// Duration of the contact, s.
-    PulseDuration: "pulse_duration_s", "s";
+    PulseDuration: "pulse_duration_s", "s", "duration of the contact";
     /// Peak friction of the road.
-    RoadFriction: "road_friction", "";
+    RoadFriction: "road_friction", "", "friction of the road";
     /// Friction of the tyres of the struck car over that of the road.
-    TireFrictionFactor: "tire_friction_factor", "";
+    TireFrictionFactor: "tire_friction_factor", "", "tyre friction over that of the road";
     /// Mass of the struck car, kg.
-    TargetMass: "target_mass_kg", "kg";
+    TargetMass: "target_mass_kg", "kg", "mass of the struck car";
     /// Mass of the striking car, kg.
-    BulletMass: "bullet_mass_kg", "kg";
+    BulletMass: "bullet_mass_kg", "kg", "mass of the striking car";
+    /// True weight over what the one scale that weighed both cars shows: a factor of both masses.
+    MassScaleFactor: "mass_scale_factor", "", "true weight over that of the scale";
     /// Yaw inertia of the struck car over that of its data sheet.
-    YawInertiaFactor: "yaw_inertia_factor", "";
+    YawInertiaFactor: "yaw_inertia_factor", "", "yaw inertia over the estimate";
     /// Cornering coefficient of the front tyres over that of the data sheet.
-    FrontCorneringFactor: "front_cornering_factor", "";
+    FrontCorneringFactor: "front_cornering_factor", "", "front cornering over the estimate";
     /// The same of the rear tyres.
-    RearCorneringFactor: "rear_cornering_factor", "";
+    RearCorneringFactor: "rear_cornering_factor", "", "rear cornering over the estimate";
     /// Sliding friction over peak friction.
-    SlidingRatio: "sliding_friction_ratio", "";
+    SlidingRatio: "sliding_friction_ratio", "", "sliding over peak friction";
+    /// Friction of a wheel along its plane over that across it.
+    LongitudinalFrictionRatio: "longitudinal_friction_ratio", "", "tyre friction along over across";
     /// Rolling resistance over vertical load.
-    RollingResistance: "rolling_resistance", "";
+    RollingResistance: "rolling_resistance", "", "rolling resistance";
     /// Whether the driver brakes: below its threshold he does.
-    BrakeDecision: "brake_decision", "";
+    BrakeDecision: "brake_decision", "", "whether the driver brakes";
     /// When he begins, s after the first contact.
-    BrakeStart: "brake_start_s", "s";
+    BrakeStart: "brake_start_s", "s", "driver brakes from";
     /// Braking force over the largest that the road can hold.
-    BrakeShare: "brake_share", "";
+    BrakeShare: "brake_share", "", "braking over what the road holds";
     /// How long the braking force rises, s.
-    BrakeRise: "brake_rise_s", "s";
+    BrakeRise: "brake_rise_s", "s", "braking rises within";
+    /// Share of the front axle in the braking force beyond that with which both axles reach the limit
+    /// together.
+    FrontBrakeShift: "front_brake_shift", "", "front share of the brakes, beyond";
     /// Deceleration by the engine, m/s².
-    EngineBraking: "engine_braking_m_s2", "m/s²";
+    EngineBraking: "engine_braking_m_s2", "m/s²", "engine braking";
     /// Angle of the front wheels, rad.
-    SteerAngle: "steer_angle_rad", "rad";
+    SteerAngle: "steer_angle_rad", "rad", "angle of the front wheels";
     /// Which wheel is blocked, where nobody looked, 0 to 1.
-    BlockedWheel: "blocked_wheel", "";
+    BlockedWheel: "blocked_wheel", "", "which wheel is blocked";
     /// How far it is blocked: drag over what the road can hold; more than 1 is locked.
-    BlockedDrag: "blocked_drag", "";
+    BlockedDrag: "blocked_drag", "", "drag of the blocked wheel";
     /// When the driver of the striking car brakes, s after the first contact.
-    BulletBrakeStart: "bullet_brake_start_s", "s";
+    BulletBrakeStart: "bullet_brake_start_s", "s", "striking driver brakes from";
     /// Its braking force over the largest that the road can hold.
-    BulletBrakeShare: "bullet_brake_share", "";
+    BulletBrakeShare: "bullet_brake_share", "", "braking of the striking car";
+}
+
+impl Latent {
+    /// What kind of quantity it is.
+    pub fn quantity(self) -> Quantity {
+        match self.unit() {
+            "m/s" => Quantity::Speed,
+            "rad" => Quantity::Angle,
+            "m" => Quantity::Length,
+            "s" => Quantity::Time,
+            "kg" => Quantity::Mass,
+            "m/s²" => Quantity::Acceleration,
+            _ => Quantity::Ratio,
+        }
+    }
 }
 
 /// A quantity with its prior distribution.
@@ -166,12 +197,14 @@ const HIGHEST_SPEED_M_S: f64 = 60.0;
 /// Probability that a driver brakes of whom nothing is known.
 const BRAKE_PROBABILITY: f64 = 0.75;
 
-/// Friction of a tyre over that which was measured on the road, and its scatter: other tyres differ,
-/// and a tyre that slides along its plane differs from one that slides across it. Of the multibody cars
-/// of the tuning cases a locked wheel that slides straight ahead has 0.9 of the peak across, where the
-/// data sheet says 0.8.
-const TIRE_FRICTION_FACTOR: f64 = 1.04;
+/// Friction of a tyre over that which was measured on the road, and its scatter: other tyres differ.
+const TIRE_FRICTION_FACTOR: f64 = 1.02;
 const TIRE_FRICTION_SCATTER: f64 = 0.09;
+
+/// Friction of a wheel along its plane over that across it, and its scatter. The multibody cars of the
+/// tuning cases have 1.15 to 1.2 at the peak and 1.15 on locked wheels.
+const LONGITUDINAL_FRICTION_RATIO: f64 = 1.15;
+const LONGITUDINAL_FRICTION_SCATTER: f64 = 0.07;
 
 /// Least scatter of sliding over peak friction, for the same reason.
 const SLIDING_SCATTER: f64 = 0.08;
@@ -210,6 +243,12 @@ impl Prior {
         let mut values = self.fixed;
         for (component, z) in self.components.iter().zip(z) {
             values.set(component.latent, component.distribution.at(*z));
+        }
+        let scale = values.get(Latent::MassScaleFactor);
+        if !scale.is_nan() {
+            for mass in [Latent::TargetMass, Latent::BulletMass] {
+                values.set(mass, scale * values.get(mass));
+            }
         }
         values
     }
@@ -278,6 +317,10 @@ impl Prior {
             Latent::TireFrictionFactor,
             log_normal(TIRE_FRICTION_FACTOR, TIRE_FRICTION_SCATTER, 0.7, 1.4),
         );
+        self.add(
+            Latent::LongitudinalFrictionRatio,
+            log_normal(LONGITUDINAL_FRICTION_RATIO, LONGITUDINAL_FRICTION_SCATTER, 0.8, 1.5),
+        );
         for (latent, measured, vehicle) in [
             (Latent::TargetMass, evidence.struck_car.mass_kg, &cars.struck),
             (Latent::BulletMass, evidence.striking_car.mass_kg, &cars.striking),
@@ -286,6 +329,10 @@ impl Prior {
             let known = Measured { value: kg, sigma: DEFAULT_MASS_SHARE * kg };
             let Measured { value, sigma } = measured.unwrap_or(known);
             self.add(latent, normal(value, sigma, 0.5 * value, 1.5 * value));
+        }
+        if let Some(sigma) = evidence.shared_scale_sigma {
+            let reach = (4.0 * sigma).exp();
+            self.add(Latent::MassScaleFactor, log_normal(1.0, sigma, 1.0 / reach, reach));
         }
         for (latent, quantity) in [
             (Latent::YawInertiaFactor, SheetQuantity::YawInertia),
@@ -339,6 +386,7 @@ impl Prior {
             let start = log_normal(0.9, 0.47, 0.1, 6.0);
             self.open(Latent::BrakeStart, ranges.brake_start_s, start);
             self.add(Latent::BrakeRise, log_normal(0.4, 0.5, 0.1, 1.5));
+            self.add(Latent::FrontBrakeShift, normal(0.0, 0.05, -0.2, 0.2));
             self.open(Latent::BrakeShare, ranges.brake_share, log_normal(0.8, 0.79, 0.05, 3.0));
         }
         self.add(Latent::EngineBraking, Distribution::Uniform { low: 0.0, high: 0.8 });

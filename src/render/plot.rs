@@ -84,6 +84,10 @@ pub struct FigureResponse {
     /// Where the user has pressed the primary pointer button in the figure, and where the pointer is
     /// now, while the button is down: [x, y] in the units of the axes.
     pub drag: Option<[[f64; 2]; 2]>,
+    /// Where the pointer is in the figure: [x, y] in the units of the axes.
+    pub pointer: Option<[f64; 2]>,
+    /// Where the user has clicked in this frame with the primary button.
+    pub clicked: Option<[f64; 2]>,
     /// View `[lowest, highest]` of [x, y] in the units of the axes.
     pub view: [[f64; 2]; 2],
     /// Distance along x that a point of the screen is wide, in the unit of the axis.
@@ -164,11 +168,13 @@ pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> Figur
         let is_down = pointer.primary_down() && response.response.is_pointer_button_down_on();
         pointer.press_origin().zip(pointer.latest_pos()).filter(|_| is_down)
     });
-    let bounds = transform.bounds();
+    let is_clicked = response.response.clicked();
     FigureResponse {
         picked_x: response.inner,
         drag: pressed.map(|(from, to)| [at(from), at(to)]),
-        view: [bounds.min(), bounds.max()],
+        pointer: response.response.hover_pos().map(at),
+        clicked: response.response.interact_pointer_pos().filter(|_| is_clicked).map(at),
+        view: [transform.bounds().min(), transform.bounds().max()],
         x_per_point: transform.dvalue_dpos()[0].abs(),
     }
 }

@@ -190,6 +190,18 @@ pub enum StudyError {
         /// The data set.
         path: PathBuf,
     },
+    /// No staged collision is asked about.
+    #[error("{}: no case is chosen; expected cases in evidence/ that --cases and --only both name", path.display())]
+    NoStagedCase {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// What had happened in a staged collision is not known.
+    #[error("{}: is not there, and without it the case cannot be evaluated", path.display())]
+    NoTruth {
+        /// The file.
+        path: PathBuf,
+    },
     /// An evaluation failed.
     #[error("the evaluation failed")]
     Evaluation(#[source] Box<EvaluateError>),

@@ -38,6 +38,7 @@ mod check_report;
 mod compare;
 mod drive;
 mod evaluate_force;
+mod evaluate_reconstruction;
 mod evaluate_response;
 mod fine_tune;
 mod impact;
@@ -47,6 +48,8 @@ mod motion_source;
 mod predict_force;
 mod predict_motion;
 mod reconstruct;
+mod reconstruction_domain;
+mod reconstruction_estimates;
 mod recorded_force;
 mod simulate;
 mod simulate_dataset;
@@ -75,6 +78,9 @@ pub use evaluate_force::{
     CrossValidateForceReport, EvaluateForceAnswer, EvaluateForceReport, EvaluateForceRequest,
     EvaluatedForceCases, ForceEvaluation,
 };
+pub use evaluate_reconstruction::{
+    EvaluateReconstructionAnswer, EvaluateReconstructionReport, EvaluateReconstructionRequest,
+};
 pub use evaluate_response::{EvaluateResponseAnswer, EvaluateResponseRequest};
 pub use fine_tune::{FineTuneRequest, Learning};
 pub use impact::{BodyReport, ImpactAnswer, ImpactReport, ImpactRequest};
@@ -94,7 +100,7 @@ pub use predict_motion::{
     PredictMotionRequest,
 };
 pub use provenance::Provenance;
-pub use question::{Event, Observer, Question};
+pub use question::{Event, Observer, Question, Sampling};
 pub use reconstruct::{EvidenceChoice, ReconstructAnswer, ReconstructReport, ReconstructRequest};
 pub use recorded_force::{RecordedForceAnswer, RecordedForceRequest};
 pub use request::{Report, Request};

@@ -8,6 +8,7 @@ use serde::Serialize;
 use crate::data::Outcome;
 use crate::jobs::Progress;
 use crate::learning::TrainingReport;
+use crate::reconstruct::ReconstructionTarget;
 use crate::study::finite::{NotFinite, first_not_finite};
 use crate::study::{Library, StudyError};
 
@@ -18,6 +19,19 @@ pub enum Event<'a> {
     Progress(Progress),
     /// A training goes on.
     Training(&'a TrainingReport),
+    /// The particles of a reconstruction have moved.
+    Sampling(Sampling<'a>),
+}
+
+/// The particles of a reconstruction while they move towards the posterior. They are not the answer.
+#[derive(Debug, Clone, Copy)]
+pub struct Sampling<'a> {
+    /// The posterior.
+    pub target: &'a ReconstructionTarget,
+    /// Power of the likelihood that they have reached, 0 to 1.
+    pub temperature: f64,
+    /// The present particles, `[n][dim]`: their number varies.
+    pub z: &'a [Vec<f64>],
 }
 
 /// The callback that is told of every [`Event`] and says whether to go on.

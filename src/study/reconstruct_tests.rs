@@ -1,34 +1,11 @@
 use std::ops::ControlFlow;
-use std::path::Path;
 
 use super::*;
-use crate::data::TomlFile;
 use crate::reconstruct::evidence::Measured;
-
-const CASE: &str = r#"
-case = "tiny"
-[road]
-friction = 0.7
-[struck_car]
-mass_kg = 1900
-[striking_car]
-mass_kg = 1700
-[damage]
-side = "right"
-x_m = -1.7
-[rest]
-x_m = 45
-y_m = -6
-heading_rad = -2.9
-[after]
-blocked_wheels = []
-"#;
+use crate::reconstruct::evidence::examples::{SPIN, read};
 
 fn request(particles: usize) -> ReconstructRequest {
-    let file = TomlFile { path: Path::new("case.toml"), text: CASE };
-    let mut evidence = Evidence::from_toml(file).unwrap();
-    evidence.edr.speed_before_m_s = Some(Measured { value: 20.0, sigma: 0.8 });
-    let evidence = EvidenceChoice::Inline(Box::new(evidence));
+    let evidence = EvidenceChoice::Inline(Box::new(read(SPIN)));
     ReconstructRequest { particles, ..ReconstructRequest::new(evidence) }
 }
 

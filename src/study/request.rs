@@ -5,12 +5,12 @@ use serde::{Deserialize, Serialize};
 use crate::data::Outcome;
 use crate::study::compare::CompareReport;
 use crate::study::{
-    CheckReport, CheckRequest, CompareRequest, EvaluateForceRequest, EvaluateResponseRequest,
-    FineTuneRequest, ForceEvaluation, ImpactReport, ImpactRequest, Library, Observer,
-    PredictForceReport, PredictForceRequest, PredictMotionReport, PredictMotionRequest, Question,
-    ReconstructReport, ReconstructRequest, ResponseTrainingReport, SimulateDatasetReport,
-    SimulateDatasetRequest, SimulateReport, SimulateRequest, StudyError, TrainForceReport,
-    TrainForceRequest, TrainResponseRequest,
+    CheckReport, CheckRequest, CompareRequest, EvaluateForceRequest, EvaluateReconstructionReport,
+    EvaluateReconstructionRequest, EvaluateResponseRequest, FineTuneRequest, ForceEvaluation,
+    ImpactReport, ImpactRequest, Library, Observer, PredictForceReport, PredictForceRequest,
+    PredictMotionReport, PredictMotionRequest, Question, ReconstructReport, ReconstructRequest,
+    ResponseTrainingReport, SimulateDatasetReport, SimulateDatasetRequest, SimulateReport,
+    SimulateRequest, StudyError, TrainForceReport, TrainForceRequest, TrainResponseRequest,
 };
 
 macro_rules! questions {
@@ -79,6 +79,8 @@ questions! {
     FineTune(FineTuneRequest) -> ResponseTrainingReport;
     /// How well a force network does.
     EvaluateForce(EvaluateForceRequest) -> ForceEvaluation;
+    /// How well the speeds of staged collisions are reconstructed.
+    EvaluateReconstruction(EvaluateReconstructionRequest) -> EvaluateReconstructionReport;
     /// How well a response network does.
     EvaluateResponse(EvaluateResponseRequest) -> CompareReport;
     /// Which response model does best.

@@ -8,8 +8,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BadgeKind {
-    /// The question lies outside what a trained network has learned from. The answer goes over to
-    /// the bare physics, and its bands to the measured errors of the physics.
+    /// The question lies outside what a trained network has learned from: the answer goes over to
+    /// the bare physics, and its bands to the measured errors of the physics. Or a vehicle of a
+    /// reconstruction is none of those that rules and priors are known of.
     OutsideDomain,
     /// No contact of two bodies brings the predicted impulse about.
     ImplausibleContact,

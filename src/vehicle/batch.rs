@@ -334,7 +334,7 @@ mod tests {
     }
 
     fn endings() -> [Ending; 5] {
-        let brake = Some(Braking { start_s: 0.3, share_of_friction: 1.4, rise_s: 0.2 });
+        let brake = Some(Braking::new(0.3, 1.4, 0.2));
         let caught = |drag_share_of_friction| {
             let wheel = Wheel::FrontLeft;
             vec![DamagedWheel { wheel, start_s: 0.1, drag_share_of_friction }]

@@ -111,8 +111,12 @@ constants! {
         friction,
         /// 1 − sliding friction over peak friction.
         sliding_loss,
-        /// μ_s.
+        /// μ_s across the wheel.
         sliding_friction,
+        /// κ.
+        longitudinal_ratio,
+        /// 1/κ.
+        per_longitudinal_ratio,
         /// f_r0.
         rolling_resistance,
         /// f_r1, s/m.
@@ -166,6 +170,8 @@ impl TireParameters {
             // A sliding friction above the peak would be none.
             sliding_loss: (1.0 - self.sliding_friction_ratio).max(0.0),
             sliding_friction: self.friction * self.sliding_friction_ratio,
+            longitudinal_ratio: self.longitudinal_friction_ratio,
+            per_longitudinal_ratio: 1.0 / self.longitudinal_friction_ratio,
             rolling_resistance: self.rolling_resistance,
             rolling_resistance_s_m: self.rolling_resistance_s_m,
             rolling_resistance_s2_m2: self.rolling_resistance_s2_m2,

@@ -15,8 +15,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::ranges::{
-    BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, DRIVE_TORQUE, ENGINE_BRAKING, Range,
-    STEER_ANGLE,
+    BRAKE_FRONT_SHARE, BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, DRIVE_TORQUE,
+    ENGINE_BRAKING, Range, STEER_ANGLE,
 };
 use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::controls::{Controls, SteerHistory, WheelHistory};
@@ -62,6 +62,17 @@ pub struct Braking {
     /// How long the force rises, s.
     #[serde(default = "default_brake_rise_s")]
     pub rise_s: f64,
+    /// Share of the front axle in the braking force; as both axles reach the limit together if `None`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub front_share: Option<f64>,
+    /// How long the force stays at what the road can just hold, if it is to be more than that, s: the
+    /// wheels go on turning for that time before they lock.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub lock_delay_s: f64,
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 fn default_brake_rise_s() -> f64 {
@@ -151,6 +162,12 @@ impl Ending {
             add("brake.start_s", brake.start_s, CONTROL_TIME);
             add("brake.share_of_friction", brake.share_of_friction, BRAKE_SHARE);
             add("brake.rise_s", brake.rise_s, BRAKE_RISE);
+            if let Some(share) = brake.front_share {
+                add("brake.front_share", share, BRAKE_FRONT_SHARE);
+            }
+            if brake.lock_delay_s > 0.0 {
+                add("brake.lock_delay_s", brake.lock_delay_s, CONTROL_TIME);
+            }
         }
         if let Some(engine) = &self.engine {
             add("engine.deceleration_m_s2", engine.deceleration_m_s2, ENGINE_BRAKING);
@@ -187,7 +204,7 @@ impl Ending {
         if (Self { steer: None, ..self.clone() }).is_coasting() {
             return None;
         }
-        let brake = self.brake.into_iter().flat_map(|it| [it.start_s, it.start_s + it.rise_s]);
+        let brake = self.brake.iter().flat_map(|it| it.rises(vehicle).map(|(time_s, _)| time_s));
         let drive = self.drive.into_iter().flat_map(|it| [it.start_s, it.start_s + it.rise_s]);
         let damage = self.damage.iter().flat_map(|it| [it.start_s, it.start_s + CATCH_S]);
         let mut time_s: Vec<f64> = brake.chain(drive).chain(damage).chain([0.0]).collect();
@@ -204,8 +221,7 @@ impl Ending {
         Wheel::ALL.map(|wheel| {
             let mut effort = WheelEffort::<f64>::none();
             if let Some(brake) = &self.brake {
-                let full_n = braking_force_n(vehicle, brake.share_of_friction, wheel);
-                effort.braking_n += full_n * risen(brake.start_s, brake.rise_s);
+                effort.braking_n += brake.force_n(vehicle, wheel, time_s);
             }
             if let Some(engine) = &self.engine {
                 effort.braking_n += engine.force_n(vehicle, wheel);
@@ -230,17 +246,66 @@ impl Ending {
     }
 }
 
-/// Braking force of a wheel, N, of a vehicle that brakes with a share of μ m g.
-fn braking_force_n(vehicle: &VehicleParameters, share_of_friction: f64, wheel: Wheel) -> f64 {
-    let geometry = &vehicle.geometry;
-    let wheelbase_m = geometry.cg_to_front_axle_m + geometry.cg_to_rear_axle_m;
-    let friction = vehicle.tires.friction;
-    // The brakes are laid out for the limit of friction; beyond it both axles get more alike.
-    let deceleration_g = share_of_friction.min(1.0) * friction;
-    let front = (geometry.cg_to_rear_axle_m + geometry.cg_height_m * deceleration_g) / wheelbase_m;
-    let of_axle = if wheel.is_front() { front } else { 1.0 - front };
-    let total_n = share_of_friction * friction * vehicle.mass.mass_kg * STANDARD_GRAVITY_M_S2;
-    total_n * of_axle.clamp(0.0, 1.0) / 2.0
+/// Braking force over the largest that the road can hold at which wheels just turn, and at which all
+/// of them are locked.
+const HELD_AND_LOCKED: [f64; 2] = [0.97, 1.25];
+
+/// Shortest time in which wheels that have stopped turning are locked, s.
+const LOCKING_S: f64 = 0.05;
+
+impl Braking {
+    /// Braking by both axles alike that locks the wheels as soon as the road cannot hold them.
+    pub const fn new(start_s: f64, share_of_friction: f64, rise_s: f64) -> Self {
+        Self { start_s, share_of_friction, rise_s, front_share: None, lock_delay_s: 0.0 }
+    }
+
+    /// Instants between which the force is linear over time, and its share of μ m g there.
+    fn rises(&self, vehicle: &VehicleParameters) -> [(f64, f64); 4] {
+        let Self { start_s, share_of_friction: full, rise_s, lock_delay_s: delay_s, .. } = *self;
+        let ratio = vehicle.tires.longitudinal_friction_ratio;
+        let [held, locked] = HELD_AND_LOCKED.map(|share| share * ratio);
+        if delay_s <= 0.0 || full <= held {
+            let end = (start_s + rise_s, full);
+            return [(start_s, 0.0), end, end, end];
+        }
+        let held_s = start_s + rise_s * held / full;
+        let locking_s = (rise_s * (1.0 - held / full)).max(LOCKING_S);
+        [
+            (start_s, 0.0),
+            (held_s, held),
+            (held_s + delay_s, held),
+            (held_s + delay_s + locking_s, full.max(locked)),
+        ]
+    }
+
+    /// Force over μ m g at an instant.
+    fn share_at(&self, vehicle: &VehicleParameters, time_s: f64) -> f64 {
+        let rises = self.rises(vehicle);
+        match rises.windows(2).find(|pair| time_s < pair[1].0) {
+            Some(&[(from_s, from), (to_s, to)]) => {
+                from + (to - from) * ((time_s - from_s) / (to_s - from_s)).max(0.0)
+            }
+            _ => rises[3].1,
+        }
+    }
+
+    /// Braking force of a wheel at an instant, N.
+    fn force_n(&self, vehicle: &VehicleParameters, wheel: Wheel, time_s: f64) -> f64 {
+        let front = self.front_share.unwrap_or_else(|| self.ideal_front_share(vehicle));
+        let of_axle = if wheel.is_front() { front } else { 1.0 - front };
+        let weight_n = vehicle.mass.mass_kg * STANDARD_GRAVITY_M_S2;
+        let total_n = self.share_at(vehicle, time_s) * vehicle.tires.friction * weight_n;
+        total_n * of_axle.clamp(0.0, 1.0) / 2.0
+    }
+
+    /// Share of the front axle with which both axles reach the limit of friction together.
+    pub(crate) fn ideal_front_share(&self, vehicle: &VehicleParameters) -> f64 {
+        let geometry = &vehicle.geometry;
+        let wheelbase_m = geometry.cg_to_front_axle_m + geometry.cg_to_rear_axle_m;
+        // The brakes are laid out for the limit of friction; beyond it both axles get more alike.
+        let deceleration_g = self.share_of_friction.min(1.0) * vehicle.tires.friction;
+        (geometry.cg_to_rear_axle_m + geometry.cg_height_m * deceleration_g) / wheelbase_m
+    }
 }
 
 impl DrivenAxle {

@@ -114,7 +114,7 @@ fn read_brake(section: &mut TomlTable<'_>) -> Result<Option<Braking>, TomlError>
     match (start_s, share) {
         (Some(start_s), Some(share_of_friction)) => {
             let rise_s = rise_s.unwrap_or(DEFAULT_BRAKE_RISE_S);
-            Ok(Some(Braking { start_s, share_of_friction, rise_s }))
+            Ok(Some(Braking::new(start_s, share_of_friction, rise_s)))
         }
         (None, None) if rise_s.is_none() => Ok(None),
         (None, _) => Err(section.missing("brake_start_s")),

@@ -10,7 +10,7 @@ use crate::vehicle::Equations;
 use crate::vehicle::parameters::{
     GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters,
 };
-use crate::vehicle::tire::TireParameters;
+use crate::vehicle::tire::{SAME_IN_ALL_DIRECTIONS, TireParameters};
 
 /// Vertical load at which the record states the cornering stiffnesses of the tyres, N.
 const TIRE_REFERENCE_LOAD_N: f64 = 4905.0;
@@ -146,6 +146,7 @@ impl MultibodyRecord {
                 rolling_resistance_s2_m2: drag_over_weight,
                 rolling_radius_m: wheel.effective_rolling_radius,
                 wheel_inertia_kg_m2: wheel.wheel_and_tyre_spin_inertia,
+                longitudinal_friction_ratio: SAME_IN_ALL_DIRECTIONS,
             },
             estimates: estimates(),
             sheet: None,

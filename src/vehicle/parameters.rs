@@ -10,11 +10,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::{TomlError, TomlFile};
 use crate::ranges::{
-    CG_HEIGHT, CG_TO_AXLE, CG_TO_FRONT_END, CORNERING_COEFFICIENT, FRONT_ROLL_SHARE, OUTER_LENGTH,
-    OUTER_WIDTH, ROAD_FRICTION, ROLL_ARM, ROLL_AXIS_HEIGHT, ROLL_DAMPING, ROLL_INERTIA,
-    ROLL_STIFFNESS, ROLL_YAW_PRODUCT, ROLLING_RADIUS, ROLLING_RESISTANCE,
-    ROLLING_RESISTANCE_PER_SPEED, ROLLING_RESISTANCE_PER_SPEED_2, Range, SLIDING_FRICTION_RATIO,
-    SPRUNG_MASS, TRACK_WIDTH, VEHICLE_MASS, VEHICLE_YAW_INERTIA, WHEEL_INERTIA,
+    CG_HEIGHT, CG_TO_AXLE, CG_TO_FRONT_END, CORNERING_COEFFICIENT, FRONT_ROLL_SHARE,
+    LONGITUDINAL_FRICTION_RATIO, OUTER_LENGTH, OUTER_WIDTH, ROAD_FRICTION, ROLL_ARM,
+    ROLL_AXIS_HEIGHT, ROLL_DAMPING, ROLL_INERTIA, ROLL_STIFFNESS, ROLL_YAW_PRODUCT, ROLLING_RADIUS,
+    ROLLING_RESISTANCE, ROLLING_RESISTANCE_PER_SPEED, ROLLING_RESISTANCE_PER_SPEED_2, Range,
+    SLIDING_FRICTION_RATIO, SPRUNG_MASS, TRACK_WIDTH, VEHICLE_MASS, VEHICLE_YAW_INERTIA,
+    WHEEL_INERTIA,
 };
 use crate::vehicle::sheet::SheetQuantity;
 use crate::vehicle::tire::{TireParameters, WHEEL_MASS_SHARE};
@@ -279,6 +280,11 @@ impl VehicleParameters {
             ("tires.cornering_coefficient_rear_per_rad", rear, CORNERING_COEFFICIENT),
             ("tires.friction", tires.friction, ROAD_FRICTION),
             ("tires.sliding_friction_ratio", tires.sliding_friction_ratio, SLIDING_FRICTION_RATIO),
+            (
+                "tires.longitudinal_friction_ratio",
+                tires.longitudinal_friction_ratio,
+                LONGITUDINAL_FRICTION_RATIO,
+            ),
             ("tires.rolling_resistance", tires.rolling_resistance, ROLLING_RESISTANCE),
             (
                 "tires.rolling_resistance_s_m",

@@ -5,12 +5,14 @@
 //! Each lane has its own step, so that the path of a run does not depend on those beside it:
 //!
 //! ```text
-//! h = min(h_max, T |v|),   at least h_ref        |v| = √(v_x² + v_y²) + 1.5 m |r|
+//! h = min(h_max, K/λ(v)),   at least h_ref        λ(v) = λ₀ ε/(|v| + ε)      |v| = √(v_x² + v_y²) + 1.5 m |r|
 //! ```
 //!
-//! The fastest modes are those of the tyres, whose rates fall as 1/|v| (`stability.rs`); h_ref is the
+//! The fastest modes are those of the tyres, whose rates λ fall as 1/|v| (`stability.rs`); h_ref is the
 //! step of [`VehicleParameters::simulate`]. While a contact force acts, h is at most 5 ms; the mean of
 //! the force over a step keeps the impulse exact.
+//! Below 0.3 m/s a car that only slows down is not followed by small steps: it comes to rest at its
+//! present deceleration a, after `|v|/(2 a)` more of its present velocities.
 //! The largest difference to the reference step is measured by the test of this file.
 
 use pulp::{Simd, WithSimd};
@@ -19,19 +21,27 @@ use rayon::prelude::*;
 use crate::numerics::{MAX_LANES, Packed, Stage};
 use crate::vehicle::batch::steps_side_by_side;
 use crate::vehicle::run::{Inputs, StepInputs};
+use crate::vehicle::tire::SLIP_ANGLE_SPEED_M_S;
 use crate::vehicle::{
     Integrator, N_STATE, REST_DURATION_S, RestWatch, SimulationRun, VehicleConstants, VehicleInput,
     VehicleState, WheelEffort,
 };
 
 /// Longest step of a path, s.
-pub const MAX_PATH_STEP_S: f64 = 0.01;
+pub const MAX_PATH_STEP_S: f64 = 0.02;
 
 /// Longest step while a contact force acts, s.
 const CONTACT_STEP_S: f64 = 5e-3;
 
-/// Step over speed, s/(m/s).
-const STEP_PER_SPEED_S: f64 = 4e-3;
+/// K: step times rate of the tyres, of 2.8 at the most for stability.
+const RATE_TIMES_STEP: f64 = 1.4;
+
+/// Speed below which the rest of the way is not followed, m/s.
+const STOPPING_SPEED_M_S: f64 = 0.3;
+
+/// Smallest deceleration by which a vehicle is taken to come to rest, m/s²: half of what rolls most
+/// easily.
+const LEAST_DECELERATION_M_S2: f64 = 0.05;
 
 /// Arm by which the yaw rate counts as a speed, m.
 const YAW_ARM_M: f64 = 1.5;
@@ -126,10 +136,14 @@ struct Lane<'a> {
     duration_s: f64,
     shortest_step_s: f64,
     longest_step_s: f64,
+    /// K/(λ₀ ε), s²/m.
+    step_per_speed_s2_m: f64,
     time_s: f64,
     step_s: f64,
     start_m: [f64; 2],
     state: [f64; N_STATE],
+    /// Speed at the start of the last step, m/s.
+    speed_m_s: f64,
     slow_since_s: Option<f64>,
     points: Vec<PathPoint>,
 }
@@ -149,10 +163,13 @@ impl<'a> Lane<'a> {
             duration_s: manoeuvre.duration_s,
             shortest_step_s: reference_s / vehicle.braked_substeps(reference_s) as f64,
             longest_step_s: MAX_PATH_STEP_S.min(vehicle.roll_step_s()),
+            step_per_speed_s2_m: RATE_TIMES_STEP
+                / (vehicle.tire_rate_at_rest_1_s() * SLIP_ANGLE_SPEED_M_S),
             time_s: 0.0,
             step_s: 0.0,
             start_m: [initial.x_m, initial.y_m],
             state: initial.to_array(),
+            speed_m_s: 0.0,
             slow_since_s: None,
             points: Vec::new(),
         }
@@ -193,12 +210,48 @@ impl<'a> Lane<'a> {
         if self.time_s >= self.duration_s {
             return Some(PathEnd::Time);
         }
-        let speed_m_s = x.vx_m_s.hypot(x.vy_m_s) + YAW_ARM_M * x.yaw_rate_rad_s.abs();
+        let speed_m_s = speed_m_s(&x);
+        if speed_m_s < STOPPING_SPEED_M_S
+            && self.time_s >= self.last_change_s
+            && let Some(stop_s) = self.stop_s(speed_m_s)
+        {
+            self.stop_after(stop_s);
+            return Some(PathEnd::Rest);
+        }
+        self.speed_m_s = speed_m_s;
         let is_pushed = self.time_s < self.force_end_s;
         let longest_s =
             if is_pushed { self.longest_step_s.min(CONTACT_STEP_S) } else { self.longest_step_s };
-        self.step_s = (STEP_PER_SPEED_S * speed_m_s).min(longest_s).max(self.shortest_step_s);
+        let by_tires_s = self.step_per_speed_s2_m * (speed_m_s + SLIP_ANGLE_SPEED_M_S);
+        self.step_s = by_tires_s.min(longest_s).max(self.shortest_step_s);
         None
+    }
+
+    /// Time to rest at the deceleration of the last step, s; `None` if the vehicle hardly slows down.
+    fn stop_s(&self, speed_m_s: f64) -> Option<f64> {
+        let deceleration_m_s2 = (self.speed_m_s - speed_m_s) / self.step_s;
+        (deceleration_m_s2 > LEAST_DECELERATION_M_S2).then(|| speed_m_s / deceleration_m_s2)
+    }
+
+    /// Notes where the vehicle stands after it has stopped within a time.
+    fn stop_after(&mut self, stop_s: f64) {
+        let x = self.now();
+        let (sin, cos) = x.yaw_rad.sin_cos();
+        let half_s = stop_s / 2.0;
+        self.points.push(PathPoint {
+            time_s: self.time_s + stop_s,
+            x_m: x.x_m + (x.vx_m_s * cos - x.vy_m_s * sin) * half_s,
+            y_m: x.y_m + (x.vx_m_s * sin + x.vy_m_s * cos) * half_s,
+            yaw_rad: x.yaw_rad + x.yaw_rate_rad_s * half_s,
+            vx_m_s: 0.0,
+            vy_m_s: 0.0,
+            yaw_rate_rad_s: 0.0,
+        });
+    }
+
+    /// The number of the run, and its path.
+    fn ended(self, end: PathEnd) -> (usize, Path) {
+        (self.idx, Path { points: self.points, end })
     }
 
     /// Inputs over the coming step. Wheels that roll freely are braked by nothing, so that every lane
@@ -211,9 +264,6 @@ impl<'a> Lane<'a> {
         inputs
     }
 }
-
-/// Vehicles and inputs of all lanes.
-type PackedLanes<S> = (VehicleConstants<Packed<S>>, StepInputs<Packed<S>>);
 
 /// Runs that one core takes over.
 struct Task<'l, 'a> {
@@ -229,51 +279,56 @@ impl WithSimd for Task<'_, '_> {
         let mut waiting = self.waiting.iter();
         let mut running: Vec<Lane<'_>> = Vec::with_capacity(Packed::<S>::N);
         let mut ended = Vec::with_capacity(self.waiting.len());
-        let mut packed: Option<PackedLanes<S>> = None;
+        let mut constants: Option<VehicleConstants<Packed<S>>> = None;
+        // Of lanes in which nothing changes any more.
+        let mut settled: Option<StepInputs<Packed<S>>> = None;
         loop {
-            let n_running = running.len();
             while running.len() < Packed::<S>::N {
-                let Some(lane) = waiting.next() else { break };
-                settle(lane.clone(), self.limit, &mut running, &mut ended);
+                let Some(mut lane) = waiting.next().cloned() else { break };
+                match lane.record(self.limit) {
+                    None => running.push(lane),
+                    Some(end) => ended.push(lane.ended(end)),
+                }
+                (constants, settled) = (None, None);
             }
             let Some(last) = running.len().checked_sub(1) else { return ended };
-            let is_settled = n_running == running.len()
-                && running.iter().all(|lane| lane.time_s >= lane.last_change_s);
-            let (constants, inputs) = match packed.take().filter(|_| is_settled) {
-                Some(packed) => packed,
-                None => {
-                    let of_lane = |lane: usize| &running[lane.min(last)].constants;
-                    let constants = VehicleConstants::packed(simd, of_lane);
-                    let mut of_lanes = [const { StepInputs::RELEASED }; MAX_LANES];
-                    for (of_lane, lane) in of_lanes.iter_mut().zip(&running) {
-                        *of_lane = lane.coming();
-                    }
-                    (constants, steps_side_by_side(simd, &of_lanes))
+            let of_lane = |lane: usize| &running[lane.min(last)].constants;
+            let of_all =
+                constants.take().unwrap_or_else(|| VehicleConstants::packed(simd, of_lane));
+            let inputs = settled.take().unwrap_or_else(|| {
+                let mut of_lanes = [const { StepInputs::RELEASED }; MAX_LANES];
+                for (of_lane, lane) in of_lanes.iter_mut().zip(&running) {
+                    *of_lane = lane.coming();
                 }
-            };
-            step(simd, &constants, &inputs, &mut running);
-            let n_before = running.len();
-            for lane in std::mem::take(&mut running) {
-                settle(lane, self.limit, &mut running, &mut ended);
-            }
-            if running.len() == n_before && is_settled {
-                packed = Some((constants, inputs));
+                steps_side_by_side(simd, &of_lanes)
+            });
+            let is_settled = running.iter().all(|lane| lane.time_s >= lane.last_change_s);
+            step(simd, &of_all, &inputs, &mut running);
+            if !end_lanes(&mut running, self.limit, &mut ended) {
+                constants = Some(of_all);
+                settled = is_settled.then_some(inputs);
             }
         }
     }
 }
 
-/// Keeps a lane running or takes its path out of it.
-fn settle<'a>(
-    mut lane: Lane<'a>,
+/// Notes where the vehicles are, and takes the paths that end out of their lanes.
+///
+/// - returns whether there is one.
+fn end_lanes(
+    running: &mut Vec<Lane<'_>>,
     limit: PathLimit,
-    running: &mut Vec<Lane<'a>>,
     ended: &mut Vec<(usize, Path)>,
-) {
-    match lane.record(limit) {
-        None => running.push(lane),
-        Some(end) => ended.push((lane.idx, Path { points: lane.points, end })),
+) -> bool {
+    let n_before = running.len();
+    let mut lane = 0;
+    while lane < running.len() {
+        match running[lane].record(limit) {
+            None => lane += 1,
+            Some(end) => ended.push(running.remove(lane).ended(end)),
+        }
     }
+    running.len() < n_before
 }
 
 /// Takes one step of the classical Runge–Kutta method in every lane, each of its own length.
@@ -312,6 +367,11 @@ fn step<S: Simd>(
         run.time_s += run.step_s;
         run.state = values.map(|values| values[lane]);
     }
+}
+
+/// Speed of the CG and of a point that turns with the vehicle, m/s.
+fn speed_m_s(x: &VehicleState<f64>) -> f64 {
+    x.vx_m_s.hypot(x.vy_m_s) + YAW_ARM_M * x.yaw_rate_rad_s.abs()
 }
 
 #[inline(always)]

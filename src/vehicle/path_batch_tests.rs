@@ -7,7 +7,7 @@ use crate::vehicle::{
 
 /// A struck car at 12 to 30 m/s that coasts, brakes, or has a locked wheel or a turned one.
 fn manoeuvres(vehicle: &VehicleParameters) -> Vec<Manoeuvre> {
-    let brake = |share_of_friction| Some(Braking { start_s: 0.8, share_of_friction, rise_s: 0.3 });
+    let brake = |share_of_friction| Some(Braking::new(0.8, share_of_friction, 0.3));
     let locked =
         DamagedWheel { wheel: Wheel::RearRight, start_s: 0.03, drag_share_of_friction: None };
     let steer = Some(HeldSteer { start_s: 0.1, rise_s: 0.3, road_wheel_rad: 0.03 });

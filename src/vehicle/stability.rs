@@ -148,6 +148,11 @@ impl VehicleParameters {
         parts(self.roll_rate_bound_1_s(), step_s)
     }
 
+    /// λ₀: fastest rate of the tyres at rest, 1/s. At a speed v it is `λ₀ ε/(v + ε)`.
+    pub(super) fn tire_rate_at_rest_1_s(&self) -> f64 {
+        self.fastest_rates_1_s().tires_1_s
+    }
+
     /// `m_s g h`, N m/rad.
     fn weight_moment_n_m(&self) -> f64 {
         self.mass.sprung_mass_kg * STANDARD_GRAVITY_M_S2 * self.suspension.roll_arm_m
@@ -180,13 +185,14 @@ impl VehicleParameters {
         }
     }
 
-    /// Fastest decay of a motion on locked wheels, 1/s: `μ g/ε (1 + m x²/I_zz')`.
+    /// Fastest decay of a motion on locked wheels, 1/s: `max(κ, 1) μ g/ε (1 + m x²/I_zz')`.
     fn braked_rate_1_s(&self) -> f64 {
         let (mass, geometry) = (&self.mass, &self.geometry);
         let arm_m = geometry.cg_to_front_axle_m.max(geometry.cg_to_rear_axle_m);
         let arm_m = arm_m.hypot(geometry.track_width_m / 2.0);
         let yaw_inertia = mass.yaw_inertia_kg_m2 * self.uncoupled_share();
-        let at_rest = self.tires.friction * STANDARD_GRAVITY_M_S2 / LOCKED_SLIDING_SPEED_M_S;
+        let friction = self.tires.friction * self.tires.longitudinal_friction_ratio.max(1.0);
+        let at_rest = friction * STANDARD_GRAVITY_M_S2 / LOCKED_SLIDING_SPEED_M_S;
         at_rest * (1.0 + mass.mass_kg * arm_m * (arm_m / yaw_inertia))
     }
 

@@ -91,6 +91,20 @@ pub struct TireParameters {
     /// value of 0 a wheel follows every change of speed at once.
     #[serde(default)]
     pub wheel_inertia_kg_m2: f64,
+    /// Friction κ of a wheel along its plane over that across it, of its peak and of sliding alike.
+    #[serde(default = "same_in_all_directions", skip_serializing_if = "is_same_in_all_directions")]
+    pub longitudinal_friction_ratio: f64,
+}
+
+/// A wheel that holds along its plane what it holds across it.
+pub(in crate::vehicle) const SAME_IN_ALL_DIRECTIONS: f64 = 1.0;
+
+fn same_in_all_directions() -> f64 {
+    SAME_IN_ALL_DIRECTIONS
+}
+
+fn is_same_in_all_directions(ratio: &f64) -> bool {
+    *ratio == SAME_IN_ALL_DIRECTIONS
 }
 
 /// Rolling radius of a usual car tyre, such as 205/55 R16, m.
@@ -118,8 +132,12 @@ pub struct WheelSlip<T> {
     velocity_m_s: [T; 2],
     /// `m_w r`: equivalent mass of the spinning wheel times the yaw rate of the vehicle, kg/s.
     turning_mass_kg_s: T,
-    /// Sliding friction coefficient of a locked wheel.
+    /// Sliding friction coefficient of a locked wheel across its plane.
     locked_friction: T,
+    /// κ.
+    longitudinal_ratio: T,
+    /// 1/κ.
+    per_longitudinal_ratio: T,
 }
 
 /// Forces over vertical load of a wheel that rolls freely: those of [`WheelSlip`], which are in
@@ -219,6 +237,8 @@ impl<T: Lanes> TireConstants<T> {
             velocity_m_s,
             turning_mass_kg_s: yaw_rate_rad_s * self.wheel_mass_kg,
             locked_friction: self.sliding_friction,
+            longitudinal_ratio: self.longitudinal_ratio,
+            per_longitudinal_ratio: self.per_longitudinal_ratio,
         }
     }
 }
@@ -259,19 +279,20 @@ impl<T: Lanes> WheelSlip<T> {
     }
 
     /// Force `[F_x, F_y]` of the road on the tyre in the axes of the wheel, N, which lies inside the
-    /// friction circle.
+    /// friction ellipse `(F_x/κ)² + F_y² = (μ F_z)²`, a circle if the wheel holds as much along its
+    /// plane as across it (κ = 1).
     ///
     /// ```text
-    /// turning   F_w = clamp(F_drive − f(|u|) F_z tanh(u/u₀) − F_brake tanh(u/u₀), ±μ(α) F_z)
-    ///           F_y = sin(atan(C α)) √((μ(α) F_z)² − F_w²) |w|/S
-    ///           F_x = F_w − |F_y| (u − u_w)/|w|              both scaled to the circle
-    /// locked    F   = −μ_s F_z [u, w]/√(u² + w² + ε²)        μ_s: sliding friction
+    /// turning   F_w = clamp(F_drive − f(|u|) F_z tanh(u/u₀) − F_brake tanh(u/u₀), ±κ μ(α) F_z)
+    ///           F_y = sin(atan(C α)) √((μ(α) F_z)² − (F_w/κ)²) |w|/S
+    ///           F_x = F_w − |F_y| (u − u_w)/|w|              both scaled to the ellipse
+    /// locked    F   = −μ_s F_z [κ u, w]/√(u² + w² + ε²)      μ_s: sliding friction across the wheel
     /// F = (1 − λ) F_turning + λ F_locked
     /// ```
     ///
-    /// The road can turn a wheel against a brake with at most F_max = μ(α) F_z |u|/√(u² + w²), the
+    /// The road can turn a wheel against a brake with at most F_max = κ μ(α) F_z |u|/√(u² + w²), the
     /// part of the friction along the wheel: a wheel that slides sideways is locked by little
-    /// braking, one that rolls straight only by more than μ F_z. The share λ of the locked state
+    /// braking, one that rolls straight only by more than κ μ F_z. The share λ of the locked state
     /// grows from 0 to 1 while the braking force grows from F_max to 1.15 F_max.
     ///
     /// A wheel under a large slip angle has little grip along its plane. The vehicle turns under it
@@ -301,7 +322,7 @@ impl<T: Lanes> WheelSlip<T> {
         let speed_squared = u * u + w * w;
         let sliding = (speed_squared + LOCKED_SLIDING_SPEED_M_S.powi(2)).sqrt();
         let sliding_n = -vertical_load_n * self.locked_friction / sliding;
-        let locked = [sliding_n * u, sliding_n * w];
+        let locked = [sliding_n * self.longitudinal_ratio * u, sliding_n * w];
         [
             turning[0] + (locked[0] - turning[0]) * share,
             turning[1] + (locked[1] - turning[1]) * share,
@@ -314,11 +335,13 @@ impl<T: Lanes> WheelSlip<T> {
     #[inline(always)]
     fn turning_n(&self, vertical_load_n: T, wanted_n: T) -> [T; 2] {
         let limit = self.friction * vertical_load_n;
-        let (along, side) = self.shared(wanted_n, limit);
+        let (along, side) = self.shared(wanted_n * self.per_longitudinal_ratio, limit);
         let squared = side * side;
         let size = lagging(squared, limit);
         let [lag, across] = self.spin_lag(size);
-        in_circle([along - squared / size * lag, side * across], limit)
+        let drag = squared / size * lag * self.per_longitudinal_ratio;
+        let [fx, fy] = in_circle([along - drag, side * across], limit);
+        [fx * self.longitudinal_ratio, fy]
     }
 
     /// The force along the wheel within the limit of friction, and the side force in what it leaves:
@@ -368,7 +391,7 @@ impl<T: Lanes> WheelSlip<T> {
         let (zero, one) = (u.constant(0.0), u.constant(1.0));
         // A millimetre per second more than nothing, so that the share is a number at rest.
         let along = u.abs() / (u * u + w * w + 1e-6).sqrt();
-        let largest_n = self.friction * vertical_load_n * along;
+        let largest_n = self.friction * self.longitudinal_ratio * vertical_load_n * along;
         let beyond = (effort.braking_n - largest_n) / (largest_n * LOCKING_SHARE + 1e-3);
         let by_brake = beyond.clamped(zero, one);
         by_brake + (one - by_brake) * effort.locked

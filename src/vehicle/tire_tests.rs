@@ -14,6 +14,7 @@ const TIRE: TireParameters = TireParameters {
     rolling_resistance_s2_m2: 2e-5,
     rolling_radius_m: 0.31,
     wheel_inertia_kg_m2: 1.2,
+    longitudinal_friction_ratio: 1.0,
 };
 
 fn driven(drive_n: f64) -> WheelEffort<f64> {
@@ -98,6 +99,21 @@ fn a_locked_wheel_pushes_against_its_velocity() {
         assert!((fx - expected[0]).abs() < 1.0 && (fy - expected[1]).abs() < 1.0, "{fx} {fy}");
     }
     assert_eq!(slip(&TIRE, 20.0, [0.0, 0.0]).force_n(5e3, &locked), [0.0, 0.0]);
+}
+
+#[test]
+fn a_wheel_may_hold_more_along_its_plane_than_across_it() {
+    let tire = TireParameters { longitudinal_friction_ratio: 1.15, ..TIRE };
+    let locked = WheelEffort { locked: 1.0, ..WheelEffort::none() };
+    let [fx, fy] = slip(&tire, 20.0, [6.0, 8.0]).force_n(5e3, &locked);
+    let across = -0.64 * 5e3;
+    assert!((fx - 1.15 * across * 0.6).abs() < 1.0 && (fy - across * 0.8).abs() < 1.0, "{fx} {fy}");
+    // Rolling straight, it brakes with what would lock it otherwise.
+    let asked = braked(1.1 * 0.8 * 5e3);
+    let [fx, _] = slip(&tire, 20.0, [20.0, 0.0]).force_n(5e3, &asked);
+    assert!((fx + asked.braking_n).abs() < 0.03 * asked.braking_n, "{fx}");
+    let [fx, _] = slip(&TIRE, 20.0, [20.0, 0.0]).force_n(5e3, &asked);
+    assert!(-fx < 0.8 * 5e3, "{fx}");
 }
 
 proptest! {

@@ -243,6 +243,7 @@ fn compare(request: &CompareRequest) -> (Result<(), String>, usize) {
         let is_training = match event {
             Event::Training(_) => true,
             Event::Progress(progress) => progress.message.contains("train"),
+            Event::Sampling(_) => false,
         };
         n_trained += usize::from(is_training);
         ControlFlow::Continue(())

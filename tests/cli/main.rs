@@ -16,8 +16,11 @@ mod log;
 mod program;
 mod ranges;
 mod reconstruct;
+mod reconstruct_absurd;
+mod reconstruct_killed;
 mod response;
 #[cfg(feature = "gui")]
 mod restrictions;
+mod staged;
 mod writes;
 mod writes_killed;

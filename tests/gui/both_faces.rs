@@ -7,14 +7,15 @@ use std::process::{Command as Program, Output};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{
-    App, Command, ComparisonCommand, ForceChoice, Latest, Network, Pane, QuestionJob, State,
-    Subject, TrainingCommand, TrainingMode,
+    App, Command, ComparisonCommand, ForceChoice, Latest, Network, Pane, QuestionJob,
+    ReconstructionCommand, State, Subject, TrainingCommand, TrainingMode,
 };
 use impactlab::study::{Question, Request};
 use serde::Serialize;
 use serde_json::Value;
 
 use crate::harness::{apply, is_idle, open, step_until};
+use crate::reconstruct::evidence_in;
 use crate::settings::{QUICK_CRUSH, SMALL_FORCE, SMALL_RESPONSE};
 
 const FORCES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea");
@@ -423,4 +424,23 @@ fn models_are_compared_alike() {
     let (request, answer) = finished(&state(&harness).session.response.comparison.compare);
     let args = ["compare", "--data", TRAJECTORIES, "--trajectories", "3", "--choices", "1"];
     CommandLine::of(&[&args[..], &["--config", &config]].concat()).compare(request, &answer.report);
+}
+
+#[test]
+fn a_reconstruction() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = evidence_in(folder.path());
+    let path = path.to_str().expect("a plain name");
+    let mut harness = open(&[path]);
+    harness.run_steps(3);
+    let form = &mut harness.state_mut().state_mut().project.reconstruction;
+    (form.particles, form.seed) = (60, 3);
+    apply(&mut harness, Command::Reconstruct(ReconstructionCommand::Run));
+    step_until(&mut harness, "the speeds", |state| {
+        let run = &state.session.reconstruction.run;
+        !run.is_running() && run.latest.is_some()
+    });
+    let (question, answer) = finished(&state(&harness).session.reconstruction.run);
+    CommandLine::of(&["reconstruct", path, "--particles", "60", "--seed", "3"])
+        .compare(question.request, &answer.answer.report);
 }

@@ -275,7 +275,7 @@ fn example(harness: &mut Harness<'_, App>) {
     variant(harness, VariantCommand::Rename("coasts".to_owned()));
     variant(harness, VariantCommand::Duplicate);
     variant(harness, VariantCommand::Rename("driver brakes".to_owned()));
-    let brake = Braking { start_s: 0.7, share_of_friction: 0.8, rise_s: 0.2 };
+    let brake = Braking::new(0.7, 0.8, 0.2);
     let ending = Ending { brake: Some(brake), ..Ending::default() };
     harness.state_mut().state_mut().project.scenario.ending = Some(ending);
     answered(harness);

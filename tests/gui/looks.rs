@@ -37,7 +37,7 @@ fn add_texts(shape: &Shape, clip: Rect, texts: &mut Vec<Seen>) {
 }
 
 /// Pairs of texts of the last frame that stand on each other.
-fn collisions(harness: &Harness<'_, App>) -> Vec<String> {
+pub fn collisions(harness: &Harness<'_, App>) -> Vec<String> {
     let mut texts = Vec::new();
     for clipped in &harness.output().shapes {
         add_texts(&clipped.shape, clipped.clip_rect, &mut texts);

@@ -12,6 +12,7 @@ mod looks;
 mod models;
 mod network_figures;
 mod pictures;
+mod reconstruct;
 mod response_network;
 mod settings;
 mod snapshots;

@@ -19,7 +19,7 @@ fn frictionless_rolling() -> VehicleParameters {
 }
 
 fn brake(share_of_friction: f64, start_s: f64) -> Ending {
-    let brake = Braking { start_s, share_of_friction, rise_s: 0.01 };
+    let brake = Braking::new(start_s, share_of_friction, 0.01);
     Ending { brake: Some(brake), ..Ending::default() }
 }
 
@@ -69,6 +69,43 @@ fn a_straight_stop_takes_the_square_of_the_speed_over_twice_the_deceleration() {
             assert!((rest_s - expected_s).abs() < 0.05, "{rest_s} {expected_s}");
         }
     }
+}
+
+/// Until its wheels lock, a car brakes with nearly what the road can hold; then with sliding friction.
+#[test]
+fn wheels_may_take_their_time_to_lock() {
+    let mut vehicle = frictionless_rolling();
+    vehicle.tires.longitudinal_friction_ratio = 1.1;
+    let brake = Braking { lock_delay_s: 0.5, ..Braking::new(0.0, 1.6, 0.01) };
+    let ending = Ending { brake: Some(brake), ..Ending::default() };
+    let stop = motion(&vehicle, VehicleState::driving_straight(20.0), &ending).series;
+    let speeds = stop.require(Channel::Vx).unwrap();
+    let friction = |from: usize, to: usize| {
+        (speeds[from] - speeds[to]) / (0.01 * (to - from) as f64) / STANDARD_GRAVITY_M_S2
+    };
+    let tires = &vehicle.tires;
+    let (held, sliding) =
+        (1.1 * tires.friction, 1.1 * tires.friction * tires.sliding_friction_ratio);
+    assert!((friction(5, 45) / (0.97 * held) - 1.0).abs() < 0.01, "{}", friction(5, 45));
+    assert!((friction(60, 120) / sliding - 1.0).abs() < 0.01, "{}", friction(60, 120));
+}
+
+/// Wheels that are braked beyond their part of the load lock first: with most of the force on the rear
+/// axle the car keeps less than sliding friction on all wheels would give, and never more.
+#[test]
+fn the_axle_with_too_much_of_the_brakes_locks_first() {
+    let vehicle = frictionless_rolling();
+    let full = vehicle.tires.friction * STANDARD_GRAVITY_M_S2;
+    let deceleration = |front_share| {
+        let brake = Braking { front_share, ..Braking::new(0.0, 0.9, 0.01) };
+        let ending = Ending { brake: Some(brake), ..Ending::default() };
+        let stop = motion(&vehicle, VehicleState::driving_straight(20.0), &ending).series;
+        let speeds = stop.require(Channel::Vx).unwrap();
+        (speeds[10] - speeds[60]) / 0.5
+    };
+    assert!((deceleration(None) / (0.9 * full) - 1.0).abs() < 0.01);
+    let rear_first = deceleration(Some(0.4));
+    assert!(rear_first < 0.85 * full && rear_first > 0.5 * full, "{rear_first} of {full}");
 }
 
 #[test]

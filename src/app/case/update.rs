@@ -65,7 +65,8 @@ impl State {
         let simulate = self.simulate_request().map(Request::from);
         let force = self.force_request().filter(|_| is_scenario).map(Request::from);
         let motion = self.motion_request().map(Request::from);
-        [impact, simulate, force, motion].into_iter().flatten().collect()
+        let reconstruct = self.project.reconstruction.request().map(Request::from);
+        [impact, simulate, force, motion, reconstruct].into_iter().flatten().collect()
     }
 
     /// Whether data or networks are still being read, so that not every question can be asked yet.
@@ -119,7 +120,11 @@ impl State {
             [|p: &Project| p.force.model.clone(), |p: &Project| p.response.model.clone()];
         let is_same = |of: fn(&Project) -> Option<PathBuf>| of(&project) == of(&self.project);
         let [is_same_force, is_same_response] = [is_same(force), is_same(response)];
+        let is_other = project.reconstruction.evidence != self.project.reconstruction.evidence;
         self.project = project;
+        if is_other {
+            self.drop_reconstruction();
+        }
         self.drop_answers();
         self.session.force.forecast.drop_answer();
         if !is_same_force {
@@ -138,6 +143,9 @@ impl State {
         self.view.workspaces.shown = Workspace::Case;
         if self.project.subject == Some(Subject::Scenario) {
             self.view.workspaces.show_pane(Pane::Scenario);
+        }
+        if self.project.reconstruction.evidence.is_some() {
+            self.view.workspaces.shown = Workspace::Reconstruct;
         }
         self.session.select_when_loaded = None;
         self.session.history_ends = true;

@@ -67,11 +67,7 @@ fn switch<T>(ui: &mut Ui, label: &str, part: &mut Option<T>, usual: T) {
 }
 
 fn brake_fields(ui: &mut Ui, brake: &mut Option<Braking>, units: UnitSystem) {
-    let usual = Braking {
-        start_s: REACTION_S,
-        share_of_friction: HARD_BRAKING,
-        rise_s: DEFAULT_BRAKE_RISE_S,
-    };
+    let usual = Braking::new(REACTION_S, HARD_BRAKING, DEFAULT_BRAKE_RISE_S);
     switch(ui, "The driver brakes", brake, usual);
     let Some(brake) = brake else { return };
     quantity_field(ui, "from", &mut brake.start_s, (&CONTROL_TIME, units));

@@ -25,6 +25,7 @@ mod motion_outcome;
 mod prediction;
 mod prediction_form;
 mod prediction_numbers;
+mod reconstruction;
 mod scenario;
 mod scenario_plan;
 mod scene;
@@ -50,6 +51,7 @@ pub use models::{interrupted_ui, models_dialog_ui, models_ui};
 pub use motion::motion_ui;
 pub use motion_forecast::motion_forecast_ui;
 pub use prediction::prediction_ui;
+pub use reconstruction::{evidence_ui, reconstructed_scene_ui, speeds_ui};
 pub use scenario::scenario_ui;
 pub use scene::scene_ui;
 pub use training::training_ui;
@@ -66,15 +68,21 @@ use crate::study::SimulateAnswer;
 /// Share of its colour that an answer keeps which is not of what is asked any more.
 const FADED: f32 = 0.35;
 
-/// Draws an answer, greyed and marked if it is not of what is asked any more.
-pub fn faded<R>(ui: &mut Ui, is_late: bool, draw: impl FnOnce(&mut Ui) -> R) -> R {
-    let area = ui.available_rect_before_wrap();
+/// Draws an answer, greyed if it is not of what is asked any more.
+fn faded_if<R>(ui: &mut Ui, is_late: bool, draw: impl FnOnce(&mut Ui) -> R) -> R {
     let drawn = ui.scope(|ui| {
         if is_late {
             ui.multiply_opacity(FADED);
         }
         draw(ui)
     });
+    drawn.inner
+}
+
+/// Draws an answer, greyed and marked as being computed if it is not of what is asked any more.
+pub fn faded<R>(ui: &mut Ui, is_late: bool, draw: impl FnOnce(&mut Ui) -> R) -> R {
+    let area = ui.available_rect_before_wrap();
+    let drawn = faded_if(ui, is_late, draw);
     if is_late {
         let corner = area.right_top() + egui::vec2(-6.0, 4.0);
         let font = egui::TextStyle::Body.resolve(ui.style());
@@ -84,7 +92,7 @@ pub fn faded<R>(ui: &mut Ui, is_late: bool, draw: impl FnOnce(&mut Ui) -> R) -> 
         ui.painter().rect_filled(place.expand(4.0), 3.0, ui.visuals().extreme_bg_color);
         ui.painter().galley(place.min, text, color);
     }
-    drawn.inner
+    drawn
 }
 
 /// Returns the simulation of the selected subject. If there is none, it draws the reason (an error,

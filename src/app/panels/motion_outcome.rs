@@ -42,8 +42,13 @@ pub fn outcome_ui(
         }
     });
     let unit = |quantity: Quantity| quantity.display_unit(units);
-    let row =
-        |label, quantity, spread, hint| SpreadRow { label, unit: unit(quantity), spread, hint };
+    let row = |label, quantity, spread, hint| SpreadRow {
+        label,
+        unit: unit(quantity),
+        spread,
+        ninety_five: None,
+        hint,
+    };
     let mut rows = vec![
         row("X", Quantity::Length, outcome.x_m, "Of the CG, along the road from the impact"),
         row("Y", Quantity::Length, outcome.y_m, "Of the CG, to the left"),

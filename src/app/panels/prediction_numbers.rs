@@ -58,7 +58,7 @@ fn rows(report: &PredictForceReport, units: UnitSystem) -> Vec<SpreadRow> {
     let pdof_rad = report.pdof_interval_deg.scaled(1.0_f64.to_radians());
     let row = |label, unit, estimate: &Estimate, hint| {
         let spread = estimate.spread();
-        SpreadRow { label, unit, spread, hint }
+        SpreadRow { label, unit, spread, ninety_five: None, hint }
     };
     vec![
         row("P_x", unit(Quantity::Impulse), &impulse.x, "Impulse on the target along its heading"),

@@ -73,6 +73,7 @@ fn uncertainty_ui(ui: &mut Ui, pane: &PaneContext<'_>) {
         label,
         unit: quantity.display_unit(pane.view.units),
         spread,
+        ninety_five: None,
         hint: "Over the vehicles that are drawn",
     };
     let mut rows = vec![

@@ -13,32 +13,56 @@ const MAX_OPEN: usize = 6;
 /// Lists the assumptions, one beside the other. Hovering over one shows the reason; a click shows
 /// the panel in which the user can set the value. An empty list draws nothing; a long one only their number, until it is opened.
 pub fn assumptions_ui(ui: &mut Ui, assumptions: &[Assumption], commands: &mut Vec<Command>) {
+    assumptions_at_ui(ui, (assumptions, place), commands);
+}
+
+/// The same for a reconstruction, whose evidence says all of them.
+pub fn evidence_assumptions_ui(
+    ui: &mut Ui,
+    assumptions: &[Assumption],
+    commands: &mut Vec<Command>,
+) {
+    let place = |_| Some(("Click to say it in the Evidence pane", Some(Pane::Evidence)));
+    assumptions_at_ui(ui, (assumptions, place), commands);
+}
+
+/// Where a quantity is set, as [`place`] says it.
+type Place = Option<(&'static str, Option<Pane>)>;
+
+fn assumptions_at_ui(
+    ui: &mut Ui,
+    (assumptions, place): (&[Assumption], fn(AssumedQuantity) -> Place),
+    commands: &mut Vec<Command>,
+) {
+    let list_ui = |ui: &mut Ui, commands: &mut Vec<Command>| {
+        ui.horizontal_wrapped(|ui| {
+            ui.spacing_mut().item_spacing.x = looks::PART * 2.0;
+            for assumption in assumptions {
+                assumption_ui(ui, (assumption, place(assumption.quantity)), commands);
+            }
+        });
+    };
     match assumptions.len() {
         0 => return,
-        1..=MAX_OPEN => return list_ui(ui, assumptions, commands),
+        1..=MAX_OPEN => return list_ui(ui, commands),
         _ => {}
     }
     let title = RichText::new(format!("{} assumptions", assumptions.len())).italics();
     let header = CollapsingHeader::new(title).id_salt("assumptions");
-    header.show(ui, |ui| list_ui(ui, assumptions, commands));
+    header.show(ui, |ui| list_ui(ui, commands));
 }
 
-fn list_ui(ui: &mut Ui, assumptions: &[Assumption], commands: &mut Vec<Command>) {
-    ui.horizontal_wrapped(|ui| {
-        ui.spacing_mut().item_spacing.x = looks::PART * 2.0;
-        for assumption in assumptions {
-            assumption_ui(ui, assumption, commands);
-        }
-    });
-}
-
-fn assumption_ui(ui: &mut Ui, assumption: &Assumption, commands: &mut Vec<Command>) {
+fn assumption_ui(
+    ui: &mut Ui,
+    (assumption, place): (&Assumption, Place),
+    commands: &mut Vec<Command>,
+) {
     let Assumption { quantity, value, reason } = assumption;
     let text = match quantity {
         AssumedQuantity::NotUsed => format!("not used: {value}"),
         quantity => format!("assumed: {}: {value}", quantity.label()),
     };
-    let (hint, pane) = match place(*quantity) {
+    let (hint, pane) = match place {
         Some((hint, pane)) => (format!("\n{hint}"), pane),
         None => (String::new(), None),
     };
@@ -52,7 +76,7 @@ fn assumption_ui(ui: &mut Ui, assumption: &Assumption, commands: &mut Vec<Comman
 
 /// How the user sets the quantity instead of having it assumed, and the panel in which; `None` for
 /// what only a file says.
-fn place(quantity: AssumedQuantity) -> Option<(&'static str, Option<Pane>)> {
+fn place(quantity: AssumedQuantity) -> Place {
     Some(match quantity {
         AssumedQuantity::Vehicle
         | AssumedQuantity::Bullet

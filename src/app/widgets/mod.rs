@@ -11,7 +11,7 @@ mod sensitivity;
 mod spread_table;
 mod time_figure;
 
-pub use assumptions::assumptions_ui;
+pub use assumptions::{assumptions_ui, evidence_assumptions_ui};
 pub use bad_cases::bad_cases_ui;
 pub use badges::badges_ui;
 pub use cost::cost_ui;

@@ -1,25 +1,28 @@
-//! `impactlab evaluate`: how well a trained network does.
+//! `impactlab evaluate`: how well a trained network or a reconstruction does.
 
 use clap::{Args, Subcommand};
 
 use crate::cli::CliError;
 use crate::cli::commands::evaluate_force::{self, EvaluateForceArgs};
+use crate::cli::commands::evaluate_reconstruction::{self, EvaluateReconstructionArgs};
 use crate::cli::commands::evaluate_response::{self, EvaluateResponseArgs};
 use crate::cli::console::{Console, Verdict};
 
-/// Measure a trained network against data
+/// Measure a trained network or reconstructions against data
 #[derive(Debug, Args)]
 pub(in crate::cli) struct EvaluateArgs {
     #[command(subcommand)]
-    what: EvaluatedNetwork,
+    what: Evaluated,
 }
 
 #[derive(Debug, Subcommand)]
-enum EvaluatedNetwork {
+enum Evaluated {
     /// The force network beside classic pulse, nearest case and Gaussian processes
     Force(EvaluateForceArgs),
     /// A response network on trajectories
     Response(EvaluateResponseArgs),
+    /// Reconstructed speeds of staged collisions, beside the hand calculation and a swarm's optimum
+    Reconstruction(EvaluateReconstructionArgs),
 }
 
 /// Evaluates what was asked for.
@@ -28,7 +31,8 @@ pub(in crate::cli) fn run(
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
     match &args.what {
-        EvaluatedNetwork::Force(args) => evaluate_force::run(args, console),
-        EvaluatedNetwork::Response(args) => evaluate_response::run(args, console),
+        Evaluated::Force(args) => evaluate_force::run(args, console),
+        Evaluated::Response(args) => evaluate_response::run(args, console),
+        Evaluated::Reconstruction(args) => evaluate_reconstruction::run(args, console),
     }
 }

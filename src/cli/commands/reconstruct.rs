@@ -8,29 +8,16 @@ use serde::Serialize;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::write_reconstruction;
-use crate::cli::options::{OverwriteArg, UnitsArg, VehicleArg};
+use crate::cli::options::{EvidenceArgs, OverwriteArg, UnitsArg};
 use crate::cli::text::print_reconstruction;
-use crate::study::{EvidenceChoice, ReconstructReport, ReconstructRequest};
+use crate::study::{ReconstructReport, ReconstructRequest};
 
 /// From the evidence to the speeds before the impact, as a distribution
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct ReconstructArgs {
-    /// The evidence file
-    #[arg(value_name = "EVIDENCE.toml")]
-    evidence: PathBuf,
-    /// The struck car: stands in where the evidence gives no value
-    #[arg(long, value_name = "NAME|FILE")]
-    vehicle: Option<VehicleArg>,
-    /// The striking car, likewise
-    #[arg(long, value_name = "NAME|FILE")]
-    striking: Option<VehicleArg>,
-    /// Number of particles
-    #[arg(long, value_name = "N", default_value_t = ReconstructRequest::DEFAULT_PARTICLES)]
-    particles: usize,
-    /// Seed of all draws
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
+    #[command(flatten)]
+    evidence: EvidenceArgs,
     /// Save the run in this file as it goes; another one that exists is not replaced
     #[arg(long, value_name = "FILE")]
     checkpoint: Option<PathBuf>,
@@ -52,7 +39,7 @@ Example:
   impactlab reconstruct case.toml --out case-result
 
 World axes: origin at the CG of the struck car at first contact, X along its heading, Y to the left.
-How often the intervals hold has been tried on 16 simulated collisions only: docs/guide/limits.md.
+How often the intervals hold was tried on simulated collisions only: docs/guide/limits.md.
 Whoever hit a flank behind the CG is taken to have matched the speed, as in a PIT manoeuvre; [prior] in
 the evidence file says otherwise.
 
@@ -80,13 +67,9 @@ pub(in crate::cli) fn run(
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
     let request = ReconstructRequest {
-        vehicle: VehicleArg::choice(&args.vehicle),
-        striking: VehicleArg::choice(&args.striking),
-        particles: args.particles,
-        seed: args.seed,
         checkpoint: args.checkpoint.clone(),
         resume: args.resume,
-        ..ReconstructRequest::new(EvidenceChoice::File(args.evidence.clone()))
+        ..args.evidence.request()
     };
     let out = args.out.as_deref();
     let into = out.map(|folder| (folder, args.overwrite.into(), &KNOWN_FILES[..]));

@@ -1,42 +1,28 @@
 //! `impactlab render reconstruction`: what the evidence of a collision says.
 
-use std::path::PathBuf;
-
 use clap::{Args, ValueEnum};
 
 use crate::cli::CliError;
 use crate::cli::commands::render::OutputArgs;
 use crate::cli::commands::render_figure::{Noted, noted};
 use crate::cli::console::Console;
-use crate::cli::options::VehicleArg;
+use crate::cli::options::EvidenceArgs;
 use crate::figure::{
-    ReconstructedPaths, budget_figure, marginal_figure, prior_values, reconstruction_scene_figure,
+    ReconstructedPaths, ReconstructionScene, budget_figure, marginal_figure, prior_values,
+    reconstruction_scene_figure,
 };
 use crate::reconstruct::ReconstructedQuantity;
-use crate::study::{EvidenceChoice, ReconstructRequest, Trust};
+use crate::study::Trust;
 use crate::units::UnitSystem;
 
 /// The evidence, and what is drawn.
 #[derive(Debug, Args)]
 pub(super) struct ReconstructionArgs {
-    /// The evidence file
-    #[arg(value_name = "EVIDENCE.toml")]
-    evidence: PathBuf,
+    #[command(flatten)]
+    evidence: EvidenceArgs,
     /// What is drawn
     #[arg(long, value_enum, default_value_t)]
     plot: PlotArg,
-    /// The struck car, as in reconstruct
-    #[arg(long, value_name = "NAME|FILE")]
-    vehicle: Option<VehicleArg>,
-    /// The striking car, as in reconstruct
-    #[arg(long, value_name = "NAME|FILE")]
-    striking: Option<VehicleArg>,
-    /// Number of particles
-    #[arg(long, value_name = "N", default_value_t = ReconstructRequest::DEFAULT_PARTICLES)]
-    particles: usize,
-    /// Seed of all draws
-    #[arg(long, default_value_t = 0)]
-    seed: u64,
     #[command(flatten)]
     pub(super) output: OutputArgs,
 }
@@ -81,14 +67,7 @@ pub(super) fn figure(
     units: UnitSystem,
     console: &mut Console<'_>,
 ) -> Result<Noted, CliError> {
-    let request = ReconstructRequest {
-        vehicle: VehicleArg::choice(&args.vehicle),
-        striking: VehicleArg::choice(&args.striking),
-        particles: args.particles,
-        seed: args.seed,
-        ..ReconstructRequest::new(EvidenceChoice::File(args.evidence.clone()))
-    };
-    let answer = console.answer(&request)?;
+    let answer = console.answer(&args.evidence.request())?;
     let (badges, assumptions) = (&answer.report.badges, &answer.report.assumptions);
     let trust = Trust::new(badges, assumptions);
     let figure = match (args.plot.quantity(), args.plot) {
@@ -99,7 +78,8 @@ pub(super) fn figure(
         (None, PlotArg::Budget) => budget_figure(&answer, &trust, units),
         (None, _) => {
             let paths = ReconstructedPaths::of(&answer);
-            reconstruction_scene_figure((&answer, &paths), &trust, units)
+            let scene = ReconstructionScene::of(&answer, &paths);
+            reconstruction_scene_figure(&scene, &trust, units)
         }
     };
     Ok((figure, noted(&[], (badges, assumptions))))

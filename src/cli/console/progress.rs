@@ -27,6 +27,7 @@ pub(in crate::cli) fn under_bar<T>(work: impl FnOnce(&mut Observer<'_>) -> T) ->
         let (progress, line) = match event {
             Event::Progress(progress) => (progress, None),
             Event::Training(told) => training(told),
+            Event::Sampling(_) => return ControlFlow::Continue(()),
         };
         if let (false, Some(line)) = (is_seen, line) {
             // Nobody is left to tell if standard error is closed.

@@ -29,7 +29,8 @@ pub(in crate::cli) fn write_force_evaluation(
     Ok(())
 }
 
-fn write_json(path: &Path, value: &impl Serialize) -> Result<(), CliError> {
+/// Writes a value as indented JSON into a file that does not exist yet.
+pub(super) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), CliError> {
     write_atomically(path, Existing::Refuse, |out| {
         serde_json::to_writer_pretty(&mut *out, value)?;
         writeln!(out)

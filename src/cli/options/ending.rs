@@ -162,10 +162,8 @@ impl EndingArgs {
             drag_share_of_friction: share,
         };
         let ending = Ending {
-            brake: self.brake.map(|share_of_friction| Braking {
-                start_s: self.brake_start,
-                share_of_friction,
-                rise_s: self.brake_rise,
+            brake: self.brake.map(|share_of_friction| {
+                Braking::new(self.brake_start, share_of_friction, self.brake_rise)
             }),
             engine: self.engine_braking.map(|deceleration_m_s2| EngineBraking {
                 deceleration_m_s2,

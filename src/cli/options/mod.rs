@@ -2,6 +2,7 @@
 
 mod choices;
 mod ending;
+mod evidence;
 mod learning_data;
 mod overwrite;
 mod quantity;
@@ -12,6 +13,7 @@ pub(super) use choices::{
     BadCasesArg, EquationsArg, IntegratorArg, SamplingArg, SplitArg, UnitsArg, VehicleArg,
 };
 pub(super) use ending::EndingArgs;
+pub(super) use evidence::EvidenceArgs;
 pub(super) use learning_data::LearningDataArgs;
 pub(super) use overwrite::OverwriteArg;
 pub(super) use quantity::{contact_point, count, number, size_px, window_s};

@@ -15,7 +15,8 @@ use argmin_rng::Xoshiro256PlusPlus;
 use argmin_rng::rand_core::SeedableRng;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use crate::reconstruct::sampler::Target;
+use crate::nn::random_stream;
+use crate::reconstruct::sampler::{Target, standard_normals};
 
 /// Range of each variable that the swarm searches, in standard deviations of the prior.
 const SEARCH_LIMIT: f64 = 4.0;
@@ -130,6 +131,18 @@ impl PointOptimum {
             z: at.z,
             n_evaluations,
         })
+    }
+
+    /// Draws from the normal distribution about the point, `[n][dim]`; `None` if rounding errors have
+    /// made its covariance indefinite.
+    pub fn draws(&self, n: usize, seed: u64) -> Option<Vec<Vec<f64>>> {
+        let root = self.covariance.clone().cholesky()?.unpack();
+        let mut rng = random_stream(seed, "optimum", 0);
+        let draw = |_| {
+            let normals = DVector::from_vec(standard_normals(self.z.len(), &mut rng));
+            self.z.iter().zip((&root * normals).iter()).map(|(z, by)| z + by).collect()
+        };
+        Some((0..n).map(draw).collect())
     }
 }
 
@@ -256,6 +269,13 @@ mod tests {
                 "σ of {j} is {ratio} times that of the closed form"
             );
         }
+        let draws = found.draws(4000, 3).unwrap();
+        let first = || draws.iter().map(|z| z[0]);
+        let mean_of_draws = first().sum::<f64>() / 4000.0;
+        let square = first().map(|z| (z - mean_of_draws).powi(2)).sum::<f64>() / 4000.0;
+        let std = covariance[(0, 0)].sqrt();
+        assert!((mean_of_draws - mean[0]).abs() < 0.15 * std, "{mean_of_draws} for {}", mean[0]);
+        assert!((square.sqrt() / std - 1.0).abs() < 0.1, "{} for {std}", square.sqrt());
     }
 
     #[test]

@@ -17,6 +17,9 @@
 //! [striking_car]
 //! mass_kg = 1900
 //!
+//! [weighing]                        # if one scale weighed both cars: its error as a share; the
+//! shared_scale_sigma = 0.01         # mass_sigma_kg are those of the other errors
+//!
 //! [damage]
 //! side = "right"                    # left, right, front, rear
 //! x_m = -1.7                        # along the side, from the CG; y_m at front and rear
@@ -69,7 +72,7 @@ use crate::ranges::{
     ANGLE_SIGMA, BRAKE_SHARE, CG_HEIGHT, CG_TO_AXLE, CONTACT_X, CONTACT_Y, CONTROL_TIME,
     EVIDENCE_HEADING, EVIDENCE_POSITION, EVIDENCE_SPEED, EVIDENCE_TIME, FRICTION_LIMIT,
     FRICTION_SIGMA, HEADING, MASS_SIGMA, OUTER_LENGTH, OUTER_WIDTH, POSITION_SIGMA, PULSE_END,
-    RESTITUTION, ROAD_FRICTION, Range, SPEED, SPEED_SIGMA, TRACK_WIDTH, VEHICLE_MASS,
+    RESTITUTION, ROAD_FRICTION, Range, SCALE_SIGMA, SPEED, SPEED_SIGMA, TRACK_WIDTH, VEHICLE_MASS,
     VEHICLE_YAW_INERTIA,
 };
 use crate::reconstruct::evidence::defaults::{
@@ -93,6 +96,18 @@ const SIDES: [(&str, Side); 4] =
 const DEFAULT_ANGLE_SIGMA_RAD: f64 = 0.17;
 
 impl Evidence {
+    /// Whether a TOML file is meant as evidence: it has a table of the struck or the striking car, which
+    /// neither a vehicle nor a scenario has.
+    pub fn is_meant_by(path: &Path) -> bool {
+        let Ok(text) = TomlFile::read(path) else { return false };
+        let file = TomlFile { path, text: &text };
+        let Ok(root) = file.parse() else { return false };
+        let mut top = TomlTable::root(file, &root);
+        ["struck_car", "striking_car"]
+            .iter()
+            .any(|key| matches!(top.optional_table(key), Ok(Some(_))))
+    }
+
     /// Reads an evidence file.
     ///
     /// # Errors
@@ -116,6 +131,7 @@ impl Evidence {
         };
         let struck_car = read_car(top.table("struck_car")?)?;
         let striking_car = read_car(top.table("striking_car")?)?;
+        let shared_scale_sigma = top.optional_table("weighing")?.map_or(Ok(None), read_weighing)?;
         let damage = read_damage(top.table("damage")?)?;
         let mut pose = |key| top.optional_table(key)?.map_or(Ok(None), read_rest);
         let (rest, striking_rest) = (pose("rest")?, pose("striking_rest")?);
@@ -131,6 +147,7 @@ impl Evidence {
             friction,
             struck_car,
             striking_car,
+            shared_scale_sigma,
             damage,
             rest,
             striking_rest,
@@ -189,6 +206,13 @@ fn read_car(mut table: TomlTable<'_>) -> Result<CarEvidence, TomlError> {
     }
     table.finish()?;
     Ok(car)
+}
+
+/// Error of a scale that weighed both cars, as a share.
+fn read_weighing(mut table: TomlTable<'_>) -> Result<Option<f64>, TomlError> {
+    let sigma = table.require("shared_scale_sigma", &SCALE_SIGMA)?;
+    table.finish()?;
+    Ok(Some(sigma))
 }
 
 fn read_damage(mut table: TomlTable<'_>) -> Result<Damage, TomlError> {
@@ -260,6 +284,9 @@ fn read_mark(mut table: TomlTable<'_>) -> Result<Mark, TomlError> {
     let Some(points_m) = points else { return Err(table.missing("points_m")) };
     if points_m.len() < 2 {
         return Err(table.refuse_last("at least two points [x, y], the start and the end"));
+    }
+    if points_m.windows(2).all(|pair| pair[0] == pair[1]) {
+        return Err(table.refuse_last("points that differ, the start and the end"));
     }
     let is_first = |start: [f64; 2]| {
         points_m.first().is_some_and(|first| (start[0] - first[0]).hypot(start[1] - first[1]) < 0.5)

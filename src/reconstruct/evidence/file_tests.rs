@@ -90,6 +90,7 @@ fn an_error_names_file_line_key_and_what_is_expected() {
         ("side = \"right\"", "side = \"top\"", "16: damage.side is \"top\", expected \"left\" or"),
         ("side = \"right\"", "", "15: damage.side is missing"),
         ("x_m = -1.7", "", "15: damage.x_m is missing"),
+        ("[damage]", "[weighing]\n[damage]", "15: weighing.shared_scale_sigma is missing"),
         ("y_m = -0.9", "y_m = 0.9", "18: damage.y_m is 0.9, expected a point on the right"),
         ("cg_to_rear_axle_m = 1.45", "", "6: struck_car.cg_to_rear_axle_m is missing"),
         ("x_m = 41.2", "", "21: rest.x_m is missing"),

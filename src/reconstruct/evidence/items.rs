@@ -29,6 +29,10 @@ pub struct Evidence {
     pub struck_car: CarEvidence,
     /// The car that struck it.
     pub striking_car: CarEvidence,
+    /// Error of the one scale that weighed both cars, as a share of what it shows; `None` if they were
+    /// not weighed on one. The standard deviation of each mass is that of its other errors.
+    #[serde(default)]
+    pub shared_scale_sigma: Option<f64>,
     /// Where the struck car was hit.
     pub damage: Damage,
     /// Where the struck car came to rest; `None` if that is not known.
@@ -207,9 +211,11 @@ impl Evidence {
         Self { edr: Edr::default(), ..self.clone() }
     }
 
-    /// The same with nothing of the motion but the rest poses.
+    /// The same with nothing of the motion but the rest poses, and nothing of what driver and wheels
+    /// did.
     pub fn rest_only(&self) -> Self {
-        Self { marks: Vec::new(), positions: Vec::new(), ..self.without_edr() }
+        let after = After::default();
+        Self { marks: Vec::new(), positions: Vec::new(), after, ..self.without_edr() }
     }
 
     /// What a mirror on the X axis shows: left and right are swapped.

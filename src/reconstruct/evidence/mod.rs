@@ -1,6 +1,8 @@
 //! What is found after a collision, and how well each item of it is known.
 
 mod defaults;
+#[cfg(test)]
+pub(crate) mod examples;
 mod file;
 mod items;
 

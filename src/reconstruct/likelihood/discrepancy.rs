@@ -22,7 +22,7 @@
 //! Form of the discrepancy: [`KennedyOHagan2001`](crate::bibliography::KennedyOHagan2001). Its sizes
 //! are chosen on the 20 tuning cases of `datasets/staged` (BENCHMARKS.md).
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use serde::{Deserialize, Serialize};
 
 /// Sizes of the errors of the forward model.
@@ -115,6 +115,27 @@ impl Discrepancy {
         self.covariance(at, at, 1.0) + at.sigma * at.sigma + own * own
     }
 
+    /// L of C = L Lᵀ; `None` where it is not positive definite.
+    fn factor(&self, all: &[PathResidual], whole_m: f64) -> Option<Cholesky<f64, Dyn>> {
+        let length_m = (self.correlation_share * whole_m).max(1.0);
+        let c = DMatrix::from_fn(all.len(), all.len(), |i, j| match i == j {
+            true => self.variance(&all[i]),
+            false => self.covariance(&all[i], &all[j], length_m),
+        });
+        c.cholesky()
+    }
+
+    /// Errors L ξ of independent standard normal variables ξ; `None` where C has no factor.
+    pub(super) fn correlated(
+        &self,
+        all: &[PathResidual],
+        whole_m: f64,
+        noise: &[f64],
+    ) -> Option<Vec<f64>> {
+        let lower = self.factor(all, whole_m)?.l();
+        Some((lower * DVector::from_column_slice(noise)).as_slice().to_vec())
+    }
+
     /// Logarithm of the density of residuals, up to a constant, and their distance `Rᵀ C⁻¹ R`;
     /// −∞ where they are not finite.
     ///
@@ -124,12 +145,7 @@ impl Discrepancy {
         if n == 0 {
             return 0.0;
         }
-        let length_m = (self.correlation_share * whole_m).max(1.0);
-        let c = DMatrix::from_fn(n, n, |i, j| match i == j {
-            true => self.variance(&all[i]),
-            false => self.covariance(&all[i], &all[j], length_m),
-        });
-        let Some(factor) = c.cholesky() else { return f64::NEG_INFINITY };
+        let Some(factor) = self.factor(all, whole_m) else { return f64::NEG_INFINITY };
         let r = DVector::from_fn(n, |i, _| all[i].residual);
         let solved = factor.l_dirty().solve_lower_triangular(&r);
         let Some(distance) = solved.map(|solved| solved.norm_squared()) else {

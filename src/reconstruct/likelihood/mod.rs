@@ -1,6 +1,7 @@
 //! How well a motion goes with the evidence.
 
 mod discrepancy;
+mod draw;
 mod fit;
 mod onset;
 mod target;

@@ -2,6 +2,7 @@
 
 use crate::reconstruct::CollisionMotion;
 use crate::reconstruct::likelihood::track::{Track, WheelTrack};
+use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::{VehicleParameters, Wheel, WheelEffort};
 
 /// Slip angle beyond which a tyre leaves a mark, rad: 8°. Tyres reach their largest side force at 6°
@@ -30,10 +31,10 @@ impl Onset {
         let states = track.points.iter().zip(&path.velocity_m_s);
         let (is_marking, is_locked) = states
             .map(|(at, &[u, w])| {
-                let effort = held.and_then(|held| held.at(at.time_s));
-                let effort = effort.map_or(WheelEffort::FREE, |efforts| efforts[wheel.index()]);
+                let efforts = held.and_then(|held| held.at(at.time_s));
+                let efforts = efforts.unwrap_or([WheelEffort::FREE; 4]);
                 let speed = u.hypot(w);
-                let is_locked = locks(&motion.vehicle, wheel, &effort, u.abs() / (speed + 1e-6));
+                let is_locked = locks(&motion.vehicle, wheel, &efforts, u.abs() / (speed + 1e-6));
                 let slips = w.abs() > u.abs() * MARK_SLIP_RAD.tan();
                 (speed > MARK_SPEED_M_S && (slips || is_locked), is_locked)
             })
@@ -92,14 +93,26 @@ impl Onset {
     }
 }
 
-/// Whether a wheel is locked: by damage, or by more braking than the road can turn it against, at its
-/// static load.
+/// Whether a wheel is locked: by damage, or by more braking than the road can turn it against, at the
+/// load that braking shifts to the front axle.
 ///
 /// - `along`: share of the velocity of the wheel that is in its plane.
-fn locks(vehicle: &VehicleParameters, wheel: Wheel, effort: &WheelEffort<f64>, along: f64) -> bool {
-    let load_n = vehicle.static_loads_n()[wheel.index()];
-    let tires = &vehicle.tires;
-    let friction = tires.friction * (1.0 + tires.sliding_friction_ratio) / 2.0;
+fn locks(
+    vehicle: &VehicleParameters,
+    wheel: Wheel,
+    efforts: &[WheelEffort<f64>; 4],
+    along: f64,
+) -> bool {
+    let effort = &efforts[wheel.index()];
+    let friction = vehicle.tires.friction * vehicle.tires.longitudinal_friction_ratio;
+    let weight_n = vehicle.mass.mass_kg * STANDARD_GRAVITY_M_S2;
+    let braking_n = efforts.iter().map(|effort| effort.braking_n).sum::<f64>();
+    let geometry = &vehicle.geometry;
+    let shifted_n = braking_n.min(friction * weight_n) * along * geometry.cg_height_m
+        / geometry.wheelbase_m()
+        / 2.0;
+    let static_n = vehicle.static_loads_n()[wheel.index()];
+    let load_n = if wheel.is_front() { static_n + shifted_n } else { static_n - shifted_n };
     effort.locked > 0.5
         || effort.braking_n > friction * load_n * along
             && effort.braking_n > 0.05 * friction * load_n

@@ -30,6 +30,11 @@ impl ReconstructionTarget {
         &self.evidence
     }
 
+    /// What the forward model errs by.
+    pub fn discrepancy(&self) -> &Discrepancy {
+        &self.discrepancy
+    }
+
     /// Logarithm of the likelihood of a motion, up to a constant.
     pub fn log_likelihood(&self, motion: &CollisionMotion) -> f64 {
         compared((&self.evidence, &self.discrepancy), motion, false).0

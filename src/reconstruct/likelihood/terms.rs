@@ -11,6 +11,10 @@ use crate::vehicle::Wheel;
 /// Degrees of freedom of the Student distributions of single numbers.
 const SINGLE_DEGREES_OF_FREEDOM: f64 = 4.0;
 
+/// Share of what one end of a mark says that it says by itself: the wheels of a braked car lock
+/// together, so that what the model errs by is in part the same for all of them. Assumed.
+const OWN_ONSET: f64 = 0.5;
+
 /// How often the kind of a mark is told wrongly. Assumed.
 const WRONG_KIND: f64 = 0.05;
 
@@ -54,16 +58,7 @@ pub(super) fn compared(
     is_told: bool,
 ) -> (f64, Vec<EvidenceTerm>) {
     let Some(track) = Track::of(&motion.path) else { return (f64::NEG_INFINITY, Vec::new()) };
-    let mut comparison = Comparison {
-        evidence,
-        discrepancy,
-        motion,
-        track: &track,
-        log_likelihood: 0.0,
-        path: Vec::new(),
-        terms: Vec::new(),
-        is_told,
-    };
+    let mut comparison = Comparison::new((evidence, discrepancy), (motion, &track), is_told);
     comparison.add_rest();
     comparison.add_positions();
     for mark in &evidence.marks {
@@ -79,7 +74,28 @@ pub(super) fn compared(
     (comparison.log_likelihood, comparison.terms)
 }
 
-impl Comparison<'_> {
+/// The residuals of rest pose and positions, in this order, and the distance travelled in all, m.
+pub(super) fn path_residuals(
+    of: (&Evidence, &Discrepancy),
+    motion: &CollisionMotion,
+) -> Option<(Vec<PathResidual>, f64)> {
+    let track = Track::of(&motion.path)?;
+    let mut comparison = Comparison::new(of, (motion, &track), false);
+    comparison.add_rest();
+    comparison.add_positions();
+    Some((comparison.path, track.whole_m()))
+}
+
+impl<'a> Comparison<'a> {
+    fn new(
+        (evidence, discrepancy): (&'a Evidence, &'a Discrepancy),
+        (motion, track): (&'a CollisionMotion, &'a Track),
+        is_told: bool,
+    ) -> Self {
+        let (path, terms) = (Vec::new(), Vec::new());
+        Self { evidence, discrepancy, motion, track, log_likelihood: 0.0, path, terms, is_told }
+    }
+
     fn tell(
         &mut self,
         name: &str,
@@ -102,15 +118,18 @@ impl Comparison<'_> {
     }
 
     /// A number by itself.
+    ///
+    /// - `weight`: 1, or less where other numbers err with it.
     fn add_single(
         &mut self,
         name: &str,
         unit: &'static str,
         [expected, found]: [f64; 2],
-        sigma: f64,
+        (sigma, weight): (f64, f64),
     ) {
         let distance = ((found - expected) / sigma).powi(2);
-        self.log_likelihood += student(distance, 1.0, SINGLE_DEGREES_OF_FREEDOM) - sigma.ln();
+        let density = student(distance, 1.0, SINGLE_DEGREES_OF_FREEDOM) - sigma.ln();
+        self.log_likelihood += weight * density;
         self.tell(name, unit, [expected, found], (distance, 1));
     }
 
@@ -185,13 +204,16 @@ impl Comparison<'_> {
             self.log_likelihood += weight * student(off * off, 1.0, SINGLE_DEGREES_OF_FREEDOM);
         }
         let (Some(first), Some(last)) = (nearest.first(), nearest.last()) else { return };
+        let n_marks = self.evidence.marks.len() as f64;
+        let common = OWN_ONSET + (1.0 - OWN_ONSET) / n_marks;
         for (at, step, end) in [(first, -1, "start"), (last, 1, "end")] {
             let sigma_m = self.discrepancy.onset_sigma_m(self.track.travelled_m[at.idx]);
             let expected_m = onset.end_m(&wheel, at.idx, step);
             // A wheel that never slides: as far off as can be.
             let expected_m = expected_m.unwrap_or(at.travelled_m + 30.0);
             let numbers = [expected_m, at.travelled_m];
-            self.add_single(&format!("{name}, {end} along the path"), "m", numbers, sigma_m);
+            let name = format!("{name}, {end} along the path");
+            self.add_single(&name, "m", numbers, (sigma_m, common));
         }
         if let Some(kind) = mark.kind {
             let share = onset.locked_share(&wheel, first.idx, last.idx);
@@ -260,16 +282,8 @@ impl Comparison<'_> {
             self.log_likelihood = f64::NEG_INFINITY;
             return;
         };
-        let mut of_bullet = Comparison {
-            evidence: self.evidence,
-            discrepancy: self.discrepancy,
-            motion: self.motion,
-            track: &track,
-            log_likelihood: 0.0,
-            path: Vec::new(),
-            terms: Vec::new(),
-            is_told: self.is_told,
-        };
+        let of = (self.evidence, self.discrepancy);
+        let mut of_bullet = Comparison::new(of, (self.motion, &track), self.is_told);
         let names = ["striking car rest x", "striking car rest y", "striking car rest heading"];
         of_bullet.add_pose(names, &found, track.rest());
         let density = of_bullet.discrepancy.log_density(&of_bullet.path, track.whole_m());

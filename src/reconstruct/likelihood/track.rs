@@ -3,7 +3,7 @@
 use crate::vehicle::{GeometryParameters, Path, PathEnd, PathPoint, Wheel};
 
 /// Time between the points of a path that are kept, s.
-const POINT_INTERVAL_S: f64 = 8e-3;
+const POINT_INTERVAL_S: f64 = 0.018;
 
 /// Deceleration by which a motion that was not followed to its end is continued, m/s²: half of what a
 /// dry road can bear. It only tells which of two motions that go too far goes farther.

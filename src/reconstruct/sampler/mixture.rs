@@ -16,6 +16,7 @@
 use nalgebra::{DMatrix, DVector};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
+use rayon::prelude::*;
 
 /// Largest number of parts.
 const MAX_PARTS: usize = 6;
@@ -87,10 +88,12 @@ impl Part {
 
     /// `u = L⁻¹ (z − m)`.
     pub fn whiten(&self, z: &[f64]) -> Vec<f64> {
-        let mut u: Vec<f64> = Vec::with_capacity(z.len());
-        for (i, z) in z.iter().enumerate() {
-            let before: f64 = u.iter().enumerate().map(|(j, u)| self.factor[(i, j)] * u).sum();
-            u.push((z - self.mean[i] - before) / self.factor[(i, i)]);
+        let mut u: Vec<f64> = z.iter().zip(&self.mean).map(|(z, mean)| z - mean).collect();
+        for (j, column) in self.factor.column_iter().enumerate() {
+            let (done, left) = u.split_at_mut(j + 1);
+            done[j] /= column[j];
+            let below = column.as_slice()[j + 1..].iter();
+            left.iter_mut().zip(below).for_each(|(u, factor)| *u -= factor * done[j]);
         }
         u
     }
@@ -174,8 +177,8 @@ impl Mixture {
     }
 
     fn mean_ln_density(&self, particles: Weighted<'_>) -> f64 {
-        let pairs = particles.z.iter().zip(particles.weight);
-        pairs.map(|(z, weight)| weight * self.ln_density(z)).sum()
+        let pairs = particles.z.par_iter().zip(particles.weight);
+        pairs.map(|(z, weight)| weight * self.ln_density(z)).collect::<Vec<_>>().iter().sum()
     }
 
     /// The mixture with the given shares of the particles in its parts, `[n_parts][n]`.
@@ -183,7 +186,7 @@ impl Mixture {
     /// - `shared`: `ν / n`, infinite for a common covariance.
     fn of_shares(particles: Weighted<'_>, shares: &[Vec<f64>], shared: f64) -> Self {
         let moments: Vec<Moments> =
-            shares.iter().map(|share| Moments::of(particles, share)).collect();
+            shares.par_iter().map(|share| Moments::of(particles, share)).collect();
         let mut common = moments[0].covariance.clone() * moments[0].weight;
         for moments in &moments[1..] {
             common += &moments.covariance * moments.weight;
@@ -205,9 +208,10 @@ impl Mixture {
         shares: &[Vec<f64>],
     ) -> Option<(Self, Vec<Vec<f64>>)> {
         let dim = particles.z.first()?.len();
-        let divisions = self.parts.iter().zip(shares);
-        let divisions = divisions.map(|(part, share)| division(particles, share, part));
-        let best = divisions.enumerate().max_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
+        let divisions = self.parts.par_iter().zip(shares);
+        let divisions: Vec<Division> =
+            divisions.map(|(part, share)| division(particles, share, part)).collect();
+        let best = divisions.into_iter().enumerate().max_by(|a, b| a.1.gain.total_cmp(&b.1.gain));
         let (divided, division) = best?;
         let mut shares = shares.to_vec();
         let mut other = shares[divided].clone();
@@ -221,8 +225,9 @@ impl Mixture {
                 return None;
             }
             let mixture = Self::of_shares(particles, &shares, f64::INFINITY);
-            for (idx, z) in particles.z.iter().enumerate() {
-                let densities = mixture.ln_densities(z);
+            let of_particles: Vec<Vec<f64>> =
+                particles.z.par_iter().map(|z| mixture.ln_densities(z)).collect();
+            for (idx, densities) in of_particles.into_iter().enumerate() {
                 let total = ln_sum_exp(&densities);
                 for (share, density) in shares.iter_mut().zip(densities) {
                     share[idx] = (density - total).exp();
@@ -262,12 +267,13 @@ impl Moments {
             }
         }
         let mut covariance = DMatrix::zeros(dim, dim);
+        let mut off = vec![0.0; dim];
         for (z, own) in particles.z.iter().zip(&weights).filter(|(_, own)| **own > 0.0) {
-            for j in 0..dim {
-                let scaled = own / weight * (z[j] - mean[j]);
-                for i in j..dim {
-                    covariance[(i, j)] += scaled * (z[i] - mean[i]);
-                }
+            off.iter_mut().zip(*z).zip(&mean).for_each(|((off, z), mean)| *off = z - mean);
+            for (j, mut column) in covariance.column_iter_mut().enumerate() {
+                let scaled = own / weight * off[j];
+                let below = column.as_mut_slice()[j..].iter_mut();
+                below.zip(&off[j..]).for_each(|(sum, off)| *sum += scaled * off);
             }
         }
         covariance.fill_upper_triangle_with_lower_triangle();
@@ -285,23 +291,23 @@ struct Division {
 
 fn division(particles: Weighted<'_>, share: &[f64], part: &Part) -> Division {
     let dim = part.mean.len();
-    let white: Vec<Vec<f64>> = particles.z.iter().map(|z| part.whiten(z)).collect();
+    let white: Vec<Vec<f64>> = particles.z.par_iter().map(|z| part.whiten(z)).collect();
     let column = |j: usize| white.iter().map(|u| u[j]).collect();
     let raw = |j: usize| particles.z.iter().map(|z| z[j]).collect();
     let columns: Vec<Vec<f64>> = (0..dim).map(column).chain((0..dim).map(raw)).collect();
-    let mut best = Division { gain: 0.0, below: vec![false; particles.z.len()] };
-    for column in columns {
+    let of_column = |column: Vec<f64>| {
         let weighted = column.into_iter().enumerate();
         let mut sorted: Vec<(f64, f64, usize)> =
             weighted.map(|(idx, value)| (value, particles.weight[idx] * share[idx], idx)).collect();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (gain, n_below) = best_cut(&sorted);
-        if gain > best.gain {
-            best = Division { gain, below: vec![false; particles.z.len()] };
-            sorted[..n_below].iter().for_each(|(_, _, idx)| best.below[*idx] = true);
-        }
-    }
-    best
+        let mut below = vec![false; sorted.len()];
+        sorted[..n_below].iter().for_each(|(_, _, idx)| below[*idx] = true);
+        Division { gain, below }
+    };
+    let divisions: Vec<Division> = columns.into_par_iter().map(of_column).collect();
+    let none = Division { gain: 0.0, below: vec![false; particles.z.len()] };
+    divisions.into_iter().fold(none, |best, next| if next.gain > best.gain { next } else { best })
 }
 
 /// The cut of sorted values into two groups that has the largest variance between them, as a share

@@ -11,8 +11,6 @@
 //!
 //! Source: [`KaramanisSeljak2024`](crate::bibliography::KaramanisSeljak2024).
 
-use std::collections::BTreeMap;
-
 use serde::{Deserialize, Serialize};
 
 use super::mixture::ln_sum_exp;
@@ -26,7 +24,7 @@ const MIN_INCREASE: f64 = 1e-12;
 /// How many times larger the variance of an estimate is than the ancestors alone say, because all
 /// chains move by one mixture that was fitted to all of them: 1.8 to 3.1 for three targets
 /// and two numbers of particles (BENCHMARKS.md).
-const COMMON_FIT: f64 = 2.5;
+pub(super) const COMMON_FIT: f64 = 2.5;
 
 /// Effective number of groups of common ancestors that the effective sample size needs at least.
 const MIN_GROUPS: f64 = 50.0;
@@ -142,11 +140,11 @@ impl Population {
         let mut groups = Vec::new();
         for level in 0..self.levels.len() {
             groups = (0..self.z.len()).map(|idx| self.ancestor_at(idx, level)).collect();
-            let mut sums: BTreeMap<usize, f64> = BTreeMap::new();
+            let mut sums = vec![0.0; self.z.len()];
             for (group, weight) in groups.iter().zip(&weights.weight) {
-                *sums.entry(*group).or_default() += weight;
+                sums[*group] += weight;
             }
-            if 1.0 / sums.values().map(|sum| sum * sum).sum::<f64>() >= MIN_GROUPS {
+            if 1.0 / sums.iter().map(|sum| sum * sum).sum::<f64>() >= MIN_GROUPS {
                 break;
             }
         }
@@ -185,22 +183,23 @@ fn power(temperature: f64, log_likelihood: f64) -> f64 {
 pub(super) fn group_ess(values: &[f64], weights: &[f64], groups: &[usize]) -> Option<f64> {
     let mean: f64 = values.iter().zip(weights).map(|(value, weight)| weight * value).sum();
     let (mut variance, mut square) = (0.0, 0.0);
-    let mut sums: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
+    let n_ids = groups.iter().max().map_or(0, |largest| largest + 1);
+    let mut sums = vec![(0.0, 0.0); n_ids];
     for ((value, weight), group) in values.iter().zip(weights).zip(groups) {
         let deviation = value - mean;
         variance += weight * deviation * deviation;
         square += weight * weight;
-        let sum = sums.entry(*group).or_default();
+        let sum = &mut sums[*group];
         *sum = (sum.0 + weight * deviation, sum.1 + weight);
     }
     if variance <= f64::EPSILON * mean * mean {
         return None;
     }
-    let n_groups = 1.0 / sums.values().map(|(_, weight)| weight * weight).sum::<f64>();
+    let n_groups = 1.0 / sums.iter().map(|(_, weight): &(f64, f64)| weight * weight).sum::<f64>();
     if n_groups < 1.5 {
         return Some(1.0);
     }
-    let scatter: f64 = sums.values().map(|(sum, _)| sum * sum).sum();
+    let scatter: f64 = sums.iter().map(|(sum, _)| sum * sum).sum();
     let error = COMMON_FIT * scatter * n_groups / (n_groups - 1.0);
     Some((variance / error).min(1.0 / square).max(1.0))
 }

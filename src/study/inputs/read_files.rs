@@ -57,6 +57,7 @@ impl Request {
                 files.training(&asked.training);
             }
             Self::EvaluateForce(asked) => files.path(&asked.data),
+            Self::EvaluateReconstruction(asked) => files.paths(&asked.evidence_files()),
             Self::EvaluateResponse(asked) => {
                 files.path(&asked.data);
                 files.vehicle(&asked.vehicle);

@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::sheet::{DataSheet, SheetQuantity as Q};
-use crate::vehicle::tire::TireParameters;
+use crate::vehicle::tire::{SAME_IN_ALL_DIRECTIONS, TireParameters};
 use crate::vehicle::{GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters};
 
 use super::data_sheet::SheetValues;
@@ -65,6 +65,7 @@ impl DataSheet {
                 rolling_resistance_s2_m2: drag,
                 rolling_radius_m: get(Q::WheelRadius),
                 wheel_inertia_kg_m2: get(Q::WheelInertia),
+                longitudinal_friction_ratio: SAME_IN_ALL_DIRECTIONS,
             },
             estimates: self.rules(),
             sheet: None,

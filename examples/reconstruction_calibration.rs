@@ -1,0 +1,124 @@
+//! Simulation-based calibration of reconstructions: collisions are drawn from the program's own prior,
+//! evidence of them from its own likelihood, and both are reconstructed. The rank of the true value
+//! among the particles is then uniform.
+//!
+//! ```text
+//! cargo run --release --example reconstruction_calibration -- datasets/staged/evidence/s24.toml 500
+//! ```
+//!
+//! The case gives cars, road, damage and the accuracies. Half of the collisions leave rest pose and
+//! recorded speed, half rest pose and three positions in a video. What is printed is a line for each
+//! quantity: p of χ² over 10 bins of its ranks, and how many ranks fell into each bin.
+
+#![allow(clippy::print_stdout)]
+
+use std::error::Error;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use impactlab::reconstruct::evidence::{Evidence, Measured, RestPose, VideoPosition};
+use impactlab::reconstruct::sampler::{SamplerSettings, sample};
+use impactlab::reconstruct::{
+    Cars, Discrepancy, ForwardModel, RankedQuantity, Ranks, ReconstructedQuantity,
+    ReconstructionTarget,
+};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+use rayon::prelude::*;
+
+const QUANTITIES: [ReconstructedQuantity; 6] = [
+    ReconstructedQuantity::TargetSpeed,
+    ReconstructedQuantity::BulletSpeed,
+    ReconstructedQuantity::ClosingSpeed,
+    ReconstructedQuantity::HeadingDifference,
+    ReconstructedQuantity::RoadFriction,
+    ReconstructedQuantity::DeltaVTarget,
+];
+
+/// Draws of a collision until one can be simulated to rest.
+const MAX_DRAWS: usize = 100;
+
+/// The items that a collision of an index leaves, with their accuracies; the values come later.
+fn kinds_of_evidence(case: &Evidence, idx: usize) -> Evidence {
+    let mut evidence = case.without_edr().rest_only();
+    let heading_rad = Some(Measured { value: 0.0, sigma: 0.035 });
+    evidence.rest = Some(RestPose { x_m: 0.0, y_m: 0.0, position_sigma_m: 0.15, heading_rad });
+    match idx % 2 {
+        0 => evidence.edr.speed_before_m_s = Some(Measured { value: 0.0, sigma: 1.0 }),
+        _ => {
+            let at = |time_s| VideoPosition { time_s, x_m: 0.0, y_m: 0.0, sigma_m: 0.3 };
+            evidence.positions = [0.5, 1.0, 1.5].map(at).to_vec();
+        }
+    }
+    evidence
+}
+
+fn target(evidence: &Evidence) -> ReconstructionTarget {
+    let cars = Cars::of(evidence, None, None);
+    let model = ForwardModel::new(evidence, cars);
+    ReconstructionTarget::new(evidence.clone(), model, Discrepancy::default())
+}
+
+fn ranked(
+    case: &Evidence,
+    idx: usize,
+) -> Result<Vec<RankedQuantity>, Box<dyn Error + Send + Sync>> {
+    let mut rng = ChaCha8Rng::seed_from_u64(idx as u64);
+    let open = {
+        let mut evidence = kinds_of_evidence(case, idx);
+        // Nothing that says where the car was, so that every motion is followed to rest.
+        let (rest, positions) = (evidence.rest.take(), std::mem::take(&mut evidence.positions));
+        let model = ForwardModel::new(&evidence, Cars::of(&evidence, None, None));
+        let evidence = Evidence { rest, positions, ..evidence };
+        ReconstructionTarget::new(evidence, model, Discrepancy::default())
+    };
+    let mut drawn = None;
+    for _ in 0..MAX_DRAWS {
+        let dim = open.model().prior().components().len();
+        let z: Vec<f64> = (0..dim).map(|_| StandardNormal.sample(&mut rng)).collect();
+        let motion = open.model().motions(std::slice::from_ref(&z), |motion| motion).pop();
+        let evidence = motion.and_then(|motion| open.drawn(&motion, &mut rng));
+        if let Some(evidence) = evidence {
+            drawn = Some((z, evidence));
+            break;
+        }
+    }
+    let (truth, evidence) = drawn.ok_or("no collision of the prior can be simulated")?;
+    let target = target(&evidence);
+    let settings = SamplerSettings {
+        n_particles: 150,
+        seed: idx as u64,
+        least_ess: 60.0,
+        max_evaluations: 8000,
+    };
+    let particles = sample(&target, &settings, None, &mut |_| ControlFlow::Continue(()))?;
+    let model = target.model();
+    let of = |quantity: ReconstructedQuantity, z: &[f64]| {
+        let values = model.prior().values(z);
+        quantity.of(&values, &model.impact(&values))
+    };
+    let us: Vec<f64> = QUANTITIES.iter().map(|_| rng.random()).collect();
+    let quantities = QUANTITIES.iter().zip(us);
+    let ranked = quantities.map(|(q, u)| RankedQuantity::of(&particles, &truth, u, |z| of(*q, z)));
+    Ok(ranked.collect())
+}
+
+fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
+    let mut args = std::env::args().skip(1);
+    let path = args.next().ok_or("expected an evidence file and a number of collisions")?;
+    let n: usize = args.next().map_or(Ok(500), |n| n.parse())?;
+    let case = Evidence::load(Path::new(&path))?;
+    let all: Result<Vec<_>, _> = (0..n).into_par_iter().map(|idx| ranked(&case, idx)).collect();
+    let mut ranks = vec![Ranks::default(); QUANTITIES.len()];
+    for quantities in all? {
+        for (ranks, of) in ranks.iter_mut().zip(quantities) {
+            ranks.add(&of.values, of.truth, of.u);
+        }
+    }
+    for (quantity, ranks) in QUANTITIES.iter().zip(&ranks) {
+        let p = ranks.p_value(10).ok_or("no collision")?;
+        println!("{:<24} p = {p:.3}  {:?}", quantity.key(), ranks.counts(10));
+    }
+    Ok(())
+}

@@ -1,0 +1,157 @@
+//! The “Evidence” pane: what was found, what is taken to be likely beforehand, and the run.
+
+use egui::{DragValue, ProgressBar, ScrollArea, TextEdit, Ui};
+
+use crate::app::command::Command;
+use crate::app::dialogs::Purpose;
+use crate::app::looks::{self, Icon, icon_button};
+use crate::app::panels::reconstruction::cards::cards_ui;
+use crate::app::panels::reconstruction::notice_ui;
+use crate::app::panels::reconstruction::priors::{prior_ranges_ui, priors_ui};
+use crate::app::panes::PaneContext;
+use crate::app::reconstruction::{
+    ReconstructionCommand, ReconstructionProject, ReconstructionSession, missing,
+};
+use crate::app::widgets::{count_field, duration_text};
+use crate::data::Severity;
+use crate::ranges::RECONSTRUCTION_PARTICLES;
+use crate::reconstruct::evidence::Evidence;
+use crate::study::EvidenceChoice;
+
+/// Draws the run, the cards of the evidence, and the ranges before and after it.
+pub fn evidence_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
+    let PaneContext { project, view, session, commands, .. } = pane;
+    let (project, session) = (&mut project.reconstruction, &session.reconstruction);
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let Some(preview) = &session.preview else {
+            return start_ui(ui, (project, session), commands);
+        };
+        let mut evidence = preview.evidence.clone();
+        case_ui(ui, (&mut evidence, project), commands);
+        run_ui(ui, (project, session, &evidence), commands);
+        ui.separator();
+        let asked = cards_ui(ui, &mut evidence, (session.adds_to, view.units));
+        commands.extend(asked.map(Command::Reconstruct));
+        ui.add_space(looks::PART);
+        prior_ranges_ui(ui, &mut evidence.prior, view.units);
+        priors_ui(ui, (preview, project, session), view.units);
+        if evidence != preview.evidence {
+            project.evidence = Some(EvidenceChoice::Inline(Box::new(evidence)));
+        }
+    });
+}
+
+/// Says what can be done without evidence, or what is wrong with its file.
+fn start_ui(
+    ui: &mut Ui,
+    (project, session): (&ReconstructionProject, &ReconstructionSession),
+    commands: &mut Vec<Command>,
+) {
+    if let (Some(EvidenceChoice::File(path)), Some(file)) = (&project.evidence, &session.file)
+        && let Err(problem) = &file.evidence
+    {
+        let text = format!("{} cannot be read: {problem}", path.display());
+        notice_ui(ui, Severity::Error, &text);
+    }
+    ui.strong("How fast were the cars?");
+    ui.label(
+        "From what was found after a collision (rest position, tyre marks, damage, recorder, friction, \
+         masses) back to the speeds before it, as a distribution.",
+    );
+    ui.add_space(looks::PART);
+    for (icon, label, hint, command) in [
+        (
+            Icon::FolderOpen,
+            "Open an evidence file…",
+            "A TOML file, as impactlab reconstruct takes it; it can also be dropped here",
+            Command::Ask(Purpose::Files),
+        ),
+        (
+            Icon::History,
+            "Look at the example",
+            "A car that was hit behind its left rear wheel and slid to rest, with four tyre marks",
+            Command::Reconstruct(ReconstructionCommand::Example),
+        ),
+        (
+            Icon::Plus,
+            "New evidence",
+            "An empty form, with the car at rest to be dragged in the scene",
+            Command::Reconstruct(ReconstructionCommand::New),
+        ),
+    ] {
+        if ui.add(icon_button(icon, label)).on_hover_text(hint).clicked() {
+            commands.push(command);
+        }
+    }
+}
+
+/// Draws the name of the case, where its evidence comes from, and the way to other evidence.
+fn case_ui(
+    ui: &mut Ui,
+    (evidence, project): (&mut Evidence, &ReconstructionProject),
+    commands: &mut Vec<Command>,
+) {
+    ui.horizontal(|ui| {
+        let name = ui.strong("Case");
+        ui.add(TextEdit::singleline(&mut evidence.case).desired_width(120.0)).labelled_by(name.id);
+        if ui.button("Open…").on_hover_text("Open an evidence file").clicked() {
+            commands.push(Command::Ask(Purpose::Files));
+        }
+        if ui.button("New").on_hover_text("Begin with an empty form").clicked() {
+            commands.push(Command::Reconstruct(ReconstructionCommand::New));
+        }
+    });
+    if let Some(EvidenceChoice::File(path)) = &project.evidence {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        ui.weak(format!("as in {name}")).on_hover_text(path.display().to_string());
+    }
+}
+
+/// Draws the settings of the run, the button that starts it, and its progress.
+fn run_ui(
+    ui: &mut Ui,
+    (project, session, evidence): (&mut ReconstructionProject, &ReconstructionSession, &Evidence),
+    commands: &mut Vec<Command>,
+) {
+    let mut command = |command| commands.push(Command::Reconstruct(command));
+    let lacks = missing(evidence);
+    ui.horizontal_wrapped(|ui| {
+        let name = ui.label("Particles");
+        count_field(ui, &mut project.particles, &RECONSTRUCTION_PARTICLES, 10.0)
+            .labelled_by(name.id)
+            .on_hover_text("More particles are more sure of the intervals and take longer");
+        let name = ui.label("Seed");
+        ui.add(DragValue::new(&mut project.seed).speed(0.2)).labelled_by(name.id);
+        let button = icon_button(Icon::Play, "Run");
+        let can_run = lacks.is_none() && !session.run.is_running();
+        let run = ui.add_enabled(can_run, button).on_hover_text("From the evidence to the speeds");
+        if run.clicked() {
+            command(ReconstructionCommand::Run);
+        }
+    });
+    if let Some(lacks) = lacks {
+        notice_ui(ui, Severity::Warning, &lacks);
+    }
+    if let Some(job) = session.run.job() {
+        ui.horizontal(|ui| {
+            let is_cancelled = job.is_cancelled();
+            let hint = "What was sampled until now is kept, with a badge that says so";
+            let button = ui.add_enabled(!is_cancelled, egui::Button::new("Cancel"));
+            if button.on_hover_text(hint).clicked() {
+                command(ReconstructionCommand::Cancel);
+            }
+            let progress = job.progress();
+            let left =
+                progress.time_left(job.elapsed()).map(duration_text).filter(|_| !is_cancelled);
+            let left = left.map_or(String::new(), |left| format!(", about {left} left"));
+            let text = match is_cancelled {
+                true => "keeping what was sampled".to_owned(),
+                false => format!("{}{left}", progress.message),
+            };
+            ui.add(ProgressBar::new(progress.fraction().unwrap_or(0.0)).text(text));
+        });
+    }
+    if let Some(problem) = session.run.problem() {
+        notice_ui(ui, Severity::Error, &format!("Not reconstructed: {problem}"));
+    }
+}

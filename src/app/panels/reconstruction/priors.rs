@@ -1,0 +1,103 @@
+//! What is taken to be likely before the motion is looked at: the ranges that the user gives, and every
+//! open quantity before and after the evidence as bars.
+
+use egui::{CollapsingHeader, Grid, Sense, Ui, vec2};
+
+use crate::app::panels::reconstruction::fields::{N_COLUMNS, interval_row};
+use crate::app::reconstruction::{EvidencePreview, ReconstructionProject, ReconstructionSession};
+use crate::figure::Role;
+use crate::ranges::{
+    BRAKE_SHARE, CONTROL_TIME, EVIDENCE_HEADING, EVIDENCE_SPEED, FRICTION_LIMIT, HEADING,
+    RESTITUTION,
+};
+use crate::reconstruct::PriorComponent;
+use crate::reconstruct::evidence::PriorRanges;
+use crate::render::theme;
+use crate::units::{UnitSystem, significant};
+
+/// Standard normal variable below which 95 % lie.
+const Z_95: f64 = 1.645;
+/// Width and height of a bar, points.
+const BAR: [f32; 2] = [110.0, 14.0];
+
+/// Draws the ranges that the user gives instead of the defaults.
+pub fn prior_ranges_ui(ui: &mut Ui, ranges: &mut PriorRanges, units: UnitSystem) {
+    CollapsingHeader::new("Ranges beforehand").show(ui, |ui| {
+        ui.weak("Each value inside is equally likely; what is not checked has a default.");
+        Grid::new("prior ranges").num_columns(N_COLUMNS).min_col_width(10.0).show(ui, |ui| {
+            for (label, range, usual, possible) in [
+                ("Speed, struck", &mut ranges.target_speed_m_s, [0.0, 40.0], EVIDENCE_SPEED),
+                ("Speed, striking", &mut ranges.bullet_speed_m_s, [0.0, 40.0], EVIDENCE_SPEED),
+                ("Angle of the cars", &mut ranges.heading_difference_rad, [-0.5, 0.5], HEADING),
+                (
+                    "Striking sideslip",
+                    &mut ranges.bullet_sideslip_rad,
+                    [-0.2, 0.2],
+                    EVIDENCE_HEADING,
+                ),
+                ("Restitution", &mut ranges.restitution, [0.1, 0.4], RESTITUTION),
+                ("Contact friction", &mut ranges.contact_friction, [0.1, 0.6], FRICTION_LIMIT),
+                ("Braking from", &mut ranges.brake_start_s, [0.3, 2.0], CONTROL_TIME),
+                ("Share of braking", &mut ranges.brake_share, [0.3, 1.0], BRAKE_SHARE),
+            ] {
+                interval_row(ui, label, (range, usual), (&possible, units));
+            }
+        });
+    });
+}
+
+/// Draws every open quantity: the interval that holds 90 % before the evidence, and after it if there is
+/// an answer.
+pub fn priors_ui(
+    ui: &mut Ui,
+    (preview, project, session): (&EvidencePreview, &ReconstructionProject, &ReconstructionSession),
+    units: UnitSystem,
+) {
+    let answer = session.answer().filter(|_| !session.is_outdated(project));
+    let title = match answer {
+        Some(_) => "Before and after the evidence",
+        None => "Before the evidence",
+    };
+    CollapsingHeader::new(title).id_salt("priors").default_open(true).show(ui, |ui| {
+        ui.weak("90 % of each quantity: grey before, blue after the motion was compared.");
+        for (idx, component) in preview.priors.iter().enumerate() {
+            let after = answer.and_then(|of| of.intervals_90.get(idx).copied().flatten());
+            prior_row(ui, component, (after, units));
+        }
+    });
+}
+
+fn prior_row(
+    ui: &mut Ui,
+    PriorComponent { latent, distribution }: &PriorComponent,
+    (after, units): (Option<[f64; 2]>, UnitSystem),
+) {
+    let unit = latent.quantity().display_unit(units);
+    let before = [-Z_95, Z_95].map(|z| distribution.at(z));
+    let text = |ends: [f64; 2]| {
+        let [low, high] = ends.map(|end| significant(unit.from_si(end)));
+        format!("{low} … {high} {}", unit.symbol)
+    };
+    ui.label(latent.label());
+    ui.horizontal(|ui| {
+        let [low, high] = distribution.support();
+        let share = |value: f64| ((value - low) / (high - low)).clamp(0.0, 1.0) as f32;
+        let (rect, response) = ui.allocate_exact_size(BAR.into(), Sense::hover());
+        let dark = ui.visuals().dark_mode;
+        let bar = |[from, to]: [f64; 2], (height, role): (f32, Role)| {
+            let [left, right] = [from, to].map(|end| rect.left() + share(end) * rect.width());
+            let size = vec2((right - left).max(2.0), height);
+            let middle = egui::pos2(left, rect.center().y - height / 2.0);
+            let bar = egui::Rect::from_min_size(middle, size);
+            ui.painter().rect_filled(bar, 2.0, theme::color(role, dark));
+        };
+        bar([low, high], (1.0, Role::Muted));
+        bar(before, (BAR[1], Role::Muted));
+        if let Some(after) = after {
+            bar(after, (BAR[1] / 2.0, Role::Model));
+        }
+        let said = format!("possible: {}", text([low, high]));
+        response.on_hover_text(said);
+        ui.label(text(after.unwrap_or(before)));
+    });
+}

@@ -1,0 +1,281 @@
+//! Edits the evidence in the scene: places of rest are dragged, marks are clicked.
+
+use egui::{Id, TextStyle, Ui};
+
+use crate::collision::{Footprint, Pose};
+use crate::figure::{FigureElement, Role, STRIKING_AT_REST, STRUCK_AT_REST};
+use crate::ranges::{EVIDENCE_HEADING, EVIDENCE_POSITION};
+use crate::reconstruct::Cars;
+use crate::reconstruct::evidence::{Evidence, RestPose};
+use crate::render::FigureResponse;
+use crate::units::Unit;
+
+/// Distance from the pointer at which a handle is taken, points.
+const REACH: f64 = 14.0;
+
+/// What is dragged of a car at rest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Handle {
+    /// The CG.
+    Position,
+    /// The front end.
+    Heading,
+}
+
+/// A car at rest that is being dragged.
+#[derive(Debug, Clone, Copy)]
+struct Drag {
+    is_struck: bool,
+    handle: Handle,
+    /// The pose when the drag began.
+    before: RestPose,
+    /// The view, which stays while something is dragged.
+    view: [[f64; 2]; 2],
+}
+
+/// The editing of one frame.
+pub struct SceneEdit {
+    id: Id,
+    /// Lengths from the CG to the front ends, struck car first, m.
+    front_m: [f64; 2],
+    adds_to: Option<usize>,
+    drag: Option<Drag>,
+    /// Whether the pointer was over a handle in the frame before.
+    is_near: bool,
+}
+
+impl SceneEdit {
+    /// What is being edited in this frame.
+    ///
+    /// - `adds_to`: the mark to which clicks add points.
+    pub fn begin(ui: &Ui, (cars, adds_to): (&Cars, Option<usize>)) -> Self {
+        let id = Id::unique("edit of the reconstructed scene");
+        let front = |car: &crate::reconstruct::Car| {
+            Footprint::from(&car.parameters.geometry).cg_from_front_m
+        };
+        Self {
+            id,
+            front_m: [front(&cars.struck), front(&cars.striking)],
+            adds_to,
+            drag: ui.data(|data| data.get_temp::<Drag>(id)),
+            is_near: ui.data(|data| data.get_temp::<bool>(id)).unwrap_or(false),
+        }
+    }
+
+    /// The view while something is dragged.
+    pub fn view(&self) -> Option<[[f64; 2]; 2]> {
+        self.drag.map(|drag| drag.view)
+    }
+
+    /// Whether the primary button moves the view.
+    pub fn pans(&self) -> bool {
+        self.drag.is_none() && !self.is_near
+    }
+
+    /// What can be done.
+    pub fn hint(&self) -> &'static str {
+        match self.adds_to {
+            Some(_) => "Click along the mark from where it starts; Add points ends that.",
+            None => "Drag a dot: the middle of a car at rest moves it, its front turns it.",
+        }
+    }
+
+    /// Room for the hint below the figure, points.
+    pub fn hint_height(&self) -> f32 {
+        3.0 * TextStyle::Body.resolve(&egui::Style::default()).size
+    }
+
+    /// The dots by which the cars at rest are dragged.
+    pub fn handles(&self, evidence: &Evidence, unit: Unit) -> Vec<FigureElement> {
+        let dot = |(is_struck, _, place): (bool, Handle, [f64; 2])| {
+            let name = if is_struck { STRUCK_AT_REST } else { STRIKING_AT_REST };
+            let at = place.map(|value| unit.from_si(value));
+            FigureElement::points(name, Role::Reference, vec![at])
+        };
+        self.places(evidence).into_iter().map(dot).collect()
+    }
+
+    /// Changes the evidence as the user drags and clicks.
+    pub fn apply(
+        &mut self,
+        ui: &Ui,
+        (shown, unit): (&FigureResponse, Unit),
+        evidence: &mut Evidence,
+    ) {
+        let si = |point: [f64; 2]| point.map(|value| unit.to_si(value));
+        let reach_m = unit.to_si(shown.x_per_point * REACH);
+        let near = shown.pointer.and_then(|at| self.nearest(evidence, si(at), reach_m));
+        ui.data_mut(|data| data.insert_temp(self.id, near.is_some()));
+        if let (Some(mark), Some(at)) = (self.adds_to, shown.clicked) {
+            add_point(evidence, mark, si(at));
+        }
+        let Some([from, to]) = shown.drag.map(|ends| ends.map(si)) else {
+            ui.data_mut(|data| data.remove::<Drag>(self.id));
+            return;
+        };
+        let drag = self.drag.or_else(|| {
+            let (is_struck, handle) = self.nearest(evidence, from, reach_m)?;
+            let rest = if is_struck { evidence.rest } else { evidence.striking_rest };
+            Some(Drag { is_struck, handle, before: rest?, view: shown.view })
+        });
+        if let Some(drag) = drag {
+            let rest = match drag.is_struck {
+                true => &mut evidence.rest,
+                false => &mut evidence.striking_rest,
+            };
+            if let Some(rest) = rest.as_mut().filter(|_| from != to) {
+                drag.apply([from, to], rest);
+            }
+            ui.data_mut(|data| data.insert_temp(self.id, drag));
+        }
+    }
+
+    /// The handles with their places, m: whether of the struck car, which, and where.
+    fn places(&self, evidence: &Evidence) -> Vec<(bool, Handle, [f64; 2])> {
+        let [struck_m, striking_m] = self.front_m;
+        let of = |(is_struck, rest, front_m): (bool, &Option<RestPose>, f64)| {
+            let Some(rest) = rest else { return Vec::new() };
+            let front = rest.heading_rad.map(|heading| {
+                let pose = Pose { x_m: rest.x_m, y_m: rest.y_m, yaw_rad: heading.value };
+                (is_struck, Handle::Heading, pose.world_from_body([front_m, 0.0]))
+            });
+            let middle = (is_struck, Handle::Position, [rest.x_m, rest.y_m]);
+            std::iter::once(middle).chain(front).collect()
+        };
+        [(true, &evidence.rest, struck_m), (false, &evidence.striking_rest, striking_m)]
+            .into_iter()
+            .flat_map(of)
+            .collect()
+    }
+
+    /// The handle that is nearest to a point, if one is within reach.
+    fn nearest(
+        &self,
+        evidence: &Evidence,
+        [x, y]: [f64; 2],
+        reach_m: f64,
+    ) -> Option<(bool, Handle)> {
+        let apart = |[px, py]: [f64; 2]| (px - x).hypot(py - y);
+        let near = self.places(evidence).into_iter().filter(|(.., at)| apart(*at) <= reach_m);
+        near.min_by(|a, b| apart(a.2).total_cmp(&apart(b.2))).map(|(of, handle, _)| (of, handle))
+    }
+}
+
+impl Drag {
+    /// Puts the car to where the pointer is. What is not possible is left as it was.
+    fn apply(&self, [from, to]: [[f64; 2]; 2], rest: &mut RestPose) {
+        let before = &self.before;
+        match self.handle {
+            Handle::Position => {
+                let place = [before.x_m + to[0] - from[0], before.y_m + to[1] - from[1]];
+                if place.iter().all(|value| EVIDENCE_POSITION.contains(*value)) {
+                    [rest.x_m, rest.y_m] = place.map(|value| rounded(value, 0.01));
+                }
+            }
+            Handle::Heading => {
+                let heading = rounded((to[1] - rest.y_m).atan2(to[0] - rest.x_m), 0.001);
+                if let Some(measured) = &mut rest.heading_rad
+                    && EVIDENCE_HEADING.contains(heading)
+                {
+                    measured.value = heading;
+                }
+            }
+        }
+    }
+}
+
+/// Adds a point at the end of a mark.
+fn add_point(evidence: &mut Evidence, mark: usize, at: [f64; 2]) {
+    if let Some(mark) = evidence.marks.get_mut(mark)
+        && at.iter().all(|value| EVIDENCE_POSITION.contains(*value))
+    {
+        mark.points_m.push(at.map(|value| rounded(value, 0.01)));
+    }
+}
+
+/// The nearest multiple of a step, so that a dragged number is one that a person would write.
+fn rounded(value: f64, step: f64) -> f64 {
+    // Divided by a whole number, so that the result is the nearest to that of the decimals.
+    let per_unit = step.recip().round();
+    (value * per_unit).round() / per_unit
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::{Context, RawInput};
+
+    use super::*;
+    use crate::data::TomlFile;
+    use crate::units::{Quantity, UnitSystem};
+
+    const EVIDENCE: &str = r#"
+        case = "a"
+        [struck_car]
+        mass_kg = 1500
+        [striking_car]
+        mass_kg = 1500
+        [damage]
+        side = "right"
+        x_m = -1.6
+        [rest]
+        x_m = 30
+        y_m = -5
+        heading_rad = 0
+        [[mark]]
+        wheel = "RR"
+        points_m = [[1, 0], [9, 1]]
+    "#;
+
+    fn evidence() -> Evidence {
+        let path = std::path::Path::new("evidence");
+        Evidence::from_toml(TomlFile { path, text: EVIDENCE }).unwrap()
+    }
+
+    /// The evidence after frames in each of which the figure said something, in the unit of its axes.
+    fn edited(adds_to: Option<usize>, frames: &[FigureResponse]) -> Evidence {
+        let (context, mut evidence) = (Context::default(), evidence());
+        let cars = Cars::of(&evidence, None, None);
+        for shown in frames {
+            let _ = context.run_ui(RawInput::default(), |ui| {
+                let mut edit = SceneEdit::begin(ui, (&cars, adds_to));
+                let unit = Quantity::Length.display_unit(UnitSystem::Us);
+                edit.apply(ui, (shown, unit), &mut evidence);
+            });
+        }
+        evidence
+    }
+
+    fn shown(points_m: [[f64; 2]; 2]) -> FigureResponse {
+        let unit = Quantity::Length.display_unit(UnitSystem::Us);
+        let drag = points_m.map(|point| point.map(|value| unit.from_si(value)));
+        FigureResponse { drag: Some(drag), x_per_point: 0.1, ..FigureResponse::default() }
+    }
+
+    #[test]
+    fn a_car_at_rest_is_moved_by_its_middle_and_turned_by_its_front() {
+        let from = [30.1, -5.1];
+        let drag = [shown([from, from]), shown([from, [32.1, -2.1]]), FigureResponse::default()];
+        let moved = edited(None, &drag).rest.unwrap();
+        assert!((moved.x_m - 32.0).abs() < 0.011 && (moved.y_m + 2.0).abs() < 0.011, "{moved:?}");
+        assert_eq!(moved.heading_rad, evidence().rest.unwrap().heading_rad);
+
+        let cars = Cars::of(&evidence(), None, None);
+        let front =
+            [30.0 + Footprint::from(&cars.struck.parameters.geometry).cg_from_front_m, -5.0];
+        let turned = edited(None, &[shown([front, [30.0, -3.0]])]).rest.unwrap();
+        assert!((turned.heading_rad.unwrap().value - 1.571).abs() < 1e-9, "{turned:?}");
+        assert_eq!((turned.x_m, turned.y_m), (30.0, -5.0));
+        // Beside the handles, the view is moved.
+        assert_eq!(edited(None, &[shown([[10.0, 0.0], [20.0, 0.0]])]), evidence());
+    }
+
+    #[test]
+    fn a_click_adds_a_point_to_the_mark_that_is_asked_for() {
+        let unit = Quantity::Length.display_unit(UnitSystem::Us);
+        let clicked = Some([unit.from_si(15.0), unit.from_si(2.5)]);
+        let click = FigureResponse { clicked, ..FigureResponse::default() };
+        assert_eq!(edited(None, &[click]), evidence());
+        let marked = edited(Some(0), &[click]);
+        assert_eq!(marked.marks[0].points_m[2], [15.0, 2.5]);
+    }
+}

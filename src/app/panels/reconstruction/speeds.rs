@@ -1,0 +1,144 @@
+//! The “Speeds” pane: what the evidence says of the speeds before the impact.
+
+use egui::{ComboBox, ScrollArea, Ui};
+
+use crate::analysis::Spread;
+use crate::app::command::Command;
+use crate::app::looks;
+use crate::app::panels::faded_if;
+use crate::app::panels::reconstruction::findings::{budget_ui, fit_ui, modes_ui};
+use crate::app::panels::reconstruction::scene::trust_of;
+use crate::app::panels::reconstruction::{OUTDATED, notice_ui};
+use crate::app::panes::PaneContext;
+use crate::app::reconstruction::{PreparedReconstruction, ReconstructionView};
+use crate::app::widgets::{
+    SpreadRow, badges_ui, evidence_assumptions_ui, figure_frame, spread_table_ui,
+};
+use crate::data::Severity;
+use crate::figure::{marginal_figure, pair_figure};
+use crate::reconstruct::{QuantityEstimate, ReconstructedQuantity};
+use crate::render::FigureOptions;
+use crate::study::{ReconstructReport, Trust};
+use crate::units::{Quantity, UnitSystem};
+
+/// Heights of the plots, points.
+const MARGINAL_HEIGHT: f32 = 190.0;
+const PAIR_HEIGHT: f32 = 230.0;
+
+/// Draws the quantities with their intervals and distributions, the fit of the evidence, the courses of
+/// events, and what further evidence would bring.
+pub fn speeds_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
+    let PaneContext { project, view, session, commands, .. } = pane;
+    let of = &session.reconstruction;
+    let is_outdated = of.is_outdated(&project.reconstruction);
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let Some(answer) = of.answer() else {
+            ui.weak(match of.run.is_running() {
+                true => {
+                    "The speeds stand here when the run has ended; its particles are in the scene."
+                }
+                false => "The speeds before the impact, once the evidence has been run.",
+            });
+            return;
+        };
+        if of.run.is_running() {
+            notice_ui(ui, Severity::Info, "The answer of the last run, until this one ends");
+        } else if is_outdated {
+            notice_ui(ui, Severity::Warning, OUTDATED);
+        }
+        let report = &answer.answer.report;
+        let trust = trust_of(report).outdated_if(is_outdated || of.run.is_running());
+        faded_if(ui, is_outdated, |ui| {
+            numbers_ui(ui, report, view.units, commands);
+            let units = view.units;
+            let options = |id: &str, height| FigureOptions {
+                id: id.to_owned(),
+                height: Some(height),
+                reset: session.fit_plots,
+                ..FigureOptions::default()
+            };
+            let marginal = options("marginal", MARGINAL_HEIGHT);
+            let pair = options("pair", PAIR_HEIGHT);
+            let drawn = (answer, &trust, units);
+            plots_ui(ui, drawn, (&mut view.reconstruction, [marginal, pair]), commands);
+            fit_ui(ui, &report.fit);
+            modes_ui(ui, (report, of.mode), units, commands);
+            budget_ui(ui, &answer.answer, (&trust, units), commands);
+        });
+    });
+}
+
+/// Draws the table of quantities, what restricts it, and the hand calculation beside it.
+fn numbers_ui(
+    ui: &mut Ui,
+    report: &ReconstructReport,
+    units: UnitSystem,
+    commands: &mut Vec<Command>,
+) {
+    badges_ui(ui, &report.badges);
+    ScrollArea::horizontal().id_salt("quantities").show(ui, |ui| {
+        spread_table_ui(ui, &report.case, &rows(report, units));
+    });
+    if let Some([value, sigma]) = report.by_hand_m_s {
+        let unit = Quantity::Speed.display_unit(units);
+        let [value, sigma] = [value, sigma].map(|of| unit.from_si(of));
+        let hint = "Momentum and the energy that was lost on the way to rest, as one computes it by hand; for comparison";
+        let text = format!("By hand: struck car {value:.1} ± {sigma:.1} {} (one σ)", unit.symbol);
+        ui.label(text).on_hover_text(hint);
+    }
+    let (n, ess) = (report.n_simulations, report.ess);
+    let n_particles = report.n_particles;
+    ui.weak(format!("{n} motions, {n_particles} particles worth {ess:.0} independent ones"));
+    evidence_assumptions_ui(ui, &report.assumptions, commands);
+}
+
+fn rows(report: &ReconstructReport, units: UnitSystem) -> Vec<SpreadRow> {
+    let row = |of: &QuantityEstimate| {
+        let quantity = ReconstructedQuantity::ALL.iter().find(|known| known.key() == of.name)?;
+        let spread = Spread { median: of.median, half: of.interval_50, ninety: of.interval_90 };
+        Some(SpreadRow {
+            label: quantity.label(),
+            unit: quantity.quantity().display_unit(units),
+            spread,
+            ninety_five: Some(of.interval_95),
+            hint: "",
+        })
+    };
+    report.quantities.iter().filter_map(row).collect()
+}
+
+/// Draws the distribution of one quantity, and of two against each other.
+fn plots_ui(
+    ui: &mut Ui,
+    (answer, trust, units): (&PreparedReconstruction, &Trust, UnitSystem),
+    (view, [marginal, pair]): (&mut ReconstructionView, [FigureOptions; 2]),
+    commands: &mut Vec<Command>,
+) {
+    ui.add_space(looks::PART);
+    quantity_ui(ui, "Distribution of", &mut view.quantity);
+    let shown = (view.quantity, answer.prior_of(view.quantity));
+    let figure = marginal_figure(&answer.answer, shown, trust, units);
+    figure_frame(ui, ("Before and after the evidence", &figure), &marginal, commands);
+    ui.add_space(looks::PART);
+    quantity_ui(ui, "The same over", &mut view.against);
+    let quantities = [view.against, view.quantity];
+    let priors = quantities.map(|of| answer.prior_of(of));
+    let figure = pair_figure(&answer.answer, (quantities, priors), trust, units);
+    figure_frame(ui, ("Two quantities of each particle", &figure), &pair, commands);
+}
+
+fn quantity_ui(ui: &mut Ui, label: &str, chosen: &mut ReconstructedQuantity) {
+    ui.horizontal(|ui| {
+        let name = ui.label(label);
+        ComboBox::from_id_salt(label)
+            .selected_text(chosen.label())
+            .width(220.0)
+            .show_ui(ui, |ui| {
+                for quantity in ReconstructedQuantity::ALL {
+                    ui.selectable_value(chosen, *quantity, quantity.label());
+                }
+            })
+            .response
+            .labelled_by(name.id);
+    });
+}

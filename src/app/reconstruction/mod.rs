@@ -1,0 +1,111 @@
+//! The reconstruction in the window: its evidence, its run, and what is shown of it. The panes Evidence,
+//! Reconstructed scene and Speeds show them.
+
+mod live;
+mod question;
+mod settings;
+mod update;
+
+pub use live::LiveParticles;
+pub use question::{PreparedReconstruction, ReconstructionQuestion};
+pub use settings::{ReconstructionProject, ReconstructionView};
+pub use update::EvidencePreview;
+pub(in crate::app) use update::{missing, usual_rest};
+
+use std::path::PathBuf;
+use std::sync::mpsc::Receiver;
+
+use crate::app::question_job::QuestionJob;
+use crate::reconstruct::evidence::Evidence;
+use crate::vehicle::Path;
+
+/// A path that is followed in the scene.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum FollowedParticle {
+    /// A particle of median speed of the struck car.
+    #[default]
+    Median,
+    /// One of those that are drawn, by its number.
+    Draw(usize),
+}
+
+/// An action on the reconstruction.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ReconstructionCommand {
+    /// Begin with an empty form.
+    New,
+    /// Take the evidence of the shipped example.
+    Example,
+    /// Reconstruct from the evidence.
+    Run,
+    /// Stop sampling; what was sampled is kept.
+    Cancel,
+    /// Show the particles of one course of events alone, by its number; `None` shows all.
+    ShowMode(Option<usize>),
+    /// Follow a particle from the impact on.
+    Play(FollowedParticle),
+    /// Let clicks in the scene add points to the mark of this number.
+    AddPoints(Option<usize>),
+}
+
+/// An evidence file that was read.
+pub struct ReadEvidence {
+    /// The file.
+    pub path: PathBuf,
+    /// What stands in it, or what is wrong with it.
+    pub evidence: Result<Evidence, String>,
+}
+
+/// Evidence, run and answer of the reconstruction, which are not saved.
+#[derive(Default)]
+pub struct ReconstructionSession {
+    /// The file of the evidence, where the project names one.
+    pub file: Option<ReadEvidence>,
+    /// What follows from the evidence before anything is sampled.
+    pub preview: Option<EvidencePreview>,
+    /// The run and the latest answer.
+    pub run: QuestionJob<ReconstructionQuestion>,
+    /// The latest particles of the run that is under way.
+    pub live: Option<LiveParticles>,
+    news: Option<Receiver<LiveParticles>>,
+    /// The course of events that is shown alone, by its number.
+    pub mode: Option<usize>,
+    /// The particle that is followed.
+    pub followed: FollowedParticle,
+    /// The mark to which clicks in the scene add points.
+    pub adds_to: Option<usize>,
+}
+
+impl ReconstructionSession {
+    /// The latest answer, if there is one.
+    pub fn answer(&self) -> Option<&PreparedReconstruction> {
+        self.run.ok().map(std::sync::Arc::as_ref)
+    }
+
+    /// Whether the answer is not of what the project asks now.
+    pub fn is_outdated(&self, project: &ReconstructionProject) -> bool {
+        self.run
+            .latest
+            .as_ref()
+            .is_some_and(|latest| Some(&latest.question.request) != project.request().as_ref())
+    }
+
+    /// The path that is followed, with its name.
+    pub fn followed_path(&self) -> Option<(String, &Path)> {
+        let paths = self.answer()?.paths_of(self.mode);
+        match self.followed {
+            FollowedParticle::Median => {
+                Some(("a particle of median speed".to_owned(), paths.median.as_ref()?))
+            }
+            FollowedParticle::Draw(idx) => {
+                Some((format!("draw {}", idx + 1), paths.drawn.get(idx)?))
+            }
+        }
+    }
+
+    /// Duration of the path that is followed, s; 0 without one.
+    pub fn end_time_s(&self) -> f64 {
+        let last = self.followed_path().and_then(|(_, path)| path.points.last());
+        last.map_or(0.0, |point| point.time_s)
+    }
+}

@@ -1,0 +1,79 @@
+//! A reconstruction whose answer is prepared for drawing.
+
+use crate::data::Outcome;
+use crate::figure::{ReconstructedPaths, prior_values};
+use crate::reconstruct::ReconstructedQuantity;
+use crate::study::{
+    Library, Observer, Question, ReconstructAnswer, ReconstructReport, ReconstructRequest,
+    StudyError,
+};
+
+/// A question for a reconstruction, whose answer is prepared for drawing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReconstructionQuestion {
+    /// The question for the reconstruction itself.
+    pub request: ReconstructRequest,
+}
+
+/// A reconstruction with its paths and its prior.
+pub struct PreparedReconstruction {
+    /// The answer to the question for the reconstruction.
+    pub answer: ReconstructAnswer,
+    /// Paths of some of all particles.
+    paths: ReconstructedPaths,
+    /// The same of each course of events.
+    mode_paths: Vec<ReconstructedPaths>,
+    /// Values of each quantity before the evidence, in the order of [`ReconstructedQuantity::ALL`].
+    priors: Vec<Vec<f64>>,
+    /// Ends of the 90 % interval of each component of the prior after the evidence.
+    pub intervals_90: Vec<Option<[f64; 2]>>,
+}
+
+impl PreparedReconstruction {
+    /// Paths of one course of events, by its number; `None` is all of them.
+    pub fn paths_of(&self, mode: Option<usize>) -> &ReconstructedPaths {
+        mode.and_then(|idx| self.mode_paths.get(idx)).unwrap_or(&self.paths)
+    }
+
+    /// Values of a quantity before the evidence: draws, of which those of a number belong together.
+    pub fn prior_of(&self, quantity: ReconstructedQuantity) -> &[f64] {
+        let idx = ReconstructedQuantity::ALL.iter().position(|of| *of == quantity);
+        idx.and_then(|idx| self.priors.get(idx)).map_or(&[], Vec::as_slice)
+    }
+}
+
+impl Question for ReconstructionQuestion {
+    type Answer = PreparedReconstruction;
+    type Report = ReconstructReport;
+    const NAME: &'static str = ReconstructRequest::NAME;
+
+    fn check(&self) -> Result<(), StudyError> {
+        self.request.check()
+    }
+
+    fn report(answer: &Self::Answer) -> &ReconstructReport {
+        &answer.answer.report
+    }
+
+    fn solve(
+        &self,
+        library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<PreparedReconstruction>, StudyError> {
+        let answered = self.request.solve(library, observer)?;
+        Ok(answered.map(|answer| {
+            let modes = answer.report.modes.iter();
+            let quantities = ReconstructedQuantity::ALL.iter();
+            let components = answer.target.model().prior().components().iter();
+            PreparedReconstruction {
+                paths: ReconstructedPaths::of(&answer),
+                mode_paths: modes.map(|mode| ReconstructedPaths::of_mode(&answer, mode)).collect(),
+                priors: quantities.map(|of| prior_values(&answer.target, *of)).collect(),
+                intervals_90: components
+                    .map(|component| answer.posterior.interval_90_of(component.latent))
+                    .collect(),
+                answer,
+            }
+        }))
+    }
+}

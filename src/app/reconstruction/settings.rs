@@ -1,0 +1,57 @@
+//! The settings of the reconstruction, which are saved between runs.
+
+use serde::{Deserialize, Serialize};
+
+use crate::reconstruct::ReconstructedQuantity;
+use crate::study::{EvidenceChoice, ReconstructRequest};
+
+/// What the user works on in a reconstruction.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ReconstructionProject {
+    /// The evidence: a file as long as nothing of it was changed here.
+    pub evidence: Option<EvidenceChoice>,
+    /// Number of particles.
+    pub particles: usize,
+    /// Seed of all draws.
+    pub seed: u64,
+}
+
+impl Default for ReconstructionProject {
+    fn default() -> Self {
+        Self { evidence: None, particles: ReconstructRequest::DEFAULT_PARTICLES, seed: 0 }
+    }
+}
+
+impl ReconstructionProject {
+    /// Whether nothing was set.
+    pub fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// The question of the form; `None` without evidence.
+    pub fn request(&self) -> Option<ReconstructRequest> {
+        let evidence = self.evidence.clone()?;
+        let (particles, seed) = (self.particles, self.seed);
+        Some(ReconstructRequest { particles, seed, ..ReconstructRequest::new(evidence) })
+    }
+}
+
+/// How a reconstruction is shown.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ReconstructionView {
+    /// The quantity whose distribution is drawn.
+    pub quantity: ReconstructedQuantity,
+    /// The quantity that is drawn against it.
+    pub against: ReconstructedQuantity,
+}
+
+impl Default for ReconstructionView {
+    fn default() -> Self {
+        Self {
+            quantity: ReconstructedQuantity::TargetSpeed,
+            against: ReconstructedQuantity::RoadFriction,
+        }
+    }
+}

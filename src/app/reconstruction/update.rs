@@ -1,0 +1,219 @@
+//! Commands and background work of the reconstruction.
+
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::channel;
+
+use egui::Context;
+
+use crate::app::command::wake;
+use crate::app::panes::Pane;
+use crate::app::reconstruction::live::watch;
+use crate::app::reconstruction::{
+    FollowedParticle, ReadEvidence, ReconstructionCommand, ReconstructionQuestion,
+    ReconstructionSession,
+};
+use crate::app::state::State;
+use crate::collision::Side;
+use crate::data::{Severity, TomlFile};
+use crate::error_chain;
+use crate::reconstruct::evidence::{
+    After, CarEvidence, DEFAULT_DAMAGE_SIGMA_M, DEFAULT_HEADING_SIGMA_RAD, DEFAULT_MASS_SHARE,
+    DEFAULT_REST_SIGMA_M, Damage, Edr, Evidence, Measured, PriorRanges, RestPose,
+};
+use crate::reconstruct::{Cars, Prior, PriorComponent};
+use crate::study::EvidenceChoice;
+
+/// The evidence of the shipped example.
+const EXAMPLE: &str = include_str!("../../../assets/examples/reconstruction.toml");
+/// Mass of the cars of an empty form, kg.
+const USUAL_MASS_KG: f64 = 1500.0;
+/// Place of the contact behind the CG and of the rest ahead of it in an empty form, m.
+const USUAL_CONTACT_M: f64 = -1.6;
+const USUAL_REST_M: f64 = 30.0;
+
+/// What follows from the evidence before anything is sampled.
+pub struct EvidencePreview {
+    /// The evidence.
+    pub evidence: Evidence,
+    /// The vehicles.
+    pub cars: Cars,
+    /// What is taken to be likely before the motion is looked at.
+    pub priors: Vec<PriorComponent>,
+}
+
+impl EvidencePreview {
+    fn of(evidence: &Evidence) -> Self {
+        let cars = Cars::of(evidence, None, None);
+        let priors = Prior::of(evidence, &cars).components().to_vec();
+        Self { evidence: evidence.clone(), cars, priors }
+    }
+}
+
+impl State {
+    /// The evidence of the project; `None` if there is none or its file cannot be read.
+    pub fn evidence(&self) -> Option<&Evidence> {
+        match self.project.reconstruction.evidence.as_ref()? {
+            EvidenceChoice::Inline(evidence) => Some(evidence),
+            EvidenceChoice::File(path) => {
+                let file = self.session.reconstruction.file.as_ref()?;
+                file.evidence.as_ref().ok().filter(|_| file.path == *path)
+            }
+        }
+    }
+
+    /// Receives particles and answer of the run, and reads the evidence that the project names. Evidence
+    /// files are small, so that they are read on the window's thread.
+    pub(in crate::app) fn update_reconstruction(&mut self) {
+        let session = &mut self.session.reconstruction;
+        while let Some(particles) = session.news.as_ref().and_then(|news| news.try_recv().ok()) {
+            session.live = Some(particles);
+        }
+        if session.run.poll() {
+            (session.mode, session.followed) = (None, FollowedParticle::default());
+            self.session.fit_plots = true;
+        }
+        let session = &mut self.session.reconstruction;
+        if !session.run.is_running() {
+            (session.live, session.news) = (None, None);
+        }
+        if let Some(EvidenceChoice::File(path)) = &self.project.reconstruction.evidence
+            && session.file.as_ref().is_none_or(|file| file.path != *path)
+        {
+            let evidence = Evidence::load(path).map_err(|error| error_chain(&error));
+            session.file = Some(ReadEvidence { path: path.clone(), evidence });
+        }
+        let evidence = self.evidence();
+        let known = self.session.reconstruction.preview.as_ref().map(|of| &of.evidence);
+        if evidence != known {
+            let preview = evidence.map(EvidencePreview::of);
+            let n_marks = preview.as_ref().map_or(0, |of| of.evidence.marks.len());
+            let session = &mut self.session.reconstruction;
+            session.preview = preview;
+            session.adds_to = session.adds_to.filter(|idx| *idx < n_marks);
+        }
+    }
+
+    /// Opens an evidence file, or says what is wrong with it.
+    pub(in crate::app) fn open_evidence(&mut self, path: PathBuf) {
+        match Evidence::load(&path) {
+            Ok(evidence) => {
+                self.session.reconstruction.file =
+                    Some(ReadEvidence { path: path.clone(), evidence: Ok(evidence) });
+                self.take_evidence(EvidenceChoice::File(path));
+            }
+            Err(error) => self.say(Severity::Error, error_chain(&error)),
+        }
+    }
+
+    /// Puts other evidence into the form, and shows it. An answer about the last one is not about it.
+    fn take_evidence(&mut self, evidence: EvidenceChoice) {
+        self.project.reconstruction.evidence = Some(evidence);
+        self.drop_reconstruction();
+        self.session.shows_doors = false;
+        self.session.fit_plots = true;
+        self.view.workspaces.show_pane(Pane::Evidence);
+    }
+
+    /// Drops the run and the answer, which are about other evidence.
+    pub(in crate::app) fn drop_reconstruction(&mut self) {
+        let session = &mut self.session.reconstruction;
+        *session =
+            ReconstructionSession { file: session.file.take(), ..ReconstructionSession::default() };
+    }
+
+    /// Carries out an action on the reconstruction.
+    pub(in crate::app) fn reconstruct(
+        &mut self,
+        command: ReconstructionCommand,
+        context: &Context,
+    ) {
+        match command {
+            ReconstructionCommand::New => {
+                self.take_evidence(EvidenceChoice::Inline(Box::new(empty_evidence())));
+            }
+            ReconstructionCommand::Example => {
+                let path = Path::new("example");
+                match Evidence::from_toml(TomlFile { path, text: EXAMPLE }) {
+                    Ok(evidence) => self.take_evidence(EvidenceChoice::Inline(Box::new(evidence))),
+                    Err(error) => self.say(Severity::Error, error_chain(&error)),
+                }
+            }
+            ReconstructionCommand::Run => self.run_reconstruction(context),
+            ReconstructionCommand::Cancel => self.session.reconstruction.run.cancel(),
+            ReconstructionCommand::ShowMode(mode) => {
+                let session = &mut self.session.reconstruction;
+                (session.mode, session.followed) = (mode, FollowedParticle::default());
+            }
+            ReconstructionCommand::Play(followed) => {
+                self.session.reconstruction.followed = followed;
+                (self.session.time_s, self.session.playing) = (0.0, true);
+            }
+            ReconstructionCommand::AddPoints(mark) => self.session.reconstruction.adds_to = mark,
+        }
+    }
+
+    fn run_reconstruction(&mut self, context: &Context) {
+        let refused = self.evidence().map(missing);
+        let request = self.project.reconstruction.request();
+        let request = match (request, refused) {
+            (Some(request), Some(None)) => request,
+            (_, Some(Some(why))) => return self.say(Severity::Warning, why),
+            _ => return self.say(Severity::Warning, "there is no evidence to reconstruct from"),
+        };
+        let (sender, news) = channel();
+        let session = &mut self.session.reconstruction;
+        (session.live, session.news) = (None, Some(news));
+        let question = ReconstructionQuestion { request };
+        let (library, watch) = (&self.session.library, watch(sender));
+        if let Err(error) = session.run.start_watched(question, library, wake(context), watch) {
+            self.say(Severity::Error, error.to_string());
+        }
+    }
+}
+
+/// What evidence lacks that nothing can stand in for; `None` if it can be run.
+pub(in crate::app) fn missing(evidence: &Evidence) -> Option<String> {
+    let is_short = |mark: &&crate::reconstruct::evidence::Mark| mark.points_m.len() < 2;
+    evidence.marks.iter().find(is_short).map(|mark| {
+        format!(
+            "the mark of the {} wheel needs at least two points: Add points, then click along it in the scene",
+            mark.wheel.label()
+        )
+    })
+}
+
+/// The evidence of an empty form: a flank hit behind the CG, and a place of rest to be dragged.
+fn empty_evidence() -> Evidence {
+    let mass = Measured { value: USUAL_MASS_KG, sigma: DEFAULT_MASS_SHARE * USUAL_MASS_KG };
+    let car = CarEvidence { mass_kg: Some(mass), ..CarEvidence::default() };
+    Evidence {
+        case: "new reconstruction".to_owned(),
+        friction: None,
+        struck_car: car.clone(),
+        striking_car: car,
+        damage: Damage {
+            side: Side::Right,
+            along_m: Measured { value: USUAL_CONTACT_M, sigma: DEFAULT_DAMAGE_SIGMA_M },
+            depth_m: None,
+            angle_rad: None,
+        },
+        shared_scale_sigma: None,
+        rest: Some(usual_rest()),
+        striking_rest: None,
+        after: After::default(),
+        marks: Vec::new(),
+        edr: Edr::default(),
+        positions: Vec::new(),
+        prior: PriorRanges::default(),
+    }
+}
+
+/// A place of rest that stands in until it is dragged.
+pub(in crate::app) fn usual_rest() -> RestPose {
+    RestPose {
+        x_m: USUAL_REST_M,
+        y_m: 0.0,
+        position_sigma_m: DEFAULT_REST_SIGMA_M,
+        heading_rad: Some(Measured { value: 0.0, sigma: DEFAULT_HEADING_SIGMA_RAD }),
+    }
+}

@@ -1,0 +1,136 @@
+//! `impactlab evaluate reconstruction`: how well the speeds of staged collisions are reconstructed.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use crate::cli::CliError;
+use crate::cli::console::{Console, Verdict};
+use crate::cli::files::{RECONSTRUCTION_EVALUATION_FILES, write_reconstruction_evaluation};
+use crate::cli::options::{OverwriteArg, UnitsArg};
+use crate::cli::text::print_reconstruction_evaluation;
+use crate::reconstruct::evaluate::{KnownEvidence, StagedSplit};
+use crate::study::{EvaluateReconstructionRequest, ReconstructRequest};
+
+/// How much of the evidence is used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum KnownArg {
+    /// All of it
+    Everything,
+    /// All but the event data recorder
+    WithoutEdr,
+    /// The rest poses, with damage, masses and friction
+    RestOnly,
+}
+
+/// Which cases of the folder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum CasesArg {
+    /// All of them
+    All,
+    /// The first half in the order of the SHA-256 of their names
+    Tuning,
+    /// The other half
+    Reported,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(in crate::cli) struct EvaluateReconstructionArgs {
+    /// A folder of staged collisions: evidence/CASE.toml and truth/CASE.toml
+    #[arg(value_name = "DIR")]
+    data: PathBuf,
+    /// How much of the evidence is used; may be given several times; all three without
+    #[arg(long, value_enum, value_name = "WHAT")]
+    known: Vec<KnownArg>,
+    /// Which of the cases
+    #[arg(long, value_enum, default_value_t = CasesArg::All)]
+    cases: CasesArg,
+    /// Only those of them that have these names
+    #[arg(long, num_args = 1.., value_name = "NAME")]
+    only: Vec<String>,
+    /// Number of particles
+    #[arg(long, value_name = "N", default_value_t = ReconstructRequest::DEFAULT_PARTICLES)]
+    particles: usize,
+    /// Seed of all draws
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+    /// Leave out the most probable point, found by a particle swarm
+    #[arg(long)]
+    without_swarm: bool,
+    /// Folder for evaluation.json and evaluation.csv; each case that is finished is kept in finished/
+    /// there, and taken from there when the same program is asked again
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    overwrite: OverwriteArg,
+    /// Units of the text (JSON and CSV are always SI)
+    #[arg(long, value_enum, default_value_t)]
+    units: UnitsArg,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  impactlab evaluate reconstruction datasets/staged --only s00 s01 --known everything
+  impactlab evaluate reconstruction datasets/staged --cases reported --out evaluation
+
+The truth is read after the last reconstruction. The calculation by hand knows no speed of the striking
+car, and its closing speed is that across the struck side. The swarm's intervals are those of the
+curvature at its optimum.
+
+JSON: summary [{known, method, n_cases, median_seconds, p90_seconds, n_sufficient_ess, quantities [{name,
+  unit, n, coverage_50, coverage_80, coverage_90, coverage_95, median_absolute_error, median_error,
+  median_width_90, mean_crps}]}]; cases [{case, known, method, seconds, ess, n_simulations, quantities
+  [{name, unit, median, interval_50, interval_80, interval_90, interval_95, truth, crps}]}]; data, split,
+  n_cases, n_particles, stopped, left_out, assumptions, badges, seed";
+
+/// Evaluates.
+pub(in crate::cli) fn run(
+    args: &EvaluateReconstructionArgs,
+    console: &mut Console<'_>,
+) -> Result<Verdict, CliError> {
+    let known: Vec<KnownEvidence> = args.known.iter().map(|known| (*known).into()).collect();
+    let out = args.out.as_deref();
+    let usual = EvaluateReconstructionRequest::new(&args.data);
+    let request = EvaluateReconstructionRequest {
+        known: if known.is_empty() { usual.known } else { known },
+        split: args.cases.into(),
+        only: args.only.clone(),
+        particles: args.particles,
+        seed: args.seed,
+        swarm: !args.without_swarm,
+        finished: out.map(|folder| folder.join("finished")),
+        ..usual
+    };
+    let known = &RECONSTRUCTION_EVALUATION_FILES[..];
+    let out = out.map(|folder| (folder, args.overwrite.into(), known));
+    let answer = console.ask_into(&request, out, |output, answer| {
+        write_reconstruction_evaluation(output.staging(), &answer.report)?;
+        Ok(answer.report.provenance.clone())
+    })?;
+    let Some(answer) = answer else { return Ok(Verdict::Clean) };
+    let units = args.units.into();
+    console
+        .print(&answer.report, |out| print_reconstruction_evaluation(out, &answer.report, units))?;
+    Ok(Verdict::of(!answer.report.left_out.is_empty()))
+}
+
+impl From<KnownArg> for KnownEvidence {
+    fn from(known: KnownArg) -> Self {
+        match known {
+            KnownArg::Everything => Self::Everything,
+            KnownArg::WithoutEdr => Self::WithoutEdr,
+            KnownArg::RestOnly => Self::RestOnly,
+        }
+    }
+}
+
+impl From<CasesArg> for StagedSplit {
+    fn from(cases: CasesArg) -> Self {
+        match cases {
+            CasesArg::All => Self::All,
+            CasesArg::Tuning => Self::Tuning,
+            CasesArg::Reported => Self::Reported,
+        }
+    }
+}

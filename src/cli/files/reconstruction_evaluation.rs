@@ -1,0 +1,75 @@
+//! The files of `impactlab evaluate reconstruction`.
+
+use std::path::Path;
+
+use crate::cli::CliError;
+use crate::cli::files::write_json;
+use crate::data::{Existing, write_restricted_table};
+use crate::reconstruct::evaluate::{CaseScore, SPEEDS, ScoredQuantity};
+use crate::study::{EvaluateReconstructionReport, Trust, word};
+
+/// Files that are written.
+pub(in crate::cli) const RECONSTRUCTION_EVALUATION_FILES: [&str; 2] =
+    ["evaluation.csv", "evaluation.json"];
+
+/// What the table says of each speed, before the unit in the name of its column.
+const COLUMNS: [&str; 11] = [
+    "true", "median", "low_50", "high_50", "low_80", "high_80", "low_90", "high_90", "low_95",
+    "high_95", "crps",
+];
+
+/// Writes an evaluation as JSON, and as CSV with a row for each case, part of the evidence and method,
+/// into a folder that exists.
+pub(in crate::cli) fn write_reconstruction_evaluation(
+    path: &Path,
+    report: &EvaluateReconstructionReport,
+) -> Result<(), CliError> {
+    let restrictions = Trust::new(&report.badges, &report.assumptions).text();
+    let of_speed = SPEEDS.iter().flat_map(|speed| {
+        let (name, unit) = speed.key().split_at(speed.key().len() - "_m_s".len());
+        COLUMNS.map(|column| format!("{name}_{column}{unit}"))
+    });
+    let own = ["case", "known", "method", "seconds", "ess", "n_simulations"].map(str::to_owned);
+    let header: Vec<String> = own.into_iter().chain(of_speed).collect();
+    let table = path.join("evaluation.csv");
+    let rows = report.cases.iter().map(row);
+    write_restricted_table(&table, Existing::Refuse, (&header, rows), restrictions.as_deref())?;
+    write_json(&path.join("evaluation.json"), report)
+}
+
+fn row(score: &CaseScore) -> Vec<String> {
+    let mut row = vec![
+        score.case.clone(),
+        word(&score.known),
+        word(&score.method),
+        score.seconds.to_string(),
+        score.ess.map_or_else(String::new, |ess| ess.to_string()),
+        score.n_simulations.to_string(),
+    ];
+    for speed in SPEEDS {
+        match score.quantity(speed.key()) {
+            Some(scored) => row.extend(numbers(scored).map(|number| number.to_string())),
+            None => row.extend(COLUMNS.map(|_| String::new())),
+        }
+    }
+    row
+}
+
+/// The numbers of a speed in the order of [`COLUMNS`].
+fn numbers(ScoredQuantity { estimate, truth, crps }: &ScoredQuantity) -> [f64; COLUMNS.len()] {
+    let ([low_50, high_50], [low_80, high_80]) = (estimate.interval_50, estimate.interval_80);
+    let ([low_90, high_90], [low_95, high_95]) = (estimate.interval_90, estimate.interval_95);
+    [
+        *truth,
+        estimate.median,
+        low_50,
+        high_50,
+        low_80,
+        high_80,
+        low_90,
+        high_90,
+        low_95,
+        high_95,
+        *crps,
+    ]
+}

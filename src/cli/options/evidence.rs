@@ -1,0 +1,41 @@
+//! What is reconstructed.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::cli::options::VehicleArg;
+use crate::study::{EvidenceChoice, ReconstructRequest};
+
+/// The evidence, the cars, and with how many particles the speeds are sampled.
+#[derive(Debug, Args)]
+pub(in crate::cli) struct EvidenceArgs {
+    /// The evidence file
+    #[arg(value_name = "EVIDENCE.toml")]
+    evidence: PathBuf,
+    /// The struck car: stands in where the evidence gives no value
+    #[arg(long, value_name = "NAME|FILE")]
+    vehicle: Option<VehicleArg>,
+    /// The striking car, likewise
+    #[arg(long, value_name = "NAME|FILE")]
+    striking: Option<VehicleArg>,
+    /// Number of particles
+    #[arg(long, value_name = "N", default_value_t = ReconstructRequest::DEFAULT_PARTICLES)]
+    particles: usize,
+    /// Seed of all draws
+    #[arg(long, default_value_t = 0)]
+    seed: u64,
+}
+
+impl EvidenceArgs {
+    /// The question, without a checkpoint.
+    pub(in crate::cli) fn request(&self) -> ReconstructRequest {
+        ReconstructRequest {
+            vehicle: VehicleArg::choice(&self.vehicle),
+            striking: VehicleArg::choice(&self.striking),
+            particles: self.particles,
+            seed: self.seed,
+            ..ReconstructRequest::new(EvidenceChoice::File(self.evidence.clone()))
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! The workspace Reconstruct: evidence in, speeds out.
+
+use std::path::{Path, PathBuf};
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use impactlab::app::{App, Command, FollowedParticle, ReconstructionCommand, State, Workspace};
+use impactlab::reconstruct::evidence::Evidence;
+use impactlab::study::EvidenceChoice;
+use impactlab::uncertainty::BadgeKind;
+
+use crate::harness::{apply, open_at, step_until};
+use crate::looks::collisions;
+use crate::pictures::save;
+
+/// A car that spun to rest, with few marks.
+pub const EVIDENCE: &str = r#"
+case = "spin"
+[road]
+friction = 0.7
+[struck_car]
+mass_kg = 1900
+[striking_car]
+mass_kg = 1700
+[damage]
+side = "right"
+x_m = -1.7
+[rest]
+x_m = 30
+y_m = -6
+heading_deg = 190
+[after]
+blocked_wheels = []
+[edr]
+speed_before_m_s = 17
+"#;
+
+/// Writes the evidence into a folder.
+pub fn evidence_in(folder: &Path) -> PathBuf {
+    let path = folder.join("evidence.toml");
+    std::fs::write(&path, EVIDENCE).expect("a file");
+    path
+}
+
+fn state<'a>(harness: &'a Harness<'_, App>) -> &'a State {
+    harness.state().state()
+}
+
+fn evidence(harness: &Harness<'_, App>) -> Evidence {
+    state(harness).evidence().expect("evidence").clone()
+}
+
+fn is_outdated(harness: &Harness<'_, App>) -> bool {
+    let State { project, session, .. } = state(harness);
+    session.reconstruction.is_outdated(&project.reconstruction)
+}
+
+/// Opens a window of a size on a file with evidence and few particles.
+fn opened(path: &Path, size: [f32; 2], particles: usize) -> Harness<'static, App> {
+    let mut harness = open_at((size, 1.0), &[path.to_str().expect("a plain name")], None);
+    harness.run_steps(4);
+    harness.state_mut().state_mut().project.reconstruction.particles = particles;
+    harness.run_steps(2);
+    harness
+}
+
+fn is_answered(state: &State) -> bool {
+    let of = &state.session.reconstruction;
+    !of.run.is_running() && of.answer().is_some()
+}
+
+fn run(harness: &mut Harness<'static, App>) {
+    harness.get_by_label("Run").click();
+    harness.run_steps(4);
+    step_until(harness, "the particles that are not the answer yet", |state| {
+        let live = state.session.reconstruction.live.as_ref();
+        live.is_some_and(|live| !live.paths.drawn.is_empty() && live.paths.drawn.len() <= 60)
+    });
+    assert!(harness.query_by_label_contains("Not the answer yet").is_some());
+}
+
+#[test]
+fn evidence_that_is_opened_is_run_edited_and_undone() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = evidence_in(folder.path());
+    let mut harness = opened(&path, [1280.0, 720.0], 60);
+    assert_eq!(state(&harness).view.workspaces.shown, Workspace::Reconstruct);
+    let choice = state(&harness).project.reconstruction.evidence.clone();
+    assert_eq!(choice, Some(EvidenceChoice::File(path)));
+    assert!(!state(&harness).session.playing);
+
+    run(&mut harness);
+    step_until(&mut harness, "the speeds", is_answered);
+    assert!(!is_outdated(&harness));
+    let answer = state(&harness).session.reconstruction.answer().expect("an answer");
+    assert_eq!(answer.answer.report.n_particles, 60);
+    for said in ["Play the median", "What each piece of evidence says"] {
+        assert!(harness.query_by_label(said).is_some(), "{said}");
+    }
+    assert!(harness.query_by_label_contains("By hand: struck car").is_some());
+
+    // The course of events that is clicked is shown alone, and a path of it is played.
+    let name = answer.answer.report.modes[0].name.clone();
+    harness.get_by_label(&name).scroll_to_me();
+    harness.run_steps(8);
+    harness.get_by_label(&name).click();
+    harness.run_steps(4);
+    assert_eq!(state(&harness).session.reconstruction.mode, Some(0));
+    harness.get_by_label("Play a draw").click();
+    harness.run_steps(4);
+    let session = &state(&harness).session;
+    assert_eq!(session.reconstruction.followed, FollowedParticle::Draw(0));
+    assert!(session.playing && session.time_s > 0.0);
+    assert!(session.time_s <= state(&harness).end_time_s());
+
+    // The struck car was found elsewhere: the answer is of other evidence until that is undone.
+    let mut moved = evidence(&harness);
+    moved.rest.as_mut().expect("a place of rest").x_m = 35.0;
+    let project = &mut harness.state_mut().state_mut().project;
+    project.reconstruction.evidence = Some(EvidenceChoice::Inline(Box::new(moved.clone())));
+    harness.run_steps(120); // The history takes up what has stood for a second.
+    assert_eq!(evidence(&harness), moved);
+    assert!(is_outdated(&harness));
+    assert!(harness.query_by_label("Play the median").is_none(), "old paths over new evidence");
+    assert!(harness.query_all_by_label_contains("were changed since the last run").count() > 0);
+    apply(&mut harness, Command::Undo);
+    harness.run_steps(2);
+    assert_eq!(state(&harness).project.reconstruction.evidence, choice);
+    assert!(!is_outdated(&harness));
+}
+
+#[test]
+fn a_run_that_is_cancelled_keeps_what_was_sampled() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut harness = opened(&evidence_in(folder.path()), [1280.0, 720.0], 800);
+    run(&mut harness);
+    harness.get_by_label("Cancel").click();
+    step_until(&mut harness, "the particles that are kept", is_answered);
+    let answer = state(&harness).session.reconstruction.answer().expect("an answer");
+    let report = &answer.answer.report;
+    assert_eq!(report.n_particles, 800);
+    assert!(report.badges.iter().any(|badge| badge.kind == BadgeKind::FewParticles));
+    assert!(!answer.answer.particles.of_posterior());
+    assert!(harness.query_all_by_label_contains("temperature").count() > 0);
+}
+
+#[test]
+fn evidence_is_saved_with_the_case_and_clicked_marks_are_asked_for() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut harness = open_at(([1280.0, 720.0], 1.0), &["no/such/folder"], None);
+    harness.run_steps(4);
+    apply(&mut harness, Command::ShowWorkspace(Workspace::Reconstruct));
+    harness.run_steps(2);
+    save(&mut harness, "reconstruct-empty.png");
+    harness.get_by_label("New evidence").click();
+    harness.run_steps(4);
+    let mut edited = evidence(&harness);
+    assert!(edited.marks.is_empty() && edited.rest.is_some());
+    harness.get_by_label("Add evidence").click();
+    harness.run_steps(4);
+    harness.get_by_label("Tyre mark").click();
+    harness.run_steps(4);
+    assert_eq!(evidence(&harness).marks.len(), 1);
+    assert!(harness.query_by_label_contains("needs at least two points").is_some());
+    harness.get_by_label("Add points").click();
+    harness.run_steps(4);
+    assert_eq!(state(&harness).session.reconstruction.adds_to, Some(0));
+    // A click beside the title of the pane lies in the scene.
+    let title = harness.get_by_label("Reconstructed scene").rect();
+    for right in [60.0, 120.0] {
+        let at = title.left_bottom() + egui::vec2(right, 260.0);
+        harness.hover_at(at);
+        harness.run_steps(2);
+        harness.drag_at(at);
+        harness.run_steps(1);
+        harness.drop_at(at);
+        harness.run_steps(3);
+    }
+    assert_eq!(evidence(&harness).marks[0].points_m.len(), 2);
+    save(&mut harness, "reconstruct-new.png");
+
+    edited = evidence(&harness);
+    let case = folder.path().join("spin.impactlab");
+    apply(&mut harness, Command::SaveCaseAs(case.clone()));
+    step_until(&mut harness, "the case file", |state| state.case.path.is_some());
+    apply(&mut harness, Command::NewCase);
+    harness.run_steps(2);
+    assert!(state(&harness).evidence().is_none());
+    apply(&mut harness, Command::Open(vec![case.clone()]));
+    harness.run_steps(4);
+    assert_eq!(evidence(&harness), edited);
+    assert_eq!(state(&harness).view.workspaces.shown, Workspace::Reconstruct);
+    let text = std::fs::read_to_string(case).expect("the case file");
+    assert!(text.contains(r#""question": "reconstruct""#));
+}
+
+#[test]
+fn the_example_in_both_themes() {
+    let mut harness = open_at(([1280.0, 720.0], 1.0), &["no/such/folder"], None);
+    apply(&mut harness, Command::Reconstruct(ReconstructionCommand::Example));
+    let state = harness.state_mut().state_mut();
+    state.session.messages.clear();
+    state.project.reconstruction.particles = 60;
+    harness.run_steps(4);
+    run(&mut harness);
+    save(&mut harness, "reconstruct-live.png");
+    step_until(&mut harness, "the speeds", is_answered);
+    apply(&mut harness, Command::SetTime(1.5));
+    for (dark, theme) in [(false, "light"), (true, "dark")] {
+        harness.state_mut().state_mut().view.dark = dark;
+        for (height, name) in [(720.0, "reconstruct"), (2100.0, "reconstruct-tall")] {
+            harness.set_size(egui::vec2(1280.0, height));
+            harness.run_steps(6);
+            save(&mut harness, &format!("{name}-{theme}.png"));
+            assert_eq!(collisions(&harness), [""; 0], "{name}, {theme}");
+        }
+    }
+}
