@@ -106,6 +106,22 @@ impl Car {
         self.scatter.get(&quantity).copied()
     }
 
+    /// Standard deviation of the logarithm of the mass; `None` if it is known. The rule of the data
+    /// sheet estimates it from length and width, which may be estimates themselves and go together: long
+    /// cars are wide.
+    ///
+    /// ```text
+    /// m = c l w      σ² = σ_c² + (σ_l + σ_w)²
+    /// ```
+    ///
+    /// For a car of which nothing is known this is 0.17; the cars of the library have 0.18.
+    pub fn mass_scatter(&self) -> Option<f64> {
+        let own = self.scatter(SheetQuantity::Mass)?;
+        let size = [SheetQuantity::Length, SheetQuantity::Width];
+        let size: f64 = size.into_iter().filter_map(|of| self.scatter(of)).sum();
+        Some(own.hypot(size))
+    }
+
     /// The quantities that are estimated.
     pub fn estimated(&self) -> impl Iterator<Item = SheetQuantity> {
         self.scatter.keys().copied()
@@ -141,5 +157,23 @@ fn lean(vehicle: VehicleParameters) -> VehicleParameters {
         estimates: BTreeMap::new(),
         sheet: None,
         ..vehicle
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mass_of_a_car_is_known_by_scale_by_size_or_hardly() {
+        let scatter = |evidence: &CarEvidence| Car::of(evidence, None).mass_scatter();
+        let weighed = crate::reconstruct::evidence::Measured { value: 1500.0, sigma: 30.0 };
+        let weighed = CarEvidence { mass_kg: Some(weighed), ..CarEvidence::default() };
+        assert_eq!(scatter(&weighed), None);
+        let measured =
+            CarEvidence { length_m: Some(4.4), width_m: Some(1.8), ..Default::default() };
+        let by_size = scatter(&measured).expect("an estimate");
+        let unknown = scatter(&CarEvidence::default()).expect("an estimate");
+        assert!(by_size > 0.1 && unknown > 1.4 * by_size, "{by_size} {unknown}");
     }
 }
