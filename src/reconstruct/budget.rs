@@ -70,9 +70,10 @@ impl Narrowing {
         sizes.sort_by(f64::total_cmp);
         Some(Self {
             width_90_now: now.width_90,
-            width_90_then: mean(&|spread| spread.width_90),
+            // What a measurement adds is never less than nothing: the rest is the error of the draws.
+            width_90_then: mean(&|spread| spread.width_90).min(now.width_90),
             std_now: now.variance.sqrt(),
-            std_then: mean(&|spread| spread.variance).sqrt(),
+            std_then: mean(&|spread| spread.variance).min(now.variance).sqrt(),
             ess: sizes.get(sizes.len() / 2)? * (ess / n as f64).min(1.0),
         })
     }

@@ -44,3 +44,49 @@ impl ReconstructionTarget {
         Some(evidence)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+    use crate::reconstruct::evidence::VideoPosition;
+    use crate::reconstruct::evidence::examples::{SPIN, read};
+    use crate::reconstruct::{Cars, Discrepancy, ForwardModel};
+
+    #[test]
+    fn what_is_drawn_errs_as_the_likelihood_says() {
+        let mut evidence = read(SPIN);
+        let at = |time_s| VideoPosition { time_s, x_m: 0.0, y_m: 0.0, sigma_m: 0.3 };
+        evidence.positions = vec![at(0.5), at(0.6)];
+        let model = ForwardModel::new(&evidence, Cars::of(&evidence, None, None));
+        let z = vec![0.0; model.prior().components().len()];
+        let motion = model.motions(&[z], |motion| motion).pop().unwrap();
+        let discrepancy = Discrepancy::default();
+        let target = ReconstructionTarget::new(evidence.clone(), model, discrepancy);
+        let (expected, _) = path_residuals((&evidence, &discrepancy), &motion).unwrap();
+
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        let n = 4000;
+        let (mut squares, mut both, mut speeds) = (vec![0.0; expected.len()], 0.0, 0.0);
+        for _ in 0..n {
+            let drawn = target.drawn(&motion, &mut rng).unwrap();
+            let (found, _) = path_residuals((&drawn, &discrepancy), &motion).unwrap();
+            squares.iter_mut().zip(&found).for_each(|(sum, at)| *sum += at.residual.powi(2));
+            both += found[3].residual * found[5].residual;
+            let speed = drawn.edr.speed_before_m_s.unwrap().value;
+            speeds += ((speed - motion.impact.target_speed_m_s) / 0.8_f64).powi(2);
+        }
+        // The variance of a Student distribution of ν degrees of freedom is ν/(ν − 2) of its scale.
+        let freedom = discrepancy.degrees_of_freedom;
+        let heavier = freedom / (freedom - 2.0);
+        for (idx, (sum, at)) in squares.iter().zip(&expected).enumerate() {
+            let ratio = sum / f64::from(n) / (heavier * discrepancy.variance(at));
+            assert!((ratio - 1.0).abs() < 0.15, "residual {idx}: {ratio}");
+        }
+        let correlation = both / (squares[3] * squares[5]).sqrt();
+        assert!(correlation > 0.2, "neighbouring positions err together: {correlation}");
+        assert!((speeds / f64::from(n) - 1.0).abs() < 0.1, "{speeds}");
+    }
+}
