@@ -20,6 +20,7 @@ use crate::app::widgets::OUTDATED;
 use crate::app::workspaces::Workspace;
 use crate::data::{ColumnMap, Existing, Severity};
 use crate::figure::Figure;
+use crate::reconstruct::evidence::Evidence;
 use crate::study::SimulateAnswer;
 use crate::vehicle::DataSheet;
 
@@ -97,6 +98,8 @@ pub enum Command {
     SaveScenario(PathBuf),
     /// Write a vehicle to a TOML file.
     SaveVehicle(Box<DataSheet>, PathBuf),
+    /// Write the evidence of a reconstruction to a TOML file.
+    SaveEvidence(Box<Evidence>, PathBuf),
     /// Carry out a command that writes a file or a folder, and replace what is there.
     Replace(Box<Command>),
     /// Close the question whether something is to be replaced, and leave it as it is.
@@ -253,6 +256,7 @@ impl State {
             Command::Export(..)
             | Command::SaveScenario(_)
             | Command::SaveVehicle(..)
+            | Command::SaveEvidence(..)
             | Command::SaveModel(..)
             | Command::SaveKept(..)
             | Command::SaveCaseAs(_)

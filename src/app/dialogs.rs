@@ -10,6 +10,7 @@ use crate::app::network::Network;
 use crate::case_file::{CASE_ENDING, file_stem};
 use crate::figure::Figure;
 use crate::jobs::{Job, Update};
+use crate::reconstruct::evidence::Evidence;
 use crate::vehicle::DataSheet;
 
 /// File extension of model files.
@@ -30,6 +31,8 @@ pub enum Purpose {
     Scenario,
     /// A TOML file for a vehicle.
     Vehicle(Box<DataSheet>),
+    /// A TOML file for the evidence of a reconstruction.
+    Evidence(Box<Evidence>),
     /// A model file to open.
     OpenModel,
     /// A file for the current model of a network.
@@ -56,6 +59,7 @@ impl Purpose {
             Self::Numbers(_) => "Save the numbers",
             Self::Scenario => "Save the scenario",
             Self::Vehicle(_) => "Save the vehicle",
+            Self::Evidence(_) => "Save the evidence",
             Self::OpenModel => "Open a model",
             Self::SaveModel(_) | Self::SaveKept(..) => "Save the model",
             Self::OpenComparison => "Open a comparison",
@@ -73,6 +77,7 @@ impl Purpose {
             Self::Numbers(figure) => return file_stem(&figure.title) + ".csv",
             Self::Scenario => "scenario.toml",
             Self::Vehicle(sheet) => return file_stem(&sheet.name) + ".toml",
+            Self::Evidence(evidence) => return file_stem(&evidence.case) + ".toml",
             Self::SaveModel(network) | Self::SaveKept(network, _) => network.file_name(),
             Self::SaveComparison => "comparison",
             Self::SaveCase => "case.impactlab",
@@ -106,6 +111,9 @@ impl Purpose {
             Self::Scenario => written("toml", &Command::SaveScenario),
             Self::Vehicle(sheet) => {
                 written("toml", &|path| Command::SaveVehicle(sheet.clone(), path))
+            }
+            Self::Evidence(evidence) => {
+                written("toml", &|path| Command::SaveEvidence(evidence.clone(), path))
             }
             Self::SaveModel(network) => {
                 written(MODEL_ENDING, &|path| Command::SaveModel(*network, path))
@@ -225,6 +233,7 @@ async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
         Purpose::Picture(_) => save(dialog.add_filter("picture", &["png"]), name).await,
         Purpose::Numbers(_) => save(dialog.add_filter("table", &["csv"]), name).await,
         Purpose::Vehicle(_) => save(dialog.add_filter("vehicle", &["toml"]), name).await,
+        Purpose::Evidence(_) => save(dialog.add_filter("evidence", &["toml"]), name).await,
         Purpose::Scenario => save(dialog.add_filter("scenario", &["toml"]), name).await,
         Purpose::SaveCase => save(dialog.add_filter("case", &[CASE_ENDING]), name).await,
         Purpose::PackCase => save(dialog.add_filter("package", &["zip"]), name).await,

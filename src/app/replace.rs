@@ -18,6 +18,7 @@ impl Command {
             Self::Export(_, path)
             | Self::SaveScenario(path)
             | Self::SaveVehicle(_, path)
+            | Self::SaveEvidence(_, path)
             | Self::SaveModel(_, path)
             | Self::SaveKept(_, path)
             | Self::SaveCaseAs(path)
@@ -57,6 +58,9 @@ impl State {
             }
             Command::SaveVehicle(sheet, path) => {
                 self.write_text(&sheet.to_toml(), (&path, existing));
+            }
+            Command::SaveEvidence(evidence, path) => {
+                self.write_text(&evidence.to_toml(), (&path, existing));
             }
             Command::SaveCaseAs(path) => self.save_case((path, existing), context),
             Command::PackCase(path) => self.pack_case((path, existing), context),

@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use impactlab::app::{App, Command, FollowedParticle, ReconstructionCommand, State, Workspace};
 use impactlab::reconstruct::evidence::Evidence;
-use impactlab::study::EvidenceChoice;
+use impactlab::study::{EvidenceChoice, VehicleChoice};
 use impactlab::uncertainty::BadgeKind;
+use impactlab::vehicle::built_in_vehicle;
 
 use crate::harness::{apply, open_at, step_until};
 use crate::looks::collisions;
@@ -155,7 +156,15 @@ fn evidence_is_saved_with_the_case_and_clicked_marks_are_asked_for() {
     harness.get_by_label("New evidence").click();
     harness.run_steps(4);
     let mut edited = evidence(&harness);
-    assert!(edited.marks.is_empty() && edited.rest.is_some());
+    assert!(edited.marks.is_empty() && edited.striking_car.mass_kg.is_none());
+    assert!(harness.query_by_label_contains("car at rest has not been placed").is_some());
+    assert!(harness.get_by_label("Run").accesskit_node().is_disabled());
+    assert!(harness.get_by_label("Save as…").accesskit_node().is_disabled());
+    edited.rest.as_mut().expect("a place of rest").y_m = -4.0;
+    let project = &mut harness.state_mut().state_mut().project;
+    project.reconstruction.evidence = Some(EvidenceChoice::Inline(Box::new(edited)));
+    harness.run_steps(4);
+    assert!(!harness.get_by_label("Run").accesskit_node().is_disabled());
     harness.get_by_label("Add evidence").click();
     harness.run_steps(4);
     harness.get_by_label("Tyre mark").click();
@@ -180,6 +189,13 @@ fn evidence_is_saved_with_the_case_and_clicked_marks_are_asked_for() {
     save(&mut harness, "reconstruct-new.png");
 
     edited = evidence(&harness);
+    let path = folder.path().join("new.toml");
+    apply(&mut harness, Command::SaveEvidence(Box::new(edited.clone()), path.clone()));
+    assert_eq!(Evidence::load(&path).expect("the file"), edited);
+    apply(&mut harness, Command::SaveEvidence(Box::new(edited.mirrored()), path.clone()));
+    assert!(state(&harness).session.replacing.is_some(), "it was written without a question");
+    assert_eq!(Evidence::load(&path).expect("the file"), edited);
+    apply(&mut harness, Command::KeepExisting);
     let case = folder.path().join("spin.impactlab");
     apply(&mut harness, Command::SaveCaseAs(case.clone()));
     step_until(&mut harness, "the case file", |state| state.case.path.is_some());
@@ -192,6 +208,32 @@ fn evidence_is_saved_with_the_case_and_clicked_marks_are_asked_for() {
     assert_eq!(state(&harness).view.workspaces.shown, Workspace::Reconstruct);
     let text = std::fs::read_to_string(case).expect("the case file");
     assert!(text.contains(r#""question": "reconstruct""#));
+}
+
+#[test]
+fn a_data_sheet_stands_in_for_what_the_evidence_does_not_say() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut harness = opened(&evidence_in(folder.path()), [1280.0, 720.0], 60);
+    let wheelbase_m = |harness: &Harness<'_, App>| {
+        let preview = state(harness).session.reconstruction.preview.as_ref().expect("a preview");
+        preview.cars.struck.parameters.geometry.wheelbase_m()
+    };
+    let any = wheelbase_m(&harness);
+    let choose = |harness: &mut Harness<'static, App>, choice: VehicleChoice| {
+        harness.state_mut().state_mut().project.reconstruction.vehicle = choice;
+        harness.run_steps(4);
+    };
+    let id = "ford-f-150-2004";
+    assert!(built_in_vehicle(id).is_some(), "{id} is not in the library");
+    choose(&mut harness, VehicleChoice::Preset(id.to_owned()));
+    assert!(wheelbase_m(&harness) > any + 0.3, "{} {any}", wheelbase_m(&harness));
+    harness.set_size(egui::vec2(1280.0, 1400.0));
+    harness.run_steps(4);
+    save(&mut harness, "reconstruct-sheet.png");
+    assert_eq!(collisions(&harness), [""; 0]);
+    choose(&mut harness, VehicleChoice::File(folder.path().join("gone.toml")));
+    assert!(harness.query_all_by_label_contains("gone.toml").count() > 0);
+    assert!(harness.get_by_label("Run").accesskit_node().is_disabled());
 }
 
 #[test]

@@ -143,7 +143,7 @@ fn vehicle_choice_ui(
 ) {
     let name = ui.label(title);
     let label = chosen_label(choice, open);
-    choice_list_ui(ui, (title, &name, hint), (choice, open), &label);
+    choice_list_ui(ui, (title, &name, hint), (choice, open, &[]), &label);
     ui.end_row();
     if matches!(choice, VehicleChoice::Sheet(_)) {
         return;
@@ -175,7 +175,24 @@ pub(in crate::app) fn file_vehicle_ui(ui: &mut Ui, choice: &mut VehicleChoice) {
     let open = format!("{} (assumed)", DEFAULT_VEHICLE.id());
     let label = chosen_label(choice, &open);
     let hint = "Its mass, inertia and tyres: the file does not say them";
-    choice_list_ui(ui, ("vehicle of the file", &name, hint), (choice, &open), &label);
+    choice_list_ui(ui, ("vehicle of the file", &name, hint), (choice, &open, &[]), &label);
+    ui.end_row();
+}
+
+/// Draws a row with the vehicle whose data stand in where the evidence of a reconstruction says nothing.
+///
+/// - `own`: vehicles of the user that can be chosen, too.
+pub(super) fn evidence_vehicle_ui(
+    ui: &mut Ui,
+    title: &str,
+    (choice, own): (&mut VehicleChoice, &[VehicleChoice]),
+) {
+    let name = ui.label("Data sheet");
+    let open = "none: estimated as of any car";
+    let label = chosen_label(choice, open);
+    let hint = "What the evidence does not say is taken from it; a file of your own is in the list once \
+                it is the vehicle of the case: open it, or drop it here";
+    choice_list_ui(ui, (title, &name, hint), (choice, open, own), &label);
     ui.end_row();
 }
 
@@ -188,16 +205,19 @@ fn edited_copy(choice: &VehicleChoice, default: &VehicleParameters) -> Result<Da
     })
 }
 
-/// Draws the list of the vehicles that come with the program.
+/// Draws the list of the vehicles that come with the program, after those of the user.
 fn choice_list_ui(
     ui: &mut Ui,
     (title, name, hint): (&str, &Response, &str),
-    (choice, open): (&mut VehicleChoice, &str),
+    (choice, open, own): (&mut VehicleChoice, &str, &[VehicleChoice]),
     label: &str,
 ) {
     let list = ComboBox::from_id_salt(title).selected_text(label).truncate().height(LIST_HEIGHT);
     let options_ui = |ui: &mut Ui| {
         ui.selectable_value(choice, VehicleChoice::Automatic, open);
+        for vehicle in own {
+            ui.selectable_value(choice, vehicle.clone(), chosen_label(vehicle, open));
+        }
         let presets = Preset::ALL.iter().map(|preset| preset.id());
         for id in presets.chain(LibraryVehicle::ALL.iter().map(|vehicle| vehicle.id())) {
             ui.selectable_value(choice, VehicleChoice::Preset(id.to_owned()), id);

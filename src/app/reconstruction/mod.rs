@@ -4,13 +4,13 @@
 mod live;
 mod question;
 mod settings;
+pub(in crate::app) mod stand_ins;
 mod update;
 
 pub use live::LiveParticles;
 pub use question::{PreparedReconstruction, ReconstructionQuestion};
 pub use settings::{ReconstructionProject, ReconstructionView};
 pub use update::EvidencePreview;
-pub(in crate::app) use update::{missing, usual_rest};
 
 use std::path::PathBuf;
 use std::sync::mpsc::Receiver;

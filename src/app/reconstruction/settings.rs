@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::reconstruct::ReconstructedQuantity;
-use crate::study::{EvidenceChoice, ReconstructRequest};
+use crate::study::{EvidenceChoice, ReconstructRequest, VehicleChoice};
 
 /// What the user works on in a reconstruction.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -11,6 +11,10 @@ use crate::study::{EvidenceChoice, ReconstructRequest};
 pub struct ReconstructionProject {
     /// The evidence: a file as long as nothing of it was changed here.
     pub evidence: Option<EvidenceChoice>,
+    /// The struck car, where the evidence leaves it open.
+    pub vehicle: VehicleChoice,
+    /// The striking car, likewise.
+    pub striking: VehicleChoice,
     /// Number of particles.
     pub particles: usize,
     /// Seed of all draws.
@@ -19,7 +23,13 @@ pub struct ReconstructionProject {
 
 impl Default for ReconstructionProject {
     fn default() -> Self {
-        Self { evidence: None, particles: ReconstructRequest::DEFAULT_PARTICLES, seed: 0 }
+        Self {
+            evidence: None,
+            vehicle: VehicleChoice::default(),
+            striking: VehicleChoice::default(),
+            particles: ReconstructRequest::DEFAULT_PARTICLES,
+            seed: 0,
+        }
     }
 }
 
@@ -32,8 +42,13 @@ impl ReconstructionProject {
     /// The question of the form; `None` without evidence.
     pub fn request(&self) -> Option<ReconstructRequest> {
         let evidence = self.evidence.clone()?;
-        let (particles, seed) = (self.particles, self.seed);
-        Some(ReconstructRequest { particles, seed, ..ReconstructRequest::new(evidence) })
+        Some(ReconstructRequest {
+            vehicle: self.vehicle.clone(),
+            striking: self.striking.clone(),
+            particles: self.particles,
+            seed: self.seed,
+            ..ReconstructRequest::new(evidence)
+        })
     }
 }
 

@@ -8,33 +8,29 @@ use egui::Context;
 use crate::app::command::wake;
 use crate::app::panes::Pane;
 use crate::app::reconstruction::live::watch;
+use crate::app::reconstruction::stand_ins::{empty_evidence, missing};
 use crate::app::reconstruction::{
-    FollowedParticle, ReadEvidence, ReconstructionCommand, ReconstructionQuestion,
-    ReconstructionSession,
+    FollowedParticle, ReadEvidence, ReconstructionCommand, ReconstructionProject,
+    ReconstructionQuestion, ReconstructionSession,
 };
 use crate::app::state::State;
-use crate::collision::Side;
 use crate::data::{Severity, TomlFile};
 use crate::error_chain;
-use crate::reconstruct::evidence::{
-    After, CarEvidence, DEFAULT_DAMAGE_SIGMA_M, DEFAULT_HEADING_SIGMA_RAD, DEFAULT_MASS_SHARE,
-    DEFAULT_REST_SIGMA_M, Damage, Edr, Evidence, Measured, PriorRanges, RestPose,
-};
+use crate::reconstruct::evidence::Evidence;
 use crate::reconstruct::{Cars, Prior, PriorComponent};
-use crate::study::EvidenceChoice;
+use crate::study::{EvidenceChoice, VehicleChoice};
 
 /// The evidence of the shipped example.
 const EXAMPLE: &str = include_str!("../../../assets/examples/reconstruction.toml");
-/// Mass of the cars of an empty form, kg.
-const USUAL_MASS_KG: f64 = 1500.0;
-/// Place of the contact behind the CG and of the rest ahead of it in an empty form, m.
-const USUAL_CONTACT_M: f64 = -1.6;
-const USUAL_REST_M: f64 = 30.0;
 
 /// What follows from the evidence before anything is sampled.
 pub struct EvidencePreview {
     /// The evidence.
     pub evidence: Evidence,
+    /// The choice of the struck and of the striking car.
+    chosen: [VehicleChoice; 2],
+    /// Why a chosen vehicle cannot be used.
+    pub problem: Option<String>,
     /// The vehicles.
     pub cars: Cars,
     /// What is taken to be likely before the motion is looked at.
@@ -42,10 +38,17 @@ pub struct EvidencePreview {
 }
 
 impl EvidencePreview {
-    fn of(evidence: &Evidence) -> Self {
-        let cars = Cars::of(evidence, None, None);
+    fn of(evidence: &Evidence, chosen: [VehicleChoice; 2]) -> Self {
+        let mut problem = None;
+        let [struck, striking] = chosen.each_ref().map(|choice| {
+            choice.chosen().unwrap_or_else(|error| {
+                problem = Some(error_chain(&error));
+                None
+            })
+        });
+        let cars = Cars::of(evidence, struck.as_ref(), striking.as_ref());
         let priors = Prior::of(evidence, &cars).components().to_vec();
-        Self { evidence: evidence.clone(), cars, priors }
+        Self { evidence: evidence.clone(), chosen, problem, cars, priors }
     }
 }
 
@@ -83,9 +86,12 @@ impl State {
             session.file = Some(ReadEvidence { path: path.clone(), evidence });
         }
         let evidence = self.evidence();
-        let known = self.session.reconstruction.preview.as_ref().map(|of| &of.evidence);
-        if evidence != known {
-            let preview = evidence.map(EvidencePreview::of);
+        let ReconstructionProject { vehicle, striking, .. } = &self.project.reconstruction;
+        let known = self.session.reconstruction.preview.as_ref();
+        let is_of = |of: &EvidencePreview| of.chosen.each_ref() == [vehicle, striking];
+        if evidence != known.filter(|of| is_of(of)).map(|of| &of.evidence) {
+            let chosen = [vehicle, striking].map(VehicleChoice::clone);
+            let preview = evidence.map(|evidence| EvidencePreview::of(evidence, chosen));
             let n_marks = preview.as_ref().map_or(0, |of| of.evidence.marks.len());
             let session = &mut self.session.reconstruction;
             session.preview = preview;
@@ -168,52 +174,5 @@ impl State {
         if let Err(error) = session.run.start_watched(question, library, wake(context), watch) {
             self.say(Severity::Error, error.to_string());
         }
-    }
-}
-
-/// What evidence lacks that nothing can stand in for; `None` if it can be run.
-pub(in crate::app) fn missing(evidence: &Evidence) -> Option<String> {
-    let is_short = |mark: &&crate::reconstruct::evidence::Mark| mark.points_m.len() < 2;
-    evidence.marks.iter().find(is_short).map(|mark| {
-        format!(
-            "the mark of the {} wheel needs at least two points: Add points, then click along it in the scene",
-            mark.wheel.label()
-        )
-    })
-}
-
-/// The evidence of an empty form: a flank hit behind the CG, and a place of rest to be dragged.
-fn empty_evidence() -> Evidence {
-    let mass = Measured { value: USUAL_MASS_KG, sigma: DEFAULT_MASS_SHARE * USUAL_MASS_KG };
-    let car = CarEvidence { mass_kg: Some(mass), ..CarEvidence::default() };
-    Evidence {
-        case: "new reconstruction".to_owned(),
-        friction: None,
-        struck_car: car.clone(),
-        striking_car: car,
-        damage: Damage {
-            side: Side::Right,
-            along_m: Measured { value: USUAL_CONTACT_M, sigma: DEFAULT_DAMAGE_SIGMA_M },
-            depth_m: None,
-            angle_rad: None,
-        },
-        shared_scale_sigma: None,
-        rest: Some(usual_rest()),
-        striking_rest: None,
-        after: After::default(),
-        marks: Vec::new(),
-        edr: Edr::default(),
-        positions: Vec::new(),
-        prior: PriorRanges::default(),
-    }
-}
-
-/// A place of rest that stands in until it is dragged.
-pub(in crate::app) fn usual_rest() -> RestPose {
-    RestPose {
-        x_m: USUAL_REST_M,
-        y_m: 0.0,
-        position_sigma_m: DEFAULT_REST_SIGMA_M,
-        heading_rad: Some(Measured { value: 0.0, sigma: DEFAULT_HEADING_SIGMA_RAD }),
     }
 }

@@ -87,9 +87,11 @@ use crate::reconstruct::evidence::{
 use crate::vehicle::Wheel;
 
 /// The wheels in a file, in the order of [`Wheel::ALL`].
-const WHEELS: [&str; 4] = ["FL", "FR", "RL", "RR"];
-const SIDES: [(&str, Side); 4] =
+pub(super) const WHEELS: [&str; 4] = ["FL", "FR", "RL", "RR"];
+pub(super) const SIDES: [(&str, Side); 4] =
     [("left", Side::Left), ("right", Side::Right), ("front", Side::Front), ("rear", Side::Rear)];
+pub(super) const MARK_KINDS: [(&str, MarkKind); 2] =
+    [("side-slip", MarkKind::SideSlip), ("locked", MarkKind::Locked)];
 
 /// Smallest standard deviation of an angle of damage that stands in where none is given, rad. Damage
 /// is bent by the turn of the cars during the contact. Assumed.
@@ -277,8 +279,8 @@ fn read_after(mut table: TomlTable<'_>) -> Result<After, TomlError> {
 
 fn read_mark(mut table: TomlTable<'_>) -> Result<Mark, TomlError> {
     let Some(wheel) = table.choice("wheel", &WHEELS)? else { return Err(table.missing("wheel")) };
-    let kinds = [MarkKind::SideSlip, MarkKind::Locked];
-    let kind = table.choice("kind", &["side-slip", "locked"])?.map(|idx| kinds[idx]);
+    let kind = table.choice("kind", &MARK_KINDS.map(|(word, _)| word))?;
+    let kind = kind.map(|idx| MARK_KINDS[idx].1);
     let start_m = table.point("start_m", &EVIDENCE_POSITION)?;
     let points = table.points("points_m", &EVIDENCE_POSITION)?;
     let Some(points_m) = points else { return Err(table.missing("points_m")) };

@@ -5,6 +5,7 @@ mod defaults;
 pub(crate) mod examples;
 mod file;
 mod items;
+mod write;
 
 pub use defaults::{
     DEFAULT_DAMAGE_SIGMA_M, DEFAULT_EDR_SPEED_SHARE, DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA,

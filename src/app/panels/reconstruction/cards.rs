@@ -6,7 +6,8 @@ use crate::app::looks::{self, Icon, icon_button};
 use crate::app::panels::reconstruction::fields::{
     N_COLUMNS, interval_row, measured_row, optional_measured_row, optional_row, value_row,
 };
-use crate::app::reconstruction::{ReconstructionCommand, usual_rest};
+use crate::app::panels::vehicle::evidence_vehicle_ui;
+use crate::app::reconstruction::{ReconstructionCommand, stand_ins};
 use crate::collision::Side;
 use crate::ranges::{
     ANGLE_SIGMA, CG_HEIGHT, CG_TO_AXLE, CONTACT_X, CONTACT_Y, EVIDENCE_HEADING, EVIDENCE_POSITION,
@@ -15,19 +16,26 @@ use crate::ranges::{
     VEHICLE_YAW_INERTIA,
 };
 use crate::reconstruct::evidence::{
-    After, CarEvidence, DEFAULT_DAMAGE_SIGMA_M, DEFAULT_EDR_SPEED_SHARE, DEFAULT_FRICTION,
-    DEFAULT_FRICTION_SIGMA, DEFAULT_HEADING_SIGMA_RAD, DEFAULT_MARK_SIGMA_M, DEFAULT_MASS_SHARE,
-    DEFAULT_VIDEO_SIGMA_M, Damage, DriverBraked, Edr, Evidence, Mark, MarkKind, Measured, RestPose,
-    VideoPosition,
+    After, CarEvidence, DEFAULT_DAMAGE_SIGMA_M, DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA,
+    DEFAULT_HEADING_SIGMA_RAD, Damage, DriverBraked, Edr, Evidence, Mark, MarkKind, Measured,
+    RestPose, VideoPosition,
 };
+use crate::study::VehicleChoice;
 use crate::units::UnitSystem;
 use crate::vehicle::Wheel;
 
 /// Standard deviation of an angle that is read off the damage, rad.
 const USUAL_ANGLE_SIGMA_RAD: f64 = 0.17;
-/// Speed and mass that stand in a field until they are typed, m/s and kg.
-const USUAL_SPEED_M_S: f64 = 15.0;
-const USUAL_MASS_KG: f64 = 1500.0;
+/// Mass that stands in a field until it is typed, kg, with a standard deviation that covers most cars.
+const USUAL_MASS: Measured = Measured { value: 1500.0, sigma: 300.0 };
+
+/// The data sheets of the cars that the user can choose.
+pub struct SheetChoices<'a> {
+    /// The choice for the struck and for the striking car.
+    pub chosen: [&'a mut VehicleChoice; 2],
+    /// Vehicles of the user.
+    pub own: &'a [VehicleChoice],
+}
 
 /// Draws the cards of all items, and the menu that adds another.
 ///
@@ -35,7 +43,7 @@ const USUAL_MASS_KG: f64 = 1500.0;
 /// - returns what the user asks for beside the edits.
 pub fn cards_ui(
     ui: &mut Ui,
-    evidence: &mut Evidence,
+    (evidence, sheets): (&mut Evidence, SheetChoices<'_>),
     (adds_to, units): (Option<usize>, UnitSystem),
 ) -> Option<ReconstructionCommand> {
     add_ui(ui, evidence);
@@ -73,10 +81,15 @@ pub fn cards_ui(
     removable(ui, (Icon::Ruler, "Friction of the road"), &mut evidence.friction, |ui, friction| {
         measured_row(ui, "Peak", friction, ([&ROAD_FRICTION, &FRICTION_SIGMA], units));
     });
-    for (title, car) in
-        [("Struck car", &mut evidence.struck_car), ("Striking car", &mut evidence.striking_car)]
-    {
-        card(ui, (Icon::Car, title), false, |ui| car_fields(ui, (title, car), units));
+    let [struck, striking] = sheets.chosen;
+    for (title, car, sheet) in [
+        ("Struck car", &mut evidence.struck_car, struck),
+        ("Striking car", &mut evidence.striking_car, striking),
+    ] {
+        card(ui, (Icon::Car, title), false, |ui| {
+            car_fields(ui, (title, car), units);
+            evidence_vehicle_ui(ui, title, (sheet, sheets.own));
+        });
     }
     card(ui, (Icon::CarFront, "After the impact"), false, |ui| {
         after_fields(ui, &mut evidence.after)
@@ -130,32 +143,25 @@ fn add_ui(ui: &mut Ui, evidence: &mut Evidence) {
             !is_there && ui.add(icon_button(of, label)).clicked()
         };
         if item(evidence.rest.is_some(), Icon::Flag, "Struck car at rest") {
-            evidence.rest = Some(usual_rest());
+            evidence.rest = Some(stand_ins::rest_pose());
         }
         if item(evidence.striking_rest.is_some(), Icon::Flag, "Striking car at rest") {
-            evidence.striking_rest = Some(usual_rest());
+            evidence.striking_rest = Some(stand_ins::rest_pose());
         }
         if item(false, Icon::Route, "Tyre mark") {
-            let (wheel, sigma_m) = (Wheel::RearRight, DEFAULT_MARK_SIGMA_M);
-            evidence.marks.push(Mark { wheel, kind: None, points_m: Vec::new(), sigma_m });
+            evidence.marks.push(stand_ins::mark());
         }
         if item(evidence.edr != Edr::default(), Icon::Cpu, "Event data recorder") {
-            evidence.edr.speed_before_m_s = Some(usual_recorded_speed());
+            evidence.edr.speed_before_m_s = Some(stand_ins::recorded_speed());
         }
         if item(false, Icon::Video, "Position in a video") {
-            let (time_s, x_m, y_m) = (1.0, 15.0, 0.0);
-            let sigma_m = DEFAULT_VIDEO_SIGMA_M;
-            evidence.positions.push(VideoPosition { time_s, x_m, y_m, sigma_m });
+            evidence.positions.push(stand_ins::video_position());
         }
         if item(evidence.friction.is_some(), Icon::Ruler, "Friction of the road") {
             let (value, sigma) = (DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA);
             evidence.friction = Some(Measured { value, sigma });
         }
     });
-}
-
-fn usual_recorded_speed() -> Measured {
-    Measured { value: USUAL_SPEED_M_S, sigma: DEFAULT_EDR_SPEED_SHARE * USUAL_SPEED_M_S }
 }
 
 fn rest_fields(ui: &mut Ui, rest: &mut RestPose, units: UnitSystem) {
@@ -266,10 +272,11 @@ fn damage_fields(ui: &mut Ui, damage: &mut Damage, units: UnitSystem) {
 
 fn edr_fields(ui: &mut Ui, edr: &mut Edr, units: UnitSystem) {
     let ranges = ([&EVIDENCE_SPEED, &SPEED_SIGMA], units);
-    let speed = (&mut edr.speed_before_m_s, usual_recorded_speed());
+    let speed = (&mut edr.speed_before_m_s, stand_ins::recorded_speed());
     optional_measured_row(ui, "Speed before", speed, ranges);
-    interval_row(ui, "Δv ahead", (&mut edr.delta_v_x_m_s, [-1.0, 1.0]), (&SPEED, units));
-    interval_row(ui, "Δv to the left", (&mut edr.delta_v_y_m_s, [-1.0, 1.0]), (&SPEED, units));
+    let usual = stand_ins::RECORDED_DELTA_V_M_S;
+    interval_row(ui, "Δv ahead", (&mut edr.delta_v_x_m_s, usual), (&SPEED, units));
+    interval_row(ui, "Δv to the left", (&mut edr.delta_v_y_m_s, usual), (&SPEED, units));
     let [x_m, y_m] = &mut edr.sensor_m;
     value_row(ui, "Sensor ahead of CG", x_m, (&CONTACT_X, units));
     value_row(ui, "Sensor left of CG", y_m, (&CONTACT_Y, units));
@@ -294,9 +301,8 @@ fn positions_card(ui: &mut Ui, positions: &mut Vec<VideoPosition>, units: UnitSy
 }
 
 fn car_fields(ui: &mut Ui, (title, car): (&str, &mut CarEvidence), units: UnitSystem) {
-    let usual = Measured { value: USUAL_MASS_KG, sigma: DEFAULT_MASS_SHARE * USUAL_MASS_KG };
     let ranges = ([&VEHICLE_MASS, &MASS_SIGMA], units);
-    optional_measured_row(ui, "Mass", (&mut car.mass_kg, usual), ranges);
+    optional_measured_row(ui, "Mass", (&mut car.mass_kg, USUAL_MASS), ranges);
     CollapsingHeader::new("Dimensions").id_salt(("dimensions", title)).show(ui, |ui| {
         Grid::new(("dimensions of", title)).num_columns(2).show(ui, |ui| {
             dimension_fields(ui, car, units);

@@ -5,22 +5,27 @@ use egui::{DragValue, ProgressBar, ScrollArea, TextEdit, Ui};
 use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
 use crate::app::looks::{self, Icon, icon_button};
-use crate::app::panels::reconstruction::cards::cards_ui;
+use crate::app::panels::reconstruction::cards::{SheetChoices, cards_ui};
 use crate::app::panels::reconstruction::notice_ui;
 use crate::app::panels::reconstruction::priors::{prior_ranges_ui, priors_ui};
 use crate::app::panes::PaneContext;
+use crate::app::reconstruction::stand_ins::missing;
 use crate::app::reconstruction::{
-    ReconstructionCommand, ReconstructionProject, ReconstructionSession, missing,
+    EvidencePreview, ReconstructionCommand, ReconstructionProject, ReconstructionSession,
 };
 use crate::app::widgets::{count_field, duration_text};
 use crate::data::Severity;
 use crate::ranges::RECONSTRUCTION_PARTICLES;
 use crate::reconstruct::evidence::Evidence;
-use crate::study::EvidenceChoice;
+use crate::study::{EvidenceChoice, VehicleChoice};
 
 /// Draws the run, the cards of the evidence, and the ranges before and after it.
 pub fn evidence_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let PaneContext { project, view, session, commands, .. } = pane;
+    let is_own =
+        |of: &&VehicleChoice| matches!(of, VehicleChoice::File(_) | VehicleChoice::Sheet(_));
+    let own: Vec<VehicleChoice> =
+        [&project.vehicle, &project.bullet].into_iter().filter(is_own).cloned().collect();
     let (project, session) = (&mut project.reconstruction, &session.reconstruction);
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         let Some(preview) = &session.preview else {
@@ -28,9 +33,12 @@ pub fn evidence_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         };
         let mut evidence = preview.evidence.clone();
         case_ui(ui, (&mut evidence, project), commands);
-        run_ui(ui, (project, session, &evidence), commands);
+        run_ui(ui, (project, session, preview), commands);
         ui.separator();
-        let asked = cards_ui(ui, &mut evidence, (session.adds_to, view.units));
+        let chosen = [&mut project.vehicle, &mut project.striking];
+        let sheets = SheetChoices { chosen, own: &own };
+        let shown = (session.adds_to, view.units);
+        let asked = cards_ui(ui, (&mut evidence, sheets), shown);
         commands.extend(asked.map(Command::Reconstruct));
         ui.add_space(looks::PART);
         prior_ranges_ui(ui, &mut evidence.prior, view.units);
@@ -100,6 +108,11 @@ fn case_ui(
         if ui.button("New").on_hover_text("Begin with an empty form").clicked() {
             commands.push(Command::Reconstruct(ReconstructionCommand::New));
         }
+        let hint = "A file for impactlab reconstruct, and for this window";
+        let save = ui.add_enabled(missing(evidence).is_none(), egui::Button::new("Save as…"));
+        if save.on_hover_text(hint).clicked() {
+            commands.push(Command::Ask(Purpose::Evidence(Box::new(evidence.clone()))));
+        }
     });
     if let Some(EvidenceChoice::File(path)) = &project.evidence {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -110,11 +123,15 @@ fn case_ui(
 /// Draws the settings of the run, the button that starts it, and its progress.
 fn run_ui(
     ui: &mut Ui,
-    (project, session, evidence): (&mut ReconstructionProject, &ReconstructionSession, &Evidence),
+    (project, session, preview): (
+        &mut ReconstructionProject,
+        &ReconstructionSession,
+        &EvidencePreview,
+    ),
     commands: &mut Vec<Command>,
 ) {
     let mut command = |command| commands.push(Command::Reconstruct(command));
-    let lacks = missing(evidence);
+    let lacks = preview.problem.clone().or_else(|| missing(&preview.evidence));
     ui.horizontal_wrapped(|ui| {
         let name = ui.label("Particles");
         count_field(ui, &mut project.particles, &RECONSTRUCTION_PARTICLES, 10.0)
