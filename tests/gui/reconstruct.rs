@@ -227,8 +227,10 @@ fn a_data_sheet_stands_in_for_what_the_evidence_does_not_say() {
     assert!(built_in_vehicle(id).is_some(), "{id} is not in the library");
     choose(&mut harness, VehicleChoice::Preset(id.to_owned()));
     assert!(wheelbase_m(&harness) > any + 0.3, "{} {any}", wheelbase_m(&harness));
-    harness.set_size(egui::vec2(1280.0, 1400.0));
+    harness.set_size(egui::vec2(1280.0, 1700.0));
     harness.run_steps(4);
+    harness.get_by_label(&format!("Else as {id}")).click();
+    harness.run_steps(20);
     save(&mut harness, "reconstruct-sheet.png");
     assert_eq!(collisions(&harness), [""; 0]);
     choose(&mut harness, VehicleChoice::File(folder.path().join("gone.toml")));

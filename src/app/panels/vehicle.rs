@@ -21,8 +21,10 @@ use crate::vehicle::{
     DataSheet, Equations, Integrator, LibraryVehicle, Preset, VehicleParameters, built_in_vehicle,
 };
 
-/// Largest width and height of the lists of vehicles, points.
+/// Largest width of the lists of vehicles, and of those among narrow fields, and their largest height,
+/// points.
 const LIST_WIDTH: f32 = 240.0;
+const NARROW_LIST_WIDTH: f32 = 150.0;
 const LIST_HEIGHT: f32 = 480.0;
 
 /// Draws the choice of the vehicles, the equations and the integrator, the start of single force
@@ -160,7 +162,7 @@ fn vehicle_choice_ui(
 }
 
 /// What a choice is called.
-fn chosen_label(choice: &VehicleChoice, open: &str) -> String {
+pub(super) fn chosen_label(choice: &VehicleChoice, open: &str) -> String {
     match choice {
         VehicleChoice::Automatic => open.to_owned(),
         VehicleChoice::Preset(id) => id.clone(),
@@ -192,7 +194,10 @@ pub(super) fn evidence_vehicle_ui(
     let label = chosen_label(choice, open);
     let hint = "What the evidence does not say is taken from it; a file of your own is in the list once \
                 it is the vehicle of the case: open it, or drop it here";
-    choice_list_ui(ui, (title, &name, hint), (choice, open, own), &label);
+    ui.scope(|ui| {
+        ui.set_max_width(NARROW_LIST_WIDTH);
+        choice_list_ui(ui, (title, &name, hint), (choice, open, own), &label);
+    });
     ui.end_row();
 }
 

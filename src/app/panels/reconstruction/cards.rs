@@ -6,7 +6,7 @@ use crate::app::looks::{self, Icon, icon_button};
 use crate::app::panels::reconstruction::fields::{
     N_COLUMNS, interval_row, measured_row, optional_measured_row, optional_row, value_row,
 };
-use crate::app::panels::vehicle::evidence_vehicle_ui;
+use crate::app::panels::vehicle::{chosen_label, evidence_vehicle_ui};
 use crate::app::reconstruction::{ReconstructionCommand, stand_ins};
 use crate::collision::Side;
 use crate::ranges::{
@@ -87,8 +87,7 @@ pub fn cards_ui(
         ("Striking car", &mut evidence.striking_car, striking),
     ] {
         card(ui, (Icon::Car, title), false, |ui| {
-            car_fields(ui, (title, car), units);
-            evidence_vehicle_ui(ui, title, (sheet, sheets.own));
+            car_fields(ui, (title, car), (sheet, sheets.own), units);
         });
     }
     card(ui, (Icon::CarFront, "After the impact"), false, |ui| {
@@ -300,11 +299,21 @@ fn positions_card(ui: &mut Ui, positions: &mut Vec<VideoPosition>, units: UnitSy
     }
 }
 
-fn car_fields(ui: &mut Ui, (title, car): (&str, &mut CarEvidence), units: UnitSystem) {
+fn car_fields(
+    ui: &mut Ui,
+    (title, car): (&str, &mut CarEvidence),
+    (sheet, own): (&mut VehicleChoice, &[VehicleChoice]),
+    units: UnitSystem,
+) {
     let ranges = ([&VEHICLE_MASS, &MASS_SIGMA], units);
     optional_measured_row(ui, "Mass", (&mut car.mass_kg, USUAL_MASS), ranges);
-    CollapsingHeader::new("Dimensions").id_salt(("dimensions", title)).show(ui, |ui| {
+    let header = match &*sheet {
+        VehicleChoice::Automatic => "Data sheet, dimensions".to_owned(),
+        chosen => format!("Else as {}", chosen_label(chosen, "")),
+    };
+    CollapsingHeader::new(header).id_salt(("dimensions", title)).show(ui, |ui| {
         Grid::new(("dimensions of", title)).num_columns(2).show(ui, |ui| {
+            evidence_vehicle_ui(ui, title, (sheet, own));
             dimension_fields(ui, car, units);
         });
     });

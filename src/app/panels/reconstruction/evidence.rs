@@ -99,7 +99,7 @@ fn case_ui(
     (evidence, project): (&mut Evidence, &ReconstructionProject),
     commands: &mut Vec<Command>,
 ) {
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         let name = ui.strong("Case");
         ui.add(TextEdit::singleline(&mut evidence.case).desired_width(120.0)).labelled_by(name.id);
         if ui.button("Open…").on_hover_text("Open an evidence file").clicked() {
