@@ -6,6 +6,9 @@
 //! cargo run --release --example reconstruction_calibration -- datasets/staged/evidence/s24.toml 500
 //! ```
 //!
+//! A third and a fourth argument are the number of particles, 150 without, and of motions that each
+//! reconstruction may take, 8000 without.
+//!
 //! The case gives cars, road, damage and the accuracies. Half of the collisions leave rest pose and
 //! recorded speed, half rest pose and three positions in a video. What is printed is a line for each
 //! quantity: p of χ² over 10 bins of its ranks, and how many ranks fell into each bin.
@@ -60,8 +63,10 @@ fn target(evidence: &Evidence) -> ReconstructionTarget {
     ReconstructionTarget::new(evidence.clone(), model, Discrepancy::default())
 }
 
+/// - `size`: number of particles, and of motions at the most.
 fn ranked(
     case: &Evidence,
+    [n_particles, max_evaluations]: [usize; 2],
     idx: usize,
 ) -> Result<Vec<RankedQuantity>, Box<dyn Error + Send + Sync>> {
     let mut rng = ChaCha8Rng::seed_from_u64(idx as u64);
@@ -87,10 +92,10 @@ fn ranked(
     let (truth, evidence) = drawn.ok_or("no collision of the prior can be simulated")?;
     let target = target(&evidence);
     let settings = SamplerSettings {
-        n_particles: 150,
+        n_particles,
         seed: idx as u64,
-        least_ess: 60.0,
-        max_evaluations: 8000,
+        least_ess: 0.4 * n_particles as f64,
+        max_evaluations,
     };
     let particles = sample(&target, &settings, None, &mut |_| ControlFlow::Continue(()))?;
     let model = target.model();
@@ -107,9 +112,11 @@ fn ranked(
 fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
     let mut args = std::env::args().skip(1);
     let path = args.next().ok_or("expected an evidence file and a number of collisions")?;
-    let n: usize = args.next().map_or(Ok(500), |n| n.parse())?;
+    let mut number = |default: usize| args.next().map_or(Ok(default), |n| n.parse::<usize>());
+    let (n, size) = (number(500)?, [number(150)?, number(8000)?]);
     let case = Evidence::load(Path::new(&path))?;
-    let all: Result<Vec<_>, _> = (0..n).into_par_iter().map(|idx| ranked(&case, idx)).collect();
+    let all: Result<Vec<_>, _> =
+        (0..n).into_par_iter().map(|idx| ranked(&case, size, idx)).collect();
     let mut ranks = vec![Ranks::default(); QUANTITIES.len()];
     for quantities in all? {
         for (ranks, of) in ranks.iter_mut().zip(quantities) {
