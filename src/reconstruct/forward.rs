@@ -82,6 +82,11 @@ impl ImpactState {
         let [x, y] = self.solution.target.delta_v_m_s;
         x.hypot(y)
     }
+
+    /// Whether the cars push each other: they do not if they draw apart where they touch.
+    pub fn is_collision(&self) -> bool {
+        self.delta_v_target_m_s() > 0.0
+    }
 }
 
 /// A collision that was followed to rest.

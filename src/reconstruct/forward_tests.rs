@@ -158,3 +158,17 @@ fn the_quantities_of_the_prior_give_a_closed_collision_at_each_side() {
         assert!(approach > 0, "{side}: no particle touches");
     }
 }
+
+#[test]
+fn cars_that_draw_apart_are_no_explanation_of_damage() {
+    let target = target(&read(SPIN));
+    let components = target.model().prior().components();
+    let inwards = |it: &PriorComponent| it.latent == Latent::SideslipTowards;
+    let idx = components.iter().position(inwards).unwrap();
+    let mut z = vec![vec![0.0; components.len()]; 2];
+    z[1][idx] = -3.0; // The striking car moves away from the struck side.
+    let is_collision = target.model().motions(&z, |motion| motion.impact.is_collision());
+    assert_eq!(is_collision, [true, false]);
+    let [of_hit, of_miss] = target.log_likelihoods(&z)[..] else { panic!("two motions") };
+    assert!(of_hit.is_finite() && of_miss == f64::NEG_INFINITY, "{of_hit} {of_miss}");
+}

@@ -16,8 +16,11 @@ impl ReconstructionTarget {
     /// likelihood of a mark depends on which place of the path is nearest to it, and bounds may be
     /// anywhere about what they enclose, so that neither says how such evidence arises.
     ///
-    /// - returns `None` for a motion that could not be computed.
+    /// - returns `None` for a motion that could not be computed, and for cars that draw apart.
     pub fn drawn(&self, motion: &CollisionMotion, rng: &mut impl Rng) -> Option<Evidence> {
+        if !motion.impact.is_collision() {
+            return None;
+        }
         let mut evidence = self.evidence().clone();
         evidence.marks.clear();
         let discrepancy = self.discrepancy();

@@ -35,8 +35,12 @@ impl ReconstructionTarget {
         &self.discrepancy
     }
 
-    /// Logarithm of the likelihood of a motion, up to a constant.
+    /// Logarithm of the likelihood of a motion, up to a constant. It is −∞ where the cars draw apart,
+    /// since damage was found.
     pub fn log_likelihood(&self, motion: &CollisionMotion) -> f64 {
+        if !motion.impact.is_collision() {
+            return f64::NEG_INFINITY;
+        }
         compared((&self.evidence, &self.discrepancy), motion, false).0
     }
 
