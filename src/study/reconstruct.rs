@@ -17,7 +17,7 @@ use crate::reconstruct::{
     PriorComponent, QuantityEstimate, ReconstructionTarget,
 };
 use crate::study::checks::check_count;
-use crate::study::reconstruction_domain::{check_damage, of_vehicles};
+use crate::study::reconstruction_domain::{check_damage, of_road, of_vehicles};
 use crate::study::{
     AssumedQuantity, Assumption, Event, Library, Observer, Provenance, Question, Sampling,
     StudyError, VehicleChoice, badges,
@@ -213,7 +213,8 @@ impl Question for ReconstructRequest {
             vehicle: "the struck car".to_owned(),
             source,
         })?;
-        let outside = of_vehicles(&cars);
+        let mut outside = of_vehicles(&cars);
+        outside.extend(of_road(evidence.friction));
         let checkpoint = self.checkpoint(&evidence, &cars)?;
         let model = ForwardModel::new(&evidence, cars);
         let target = ReconstructionTarget::new(evidence, model, Discrepancy::default());

@@ -1,4 +1,4 @@
-//! Vehicles and damage that a reconstruction is not made for.
+//! Vehicles, roads and damage that a reconstruction is not made for.
 
 use crate::collision::{Footprint, OffOutline, Side};
 use crate::reconstruct::evidence::{Damage, Measured};
@@ -36,6 +36,13 @@ const KNOWN: [Known; 5] = [
 /// Load of an axle at rest as a mass, kg, of the same vehicles.
 const AXLE_LOAD_KG: [f64; 2] = [350.0, 1500.0];
 
+/// Peak friction of the roads on which the 4DOF model was tried: `datasets/trajectories-fleet` and
+/// `datasets/staged`.
+const ROAD_FRICTION: [f64; 2] = [0.3, 0.9];
+
+/// Standard deviations within which a measured friction may lie on such a road.
+const FRICTION_REACH: f64 = 2.0;
+
 /// Standard deviations by which the place of the damage may be off.
 const DAMAGE_REACH: f64 = 3.0;
 
@@ -71,6 +78,21 @@ fn of_vehicle<'a>(which: &'a str, car: &'a Car) -> impl Iterator<Item = Badge> +
             .with_range(*range);
         (!(low..=high).contains(&value)).then_some(badge)
     })
+}
+
+/// A road whose measured friction is beyond those on which the model was tried.
+pub(super) fn of_road(friction: Option<Measured>) -> Option<Badge> {
+    let Measured { value, sigma } = friction?;
+    let [low, high] = ROAD_FRICTION;
+    let reach = FRICTION_REACH * sigma;
+    let text = format!(
+        "friction of the road is {}; how a car moves is known of roads of {low} to {high}",
+        significant(value)
+    );
+    let badge = Badge::new(BadgeKind::OutsideDomain, text)
+        .with_value("friction of the road", value)
+        .with_range(ROAD_FRICTION);
+    (!(low - reach..=high + reach).contains(&value)).then_some(badge)
 }
 
 /// Checks that the struck car is where the damage is said to be, within the errors of the damage.
@@ -129,6 +151,13 @@ mod tests {
         let toy = said(&evidence);
         let expected = ["wheelbase of the striking car [m]", "track of the striking car [m]"];
         assert_eq!(toy.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), expected);
+    }
+
+    #[test]
+    fn ice_and_glue_are_roads_that_nobody_tried() {
+        let outside = |value| of_road(Some(Measured { value, sigma: 0.04 })).is_some();
+        assert_eq!([0.15, 0.3, 0.95, 1.59].map(outside), [true, false, false, true]);
+        assert_eq!(of_road(None), None);
     }
 
     #[test]
