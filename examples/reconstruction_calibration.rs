@@ -11,9 +11,11 @@
 //!
 //! The case gives cars, road, damage and the accuracies. Half of the collisions leave rest pose and
 //! recorded speed, half rest pose and three positions in a video. What is printed is a line for each
-//! quantity: p of χ² over 10 bins of its ranks, and how many ranks fell into each bin.
+//! quantity: p of χ² over 10 bins of its ranks, and how many ranks fell into each bin. While it runs,
+//! a line on the error stream for each collision says its number, the effective sample size, the number
+//! of motions, and for each quantity the share of the particles that lie below the true value.
 
-#![allow(clippy::print_stdout)]
+#![allow(clippy::print_stdout, clippy::print_stderr)]
 
 use std::error::Error;
 use std::ops::ControlFlow;
@@ -106,7 +108,17 @@ fn ranked(
     let us: Vec<f64> = QUANTITIES.iter().map(|_| rng.random()).collect();
     let quantities = QUANTITIES.iter().zip(us);
     let ranked = quantities.map(|(q, u)| RankedQuantity::of(&particles, &truth, u, |z| of(*q, z)));
-    Ok(ranked.collect())
+    let ranked: Vec<RankedQuantity> = ranked.collect();
+    let below: Vec<String> = ranked.iter().map(|of| format!("{:.3}", share_below(of))).collect();
+    let (ess, n_motions) = (particles.ess, particles.n_evaluations);
+    eprintln!("{idx} {ess:.0} {n_motions} {}", below.join(" "));
+    Ok(ranked)
+}
+
+/// Share of the particles whose value is less than the true one.
+fn share_below(of: &RankedQuantity) -> f64 {
+    let n_below = of.values.iter().filter(|value| **value < of.truth).count();
+    n_below as f64 / of.values.len() as f64
 }
 
 fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
