@@ -240,3 +240,19 @@ async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
     };
     one.iter().map(|file| file.path().to_owned()).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_dialog_that_ends_at_once_without_a_path_was_never_seen() {
+        let answer = |paths: &[&str], millis| Answer {
+            paths: paths.iter().map(PathBuf::from).collect(),
+            took: Duration::from_millis(millis),
+        };
+        assert!(answer(&[], 5).is_unseen(), "the desktop has no dialog");
+        assert!(!answer(&[], 4000).is_unseen(), "cancelled");
+        assert!(!answer(&["case.toml"], 5).is_unseen(), "a path was chosen");
+    }
+}

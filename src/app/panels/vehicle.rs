@@ -21,10 +21,13 @@ use crate::vehicle::{
     DataSheet, Equations, Integrator, LibraryVehicle, Preset, VehicleParameters, built_in_vehicle,
 };
 
-/// Largest width of the lists of vehicles, and of those among narrow fields, and their largest height,
-/// points.
+/// Largest width of the lists of vehicles, points.
 const LIST_WIDTH: f32 = 240.0;
+
+/// Largest width of those lists that stand among narrow fields, points.
 const NARROW_LIST_WIDTH: f32 = 150.0;
+
+/// Largest height of the lists of vehicles, points.
 const LIST_HEIGHT: f32 = 480.0;
 
 /// Draws the choice of the vehicles, the equations and the integrator, the start of single force
