@@ -381,6 +381,14 @@ impl StudyError {
         let presets = Preset::ALL.iter().map(|preset| preset.id()).collect();
         Self::UnknownVehicle { name: name.to_owned(), presets }
     }
+
+    /// Whether the saved run of a reconstruction is at fault, and not the question.
+    pub fn is_of_checkpoint(&self) -> bool {
+        match self {
+            Self::Reconstruction { source, .. } => source.is_of_checkpoint(),
+            _ => false,
+        }
+    }
 }
 
 macro_rules! boxed {

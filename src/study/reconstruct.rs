@@ -143,9 +143,26 @@ impl ReconstructRequest {
         if path.exists() && !self.resume {
             return Err(StudyError::ReconstructionExists { path });
         }
-        let question = format!("{evidence:?} {cars:?} {:?}", Discrepancy::default());
-        let digest = sha256_hex([question.as_bytes()]);
+        let digest = sha256_hex([likelihood_of(evidence, cars).as_bytes()]);
         Ok(Some(SamplerCheckpoint { path, digest, resume: self.resume }))
+    }
+
+    fn cars(&self, evidence: &Evidence) -> Result<Cars, StudyError> {
+        let (struck, striking) = (self.vehicle.chosen()?, self.striking.chosen()?);
+        Ok(Cars::of(evidence, struck.as_ref(), striking.as_ref()))
+    }
+
+    /// Digest of all that the particles follow from.
+    ///
+    /// - `program`: what the program that samples them is told by.
+    ///
+    /// # Errors
+    /// [`StudyError`], if evidence or vehicles cannot be read.
+    pub fn run_digest(&self, program: &str) -> Result<String, StudyError> {
+        let evidence = self.evidence.load()?;
+        let likelihood = likelihood_of(&evidence, &self.cars(&evidence)?);
+        let settings = format!("{:?}", self.settings());
+        Ok(sha256_hex([program, &likelihood, &settings].map(str::as_bytes)))
     }
 
     fn settings(&self) -> SamplerSettings {
@@ -156,6 +173,11 @@ impl ReconstructRequest {
             ..SamplerSettings::default()
         }
     }
+}
+
+/// All that the likelihood of a case is made from.
+fn likelihood_of(evidence: &Evidence, cars: &Cars) -> String {
+    format!("{evidence:?} {cars:?} {:?}", Discrepancy::default())
 }
 
 impl EvidenceChoice {
@@ -205,8 +227,7 @@ impl Question for ReconstructRequest {
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<ReconstructAnswer>, StudyError> {
         let evidence = self.evidence.load()?;
-        let (struck, striking) = (self.vehicle.chosen()?, self.striking.chosen()?);
-        let cars = Cars::of(&evidence, struck.as_ref(), striking.as_ref());
+        let cars = self.cars(&evidence)?;
         let assumptions = assumptions(&evidence, &cars);
         check_damage(&evidence.damage, &cars).map_err(|source| StudyError::ContactOffVehicle {
             name: self.evidence.name(),
@@ -315,7 +336,7 @@ fn of_fit(fit: &[EvidenceFit]) -> Vec<Badge> {
             );
             Badge::new(BadgeKind::EvidenceUnexplained, text)
                 .with_value(format!("p of {}", item.evidence), item.p)
-                .with_range([0.01, 1.0])
+                .with_range([EvidenceFit::UNEXPLAINED_BELOW, 1.0])
         })
         .collect()
 }

@@ -58,6 +58,13 @@ pub enum SamplerError {
     File(Box<DataError>),
 }
 
+impl SamplerError {
+    /// Whether the checkpoint is at fault, and not what is sampled.
+    pub fn is_of_checkpoint(&self) -> bool {
+        matches!(self, Self::OtherRun { .. } | Self::Checkpoint { .. } | Self::File(_))
+    }
+}
+
 impl From<DataError> for SamplerError {
     fn from(error: DataError) -> Self {
         Self::File(Box::new(error))

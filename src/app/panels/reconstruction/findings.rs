@@ -27,7 +27,7 @@ pub fn fit_ui(ui: &mut Ui, fit: &[EvidenceFit]) {
             ("evidence", ""),
             ("expected", "Median over the particles of what would be found"),
             ("found", "What was found, or how far it lies off"),
-            ("p", "Probability of errors larger than these; below 0.01 the item is unexplained"),
+            ("p", "Probability of errors larger than these; below 0.05 the item is unexplained"),
             ("", ""),
         ] {
             ui.strong(title).on_hover_text(hint);
