@@ -40,7 +40,7 @@ impl State {
         self.update_simulation(context);
         self.update_force(context);
         self.update_response(context);
-        self.update_reconstruction();
+        self.update_reconstruction(context);
         self.update_variants(context);
         self.update_kept(context);
         self.update_costs(context);

@@ -10,7 +10,7 @@ use impactlab::study::{EvidenceChoice, VehicleChoice};
 use impactlab::uncertainty::BadgeKind;
 use impactlab::vehicle::built_in_vehicle;
 
-use crate::harness::{apply, open_at, step_until};
+use crate::harness::{apply, open_at, open_with, step_until};
 use crate::looks::collisions;
 use crate::pictures::save;
 
@@ -143,6 +143,45 @@ fn a_run_that_is_cancelled_keeps_what_was_sampled() {
     assert!(report.badges.iter().any(|badge| badge.kind == BadgeKind::FewParticles));
     assert!(!answer.answer.particles.of_posterior());
     assert!(harness.query_all_by_label_contains("temperature").count() > 0);
+}
+
+#[test]
+fn a_finished_run_is_back_after_a_restart_and_a_damaged_one_is_sampled_again() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let evidence = evidence_in(folder.path());
+    let (store, runs) = (folder.path().join("state.json"), folder.path().join("reconstructions"));
+    let mut harness = open_with(&[evidence.to_str().expect("a plain name")], Some(store.clone()));
+    harness.run_steps(4);
+    harness.state_mut().state_mut().project.reconstruction.particles = 60;
+    harness.run_steps(2);
+    let particles = |harness: &Harness<'_, App>| {
+        let answer = state(harness).session.reconstruction.answer().expect("an answer");
+        answer.answer.particles.z.clone()
+    };
+    harness.get_by_label("Run").click();
+    harness.run_steps(4);
+    step_until(&mut harness, "the speeds", is_answered);
+    let first = particles(&harness);
+    let kept: Vec<PathBuf> =
+        std::fs::read_dir(&runs).expect("a folder").map(|of| of.expect("a file").path()).collect();
+    assert_eq!(kept.len(), 1, "{kept:?}");
+    harness.run_steps(90);
+    step_until(&mut harness, "the stored state", |_| {
+        std::fs::read_to_string(&store).is_ok_and(|text| text.contains("60"))
+    });
+    drop(harness);
+
+    // Nobody asks, and the answer is the same one.
+    let mut harness = open_with(&[], Some(store.clone()));
+    step_until(&mut harness, "the speeds again", is_answered);
+    assert_eq!(particles(&harness), first);
+    assert!(!is_outdated(&harness));
+    drop(harness);
+
+    std::fs::write(&kept[0], b"no run").expect("a file");
+    let mut harness = open_with(&[], Some(store));
+    step_until(&mut harness, "the speeds anew", is_answered);
+    assert_eq!(particles(&harness), first);
 }
 
 #[test]

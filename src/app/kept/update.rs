@@ -12,6 +12,7 @@ use crate::app::kept::{
 use crate::app::model::{ModelStatus, file_name};
 use crate::app::network::TrainedModel;
 use crate::app::question_job::Answered;
+use crate::app::reconstruction::KeptRuns;
 use crate::app::state::State;
 use crate::app::training_status::TrainingStatus;
 use crate::data::{Existing, MAX_MODEL_BYTES, Severity, read_bytes, write_atomically};
@@ -42,6 +43,7 @@ impl State {
             let opened = self.session.unfinished.open(&folder, wake(context));
             self.say_io(opened);
         }
+        self.session.reconstruction.kept_runs = Some(KeptRuns::new(&folder));
         let opened = self.session.kept.open(folder, wake(context));
         self.say_io(opened);
     }

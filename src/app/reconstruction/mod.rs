@@ -1,12 +1,14 @@
 //! The reconstruction in the window: its evidence, its run, and what is shown of it. The panes Evidence,
 //! Reconstructed scene and Speeds show them.
 
+mod kept_runs;
 mod live;
 mod question;
 mod settings;
 pub(in crate::app) mod stand_ins;
 mod update;
 
+pub use kept_runs::KeptRuns;
 pub use live::LiveParticles;
 pub use question::{PreparedReconstruction, ReconstructionQuestion};
 pub use settings::{ReconstructionProject, ReconstructionView};
@@ -61,6 +63,8 @@ pub struct ReadEvidence {
 pub struct ReconstructionSession {
     /// The file of the evidence, where the project names one.
     pub file: Option<ReadEvidence>,
+    /// Where runs are kept; `None` if this window keeps none.
+    pub kept_runs: Option<KeptRuns>,
     /// What follows from the evidence before anything is sampled.
     pub preview: Option<EvidencePreview>,
     /// The run and the latest answer.

@@ -1,5 +1,6 @@
 //! A reconstruction whose answer is prepared for drawing.
 
+use crate::app::reconstruction::KeptRuns;
 use crate::data::Outcome;
 use crate::figure::{ReconstructedPaths, prior_values};
 use crate::reconstruct::ReconstructedQuantity;
@@ -13,6 +14,31 @@ use crate::study::{
 pub struct ReconstructionQuestion {
     /// The question for the reconstruction itself.
     pub request: ReconstructRequest,
+    /// Where its run is kept; `None` keeps none.
+    pub kept_runs: Option<KeptRuns>,
+}
+
+impl ReconstructionQuestion {
+    /// The answer of the run that is kept, which goes on where it has not ended. What is wrong with the
+    /// kept run is no reason to give no answer.
+    fn sampled(
+        &self,
+        library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<ReconstructAnswer>, StudyError> {
+        let Some(runs) = &self.kept_runs else { return self.request.solve(library, observer) };
+        let resumed = runs.resumed(&self.request)?;
+        match resumed.solve(library, observer) {
+            Err(error) if error.is_of_checkpoint() => {
+                if let Some(path) = &resumed.checkpoint {
+                    // It may be missing, or be in a folder that cannot be written.
+                    let _ = std::fs::remove_file(path);
+                }
+                self.request.solve(library, observer)
+            }
+            answered => answered,
+        }
+    }
 }
 
 /// A reconstruction with its paths and its prior.
@@ -60,7 +86,7 @@ impl Question for ReconstructionQuestion {
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<PreparedReconstruction>, StudyError> {
-        let answered = self.request.solve(library, observer)?;
+        let answered = self.sampled(library, observer)?;
         Ok(answered.map(|answer| {
             let modes = answer.report.modes.iter();
             let quantities = ReconstructedQuantity::ALL.iter();

@@ -66,7 +66,9 @@ impl State {
 
     /// Receives particles and answer of the run, and reads the evidence that the project names. Evidence
     /// files are small, so that they are read on the window's thread.
-    pub(in crate::app) fn update_reconstruction(&mut self) {
+    ///
+    /// Evidence whose run is kept is answered without being asked.
+    pub(in crate::app) fn update_reconstruction(&mut self, context: &Context) {
         let session = &mut self.session.reconstruction;
         while let Some(particles) = session.news.as_ref().and_then(|news| news.try_recv().ok()) {
             session.live = Some(particles);
@@ -96,6 +98,12 @@ impl State {
             let session = &mut self.session.reconstruction;
             session.preview = preview;
             session.adds_to = session.adds_to.filter(|idx| *idx < n_marks);
+            let is_first = !session.run.is_running() && session.run.latest.is_none();
+            let request = self.project.reconstruction.request();
+            let runs = session.kept_runs.as_ref().filter(|_| is_first);
+            if request.is_some_and(|request| runs.is_some_and(|runs| runs.holds(&request))) {
+                self.run_reconstruction(context);
+            }
         }
     }
 
@@ -123,8 +131,11 @@ impl State {
     /// Drops the run and the answer, which are about other evidence.
     pub(in crate::app) fn drop_reconstruction(&mut self) {
         let session = &mut self.session.reconstruction;
-        *session =
-            ReconstructionSession { file: session.file.take(), ..ReconstructionSession::default() };
+        *session = ReconstructionSession {
+            file: session.file.take(),
+            kept_runs: session.kept_runs.take(),
+            ..ReconstructionSession::default()
+        };
     }
 
     /// Carries out an action on the reconstruction.
@@ -169,7 +180,7 @@ impl State {
         let (sender, news) = channel();
         let session = &mut self.session.reconstruction;
         (session.live, session.news) = (None, Some(news));
-        let question = ReconstructionQuestion { request };
+        let question = ReconstructionQuestion { request, kept_runs: session.kept_runs.clone() };
         let (library, watch) = (&self.session.library, watch(sender));
         if let Err(error) = session.run.start_watched(question, library, wake(context), watch) {
             self.say(Severity::Error, error.to_string());
