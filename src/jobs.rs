@@ -40,6 +40,8 @@ use thread_priority::{ThreadPriority, set_current_thread_priority};
 pub struct Progress {
     /// Number of units of work that are done.
     pub done: u64,
+    /// How many of them were done before the computation began, by a run that it goes on with.
+    pub done_before: u64,
     /// Number of all units of work; 0 while it is unknown.
     pub total: u64,
     /// Description of the current work, shown to the user.
@@ -54,7 +56,13 @@ impl Progress {
     /// Progress of `done` of `total` units of work, with a description of the current work; a
     /// `total` of 0 means that it is unknown.
     pub fn new(done: u64, total: u64, message: impl Into<String>) -> Self {
-        Self { done, total, message: message.into() }
+        Self { done, done_before: 0, total, message: message.into() }
+    }
+
+    /// The same of a computation that goes on with a run, in which some units of work were done.
+    #[must_use]
+    pub fn going_on_from(self, done_before: u64) -> Self {
+        Self { done_before, ..self }
     }
 
     /// The share of the work that is done, 0 to 1; `None` while the total is unknown.
@@ -65,14 +73,15 @@ impl Progress {
     /// The estimated time left, if the rest of the work goes on at the same speed:
     ///
     /// ```text
-    /// time left = elapsed · (total − done) / done
+    /// time left = elapsed · (total − done) / (done − done before)
     /// ```
     ///
     /// - `elapsed`: time since the start of the computation.
     /// - returns `None` if nothing is done yet or the total is unknown.
     pub fn time_left(&self, elapsed: Duration) -> Option<Duration> {
         let left = self.total.checked_sub(self.done)?;
-        (self.done > 0).then(|| elapsed.mul_f64(left as f64 / self.done as f64))
+        let done = self.done.checked_sub(self.done_before)?;
+        (done > 0).then(|| elapsed.mul_f64(left as f64 / done as f64))
     }
 }
 
@@ -375,5 +384,9 @@ mod tests {
         assert_eq!(progress.time_left(Duration::from_secs(10)), Some(Duration::from_secs(30)));
         assert_eq!(progress.fraction(), Some(0.25));
         assert_eq!(Progress::new(5, 0, "").time_left(Duration::from_secs(1)), None);
+        let resumed = progress.going_on_from(20);
+        assert_eq!(resumed.time_left(Duration::from_secs(10)), Some(Duration::from_secs(150)));
+        let first = resumed.going_on_from(25);
+        assert_eq!(first.time_left(Duration::from_secs(10)), None, "nothing was done yet");
     }
 }

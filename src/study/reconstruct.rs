@@ -239,10 +239,13 @@ impl Question for ReconstructRequest {
         let checkpoint = self.checkpoint(&evidence, &cars)?;
         let model = ForwardModel::new(&evidence, cars);
         let target = ReconstructionTarget::new(evidence, model, Discrepancy::default());
+        let mut before = None;
         let mut told = |report: SamplerReport<'_>| {
             let (temperature, z) = (report.temperature, report.z);
             observer(Event::Sampling(Sampling { target: &target, temperature, z }))?;
-            observer(Event::Progress(progress(&report)))
+            let progress = progress(&report);
+            let done_before = *before.get_or_insert(progress.done);
+            observer(Event::Progress(progress.going_on_from(done_before)))
         };
         let particles = sample(&target, &self.settings(), checkpoint.as_ref(), &mut told).map_err(
             |source| StudyError::Reconstruction {
