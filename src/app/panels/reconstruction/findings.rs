@@ -23,11 +23,15 @@ const AXIS_HEIGHT: f32 = 70.0;
 pub fn fit_ui(ui: &mut Ui, fit: &[EvidenceFit]) {
     heading(ui, "What each piece of evidence says");
     Grid::new("fit").striped(true).num_columns(5).show(ui, |ui| {
+        let of_p = format!(
+            "Probability of errors larger than these; below {} the item is unexplained",
+            EvidenceFit::UNEXPLAINED_BELOW
+        );
         for (title, hint) in [
             ("evidence", ""),
             ("expected", "Median over the particles of what would be found"),
             ("found", "What was found, or how far it lies off"),
-            ("p", "Probability of errors larger than these; below 0.05 the item is unexplained"),
+            ("p", of_p.as_str()),
             ("", ""),
         ] {
             ui.strong(title).on_hover_text(hint);
