@@ -18,6 +18,10 @@ sources! {
     /// SAE Technical Paper 2019-01-0422, 2019. Restitution from the point of common velocity,
     /// friction limit, worked barrier example.
     CarpenterWelcher2019;
+    /// J.-M. Cornuet, J.-M. Marin, A. Mira, C. P. Robert, *Adaptive multiple importance sampling*,
+    /// Scandinavian Journal of Statistics 39(4), 2012. All draws weighted as those of one mixture of
+    /// all distributions that were drawn from.
+    Cornuet2012;
     /// Transport Canada, *Canadian Vehicle Specifications*: outer dimensions, wheelbases and tracks of
     /// vehicles sold in Canada, as served by the vPIC interface of the NHTSA and collected, rounded to
     /// 1 cm, in the public repository `shifter907/allcarsdb` (`data/body_configs.csv`).
@@ -25,19 +29,9 @@ sources! {
     /// A. Gelman, X.-L. Meng, H. Stern, *Posterior predictive assessment of model fitness via realized
     /// discrepancies*, Statistica Sinica 6, 1996.
     GelmanMengStern1996;
-    /// H.-D. Dau, N. Chopin, *Waste-free sequential Monte Carlo*, Journal of the Royal Statistical
-    /// Society B 84(1), 2022. Every state of the chains is a particle.
-    DauChopin2022;
-    /// S. L. Cotter, G. O. Roberts, A. M. Stuart, D. White, *MCMC methods for functions: modifying old
-    /// algorithms to make them faster*, Statistical Science 28(3), 2013. Preconditioned
-    /// Crank–Nicolson proposals.
-    Cotter2013;
     /// P. Del Moral, A. Doucet, A. Jasra, *Sequential Monte Carlo samplers*, Journal of the Royal
     /// Statistical Society B 68(3), 2006. Particles along a sequence of distributions.
     DelMoral2006;
-    /// P. Fearnhead, B. M. Taylor, *An adaptive sequential Monte Carlo sampler*, Bayesian Analysis
-    /// 8(2), 2013. Moves chosen by the square of the distance that they cover.
-    FearnheadTaylor2013;
     /// T. D. Gillespie, *Fundamentals of Vehicle Dynamics*, SAE International, 1992. Braking
     /// performance and the distribution of braking forces: chapter 3.
     Gillespie1992;
@@ -68,9 +62,6 @@ sources! {
     /// volatility models via adaptive sequential Monte Carlo*, Scandinavian Journal of Statistics
     /// 38(1), 2011. The next temperature from the effective sample size.
     Jasra2011;
-    /// M. Karamanis, U. Seljak, *Persistent sampling: enhancing the efficiency of sequential Monte
-    /// Carlo*, arXiv:2407.20722, 2024. Particles of all temperatures as draws from one mixture.
-    KaramanisSeljak2024;
     /// kktse.github.io, *Cornering compliances of a typical road vehicle*, 2019. Cornering compliance
     /// of both axles of one car, identified on the road.
     KktseCornering2019;
@@ -78,9 +69,6 @@ sources! {
     /// vehicle inertial parameter database*, 2020. Medians, quartiles and extremes of dynamic indices
     /// and stability factors over the unballasted vehicles of [`Heydinger1999`].
     KktseInertia2020;
-    /// A. Lee, N. Whiteley, *Variance estimation in the particle filter*, Biometrika 105(3), 2018.
-    /// The variance of an estimate from the ancestors of the particles of one run.
-    LeeWhiteley2018;
     /// National Highway Traffic Safety Administration, *New Car Assessment Program: rollover
     /// resistance measurements*, model year 2004. Tracks, wheelbases, weights and CG of vehicles on
     /// scales and tilt table, with the weight of a driver; as collected in the public repository
@@ -106,11 +94,11 @@ sources! {
     /// M. Okabe, K. Ito, *Color universal design: how to make figures and presentations that are
     /// friendly to colorblind people*, 2008.
     OkabeIto2008;
-    /// J. Olsson, R. Douc, *Numerically stable online estimation of variance in particle filters*,
-    /// Bernoulli 25(2), 2019. The same from more recent ancestors.
-    OlssonDouc2019;
     /// comma.ai, *opendbc*: kerb weights of car models, `opendbc/car/*/values.py`, MIT licence.
     Opendbc2025;
+    /// A. Owen, Y. Zhou, *Safe and effective importance sampling*, Journal of the American Statistical
+    /// Association 95(449), 2000. Mixtures with a defensive component, which bounds the weights.
+    OwenZhou2000;
     /// Y. Jiang, J. Wang, D. Li, *Physics-Informed Neural Network Modeling of Vehicle Collision
     /// Dynamics in Precision Immobilization Technique Maneuvers*, Zhejiang University. “The paper”
     /// in doc comments: its two physics-informed networks, from the scenario of a collision to the

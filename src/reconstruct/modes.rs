@@ -19,7 +19,7 @@ pub struct ParticleMode<K> {
     pub key: K,
     /// Its share of the particles, 0 to 1.
     pub probability: f64,
-    /// Standard error of the probability, from how far groups of common ancestry differ.
+    /// Standard error of the probability, from how often each draw is among the particles.
     pub standard_error: f64,
     /// Indices of its particles.
     pub members: Vec<usize>,

@@ -10,7 +10,7 @@ use crate::nn::sha256_hex;
 use crate::ranges::RECONSTRUCTION_PARTICLES;
 use crate::reconstruct::evidence::{DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, Evidence};
 use crate::reconstruct::sampler::{
-    Particles, SamplerCheckpoint, SamplerReport, SamplerSettings, SamplerStage, sample,
+    Particles, SamplerCheckpoint, SamplerReport, SamplerSettings, sample,
 };
 use crate::reconstruct::{
     BudgetItem, Cars, Discrepancy, EvidenceFit, ForwardModel, HandCalculation, Mode, Posterior,
@@ -169,8 +169,8 @@ impl ReconstructRequest {
         SamplerSettings {
             n_particles: self.particles,
             seed: self.seed,
+            least_ess: self.particles as f64,
             max_evaluations: self.particles * EVALUATIONS_PER_PARTICLE,
-            ..SamplerSettings::default()
         }
     }
 }
@@ -239,20 +239,19 @@ impl Question for ReconstructRequest {
         let checkpoint = self.checkpoint(&evidence, &cars)?;
         let model = ForwardModel::new(&evidence, cars);
         let target = ReconstructionTarget::new(evidence, model, Discrepancy::default());
+        let settings = self.settings();
         let mut before = None;
         let mut told = |report: SamplerReport<'_>| {
             let (temperature, z) = (report.temperature, report.z);
             observer(Event::Sampling(Sampling { target: &target, temperature, z }))?;
-            let progress = progress(&report);
+            let progress = progress(&report, &settings);
             let done_before = *before.get_or_insert(progress.done);
             observer(Event::Progress(progress.going_on_from(done_before)))
         };
-        let particles = sample(&target, &self.settings(), checkpoint.as_ref(), &mut told).map_err(
-            |source| StudyError::Reconstruction {
-                name: self.evidence.name(),
-                source: Box::new(source),
-            },
-        )?;
+        let particles =
+            sample(&target, &settings, checkpoint.as_ref(), &mut told).map_err(|source| {
+                StudyError::Reconstruction { name: self.evidence.name(), source: Box::new(source) }
+            })?;
         let posterior = Posterior::of(&target, &particles);
         let (fit, turned_rad) = target.fit(&particles);
         let by_hand = HandCalculation::of(target.evidence(), target.model().cars());
@@ -286,13 +285,15 @@ impl Question for ReconstructRequest {
 }
 
 /// How far the sampling is: half of it is reaching the posterior.
-fn progress(report: &SamplerReport<'_>) -> Progress {
-    let share = match report.stage {
-        SamplerStage::Prior | SamplerStage::Tempering => 0.5 * report.temperature.powf(0.2),
-        SamplerStage::Posterior => 0.5 + 0.5 * (report.ess.unwrap_or(0.0) / LEAST_ESS).min(1.0),
-    };
+///
+/// - `settings`: those of the sampler, which end it.
+fn progress(report: &SamplerReport<'_>, settings: &SamplerSettings) -> Progress {
+    let of_posterior = (report.ess.unwrap_or(0.0) / settings.least_ess).min(1.0);
+    let share = 0.5 * report.temperature.powf(0.2) + 0.5 * of_posterior;
+    // Where the sample stays small, the evaluations end it.
+    let spent = report.n_evaluations as f64 / settings.max_evaluations as f64;
     let message = format!("{} motions", report.n_evaluations);
-    Progress::new((1000.0 * share) as u64, 1000, message)
+    Progress::new((1000.0 * share.max(spent.min(1.0))) as u64, 1000, message)
 }
 
 /// Whether there are enough particles, and whether they are of the posterior.

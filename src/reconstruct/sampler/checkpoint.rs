@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::run::RunState;
+use super::population::Population;
 use super::{SamplerError, SamplerSettings};
 use crate::data::{Existing, read_bytes, write_atomically};
 
@@ -14,7 +14,7 @@ const MAX_BYTES: u64 = 1 << 30;
 /// Version of the program that wrote the file; another one may draw other particles.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// The file that a run is saved in after each temperature.
+/// The file that a run is saved in every now and then.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SamplerCheckpoint {
     /// The file. It is replaced.
@@ -38,7 +38,7 @@ struct Saved<S> {
 }
 
 /// What the file says that it is.
-const KIND: &str = "impactlab reconstruction";
+const KIND: &str = "impactlab reconstruction 2";
 
 impl SamplerCheckpoint {
     /// The state of the saved run, if it is to be resumed and there is one.
@@ -48,13 +48,13 @@ impl SamplerCheckpoint {
         &self,
         settings: &SamplerSettings,
         dim: usize,
-    ) -> Result<Option<RunState>, SamplerError> {
+    ) -> Result<Option<Population>, SamplerError> {
         if !(self.resume && self.path.exists()) {
             return Ok(None);
         }
         let bytes = read_bytes(&self.path, MAX_BYTES)?;
         let bad = |reason: String| SamplerError::Checkpoint { path: self.path.clone(), reason };
-        let saved: Saved<RunState> =
+        let saved: Saved<Population> =
             ciborium::from_reader(bytes.as_slice()).map_err(|error| bad(error.to_string()))?;
         let differs = [
             ("kind", saved.kind != KIND),
@@ -74,7 +74,7 @@ impl SamplerCheckpoint {
     pub(super) fn write(
         &self,
         settings: &SamplerSettings,
-        state: &RunState,
+        state: &Population,
     ) -> Result<(), SamplerError> {
         let saved = Saved {
             kind: KIND.to_owned(),

@@ -1,13 +1,13 @@
-//! The mixture of normals from which the moves take their steps.
+//! The mixture of normals from which particles are drawn.
 //!
 //! ```text
-//! q(z) = Σ_k w_k N(z; m_k, C_k)      C_k = (n_k S_k + ν S) / (n_k + ν)
+//! q(z) = Σ_k w_k [(1 − s) N(z; m_k, C_k) + s N(z; m_k, t² C_k)]      C_k = (n_k S_k + ν S) / (n_k + ν)
 //! ```
 //!
 //! S_k is the covariance of the particles of part k and S the mean of the S_k; ν = 20 dim. A part of
 //! few particles has nearly the covariance S: a covariance of its own would follow these particles
-//! so closely that a move seldom reaches the places between them, and a small mode would lose
-//! probability from temperature to temperature.
+//! so closely that few draws reach the places between them. The share s of the draws is wider by t,
+//! so that the tails of what the mixture is fitted to are reached, too.
 //!
 //! Parts are split as long as the Bayesian information criterion of a common covariance improves.
 //! The start of a split is the best division of one coordinate into two, before and after whitening:
@@ -17,6 +17,7 @@ use nalgebra::{DMatrix, DVector};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// Largest number of parts.
 const MAX_PARTS: usize = 6;
@@ -33,6 +34,12 @@ const MIN_VARIANCE: f64 = 1e-10;
 /// Smallest share of the particles on either side of a split.
 const MIN_SHARE: f64 = 0.02;
 
+/// Share s of the draws that are wider.
+const WIDE_SHARE: f64 = 0.25;
+
+/// How much wider they are, t.
+const WIDE: f64 = 1.15;
+
 /// Natural logarithm of `Σ exp(v)`; −∞ if every value is.
 pub(super) fn ln_sum_exp(values: &[f64]) -> f64 {
     let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -43,18 +50,20 @@ pub(super) fn ln_sum_exp(values: &[f64]) -> f64 {
 }
 
 /// One normal distribution of the mixture.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Part {
     ln_weight: f64,
-    mean: DVector<f64>,
-    /// Lower Cholesky factor L of the covariance `C = L Lᵀ`.
-    factor: DMatrix<f64>,
+    mean: Vec<f64>,
+    /// Columns of the lower Cholesky factor L of the covariance `C = L Lᵀ`, each from its diagonal on.
+    factor: Vec<Vec<f64>>,
     /// `−ln det L`.
     ln_scale: f64,
 }
 
 /// A mixture of normals.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(super) struct Mixture {
     parts: Vec<Part>,
 }
@@ -74,7 +83,8 @@ impl Part {
         covariance *= (n / (3 * mean.len()) as f64).min(1.0);
         covariance.set_diagonal(&diagonal);
         let mut least = MIN_VARIANCE;
-        let factor = loop {
+        let dim = mean.len();
+        let lower = loop {
             let widened =
                 &covariance + DMatrix::from_diagonal_element(mean.len(), mean.len(), least);
             match widened.cholesky() {
@@ -82,17 +92,19 @@ impl Part {
                 None => least *= 10.0,
             }
         };
-        let ln_scale = -factor.diagonal().iter().map(|scale| scale.ln()).sum::<f64>();
-        Self { ln_weight: weight.ln(), mean, factor, ln_scale }
+        let ln_scale = -lower.diagonal().iter().map(|scale| scale.ln()).sum::<f64>();
+        let column = |j: usize| lower.column(j).iter().skip(j).copied().collect();
+        let factor = (0..dim).map(column).collect();
+        Self { ln_weight: weight.ln(), mean: mean.iter().copied().collect(), factor, ln_scale }
     }
 
     /// `u = L⁻¹ (z − m)`.
     pub fn whiten(&self, z: &[f64]) -> Vec<f64> {
         let mut u: Vec<f64> = z.iter().zip(&self.mean).map(|(z, mean)| z - mean).collect();
-        for (j, column) in self.factor.column_iter().enumerate() {
+        for (j, column) in self.factor.iter().enumerate() {
             let (done, left) = u.split_at_mut(j + 1);
-            done[j] /= column[j];
-            let below = column.as_slice()[j + 1..].iter();
+            done[j] /= column[0];
+            let below = column[1..].iter();
             left.iter_mut().zip(below).for_each(|(u, factor)| *u -= factor * done[j]);
         }
         u
@@ -100,14 +112,39 @@ impl Part {
 
     /// `z = m + L u`.
     pub fn place(&self, u: &[f64]) -> Vec<f64> {
-        let row = |i: usize| (0..=i).map(|j| self.factor[(i, j)] * u[j]).sum::<f64>();
-        (0..u.len()).map(|i| self.mean[i] + row(i)).collect()
+        let mut z = self.mean.clone();
+        for (j, column) in self.factor.iter().enumerate() {
+            z[j..].iter_mut().zip(column).for_each(|(z, factor)| *z += factor * u[j]);
+        }
+        z
     }
 
-    /// Logarithm of weight times density, without the constant `−dim/2 ln 2π`.
+    /// Logarithm of weight times density of the narrow normal, without the constant `−dim/2 ln 2π`.
     fn ln_density(&self, z: &[f64]) -> f64 {
-        let square: f64 = self.whiten(z).iter().map(|u| u * u).sum();
-        self.ln_weight + self.ln_scale - square / 2.0
+        self.ln_weight + self.ln_scale - self.distance_square(z) / 2.0
+    }
+
+    /// Logarithm of weight times density of both normals, without that constant.
+    fn ln_proposal_density(&self, z: &[f64]) -> f64 {
+        let square = self.distance_square(z);
+        let narrow = (1.0 - WIDE_SHARE).ln() - square / 2.0;
+        let wide = WIDE_SHARE.ln() - z.len() as f64 * WIDE.ln() - square / (2.0 * WIDE * WIDE);
+        self.ln_weight + self.ln_scale + ln_sum_exp(&[narrow, wide])
+    }
+
+    fn distance_square(&self, z: &[f64]) -> f64 {
+        self.whiten(z).iter().map(|u| u * u).sum()
+    }
+
+    /// Whether all numbers are finite and belong to as many variables.
+    fn is_of(&self, dim: usize) -> bool {
+        let is_column = |(j, column): (usize, &Vec<f64>)| {
+            column.len() == dim - j && column[0] > 0.0 && column.iter().all(|of| of.is_finite())
+        };
+        self.mean.len() == dim
+            && self.factor.len() == dim
+            && self.factor.iter().enumerate().all(is_column)
+            && self.mean.iter().chain([&self.ln_weight, &self.ln_scale]).all(|of| of.is_finite())
     }
 }
 
@@ -131,27 +168,25 @@ impl Mixture {
         Self::of_shares(particles, &shares, SHARED_PARTICLES_PER_DIM * dim as f64 / n)
     }
 
-    /// Logarithm of the density, without the constant `−dim/2 ln 2π`.
+    /// Logarithm of the density q of the draws, without the constant `−dim/2 ln 2π`.
     pub fn ln_density(&self, z: &[f64]) -> f64 {
-        ln_sum_exp(&self.ln_densities(z))
+        let of_parts: Vec<f64> =
+            self.parts.iter().map(|part| part.ln_proposal_density(z)).collect();
+        ln_sum_exp(&of_parts)
     }
 
-    /// A part, drawn with the probability that z belongs to it.
-    pub fn part_of(&self, z: &[f64], rng: &mut impl Rng) -> &Part {
-        self.draw(&self.ln_densities(z), rng)
+    /// Draws a point.
+    pub fn draw(&self, rng: &mut impl Rng) -> Vec<f64> {
+        let part = self.any_part(rng);
+        let scale = if rng.random::<f64>() < WIDE_SHARE { WIDE } else { 1.0 };
+        let mut u = standard_normals(part.mean.len(), rng);
+        u.iter_mut().for_each(|u| *u *= scale);
+        part.place(&u)
     }
 
-    /// A part, drawn with its weight.
-    pub fn any_part(&self, rng: &mut impl Rng) -> &Part {
-        let weights: Vec<f64> = self.parts.iter().map(|part| part.ln_weight).collect();
-        self.draw(&weights, rng)
-    }
-
-    /// Square of the distance of two points in the coordinates of the heaviest part.
-    pub fn distance_square(&self, a: &[f64], b: &[f64]) -> f64 {
-        let heavier = |a: &&Part, b: &&Part| a.ln_weight.total_cmp(&b.ln_weight);
-        let Some(part) = self.parts.iter().max_by(heavier) else { return 0.0 };
-        part.whiten(a).iter().zip(part.whiten(b)).map(|(a, b)| (a - b) * (a - b)).sum()
+    /// Whether it is a mixture in so many variables: for one that comes from a file.
+    pub fn is_of(&self, dim: usize) -> bool {
+        !self.parts.is_empty() && self.parts.iter().all(|part| part.is_of(dim))
     }
 
     /// Number of parts.
@@ -164,10 +199,12 @@ impl Mixture {
         self.parts.iter().map(|part| part.ln_density(z)).collect()
     }
 
-    fn draw(&self, ln_weights: &[f64], rng: &mut impl Rng) -> &Part {
-        let total = ln_sum_exp(ln_weights);
+    /// A part, drawn with its weight.
+    fn any_part(&self, rng: &mut impl Rng) -> &Part {
+        let ln_weights: Vec<f64> = self.parts.iter().map(|part| part.ln_weight).collect();
+        let total = ln_sum_exp(&ln_weights);
         let mut left: f64 = rng.random();
-        for (part, ln_weight) in self.parts.iter().zip(ln_weights) {
+        for (part, ln_weight) in self.parts.iter().zip(&ln_weights) {
             left -= (ln_weight - total).exp();
             if left < 0.0 {
                 return part;
@@ -178,7 +215,11 @@ impl Mixture {
 
     fn mean_ln_density(&self, particles: Weighted<'_>) -> f64 {
         let pairs = particles.z.par_iter().zip(particles.weight);
-        pairs.map(|(z, weight)| weight * self.ln_density(z)).collect::<Vec<_>>().iter().sum()
+        pairs
+            .map(|(z, weight)| weight * ln_sum_exp(&self.ln_densities(z)))
+            .collect::<Vec<_>>()
+            .iter()
+            .sum()
     }
 
     /// The mixture with the given shares of the particles in its parts, `[n_parts][n]`.
@@ -380,6 +421,24 @@ mod tests {
             let back = part.place(&part.whiten(&z));
             assert!(back.iter().zip(z).all(|(a, b)| (a - b).abs() < 1e-12), "{back:?}");
         }
+    }
+
+    /// Mean over draws of the density of a normal over that of the draws: 1 for any mixture.
+    #[test]
+    fn draws_have_the_density_that_they_are_said_to_have() {
+        let mixture = fit(&points(3.0));
+        let mut rng = random_stream(2, "draws", 0);
+        let n = 20_000;
+        let scales = [0.08, 0.9, 0.9, 0.9, 0.9, 0.9];
+        let ratio = |z: &[f64]| {
+            let of_each = z.iter().zip(scales).map(|(z, s)| -(z / s).powi(2) / 2.0 - f64::ln(s));
+            (of_each.sum::<f64>() - mixture.ln_density(z)).exp()
+        };
+        let ratios: Vec<f64> = (0..n).map(|_| ratio(&mixture.draw(&mut rng))).collect();
+        let mean = ratios.iter().sum::<f64>() / f64::from(n);
+        let square = ratios.iter().map(|ratio| (ratio - mean).powi(2)).sum::<f64>();
+        let error = square.sqrt() / f64::from(n);
+        assert!(error < 0.03 && (mean - 1.0).abs() < 5.0 * error, "{mean} ± {error}");
     }
 
     #[test]

@@ -2,8 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::population::group_ess;
-
 /// Particles of equal weight from the prior times the likelihood to the power of a temperature.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -13,16 +11,15 @@ pub struct Particles {
     pub z: Vec<Vec<f64>>,
     /// Natural logarithm of the likelihood of each particle.
     pub log_likelihood: Vec<f64>,
-    /// Number of the ancestor of each particle. Particles of one ancestor may depend on each other.
-    pub ancestor: Vec<usize>,
+    /// Number of the draw that each particle is a copy of; draws are independent.
+    pub draw: Vec<usize>,
     /// Power β of the likelihood, 0 to 1: at 0 the particles are of the prior, at 1 of the
     /// posterior.
     pub temperature: f64,
     /// Estimate of `ln ∫ N(z; 0, I) L(z)^β dz`, at temperature 1 the log evidence.
     pub log_evidence: f64,
-    /// Effective sample size of all evaluated particles: the smallest over the components of z. It
-    /// may exceed the number of particles here, which are drawn from those. It is far too large for
-    /// a ridge that folds back on itself (BENCHMARKS.md).
+    /// Effective sample size `1 / Σ w²` of all draws by their weights. It may exceed the number of
+    /// particles here, which are taken from those.
     pub ess: f64,
     /// Number of evaluations of the likelihood until now.
     pub n_evaluations: usize,
@@ -34,17 +31,69 @@ impl Particles {
         self.temperature >= 1.0
     }
 
-    /// Effective sample size of the mean of a quantity, from how far the sums over particles of one
-    /// ancestor scatter. It is at most the number of particles.
+    /// Effective sample size of the mean of a quantity over these particles, of which those of one draw
+    /// are copies:
     ///
     /// ```text
-    /// standard error of the mean = standard deviation / √ESS
+    /// V = G/(G − 1) Σ_g (Σ_{i in g} (x_i − μ)/n)²      ESS = σ² / V      standard error = σ / √ESS
     /// ```
+    ///
+    /// G is the effective number of draws g.
     ///
     /// - `values`: the quantity for each particle.
     /// - returns `None` for a quantity that does not vary.
     pub fn effective_sample_size(&self, values: &[f64]) -> Option<f64> {
-        let weights = vec![1.0 / values.len() as f64; values.len()];
-        group_ess(values, &weights, &self.ancestor)
+        let share = 1.0 / values.len() as f64;
+        let mean = share * values.iter().sum::<f64>();
+        let n_draws = self.draw.iter().max().map_or(0, |largest| largest + 1);
+        let (mut sums, mut variance) = (vec![[0.0; 2]; n_draws], 0.0);
+        for (value, draw) in values.iter().zip(&self.draw) {
+            let deviation = share * (value - mean);
+            variance += deviation * deviation / share;
+            let [sum, weight] = &mut sums[*draw];
+            (*sum, *weight) = (*sum + deviation, *weight + share);
+        }
+        if variance <= f64::EPSILON * mean * mean {
+            return None;
+        }
+        let effective = 1.0 / sums.iter().map(|[_, weight]| weight * weight).sum::<f64>();
+        if effective < 1.5 {
+            return Some(1.0);
+        }
+        let scatter: f64 = sums.iter().map(|[sum, _]| sum * sum).sum();
+        Some((variance * (effective - 1.0) / (effective * scatter)).max(1.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn particles(draw: Vec<usize>) -> Particles {
+        let n = draw.len();
+        Particles {
+            z: vec![vec![0.0]; n],
+            log_likelihood: vec![0.0; n],
+            draw,
+            temperature: 1.0,
+            log_evidence: 0.0,
+            ess: 1.0,
+            n_evaluations: n,
+        }
+    }
+
+    #[test]
+    fn independent_draws_count_in_full_and_copies_do_not() {
+        let values: Vec<f64> = (0..200).map(|i| f64::from(i * 37 % 101)).collect();
+        let independent = particles((0..200).collect());
+        let ess = independent.effective_sample_size(&values).unwrap();
+        assert!((ess - 199.0).abs() < 1e-6, "{ess}");
+        // Each value four times, from one draw.
+        let copies: Vec<f64> = values[..50].iter().flat_map(|value| [*value; 4]).collect();
+        let copied = particles((0..200).map(|i| i / 4).collect());
+        let ess = copied.effective_sample_size(&copies).unwrap();
+        assert!((ess - 49.0).abs() < 1e-6, "{ess}");
+        assert_eq!(independent.effective_sample_size(&[3.0; 200]), None);
+        assert_eq!(particles(vec![7; 200]).effective_sample_size(&values), Some(1.0));
     }
 }

@@ -1,56 +1,49 @@
-//! Every particle that was ever evaluated, with its weight at any temperature.
+//! Every particle that was drawn, with its weight at any temperature.
 //!
-//! The particles of earlier temperatures are kept and weighted as draws from the mixture of all
-//! levels, so that no evaluation is wasted:
+//! Particles are independent draws from the prior and from mixtures that were fitted to the particles
+//! before them. All are weighted as draws from the mixture of all these distributions, whose densities
+//! are known, so that weights and evidence are right whatever the fits are like:
 //!
 //! ```text
-//! w_i(β) ∝ L_i^β / Σ_s n_s L_i^β_s / Z_s        Z(β) = Σ_i L_i^β / Σ_s n_s L_i^β_s / Z_s
+//! w_i(β) ∝ L_i^β N(z_i; 0, I) / Σ_t n_t q_t(z_i)        Z(β) = Σ_i L_i^β N(z_i; 0, I) / Σ_t n_t q_t(z_i)
 //! ```
 //!
-//! with n_s particles of temperature β_s and evidence Z_s. The prior cancels.
+//! with n_t draws from q_t. The prior is one of the q_t, so that no weight exceeds `L_i / n_0`.
 //!
-//! Source: [`KaramanisSeljak2024`](crate::bibliography::KaramanisSeljak2024).
+//! Source: [`OwenZhou2000`](crate::bibliography::OwenZhou2000) for the weights, with the prior as the
+//! defensive component; [`Cornuet2012`](crate::bibliography::Cornuet2012) for mixtures that follow
+//! from the draws before them.
 
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::mixture::ln_sum_exp;
+use super::mixture::{Mixture, Weighted, ln_sum_exp};
 
-/// Number of halvings of the range of the next temperature.
+/// Number of halvings of the range of the temperature.
 const N_BISECTIONS: usize = 50;
 
-/// Smallest increase of the temperature, where the likelihood is zero for nearly all particles.
-const MIN_INCREASE: f64 = 1e-12;
+/// Weight of a particle, of the sum of all, below which it is forgotten: at a higher temperature it
+/// weighs even less.
+const NEGLIGIBLE: f64 = 1e-12;
 
-/// How many times larger the variance of an estimate is than the ancestors alone say, because all
-/// chains move by one mixture that was fitted to all of them: 1.8 to 3.1 for three targets
-/// and two numbers of particles (BENCHMARKS.md).
-pub(super) const COMMON_FIT: f64 = 2.5;
-
-/// Effective number of groups of common ancestors that the effective sample size needs at least.
-const MIN_GROUPS: f64 = 50.0;
-
-/// The particles of one temperature.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// Draws from one mixture.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Level {
-    pub temperature: f64,
-    pub n_particles: usize,
-    /// Estimate of `ln Z(β)`.
-    pub log_evidence: f64,
+struct Proposal {
+    n_draws: usize,
+    mixture: Mixture,
 }
 
 /// All particles of a run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Population {
-    pub z: Vec<Vec<f64>>,
-    pub log_likelihood: Vec<f64>,
-    /// Index of the particle from which the chain of each one started; of itself for those of the
-    /// prior.
-    pub ancestor: Vec<usize>,
-    /// Index of the level of each particle.
-    pub level: Vec<usize>,
-    pub levels: Vec<Level>,
+    z: Vec<Vec<f64>>,
+    log_likelihood: Vec<f64>,
+    /// `ln Σ_t n_t q_t(z) / N(z; 0, I)` of each particle.
+    log_density: Vec<f64>,
+    n_prior: usize,
+    proposals: Vec<Proposal>,
 }
 
 /// Weights of all particles at a temperature; they sum to 1.
@@ -61,9 +54,10 @@ pub(super) struct Weights {
 }
 
 impl Weights {
-    /// Kish's effective sample size `1 / Σ w²`.
+    /// Kish's effective sample size `1 / Σ w²`; 0 where nothing has a weight.
     pub fn effective(&self) -> f64 {
-        1.0 / self.weight.iter().map(|weight| weight * weight).sum::<f64>()
+        let square = self.weight.iter().map(|weight| weight * weight).sum::<f64>();
+        if square > 0.0 { 1.0 / square } else { 0.0 }
     }
 
     /// Systematic resampling: indices in increasing order, each `n w` times on average, rounded up
@@ -88,157 +82,187 @@ impl Weights {
 }
 
 impl Population {
-    /// `ln Σ_s n_s L^β_s / Z_s` of each particle.
-    pub fn log_mixture(&self) -> Vec<f64> {
-        let term = |level: &Level, log_likelihood: f64| {
-            (level.n_particles as f64).ln() + power(level.temperature, log_likelihood)
-                - level.log_evidence
-        };
-        let of = |log_likelihood: &f64| {
-            let terms: Vec<f64> =
-                self.levels.iter().map(|level| term(level, *log_likelihood)).collect();
-            ln_sum_exp(&terms)
-        };
-        self.log_likelihood.iter().map(of).collect()
+    /// Number of draws until now, forgotten ones included.
+    pub fn n_draws(&self) -> usize {
+        self.n_prior + self.proposals.iter().map(|of| of.n_draws).sum::<usize>()
+    }
+
+    /// Number of draws from the prior.
+    pub fn n_prior(&self) -> usize {
+        self.n_prior
+    }
+
+    /// Number of mixtures that were drawn from.
+    pub fn n_rounds(&self) -> usize {
+        self.proposals.len()
+    }
+
+    /// A particle with its likelihood.
+    pub fn particle(&self, idx: usize) -> (&Vec<f64>, f64) {
+        (&self.z[idx], self.log_likelihood[idx])
+    }
+
+    /// Whether the evidence is possible for any particle.
+    pub fn is_possible(&self) -> bool {
+        !self.z.is_empty()
+    }
+
+    /// Adds draws from the prior, before any others.
+    pub fn add_prior(&mut self, z: Vec<Vec<f64>>, log_likelihood: &[f64]) {
+        self.n_prior += z.len();
+        let log_density = (self.n_prior as f64).ln();
+        self.log_density.fill(log_density);
+        self.push(z, log_likelihood, |_| log_density);
+    }
+
+    /// Adds draws from a mixture.
+    pub fn add(&mut self, z: Vec<Vec<f64>>, log_likelihood: &[f64], mixture: Mixture) {
+        self.proposals.push(Proposal { n_draws: z.len(), mixture });
+        let Some(proposal) = self.proposals.last() else { return };
+        let of_each = self.z.par_iter().zip(&mut self.log_density);
+        of_each.for_each(|(z, sum)| *sum = ln_sum_exp(&[*sum, proposal.ln_share(z)]));
+        let (n_prior, proposals) = (self.n_prior as f64, self.proposals.clone());
+        self.push(z, log_likelihood, |z| {
+            let of_mixtures = proposals.iter().map(|of| of.ln_share(z));
+            ln_sum_exp(&std::iter::once(n_prior.ln()).chain(of_mixtures).collect::<Vec<f64>>())
+        });
+    }
+
+    /// Keeps what has a likelihood.
+    fn push(
+        &mut self,
+        z: Vec<Vec<f64>>,
+        log_likelihood: &[f64],
+        log_density: impl Fn(&[f64]) -> f64 + Sync,
+    ) {
+        let all = z.into_iter().zip(log_likelihood);
+        let (z, of_z): (Vec<Vec<f64>>, Vec<f64>) =
+            all.filter(|(_, value)| value.is_finite()).unzip();
+        let densities: Vec<f64> = z.par_iter().map(|z| log_density(z)).collect();
+        self.z.extend(z);
+        self.log_likelihood.extend(of_z);
+        self.log_density.extend(densities);
     }
 
     /// Weights at a temperature.
-    ///
-    /// - `log_mixture`: that of [`Population::log_mixture`].
-    pub fn weights(&self, temperature: f64, log_mixture: &[f64]) -> Weights {
-        let pairs = self.log_likelihood.iter().zip(log_mixture);
+    pub fn weights(&self, temperature: f64) -> Weights {
+        let pairs = self.log_likelihood.iter().zip(&self.log_density);
         let mut weight: Vec<f64> =
-            pairs.map(|(l, mixture)| power(temperature, *l) - mixture).collect();
+            pairs.map(|(value, density)| temperature * value - density).collect();
         let log_evidence = ln_sum_exp(&weight);
         weight.iter_mut().for_each(|weight| *weight = (*weight - log_evidence).exp());
         Weights { weight, log_evidence }
     }
 
-    /// The highest temperature at which the effective sample size of the weights is still `least`,
-    /// and the weights there.
-    ///
-    /// - `after`: the temperature until now, which the next one exceeds.
-    pub fn next_temperature(&self, after: f64, least: f64) -> (f64, Weights) {
-        let mixture = self.log_mixture();
-        let suffices = |temperature: f64| self.weights(temperature, &mixture).effective() >= least;
+    /// The highest temperature at which the effective sample size of the weights is still `least`.
+    pub fn temperature_of(&self, least: f64) -> f64 {
+        let suffices = |temperature: f64| self.weights(temperature).effective() >= least;
         if suffices(1.0) {
-            return (1.0, self.weights(1.0, &mixture));
+            return 1.0;
         }
-        let (mut low, mut high) = (after, 1.0);
+        let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..N_BISECTIONS {
             // Small temperatures differ by their ratio, large ones by their difference.
             let middle = if low > 0.09 * high { (low + high) / 2.0 } else { 0.1 * high };
             *(if suffices(middle) { &mut low } else { &mut high }) = middle;
         }
-        let temperature = low.max(after + MIN_INCREASE).min(1.0);
-        (temperature, self.weights(temperature, &mixture))
+        low
     }
 
-    /// For each particle the index of its ancestor at the earliest level from which enough
-    /// ancestors are left.
-    pub fn groups(&self, weights: &Weights) -> Vec<usize> {
-        let mut groups = Vec::new();
-        for level in 0..self.levels.len() {
-            groups = (0..self.z.len()).map(|idx| self.ancestor_at(idx, level)).collect();
-            let mut sums = vec![0.0; self.z.len()];
-            for (group, weight) in groups.iter().zip(&weights.weight) {
-                sums[*group] += weight;
+    /// A mixture that is fitted to weighted particles.
+    ///
+    /// - `n`: number of particles that it is fitted to;
+    /// - `u`: uniform random number, 0 to 1.
+    pub fn mixture(&self, weights: &Weights, n: usize, u: f64) -> Mixture {
+        let (mut z, mut weight): (Vec<&[f64]>, Vec<f64>) = (Vec::new(), Vec::new());
+        let mut last = None;
+        // Copies of a particle, which follow each other, are one particle.
+        for idx in weights.resample(n, u) {
+            match weight.last_mut() {
+                Some(weight) if last == Some(idx) => *weight += 1.0 / n as f64,
+                _ => {
+                    z.push(&self.z[idx]);
+                    weight.push(1.0 / n as f64);
+                }
             }
-            if 1.0 / sums.iter().map(|sum| sum * sum).sum::<f64>() >= MIN_GROUPS {
-                break;
-            }
+            last = Some(idx);
         }
-        groups
+        Mixture::fit(Weighted { z: &z, weight: &weight })
     }
 
-    fn ancestor_at(&self, mut idx: usize, level: usize) -> usize {
-        while self.level[idx] > level {
-            idx = self.ancestor[idx];
+    /// Forgets the particles that have no weight worth mentioning.
+    pub fn forget_negligible(&mut self, weights: &Weights) {
+        let keep = |idx: usize| weights.weight[idx] > NEGLIGIBLE;
+        let kept: Vec<usize> = (0..self.z.len()).filter(|idx| keep(*idx)).collect();
+        self.z = kept.iter().map(|idx| std::mem::take(&mut self.z[*idx])).collect();
+        self.log_likelihood = kept.iter().map(|idx| self.log_likelihood[*idx]).collect();
+        self.log_density = kept.iter().map(|idx| self.log_density[*idx]).collect();
+    }
+
+    /// Checks a population that comes from a file, so that nothing is counted or indexed wrongly.
+    pub fn check(&self, dim: usize) -> Result<(), &'static str> {
+        let n = self.z.len();
+        if n == 0 || [self.log_likelihood.len(), self.log_density.len()] != [n; 2] {
+            return Err("its lists of particles differ in length");
         }
-        idx
+        if self.z.iter().any(|z| z.len() != dim || !z.iter().all(|value| value.is_finite())) {
+            return Err("a particle is not as many finite numbers as the question has variables");
+        }
+        let values = self.log_likelihood.iter().chain(&self.log_density);
+        if !values.into_iter().all(|value| value.is_finite()) {
+            return Err("a likelihood or a density is no number");
+        }
+        let is_good = |of: &Proposal| of.n_draws > 0 && of.mixture.is_of(dim);
+        let n_draws =
+            self.proposals.iter().try_fold(self.n_prior, |n, of| n.checked_add(of.n_draws));
+        match self.proposals.iter().all(is_good) && n_draws.is_some_and(|n_draws| n_draws >= n) {
+            true => Ok(()),
+            false => Err("a distribution that particles were drawn from is none"),
+        }
     }
 }
 
-/// `β ln L`, where `0 · ln 0` is 0.
-fn power(temperature: f64, log_likelihood: f64) -> f64 {
-    if temperature == 0.0 { 0.0 } else { temperature * log_likelihood }
-}
-
-/// Effective sample size of the weighted mean of a value, from how far the sums over groups of
-/// common ancestry scatter:
-///
-/// ```text
-/// μ = Σ_i w_i x_i       σ² = Σ_i w_i (x_i − μ)²
-/// V = c G/(G − 1) Σ_g (Σ_{i in g} w_i (x_i − μ))²      ESS = σ² / V, at most 1 / Σ w²
-/// ```
-///
-/// G is the effective number of groups, c is [`COMMON_FIT`]. Duplicates, the autocorrelation of a chain and the loss of
-/// ancestors all show in V.
-///
-/// Source: [`LeeWhiteley2018`](crate::bibliography::LeeWhiteley2018) for groups of common roots,
-/// [`OlssonDouc2019`](crate::bibliography::OlssonDouc2019) for a more recent ancestor where few
-/// roots are left.
-///
-/// - returns `None` for a value that does not vary.
-pub(super) fn group_ess(values: &[f64], weights: &[f64], groups: &[usize]) -> Option<f64> {
-    let mean: f64 = values.iter().zip(weights).map(|(value, weight)| weight * value).sum();
-    let (mut variance, mut square) = (0.0, 0.0);
-    let n_ids = groups.iter().max().map_or(0, |largest| largest + 1);
-    let mut sums = vec![(0.0, 0.0); n_ids];
-    for ((value, weight), group) in values.iter().zip(weights).zip(groups) {
-        let deviation = value - mean;
-        variance += weight * deviation * deviation;
-        square += weight * weight;
-        let sum = &mut sums[*group];
-        *sum = (sum.0 + weight * deviation, sum.1 + weight);
+impl Proposal {
+    /// `ln n_t q_t(z) / N(z; 0, I)`.
+    fn ln_share(&self, z: &[f64]) -> f64 {
+        let square: f64 = z.iter().map(|z| z * z).sum();
+        (self.n_draws as f64).ln() + self.mixture.ln_density(z) + square / 2.0
     }
-    if variance <= f64::EPSILON * mean * mean {
-        return None;
-    }
-    let n_groups = 1.0 / sums.iter().map(|(_, weight): &(f64, f64)| weight * weight).sum::<f64>();
-    if n_groups < 1.5 {
-        return Some(1.0);
-    }
-    let scatter: f64 = sums.iter().map(|(sum, _)| sum * sum).sum();
-    let error = COMMON_FIT * scatter * n_groups / (n_groups - 1.0);
-    Some((variance / error).min(1.0 / square).max(1.0))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn population(log_likelihood: Vec<f64>) -> Population {
-        let n = log_likelihood.len();
-        Population {
-            z: vec![vec![0.0]; n],
-            log_likelihood,
-            ancestor: (0..n).collect(),
-            level: vec![0; n],
-            levels: vec![Level { temperature: 0.0, n_particles: n, log_evidence: 0.0 }],
-        }
+    fn population(log_likelihood: &[f64]) -> Population {
+        let mut population = Population::default();
+        population.add_prior(vec![vec![0.0]; log_likelihood.len()], log_likelihood);
+        population
     }
 
     #[test]
     fn weights_of_the_prior_are_powers_of_the_likelihood() {
-        let population = population(vec![0.0, 2.0_f64.ln(), f64::NEG_INFINITY, 4.0_f64.ln()]);
-        let mixture = population.log_mixture();
-        let half = population.weights(0.5, &mixture);
+        let population = population(&[0.0, 2.0_f64.ln(), f64::NEG_INFINITY, 4.0_f64.ln()]);
+        let half = population.weights(0.5);
         let sum = 1.0 + 2.0_f64.sqrt() + 2.0;
-        for (weight, expected) in half.weight.iter().zip([1.0, 2.0_f64.sqrt(), 0.0, 2.0]) {
+        // What is impossible is counted and not kept.
+        assert_eq!(half.weight.len(), 3);
+        for (weight, expected) in half.weight.iter().zip([1.0, 2.0_f64.sqrt(), 2.0]) {
             assert!((weight - expected / sum).abs() < 1e-12, "{half:?}");
         }
         assert!((half.log_evidence - (sum / 4.0).ln()).abs() < 1e-12);
-        assert!((population.weights(0.0, &mixture).effective() - 4.0).abs() < 1e-9);
+        assert!((population.weights(0.0).effective() - 3.0).abs() < 1e-9);
     }
 
     #[test]
-    fn the_next_temperature_has_the_effective_sample_size_asked_for() {
-        let population = population((0..100).map(|i| -1e3 * f64::from(i)).collect());
-        let (temperature, weights) = population.next_temperature(0.0, 50.0);
+    fn the_temperature_has_the_effective_sample_size_asked_for() {
+        let values: Vec<f64> = (0..100).map(|i| -1e3 * f64::from(i)).collect();
+        let population = population(&values);
+        let temperature = population.temperature_of(50.0);
         assert!(temperature > 0.0 && temperature < 1e-3, "{temperature}");
-        assert!((weights.effective() - 50.0).abs() < 1e-6, "{}", weights.effective());
-        assert_eq!(population.next_temperature(0.0, 1.0).0, 1.0);
+        let effective = population.weights(temperature).effective();
+        assert!((effective - 50.0).abs() < 1e-6, "{effective}");
+        assert_eq!(population.temperature_of(1.0), 1.0);
     }
 
     #[test]
@@ -250,18 +274,12 @@ mod tests {
     }
 
     #[test]
-    fn independent_groups_count_in_full_and_copies_do_not() {
-        let values: Vec<f64> = (0..200).map(|i| f64::from(i * 37 % 101)).collect();
-        let own: Vec<usize> = (0..200).collect();
-        let each = vec![1.0 / 200.0; 200];
-        let independent = group_ess(&values, &each, &own).unwrap();
-        assert!((independent - 199.0 / COMMON_FIT).abs() < 1e-6, "{independent}");
-        // Each value four times, from one ancestor.
-        let copies: Vec<f64> = values[..50].iter().flat_map(|value| [*value; 4]).collect();
-        let groups: Vec<usize> = (0..200).map(|i| i / 4).collect();
-        let copied = group_ess(&copies, &each, &groups).unwrap();
-        assert!((copied - 49.0 / COMMON_FIT).abs() < 1e-6, "{copied}");
-        assert_eq!(group_ess(&[3.0; 200], &each, &own), None);
-        assert_eq!(group_ess(&values, &each, &[7; 200]), Some(1.0), "one ancestor alone");
+    fn what_weighs_nothing_is_forgotten_and_changes_no_weight() {
+        let mut population = population(&[0.0, -900.0, -1.0]);
+        let before = population.weights(1.0);
+        population.forget_negligible(&before);
+        let after = population.weights(1.0);
+        assert_eq!(after.weight, [before.weight[0], before.weight[2]]);
+        assert_eq!((after.log_evidence, population.n_draws()), (before.log_evidence, 3));
     }
 }

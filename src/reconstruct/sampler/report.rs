@@ -20,7 +20,7 @@ pub struct SamplerReport<'a> {
     pub temperature: f64,
     /// Number of evaluations of the likelihood until now.
     pub n_evaluations: usize,
-    /// Effective sample size, once it has been estimated.
+    /// Effective sample size of the posterior until now, once anything but the prior was drawn from.
     pub ess: Option<f64>,
     /// Latest particles, to be drawn, `[n][dim]`: their number varies.
     pub z: &'a [Vec<f64>],

@@ -3,62 +3,55 @@
 use std::ops::ControlFlow;
 
 use rand::RngExt;
-use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
-use super::mixture::{Mixture, Weighted, standard_normals};
-use super::moves::{MoveRecord, MoveSettings, Proposal};
-use super::population::{COMMON_FIT, Level, Population, Weights, group_ess};
+use super::mixture::standard_normals;
+use super::population::Population;
 use super::{
     Particles, SamplerCheckpoint, SamplerError, SamplerReport, SamplerSettings, SamplerStage,
     Target,
 };
 use crate::nn::random_stream;
 
-/// Number of particles of the answer for each chain that is moved side by side with the others.
-const PARTICLES_PER_CHAIN: usize = 8;
+/// Draws from the prior for each particle of the answer.
+const PRIOR_DRAWS: usize = 20;
 
-/// Smallest number of chains.
-const MIN_CHAINS: usize = 8;
-
-/// Smallest and largest number of moves of a chain at one temperature.
-const MOVES: [usize; 2] = [4, 12];
-
-/// Correlation of the ends of the chains with their starts, over all chains, up to which a component
-/// has moved enough.
-const MOVED_ENOUGH: f64 = 0.3;
-
-/// Number of particles that the mixture is fitted to.
-const FIT_PARTICLES: usize = 2000;
-
-/// Number of draws from the prior that the evidence has to be possible for, before the temperature
-/// is raised.
-const MIN_POSSIBLE: usize = 50;
-
-/// The evaluations that may be spent on the prior while the evidence is possible for too few draws:
-/// one in this many.
+/// Largest share of the evaluations that is drawn from the prior, as a divisor.
 const MAX_PRIOR_SHARE: usize = 4;
 
-/// How many times the largest number of evaluations may be exceeded until temperature 1 is reached.
+/// Number of draws from the prior that the evidence has to be possible for, before anything is fitted.
+const MIN_POSSIBLE: usize = 50;
+
+/// Draws of a round for each particle of the answer, at temperature 0 and at 1: the colder the fit, the
+/// sooner it is made anew.
+const ROUND_DRAWS: [f64; 2] = [1.0, 3.0];
+
+/// Effective sample size that a mixture is fitted to, for each particle of the answer. A fit to fewer is
+/// colder and narrower: it is worth more where it lies right and does not see what lies beside it.
+const FIT_ESS: f64 = 2.0;
+
+/// Effective sample size that a mixture is fitted to at the least.
+const MIN_FIT_ESS: f64 = 200.0;
+
+/// Number of particles that the mixture is fitted to.
+const FIT_PARTICLES: usize = 4000;
+
+/// Parts of the particles of the answer that are evaluated, and shown, at a time.
+const BATCHES: usize = 8;
+
+/// Effective sample size from which particles are said to be of the posterior.
+const MIN_POSTERIOR_ESS: f64 = 20.0;
+
+/// How many times the largest number of evaluations may be exceeded until that is reached.
 const MAX_EXCESS: usize = 4;
 
-/// Smallest number of rounds at temperature 1.
-const MIN_POSTERIOR_ROUNDS: usize = 2;
-
-/// What a checkpoint holds of a run. Random numbers are drawn from one stream for each round, so that
-/// they need no state.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct RunState {
-    population: Population,
-    moves: MoveSettings,
-}
+/// Growth of the number of draws after which a run is saved.
+const SAVED_GROWTH: f64 = 1.3;
 
 /// Samples the posterior of a target.
 ///
-/// - `checkpoint`: where the run is saved after each temperature, and resumed from.
+/// - `checkpoint`: where the run is saved every now and then, and resumed from.
 /// - `report`: called after each batch of evaluations. If it breaks, the sampler stops: what it
-///   returns then are particles of the last temperature that was completed
+///   returns then are particles of the temperature that was reached
 ///   ([`Particles::of_posterior`] tells whether that was 1).
 ///
 /// # Errors
@@ -75,13 +68,22 @@ pub fn sample(
         Some(checkpoint) => checkpoint.read(settings, target.dim())?,
         None => None,
     };
-    let was_saved = saved.is_some();
-    let mut run = Run { target, settings, report, state: saved.unwrap_or_default() };
-    let mut flow = if was_saved { ControlFlow::Continue(()) } else { run.draw_prior()? };
+    let mut run = Run { target, settings, report, population: Population::default() };
+    let mut flow = match saved {
+        Some(population) => {
+            run.population = population;
+            ControlFlow::Continue(())
+        }
+        None => run.draw_prior()?,
+    };
+    let mut n_saved = 0;
     while flow.is_continue() && !run.is_done() {
         flow = run.round()?;
-        if let (Some(checkpoint), true) = (checkpoint, flow.is_continue()) {
-            checkpoint.write(settings, &run.state)?;
+        let n_draws = run.population.n_draws();
+        let has_grown = n_draws as f64 >= SAVED_GROWTH * n_saved as f64 || run.is_done();
+        if let (Some(checkpoint), true, true) = (checkpoint, flow.is_continue(), has_grown) {
+            checkpoint.write(settings, &run.population)?;
+            n_saved = n_draws;
         }
     }
     Ok(run.answer())
@@ -91,13 +93,12 @@ struct Run<'a, T: ?Sized> {
     target: &'a T,
     settings: &'a SamplerSettings,
     report: &'a mut dyn FnMut(SamplerReport<'_>) -> ControlFlow<()>,
-    state: RunState,
+    population: Population,
 }
 
 impl<T: Target + ?Sized> Run<'_, T> {
-    fn n_chains(&self) -> usize {
-        let n = self.settings.n_particles;
-        (n / PARTICLES_PER_CHAIN).max(MIN_CHAINS.min(n))
+    fn batch(&self) -> usize {
+        (self.settings.n_particles / BATCHES).max(BATCHES)
     }
 
     fn evaluate(&self, z: &[Vec<f64>]) -> Result<Vec<f64>, SamplerError> {
@@ -114,306 +115,136 @@ impl<T: Target + ?Sized> Run<'_, T> {
         }
     }
 
-    /// Draws from the prior until there are as many particles as asked for, and the evidence is
-    /// possible for some of them.
+    /// Draws from the prior, until the evidence is possible for some of the particles.
     fn draw_prior(&mut self) -> Result<ControlFlow<()>, SamplerError> {
-        let (n, n_chains, dim) = (self.settings.n_particles, self.n_chains(), self.target.dim());
+        let (n, dim) = (self.settings.n_particles, self.target.dim());
+        let share = self.settings.max_evaluations / MAX_PRIOR_SHARE;
         let mut rng = random_stream(self.settings.seed, "reconstruct prior", 0);
         let mut flow = ControlFlow::Continue(());
-        let mut n_possible = 0;
+        let (mut n_possible, mut n_drawn) = (0, 0);
         while flow.is_continue() {
-            let drawn = self.state.population.z.len();
             let goal = match n_possible < MIN_POSSIBLE.min(n) {
-                true => n.max(self.settings.max_evaluations / MAX_PRIOR_SHARE),
-                false => n,
+                true => n.max(share),
+                false => n.max(share.min(PRIOR_DRAWS * n)),
             };
-            if drawn >= goal {
+            if n_drawn >= goal {
                 break;
             }
-            let batch = n_chains.min(goal - drawn);
+            let batch = self.batch().min(goal - n_drawn);
             let z: Vec<Vec<f64>> = (0..batch).map(|_| standard_normals(dim, &mut rng)).collect();
             let log_likelihood = self.evaluate(&z)?;
             n_possible += log_likelihood.iter().filter(|value| value.is_finite()).count();
-            let population = &mut self.state.population;
-            population.ancestor.extend(drawn..drawn + batch);
-            population.level.extend(vec![0; batch]);
-            population.z.extend(z);
-            population.log_likelihood.extend(log_likelihood);
+            n_drawn += batch;
             flow = (self.report)(SamplerReport {
                 stage: SamplerStage::Prior,
                 temperature: 0.0,
-                n_evaluations: population.z.len(),
+                n_evaluations: n_drawn,
                 ess: None,
-                z: &population.z,
-                log_likelihood: &population.log_likelihood,
+                z: &z,
+                log_likelihood: &log_likelihood,
             });
+            self.population.add_prior(z, &log_likelihood);
         }
-        let n_particles = self.state.population.z.len();
-        let level = Level { temperature: 0.0, n_particles, log_evidence: 0.0 };
-        self.state.population.levels.push(level);
-        if n_possible == 0 && flow.is_continue() {
-            return Err(SamplerError::ImpossibleEverywhere { n_evaluations: n_particles });
+        if !self.population.is_possible() {
+            return Err(SamplerError::ImpossibleEverywhere { n_evaluations: n_drawn });
         }
         Ok(flow)
     }
 
-    /// Raises the temperature as far as the weights allow, and moves particles there.
+    /// Draws from a mixture that is fitted at the temperature that the weights allow.
     fn round(&mut self) -> Result<ControlFlow<()>, SamplerError> {
-        let population = &self.state.population;
-        let (temperature, weights) = match self.state.temperature() {
-            before if before < 1.0 => {
-                // The prior alone has no more than n particles.
-                let least = self.settings.n_particles.min(population.z.len() / 2).max(1);
-                population.next_temperature(before, least as f64)
+        let number = self.population.n_rounds() as u64;
+        let mut rng = random_stream(self.settings.seed, "reconstruct draws", number);
+        let temperature = self.population.temperature_of(self.fit_ess());
+        let weights = self.population.weights(temperature);
+        let mixture = self.population.mixture(&weights, FIT_PARTICLES, rng.random());
+        let shown = self.shown(temperature, &weights.resample(self.batch(), rng.random()));
+        self.population.forget_negligible(&weights);
+        let [first, last] = ROUND_DRAWS.map(|draws| draws * self.settings.n_particles as f64);
+        let n = ((first + (last - first) * temperature) as usize).max(BATCHES);
+        let z: Vec<Vec<f64>> = (0..n).map(|_| mixture.draw(&mut rng)).collect();
+        let mut log_likelihood = Vec::with_capacity(n);
+        for batch in z.chunks(self.batch()) {
+            log_likelihood.extend(self.evaluate(batch)?);
+            let n_evaluations = self.population.n_draws() + log_likelihood.len();
+            if (self.report)(shown.report(n_evaluations)).is_break() {
+                return Ok(ControlFlow::Break(()));
             }
-            _ => (1.0, population.weights(1.0, &population.log_mixture())),
-        };
-        let number = population.levels.len() as u64;
-        let mut rng = random_stream(self.settings.seed, "reconstruct moves", number);
-        let mixture = population.mixture(&weights, rng.random());
-        let ancestors = weights.resample(self.n_chains(), rng.random());
-        let chains = Chains::start(population, &ancestors);
-        let Some(chains) = self.move_chains(chains, temperature, &mixture, &mut rng)? else {
-            return Ok(ControlFlow::Break(()));
-        };
-        self.state.moves.adapt(&chains.record);
-        let level = Level {
-            temperature,
-            n_particles: chains.n_particles(),
-            log_evidence: weights.log_evidence,
-        };
-        self.state.population.add(level, chains, &ancestors);
+        }
+        self.population.add(z, &log_likelihood, mixture);
         Ok(ControlFlow::Continue(()))
     }
 
-    /// Moves the chains until each component has moved enough; `None` if the report breaks.
-    fn move_chains(
-        &mut self,
-        mut chains: Chains,
-        temperature: f64,
-        mixture: &Mixture,
-        rng: &mut impl rand::Rng,
-    ) -> Result<Option<Chains>, SamplerError> {
-        let (moves, ess) = (self.state.moves, self.state.ess(self.settings));
-        for n_moves in 1..=MOVES[1] {
-            let proposals: Vec<Proposal> =
-                chains.z.iter().map(|z| moves.propose(mixture, z, rng)).collect();
-            let moved: Vec<Vec<f64>> =
-                proposals.iter().map(|proposal| proposal.z.clone()).collect();
-            let values = self.evaluate(&moved)?;
-            for (idx, (proposal, value)) in proposals.into_iter().zip(values).enumerate() {
-                let gain = temperature * (value - chains.log_likelihood[idx]) + proposal.ln_ratio;
-                let probability = if gain.is_nan() { 0.0 } else { gain.min(0.0).exp() };
-                let distance = mixture.distance_square(&chains.z[idx], &proposal.z);
-                let dim = self.target.dim();
-                chains.record.add(proposal.kind, probability, distance, dim);
-                if rng.random::<f64>() < probability {
-                    chains.z[idx] = proposal.z;
-                    chains.log_likelihood[idx] = value;
-                }
-            }
-            chains.remember();
-            let flow = (self.report)(SamplerReport {
-                stage: match temperature {
-                    1.0 => SamplerStage::Posterior,
-                    _ => SamplerStage::Tempering,
-                },
-                temperature,
-                n_evaluations: self.state.population.z.len() + chains.n_particles(),
-                ess,
-                z: &chains.z,
-                log_likelihood: &chains.log_likelihood,
-            });
-            if flow.is_break() {
-                return Ok(None);
-            }
-            if n_moves >= MOVES[0] && chains.largest_correlation() <= MOVED_ENOUGH {
-                break;
-            }
-        }
-        Ok(Some(chains))
+    fn shown(&self, temperature: f64, idx: &[usize]) -> Shown {
+        let particles = idx.iter().map(|idx| self.population.particle(*idx));
+        let (z, log_likelihood) = particles.map(|(z, value)| (z.clone(), value)).unzip();
+        Shown { z, log_likelihood, temperature, ess: self.posterior_ess() }
+    }
+
+    /// Effective sample size that a mixture is fitted to.
+    fn fit_ess(&self) -> f64 {
+        let wanted = (FIT_ESS * self.settings.n_particles as f64).max(MIN_FIT_ESS);
+        wanted.min(self.population.n_prior() as f64 / 4.0).max(1.0)
+    }
+
+    fn posterior_ess(&self) -> f64 {
+        self.population.weights(1.0).effective()
     }
 
     fn is_done(&self) -> bool {
-        let n_evaluations = self.state.population.z.len();
-        if self.state.temperature() < 1.0 {
-            return n_evaluations >= MAX_EXCESS.saturating_mul(self.settings.max_evaluations);
+        let n_draws = self.population.n_draws();
+        if self.population.n_rounds() == 0 {
+            return false;
         }
-        let levels = self.state.population.levels.iter();
-        let n_rounds = levels.filter(|level| level.temperature >= 1.0).count();
-        let suffices = n_rounds >= MIN_POSTERIOR_ROUNDS
-            && self.state.ess(self.settings).is_some_and(|ess| ess >= self.settings.least_ess);
-        suffices || n_evaluations >= self.settings.max_evaluations
+        let ess = self.posterior_ess();
+        let largest = match ess < MIN_POSTERIOR_ESS.min(self.settings.least_ess) {
+            true => MAX_EXCESS.saturating_mul(self.settings.max_evaluations),
+            false => self.settings.max_evaluations,
+        };
+        ess >= self.settings.least_ess || n_draws >= largest
     }
 
     fn answer(&self) -> Particles {
-        let population = &self.state.population;
-        let temperature = self.state.temperature();
-        let weights = population.weights(temperature, &population.log_mixture());
+        let population = &self.population;
+        let least = MIN_POSTERIOR_ESS.min(self.settings.least_ess);
+        let is_drawn = population.n_rounds() > 0;
+        let temperature = if is_drawn { population.temperature_of(least) } else { 0.0 };
+        let weights = population.weights(temperature);
         let u = random_stream(self.settings.seed, "reconstruct answer", 0).random();
-        let drawn = weights.resample(self.settings.n_particles, u);
-        let groups = population.groups(&weights);
+        let draw = weights.resample(self.settings.n_particles, u);
+        let particle = |idx: &usize| population.particle(*idx);
         Particles {
-            z: drawn.iter().map(|idx| population.z[*idx].clone()).collect(),
-            log_likelihood: drawn.iter().map(|idx| population.log_likelihood[*idx]).collect(),
-            ancestor: drawn.iter().map(|idx| groups[*idx]).collect(),
+            z: draw.iter().map(|idx| particle(idx).0.clone()).collect(),
+            log_likelihood: draw.iter().map(|idx| particle(idx).1).collect(),
+            draw,
             temperature,
             log_evidence: weights.log_evidence,
-            ess: population.smallest_ess(&weights).min(largest_ess(self.settings)),
-            n_evaluations: population.z.len(),
+            ess: weights.effective().max(1.0),
+            n_evaluations: population.n_draws(),
         }
     }
 }
 
-/// The effective sample size that a number of particles is worth at the most. Of few particles the
-/// estimate says far too much: 100 of them that were said to be worth 400 had intervals of a third of
-/// the right width.
-fn largest_ess(settings: &SamplerSettings) -> f64 {
-    (settings.n_particles as f64 / COMMON_FIT).max(1.0)
-}
-
-impl RunState {
-    fn temperature(&self) -> f64 {
-        self.population.levels.last().map_or(0.0, |level| level.temperature)
-    }
-
-    /// Effective sample size at the present temperature; `None` for the prior.
-    fn ess(&self, settings: &SamplerSettings) -> Option<f64> {
-        let population = &self.population;
-        let weights = population.weights(self.temperature(), &population.log_mixture());
-        let ess = (population.levels.len() > 1).then(|| population.smallest_ess(&weights));
-        ess.map(|ess| ess.min(largest_ess(settings)))
-    }
-
-    /// Checks a state that comes from a file, so that nothing is counted or indexed wrongly.
-    pub(super) fn check(&self, dim: usize) -> Result<(), &'static str> {
-        let of = &self.population;
-        let n = of.z.len();
-        let lengths = [of.log_likelihood.len(), of.ancestor.len(), of.level.len()];
-        let in_levels: usize = of.levels.iter().map(|level| level.n_particles).sum();
-        if n == 0 || lengths != [n; 3] || in_levels != n {
-            return Err("its lists of particles differ in length");
-        }
-        if of.z.iter().any(|z| z.len() != dim || !z.iter().all(|value| value.is_finite())) {
-            return Err("a particle is not as many finite numbers as the question has variables");
-        }
-        if of.log_likelihood.iter().any(|value| value.is_nan() || *value == f64::INFINITY) {
-            return Err("a likelihood is no number");
-        }
-        let descends = |idx: usize| match of.level[idx] {
-            0 => of.ancestor[idx] == idx,
-            level => {
-                level < of.levels.len()
-                    && of.level.get(of.ancestor[idx]).is_some_and(|before| *before < level)
-            }
-        };
-        if !(0..n).all(descends) {
-            return Err("a particle descends from none of an earlier temperature");
-        }
-        let is_temperature = |level: &Level| {
-            (0.0..=1.0).contains(&level.temperature) && level.log_evidence.is_finite()
-        };
-        let moves = [self.moves.step, self.moves.independent_share];
-        let in_range = moves.iter().all(|value| (0.0..=1.0).contains(value));
-        match of.levels.iter().all(is_temperature) && in_range {
-            true => Ok(()),
-            false => Err("a temperature, an evidence or a step is outside its range"),
-        }
-    }
-}
-
-impl Population {
-    /// The mixture of the weighted particles.
-    fn mixture(&self, weights: &Weights, u: f64) -> Mixture {
-        let (mut z, mut weight): (Vec<&[f64]>, Vec<f64>) = (Vec::new(), Vec::new());
-        let share = 1.0 / FIT_PARTICLES as f64;
-        // Copies of a particle, which follow each other, are one particle.
-        for idx in weights.resample(FIT_PARTICLES, u) {
-            match (z.last(), weight.last_mut()) {
-                (Some(last), Some(weight)) if *last == self.z[idx].as_slice() => *weight += share,
-                _ => {
-                    z.push(&self.z[idx]);
-                    weight.push(share);
-                }
-            }
-        }
-        Mixture::fit(Weighted { z: &z, weight: &weight })
-    }
-
-    /// The smallest effective sample size of a component of z.
-    fn smallest_ess(&self, weights: &Weights) -> f64 {
-        let groups = self.groups(weights);
-        let component = |j: usize| self.z.iter().map(move |z| z[j]).collect::<Vec<f64>>();
-        let dim = self.z.first().map_or(0, Vec::len);
-        let ess = (0..dim)
-            .into_par_iter()
-            .filter_map(|j| group_ess(&component(j), &weights.weight, &groups));
-        let smallest = ess.reduce(|| f64::INFINITY, f64::min);
-        if smallest.is_finite() { smallest } else { 1.0 }
-    }
-
-    /// Adds the particles of chains as a level.
-    fn add(&mut self, level: Level, chains: Chains, ancestors: &[usize]) {
-        let number = self.levels.len();
-        self.levels.push(level);
-        for (states, ancestor) in chains.states.into_iter().zip(ancestors) {
-            for (z, log_likelihood) in states {
-                self.z.push(z);
-                self.log_likelihood.push(log_likelihood);
-                self.ancestor.push(*ancestor);
-                self.level.push(number);
-            }
-        }
-    }
-}
-
-/// Chains that are moved side by side.
-struct Chains {
-    start: Vec<Vec<f64>>,
+/// Particles that are reported while a round is drawn.
+struct Shown {
     z: Vec<Vec<f64>>,
     log_likelihood: Vec<f64>,
-    /// Every state after a move of each chain, with its log likelihood.
-    states: Vec<Vec<(Vec<f64>, f64)>>,
-    record: MoveRecord,
+    temperature: f64,
+    ess: f64,
 }
 
-impl Chains {
-    fn start(population: &Population, ancestors: &[usize]) -> Self {
-        let z: Vec<Vec<f64>> = ancestors.iter().map(|idx| population.z[*idx].clone()).collect();
-        Self {
-            log_likelihood: ancestors.iter().map(|idx| population.log_likelihood[*idx]).collect(),
-            states: vec![Vec::new(); z.len()],
-            record: MoveRecord::default(),
-            start: z.clone(),
-            z,
+impl Shown {
+    fn report(&self, n_evaluations: usize) -> SamplerReport<'_> {
+        SamplerReport {
+            stage: match self.temperature < 1.0 {
+                true => SamplerStage::Tempering,
+                false => SamplerStage::Posterior,
+            },
+            temperature: self.temperature,
+            n_evaluations,
+            ess: Some(self.ess),
+            z: &self.z,
+            log_likelihood: &self.log_likelihood,
         }
-    }
-
-    fn n_particles(&self) -> usize {
-        self.states.iter().map(Vec::len).sum()
-    }
-
-    fn remember(&mut self) {
-        let present = self.z.iter().zip(&self.log_likelihood);
-        for (states, (z, log_likelihood)) in self.states.iter_mut().zip(present) {
-            states.push((z.clone(), *log_likelihood));
-        }
-    }
-
-    /// The largest correlation, over the chains, between start and present of a component.
-    fn largest_correlation(&self) -> f64 {
-        let n = self.z.len() as f64;
-        let dim = self.z.first().map_or(0, Vec::len);
-        let correlation = |j: usize| {
-            let mean = |of: &[Vec<f64>]| of.iter().map(|z| z[j]).sum::<f64>() / n;
-            let means = [mean(&self.start), mean(&self.z)];
-            let [mut aa, mut ab, mut bb] = [0.0; 3];
-            for (a, b) in self.start.iter().zip(&self.z) {
-                let (a, b) = (a[j] - means[0], b[j] - means[1]);
-                (aa, ab, bb) = (aa + a * a, ab + a * b, bb + b * b);
-            }
-            if aa * bb > 0.0 { ab / (aa * bb).sqrt() } else { 1.0 }
-        };
-        (0..dim).map(correlation).fold(0.0, f64::max)
     }
 }

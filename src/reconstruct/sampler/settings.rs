@@ -8,16 +8,17 @@ use super::SamplerError;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SamplerSettings {
-    /// Number of particles of the answer, 2 to 1 000 000, and effective sample size of the weights
-    /// at each temperature.
+    /// Number of particles of the answer, 2 to 1 000 000. Twice as many is the effective sample size
+    /// that mixtures are fitted to.
     pub n_particles: usize,
     /// Seed of all random numbers. The same seed gives the same particles to the last digit.
     pub seed: u64,
-    /// Effective sample size at which sampling ends, 1 or more. The sampler goes on at temperature 1
+    /// Effective sample size at which sampling ends, 1 or more. The sampler goes on
     /// until it is reached or the evaluations are spent.
     pub least_ess: f64,
-    /// Largest number of evaluations of the likelihood. It is exceeded up to fourfold as long as
-    /// temperature 1 has not been reached; after that the particles are not of the posterior.
+    /// Largest number of evaluations of the likelihood, a quarter of them of draws from the prior. It is
+    /// exceeded by the rest of a round, and up to fourfold as long as the effective sample size at
+    /// temperature 1 is below 20; after that the particles are not of the posterior.
     pub max_evaluations: usize,
 }
 

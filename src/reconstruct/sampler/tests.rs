@@ -18,13 +18,48 @@ fn mean(particles: &Particles, value: impl Fn(&[f64]) -> f64) -> f64 {
     particles.z.iter().map(|z| value(z)).sum::<f64>() / particles.z.len() as f64
 }
 
+/// A curved posterior with a mode that is hard to find: a car that is braked stops where one that rolls
+/// out from a fifth of its speed does, in sixteen dimensions of which thirteen hardly matter. Reference:
+/// draws from the prior, weighted.
+#[test]
+fn a_mode_in_a_corner_of_a_curved_posterior_is_not_lost() {
+    let log_likelihood = |z: &[f64]| {
+        let speed_m_s = 30.0 * normal_cdf(z[0] + 0.05 * z[3..].iter().sum::<f64>());
+        let deceleration_m_s2 =
+            if z[1] < 0.7 { 6.0 * (0.4 * z[2]).exp() } else { 0.25 * (0.4 * z[2]).exp() };
+        normal(speed_m_s * speed_m_s / (2.0 * deceleration_m_s2), 30.0, 0.5)
+    };
+    let target = Function { dim: 16, log_likelihood };
+    let share = |z: &[f64]| f64::from(u8::from(z[1] >= 0.7));
+    let n = 400_000;
+    let mut rng = crate::nn::random_stream(1, "reference", 0);
+    let prior: Vec<Vec<f64>> = (0..n).map(|_| standard_normals(16, &mut rng)).collect();
+    let weights: Vec<f64> = target.log_likelihoods(&prior).iter().map(|l| l.exp()).collect();
+    let sum: f64 = weights.iter().sum();
+    let expected = weights.iter().zip(&prior).map(|(w, z)| w * share(z)).sum::<f64>() / sum;
+    let reference_ess = sum * sum / weights.iter().map(|w| w * w).sum::<f64>();
+    for n in 1..=3 {
+        let settings = SamplerSettings { n_particles: 500, max_evaluations: 60_000, ..seed(n) };
+        let particles = run(&target, settings);
+        let found = mean(&particles, share);
+        let ess = particles.ess.min(500.0).min(reference_ess);
+        let error = (2.0 * expected * (1.0 - expected) / ess).sqrt();
+        assert!(
+            (found - expected).abs() < 4.0 * error,
+            "seed {n}: {found} for {expected} ± {error}"
+        );
+        let log_evidence = (sum / prior.len() as f64).ln();
+        assert!((particles.log_evidence - log_evidence).abs() < 0.3, "{}", particles.log_evidence);
+    }
+}
+
 /// Means, variances and evidence of measurements down to 0.004 of the prior's width, within five
 /// standard errors at the effective sample size.
 #[test]
 fn a_narrow_correlated_posterior_is_that_of_the_closed_form() {
     let target = LinearGaussian::narrow();
     let (expected, covariance, log_evidence) = target.closed_form();
-    let particles = run(&target, seed(1));
+    let particles = run(&target, SamplerSettings { n_particles: 1000, ..seed(1) });
     assert!(particles.of_posterior() && particles.ess >= 400.0, "ESS {}", particles.ess);
     assert!(particles.n_evaluations <= 60_000, "{} evaluations", particles.n_evaluations);
     let n = particles.ess.min(particles.z.len() as f64);
@@ -128,7 +163,7 @@ fn settings_out_of_range_are_refused_and_two_particles_are_enough() {
 #[test]
 fn a_flat_likelihood_gives_back_the_prior() {
     let particles = run(&Function { dim: 3, log_likelihood: |_: &[f64]| -2.0 }, seed(2));
-    assert!((particles.log_evidence + 2.0).abs() < 1e-9, "{}", particles.log_evidence);
+    assert!((particles.log_evidence + 2.0).abs() < 0.01, "{}", particles.log_evidence);
     for j in 0..3 {
         assert!(mean(&particles, |z| z[j]).abs() < 0.15);
         assert!((mean(&particles, |z| z[j] * z[j]) - 1.0).abs() < 0.2);
