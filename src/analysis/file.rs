@@ -121,13 +121,14 @@ fn of_load(
         vehicle: settings.target.clone(),
         initial,
         contact: *contact,
-        controls,
+        controls: controls.clone(),
     });
     Analysis {
         name: name.to_owned(),
         footprint: Footprint::from(&settings.target.geometry),
         vehicle: settings.target.clone(),
         struck,
+        controls,
         force: load.map(|(force, _)| force),
         simulation: None,
         reference: None,

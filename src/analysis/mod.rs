@@ -20,7 +20,7 @@ mod vehicle_draws;
 use crate::collision::{Footprint, PulseError, ScenarioError, SecondContact};
 use crate::compare::{MotionError, ReplayError};
 use crate::data::{ContactOutside, DataError, ForceHistory, SeriesError, TimeSeries};
-use crate::vehicle::{Ending, Integrator, Motion, SimulationError, VehicleParameters};
+use crate::vehicle::{Controls, Ending, Integrator, Motion, SimulationError, VehicleParameters};
 
 pub use case::analyse_case;
 pub use file::{DriveSetup, analyse_drive, analyse_recording};
@@ -85,6 +85,8 @@ pub struct Analysis {
     /// State of the struck vehicle at the start of the impact and the point where the force acts;
     /// `None` without a force.
     pub struck: Option<StruckVehicle>,
+    /// What steers, drives, brakes and locks the wheels of the struck vehicle in the simulation.
+    pub controls: Controls,
     /// Motion of the target simulated with the 4DOF model; `None` if it could not be simulated, for
     /// the reason given in `notes`.
     pub simulation: Option<Motion>,

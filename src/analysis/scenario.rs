@@ -84,6 +84,7 @@ pub fn analyse_scenario(
         vehicle: struck.vehicle.clone(),
         footprint: scenario.target.footprint(),
         force: Some(force),
+        controls: struck.controls.clone(),
         struck: Some(struck),
         simulation: Some(target),
         reference: None,

@@ -1,7 +1,11 @@
 //! What steers, drives, brakes and locks the wheels of a vehicle over time.
 
 use crate::numerics::interpolate;
-use crate::vehicle::tire::WheelEffort;
+use crate::vehicle::Wheel;
+use crate::vehicle::tire::{LOCKING_SHARE, TireParameters, WheelEffort};
+
+/// Share to which a wheel is locked from which it is said to be.
+const LOCKED_FROM: f64 = 0.5;
 
 /// Steer angle of the front road wheels over time. It is linear between samples; outside, the first
 /// or the last value holds.
@@ -49,6 +53,30 @@ impl Controls {
     pub fn is_driven(&self) -> bool {
         let of = self.wheels.iter().flat_map(|history| history.wheels.iter().flatten());
         of.into_iter().any(|wheel| wheel.drive_n != 0.0)
+    }
+
+    /// Whether a wheel is locked at a time, by damage or by a brake that asks for more than the road can
+    /// hold along the plane of the wheel; as in the tyre model, with the peak of the friction.
+    ///
+    /// - `velocity_m_s`: velocity of its centre along and across its own plane, m/s;
+    /// - `load_n`: its vertical load, N.
+    pub fn is_locked(
+        &self,
+        time_s: f64,
+        wheel: Wheel,
+        (velocity_m_s, load_n): ([f64; 2], f64),
+        tires: &TireParameters,
+    ) -> bool {
+        let Some(wheels) = self.wheels.as_ref().and_then(|wheels| wheels.at(time_s)) else {
+            return false;
+        };
+        let effort = wheels[wheel.index()];
+        let [u, w] = velocity_m_s;
+        let along = u.abs() / (u * u + w * w + 1e-6).sqrt();
+        let largest_n = tires.friction * tires.longitudinal_friction_ratio * load_n * along;
+        let beyond = (effort.braking_n - largest_n) / (largest_n * LOCKING_SHARE + 1e-3);
+        let by_brake = beyond.clamp(0.0, 1.0);
+        by_brake + (1.0 - by_brake) * effort.locked >= LOCKED_FROM
     }
 }
 

@@ -47,7 +47,7 @@ pub(super) const LOCKED_SLIDING_SPEED_M_S: f64 = 0.05;
 
 /// By how much the braking force must exceed what the road can hold until the wheel is locked, as a
 /// share of the latter. In between the wheel slips more and more.
-const LOCKING_SHARE: f64 = 0.15;
+pub(super) const LOCKING_SHARE: f64 = 0.15;
 
 /// Regularisation ε of the slip S of a wheel whose spin lags, m/s.
 const SPIN_LAG_SLIP_M_S: f64 = 0.2;

@@ -21,6 +21,8 @@ mod propagate_tests;
 
 pub(super) mod predictor;
 
+mod path_draws;
+
 mod to_rest;
 
 pub use domain::{Applicability, MotionDomain, OutsideDomain};
