@@ -24,7 +24,7 @@
 //! 10. [`shipped`]: the trained networks and notices that are part of the program;
 //! 11. [`analysis`]: one case, from its file or scenario to a motion;
 //! 12. [`study`]: every question that can be asked, as a request with a report as its answer;
-//! 13. [`figure`]: the content of a plot, as plain data;
+//! 13. [`figure`], [`scene`]: the content of a plot, and of a scene in space, as plain data;
 //! 14. `render` (feature `gui`): one drawing function for the window and for pictures without a
 //!     window;
 //! 15. [`cli`] and `app` (feature `gui`): the command line and the window.
@@ -65,6 +65,7 @@ pub mod reconstruct;
 #[cfg(feature = "gui")]
 pub mod render;
 pub mod response;
+pub mod scene;
 pub mod shipped;
 pub mod study;
 pub mod uncertainty;

@@ -22,7 +22,7 @@ const LAYERS: &[&[&str]] = &[
     &["analysis"],
     &["study"],
     &["case_file"],
-    &["figure"],
+    &["scene", "figure"],
     &["render"],
     &["cli", "app"],
 ];

@@ -1,0 +1,153 @@
+//! The scene of a reconstruction: paths of particles over what was found.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use crate::collision::{Footprint, Pose};
+use crate::numerics::interpolate;
+use crate::reconstruct::Cars;
+use crate::reconstruct::evidence::{Evidence, RestPose};
+use crate::scene::simulation::{add, outline_m};
+use crate::scene::{
+    CarBody, CarLook, CarMotion, CarShape, Scene, SceneCar, SceneLine, ScenePath, ScenePoint,
+    SceneRole,
+};
+use crate::study::Trust;
+use crate::units::UnitSystem;
+use crate::vehicle::{Path, VehicleParameters};
+
+/// Points of an ellipse.
+const N_ELLIPSE: usize = 48;
+/// Half axis of an ellipse that holds 90 % of a plane normal distribution, standard deviations.
+const NINETY: f64 = 2.1460;
+/// Interval at which the motion along a path is kept, s.
+const STEP_S: f64 = 0.05;
+
+/// What the scene of a reconstruction shows.
+#[derive(Debug, Clone, Copy)]
+pub struct ReconstructionParts<'a> {
+    /// What was found.
+    pub evidence: &'a Evidence,
+    /// The vehicles.
+    pub cars: &'a Cars,
+    /// Paths of particles.
+    pub drawn: &'a [Path],
+    /// The path that the car drives, with its name.
+    pub followed: Option<(&'a str, &'a Path)>,
+    /// System of units of the labels.
+    pub units: UnitSystem,
+    /// What restricts the answer.
+    pub trust: &'a Trust,
+}
+
+/// The scene of a reconstruction.
+pub fn reconstruction_scene(input: &ReconstructionParts<'_>) -> Scene {
+    let ReconstructionParts { evidence, cars, .. } = *input;
+    let mut scene = Scene {
+        title: evidence.case.clone(),
+        units: input.units,
+        trust: input.trust.clone(),
+        ..Scene::default()
+    };
+    let shape = shape_of(&cars.struck.parameters);
+    let particles = input.drawn.iter().filter_map(|path| motion_of(path, &shape.body));
+    scene.paths.extend(particles.map(|motion| ScenePath {
+        name: "particles".to_owned(),
+        role: SceneRole::Muted,
+        is_dashed: false,
+        has_ticks: false,
+        motion: Arc::new(motion),
+    }));
+    add_marks(&mut scene, evidence);
+    for (rest, shape, [name, tag]) in [
+        (
+            &evidence.striking_rest,
+            shape_of(&cars.striking.parameters),
+            ["striking car at rest, 90 % ellipse", "striking, found"],
+        ),
+        (&evidence.rest, Arc::clone(&shape), ["struck car at rest, 90 % ellipse", "struck, found"]),
+    ] {
+        if let Some(rest) = rest {
+            add_rest(&mut scene, (rest, &shape), [name, tag]);
+        }
+    }
+    if let Some((name, path)) = input.followed {
+        let motion = motion_of(path, &shape.body);
+        let named = (name, "struck");
+        add(&mut scene, (named, SceneRole::Simulated, CarLook::Solid), (&shape, motion));
+    }
+    let solid = scene.cars.iter().filter(|car| car.look == CarLook::Solid);
+    scene.end_s = solid.map(|car| car.motion.end_s()).fold(0.0, f64::max);
+    scene
+}
+
+fn shape_of(vehicle: &VehicleParameters) -> Arc<CarShape> {
+    let outline = Footprint::from(&vehicle.geometry);
+    Arc::new(CarShape::new(CarBody::new(vehicle, &outline)))
+}
+
+/// The motion along a path, at even intervals.
+fn motion_of(path: &Path, body: &CarBody) -> Option<CarMotion> {
+    let points = &path.points;
+    let times: Vec<f64> = points.iter().map(|point| point.time_s).collect();
+    let start_s = *times.first()?;
+    let n_steps = ((times.last()? - start_s) / STEP_S).ceil().clamp(0.0, 1e5) as usize;
+    let at = |values: &[f64], time_s| interpolate(&times, values, time_s);
+    let [x, y, yaw]: [Vec<f64>; 3] = [
+        points.iter().map(|point| point.x_m).collect(),
+        points.iter().map(|point| point.y_m).collect(),
+        points.iter().map(|point| point.yaw_rad).collect(),
+    ];
+    let pose = |step: usize| {
+        let time_s = start_s + step as f64 * STEP_S;
+        Some(Pose { x_m: at(&x, time_s)?, y_m: at(&y, time_s)?, yaw_rad: at(&yaw, time_s)? })
+    };
+    let poses: Option<Vec<Pose>> = (0..=n_steps).map(pose).collect();
+    CarMotion::of_poses(&poses?, STEP_S, body)
+}
+
+/// Marks of tyres, and positions in a video.
+fn add_marks(scene: &mut Scene, evidence: &Evidence) {
+    for mark in &evidence.marks {
+        scene.lines.push(SceneLine {
+            name: format!("mark, {}", mark.wheel.label()),
+            role: SceneRole::Evidence,
+            is_dashed: true,
+            is_above_cars: false,
+            points_m: mark.points_m.clone(),
+        });
+    }
+    scene.points.extend(evidence.positions.iter().map(|at| ScenePoint {
+        name: "video".to_owned(),
+        role: SceneRole::Evidence,
+        at_m: [at.x_m, at.y_m],
+    }));
+}
+
+/// A car as it was found at rest, with the ellipse that holds its place with 90 %.
+fn add_rest(scene: &mut Scene, (rest, shape): (&RestPose, &Arc<CarShape>), [name, tag]: [&str; 2]) {
+    let ellipse = (0..=N_ELLIPSE).map(|i| {
+        let (sin, cos) = (TAU * i as f64 / N_ELLIPSE as f64).sin_cos();
+        let radius = NINETY * rest.position_sigma_m;
+        [rest.x_m + radius * cos, rest.y_m + radius * sin]
+    });
+    let line = |name: &str, is_dashed, points_m| SceneLine {
+        name: name.to_owned(),
+        role: SceneRole::Evidence,
+        is_dashed,
+        is_above_cars: false,
+        points_m,
+    };
+    scene.lines.push(line(name, false, ellipse.collect()));
+    let Some(heading) = rest.heading_rad else { return };
+    let pose = Pose { x_m: rest.x_m, y_m: rest.y_m, yaw_rad: heading.value };
+    scene.lines.push(line("", true, outline_m(&shape.body, &pose)));
+    scene.cars.push(SceneCar {
+        name: name.to_owned(),
+        tag: tag.to_owned(),
+        role: SceneRole::Evidence,
+        look: CarLook::Ghost,
+        shape: Arc::clone(shape),
+        motion: Arc::new(CarMotion::standing(pose)),
+    });
+}
