@@ -21,6 +21,7 @@ use crate::app::workspaces::Workspace;
 use crate::data::{ColumnMap, Existing, Severity};
 use crate::figure::Figure;
 use crate::reconstruct::evidence::Evidence;
+use crate::render::scene::ScenePicture;
 use crate::study::SimulateAnswer;
 use crate::vehicle::DataSheet;
 
@@ -67,6 +68,8 @@ pub enum Command {
     FitPlots,
     /// Write a figure to a file: as CSV if the path ends in `.csv`, otherwise as PNG.
     Export(Box<Figure>, PathBuf),
+    /// Write a scene to a PNG file, as it is seen.
+    ExportScene(Box<ScenePicture>, PathBuf),
     /// Copy the numbers of a figure to the clipboard, as CSV.
     CopyNumbers(Box<Figure>),
     /// Begin a new case, after asking if something would be lost.
@@ -203,6 +206,9 @@ impl Command {
             Self::Ask(Purpose::Picture(figure) | Purpose::Numbers(figure))
             | Self::Export(figure, _)
             | Self::CopyNumbers(figure) => figure.trust.is_outdated,
+            Self::Ask(Purpose::ScenePicture(picture)) | Self::ExportScene(picture, _) => {
+                picture.scene.trust.is_outdated
+            }
             _ => false,
         }
     }
@@ -254,6 +260,7 @@ impl State {
             }
             Command::CancelPath => self.session.path_dialog = None,
             Command::Export(..)
+            | Command::ExportScene(..)
             | Command::SaveScenario(_)
             | Command::SaveVehicle(..)
             | Command::SaveEvidence(..)

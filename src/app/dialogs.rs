@@ -11,6 +11,7 @@ use crate::case_file::{CASE_ENDING, file_stem};
 use crate::figure::Figure;
 use crate::jobs::{Job, Update};
 use crate::reconstruct::evidence::Evidence;
+use crate::render::scene::ScenePicture;
 use crate::vehicle::DataSheet;
 
 /// File extension of model files.
@@ -25,6 +26,8 @@ pub enum Purpose {
     Files,
     /// A PNG file for the picture of a figure.
     Picture(Box<Figure>),
+    /// A PNG file for a scene as it is seen.
+    ScenePicture(Box<ScenePicture>),
     /// A CSV file for the numbers of a figure.
     Numbers(Box<Figure>),
     /// A TOML file for the scenario.
@@ -55,7 +58,7 @@ impl Purpose {
         match self {
             Self::Folder => "Open a data set",
             Self::Files => "Open files",
-            Self::Picture(_) => "Save the picture",
+            Self::Picture(_) | Self::ScenePicture(_) => "Save the picture",
             Self::Numbers(_) => "Save the numbers",
             Self::Scenario => "Save the scenario",
             Self::Vehicle(_) => "Save the vehicle",
@@ -74,6 +77,7 @@ impl Purpose {
         let fixed = match self {
             Self::Folder | Self::Files | Self::OpenModel | Self::OpenComparison => "",
             Self::Picture(figure) => return file_stem(&figure.title) + ".png",
+            Self::ScenePicture(picture) => return file_stem(&picture.title()) + ".png",
             Self::Numbers(figure) => return file_stem(&figure.title) + ".csv",
             Self::Scenario => "scenario.toml",
             Self::Vehicle(sheet) => return file_stem(&sheet.name) + ".toml",
@@ -107,6 +111,9 @@ impl Purpose {
             }
             Self::SaveComparison => Command::Compare(ComparisonCommand::Save(first)),
             Self::Picture(figure) => written("png", &|path| Command::Export(figure.clone(), path)),
+            Self::ScenePicture(picture) => {
+                written("png", &|path| Command::ExportScene(picture.clone(), path))
+            }
             Self::Numbers(figure) => written("csv", &|path| Command::Export(figure.clone(), path)),
             Self::Scenario => written("toml", &Command::SaveScenario),
             Self::Vehicle(sheet) => {
@@ -230,7 +237,9 @@ async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
         Purpose::SaveModel(_) | Purpose::SaveKept(..) => {
             save(dialog.add_filter("model", &[MODEL_ENDING]), name).await
         }
-        Purpose::Picture(_) => save(dialog.add_filter("picture", &["png"]), name).await,
+        Purpose::Picture(_) | Purpose::ScenePicture(_) => {
+            save(dialog.add_filter("picture", &["png"]), name).await
+        }
         Purpose::Numbers(_) => save(dialog.add_filter("table", &["csv"]), name).await,
         Purpose::Vehicle(_) => save(dialog.add_filter("vehicle", &["toml"]), name).await,
         Purpose::Evidence(_) => save(dialog.add_filter("evidence", &["toml"]), name).await,

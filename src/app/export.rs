@@ -6,6 +6,7 @@ use crate::data::{Existing, write_atomically};
 use crate::error_chain;
 use crate::figure::{Figure, write_figure_csv};
 use crate::jobs::Job;
+use crate::render::scene::{ScenePicture, scene_image};
 use crate::render::{Canvas, figure_image, save_png};
 
 /// Starts writing a figure to a file: its numbers if the path ends in `.csv`, otherwise a PNG
@@ -25,6 +26,25 @@ pub fn spawn(
     wake: impl Fn() + Send + 'static,
 ) -> std::io::Result<Job<Result<PathBuf, String>>> {
     Job::spawn("export", wake, move |_| write(&figure, (&path, existing), dark).map(|()| path))
+}
+
+/// Starts writing a scene to a PNG file, as [`spawn`] does for a figure.
+///
+/// # Errors
+/// The error of the operating system, if the thread cannot be started.
+pub fn spawn_scene(
+    picture: ScenePicture,
+    (path, existing): (PathBuf, Existing),
+    dark: bool,
+    wake: impl Fn() + Send + 'static,
+) -> std::io::Result<Job<Result<PathBuf, String>>> {
+    Job::spawn("export", wake, move |_| {
+        let canvas = Canvas { dark, ..Canvas::default() };
+        scene_image(&picture, canvas)
+            .and_then(|image| save_png(&image, &path, existing))
+            .map_err(|error| error_chain(&error))?;
+        Ok(path)
+    })
 }
 
 fn write(figure: &Figure, (path, existing): (&Path, Existing), dark: bool) -> Result<(), String> {

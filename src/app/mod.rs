@@ -35,6 +35,7 @@ mod replace;
 mod replay;
 mod requests;
 mod response;
+mod scene;
 mod source;
 mod state;
 mod store;
@@ -74,6 +75,7 @@ pub use reconstruction::{FollowedParticle, ReconstructionCommand, Reconstruction
 pub use recording::OverlaidRecording;
 pub use replay::ReplayStatus;
 pub use response::{DensityChoice, ForceChoice, MotionAnswer, ResponseSession, TrainingMode};
+pub use scene::{SceneSession, SceneSettings, SceneSource};
 pub use source::{Content, Source};
 pub use state::{FileStart, Project, RestoreError, State, Subject, View};
 pub use unfinished::{Unfinished, UnfinishedTrainings};

@@ -16,6 +16,7 @@ impl Command {
     fn target(&self) -> Option<&Path> {
         match self {
             Self::Export(_, path)
+            | Self::ExportScene(_, path)
             | Self::SaveScenario(path)
             | Self::SaveVehicle(_, path)
             | Self::SaveEvidence(_, path)
@@ -49,6 +50,13 @@ impl State {
         match command {
             Command::Export(figure, path) => {
                 match export::spawn(*figure, (path, existing), self.view.dark, wake(context)) {
+                    Ok(job) => self.session.exports.push(job),
+                    Err(error) => self.say(Severity::Error, error.to_string()),
+                }
+            }
+            Command::ExportScene(picture, path) => {
+                let wake = wake(context);
+                match export::spawn_scene(*picture, (path, existing), self.view.dark, wake) {
                     Ok(job) => self.session.exports.push(job),
                     Err(error) => self.say(Severity::Error, error.to_string()),
                 }

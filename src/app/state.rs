@@ -26,6 +26,7 @@ use crate::app::reconstruction::{
 use crate::app::recording::OverlaidRecording;
 use crate::app::replay::Replays;
 use crate::app::response::{DensityChoice, ResponseProject, ResponseSession, ResponseView};
+use crate::app::scene::{SceneSession, SceneSettings};
 use crate::app::source::Source;
 use crate::app::unfinished::UnfinishedTrainings;
 use crate::app::variants::OtherVariants;
@@ -197,6 +198,8 @@ pub struct View {
     pub motion_channels: Vec<Channel>,
     /// Whether the answers of all variants are shown, not only those of the one in the forms.
     pub shows_all_variants: bool,
+    /// From where the scene is seen.
+    pub scene: SceneSettings,
     /// The arrangement of the panes in each workspace.
     pub workspaces: Workspaces,
 }
@@ -219,6 +222,7 @@ impl Default for View {
             playback_speed: 1.0,
             motion_channels: MOTION_CHANNELS.to_vec(),
             shows_all_variants: true,
+            scene: SceneSettings::default(),
             workspaces: Workspaces::default(),
         }
     }
@@ -255,6 +259,8 @@ pub struct Session {
     pub models_dialog: Option<ModelsDialog>,
     /// The cases that the case table lists, in their order.
     pub cases: CaseList,
+    /// The scene that is shown, and its picture.
+    pub scene: SceneSession,
     /// The time that is shown in the scene, s.
     pub time_s: f64,
     /// The two cursors of the figures over time.

@@ -264,4 +264,11 @@ ranges! {
     PICTURES = "pictures";
     PICTURE_SIDE: "picture side" = whole([16, 16_384]), "width or height of a picture in pixels";
     PICTURE_SCALE: "picture scale" = real(Quantity::Ratio, [0.25, 8.0]), "pixels per point";
+    CAMERA_AZIMUTH: "camera azimuth" = real(Quantity::Angle, [-2.0 * PI, 2.0 * PI]),
+        "direction from the scene to the camera, counter-clockwise from X";
+    CAMERA_ELEVATION: "camera elevation" = real(Quantity::Angle, [0.035, 1.56]),
+        "height of the camera above the horizon of what it looks at";
+    CAMERA_DISTANCE: "camera distance" = real(Quantity::Length, [2.0, 20_000.0]),
+        "distance of the camera from what it looks at";
+    GHOSTS: "ghosts" = whole([0, 200]), "paths that are drawn from a forecast into a scene";
 }

@@ -1,11 +1,12 @@
-//! Drawing of figures. One function draws a figure both in the panel on screen and in a picture off
-//! screen.
+//! Drawing of figures and scenes. One function draws a figure, and one a scene, both in the panel on
+//! screen and in a picture off screen.
 
 mod density;
 mod density_buffers;
 mod legend;
 mod offscreen;
 mod plot;
+pub mod scene;
 mod software;
 pub mod theme;
 mod thin;

@@ -19,14 +19,26 @@ const SPACING: f32 = 3.0;
 /// and what was assumed. Where the picture is too small for all of it, the values that were assumed
 /// are only counted; what does not fit even then is said to be in the table of the figure.
 pub fn picture_ui(ui: &mut Ui, figure: &Figure) {
+    framed_ui(ui, (&figure.title, &figure.trust), |ui, height| {
+        figure_ui(ui, figure, &FigureOptions { height, ..FigureOptions::default() });
+    });
+}
+
+/// Draws something below its title and above what restricts it, as [`picture_ui`] does.
+///
+/// - `draw`: given the height that is left, points; `None` if that is all the space there is.
+pub fn framed_ui(
+    ui: &mut Ui,
+    (title, trust): (&str, &Trust),
+    draw: impl FnOnce(&mut Ui, Option<f32>),
+) {
     let area = ui.available_size();
-    let heading = ui.label(RichText::new(&figure.title).strong().size(15.0));
-    let paragraphs = fitting(ui, &figure.trust, [area.x, area.y * LARGEST_SHARE]);
+    let heading = ui.label(RichText::new(title).strong().size(15.0));
+    let paragraphs = fitting(ui, trust, [area.x, area.y * LARGEST_SHARE]);
     let text_height: f32 = paragraphs.iter().map(|job| height(ui, job, area.x) + SPACING).sum();
     let between = ui.spacing().item_spacing.y;
     let rest = area.y - heading.rect.height() - text_height - 2.0 * between - SPACING;
-    let height = (!paragraphs.is_empty()).then_some(rest);
-    figure_ui(ui, figure, &FigureOptions { height, ..FigureOptions::default() });
+    draw(ui, (!paragraphs.is_empty()).then_some(rest));
     if !paragraphs.is_empty() {
         ui.add_space(SPACING);
     }

@@ -369,6 +369,40 @@ fn figures_are_written_as_numbers() {
     assert!(ran.error_line().contains(".png or .csv"), "{}", ran.err);
 }
 
+#[cfg(feature = "gui")]
+#[test]
+fn a_scene_is_drawn_from_above_and_in_perspective() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("scene.png");
+    let scene = ["render", "scene", TRAJECTORIES, "--case", "FE_c002", "--time", "1.5", "--json"];
+    let target = ["--size", "320x240", "--scale", "1", "--out", text(&out), "--overwrite"];
+    let mut pictures = Vec::new();
+    for (options, seen) in [
+        (&["--view", "above"][..], "from above"),
+        (&["--view", "perspective"][..], "in perspective"),
+        (&["--view", "perspective", "--azimuth=40deg", "--elevation=20deg"][..], "in perspective"),
+        (
+            &["--view", "perspective", "--distance", "15", "--follow", "struck"][..],
+            "in perspective",
+        ),
+        (&["--ghosts", "8"][..], "from above"),
+    ] {
+        let ran = impactlab(&[&scene[..], options, &target].concat());
+        assert_eq!(ran.code, 0, "{options:?}: {}", ran.err);
+        assert_eq!(ran.json()["title"], format!("FE_c002: scene {seen} at 1.50 s"));
+        let picture = fs::read(&out).unwrap();
+        assert!(!pictures.contains(&picture), "{options:?} changes the picture");
+        pictures.push(picture);
+    }
+    let csv = folder.path().join("scene.csv");
+    let ghosts = ["--ghosts", "3", "--out", text(&csv)];
+    let ran = impactlab(&[&scene[..], &ghosts].concat());
+    assert_eq!(ran.code, 0, "{}", ran.err);
+    let numbers = fs::read_to_string(&csv).unwrap();
+    assert!(numbers.lines().any(|line| line.starts_with("draw 3 of the forecast,")));
+    assert!(!numbers.contains("draw 4 of"));
+}
+
 #[cfg(not(feature = "gui"))]
 #[test]
 fn a_build_without_drawing_says_so() {

@@ -57,6 +57,7 @@ fn a_figure_shows_the_paths_a_quantity_or_the_budget() {
     // Few particles tell no budget that can be believed.
     for (plot, particles, column) in [
         ("scene", "60", "struck car at rest, 90 % ellipse"),
+        ("cars-above", "60", "struck car at rest, 90 % ellipse"),
         ("target-speed", "60", "before the evidence"),
         ("budget", "200", "with the measurement"),
     ] {
@@ -65,5 +66,18 @@ fn a_figure_shows_the_paths_a_quantity_or_the_budget() {
         ok(program().args(["render", "reconstruction", EVIDENCE]).args(args).output().unwrap());
         let table = fs::read_to_string(&out).unwrap();
         assert!(table.contains(column), "{plot}: {}", table.lines().next().unwrap_or_default());
+    }
+    if cfg!(feature = "gui") {
+        let out = folder.path().join("cars.png");
+        let args = ["--plot", "cars-perspective", "--particles", "60", "--json"];
+        let target = ["--size", "320x240", "--scale", "1", "--out", text(&out)];
+        let ran = ok(program()
+            .args(["render", "reconstruction", EVIDENCE])
+            .args(args)
+            .args(target)
+            .output()
+            .unwrap());
+        assert!(json(&ran)["title"].as_str().unwrap().contains("in perspective"), "{ran}");
+        assert!(out.metadata().unwrap().len() > 5_000);
     }
 }

@@ -14,6 +14,7 @@ mod network_figures;
 mod pictures;
 mod reconstruct;
 mod response_network;
+mod scene;
 mod settings;
 mod snapshots;
 mod stored;

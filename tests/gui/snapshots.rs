@@ -3,6 +3,7 @@
 
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::Arc;
 
 use egui_kittest::image_snapshot;
 use impactlab::analysis::{Analysis, Settings, analyse_case};
@@ -11,7 +12,9 @@ use impactlab::data::{Channel, Dataset};
 use impactlab::figure::{
     Figure, analysis_force_figure, analysis_motion_figure, analysis_scene_figure, impact_figure,
 };
+use impactlab::render::scene::{Camera, Follow, ScenePicture, ViewKind, scene_image};
 use impactlab::render::{Canvas, figure_image};
+use impactlab::scene::{SimulationScene, simulation_scene};
 use impactlab::study::Trust;
 use impactlab::units::UnitSystem;
 use impactlab::vehicle::{Integrator, Preset};
@@ -61,6 +64,35 @@ fn scene_with_bullet_and_scene_with_reference() {
     let trajectory = analysis("trajectories-fea", "FE_c002");
     let shown = (&trajectory, &Trust::default());
     check(&analysis_scene_figure(shown, 2.0, UnitSystem::Us), true, "scene_reference");
+}
+
+/// The scene of a case, drawn as cars.
+fn check_scene(
+    analysis: &Analysis,
+    (kind, time_s): (ViewKind, f64),
+    (size_px, dark): ([u32; 2], bool),
+    name: &str,
+) {
+    let (trust, units) = (Trust::default(), UnitSystem::Si);
+    let input = SimulationScene { analysis, others: &[], units, trust: &trust };
+    let picture = ScenePicture {
+        scene: Arc::new(simulation_scene(&input)),
+        time_s,
+        camera: Camera { kind, ..Camera::default() },
+        is_placed: false,
+        distance_m: (kind == ViewKind::Perspective).then_some(14.0),
+        follow: Follow::Struck,
+    };
+    let canvas = Canvas { size_px, scale: 1.0, dark };
+    image_snapshot(&scene_image(&picture, canvas).expect("a picture"), name);
+}
+
+#[test]
+fn cars_from_above_and_in_perspective() {
+    let recorded = analysis("trajectories-fea", "FE_c002");
+    check_scene(&recorded, (ViewKind::Above, 2.0), ([320, 210], true), "cars_above");
+    let force_case = analysis("fea", "c002");
+    check_scene(&force_case, (ViewKind::Perspective, 0.3), ([220, 130], false), "cars_perspective");
 }
 
 #[test]

@@ -1,29 +1,43 @@
-//! The “Scene” pane: a plan view of the motion at a chosen time, and the clock with which the time
-//! is chosen.
+//! The “Scene” pane: the cars at a chosen time, from above or in perspective, and the clock with which
+//! the time is chosen.
 
-use egui::{Slider, Ui};
+use std::sync::Arc;
+
+use egui::{Align, Layout, RichText, Slider, Ui};
 
 use crate::app::command::Command;
-use crate::app::looks::{Icon, icon_button};
+use crate::app::dialogs::Purpose;
+use crate::app::looks::{Icon, icon, icon_button};
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
 use crate::app::recording::overlaid;
+use crate::app::scene::{SceneSettings, SceneSource};
 use crate::app::variants::{are_others_awaited, other_simulations};
-use crate::app::widgets::{badges_ui, figure_frame};
-use crate::figure::{analysis_scene_figure, recording_path};
-use crate::render::FigureOptions;
-use crate::study::{SimulateAnswer, Trust};
+use crate::app::widgets::{OUTDATED, badges_ui};
+use crate::figure::{Figure, analysis_scene_figure, recording_path};
+use crate::render::scene::{Follow, ScenePicture, ViewKind, scene_view_ui};
+use crate::scene::Scene;
+use crate::study::Trust;
 use crate::units::Quantity;
 
 /// Seconds of the motion that can be played in a second.
 const SPEEDS: [f64; 5] = [0.05, 0.1, 0.25, 0.5, 1.0];
 
-/// Draws the time slider and the plan view.
+/// What can be done with the mouse in each view.
+const HINTS: [&str; 2] = [
+    "Drag moves the scene, the wheel zooms, a double click shows all of it",
+    "Drag turns the scene, drag with the right button or Shift moves it, the wheel zooms, a double click \
+     shows all of it",
+];
+
+/// Draws the time slider and the scene.
 pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
-    let PaneContext { project, view, session, variants, commands, .. } = pane;
-    let Some(SimulateAnswer { analysis, report }) = analysis_or_hint(ui, session) else {
+    if analysis_or_hint(ui, pane.session).is_none() {
         return;
-    };
+    }
+    let Some(answer) = pane.session.analysis.ok().cloned() else { return };
+    let (analysis, report) = (&answer.analysis, &answer.report);
+    let PaneContext { project, view, session, variants, commands, .. } = pane;
     let series = analysis.simulation.as_ref().map(|motion| &motion.series);
     let Some(series) = series.or(analysis.reference.as_ref()) else {
         ui.label("There is no motion to show.");
@@ -38,21 +52,128 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         ui.label(format!("At rest after {:.2} s and {distance}, at {position}", rest.time_s));
     }
     let trust = session.simulation_trust(report).outdated_if(are_others_awaited(variants));
-    let mut figure = analysis_scene_figure((analysis, &trust), session.time_s, view.units);
-    for (i, (name, other)) in other_simulations(variants).enumerate() {
-        let of_other = Trust::new(&other.report.badges, &other.report.assumptions);
-        let shown = (&other.analysis, &of_other);
-        figure.overlay((name, i), &analysis_scene_figure(shown, session.time_s, view.units));
-    }
-    if let Some((name, series, _)) = overlaid(project.recording.as_ref(), &session.sources) {
-        figure.elements.extend(recording_path((&name, series), view.units));
-    }
-    let options = FigureOptions {
-        id: "scene".to_owned(),
-        reset: session.fit_plots,
-        ..FigureOptions::default()
+    let recorded = overlaid(project.recording.as_ref(), &session.sources);
+    let n_recorded = recorded.as_ref().map_or(0, |(_, series, _)| series.n_samples());
+    let source = SceneSource {
+        answer: Arc::clone(&answer),
+        others: SceneSource::others(variants),
+        recording: project
+            .recording
+            .clone()
+            .filter(|_| recorded.is_some())
+            .map(|of| (of, n_recorded)),
+        trust: trust.clone(),
+        units: view.units,
     };
-    figure_frame(ui, (&figure.title, &figure), &options, commands);
+    let scene = session.scene.scene(source, &session.sources);
+    let time_s = session.time_s;
+    let numbers = || {
+        let mut figure = analysis_scene_figure((analysis, &trust), time_s, view.units);
+        for (i, (name, other)) in other_simulations(variants).enumerate() {
+            let of_other = Trust::new(&other.report.badges, &other.report.assumptions);
+            let shown = (&other.analysis, &of_other);
+            figure.overlay((name, i), &analysis_scene_figure(shown, time_s, view.units));
+        }
+        if let Some((name, series, _)) = overlaid(project.recording.as_ref(), &session.sources) {
+            figure.elements.extend(recording_path((&name, series), view.units));
+        }
+        figure
+    };
+    let placed = session.scene.view.camera();
+    heading_ui(
+        ui,
+        (&scene, time_s),
+        &mut view.scene,
+        |settings| {
+            let picture = ScenePicture {
+                scene: Arc::clone(&scene),
+                time_s,
+                camera: placed.unwrap_or(settings.camera),
+                is_placed: placed.is_some(),
+                distance_m: None,
+                follow: settings.follow,
+            };
+            (picture, numbers())
+        },
+        commands,
+    );
+    if session.fit_plots {
+        session.scene.view.fit();
+    }
+    let SceneSettings { camera, follow } = &mut view.scene;
+    let seen = (camera, *follow, ui.available_height());
+    scene_view_ui(ui, (&scene, time_s), &mut session.scene.view, seen);
+}
+
+/// Draws what the scene shows, the choice of the view and of the car that is followed, and the menu that
+/// exports it.
+///
+/// - `exported`: picture and numbers, which are made only when they are wanted.
+fn heading_ui(
+    ui: &mut Ui,
+    (scene, time_s): (&Scene, f64),
+    settings: &mut SceneSettings,
+    exported: impl Fn(&SceneSettings) -> (ScenePicture, Figure),
+    commands: &mut Vec<Command>,
+) {
+    ui.horizontal(|ui| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.add_enabled_ui(!scene.trust.is_outdated, |ui| {
+                ui.menu_button((icon(Icon::Download), "Export"), |ui| {
+                    export_menu_ui(ui, || exported(settings), commands);
+                })
+                .response
+                .on_hover_text("Save or copy this scene")
+                .on_disabled_hover_text(OUTDATED);
+            });
+            view_ui(ui, scene, settings);
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                let title = scene.heading(settings.camera.kind.phrase(), time_s);
+                ui.add(egui::Label::new(RichText::new(title).strong()).truncate());
+            });
+        });
+    });
+}
+
+/// Draws the choice of the view and of the car that stays in the middle, from right to left.
+fn view_ui(ui: &mut Ui, scene: &Scene, settings: &mut SceneSettings) {
+    let cars = [
+        (Follow::Nothing, "no car", true),
+        (Follow::Struck, "struck car", scene.struck().is_some()),
+        (Follow::Striking, "striking car", scene.striking().is_some()),
+    ];
+    let chosen = cars.iter().find(|(follow, ..)| *follow == settings.follow);
+    let list = egui::ComboBox::from_id_salt("followed car").width(96.0);
+    let text = chosen.map_or("", |(_, name, _)| *name);
+    let list = list.selected_text(format!("follow {text}")).show_ui(ui, |ui| {
+        for (follow, name, is_there) in cars {
+            ui.add_enabled_ui(is_there, |ui| {
+                ui.selectable_value(&mut settings.follow, follow, name);
+            });
+        }
+    });
+    list.response.on_hover_text("The car that stays in the middle");
+    let kind = &mut settings.camera.kind;
+    let views = [(ViewKind::Perspective, "Perspective"), (ViewKind::Above, "From above")];
+    for ((view, name), hint) in views.into_iter().zip(HINTS.into_iter().rev()) {
+        ui.selectable_value(kind, view, name).on_hover_text(hint);
+    }
+}
+
+fn export_menu_ui(
+    ui: &mut Ui,
+    exported: impl Fn() -> (ScenePicture, Figure),
+    commands: &mut Vec<Command>,
+) {
+    if ui.add(icon_button(Icon::Image, "Save picture (PNG)…")).clicked() {
+        commands.push(Command::Ask(Purpose::ScenePicture(Box::new(exported().0))));
+    }
+    if ui.add(icon_button(Icon::Table2, "Save numbers (CSV)…")).clicked() {
+        commands.push(Command::Ask(Purpose::Numbers(Box::new(exported().1))));
+    }
+    if ui.add(icon_button(Icon::Copy, "Copy numbers")).clicked() {
+        commands.push(Command::CopyNumbers(Box::new(exported().1)));
+    }
 }
 
 /// Draws the button that plays or pauses the motion, and the slider of the time.

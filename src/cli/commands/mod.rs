@@ -22,6 +22,7 @@ pub(super) mod render;
 mod render_figure;
 mod render_forecast;
 mod render_reconstruction;
+mod render_scene;
 pub(super) mod simulate;
 pub(super) mod train;
 mod train_force;

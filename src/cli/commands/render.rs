@@ -9,6 +9,7 @@ use crate::cli::CliError;
 use crate::cli::commands::render_figure;
 use crate::cli::commands::render_forecast::{self, ForecastArgs};
 use crate::cli::commands::render_reconstruction::{self, ReconstructionArgs};
+use crate::cli::commands::render_scene::{self, SceneArgs, ShownScene};
 use crate::cli::console::{Console, Verdict, print_json, shown_path};
 use crate::cli::options::{
     OverwriteArg, SourceArgs, UnitsArg, VehicleArg, contact_point, number, size_px,
@@ -16,7 +17,7 @@ use crate::cli::options::{
 use crate::collision::ChannelClass;
 use crate::data::{Channel, write_atomically};
 use crate::figure::{Figure, write_figure_csv};
-use crate::ranges::{INSTANT, PICTURE_SCALE, SPEED};
+use crate::ranges::{PICTURE_SCALE, SPEED};
 use crate::study::{Drive, ImpactRequest, Library, ScenarioChoice, SimulateRequest};
 use crate::vehicle::ContactPoint;
 
@@ -47,10 +48,12 @@ Example:\n  impactlab render force datasets/fea --case c001 --cfc 60 --out force
 Example:\n  impactlab render motion datasets/trajectories-fea --case FE_c002 --channel yaw-rate \
 --out motion.png")]
     Motion(MotionArgs),
-    /// The scene from above at a moment: simulation and reference
+    /// The scene at a moment, from above or in perspective: simulation and reference
     #[command(after_help = "\
 Example:\n  impactlab render scene datasets/trajectories-fea --case FE_c002 --time 1.5 \
---out scene.png --dark")]
+--out scene.png --dark\n  \
+impactlab render scene datasets/trajectories-fea --case FE_c002 --time 2 --view perspective \
+--ghosts 30 --out ghosts.png")]
     Scene(SceneArgs),
     /// Where the response network says the struck vehicle goes under the recorded force, beside the
     /// record
@@ -151,19 +154,6 @@ struct MotionArgs {
 }
 
 #[derive(Debug, Args)]
-struct SceneArgs {
-    #[command(flatten)]
-    source: SourceArgs,
-    /// The moment at which the vehicles are drawn, s
-    #[arg(long, value_parser = number(INSTANT))]
-    time: f64,
-    #[command(flatten)]
-    vehicle: VehicleArgs,
-    #[command(flatten)]
-    output: OutputArgs,
-}
-
-#[derive(Debug, Args)]
 struct ImpactFigureArgs {
     /// The scenario: a file, or `pit-right-rear`
     #[arg(value_name = "NAME|FILE")]
@@ -242,9 +232,9 @@ pub(in crate::cli) fn run(
         FigureArgs::Impact(args) => &args.output,
     };
     let ending = output.out.extension().map(|end| end.to_ascii_lowercase());
-    let draw = match ending.as_deref().and_then(|end| end.to_str()) {
-        Some("csv") => write_csv,
-        Some("png") if cfg!(feature = "gui") => write_png,
+    let is_picture = match ending.as_deref().and_then(|end| end.to_str()) {
+        Some("csv") => false,
+        Some("png") if cfg!(feature = "gui") => true,
         Some("png") => return Err(CliError::NoDrawing),
         _ => {
             let path = output.out.clone();
@@ -253,7 +243,8 @@ pub(in crate::cli) fn run(
     };
     console.check_target(Some(&output.out), output.overwrite.into())?;
     let units = output.units.into();
-    let (figure, notes) = match &args.figure {
+    let mut scene: Option<ShownScene> = None;
+    let (mut figure, notes) = match &args.figure {
         FigureArgs::Force(args) => {
             let class = args.cfc.map(ChannelClass::from);
             render_figure::force(&args.source, class, units, console)?
@@ -264,18 +255,30 @@ pub(in crate::cli) fn run(
             render_figure::motion(&request, channel, units, console)?
         }
         FigureArgs::Scene(args) => {
-            let request = args.vehicle.request(&args.source, &console.library)?;
-            render_figure::scene(&request, args.time, units, console)?
+            let (figure, notes, shown) = render_scene::scene(args, units, console)?;
+            scene = Some(shown);
+            (figure, notes)
         }
         FigureArgs::Forecast(args) => render_forecast::figure(args, units, console)?,
-        FigureArgs::Reconstruction(args) => render_reconstruction::figure(args, units, console)?,
+        FigureArgs::Reconstruction(args) => {
+            let (noted, cars) = render_reconstruction::figure(args, units, console)?;
+            scene = cars;
+            noted
+        }
         FigureArgs::Impact(args) => {
             let scenario = ScenarioChoice::File(args.scenario.clone());
             let request = ImpactRequest { scenario, paper: args.paper };
             render_figure::impact(&request, units, console)?
         }
     };
-    draw(&figure, output)?;
+    match scene {
+        _ if !is_picture => write_csv(&figure, output)?,
+        Some(shown) => {
+            figure.title = shown.title();
+            write_scene(shown, output)?;
+        }
+        None => write_png(&figure, output)?,
+    }
     if console.json {
         let answer = RenderedFigure {
             out: &output.out,
@@ -302,13 +305,21 @@ fn write_csv(figure: &Figure, output: &OutputArgs) -> Result<(), CliError> {
 }
 
 #[cfg(feature = "gui")]
+fn canvas(output: &OutputArgs) -> crate::render::Canvas {
+    let OutputArgs { size, scale, dark, .. } = *output;
+    crate::render::Canvas { size_px: size, scale: scale as f32, dark }
+}
+
+#[cfg(feature = "gui")]
 fn write_png(figure: &Figure, output: &OutputArgs) -> Result<(), CliError> {
-    let canvas = crate::render::Canvas {
-        size_px: output.size,
-        scale: output.scale as f32,
-        dark: output.dark,
-    };
-    let image = crate::render::figure_image(figure, canvas)?;
+    let image = crate::render::figure_image(figure, canvas(output))?;
+    crate::render::save_png(&image, &output.out, output.overwrite.into())?;
+    Ok(())
+}
+
+#[cfg(feature = "gui")]
+fn write_scene(shown: ShownScene, output: &OutputArgs) -> Result<(), CliError> {
+    let image = crate::render::scene::scene_image(&shown.picture(), canvas(output))?;
     crate::render::save_png(&image, &output.out, output.overwrite.into())?;
     Ok(())
 }
@@ -317,5 +328,11 @@ fn write_png(figure: &Figure, output: &OutputArgs) -> Result<(), CliError> {
 fn write_png(_figure: &Figure, output: &OutputArgs) -> Result<(), CliError> {
     // Read so that the options are the same in every build.
     let _ = (output.size, output.scale, output.dark);
+    Err(CliError::NoDrawing)
+}
+
+#[cfg(not(feature = "gui"))]
+fn write_scene(shown: ShownScene, _output: &OutputArgs) -> Result<(), CliError> {
+    shown.not_drawn();
     Err(CliError::NoDrawing)
 }

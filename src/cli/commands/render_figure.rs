@@ -5,9 +5,7 @@ use crate::cli::console::Console;
 use crate::cli::options::SourceArgs;
 use crate::collision::{ChannelClass, filter_history};
 use crate::data::{Channel, contact_interval};
-use crate::figure::{
-    Figure, ForceFigure, analysis_motion_figure, analysis_scene_figure, force_figure, impact_figure,
-};
+use crate::figure::{Figure, ForceFigure, analysis_motion_figure, force_figure, impact_figure};
 use crate::study::{
     Assumption, Drive, ImpactRequest, RecordedForceRequest, SimulateAnswer, SimulateRequest,
     StudyError, Trust,
@@ -71,27 +69,6 @@ pub(super) fn motion(
         let (name, channel) = (request.source.name(), channel.header());
         return Err(CliError::NothingToShow { name, channel });
     }
-    Ok((figure, noted(&report.notes, (&report.badges, &report.assumptions))))
-}
-
-/// The scene of a case or a file at a moment.
-pub(super) fn scene(
-    request: &SimulateRequest,
-    time_s: f64,
-    units: UnitSystem,
-    console: &mut Console<'_>,
-) -> Result<Noted, CliError> {
-    let SimulateAnswer { report, analysis } = console.answer(request)?;
-    let simulation = analysis.simulation.as_ref().map(|motion| &motion.series);
-    if let Some(shown) = analysis.reference.as_ref().or(simulation) {
-        let [start_s, end_s] = [shown.time_s().first(), shown.time_s().last()]
-            .map(|time| time.copied().unwrap_or_default());
-        if !(start_s..=end_s).contains(&time_s) {
-            return Err(CliError::TimeOutside { time_s, start_s, end_s });
-        }
-    }
-    let trust = Trust::new(&report.badges, &report.assumptions);
-    let figure = analysis_scene_figure((&analysis, &trust), time_s, units);
     Ok((figure, noted(&report.notes, (&report.badges, &report.assumptions))))
 }
 

@@ -5,6 +5,7 @@ use clap::{Args, ValueEnum};
 use crate::cli::CliError;
 use crate::cli::commands::render::OutputArgs;
 use crate::cli::commands::render_figure::{Noted, noted};
+use crate::cli::commands::render_scene::{ShownScene, ViewArg};
 use crate::cli::console::Console;
 use crate::cli::options::EvidenceArgs;
 use crate::figure::{
@@ -12,6 +13,7 @@ use crate::figure::{
     reconstruction_scene_figure,
 };
 use crate::reconstruct::ReconstructedQuantity;
+use crate::scene::{ReconstructionParts, reconstruction_scene};
 use crate::study::Trust;
 use crate::units::UnitSystem;
 
@@ -33,6 +35,10 @@ enum PlotArg {
     /// The paths of the struck car over the evidence, from above
     #[default]
     Scene,
+    /// The same with the cars as bodies, from above
+    CarsAbove,
+    /// The same in perspective
+    CarsPerspective,
     /// The speed of the struck car before and after the evidence
     TargetSpeed,
     /// The speed of the striking car
@@ -51,7 +57,7 @@ impl PlotArg {
     /// The quantity whose distribution is drawn, if it is one.
     fn quantity(self) -> Option<ReconstructedQuantity> {
         match self {
-            Self::Scene | Self::Budget => None,
+            Self::Scene | Self::CarsAbove | Self::CarsPerspective | Self::Budget => None,
             Self::TargetSpeed => Some(ReconstructedQuantity::TargetSpeed),
             Self::BulletSpeed => Some(ReconstructedQuantity::BulletSpeed),
             Self::ClosingSpeed => Some(ReconstructedQuantity::ClosingSpeed),
@@ -66,10 +72,11 @@ pub(super) fn figure(
     args: &ReconstructionArgs,
     units: UnitSystem,
     console: &mut Console<'_>,
-) -> Result<Noted, CliError> {
+) -> Result<(Noted, Option<ShownScene>), CliError> {
     let answer = console.answer(&args.evidence.request())?;
     let (badges, assumptions) = (&answer.report.badges, &answer.report.assumptions);
     let trust = Trust::new(badges, assumptions);
+    let mut cars = None;
     let figure = match (args.plot.quantity(), args.plot) {
         (Some(quantity), _) => {
             let prior = prior_values(&answer.target, quantity);
@@ -79,8 +86,25 @@ pub(super) fn figure(
         (None, _) => {
             let paths = ReconstructedPaths::of(&answer);
             let scene = ReconstructionScene::of(&answer, &paths);
+            let view = match args.plot {
+                PlotArg::CarsAbove => Some(ViewArg::Above),
+                PlotArg::CarsPerspective => Some(ViewArg::Perspective),
+                _ => None,
+            };
+            cars = view.map(|view| {
+                let built = reconstruction_scene(&ReconstructionParts {
+                    evidence: scene.evidence,
+                    cars: scene.cars,
+                    drawn: scene.drawn,
+                    followed: scene.followed.map(|of| (of.name, of.path)),
+                    units,
+                    trust: &trust,
+                });
+                let end_s = built.end_s;
+                ShownScene::fitted(built, end_s, view)
+            });
             reconstruction_scene_figure(&scene, &trust, units)
         }
     };
-    Ok((figure, noted(&[], (badges, assumptions))))
+    Ok(((figure, noted(&[], (badges, assumptions))), cars))
 }

@@ -1,0 +1,91 @@
+//! Measures how long the picture of a scene takes on the processor: with the draws of a forecast as
+//! ghosts and its density, at another time in every picture, and with another camera in every picture.
+//!
+//! `cargo bench --bench scene`
+
+#![allow(clippy::print_stdout)]
+
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
+
+use cpu_time::ProcessTime;
+use impactlab::analysis::DensityTask;
+use impactlab::render::scene::{Camera, SceneCanvas, SceneLook, ViewKind};
+use impactlab::scene::{ForecastScene, Scene, SimulationScene, add_forecast, simulation_scene};
+use impactlab::study::{ForceSource, Library, MotionSource, PredictMotionRequest, Question, Trust};
+use impactlab::units::UnitSystem;
+
+/// Size of a picture, pixels.
+const SIZE: [usize; 2] = [1440, 900];
+/// Ghosts in it.
+const N_GHOSTS: usize = 30;
+/// Pictures of a measurement.
+const N_PICTURES: usize = 200;
+
+/// The scene of a shipped case with a forecast.
+fn scene() -> Scene {
+    let (dataset, case) = (PathBuf::from("datasets/trajectories-fea"), "FE_c002".to_owned());
+    let source = MotionSource::Case { dataset, case };
+    let request = PredictMotionRequest::new(source, ForceSource::Given);
+    let answer = request
+        .answer(&Library::default(), &mut |_| ControlFlow::Continue(()))
+        .expect("a shipped case has a forecast")
+        .complete()
+        .expect("nothing cancels");
+    let (trust, units) = (Trust::default(), UnitSystem::Si);
+    let analysis = &answer.analysis;
+    let input = SimulationScene { analysis, others: &[], units, trust: &trust };
+    let mut scene = simulation_scene(&input);
+    let density = Arc::new(DensityTask::new(&answer.forecast.distribution, [3.0; 2]).on_cpu());
+    let forecast = &answer.forecast;
+    let (density, n_ghosts) = (Some(&density), N_GHOSTS);
+    add_forecast(&mut scene, &ForecastScene { analysis, forecast, density, n_ghosts, seed: 0 });
+    scene
+}
+
+/// Draws pictures and prints the time of one.
+fn measure(name: &str, scene: &Arc<Scene>, kind: ViewKind, turns: bool) {
+    let fitted = Camera { kind, ..Camera::default() };
+    let fitted = fitted.fitted(&scene.places_m(), SIZE.map(|side| side as f64));
+    let mut canvas = SceneCanvas::default();
+    let picture = |idx: usize, canvas: &mut SceneCanvas| {
+        let share = idx as f64 / N_PICTURES as f64;
+        let camera = match (turns, kind) {
+            (false, _) => fitted,
+            (true, ViewKind::Perspective) => fitted.orbited([0.5 * share, 0.0]),
+            (true, ViewKind::Above) => {
+                let [x, y] = fitted.target_m;
+                Camera { target_m: [x + 5.0 * share, y], ..fitted }
+            }
+        };
+        let look = SceneLook { size_px: SIZE, camera, dark: false, pixels_per_point: 1.0 };
+        canvas.draw(scene, &look, 0.01 + 3.9 * share);
+    };
+    picture(0, &mut canvas);
+    let (wall, cpu) = (Instant::now(), ProcessTime::now());
+    let mut longest_s: f64 = 0.0;
+    for idx in 1..=N_PICTURES {
+        let started = Instant::now();
+        picture(idx, &mut canvas);
+        longest_s = longest_s.max(started.elapsed().as_secs_f64());
+    }
+    let each = |seconds: f64| 1e3 * seconds / N_PICTURES as f64;
+    let (wall_ms, cpu_ms) = (each(wall.elapsed().as_secs_f64()), each(cpu.elapsed().as_secs_f64()));
+    println!(
+        "{name:<32} {wall_ms:6.1} ms, {:5.0} pictures/s, longest {:5.1} ms, processor {cpu_ms:6.1} ms",
+        1e3 / wall_ms,
+        1e3 * longest_s,
+    );
+}
+
+fn main() {
+    let scene = Arc::new(scene());
+    println!("{} x {} pixels, {N_GHOSTS} ghosts and a density", SIZE[0], SIZE[1]);
+    for (name, kind) in [("from above", ViewKind::Above), ("in perspective", ViewKind::Perspective)]
+    {
+        measure(&format!("{name}, playing"), &scene, kind, false);
+        measure(&format!("{name}, camera moves too"), &scene, kind, true);
+    }
+}

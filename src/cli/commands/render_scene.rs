@@ -1,0 +1,224 @@
+//! `impactlab render scene`: the cars of a case at a moment, from above or in perspective.
+
+use std::sync::Arc;
+
+use clap::{Args, ValueEnum};
+
+use crate::analysis::{Analysis, DensityTask};
+use crate::cli::CliError;
+use crate::cli::commands::render::{OutputArgs, VehicleArgs};
+use crate::cli::commands::render_figure::noted;
+use crate::cli::console::Console;
+use crate::cli::options::{SourceArgs, count, number};
+use crate::figure::{Figure, FigureElement, LineStyle, Path, Role, Series, analysis_scene_figure};
+use crate::ranges::{CAMERA_AZIMUTH, CAMERA_DISTANCE, CAMERA_ELEVATION, GHOSTS, INSTANT};
+use crate::scene::{ForecastScene, Scene, SimulationScene, add_forecast, simulation_scene};
+use crate::study::{ForceSource, PredictMotionRequest, SimulateAnswer, SimulateRequest, Trust};
+use crate::units::UnitSystem;
+
+#[derive(Debug, Args)]
+pub(super) struct SceneArgs {
+    #[command(flatten)]
+    source: SourceArgs,
+    /// The moment at which the vehicles are drawn, s
+    #[arg(long, value_parser = number(INSTANT))]
+    time: f64,
+    /// From where the scene is seen
+    #[arg(long, value_enum, default_value_t)]
+    view: ViewArg,
+    #[command(flatten)]
+    camera: CameraArgs,
+    /// Draw so many paths from a forecast of the response network under the recorded force, with its
+    /// density and regions at the moment; 0 asks for no forecast
+    #[arg(long, value_name = "N", value_parser = count::<usize>(GHOSTS), default_value = "0")]
+    ghosts: usize,
+    #[command(flatten)]
+    vehicle: VehicleArgs,
+    #[command(flatten)]
+    pub(super) output: OutputArgs,
+}
+
+/// Where the camera is.
+#[derive(Debug, Clone, Copy, Default, Args)]
+struct CameraArgs {
+    /// In perspective: direction from the scene to the camera, counter-clockwise from X; such as -110deg
+    #[arg(long, value_name = "ANGLE", value_parser = number(CAMERA_AZIMUTH), allow_hyphen_values = true)]
+    azimuth: Option<f64>,
+    /// In perspective: height of the camera above the horizon; such as 30deg
+    #[arg(long, value_name = "ANGLE", value_parser = number(CAMERA_ELEVATION))]
+    elevation: Option<f64>,
+    /// Distance of the camera from what it looks at; the whole scene is seen if not given
+    #[arg(long, value_name = "LENGTH", value_parser = number(CAMERA_DISTANCE))]
+    distance: Option<f64>,
+    /// The car in the middle of the picture
+    #[arg(long, value_enum)]
+    follow: Option<FollowArg>,
+}
+
+/// From where a scene is seen.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub(super) enum ViewArg {
+    /// From above, to scale
+    #[default]
+    Above,
+    /// In perspective
+    Perspective,
+}
+
+/// A car that the camera follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum FollowArg {
+    /// The struck car
+    Struck,
+    /// The striking car, where it is known
+    Striking,
+}
+
+/// A scene as it is to be seen.
+pub(super) struct ShownScene {
+    scene: Scene,
+    time_s: f64,
+    view: ViewArg,
+    camera: CameraArgs,
+}
+
+impl ShownScene {
+    /// A scene of which everything is seen.
+    pub(super) fn fitted(scene: Scene, time_s: f64, view: ViewArg) -> Self {
+        Self { scene, time_s, view, camera: CameraArgs::default() }
+    }
+
+    /// What it shows.
+    pub(super) fn title(&self) -> String {
+        let view = match self.view {
+            ViewArg::Above => "from above",
+            ViewArg::Perspective => "in perspective",
+        };
+        self.scene.heading(view, self.time_s)
+    }
+
+    /// The picture that is drawn.
+    #[cfg(feature = "gui")]
+    pub(super) fn picture(self) -> crate::render::scene::ScenePicture {
+        use crate::render::scene::{Camera, Follow, ScenePicture, ViewKind};
+        let CameraArgs { azimuth, elevation, distance, follow } = self.camera;
+        let usual = Camera::default();
+        ScenePicture {
+            camera: Camera {
+                kind: match self.view {
+                    ViewArg::Above => ViewKind::Above,
+                    ViewArg::Perspective => ViewKind::Perspective,
+                },
+                azimuth_rad: azimuth.unwrap_or(usual.azimuth_rad),
+                elevation_rad: elevation.unwrap_or(usual.elevation_rad),
+                ..usual
+            },
+            scene: Arc::new(self.scene),
+            time_s: self.time_s,
+            is_placed: false,
+            distance_m: distance,
+            follow: match follow {
+                None => Follow::Nothing,
+                Some(FollowArg::Struck) => Follow::Struck,
+                Some(FollowArg::Striking) => Follow::Striking,
+            },
+        }
+    }
+
+    /// Reads what only a picture needs, so that the options are the same in every build.
+    #[cfg(not(feature = "gui"))]
+    pub(super) fn not_drawn(self) {
+        let CameraArgs { azimuth, elevation, distance, follow } = self.camera;
+        let _ = (azimuth, elevation, distance, follow, self.scene);
+    }
+}
+
+/// The scene of a case or a file at a moment: its numbers as a figure, notes, and what is drawn.
+pub(super) fn scene(
+    args: &SceneArgs,
+    units: UnitSystem,
+    console: &mut Console<'_>,
+) -> Result<(Figure, Vec<String>, ShownScene), CliError> {
+    let request = args.vehicle.request(&args.source, &console.library)?;
+    let SimulateAnswer { report, analysis } = console.answer(&request)?;
+    let time_s = args.time;
+    check_time(&analysis, time_s)?;
+    let mut trust = Trust::new(&report.badges, &report.assumptions);
+    let mut notes = noted(&report.notes, (&report.badges, &report.assumptions));
+    let mut figure = analysis_scene_figure((&analysis, &trust), time_s, units);
+    let mut scene = simulation_scene(&SimulationScene {
+        analysis: &analysis,
+        others: &[],
+        units,
+        trust: &trust,
+    });
+    if args.ghosts > 0 {
+        let said = add_ghosts((args, request), (&mut scene, &mut trust), console)?;
+        notes.extend(said.into_iter().filter(|note| !notes.contains(note)).collect::<Vec<_>>());
+        figure.elements.extend(drawn_paths(&scene, &figure));
+        figure = figure.with_trust(&trust);
+        scene.trust = trust;
+    }
+    let (view, camera) = (args.view, args.camera);
+    Ok((figure, notes, ShownScene { scene, time_s, view, camera }))
+}
+
+/// Checks that there is a motion at a time.
+fn check_time(analysis: &Analysis, time_s: f64) -> Result<(), CliError> {
+    let simulation = analysis.simulation.as_ref().map(|motion| &motion.series);
+    let Some(shown) = analysis.reference.as_ref().or(simulation) else { return Ok(()) };
+    let [start_s, end_s] = [shown.time_s().first(), shown.time_s().last()]
+        .map(|time| time.copied().unwrap_or_default());
+    match (start_s..=end_s).contains(&time_s) {
+        true => Ok(()),
+        false => Err(CliError::TimeOutside { time_s, start_s, end_s }),
+    }
+}
+
+/// Asks for a forecast and adds it to a scene; returns its notes.
+fn add_ghosts(
+    (args, motion): (&SceneArgs, SimulateRequest),
+    (scene, trust): (&mut Scene, &mut Trust),
+    console: &mut Console<'_>,
+) -> Result<Vec<String>, CliError> {
+    let request = PredictMotionRequest {
+        motion: motion.clone(),
+        ..PredictMotionRequest::new(motion.source, ForceSource::Given)
+    };
+    let answer = console.answer(&request)?;
+    let density = DensityTask::new(&answer.forecast.distribution, [args.time; 2]).on_cpu();
+    add_forecast(
+        scene,
+        &ForecastScene {
+            analysis: &answer.analysis,
+            forecast: &answer.forecast,
+            density: Some(&Arc::new(density)),
+            n_ghosts: args.ghosts,
+            seed: request.seed,
+        },
+    );
+    let report = &answer.report;
+    trust.add_variant("forecast", &Trust::new(&report.badges, &report.assumptions));
+    Ok(noted(&answer.analysis.notes, (&report.badges, &report.assumptions)))
+}
+
+/// The paths that were drawn from a forecast, in the units of a figure.
+fn drawn_paths(scene: &Scene, figure: &Figure) -> Vec<FigureElement> {
+    let shown = |[x, y]: [f64; 2]| [figure.x.unit.from_si(x), figure.y.unit.from_si(y)];
+    let drawn = scene.paths.iter().filter(|path| !path.has_ticks);
+    let path = |(idx, path): (usize, &crate::scene::ScenePath)| {
+        let states = path.motion.states();
+        let points = states.iter().map(|state| shown([state.pose.x_m, state.pose.y_m])).collect();
+        FigureElement::Path(Path {
+            series: Series {
+                name: format!("draw {} of the forecast", idx + 1),
+                role: Role::Muted,
+                style: LineStyle::Solid,
+                points,
+            },
+            time_s: path.motion.time_s().to_vec(),
+            yaw_rad: states.iter().map(|state| state.pose.yaw_rad).collect(),
+        })
+    };
+    drawn.enumerate().map(path).collect()
+}

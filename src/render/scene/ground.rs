@@ -1,0 +1,334 @@
+//! What does not move: ground with its grid, density, and lines on the ground.
+
+use egui::Color32;
+
+use crate::render::scene::lines::{Rows, Stroke, over};
+use crate::render::scene::shade::{grid_colors, ground_color, mixed, role_color, sky_color};
+use crate::render::scene::{Projection, camera::NEAR_M};
+use crate::scene::{Scene, SceneDensity, SceneRole};
+use crate::units::{Quantity, UnitSystem};
+
+/// Least distance of coarse grid lines, points.
+const COARSE_POINTS: f64 = 84.0;
+/// Fine lines between coarse ones.
+const FINE_PER_COARSE: f64 = 5.0;
+/// Distance of grid lines in the picture below which they fade, and at which they are gone, pixels.
+const FADING_PIXELS: [f32; 2] = [9.0, 3.0];
+/// Distances at which the ground begins to fade into the sky, and has done so, over the distance of the
+/// point that is looked at.
+const HAZE: [f64; 2] = [3.0, 14.0];
+/// Opacity of the largest density.
+const DENSITY_OPACITY: f32 = 0.72;
+/// Share of the colour of a role in the pale part of a line: a path that is still to come.
+const PALE: f32 = 0.45;
+/// Length and gap of dashes, points.
+const DASH: [f64; 2] = [8.0, 5.0];
+/// Time between the heading ticks along a path, s, and their half length, m.
+const TICK_INTERVAL_S: f64 = 0.5;
+const TICK_HALF_M: f64 = 0.9;
+/// Shortest piece of a line that is drawn by itself, pixels.
+const LEAST_PIECE: f64 = 1.2;
+
+/// The distance of coarse grid lines that fits the picture: 1, 2 or 5 times a power of ten.
+///
+/// - returns it in the unit of the scene and in m.
+pub fn grid_step(projection: &Projection, points: f64, units: UnitSystem) -> (f64, f64) {
+    let unit = Quantity::Length.display_unit(units);
+    let least = COARSE_POINTS * points / projection.pixels_per_m(projection.target_m());
+    let wanted = unit.from_si(least).max(1e-6);
+    let power = 10.0_f64.powf(wanted.log10().floor());
+    let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power);
+    let step = steps.into_iter().find(|step| *step >= wanted).unwrap_or(wanted);
+    (step, unit.to_si(step))
+}
+
+/// What a picture of the ground is drawn with.
+pub struct Ground<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// The camera.
+    pub projection: &'a Projection,
+    /// Whether the theme is dark.
+    pub dark: bool,
+    /// Pixels per point.
+    pub points: f64,
+}
+
+/// Numbers of the ground that are the same for every pixel; places are off the target, m.
+struct Grid {
+    map: [[f32; 3]; 3],
+    /// Coordinates of the target within a coarse cell, so that large coordinates lose no digits.
+    phase_m: [f32; 2],
+    /// Distances of fine and of coarse lines.
+    steps_m: [f32; 2],
+    eye_m: [f32; 2],
+    haze_m: [f32; 2],
+    /// Lowest and highest place of the density.
+    density_m: Option<[[f32; 2]; 2]>,
+}
+
+impl Ground<'_> {
+    /// Fills rows with ground, grid and density.
+    pub fn fill(&self, rows: &mut Rows<'_>) {
+        let grid = self.grid();
+        let (first, width) = (rows.first, rows.width.max(1));
+        for (idx, row) in rows.pixels.chunks_mut(width).enumerate() {
+            self.fill_row(row, (first + idx) as f32 + 0.5, &grid);
+        }
+    }
+
+    fn grid(&self) -> Grid {
+        let target = self.projection.target_m();
+        let (_, step_m) = grid_step(self.projection, self.points, self.scene.units);
+        let [x, y, z] = self.projection.eye_m();
+        let eye = [x - target[0], y - target[1]];
+        let distance_m = eye[0].hypot(eye[1]).hypot(z);
+        let density_m = self.scene.density.as_ref().map(|density| {
+            let grid = &density.map.grid;
+            let [nx, ny] = grid.size.map(|n| n.saturating_sub(1) as f64);
+            let low = [grid.low_m[0] - target[0], grid.low_m[1] - target[1]];
+            let high = [low[0] + nx * grid.step_m[0], low[1] + ny * grid.step_m[1]];
+            [low, high].map(|place| place.map(|value| value as f32))
+        });
+        Grid {
+            map: self.projection.ground_map().map(|row| row.map(|value| value as f32)),
+            phase_m: target.map(|value| value.rem_euclid(step_m) as f32),
+            steps_m: [step_m / FINE_PER_COARSE, step_m].map(|step| step as f32),
+            eye_m: eye.map(|value| value as f32),
+            haze_m: HAZE.map(|factor| (factor * distance_m) as f32),
+            density_m,
+        }
+    }
+
+    /// Fills a row. Coordinates are those off the target, for which single precision suffices.
+    fn fill_row(&self, row: &mut [Color32], py: f32, grid: &Grid) {
+        let (ground, sky, lines) =
+            (ground_color(self.dark), sky_color(self.dark), grid_colors(self.dark));
+        let is_parallel = self.projection.is_parallel();
+        let Grid { map: [mx, my, md], phase_m, steps_m, eye_m, haze_m, density_m } = grid;
+        let (nx, ny, nd) = (mx[0] + mx[2] * py, my[0] + my[2] * py, md[0] + md[2] * py);
+        let role = role_color(SceneRole::Forecast, self.dark);
+        for (column, pixel) in row.iter_mut().enumerate() {
+            let px = column as f32 + 0.5;
+            let d = nd + md[1] * px;
+            if d <= 1e-9 {
+                *pixel = sky;
+                continue;
+            }
+            let per = 1.0 / d;
+            let (x, y) = ((nx + mx[1] * px) * per, (ny + my[1] * px) * per);
+            let change = |of: &[f32; 3], at: f32| {
+                let (a, b) = ((of[1] - at * md[1]) * per, (of[2] - at * md[2]) * per);
+                (a * a + b * b).sqrt().max(1e-9)
+            };
+            let (change_x, change_y) = (change(mx, x), change(my, y));
+            let mut color = ground;
+            for (line, step_m) in lines.into_iter().zip(*steps_m) {
+                let along_x = line_cover(x + phase_m[0], change_x, step_m);
+                let share = along_x.max(line_cover(y + phase_m[1], change_y, step_m));
+                if share > 0.0 {
+                    color = over(color, line, share);
+                }
+            }
+            if let (Some(density), Some([low, high])) = (&self.scene.density, density_m)
+                && (low[0]..high[0]).contains(&x)
+                && (low[1]..high[1]).contains(&y)
+            {
+                let share = density_share(density, [x - low[0], y - low[1]]);
+                if share > 0.003 {
+                    color = over(color, role, DENSITY_OPACITY * share);
+                }
+            }
+            if !is_parallel {
+                let (dx, dy) = (x - eye_m[0], y - eye_m[1]);
+                let far_m = (dx * dx + dy * dy).sqrt();
+                if far_m > haze_m[0] {
+                    let haze = (far_m - haze_m[0]) / (haze_m[1] - haze_m[0]);
+                    color = over(color, sky, haze.clamp(0.0, 1.0));
+                }
+            }
+            *pixel = color;
+        }
+    }
+
+    /// The lines on the ground, in the order in which they are drawn.
+    pub fn strokes(&self) -> Vec<Stroke> {
+        let mut strokes = Vec::new();
+        for path in &self.scene.paths {
+            let color = role_color(path.role, self.dark);
+            let share = if path.role == SceneRole::Muted { 0.75 } else { PALE };
+            let color = mixed(ground_color(self.dark), color, share);
+            let width = if path.role == SceneRole::Muted { 0.9 } else { 1.6 };
+            let points: Vec<[f64; 2]> =
+                path.motion.states().iter().map(|state| [state.pose.x_m, state.pose.y_m]).collect();
+            let pen = Pen { color, width, is_dashed: path.is_dashed };
+            self.line(&points, pen, &mut strokes);
+            if path.has_ticks {
+                self.ticks(path, color, &mut strokes);
+            }
+        }
+        for line in self.scene.lines.iter().filter(|line| !line.is_above_cars) {
+            let color = role_color(line.role, self.dark);
+            // What has no name is help: where a car started.
+            let (color, width) = match line.name.is_empty() {
+                true => (mixed(ground_color(self.dark), color, 0.6), 1.1),
+                false => (color, 1.8),
+            };
+            self.line(
+                &line.points_m,
+                Pen { color, width, is_dashed: line.is_dashed },
+                &mut strokes,
+            );
+        }
+        for point in &self.scene.points {
+            let color = role_color(point.role, self.dark);
+            let pen = Pen { color, width: 6.0, is_dashed: false };
+            self.line(&[point.at_m, point.at_m], pen, &mut strokes);
+        }
+        for arrow in &self.scene.arrows {
+            let pen =
+                Pen { color: role_color(arrow.role, self.dark), width: 2.6, is_dashed: false };
+            for line in arrow_lines(arrow.ends_m) {
+                self.line(&line, pen, &mut strokes);
+            }
+        }
+        strokes
+    }
+
+    fn ticks(&self, path: &crate::scene::ScenePath, color: Color32, strokes: &mut Vec<Stroke>) {
+        let motion = &path.motion;
+        let start_s = motion.time_s().first().copied().unwrap_or(0.0);
+        let n_ticks = ((motion.end_s() - start_s) / TICK_INTERVAL_S).floor().clamp(0.0, 400.0);
+        for tick in 1..=n_ticks as usize {
+            let pose = motion.at(start_s + tick as f64 * TICK_INTERVAL_S).pose;
+            let ends = [-TICK_HALF_M, TICK_HALF_M].map(|x| pose.world_from_body([x, 0.0]));
+            // The front end is thicker.
+            let front = [pose.world_from_body([0.45 * TICK_HALF_M, 0.0]), ends[1]];
+            self.line(&ends, Pen { color, width: 1.2, is_dashed: false }, strokes);
+            self.line(&front, Pen { color, width: 3.0, is_dashed: false }, strokes);
+        }
+    }
+
+    /// Adds a line on the ground.
+    pub fn line(&self, points_m: &[[f64; 2]], pen: Pen, strokes: &mut Vec<Stroke>) {
+        let half_width = (pen.width * self.points / 2.0) as f32;
+        let mut push = |ends: [[f64; 2]; 2]| {
+            let ends = ends.map(|end| end.map(|value| value as f32));
+            strokes.push(Stroke { ends, half_width, color: pen.color, opacity: 1.0 });
+        };
+        let (mut along, mut held) = (0.0, None);
+        for pair in points_m.windows(2) {
+            let Some([from, to]) = self.piece([pair[0], pair[1]]) else {
+                held = None;
+                continue;
+            };
+            let from: [f64; 2] = held.take().unwrap_or(from);
+            let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+            let is_single = points_m.len() == 2;
+            if length < LEAST_PIECE && !is_single {
+                held = Some(from);
+                continue;
+            }
+            if !pen.is_dashed {
+                push([from, to]);
+                continue;
+            }
+            let [dash, gap] = DASH.map(|points| points * self.points);
+            // What is far off the picture is not dashed.
+            if length >= 1e5 {
+                continue;
+            }
+            let mut done = 0.0;
+            while done < length {
+                let phase = along % (dash + gap);
+                let is_drawn = phase < dash;
+                let left = if is_drawn { dash - phase } else { dash + gap - phase };
+                let next = (done + left.max(0.25)).min(length);
+                if is_drawn {
+                    let at = |way: f64| {
+                        std::array::from_fn(|i| from[i] + (to[i] - from[i]) * way / length)
+                    };
+                    push([at(done), at(next)]);
+                }
+                (along, done) = (along + next - done, next);
+            }
+        }
+    }
+
+    /// A straight piece on the ground in the picture, without what is behind the camera.
+    fn piece(&self, ends_m: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
+        let [mut from, mut to] = ends_m.map(|[x, y]| self.projection.in_camera([x, y, 0.0]));
+        if !self.projection.is_parallel() {
+            let near = 2.0 * NEAR_M;
+            if from[2] < near && to[2] < near {
+                return None;
+            }
+            let cut = |inside: [f64; 3], outside: [f64; 3]| {
+                let share = (inside[2] - near) / (inside[2] - outside[2]);
+                std::array::from_fn(|i| inside[i] + (outside[i] - inside[i]) * share)
+            };
+            if from[2] < near {
+                from = cut(to, from);
+            } else if to[2] < near {
+                to = cut(from, to);
+            }
+        }
+        let [from, to] = [from, to].map(|point| self.projection.in_picture(point));
+        let ends = [from?, to?].map(|[x, y, _]| [x, y]);
+        ends.iter().flatten().all(|value| value.is_finite()).then_some(ends)
+    }
+}
+
+/// With what a line is drawn.
+#[derive(Debug, Clone, Copy)]
+pub struct Pen {
+    /// Colour.
+    pub color: Color32,
+    /// Width, points.
+    pub width: f64,
+    /// Whether it is dashed.
+    pub is_dashed: bool,
+}
+
+/// Shaft and head of an arrow on the ground.
+pub fn arrow_lines([tail, tip]: [[f64; 2]; 2]) -> [[[f64; 2]; 2]; 3] {
+    let way = [tip[0] - tail[0], tip[1] - tail[1]];
+    let length = way[0].hypot(way[1]).max(1e-9);
+    let (along, head) = (way.map(|v| v / length), (0.3 * length).min(0.8));
+    let wing = |side: f64| {
+        let across = [-along[1] * side, along[0] * side];
+        std::array::from_fn(|i| tip[i] - head * along[i] + 0.45 * head * across[i])
+    };
+    [[tail, tip], [wing(1.0), tip], [wing(-1.0), tip]]
+}
+
+/// How far a line of the grid covers a pixel, 0 to 1.
+///
+/// - `at`: coordinate of the pixel, m; `change`: by how much it changes over a pixel, m, more than 0.
+fn line_cover(at: f32, change: f32, step_m: f32) -> f32 {
+    let (cell, per) = (at / step_m, step_m / change);
+    let distance = (cell - cell.round()).abs() * per;
+    if distance >= 1.0 {
+        return 0.0;
+    }
+    let [full, gone] = FADING_PIXELS;
+    (1.0 - distance) * ((per - gone) / (full - gone)).clamp(0.0, 1.0)
+}
+
+/// A density over its largest value.
+///
+/// - `off_m`: place off the lowest point of its grid, m, 0 or more; 0 beyond the grid.
+fn density_share(density: &SceneDensity, off_m: [f32; 2]) -> f32 {
+    let (grid, values) = (&density.map.grid, &density.map.values);
+    let [nx, ny] = grid.size;
+    let [x, y] = [0, 1].map(|axis| off_m[axis] / grid.step_m[axis] as f32);
+    let (i, j) = (x as usize, y as usize);
+    if i + 1 >= nx || j + 1 >= ny {
+        return 0.0;
+    }
+    let (fx, fy) = (x - i as f32, y - j as f32);
+    let value = |i: usize, j: usize| values.get(j * nx + i).copied().unwrap_or(0.0) as f32;
+    let row = |j: usize| value(i, j) + (value(i + 1, j) - value(i, j)) * fx;
+    let here = row(j) + (row(j + 1) - row(j)) * fy;
+    (here / density.peak as f32).clamp(0.0, 1.0)
+}

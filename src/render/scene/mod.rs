@@ -1,0 +1,18 @@
+//! Drawing of scenes, on the CPU: the same pixels in the window and off screen, without a graphics
+//! driver. Text and symbols over the scene are painted by egui in both.
+
+mod camera;
+mod canvas;
+mod frame;
+mod ground;
+mod labels;
+mod lines;
+mod picture;
+mod raster;
+mod shade;
+mod view;
+
+pub use camera::{Camera, Projection, ViewKind};
+pub use canvas::{SceneCanvas, SceneLook};
+pub use picture::{ScenePicture, scene_image};
+pub use view::{Follow, SceneView, scene_view_ui};

@@ -1,0 +1,96 @@
+//! Colours of roles and materials, and the light that falls on them.
+
+use egui::Color32;
+
+use crate::figure::Role;
+use crate::render::theme;
+use crate::scene::{SceneRole, Surface};
+
+/// Direction to the sun, of unit length: from behind and from the right of a car that drives along X.
+const SUN: [f64; 3] = [-0.355, -0.413, 0.839];
+/// Share of the light that comes from everywhere, and from the sun.
+const AMBIENT: f64 = 0.58;
+const DIFFUSE: f64 = 0.52;
+/// How far the colour of a role is mixed with grey where it covers a body.
+const BODY_GREY: f32 = 0.16;
+
+/// A colour of 8 bits each for red, green and blue.
+pub type Rgb = [u8; 3];
+
+/// Colour of a role, for lines and labels.
+pub fn role_color(role: SceneRole, dark: bool) -> Color32 {
+    let role = match role {
+        SceneRole::Recorded => Role::Reference,
+        SceneRole::Simulated => Role::Simulation,
+        SceneRole::Forecast => Role::Target,
+        SceneRole::Striking => Role::Bullet,
+        SceneRole::Evidence => Role::Pulse,
+        SceneRole::Variant(idx) => Role::Variant(idx),
+        SceneRole::Muted => Role::Muted,
+    };
+    theme::color(role, dark)
+}
+
+/// Colour of the ground.
+pub fn ground_color(dark: bool) -> Color32 {
+    if dark { Color32::from_rgb(38, 41, 44) } else { Color32::from_rgb(236, 238, 239) }
+}
+
+/// Colour of the sky above the horizon.
+pub fn sky_color(dark: bool) -> Color32 {
+    if dark { Color32::from_rgb(24, 26, 29) } else { Color32::from_rgb(250, 251, 252) }
+}
+
+/// Colour of the lines of the grid: fine and coarse.
+pub fn grid_colors(dark: bool) -> [Color32; 2] {
+    match dark {
+        true => [Color32::from_rgb(50, 54, 58), Color32::from_rgb(68, 73, 78)],
+        false => [Color32::from_rgb(225, 228, 230), Color32::from_rgb(204, 209, 213)],
+    }
+}
+
+/// Colour of the disc of a wheel that is locked.
+pub const LOCKED_COLOR: Rgb = [214, 39, 70];
+
+/// Colour of a material of a car.
+///
+/// - `is_locked`: of the wheel, for its disc.
+pub fn surface_color(surface: Surface, body: Rgb, is_locked: bool) -> Rgb {
+    match surface {
+        Surface::Body => body,
+        Surface::Trim => [52, 55, 58],
+        Surface::Windscreen => [58, 78, 92],
+        Surface::Glass => [36, 44, 52],
+        Surface::HeadLamp => [250, 246, 226],
+        Surface::TailLamp => [176, 24, 32],
+        Surface::Underbody => [24, 25, 27],
+        Surface::Tyre => [38, 39, 41],
+        Surface::Hub | Surface::HubGap if is_locked => LOCKED_COLOR,
+        Surface::Hub => [206, 209, 212],
+        Surface::HubGap => [96, 100, 104],
+    }
+}
+
+/// Colour of a body.
+pub fn body_color(role: SceneRole, dark: bool) -> Rgb {
+    let color = role_color(role, dark);
+    let grey = if dark { 130.0 } else { 165.0 };
+    [color.r(), color.g(), color.b()]
+        .map(|v| (f32::from(v) * (1.0 - BODY_GREY) + grey * BODY_GREY).round() as u8)
+}
+
+/// A colour in the light of the sun.
+///
+/// - `normal`: of unit length, in world axes.
+pub fn lit(color: Rgb, normal: [f64; 3]) -> Rgb {
+    let toward: f64 = (0..3).map(|i| normal[i] * SUN[i]).sum();
+    // What is turned away from the sun is darkened less the more it is turned up.
+    let light = AMBIENT + DIFFUSE * toward.max(0.0) + 0.10 * toward.min(0.0);
+    color.map(|v| (f64::from(v) * light).round().clamp(0.0, 255.0) as u8)
+}
+
+/// A colour of a share of another over it.
+pub fn mixed(under: Color32, over: Color32, share: f32) -> Color32 {
+    let mix = |a: u8, b: u8| (f32::from(a) + (f32::from(b) - f32::from(a)) * share).round() as u8;
+    Color32::from_rgb(mix(under.r(), over.r()), mix(under.g(), over.g()), mix(under.b(), over.b()))
+}

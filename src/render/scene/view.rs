@@ -1,0 +1,271 @@
+//! A scene in a part of the window, moved with the mouse.
+
+use std::sync::Arc;
+
+use egui::{
+    Color32, ColorImage, Image, Painter, Rect, Response, Sense, Stroke, TextureHandle,
+    TextureOptions, Ui, Vec2, pos2,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::render::scene::labels::Labels;
+use crate::render::scene::shade::role_color;
+use crate::render::scene::{Camera, SceneCanvas, SceneLook, ScenePicture, ViewKind};
+use crate::scene::{CarLook, Scene, SceneRole};
+
+/// Angle of a turn for each point that the mouse is dragged, rad.
+const TURN_PER_POINT: f64 = 0.006;
+/// Logarithm of the zoom for each point that the wheel scrolls.
+const ZOOM_PER_POINT: f64 = 0.004;
+
+/// Which car the camera follows.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Follow {
+    /// None: the camera stands.
+    #[default]
+    Nothing,
+    /// The struck car.
+    Struck,
+    /// The striking car.
+    Striking,
+}
+
+impl Follow {
+    /// Where the followed car is at a time, m.
+    fn target_m(self, scene: &Scene, time_s: f64) -> Option<[f64; 2]> {
+        let car = match self {
+            Self::Nothing => None,
+            Self::Struck => scene.struck(),
+            Self::Striking => scene.striking(),
+        };
+        car.map(|car| car.at(time_s).pose).map(|pose| [pose.x_m, pose.y_m])
+    }
+}
+
+/// Drawing of a scene in a part of the window: the picture and the camera.
+#[derive(Default)]
+pub struct SceneView {
+    canvas: SceneCanvas,
+    texture: Option<TextureHandle>,
+    /// Pixels of the texture, which are written into again and again.
+    image: Option<Arc<ColorImage>>,
+    /// The camera; `None` fits it to the scene.
+    camera: Option<Camera>,
+}
+
+impl SceneView {
+    /// Fits the camera to the scene when it is drawn next.
+    pub fn fit(&mut self) {
+        self.camera = None;
+    }
+
+    /// Places the camera as a picture wants it.
+    pub(super) fn place(&mut self, picture: &ScenePicture) {
+        match (&mut self.camera, picture.distance_m) {
+            _ if picture.is_placed => self.camera = Some(picture.camera),
+            (Some(camera), Some(distance_m)) => camera.distance_m = distance_m,
+            // The size may still change.
+            _ => self.camera = None,
+        }
+    }
+
+    /// The camera of the last picture, if it was moved or fitted.
+    pub fn camera(&self) -> Option<Camera> {
+        self.camera
+    }
+}
+
+/// Draws the legend of a scene, and the scene at a time below it in the space that is left.
+///
+/// - `height`: of both, points;
+/// - `usual`: the camera with the kind of view and the directions that are wanted; it is fitted to the
+///   scene until the user moves it.
+pub fn scene_view_ui(
+    ui: &mut Ui,
+    (scene, time_s): (&Arc<Scene>, f64),
+    view: &mut SceneView,
+    (usual, follow, height): (&mut Camera, Follow, f32),
+) -> Response {
+    let top = ui.cursor().top();
+    legend_ui(ui, scene);
+    let used = ui.cursor().top() - top;
+    let size = Vec2::new(ui.available_width().max(32.0), (height - used).max(64.0));
+    let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+    let named = || egui::WidgetInfo::labeled(egui::Role::Image, true, "Picture of the scene");
+    response.widget_info(named);
+    let points = ui.ctx().pixels_per_point();
+    // Pixels of the picture are those of the screen.
+    let [left, top] = [rect.left(), rect.top()].map(|at| (at * points).round());
+    let size_px =
+        [rect.width(), rect.height()].map(|side| ((side * points).floor() as usize).max(1));
+    let [width, height] = size_px.map(|side| side as f32);
+    let rect =
+        Rect::from_min_size(pos2(left / points, top / points), Vec2::new(width, height) / points);
+    let size = size_px.map(|side| side as f64);
+    let mut camera = match view.camera {
+        Some(camera) if camera.kind == usual.kind => camera,
+        _ => usual.fitted(&scene.places_m(), size),
+    };
+    if response.double_clicked() {
+        camera = usual.fitted(&scene.places_m(), size);
+    }
+    camera = moved(ui, &response, (camera, rect), size);
+    if let Some(target_m) = follow.target_m(scene, time_s) {
+        camera.target_m = target_m;
+    }
+    (usual.azimuth_rad, usual.elevation_rad) = (camera.azimuth_rad, camera.elevation_rad);
+    view.camera = Some(camera);
+    let dark = ui.visuals().dark_mode;
+    let look = SceneLook { size_px, camera, dark, pixels_per_point: points };
+    paint(ui, (rect, view), (scene, time_s), &look);
+    let projection = look.projection();
+    let labels = Labels { rect, projection: &projection, points, dark };
+    labels.draw(&ui.painter().with_clip_rect(rect), scene, time_s);
+    response
+}
+
+/// Draws the picture, if it has changed, and shows it.
+fn paint(
+    ui: &Ui,
+    (rect, view): (Rect, &mut SceneView),
+    (scene, time_s): (&Arc<Scene>, f64),
+    look: &SceneLook,
+) {
+    let has_changed = view.canvas.draw(scene, look, time_s);
+    let SceneView { canvas, texture, image, .. } = view;
+    if has_changed || texture.is_none() {
+        let mut pixels = image.take().unwrap_or_default();
+        let filled = Arc::make_mut(&mut pixels);
+        *filled = ColorImage {
+            size: look.size_px,
+            pixels: std::mem::take(&mut filled.pixels),
+            ..ColorImage::default()
+        };
+        filled.pixels.clear();
+        filled.pixels.extend_from_slice(canvas.pixels());
+        let options = TextureOptions::NEAREST;
+        match texture {
+            Some(texture) => texture.set(Arc::clone(&pixels), options),
+            None => *texture = Some(ui.ctx().load_texture("scene", Arc::clone(&pixels), options)),
+        }
+        *image = Some(pixels);
+    }
+    if let Some(texture) = texture {
+        Image::new((texture.id(), rect.size())).paint_at(ui, rect);
+    }
+}
+
+/// The camera after what the mouse does: from above, a drag moves it; in perspective, the primary button
+/// turns it and the secondary or the middle one moves it; the wheel zooms about the pointer.
+fn moved(ui: &Ui, response: &Response, (camera, rect): (Camera, Rect), size: [f64; 2]) -> Camera {
+    let points = f64::from(ui.ctx().pixels_per_point());
+    let in_picture = |at: egui::Pos2| {
+        let at = at - rect.min;
+        [f64::from(at.x) * points, f64::from(at.y) * points]
+    };
+    let mut camera = camera;
+    let drag = response.drag_delta();
+    if drag != Vec2::ZERO
+        && let Some(pointer) = response.interact_pointer_pos()
+    {
+        let turns = camera.kind == ViewKind::Perspective
+            && response.dragged_by(egui::PointerButton::Primary)
+            && !ui.input(|input| input.modifiers.shift);
+        camera = if turns {
+            let [dx, dy] = [drag.x, drag.y].map(|way| f64::from(way) * TURN_PER_POINT);
+            camera.orbited([-dx, dy])
+        } else {
+            camera.panned(size, [in_picture(pointer - drag), in_picture(pointer)])
+        };
+    }
+    if let Some(pointer) = response.hover_pos() {
+        let (turned, pinched) = ui.input_mut(|input| {
+            let turned = input.smooth_scroll_delta().y;
+            input.smooth_scroll_delta = Vec2::ZERO;
+            (turned, input.zoom_delta())
+        });
+        let factor = (f64::from(turned) * ZOOM_PER_POINT).exp() * f64::from(pinched);
+        if factor != 1.0 {
+            camera = camera.zoomed(size, (in_picture(pointer), factor));
+        }
+    }
+    camera
+}
+
+/// Draws the names of what the scene shows, each with its colour.
+fn legend_ui(ui: &mut Ui, scene: &Scene) {
+    let dark = ui.visuals().dark_mode;
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let (text_color, sample) = (ui.visuals().text_color(), Vec2::new(2.0 * font.size, font.size));
+    ui.horizontal_wrapped(|ui| {
+        for (name, role, kind) in entries(scene) {
+            let galley = ui.painter().layout_no_wrap(name.to_owned(), font.clone(), text_color);
+            let size = Vec2::new(sample.x + 5.0 + galley.size().x, galley.size().y.max(sample.y));
+            let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+            response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, name));
+            let place = egui::Align2::LEFT_CENTER.anchor_size(rect.left_center(), sample);
+            draw_sample(ui.painter(), place, (role_color(role, dark), kind));
+            let at = rect.right_center() - Vec2::new(galley.size().x, galley.size().y / 2.0);
+            ui.painter().galley(at, galley, text_color);
+        }
+    });
+}
+
+/// Draws the sample beside a name.
+fn draw_sample(painter: &Painter, rect: Rect, (color, kind): (Color32, Entry)) {
+    let (from, to, stroke) = (rect.left_center(), rect.right_center(), Stroke::new(2.0, color));
+    let inside = rect.shrink2(Vec2::new(1.0, 2.0));
+    match kind {
+        Entry::Solid => drop(painter.rect_filled(inside, 2.0, color)),
+        Entry::Ghost => drop(painter.rect_filled(inside, 2.0, color.gamma_multiply(0.4))),
+        Entry::Line => drop(painter.line_segment([from, to], stroke)),
+        Entry::Dashed => {
+            painter.extend(egui::Shape::dashed_line(&[from, to], stroke, 5.0, 3.0));
+        }
+        Entry::Point => drop(painter.circle_filled(rect.center(), 3.0, color)),
+        Entry::Cross => {
+            for slope in [1.0, -1.0] {
+                let arm = Vec2::new(4.0, 4.0 * slope);
+                painter.line_segment([rect.center() - arm, rect.center() + arm], stroke);
+            }
+        }
+    }
+}
+
+/// How a name is shown in the legend.
+#[derive(Clone, Copy)]
+enum Entry {
+    Solid,
+    Ghost,
+    Line,
+    Dashed,
+    Point,
+    Cross,
+}
+
+/// Names of a scene, each once: cars, then lines and points, then what is not a role.
+fn entries(scene: &Scene) -> Vec<(&str, SceneRole, Entry)> {
+    let mut entries: Vec<(&str, SceneRole, Entry)> = Vec::new();
+    let cars = scene.cars.iter().rev().map(|car| {
+        let kind = if car.look == CarLook::Solid { Entry::Solid } else { Entry::Ghost };
+        (car.name.as_str(), car.role, kind)
+    });
+    let lined = |is_dashed| if is_dashed { Entry::Dashed } else { Entry::Line };
+    let paths = scene.paths.iter().map(|of| (of.name.as_str(), of.role, lined(of.is_dashed)));
+    let lines = scene.lines.iter().map(|of| (of.name.as_str(), of.role, lined(of.is_dashed)));
+    let points = scene.points.iter().map(|of| (of.name.as_str(), of.role, Entry::Point));
+    let arrows = scene.arrows.iter().map(|of| ("impulse", of.role, Entry::Line));
+    let crosses =
+        scene.crosses.iter().map(|of| (of.name.as_str(), SceneRole::Evidence, Entry::Cross));
+    let density =
+        scene.density.iter().map(|of| (of.name.as_str(), SceneRole::Forecast, Entry::Ghost));
+    let all =
+        cars.chain(paths).chain(lines).chain(points).chain(arrows).chain(crosses).chain(density);
+    for entry in all.filter(|entry| !entry.0.is_empty()) {
+        if entries.iter().all(|other| other.0 != entry.0) {
+            entries.push(entry);
+        }
+    }
+    entries
+}

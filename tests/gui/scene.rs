@@ -1,0 +1,103 @@
+//! The scene in the window: its views, the mouse, and what is exported.
+
+use egui::{Pos2, Vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use impactlab::app::{App, Command, Pane};
+use impactlab::render::scene::{Camera, Follow, ViewKind};
+
+use crate::harness::{apply, is_idle, open, step_until};
+use crate::pictures::save;
+
+fn scene() -> Harness<'static, App> {
+    let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")]);
+    step_until(&mut harness, "the first case", is_idle);
+    apply(&mut harness, Command::Show(Pane::Scene));
+    apply(&mut harness, Command::SetTime(0.3));
+    harness.run_steps(4);
+    harness
+}
+
+fn camera(harness: &Harness<'_, App>) -> Camera {
+    harness.state().state().session.scene.view.camera().expect("a scene was drawn")
+}
+
+/// Drags with the primary button from the middle of the scene.
+fn drag(harness: &mut Harness<'_, App>, from: Pos2, way: Vec2) {
+    harness.drag_at(from);
+    harness.step();
+    harness.hover_at(from + way);
+    harness.step();
+    harness.drop_at(from + way);
+    harness.step();
+}
+
+#[test]
+fn the_view_is_switched_by_its_label_and_moved_by_the_mouse() {
+    let mut harness = scene();
+    assert_eq!(camera(&harness).kind, ViewKind::Above);
+    save(&mut harness, "scene-above.png");
+    let from_above = harness.render().expect("a picture");
+    // A point of the ground that no label covers.
+    let middle = Pos2::new(760.0, 330.0);
+    let before = camera(&harness);
+    drag(&mut harness, middle, Vec2::new(60.0, 0.0));
+    let after = camera(&harness);
+    assert!(after.target_m[0] < before.target_m[0] - 0.1, "{before:?} {after:?}");
+    assert_eq!(after.distance_m, before.distance_m);
+
+    harness.get_by_label("Perspective").click();
+    harness.run_steps(4);
+    let before = camera(&harness);
+    assert_eq!(before.kind, ViewKind::Perspective);
+    assert_eq!(harness.state().state().view.scene.camera.kind, ViewKind::Perspective);
+    save(&mut harness, "scene-perspective.png");
+    assert!(harness.render().expect("a picture") != from_above);
+    drag(&mut harness, middle, Vec2::new(60.0, 20.0));
+    let after = camera(&harness);
+    assert!(after.elevation_rad > before.elevation_rad, "{before:?} {after:?}");
+    assert!((after.azimuth_rad - before.azimuth_rad).abs() > 0.1, "{before:?} {after:?}");
+    assert_eq!(after.target_m, before.target_m);
+
+    harness.get_by_label("From above").click();
+    harness.run_steps(4);
+    assert_eq!(camera(&harness).kind, ViewKind::Above);
+}
+
+#[test]
+fn the_camera_follows_the_struck_car() {
+    let mut harness = scene();
+    harness.state_mut().state_mut().view.scene.follow = Follow::Struck;
+    for time_s in [0.2, 1.0, 3.0] {
+        apply(&mut harness, Command::SetTime(time_s));
+        harness.run_steps(3);
+        let answer = harness.state().state().analysis().expect("a simulation");
+        let motion = &answer.analysis.simulation.as_ref().expect("a motion").series;
+        let pose = impactlab::figure::pose_at(motion, time_s).expect("a pose");
+        let target = camera(&harness).target_m;
+        assert!((target[0] - pose.x_m).hypot(target[1] - pose.y_m) < 1e-9, "at {time_s} s");
+    }
+    harness.state_mut().state_mut().view.dark = true;
+    harness.state_mut().state_mut().view.scene.camera.kind = ViewKind::Perspective;
+    apply(&mut harness, Command::SetTime(0.6));
+    harness.run_steps(4);
+    save(&mut harness, "scene-dark.png");
+}
+
+#[test]
+fn the_wheel_zooms_about_the_pointer() {
+    let mut harness = scene();
+    let (at, before) = (Pos2::new(760.0, 330.0), camera(&harness));
+    harness.hover_at(at);
+    harness.step();
+    harness.event(egui::Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta: Vec2::new(0.0, 120.0),
+        modifiers: egui::Modifiers::NONE,
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Unknown,
+    });
+    harness.run_steps(12);
+    let after = camera(&harness);
+    assert!(after.distance_m < 0.9 * before.distance_m, "{before:?} {after:?}");
+}
