@@ -2,8 +2,17 @@
 //! checks.
 
 macro_rules! sources {
-    ($($(#[$doc:meta])* $key:ident;)+) => {
-        $($(#[$doc])* #[derive(Debug)] pub enum $key {})+
+    ($($(#[doc = $doc:literal])* $key:ident;)+) => {
+        $(
+            $(#[doc = $doc])*
+            #[derive(Debug)]
+            pub enum $key {}
+
+            impl $key {
+                /// The lines of the documentation of this source, for lists of sources.
+                pub const TEXT: &'static str = concat!($($doc, "\n"),*);
+            }
+        )+
     };
 }
 
@@ -100,8 +109,9 @@ sources! {
     /// Association 95(449), 2000. Mixtures with a defensive component, which bounds the weights.
     OwenZhou2000;
     /// Y. Jiang, J. Wang, D. Li, *Physics-Informed Neural Network Modeling of Vehicle Collision
-    /// Dynamics in Precision Immobilization Technique Maneuvers*, Zhejiang University. “The paper”
-    /// in doc comments: its two physics-informed networks, from the scenario of a collision to the
+    /// Dynamics in Precision Immobilization Technique Maneuvers*, Zhejiang University.
+    ///
+    /// “The paper” in doc comments: its two physics-informed networks, from the scenario of a collision to the
     /// impact force and from the force to the motion after the impact, are what this program
     /// follows.
     ///

@@ -91,6 +91,17 @@ impl Unit {
     }
 }
 
+/// A median and the interval around it as they are shown, without their unit.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ShownInterval {
+    /// The median.
+    pub median: String,
+    /// Lower and upper end.
+    pub ends: [String; 2],
+    /// Symbol of the unit of all three; empty for a ratio.
+    pub symbol: &'static str,
+}
+
 impl Quantity {
     /// Every quantity.
     pub const ALL: [Self; 14] = [
@@ -153,25 +164,37 @@ impl Quantity {
     /// A median with the interval around it as text for the user, such as `31 (27 to 57) m`. The interval
     /// decides the digits: two of its width, and none that it makes meaningless.
     pub fn shown_interval(self, median_si: f64, ends_si: [f64; 2], system: UnitSystem) -> String {
+        let ShownInterval { median, ends: [low, high], symbol } =
+            self.interval_parts(median_si, ends_si, system);
+        if ends_si[0] == ends_si[1] {
+            return format!("{median} {symbol}").trim_end().to_owned();
+        }
+        format!("{median} ({low} to {high}) {symbol}").trim_end().to_owned()
+    }
+
+    /// The numbers of [`Quantity::shown_interval`], to be put into a table or into words.
+    pub fn interval_parts(
+        self,
+        median_si: f64,
+        ends_si: [f64; 2],
+        system: UnitSystem,
+    ) -> ShownInterval {
         let unit = self.display_unit(system);
         let [low, high] = ends_si.map(|end| unit.from_si(end));
         let median = unit.from_si(median_si);
         let width = (high - low).abs();
-        if width == 0.0 {
-            return self.shown(median_si, system);
-        }
-        if !width.is_finite() {
-            return format!("{median} ({low} to {high}) {}", unit.symbol).trim_end().to_owned();
-        }
-        let decimals = (1 - width.log10().floor() as i32).clamp(0, 6) as usize;
         // Adding zero turns a negative zero into a positive one.
-        let text = |value: f64| {
-            let scale = 10.0_f64.powi(decimals as i32);
-            format!("{:.decimals$}", (value * scale).round() / scale + 0.0)
+        let text = |value: f64| match width {
+            0.0 => significant(value),
+            width if !width.is_finite() => value.to_string(),
+            width => {
+                let decimals = (1 - width.log10().floor() as i32).clamp(0, 6) as usize;
+                let scale = 10.0_f64.powi(decimals as i32);
+                format!("{:.decimals$}", (value * scale).round() / scale + 0.0)
+            }
         };
-        format!("{} ({} to {}) {}", text(median), text(low), text(high), unit.symbol)
-            .trim_end()
-            .to_owned()
+        let (median, ends) = (text(median), [text(low), text(high)]);
+        ShownInterval { median, ends, symbol: unit.symbol }
     }
 
     /// The two components of a vector in SI units as text for the user with one unit, such as

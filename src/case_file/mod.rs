@@ -31,7 +31,7 @@ use crate::study::Request;
 
 pub use error::CaseError;
 pub use package::{file_stem, pack, unpack};
-pub use run::{AnsweredQuestion, CaseReport, VariantReport};
+pub use run::{AnswerListener, AnsweredQuestion, CaseReport, VariantReport};
 pub use store::{CASE_ENDING, is_case_file};
 pub use used::{Change, UsedFile};
 
@@ -116,6 +116,11 @@ impl CaseFile {
             models: Vec::new(),
             log: Vec::new(),
         }
+    }
+
+    /// Version of the program that saved it.
+    pub fn program(&self) -> &str {
+        &self.program
     }
 
     /// Writes down that something was done just now.

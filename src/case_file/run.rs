@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::case_file::{CaseError, CaseFile, Change, UsedModel, Variant};
 use crate::data::Outcome;
 use crate::error_chain;
-use crate::study::{Library, Observer, Report, Request};
+use crate::study::{Answer, Library, Observer, Report, Request, StudyError};
 
 /// The answers to all questions of a case.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -42,6 +42,9 @@ pub struct AnsweredQuestion {
     pub error: Option<String>,
 }
 
+/// Is told of the variant, the question, and its answer or why there is none.
+pub type AnswerListener<'a> = dyn FnMut(&Variant, &Request, Result<&Answer, &StudyError>) + 'a;
+
 impl CaseFile {
     /// Answers every question of the variants. A question without an answer does not keep the others from
     /// being asked.
@@ -56,6 +59,22 @@ impl CaseFile {
         library: &Library,
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<CaseReport>, CaseError> {
+        self.ask_each((variants, library), observer, &mut |_, _, _| {})
+    }
+
+    /// The same, and tells of each answer, with what it was made from, before the next question is
+    /// asked.
+    ///
+    /// - `told`: is called with the variant, the question, and its answer or why there is none.
+    ///
+    /// # Errors
+    /// As for [`CaseFile::ask`].
+    pub fn ask_each(
+        &self,
+        (variants, library): (&[String], &Library),
+        observer: &mut Observer<'_>,
+        told: &mut AnswerListener<'_>,
+    ) -> Result<Outcome<CaseReport>, CaseError> {
         if let Some(name) = variants.iter().find(|name| self.variant(name).is_none()) {
             return Err(self.no_variant(name));
         }
@@ -64,10 +83,16 @@ impl CaseFile {
         for variant in self.variants.iter().filter(is_asked) {
             let mut answers = Vec::new();
             for request in &variant.questions {
-                let answered = match request.run(library, observer) {
-                    Ok(Outcome::Complete(report)) => (Some(report), None),
+                let answered = match request.answer(library, observer) {
+                    Ok(Outcome::Complete(answer)) => {
+                        told(variant, request, Ok(&answer));
+                        (Some(answer.into_report()), None)
+                    }
                     Ok(Outcome::Cancelled) => return Ok(Outcome::Cancelled),
-                    Err(error) => (None, Some(error_chain(&error))),
+                    Err(error) => {
+                        told(variant, request, Err(&error));
+                        (None, Some(error_chain(&error)))
+                    }
                 };
                 let (report, error) = answered;
                 answers.push(AnsweredQuestion { request: request.clone(), report, error });

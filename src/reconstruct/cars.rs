@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::collision::Side;
 use crate::reconstruct::evidence::{CarEvidence, Evidence};
-use crate::vehicle::sheet::SheetQuantity;
+use crate::vehicle::sheet::{Estimate, SheetQuantity};
 use crate::vehicle::{DataSheet, VehicleClass, VehicleParameters};
 
 /// Normal quantile of 0.95.
@@ -81,6 +81,19 @@ impl Car {
         });
         let scatter = scatter.filter(|(_, sigma)| *sigma > 0.0).collect();
         Self { parameters: lean(sheet.vehicle()), scatter }
+    }
+
+    /// What the rules say of the quantities that evidence and vehicle leave open; nothing of a vehicle
+    /// of which every parameter is known.
+    pub fn estimates_of(
+        evidence: &CarEvidence,
+        vehicle: Option<&VehicleParameters>,
+    ) -> Vec<Estimate> {
+        let sheet = match vehicle {
+            None => Some(DataSheet::new("car", VehicleClass::Any)),
+            Some(vehicle) => vehicle.sheet.as_deref().cloned(),
+        };
+        sheet.map_or_else(Vec::new, |sheet| completed(sheet, evidence).estimates())
     }
 
     /// A vehicle of which every parameter is known, with what the evidence says otherwise.

@@ -37,5 +37,7 @@ pub use forward::{CollisionMotion, ForwardModel, ImpactState};
 pub use hand::HandCalculation;
 pub use likelihood::{Discrepancy, EvidenceFit, EvidenceTerm, ReconstructionTarget};
 pub use modes::{ParticleMode, cluster_keys, modes_by};
-pub use posterior::{BudgetItem, Mode, Posterior, QuantityEstimate, ReconstructedQuantity};
+pub use posterior::{
+    BudgetItem, Mode, Posterior, QuantityEstimate, ReconstructedQuantity, ShownEstimate,
+};
 pub use prior::{Latent, LatentValues, Prior, PriorComponent};

@@ -293,7 +293,44 @@ impl BudgetItem {
     }
 }
 
+/// The numbers of a [`QuantityEstimate`] as they are shown, without their unit.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ShownEstimate {
+    /// Symbol of the unit of all of them; empty for a pure number.
+    pub unit: &'static str,
+    /// Median.
+    pub median: String,
+    /// Ends of the interval of 50 %.
+    pub interval_50: [String; 2],
+    /// … of 90 %.
+    pub interval_90: [String; 2],
+    /// … of 95 %.
+    pub interval_95: [String; 2],
+}
+
 impl QuantityEstimate {
+    /// The numbers for a person, on the command line and in a report.
+    pub fn shown(&self, units: UnitSystem) -> ShownEstimate {
+        let quantity = match self.unit {
+            "m/s" => Quantity::Speed,
+            "rad" => Quantity::Angle,
+            "rad/s" => Quantity::AngularVelocity,
+            _ => Quantity::Ratio,
+        };
+        let unit = quantity.display_unit(units);
+        let number = |si: f64| match quantity {
+            Quantity::Ratio => format!("{si:.3}"),
+            _ => format!("{:.1}", unit.from_si(si)),
+        };
+        ShownEstimate {
+            unit: unit.symbol,
+            median: number(self.median),
+            interval_50: self.interval_50.map(number),
+            interval_90: self.interval_90.map(number),
+            interval_95: self.interval_95.map(number),
+        }
+    }
+
     /// Intervals of equally likely values; `None` without values.
     fn of(quantity: ReconstructedQuantity, mut values: Vec<f64>) -> Option<Self> {
         values.sort_by(f64::total_cmp);

@@ -103,7 +103,7 @@ pub use provenance::Provenance;
 pub use question::{Event, Observer, Question, Sampling};
 pub use reconstruct::{EvidenceChoice, ReconstructAnswer, ReconstructReport, ReconstructRequest};
 pub use recorded_force::{RecordedForceAnswer, RecordedForceRequest};
-pub use request::{Report, Request};
+pub use request::{Answer, Report, Request};
 pub use simulate::{DEFAULT_DURATION_S, DEFAULT_VEHICLE_DRAWS, SimulateAnswer, SimulateRequest};
 pub use simulate_dataset::{
     ReplayedCaseReport, SimulateDatasetAnswer, SimulateDatasetReport, SimulateDatasetRequest,

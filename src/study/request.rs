@@ -29,22 +29,48 @@ macro_rules! questions {
             $($(#[$doc])* $variant(Box<$report>),)+
         }
 
+        /// The answer to any question, with what its report was made from and figures are drawn from.
+        pub enum Answer {
+            $($(#[$doc])* $variant(Box<<$request as Question>::Answer>),)+
+        }
+
+        impl Answer {
+            /// What is told of the answer.
+            pub fn into_report(self) -> Report {
+                match self {
+                    $(Self::$variant(answer) => Report::$variant(Box::new(answer.report)),)+
+                }
+            }
+        }
+
         impl Request {
             /// Answers the question, whichever it is.
             ///
             /// # Errors
             /// [`StudyError`] says what is wrong with the question or with a file.
+            pub fn answer(
+                &self,
+                library: &Library,
+                observer: &mut Observer<'_>,
+            ) -> Result<Outcome<Answer>, StudyError> {
+                match self {
+                    $(Self::$variant(request) => {
+                        let answer = request.answer(library, observer)?;
+                        Ok(answer.map(|answer| Answer::$variant(Box::new(answer))))
+                    })+
+                }
+            }
+
+            /// Answers the question and keeps what is told of the answer.
+            ///
+            /// # Errors
+            /// As for [`Request::answer`].
             pub fn run(
                 &self,
                 library: &Library,
                 observer: &mut Observer<'_>,
             ) -> Result<Outcome<Report>, StudyError> {
-                match self {
-                    $(Self::$variant(request) => {
-                        let answer = request.answer(library, observer)?;
-                        Ok(answer.map(|answer| Report::$variant(Box::new(answer.report))))
-                    })+
-                }
+                Ok(self.answer(library, observer)?.map(Answer::into_report))
             }
         }
 

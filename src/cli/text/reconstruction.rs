@@ -80,26 +80,16 @@ fn print_budget(
 
 /// Name, unit, median and intervals in the shown unit.
 fn quantity_row(of: &QuantityEstimate, units: UnitSystem) -> Vec<String> {
-    let quantity = match of.unit {
-        "m/s" => Quantity::Speed,
-        "rad" => Quantity::Angle,
-        "rad/s" => Quantity::AngularVelocity,
-        _ => Quantity::Ratio,
-    };
-    let unit = quantity.display_unit(units);
-    let number = |si: f64| match quantity {
-        Quantity::Ratio => format!("{si:.3}"),
-        _ => format!("{:.1}", unit.from_si(si)),
-    };
-    let interval = |[low, high]: [f64; 2]| format!("{} to {}", number(low), number(high));
+    let shown = of.shown(units);
+    let interval = |[low, high]: &[String; 2]| format!("{low} to {high}");
     let name = of.name.strip_suffix(suffix(of.unit)).unwrap_or(of.name).replace('_', " ");
     vec![
         name,
-        unit.symbol.to_owned(),
-        number(of.median),
-        interval(of.interval_50),
-        interval(of.interval_90),
-        interval(of.interval_95),
+        shown.unit.to_owned(),
+        shown.median.clone(),
+        interval(&shown.interval_50),
+        interval(&shown.interval_90),
+        interval(&shown.interval_95),
     ]
 }
 
