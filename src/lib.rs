@@ -25,9 +25,11 @@
 //! 11. [`analysis`]: one case, from its file or scenario to a motion;
 //! 12. [`study`]: every question that can be asked, as a request with a report as its answer;
 //! 13. [`figure`], [`scene`]: the content of a plot, and of a scene in space, as plain data;
-//! 14. `render` (feature `gui`): one drawing function for the window and for pictures without a
+//! 14. [`report`]: what an expert signs: a document of a case and its answers, as PDF, Markdown and
+//!     JSON;
+//! 15. `render` (feature `gui`): one drawing function for the window and for pictures without a
 //!     window;
-//! 15. [`cli`] and `app` (feature `gui`): the command line and the window.
+//! 16. [`cli`] and `app` (feature `gui`): the command line and the window.
 //!
 //! This example simulates a vehicle that drives at 20 m/s with an initial yaw rate of 2 rad/s:
 //!
@@ -64,6 +66,7 @@ pub mod ranges;
 pub mod reconstruct;
 #[cfg(feature = "gui")]
 pub mod render;
+pub mod report;
 pub mod response;
 pub mod scene;
 pub mod shipped;

@@ -9,6 +9,7 @@ use crate::data::DataError;
 use crate::force::ForceError;
 use crate::learning::LearningError;
 use crate::ranges::OutOfRange;
+use crate::report::PdfError;
 use crate::study::StudyError;
 
 /// A command that could not do its work.
@@ -106,6 +107,38 @@ pub enum CliError {
         /// As given.
         path: PathBuf,
     },
+    /// A report is of an unknown kind.
+    #[error("{}: cannot be made; expected a name that ends in .pdf, .md or .json", path.display())]
+    ReportKind {
+        /// As given.
+        path: PathBuf,
+    },
+    /// Settings of a reconstruction are given for the report of a case.
+    #[error("{}: is a case, which says itself how many particles there are and their seed; leave out \
+             --particles and --seed", path.display())]
+    ReportOfCase {
+        /// The case.
+        path: PathBuf,
+    },
+    /// The input of a report has no absolute path.
+    #[error("{}: cannot be found", path.display())]
+    ReportInput {
+        /// As given.
+        path: PathBuf,
+        /// The error of the operating system.
+        source: io::Error,
+    },
+    /// A report cannot be written as PDF.
+    #[error("{}: cannot be written", path.display())]
+    Pdf {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: PdfError,
+    },
+    /// The clock tells no day.
+    #[error("the clock of this machine tells no day; say it with --date YYYY-MM-DD")]
+    NoClock,
     /// A build without drawing is asked for a picture.
     #[error("this build draws no pictures; --out FILE.csv writes the figure's numbers")]
     NoDrawing,

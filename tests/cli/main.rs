@@ -18,6 +18,7 @@ mod ranges;
 mod reconstruct;
 mod reconstruct_absurd;
 mod reconstruct_killed;
+mod report;
 mod response;
 #[cfg(feature = "gui")]
 mod restrictions;

@@ -12,7 +12,7 @@ use spdx::{Expression, Licensee, ParseMode};
 
 /// Licences in the order in which one is chosen where a crate offers several.
 const PREFERRED: &[&str] =
-    &["MIT", "Zlib", "ISC", "BSD-3-Clause", "BSL-1.0", "Unicode-3.0", "Apache-2.0"];
+    &["MIT", "Zlib", "ISC", "BSD-2-Clause", "BSD-3-Clause", "BSL-1.0", "Unicode-3.0", "Apache-2.0"];
 
 /// Licences whose texts lie beside the fonts.
 const OF_FONTS: &[&str] = &["OFL-1.1", "Ubuntu-font-1.0"];

@@ -23,6 +23,7 @@ const LAYERS: &[&[&str]] = &[
     &["study"],
     &["case_file"],
     &["scene", "figure"],
+    &["report"],
     &["render"],
     &["cli", "app"],
 ];

@@ -20,6 +20,7 @@ mod force_model;
 mod layering;
 mod model_budgets;
 mod ranges;
+mod report;
 mod response_model;
 mod validation_collision;
 mod vehicle;

@@ -23,6 +23,7 @@ mod render_figure;
 mod render_forecast;
 mod render_reconstruction;
 mod render_scene;
+pub(super) mod report;
 pub(super) mod simulate;
 pub(super) mod train;
 mod train_force;

@@ -1,0 +1,217 @@
+//! `impactlab report`: the report that an expert signs.
+
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use clap::{Args, ValueEnum};
+use serde::Serialize;
+
+use crate::case_file::{CaseFile, Change, Variant, is_case_file};
+use crate::cli::CliError;
+use crate::cli::console::{Console, Verdict, print_json, shown_path, under_bar};
+use crate::cli::options::{OverwriteArg, UnitsArg};
+use crate::data::write_atomically;
+use crate::report::{
+    Language, Paper, PdfError, ReportDate, ReportDocument, ReportSettings, pdf, report_case,
+};
+use crate::study::{EvidenceChoice, ReconstructRequest};
+
+/// Write the report of a case: answers, inputs, evidence, method, validity, sources
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(in crate::cli) struct ReportArgs {
+    /// The case, or the evidence of a collision, which is reconstructed with the usual settings
+    #[arg(value_name = "CASE.impactlab|EVIDENCE.toml")]
+    case: PathBuf,
+    /// The file: .pdf, .md or .json
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    #[command(flatten)]
+    overwrite: OverwriteArg,
+    /// Of an evidence file: number of particles; a case says it itself
+    #[arg(long, value_name = "N")]
+    particles: Option<usize>,
+    /// Of an evidence file: seed of all draws; a case says it itself
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Only this variant; several if given again
+    #[arg(long, value_name = "NAME")]
+    variant: Vec<String>,
+    /// Language
+    #[arg(long, value_enum, default_value_t)]
+    language: LanguageArg,
+    /// Units of the numbers
+    #[arg(long, value_enum, default_value_t)]
+    units: UnitsArg,
+    /// Size of the pages
+    #[arg(long, value_enum, default_value_t)]
+    paper: PaperArg,
+    /// The date that the report bears; today in UTC if not given
+    #[arg(long, value_name = "YYYY-MM-DD")]
+    date: Option<ReportDate>,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  impactlab report assets/examples/pit.impactlab --out report.pdf
+  impactlab report case.toml --out bericht.pdf --language de --paper a4
+  impactlab report assets/examples/pit.impactlab --out report.md --units us --date 2026-11-24
+
+Every question of the case is asked, as `impactlab case run` does. The same case, files and date give the
+same bytes.
+
+JSON: out, title, date, sections, pictures, unanswered, changes [{kind, path | network and name}]
+
+Exit code 1 if a question has no answer, or if a file or a network is not what it was when the case was
+saved. The report is written then too, and says so.";
+
+/// A language.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+enum LanguageArg {
+    /// English
+    #[default]
+    En,
+    /// German
+    De,
+}
+
+/// A size of pages.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+enum PaperArg {
+    /// 210 mm × 297 mm
+    #[default]
+    A4,
+    /// 8.5 in × 11 in
+    Letter,
+}
+
+/// How a report is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Format {
+    Pdf,
+    Markdown,
+    Json,
+}
+
+/// What was written.
+#[derive(Debug, Serialize)]
+struct WrittenReport<'a> {
+    out: &'a Path,
+    title: &'a str,
+    date: &'a str,
+    sections: usize,
+    pictures: usize,
+    unanswered: usize,
+    changes: &'a [Change],
+}
+
+/// Asks the questions and writes the report.
+pub(in crate::cli) fn run(
+    args: &ReportArgs,
+    console: &mut Console<'_>,
+) -> Result<Verdict, CliError> {
+    let format = format_of(&args.out)?;
+    if console.print_request {
+        print_json(console.out, &args.case()?.variants)?;
+        return Ok(Verdict::Clean);
+    }
+    console.check_target(Some(&args.out), args.overwrite.into())?;
+    let case = args.case()?;
+    let settings = args.settings()?;
+    let asked = (&case, args.variant.as_slice());
+    let outcome = under_bar(|observer| report_case(asked, &settings, &console.library, observer))?;
+    let (document, report) = outcome.complete().ok_or(CliError::Cancelled)?;
+    let bytes = bytes_of(&document, format, &args.out)?;
+    write_atomically(&args.out, args.overwrite.into(), |file| file.write_all(&bytes))?;
+    let answers = report.variants.iter().flat_map(|variant| &variant.answers);
+    let written = WrittenReport {
+        out: &args.out,
+        title: &document.title,
+        date: &document.date_iso,
+        sections: document.sections.len(),
+        pictures: document.pictures().count(),
+        unanswered: answers.filter(|answer| answer.error.is_some()).count(),
+        changes: &report.changes,
+    };
+    console.print(&written, |out| {
+        writeln!(out, "{}: {}", shown_path(&args.out), document.title)?;
+        if written.unanswered > 0 {
+            writeln!(out, "warning: {} questions have no answer", written.unanswered)?;
+        }
+        report.changes.iter().try_for_each(|change| writeln!(out, "warning: {change}"))
+    })?;
+    Ok(Verdict::of(!report.is_clean()))
+}
+
+impl ReportArgs {
+    /// The case; of evidence alone, one that asks for its reconstruction.
+    fn case(&self) -> Result<CaseFile, CliError> {
+        let path = &self.case;
+        if is_case_file(path) {
+            return match (self.particles, self.seed) {
+                (None, None) => Ok(CaseFile::load(path)?),
+                _ => Err(CliError::ReportOfCase { path: path.clone() }),
+            };
+        }
+        let io = |source| CliError::ReportInput { path: path.clone(), source };
+        let choice = EvidenceChoice::File(std::path::absolute(path).map_err(io)?);
+        let name = choice.load()?.case;
+        let question = ReconstructRequest {
+            particles: self.particles.unwrap_or(ReconstructRequest::DEFAULT_PARTICLES),
+            seed: self.seed.unwrap_or_default(),
+            ..ReconstructRequest::new(choice)
+        };
+        let questions = vec![question.into()];
+        Ok(CaseFile::new(name.clone(), Variant { name, questions, ..Variant::default() }))
+    }
+
+    fn settings(&self) -> Result<ReportSettings, CliError> {
+        let language = match self.language {
+            LanguageArg::En => Language::En,
+            LanguageArg::De => Language::De,
+        };
+        let paper = match self.paper {
+            PaperArg::A4 => Paper::A4,
+            PaperArg::Letter => Paper::Letter,
+        };
+        let date = self.date.or_else(today).ok_or(CliError::NoClock)?;
+        Ok(ReportSettings { language, units: self.units.into(), paper, date })
+    }
+}
+
+/// The day in UTC.
+fn today() -> Option<ReportDate> {
+    let now = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
+    now.get(..10)?.parse().ok()
+}
+
+fn format_of(path: &Path) -> Result<Format, CliError> {
+    let ending = path.extension().map(|end| end.to_ascii_lowercase());
+    match ending.as_deref().and_then(|end| end.to_str()) {
+        Some("pdf") => Ok(Format::Pdf),
+        Some("md") => Ok(Format::Markdown),
+        Some("json") => Ok(Format::Json),
+        _ => Err(CliError::ReportKind { path: path.to_owned() }),
+    }
+}
+
+fn bytes_of(document: &ReportDocument, format: Format, path: &Path) -> Result<Vec<u8>, CliError> {
+    match format {
+        Format::Markdown => Ok(document.to_markdown().into_bytes()),
+        Format::Json => Ok(document.to_json().map_err(std::io::Error::from)?.into_bytes()),
+        Format::Pdf => {
+            let drawn = written_pdf(document);
+            drawn.map_err(|source| CliError::Pdf { path: path.to_owned(), source })
+        }
+    }
+}
+
+#[cfg(feature = "gui")]
+fn written_pdf(document: &ReportDocument) -> Result<Vec<u8>, PdfError> {
+    pdf(document, Some(&crate::render::report_picture))
+}
+
+#[cfg(not(feature = "gui"))]
+fn written_pdf(document: &ReportDocument) -> Result<Vec<u8>, PdfError> {
+    pdf(document, None)
+}

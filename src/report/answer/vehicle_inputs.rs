@@ -1,0 +1,69 @@
+//! The parameters of a vehicle, as rows of the table of inputs.
+
+use crate::report::InputClass;
+use crate::report::flatten::{FlatRow, flatten};
+use crate::report::numbers::Wording;
+use crate::report::parts::InputRow;
+use crate::report::paths::ShownPaths;
+use crate::vehicle::VehicleParameters;
+use crate::vehicle::sheet::Estimate;
+
+/// Every parameter with its source. What follows from a data sheet is told by the estimates of that,
+/// with their intervals; what a vehicle file estimates, by its rule.
+///
+/// - `group`: what the vehicle is called in the table.
+pub(super) fn vehicle_rows(
+    vehicle: &VehicleParameters,
+    group: &str,
+    wording: &Wording,
+) -> Vec<InputRow> {
+    let told = serde_json::to_value(vehicle).unwrap_or_default();
+    let rows = flatten(&told, wording, &ShownPaths::default());
+    let is_text = |row: &&FlatRow| {
+        row.path.first().is_none_or(|name| name != "estimates") && row.key != "source"
+    };
+    let mut inputs: Vec<InputRow> = rows
+        .iter()
+        .filter(is_text)
+        .map(|row| {
+            let name = format!("{}.{}", row.path.join("."), row.key);
+            let rule = vehicle.estimates.get(&name);
+            InputRow {
+                group: group.to_owned(),
+                label: wording.key(&row.key),
+                value: row.value.clone(),
+                class: if rule.is_some() { InputClass::Estimated } else { InputClass::Given },
+                source: wording.quoted(rule.unwrap_or(&vehicle.source)),
+            }
+        })
+        .collect();
+    let sheet = vehicle.sheet.as_ref();
+    let estimates = sheet.map_or_else(Vec::new, |sheet| sheet.estimates());
+    if !estimates.is_empty() {
+        for row in &mut inputs {
+            // Which of the parameters a rule gave is told by the rows of the estimates below.
+            row.source = wording.words.follows_from_sheet.to_owned();
+        }
+    }
+    inputs.extend(estimates.iter().map(|estimate| estimate_row(estimate, group, wording)));
+    inputs
+}
+
+/// What the rules of a data sheet say of a quantity that it leaves open.
+pub(super) fn estimate_row(estimate: &Estimate, group: &str, wording: &Wording) -> InputRow {
+    let Estimate { quantity, unit, median, ninety, rule, source } = estimate;
+    let decimals = (ninety[1] - ninety[0]).abs();
+    let decimals = match decimals > 0.0 && decimals.is_finite() {
+        true => (1 - decimals.log10().floor() as i32).clamp(0, 6) as usize,
+        false => 3,
+    };
+    let text = |value: f64| format!("{value:.decimals$}");
+    let interval = wording.interval_of(&text(*median), &ninety.map(text), unit);
+    InputRow {
+        group: group.to_owned(),
+        label: wording.term(quantity.label()),
+        value: format!("{} (90 %: {})", interval.median, interval.range),
+        class: InputClass::Estimated,
+        source: wording.quoted(&format!("{rule}; {source}")),
+    }
+}

@@ -1,0 +1,411 @@
+//! The texts of a report in German.
+
+use crate::report::language::words::Words;
+
+/// Texts of the report itself.
+pub(super) const WORDS: Words = Words {
+    report: "Bericht",
+    to: "bis",
+    yes: "ja",
+    no: "nein",
+    none: "keine",
+    unknown: "unbekannt",
+    values: "Werte",
+    page_of: "Seite {page} von {n}",
+    figure: "Bild",
+    intro: "Fall „{case}“, {date}. Berechnet mit impactlab {version}. Jede Antwort in diesem Bericht \
+        wurde aus dem Fall und den Dateien berechnet, die er nennt.",
+    units_si: "Einheiten: m, km/h, Grad, kN, kJ, kg. Winkel und Gierraten sind nach links positiv.",
+    units_us: "Einheiten: ft, mph, Grad, lbf, ft lbf, lb. Winkel und Gierraten sind nach links positiv.",
+    language_note: "Texte in Anführungszeichen mit dem Zusatz „(engl.)“ gibt das Programm nur auf Englisch \
+        aus: Annahmen mit ihren Gründen, Einschränkungen, Schätzregeln, Hinweise und \
+        Fehlermeldungen. Auch die Literaturangaben und die Beschriftungen in den Bildern sind \
+        englisch.",
+    notes: "Bemerkungen des Bearbeiters",
+    changed_notice: "Seit dem Speichern des Falls hat sich etwas geändert: {what}. Die Antworten gelten für \
+        den jetzigen Stand und können von den damaligen abweichen.",
+    change_missing: "die Datei {path} fehlt",
+    change_changed: "die Datei {path} wurde geändert",
+    change_model: "das {network}-Netz „{name}“ ist ein anderes",
+    unanswered_notice: "{n} von {all} Fragen sind unbeantwortet; die Gründe stehen unten.",
+    no_answer: "Keine Antwort: {error}",
+    variant: "Variante: {name}",
+    same_as: "Dieselbe Frage wie in Variante „{name}“, mit derselben Antwort.",
+    inputs_same_as: "Wie in Variante „{name}“, außer dem, was die Tabelle nennt.",
+    inputs_all_same: "Wie in Variante „{name}“.",
+    section_answers: "Fragen und Antworten",
+    section_pictures: "Lagebilder und Verläufe",
+    section_inputs: "Eingangsgrößen",
+    section_evidence: "Spuren und Anpassung",
+    section_method: "Verfahren",
+    section_validity: "Gültigkeit und Einschränkungen",
+    section_validation: "Validierung der Modelle",
+    section_sensitivity: "Empfindlichkeit",
+    section_provenance: "Versionen, Startwerte, Dateien",
+    section_log: "Protokoll des Falls",
+    quantity: "Größe",
+    value: "Wert",
+    median: "Median",
+    interval_50: "50 %",
+    interval_90: "90-%-Intervall",
+    interval_95: "95 %",
+    part_of: "Teil",
+    class: "Art",
+    source: "Herkunft und Unsicherheit",
+    class_given: "vorgegeben",
+    class_measured: "gemessen",
+    class_estimated: "nach Regel",
+    class_assumed: "angenommen",
+    no_intervals: "Diese Werte haben kein Intervall: sie folgen aus den Werten in Abschnitt 3, so wie sie \
+        dort stehen, und enthalten deren Unsicherheit nicht.",
+    title_impact: "Stoß",
+    title_simulate: "Auslaufbewegung nach dem 4DOF-Modell",
+    title_force: "Vorhergesagte Stoßkraft",
+    title_motion: "Vorhergesagte Auslaufbewegung",
+    title_reconstruct: "Rekonstruktion",
+    ask_impact: "Frage: Welchen Impuls, welche Geschwindigkeitsänderungen und welche Gierraten bewirkt \
+        der Zusammenstoß „{name}“ nach der ebenen Stoßmechanik?",
+    ask_simulate: "Frage: Wie bewegt sich das gestoßene Fahrzeug ({vehicle}) nach dem Aufprall „{name}“, \
+        nach dem 4DOF-Fahrzeugmodell?",
+    ask_force: "Frage: Welche Stoßkraft bewirkt der Zusammenstoß „{name}“ nach dem Kraftnetz, und wie \
+        sicher ist das?",
+    ask_motion: "Frage: Wohin bewegt sich das gestoßene Fahrzeug ({vehicle}) nach dem Aufprall „{name}“ \
+        nach dem Bewegungsnetz, und wie sicher ist das?",
+    ask_reconstruct: "Frage: Wie schnell waren beide Fahrzeuge bei dem Zusammenstoß „{name}“ vor dem Aufprall, \
+        nach den vorgefundenen Spuren?",
+    ask_other: "Frage: {kind}.",
+    other_caption: "Alles, was die Antwort enthält",
+    impact_caption: "Kontakt und Impuls; der Impuls wirkt auf das gestoßene Fahrzeug, Weltachsen",
+    restitution: "Stoßziffer",
+    friction_limit: "Reibbeiwert im Kontakt",
+    always_sliding: "stets gleitend",
+    regime: "Stoßart",
+    closing_velocity: "Annäherungsgeschwindigkeit",
+    normal: "normal",
+    tangential: "tangential",
+    impulse_on_struck: "Impuls auf das gestoßene Fahrzeug",
+    impulse_normal: "Normalimpuls P_n",
+    impulse_tangential: "Tangentialimpuls P_τ",
+    energy_loss: "Energieverlust im Stoß",
+    critical_ratio: "kritisches Impulsverhältnis",
+    struck_vehicle: "gestoßenes Fahrzeug",
+    striking_vehicle: "stoßendes Fahrzeug",
+    vehicles_after_impact: "Beide Fahrzeuge nach dem Stoß, Weltachsen",
+    delta_v: "Geschwindigkeitsänderung Δv",
+    velocity_after: "Geschwindigkeit nach dem Stoß",
+    yaw_rate_after: "Gierrate nach dem Stoß",
+    yaw_rate_change: "Änderung der Gierrate",
+    pdof: "Hauptstoßrichtung (PDOF)",
+    direction_value: "{angle}, {clock} Uhr",
+    impact_picture: "Der Stoß „{name}“ von oben: Impuls und Geschwindigkeitsänderungen",
+    motion_caption: "Bewegung mit den Werten aus Abschnitt 3, jeder mit seinem Median",
+    equations: "Bewegungsgleichungen",
+    integrator: "Integrationsverfahren",
+    road_friction: "Reibbeiwert der Fahrbahn",
+    duration: "Dauer",
+    force_file: "Datei der Kraft",
+    peak_force: "größte Stoßkraft",
+    delta_v_contact: "Δv über den Kontakt, mit Reifenkräften",
+    end_position: "Lage am Ende",
+    distance: "Weglänge",
+    final_heading: "Gierwinkel am Ende",
+    largest_turn: "größte Änderung des Gierwinkels",
+    final_speed: "Geschwindigkeit am Ende",
+    at_rest: "Stillstand",
+    still_moving: "nein, am Ende noch in Bewegung",
+    rest_value: "nach {time} und {distance}, bei {position}, Gierwinkel {heading}",
+    average_error: "mittlerer Abstand zur aufgezeichneten Bahn",
+    final_error: "Abstand zum aufgezeichneten Ende",
+    draws_caption: "Dasselbe über {n} Fahrzeuge, gezogen aus dem, was das Datenblatt offen lässt{left_out}",
+    left_out: "; {n} ließen sich nicht berechnen und fehlen",
+    end_x: "X am Ende",
+    end_y: "Y am Ende",
+    meaning_draws: "{quantity}: neun von zehn gezogenen Fahrzeugen liegen zwischen {low} und {high}; nur was \
+        das Datenblatt offen lässt, wird variiert.",
+    p_second_contact: "Wahrscheinlichkeit eines zweiten Kontakts",
+    share_at_rest: "{share} von {n} Ziehungen innerhalb von {limit}",
+    time_to_rest: "Zeit bis zum Stillstand",
+    distance_to_rest: "Auslaufstrecke",
+    rest_x: "X im Stillstand",
+    rest_y: "Y im Stillstand",
+    heading_at_rest: "Gierwinkel im Stillstand",
+    region_90: "Fläche, in der die Lage mit 90 % liegt",
+    estimate: "Schätzwert",
+    position: "Lage",
+    heading: "Gierwinkel",
+    sensitivity_caption: "Linearer Anteil jedes Schätzwerts an der Varianz des Endes; Anteile, die Zufall sein \
+        können, fehlen",
+    scene_picture: "Simulation von „{name}“ von oben, Fahrzeuge am Ende",
+    force_picture: "Stoßkraft von „{name}“ über der Zeit",
+    yaw_rate_picture: "Gierrate von „{name}“ über der Zeit",
+    vehicles_drawn: "gezogene Fahrzeuge:",
+    forces_drawn: "Kräfte:",
+    force_caption: "Vorhergesagte Kraft auf das gestoßene Fahrzeug, Achsen längs seiner Fahrtrichtung",
+    impulse_size: "Betrag des Impulses",
+    impulse_x: "Impuls längs x",
+    impulse_y: "Impuls längs y",
+    peak_time: "Zeitpunkt der größten Kraft",
+    contact_duration: "Dauer des Kontakts",
+    p_hooking: "Wahrscheinlichkeit des Verhakens",
+    implied_restitution: "sich ergebende Stoßziffer",
+    implied_ratio: "sich ergebendes Impulsverhältnis P_τ/P_n",
+    momentum_beside: "Impulslösung zum Vergleich",
+    meaning_force: "{quantity}: mit einer Wahrscheinlichkeit von 90 % zwischen {low} und {high}, nach der \
+        Verteilung des Kraftnetzes; wie oft solche Intervalle zutrafen, steht in Abschnitt 7.",
+    contact_open: "Der Kontaktpunkt ist offen: er wurde aus dem der Trainingsfälle gezogen.",
+    body_open: "Der Aufbau des stoßenden Fahrzeugs ist offen: er wurde aus dem der Trainingsfälle \
+        gezogen.",
+    probability: "Wahrscheinlichkeit",
+    force_modes: "Mögliche Verläufe des Kontakts",
+    force_network: "Kraftnetz",
+    response_network: "Bewegungsnetz",
+    applicability: "Das {network} gilt zu {share} von 1; der Rest der Verteilung ist der der Physik allein.",
+    force_forecast_picture: "Vorhergesagte Kraft von „{name}“: Betrag über der Zeit mit Bändern",
+    forecast_caption: "Vorhergesagte Bewegung",
+    meaning_motion: "{quantity}: mit einer Wahrscheinlichkeit von 90 % zwischen {low} und {high}, nach der \
+        Verteilung des Bewegungsnetzes über die gezogenen Kräfte und Fahrzeuge; wie oft solche \
+        Bereiche zutrafen, steht in Abschnitt 7.",
+    end: "Ende",
+    at_rest_after: "Stillstand nach {time}",
+    moving_after: "nach {time}, noch in Bewegung",
+    heading_change: "Änderung des Gierwinkels",
+    speed_at_end: "Geschwindigkeit am Ende, Mittel",
+    yaw_rate_at_end: "Gierrate am Ende, Mittel",
+    p_quarter_turn: "Wahrscheinlichkeit einer Vierteldrehung oder mehr",
+    p_half_turn: "Wahrscheinlichkeit einer halben Drehung oder mehr",
+    learned_duration: "Das Bewegungsnetz hat aus Bewegungen von bis zu {time} gelernt; was danach kommt, ist \
+        die Physik mit den gelernten Stärken.",
+    forecast_scene_picture: "Vorhersage von „{name}“ von oben: Bahnen, Dichte und Bereiche von 50 und 90 % am Ende",
+    forecast_yaw_picture: "Vorhersage von „{name}“: Gierwinkel über der Zeit mit Bändern",
+    reconstruct_caption: "Was die Spuren über die Geschwindigkeiten sagen, vor dem Aufprall, wenn nicht anders \
+        gesagt",
+    meaning_posterior: "{quantity}: mit einer Wahrscheinlichkeit von 90 % zwischen {low} und {high}, gegeben die \
+        Spuren, wenn die Annahmen in Abschnitt 3 und die Modelle in Abschnitt 5 zutreffen.",
+    by_hand: "Zum Vergleich ergibt die Rechnung von Hand, aus der Auslaufstrecke mit mittlerer \
+        Verzögerung und dem Impuls, für das gestoßene Fahrzeug {value} ± {sigma} (eine \
+        Standardabweichung).",
+    particles: "Partikel:",
+    simulated_motions: "simulierte Bewegungen:",
+    ess: "effektiver Stichprobenumfang:",
+    log_evidence: "logarithmierte Evidenz:",
+    reconstruction_picture: "Rekonstruktion von „{name}“ von oben: Bahnen über den Spuren",
+    marginal_picture: "„{name}“: {quantity} vor und nach Berücksichtigung der Spuren",
+    budget_picture: "„{name}“: was weitere Messungen brächten",
+    budget_text: "Halbe Breite des 90-%-Intervalls der Geschwindigkeit des gestoßenen Fahrzeugs, jetzt und \
+        im Mittel, wenn eine Größe zusätzlich gemessen würde.",
+    budget_caption: "Was weitere Messungen brächten",
+    measurement: "Messung",
+    half_width_now: "Jetzt, ±",
+    half_width_then: "Dann, ±",
+    not_believable: "zu wenige Partikel für eine Aussage",
+    fit_text: "p ist die Wahrscheinlichkeit, dass Messung und Modell stärker abweichen als hier; unter \
+        {level} gilt eine Spur als nicht erklärt.",
+    fit_caption: "Spuren: vorgefunden und erwartet",
+    evidence_item: "Spur",
+    found: "Gefunden",
+    expected: "Erwartet",
+    verdict: "Urteil",
+    explained: "erklärt",
+    unexplained: "nicht erklärt",
+    modes_caption: "Abläufe, die nach den Spuren möglich bleiben",
+    course_of_events: "Ablauf",
+    standard_error: "Standardfehler",
+    struck_speed: "Gestoßenes Fzg.",
+    modes_text: "Der Standardfehler ist der aus der Zahl der Partikel. Abläufe unter 1 % fehlen.",
+    mode_caption: "Wenn es so war: {mode}",
+    no_evidence: "Keine Frage dieses Falls beruht auf vorgefundenen Spuren: es gibt nichts anzupassen.",
+    road: "Fahrbahn",
+    mass: "Masse",
+    damage: "Beschädigung",
+    struck_side: "gestoßene Seite",
+    contact_along: "erster Kontakt längs der Seite, vom Schwerpunkt",
+    contact_depth: "Tiefe des Kontaktpunkts",
+    damage_angle: "Winkel zwischen den Fahrzeugen nach dem Schaden",
+    struck_at_rest: "gestoßenes Fahrzeug im Stillstand",
+    striking_at_rest: "stoßendes Fahrzeug im Stillstand",
+    after_impact: "nach dem Stoß",
+    driver_braked: "Fahrer bremste",
+    nobody_looked: "nicht untersucht",
+    blocked_wheels: "blockierte Räder",
+    speed_before: "Geschwindigkeit vor dem Aufprall",
+    recorder: "Unfalldatenspeicher (EDR)",
+    video: "Lage im Video",
+    tyre_mark: "Reifenspur",
+    mark_value: "{n} Punkte von {first} bis {last}, je ± {sigma}",
+    prior: "vorab angenommene Verteilung",
+    uniform: "zwischen {low} und {high}, jeder Wert gleich wahrscheinlich",
+    normal_cut: "normal, {mean} ± {sigma}, abgeschnitten bei {low} und {high}",
+    log_normal_cut: "Logarithmus normal, Median {median}, σ des Logarithmus {sigma}, abgeschnitten bei {low} \
+        und {high}",
+    source_prior: "Vorabverteilung; aus den Spuren, wo diese den Wert nennen",
+    source_evidence_sigma: "Spuren",
+    source_evidence: "Spuren",
+    source_question: "Frage",
+    source_file: "Datei, siehe Abschnitt 9",
+    follows_from_sheet: "Datenblatt, oder folgt aus den Schätzwerten unten",
+    inputs_text: "„Vorgegeben“ ist, was die Frage oder die Spuren ohne Standardabweichung nennen, auch \
+        Einstellungen der Rechnung; „gemessen“ hat eine Standardabweichung (±) oder ist die \
+        Grenze einer Aufzeichnung; „nach Regel geschätzt“ folgt aus anderen Werten nach einer \
+        Regel mit bekannter Streuung; „angenommen“ ist, was niemand gesagt hat.",
+    inputs_caption: "{name}: {group}",
+    validity_text: "Jedes Modell mit dem, was es vernachlässigt; danach jede Einschränkung, die das Programm \
+        gefunden hat, mit Begründung und Abhilfe.",
+    badges_caption: "Einschränkungen der Antworten",
+    restriction: "Einschränkung",
+    sentence: "Aussage",
+    remedy: "Abhilfe",
+    holds_for: "Betrifft",
+    no_badges: "Das Programm hat nichts gefunden, was die Antworten einschränkt.",
+    warning: "Warnung",
+    note: "Hinweis",
+    allowed_range: "{quantity}: {value}, ohne Einschränkung {range}",
+    at_least: "mindestens {low}",
+    at_most: "höchstens {high}",
+    remedy_outside_domain: "Einen Wert im Bereich wählen, sich auf die Physik daneben stützen oder ein Netz mit \
+        solchen Kollisionen trainieren.",
+    remedy_implausible_contact: "Kontaktpunkt, Seite und Geschwindigkeiten prüfen; die Impulslösung verwenden.",
+    remedy_disagreement: "Beide Antworten als möglich ansehen; suchen, was zwischen ihnen entscheidet.",
+    remedy_overlap: "Die Fahrzeuge auseinanderrücken, bis die Umrisse sich berühren, oder den Kontaktpunkt \
+        angeben.",
+    remedy_second_contact: "Die Bewegung nur bis zum zweiten Kontakt verwenden.",
+    remedy_contact_not_ended: "Eine Aufzeichnung verwenden, die bis zum Ende der Kraft reicht.",
+    remedy_energy_gain: "Die Fahrzeugparameter prüfen; die Bewegung danach nicht verwenden.",
+    remedy_wheel_lift: "Die Bewegung danach als Näherung ansehen: abgehobene Räder übertragen keine Kraft.",
+    remedy_roll_limit: "Die Bewegung danach nicht verwenden: ein Überschlag wird nicht simuliert.",
+    remedy_not_at_rest: "Bis zum Stillstand oder mit längerer Dauer fragen.",
+    remedy_evidence_unexplained: "Diese Spur und ihre Standardabweichung prüfen; einen anderen Ablauf erwägen.",
+    remedy_few_particles: "Mit mehr Partikeln erneut fragen.",
+    remedy_hardly_validated: "Das Intervall nur mit diesem Vorbehalt angeben.",
+    remedy_left_out: "Die fehlenden Fälle oder Ziehungen ansehen.",
+    remedy_trained_on: "Das Netz an Fällen beurteilen, die es nicht kennt.",
+    remedy_assumed: "Den Wert angeben, wenn er bekannt ist.",
+    remedy_not_used: "Ein Verfahren fragen, das den Wert verwendet.",
+    sources: "Quellen",
+    axes_text: "Achsen nach ISO 8855: x nach vorn, y nach links, Gierwinkel nach links positiv. \
+        Weltachsen sind die der Lageskizze; bei einer Rekonstruktion beginnen sie im Schwerpunkt \
+        des gestoßenen Fahrzeugs beim ersten Kontakt, X längs seiner Fahrtrichtung. \
+        Hauptstoßrichtungen zählen in Grad im Uhrzeigersinn von geradeaus, dorthin, woher die \
+        Kraft kommt. Intervalle lassen unten so viel weg wie oben.",
+    method_impact: "Ebener Stoß",
+    method_impact_text: "Beide Fahrzeuge sind starre Körper in der Ebene, die an einem Kontaktpunkt in unendlich \
+        kurzer Zeit einen Impuls austauschen. Impuls und Drall bleiben erhalten; die \
+        Normalkomponente folgt aus der Stoßziffer, auf die Normalkomponente bezogen oder von der \
+        gemeinsamen Geschwindigkeit aus, die Tangentialkomponente aus der Bedingung, dass die \
+        Kontaktpunkte nicht gleiten, begrenzt durch den Reibbeiwert. Der Energieverlust ist die \
+        Differenz der kinetischen Energien.",
+    limits_impact: "Der Stoß ist unendlich kurz, an einem Punkt und ohne Moment; Reifenkräfte während des \
+        Kontakts werden vernachlässigt. Stoßziffer und Reibbeiwert sind Eingangsgrößen.",
+    method_four_dof: "4DOF-Fahrzeugmodell",
+    method_four_dof_text: "Das gestoßene Fahrzeug bewegt sich längs, quer, im Gieren und im Wanken auf ebener \
+        Fahrbahn. Die Seitenkraft jedes Reifens sättigt mit dem Schräglaufwinkel und fällt \
+        darüber auf die Gleitreibung; die Radlasten verlagern sich mit den Beschleunigungen; \
+        Räder rollen frei, drehen gegen eine Bremse oder sind blockiert. Der Aufprall wirkt als \
+        Kraft über der Zeit am Kontaktpunkt. Integriert wird nach Runge–Kutta mit fester \
+        Schrittweite, die für Fahrzeuge mit schnelleren Eigenformen geteilt wird.",
+    limits_four_dof: "Nicken, Hub, Reifeneinlauf, Rückstellmomente und Achskinematik fehlen; die Fahrbahn ist \
+        eben und hat unter allen Rädern denselben Reibbeiwert. Ein abhebendes Rad oder ein \
+        Wankwinkel über 15° wird gemeldet; ein Überschlag wird nicht simuliert. Ein zweiter \
+        Kontakt der Fahrzeuge wird gemeldet und nicht berechnet.",
+    method_force: "Kraftnetz",
+    method_force_text: "Zwei starre Fahrzeuge, deren Außenhaut nachgibt, bis harte Strukturen dahinter \
+        aufeinandertreffen, ergeben eine Kraft über der Zeit; ihre Gesetze sind an die \
+        Trainingsfälle angepasst und werden mit Regressionen über dieselben Fälle gemittelt. Ein \
+        neuronales Netz um diesen Mittelwert sagt die Verteilung des ganzen Verlaufs als \
+        Mischung voraus, einmal an Trainingsfällen kalibriert. Außerhalb des Gelernten tritt die \
+        Impulslösung mit ihren gemessenen Fehlern an seine Stelle.",
+    limits_force: "Es hat aus simulierten Stößen auf ein Fahrzeugmodell gelernt, mit Annäherung von 0,8 bis \
+        5,0 m/s; das absolute Kraftniveau kann um etwa 40 % falsch sein. Es kennt keine \
+        Fahrzeuge, die vor dem Stoß drehen, keine Fahrzeuggröße, keine Stoßziffer und keine \
+        Reibung zwischen ihnen.",
+    method_response: "Bewegungsnetz",
+    method_response_text: "Jeder Schritt der Bewegung ist einer des 4DOF-Modells mit einer begrenzten zusätzlichen \
+        Beschleunigung: Effekte bekannter Form mit gelernten Stärken und ein Rest aus einem \
+        neuronalen Netz. Die Unsicherheit wird für jede gezogene Kraft und jedes gezogene \
+        Fahrzeug mit der Unscented-Transformation längs der Bahn fortgepflanzt, und die \
+        Verteilungen werden gemischt. Außerhalb des Gelernten tritt das 4DOF-Modell mit seinen \
+        gemessenen Fehlern an seine Stelle.",
+    limits_response: "Es hat aus simulierten Bewegungen von dreizehn Fahrzeugen von bis zu 8 s gelernt. Die \
+        Auslaufstrecke wurde mit keiner Aufzeichnung verglichen.",
+    method_reconstruction: "Rekonstruktion aus Spuren",
+    method_reconstruction_text: "Alles Unbekannte (Geschwindigkeiten, Winkel, Kontakt, Reibung, Massen, Bremsung, …) hat \
+        eine vorab angenommene Verteilung. Für jeden gezogenen Satz von Werten werden Stoß und \
+        Auslaufbewegung bis zum Stillstand berechnet und danach gewichtet, wie gut sie zu den \
+        Spuren passen, mit der Standardabweichung jeder Messung und einem Modellfehler, der \
+        längs der Bahn wächst. Ein sequentielles Monte-Carlo-Verfahren führt Partikel von der \
+        Vorab- zur Nachher-Verteilung; der Standardfehler der Wahrscheinlichkeiten folgt aus der \
+        Abstammung der Partikel, die Anpassung jeder Spur aus realisierten Abweichungen.",
+    limits_reconstruction: "Stoß nach der Impulslösung mit Stoßziffer und Reibung, Bewegung nach dem 4DOF-Modell; \
+        die Netze sind nicht beteiligt. Geschwindigkeit und Richtung des stoßenden Fahrzeugs \
+        beruhen großenteils auf Annahmen. Eine Bewegung wird 40 s lang verfolgt.",
+    method_sheet: "Fahrzeugdaten nach Regel",
+    method_sheet_text: "Was ein Datenblatt nicht nennt, folgt aus dem Übrigen nach Regeln mit einer Streuung, \
+        jede mit ihrer Quelle in Abschnitt 3. Wo Fahrzeuge gezogen werden, wird jede offene \
+        Größe aus ihrer Streuung gezogen.",
+    limits_sheet: "Trägheit, Schwerpunkthöhe und Achslasten beruhen auf gemessenen Fahrzeugen von 1971 bis \
+        2005; Fahrwerk und Reifen auf 13 Mehrkörpermodellen, die plausibel, aber nicht gemessen \
+        sind.",
+    validation_text: "Diese Zahlen stammen nicht aus diesem Fall: sie sagen, wie gut die Modelle waren, wo die \
+        Wahrheit bekannt war. Die Daten sind Simulationen, keine Messungen; kein realer Unfall \
+        wurde geprüft. Quelle: docs/VALIDATION.md des Programms, mit dem Befehl zu jeder \
+        Tabelle.",
+    validation_impact: "Gegen Finite-Elemente-Rechnungen mit Annäherung von 0,8 bis 5,0 m/s; bei höherer \
+        Annäherungsgeschwindigkeit ist die Stoßziffer kleiner.",
+    table_impact: "Fehler des Impulsvektors, Median (Mittel), %",
+    validation_four_dof: "Gegen ein Mehrkörpermodell desselben Fahrzeugs über 4 s.",
+    table_four_dof: "Abstand zur Referenzbahn",
+    validation_force: "Gegen 25 Finite-Elemente-Rechnungen, die es nicht kennt; Intervalle der größten Kraft \
+        sind zu schmal, die des Impulses zu breit.",
+    table_force: "Fehler, Median (Mittel), %",
+    table_force_coverage: "Anteil der wahren Werte in den Intervallen, %, ± Standardfehler",
+    validation_response: "Gegen simulierte Bewegungen von zwölf Fahrzeugen, jeweils mit einem Netz, das das \
+        Fahrzeug nicht kennt: mittlerer Fehler über 4 s und der Endlage in m, Mittel (Median); \
+        Anteil der Lagen in den Bereichen.",
+    table_response: "Fehler, m, und Abdeckung",
+    validation_reconstruction: "40 simulierte Stöße gegen das Heckviertel eines Mehrkörperfahrzeugs mit drei Massen, \
+        alles bekannt; 20 davon wurden beim Einstellen des Verfahrens betrachtet \
+        („Einstellung“). Die Intervalle sind etwas zu schmal. Kein realer Unfall wurde geprüft.",
+    table_reconstruction: "Anteil der wahren Geschwindigkeiten in den Intervallen, %, und Fehler",
+    table_reconstruction_ranks: "100 Kollisionen aus der Vorabverteilung des Programms selbst: Ränge der Wahrheit unter \
+        den Partikeln und Anteil in den Intervallen; das Ziel p > 0,01 verfehlt die \
+        Geschwindigkeit des gestoßenen Fahrzeugs",
+    validation_sheet: "Die Regeln tragen die Streuung der Fahrzeuge, aus denen sie stammen; sie steht bei jedem \
+        Schätzwert.",
+    no_methods: "Keine Antwort stammt aus einem Modell.",
+    no_sensitivity: "Keine Antwort dieses Falls enthält ein Maß dafür, wovon sie abhängt: es wird nichts \
+        gezogen, oder nichts Gezogenes bewegt das Ergebnis stärker als der Zufall.",
+    provenance_caption: "Antworten",
+    answer: "Antwort",
+    version: "Version",
+    seeds: "Startwerte und Ziehungen",
+    no_draws: "nichts gezogen",
+    files_caption: "Dateien des Falls, jetziger Stand",
+    file: "Datei",
+    bytes: "Bytes",
+    sha256: "SHA-256",
+    no_files: "Der Fall verwendet keine Dateien.",
+    state: "Stand",
+    unchanged: "wie gespeichert",
+    new_file: "bisher nicht erfasst",
+    missing: "fehlt",
+    changed: "geändert",
+    models_caption: "Trainierte Netze, die geantwortet haben",
+    network: "Netz",
+    name: "Name",
+    no_models: "Kein trainiertes Netz hat geantwortet.",
+    reproduce_text: "Dieselbe Version ergibt mit denselben Dateien, Startwerten und Einstellungen dieselben \
+        Zahlen; ein Bericht desselben Falls mit demselben Datum hat dieselben Bytes.",
+    case_saved_by: "Der Fall wurde mit Version {version} gespeichert; dieser Bericht stammt von Version \
+        {now}.",
+    log_caption: "Was wann geschah, UTC",
+    time: "Zeit",
+    event: "Vorgang",
+    no_log: "Der Fall hat kein Protokoll.",
+    no_pictures: "Keine Antwort hat ein Bild.",
+    not_drawn: "Dieses Programm zeichnet keine Bilder: {caption}",
+    axes_alt: "{title}. Waagerechte Achse: {x}. Senkrechte Achse: {y}. Dargestellt: {names}.",
+    picture_elsewhere: "Das Bild steht im PDF dieses Berichts.",
+    noted: "Hinweis: {note}.",
+    seed: "Startwert",
+    domain_caption: "Wie weit die Netze gelten",
+    signature: "Ort, Datum, Unterschrift: ______________________________",
+};

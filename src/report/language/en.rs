@@ -1,0 +1,401 @@
+//! The texts of a report in English.
+
+use crate::report::language::words::Words;
+
+/// Texts of the report itself.
+pub(super) const WORDS: Words = Words {
+    report: "Report",
+    to: "to",
+    yes: "yes",
+    no: "no",
+    none: "none",
+    unknown: "unknown",
+    values: "values",
+    page_of: "Page {page} of {n}",
+    figure: "Figure",
+    intro: "Case “{case}”, {date}. Computed with impactlab {version}. Every answer in this report \
+        was computed from the case and the files that it names.",
+    units_si: "Units: m, km/h, degrees, kN, kJ, kg. Angles and yaw rates are positive to the left.",
+    units_us: "Units: ft, mph, degrees, lbf, ft lbf, lb. Angles and yaw rates are positive to the left.",
+    language_note: "",
+    notes: "Notes of the analyst",
+    changed_notice: "Something is not as it was when the case was saved: {what}. The answers below are those \
+        of now and may differ from those of then.",
+    change_missing: "the file {path} is missing",
+    change_changed: "the file {path} has changed",
+    change_model: "the {network} network “{name}” is another one",
+    unanswered_notice: "{n} of {all} questions have no answer; why is said below.",
+    no_answer: "No answer: {error}",
+    variant: "Variant: {name}",
+    same_as: "The same question as in variant “{name}”, with the same answer.",
+    inputs_same_as: "As in variant “{name}”, except for what the table says.",
+    inputs_all_same: "As in variant “{name}”.",
+    section_answers: "Questions and answers",
+    section_pictures: "Scenes and curves",
+    section_inputs: "Inputs",
+    section_evidence: "Evidence and fit",
+    section_method: "Method",
+    section_validity: "Validity and restrictions",
+    section_validation: "Validation of the models",
+    section_sensitivity: "Sensitivity",
+    section_provenance: "Versions, seeds, files",
+    section_log: "Log of the case",
+    quantity: "Quantity",
+    value: "Value",
+    median: "Median",
+    interval_50: "50 %",
+    interval_90: "90 % interval",
+    interval_95: "95 %",
+    part_of: "Part",
+    class: "Class",
+    source: "Source and uncertainty",
+    class_given: "given",
+    class_measured: "measured",
+    class_estimated: "estimated by rule",
+    class_assumed: "assumed",
+    no_intervals: "These figures have no interval: they follow from the values in section 3 as they stand, \
+        whose uncertainty they do not carry.",
+    title_impact: "Impact",
+    title_simulate: "Motion by the 4DOF model",
+    title_force: "Predicted force",
+    title_motion: "Predicted motion",
+    title_reconstruct: "Reconstruction",
+    ask_impact: "Question: which impulse, changes of velocity and yaw rates does the collision “{name}” \
+        bring about, by planar impact mechanics?",
+    ask_simulate: "Question: how does the struck vehicle ({vehicle}) move after the impact “{name}”, by the \
+        4DOF vehicle model?",
+    ask_force: "Question: which contact force does the collision “{name}” bring about, by the force \
+        network, and how sure is that?",
+    ask_motion: "Question: where does the struck vehicle ({vehicle}) go after the impact “{name}”, by the \
+        response network, and how sure is that?",
+    ask_reconstruct: "Question: how fast were both cars in the collision “{name}” before the impact, by what \
+        was found?",
+    ask_other: "Question: {kind}.",
+    other_caption: "All that the answer says",
+    impact_caption: "Contact and impulse; the impulse acts on the struck vehicle, world axes",
+    restitution: "restitution",
+    friction_limit: "friction limit of the contact",
+    always_sliding: "always sliding",
+    regime: "regime",
+    closing_velocity: "closing velocity",
+    normal: "normal",
+    tangential: "tangential",
+    impulse_on_struck: "impulse on the struck vehicle",
+    impulse_normal: "normal impulse P_n",
+    impulse_tangential: "tangential impulse P_τ",
+    energy_loss: "energy lost in the contact",
+    critical_ratio: "critical impulse ratio",
+    struck_vehicle: "struck vehicle",
+    striking_vehicle: "striking vehicle",
+    vehicles_after_impact: "Both vehicles after the impact, world axes",
+    delta_v: "change of velocity Δv",
+    velocity_after: "velocity after the impact",
+    yaw_rate_after: "yaw rate after the impact",
+    yaw_rate_change: "change of the yaw rate",
+    pdof: "principal direction of force",
+    direction_value: "{angle}, {clock} o’clock",
+    impact_picture: "The impact “{name}” from above: impulse and changes of velocity",
+    motion_caption: "Motion with the values of section 3, each at its median",
+    equations: "equations of motion",
+    integrator: "integration",
+    road_friction: "friction of the road",
+    duration: "duration",
+    force_file: "file of the force",
+    peak_force: "peak force",
+    delta_v_contact: "Δv over the contact, tyres included",
+    end_position: "position at the end",
+    distance: "length of the path",
+    final_heading: "heading at the end",
+    largest_turn: "largest change of heading",
+    final_speed: "speed at the end",
+    at_rest: "at rest",
+    still_moving: "no, still moving at the end",
+    rest_value: "after {time} and {distance}, at {position}, heading {heading}",
+    average_error: "mean distance from the recorded path",
+    final_error: "distance from the recorded end",
+    draws_caption: "The same over {n} vehicles drawn from what the data sheet leaves open{left_out}",
+    left_out: "; {n} could not be computed and are left out",
+    end_x: "X at the end",
+    end_y: "Y at the end",
+    meaning_draws: "{quantity}: nine of ten drawn vehicles lie between {low} and {high}; only what the data \
+        sheet leaves open is varied.",
+    p_second_contact: "probability of a second contact",
+    share_at_rest: "{share} of {n} draws within {limit}",
+    time_to_rest: "time to rest",
+    distance_to_rest: "distance to rest",
+    rest_x: "X at rest",
+    rest_y: "Y at rest",
+    heading_at_rest: "heading at rest",
+    region_90: "area that holds the position with 90 %",
+    estimate: "Estimate",
+    position: "Position",
+    heading: "heading",
+    sensitivity_caption: "Linear share of each estimate in the variance of the end; shares that may be chance are \
+        left out",
+    scene_picture: "Simulation of “{name}” from above, vehicles at the end",
+    force_picture: "Contact force of “{name}” over time",
+    yaw_rate_picture: "Yaw rate of “{name}” over time",
+    vehicles_drawn: "vehicles drawn:",
+    forces_drawn: "forces:",
+    force_caption: "Predicted force on the struck vehicle, axes along its heading",
+    impulse_size: "size of the impulse",
+    impulse_x: "impulse along x",
+    impulse_y: "impulse along y",
+    peak_time: "time of the peak",
+    contact_duration: "duration of the contact",
+    p_hooking: "probability of hooking",
+    implied_restitution: "implied restitution",
+    implied_ratio: "implied impulse ratio P_τ/P_n",
+    momentum_beside: "momentum solution beside it",
+    meaning_force: "{quantity}: between {low} and {high} with a probability of 90 %, by the distribution of \
+        the force network; how often such intervals held is said in section 7.",
+    contact_open: "The contact point is open: it was drawn from that of the training cases.",
+    body_open: "The body of the striking vehicle is open: it was drawn from that of the training cases.",
+    probability: "Probability",
+    force_modes: "Possible courses of the contact",
+    force_network: "force network",
+    response_network: "response network",
+    applicability: "The {network} applies to {share} of 1; the rest of the distribution is that of the \
+        physics alone.",
+    force_forecast_picture: "Predicted force of “{name}”: size over time with its bands",
+    forecast_caption: "Predicted motion",
+    meaning_motion: "{quantity}: between {low} and {high} with a probability of 90 %, by the distribution of \
+        the response network over the forces and vehicles that were drawn; how often such \
+        regions held is said in section 7.",
+    end: "end",
+    at_rest_after: "at rest after {time}",
+    moving_after: "after {time}, still moving",
+    heading_change: "change of heading",
+    speed_at_end: "speed at the end, mean",
+    yaw_rate_at_end: "yaw rate at the end, mean",
+    p_quarter_turn: "probability of a quarter turn or more",
+    p_half_turn: "probability of a half turn or more",
+    learned_duration: "The response network has learned from motions of up to {time}; what comes after that is \
+        the physics with the strengths that it knows.",
+    forecast_scene_picture: "Forecast of “{name}” from above: paths, and density with the regions of 50 and 90 % at \
+        the end",
+    forecast_yaw_picture: "Forecast of “{name}”: heading over time with its bands",
+    reconstruct_caption: "What the evidence says of the speeds, before the impact unless said otherwise",
+    meaning_posterior: "{quantity}: between {low} and {high} with a probability of 90 %, given the evidence, if \
+        the assumptions of section 3 and the models of section 5 hold.",
+    by_hand: "By hand, from the distance on the road with a drag factor and the momentum, the struck \
+        car has {value} ± {sigma} (one standard deviation), for comparison.",
+    particles: "particles:",
+    simulated_motions: "simulated motions:",
+    ess: "effective sample size:",
+    log_evidence: "log evidence:",
+    reconstruction_picture: "Reconstruction of “{name}” from above: paths over what was found",
+    marginal_picture: "“{name}”: {quantity} before and after the evidence",
+    budget_picture: "“{name}”: what further evidence would bring",
+    budget_text: "Half the width of the 90 % interval of the struck car’s speed, now and on the average if \
+        a quantity were measured as well.",
+    budget_caption: "What further evidence would bring",
+    measurement: "Measurement",
+    half_width_now: "Now, ±",
+    half_width_then: "Then, ±",
+    not_believable: "too few particles to say",
+    fit_text: "p is the probability that measurement and model err by more than they do here; an item \
+        below {level} counts as unexplained.",
+    fit_caption: "Items of the evidence: found and expected",
+    evidence_item: "Item",
+    found: "Found",
+    expected: "Expected",
+    verdict: "",
+    explained: "explained",
+    unexplained: "not explained",
+    modes_caption: "Courses of events that the evidence leaves possible",
+    course_of_events: "Course of events",
+    standard_error: "Standard error",
+    struck_speed: "Struck car",
+    modes_text: "The standard error is that of the number of particles. Courses of less than 1 % are left \
+        out.",
+    mode_caption: "If this happened: {mode}",
+    no_evidence: "No question of this case rests on evidence that was found: there is nothing to fit.",
+    road: "road",
+    mass: "mass",
+    damage: "damage",
+    struck_side: "struck side",
+    contact_along: "first contact along the side, from the CG",
+    contact_depth: "depth of the contact point",
+    damage_angle: "angle between the cars by the damage",
+    struck_at_rest: "struck vehicle at rest",
+    striking_at_rest: "striking vehicle at rest",
+    after_impact: "after the impact",
+    driver_braked: "driver braked",
+    nobody_looked: "nobody looked",
+    blocked_wheels: "blocked wheels",
+    speed_before: "speed before the impact",
+    recorder: "event data recorder",
+    video: "position in the video",
+    tyre_mark: "tyre mark",
+    mark_value: "{n} points from {first} to {last}, each ± {sigma}",
+    prior: "taken to be likely before",
+    uniform: "between {low} and {high}, each value equally likely",
+    normal_cut: "normal, {mean} ± {sigma}, cut off at {low} and {high}",
+    log_normal_cut: "logarithm normal, median {median}, σ of the logarithm {sigma}, cut off at {low} and \
+        {high}",
+    source_prior: "prior; from the evidence where that has the value",
+    source_evidence_sigma: "evidence",
+    source_evidence: "evidence",
+    source_question: "question",
+    source_file: "file, see section 9",
+    follows_from_sheet: "data sheet, or follows from the estimates below",
+    inputs_text: "“Given” is what the question or the evidence says without a standard deviation, settings \
+        of the computation included; “measured” has a standard deviation (±) or is a bound of a \
+        record; “estimated by rule” follows from other values by a rule with known scatter; \
+        “assumed” is what nobody said.",
+    inputs_caption: "{name}: {group}",
+    validity_text: "Each model with what it leaves out; then each restriction that the program found, with \
+        its sentence and a remedy.",
+    badges_caption: "Restrictions of the answers",
+    restriction: "Restriction",
+    sentence: "What it says",
+    remedy: "Remedy",
+    holds_for: "Of",
+    no_badges: "The program found nothing that restricts the answers.",
+    warning: "warning",
+    note: "note",
+    allowed_range: "{quantity}: {value}, without restriction {range}",
+    at_least: "at least {low}",
+    at_most: "at most {high}",
+    remedy_outside_domain: "Use a value inside the range, rely on the physics beside it, or train a network on such \
+        collisions.",
+    remedy_implausible_contact: "Check contact point, side and velocities; use the momentum solution.",
+    remedy_disagreement: "Treat both answers as possible; look for what decides between them.",
+    remedy_overlap: "Move the vehicles apart until their outlines touch, or give the contact point.",
+    remedy_second_contact: "Use the motion up to the second contact only.",
+    remedy_contact_not_ended: "Use a record that goes on until the force is zero.",
+    remedy_energy_gain: "Check the parameters of the vehicle; do not use the motion after this.",
+    remedy_wheel_lift: "Treat the motion after this as approximate: lifted wheels carry no force.",
+    remedy_roll_limit: "Do not use the motion after this: a rollover is not simulated.",
+    remedy_not_at_rest: "Ask until rest, or with a longer duration.",
+    remedy_evidence_unexplained: "Check this item and its standard deviation; consider another course of events.",
+    remedy_few_particles: "Ask again with more particles.",
+    remedy_hardly_validated: "Report the interval with this reservation.",
+    remedy_left_out: "Look at the cases or draws that are left out.",
+    remedy_trained_on: "Judge the network by cases that it has not seen.",
+    remedy_assumed: "Give the value if it is known.",
+    remedy_not_used: "Ask a method that uses the value.",
+    sources: "Sources",
+    axes_text: "Axes are those of ISO 8855: x forward, y to the left, yaw positive to the left. World \
+        axes are those of the scene; those of a reconstruction begin at the CG of the struck car \
+        at first contact, X along its heading. Principal directions of force are degrees \
+        clockwise from straight ahead, where the force comes from. Intervals leave out as much \
+        below as above.",
+    method_impact: "Planar impact",
+    method_impact_text: "Both vehicles are rigid bodies in the plane that exchange one impulse at one contact \
+        point, in no time. Momentum and angular momentum are conserved; the normal component \
+        follows from the coefficient of restitution, on the normal component or from the common \
+        velocity, the tangential component from the condition that the contact points do not \
+        slide, bounded by the friction limit. The energy that is lost is the difference of \
+        kinetic energies.",
+    limits_impact: "The impact is instantaneous, at one point, without a moment there; tyre forces during \
+        the contact are neglected. Restitution and friction limit are inputs.",
+    method_four_dof: "4DOF vehicle model",
+    method_four_dof_text: "The struck vehicle moves along, across, in yaw and in roll on a flat road. The lateral \
+        force of each tyre saturates with the slip angle and falls to sliding friction beyond \
+        it; vertical loads shift with the accelerations; wheels roll freely, turn against a \
+        brake or are locked. The impact enters as a force over time at the contact point. \
+        Equations are integrated by the Runge–Kutta method with a fixed step, which is divided \
+        for vehicles with faster modes.",
+    limits_four_dof: "Pitch, heave, tyre relaxation, aligning moments and suspension kinematics are left out; \
+        the road is flat with one friction under all wheels. A lifted wheel or a roll beyond 15° \
+        is flagged; a rollover is not simulated. A second contact of the vehicles is flagged and \
+        not computed.",
+    method_force: "Force network",
+    method_force_text: "Two rigid cars whose skins crush until hard structures behind them meet give a force \
+        over time; its laws are fitted to the training cases, and regressions on the same cases \
+        are averaged with it. A neural network around this centre predicts the distribution of \
+        the whole curve as a mixture, calibrated once on training cases. Outside of what it \
+        learned from, the momentum solution with its measured errors takes its place.",
+    limits_force: "It learned from simulated impacts on one target model, which close at 0.8 to 5.0 m/s; \
+        the absolute force level may be off by some 40 %. It knows no vehicles that turn before \
+        the impact, no size of the vehicles, no restitution and no friction between them.",
+    method_response: "Response network",
+    method_response_text: "Each step of the motion is one of the 4DOF model with a bounded acceleration added: \
+        effects of known form with learned strengths, and a remainder by a neural network. \
+        Uncertainty is carried along the path by the unscented transform for each force and \
+        vehicle that was drawn, and the distributions are mixed. Outside of what it learned \
+        from, the 4DOF model with its measured errors takes its place.",
+    limits_response: "It learned from simulated motions of thirteen cars of up to 8 s. The distance over which \
+        a car rolls out has not been compared with a record.",
+    method_reconstruction: "Reconstruction from evidence",
+    method_reconstruction_text: "Everything that is not known (speeds, heading, contact, friction, masses, braking, …) \
+        has a distribution that was taken to be likely before. For each drawn set of values the \
+        impact and the motion to rest are computed, and weighed by how well they go with what \
+        was found, with the standard deviation of each measurement and an error of the model \
+        that grows along the path. A sequential Monte Carlo sampler moves particles from the \
+        prior to the posterior; the standard error of probabilities follows from the ancestry of \
+        the particles, the fit of each item from realized discrepancies.",
+    limits_reconstruction: "Impact by momentum with restitution and friction, motion by the 4DOF model; the networks \
+        take no part in it. Speed and heading of the striking car rest largely on what is \
+        assumed of them. A motion is followed for 40 s.",
+    method_sheet: "Vehicle data by rule",
+    method_sheet_text: "What a data sheet does not state follows from the rest by rules with a scatter, each \
+        named with its source in section 3. Where vehicles are drawn, each open quantity is \
+        drawn from its scatter.",
+    limits_sheet: "Inertia, CG height and axle loads rest on measured vehicles of 1971 to 2005; suspension \
+        and tyres on 13 multibody cars, which are plausible and not measured.",
+    validation_text: "These numbers are not of this case: they say how the models did where the truth was \
+        known. The data are simulations, not measurements; no real collision was tried. Source: \
+        docs/VALIDATION.md of the program, with the command of each table.",
+    validation_impact: "Against finite-element runs that close at 0.8 to 5.0 m/s; at higher closing speeds \
+        restitution is smaller.",
+    table_impact: "Error of the impulse vector, median (mean), %",
+    validation_four_dof: "Against a multibody model of the same car over 4 s.",
+    table_four_dof: "Distance from the reference path",
+    validation_force: "Against 25 finite-element runs that it has not seen; intervals of the peak are too \
+        narrow, those of the impulse too wide.",
+    table_force: "Errors, median (mean), %",
+    table_force_coverage: "Share of the true values inside the intervals, %, ± standard error",
+    validation_response: "Against simulated motions of twelve cars, each asked about by a network that has not \
+        seen the car: mean error over 4 s and of the rest position in m, mean (median); share of \
+        positions inside the regions.",
+    table_response: "Errors, m, and coverage",
+    validation_reconstruction: "40 simulated rear-quarter impacts on one multibody car of three masses, everything \
+        known; 20 of them were looked at while the method was set (“tuning”). Intervals are \
+        somewhat too narrow. No real collision was tried.",
+    table_reconstruction: "Share of the true speeds inside the intervals, %, and errors",
+    table_reconstruction_ranks: "100 collisions drawn from the program’s own prior: ranks of the truth among the \
+        particles, and share inside the intervals; the goal of p > 0.01 is missed by the speed \
+        of the struck car",
+    validation_sheet: "The rules carry the scatter of the vehicles that they were made from; it is told beside \
+        each estimate.",
+    no_methods: "Nothing was answered by a model.",
+    no_sensitivity: "No answer of this case has a measure of what it depends on: its questions draw nothing, \
+        or nothing that they draw moves the result by more than chance.",
+    provenance_caption: "Answers",
+    answer: "Answer",
+    version: "Version",
+    seeds: "Seeds and draws",
+    no_draws: "nothing drawn",
+    files_caption: "Files that the case uses, as they are now",
+    file: "File",
+    bytes: "Bytes",
+    sha256: "SHA-256",
+    no_files: "The case uses no files.",
+    state: "State",
+    unchanged: "as saved",
+    new_file: "not recorded before",
+    missing: "missing",
+    changed: "changed",
+    models_caption: "Trained networks that answered",
+    network: "Network",
+    name: "Name",
+    no_models: "No trained network answered.",
+    reproduce_text: "The same version with the same files, seeds and settings gives the same numbers; a \
+        report of the same case with the same date has the same bytes.",
+    case_saved_by: "The case was saved by version {version}; this report was made by version {now}.",
+    log_caption: "What was done and when, UTC",
+    time: "Time",
+    event: "Event",
+    no_log: "The case has no log.",
+    no_pictures: "No answer has a picture.",
+    not_drawn: "This build draws no pictures: {caption}",
+    axes_alt: "{title}. Horizontal axis: {x}. Vertical axis: {y}. Shown: {names}.",
+    picture_elsewhere: "The picture is in the PDF of this report.",
+    noted: "Note: {note}.",
+    seed: "seed",
+    domain_caption: "How far the networks apply",
+    signature: "Place, date, signature: ______________________________",
+};

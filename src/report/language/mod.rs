@@ -1,0 +1,14 @@
+//! The languages of a report: each has one file.
+
+mod words;
+
+mod en;
+
+mod de;
+
+mod de_terms;
+
+mod look_up;
+
+pub(super) use look_up::{phrase_of, words_of};
+pub(super) use words::Words;

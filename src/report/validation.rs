@@ -1,0 +1,158 @@
+//! What the models of a report were compared with, and how far they were off.
+//!
+//! The tables are copied from `docs/VALIDATION.md`, header and rows as they stand there; a test looks
+//! each of their lines up in it. Nothing else in the program repeats these numbers.
+
+use crate::report::method::Method;
+use crate::report::numbers::Wording;
+use crate::report::{Block, Column, Table};
+
+/// Lines of a table of `docs/VALIDATION.md`.
+#[derive(Debug, Clone, Copy)]
+pub struct ValidationTable {
+    /// The heading in that document below which it stands.
+    pub heading: &'static str,
+    /// Header and rows, each a line of that document.
+    pub lines: &'static [&'static str],
+}
+
+/// Impulse solution against finite-element runs.
+const IMPACT: ValidationTable = ValidationTable {
+    heading: "## Impact solver",
+    lines: &[
+        "| | e, μ_c | 65 training cases | 25 test cases |",
+        "| restitution on the normal component | 0.38, 0.30 (the default) | 13.6 (17.1) | 17.2 (19.2) |",
+        "| restitution from the common velocity | 0.38, 0.31 | 12.6 (16.4) | 16.9 (18.8) |",
+    ],
+};
+
+/// 4DOF model against the multibody reference.
+const FOUR_DOF: ValidationTable = ValidationTable {
+    heading: "## 4DOF vehicle against the multibody reference",
+    lines: &[
+        "| set | cases | mean [m] | std [m] | median [m] | final error, median [m] | steps with energy growth |",
+        "| trajectories-fea, all | 100 | 0.890 | 0.950 | 0.783 | 1.90 | 0 |",
+        "| trajectories-pulse, all | 100 | 1.235 | 1.091 | 0.986 | 2.21 | 0 |",
+    ],
+};
+
+/// Errors of the force network.
+const FORCE: ValidationTable = ValidationTable {
+    heading: "## Force network",
+    lines: &[
+        "| all columns, all 25 cases | history | RMSE/peak | impulse | peak | duration |",
+        "| force network | 22.5 (24.0) | 4.6 (5.9) | 5.3 (7.4) | 13.5 (14.2) | 10.4 (15.8) |",
+        "| classic pulse | 36.7 (35.7) | 8.0 (8.7) | 12.4 (15.5) | 14.6 (18.0) | 12.5 (16.3) |",
+        "| Gaussian processes | 26.8 (27.9) | 6.0 (6.9) | 5.8 (7.2) | 14.0 (15.2) | 10.2 (15.3) |",
+    ],
+};
+
+/// Coverage of the force network.
+const FORCE_COVERAGE: ValidationTable = ValidationTable {
+    heading: "## Force network",
+    lines: &[
+        "| | 50 % | 80 % | 90 % | 95 % |",
+        "| F(t) | 66 ± 3 | 84 ± 3 | 89 ± 2 | 92 ± 2 |",
+        "| impulse | 76 ± 9 | 100 | 100 | 100 |",
+        "| peak | 36 ± 10 | 52 ± 10 | 76 ± 9 | 92 ± 6 |",
+        "| duration | 80 ± 8 | 92 ± 6 | 92 ± 6 | 92 ± 6 |",
+    ],
+};
+
+/// Response network on cars that it has not seen.
+const RESPONSE: ValidationTable = ValidationTable {
+    heading: "## Response network on cars that it has not seen",
+    lines: &[
+        "| model | motions of the car | coasting (45) | braked or dragged (27) | rest (11) | in 50 % | in 90 % | ends in 50 % | ends in 90 % |",
+        "| 4DOF by data sheet | 0 | 1.23 (0.98) | 1.18 (0.73) | 4.1 (3.7) | | | | |",
+        "| network | 0 | 0.89 (0.53) | 0.80 (0.56) | 2.9 (1.7) | 53 % | 90 % | 35 % | 72 % |",
+    ],
+};
+
+/// Reconstruction of staged collisions, everything known.
+const RECONSTRUCTION: ValidationTable = ValidationTable {
+    heading: "## Reconstruction",
+    lines: &[
+        "| quantity | method | cases | in 50 % | 80 % | 90 % | 95 % | median error [km/h] | bias [km/h] | width of 90 % [km/h] | CRPS [km/h] |",
+        "| struck car | reconstruction | reported | 55 | 65 | 85 | 90 | 2.9 | −1.1 | 11.1 | 2.86 |",
+        "| struck car | reconstruction | tuning | 35 | 85 | 90 | 100 | 2.3 | −0.1 | 10.7 | 1.99 |",
+        "| closing speed | reconstruction | reported | 40 | 95 | 95 | 100 | 1.4 | −0.6 | 8.0 | 1.57 |",
+        "| striking car | reconstruction | reported | 45 | 80 | 90 | 95 | 6.2 | −4.4 | 22.0 | 4.32 |",
+    ],
+};
+
+/// Ranks of the truth among the draws of the reconstruction, where it was drawn from the prior.
+const RECONSTRUCTION_RANKS: ValidationTable = ValidationTable {
+    heading: "### Simulation-based calibration",
+    lines: &[
+        "| quantity | p of χ², 10 bins | ranks in the bins, lowest first | in the 80 % interval | in 90 % |",
+        "| speed of the struck car | 0.001 | 21, 10, 11, 16, 1, 13, 7, 5, 7, 9 | 75 % | 85 % |",
+        "| speed of the striking car | 0.66 | 13, 11, 13, 12, 5, 11, 9, 6, 9, 11 | 78 % | 87 % |",
+        "| closing speed | 0.42 | 16, 10, 5, 7, 12, 10, 13, 7, 10, 10 | 69 % | 85 % |",
+        "| change of velocity of the struck car | 0.24 | 17, 5, 7, 12, 10, 10, 7, 8, 14, 10 | 67 % | 81 % |",
+    ],
+};
+
+/// All of them.
+pub const VALIDATION_TABLES: [&ValidationTable; 7] = [
+    &IMPACT,
+    &FOUR_DOF,
+    &FORCE,
+    &FORCE_COVERAGE,
+    &RESPONSE,
+    &RECONSTRUCTION,
+    &RECONSTRUCTION_RANKS,
+];
+
+/// What a method was compared with: a paragraph, and tables with their captions.
+pub(super) fn validation_blocks(method: Method, wording: &Wording) -> Vec<Block> {
+    let words = wording.words;
+    let (text, tables): (&str, Vec<(&str, &ValidationTable)>) = match method {
+        Method::Impact => (words.validation_impact, vec![(words.table_impact, &IMPACT)]),
+        Method::FourDof => (words.validation_four_dof, vec![(words.table_four_dof, &FOUR_DOF)]),
+        Method::ForceNetwork => (
+            words.validation_force,
+            vec![(words.table_force, &FORCE), (words.table_force_coverage, &FORCE_COVERAGE)],
+        ),
+        Method::ResponseNetwork => {
+            (words.validation_response, vec![(words.table_response, &RESPONSE)])
+        }
+        Method::Reconstruction => (
+            words.validation_reconstruction,
+            vec![
+                (words.table_reconstruction, &RECONSTRUCTION),
+                (words.table_reconstruction_ranks, &RECONSTRUCTION_RANKS),
+            ],
+        ),
+        Method::DataSheet => (words.validation_sheet, Vec::new()),
+    };
+    let heading = Block::heading(2, method.name(wording));
+    let tables = tables.into_iter().map(|(caption, of)| Block::Table(table(caption, of, wording)));
+    [heading, Block::paragraph(text)].into_iter().chain(tables).collect()
+}
+
+/// The lines as a table.
+fn table(caption: &str, of: &ValidationTable, wording: &Wording) -> Table {
+    let cells = |line: &str| -> Vec<String> {
+        let inner = line.trim().trim_start_matches('|').trim_end_matches('|');
+        inner.split('|').map(|cell| wording.validation_cell(cell.trim())).collect()
+    };
+    let mut lines = of.lines.iter().map(|line| cells(line));
+    let header = lines.next().unwrap_or_default();
+    let n = header.len();
+    let column = |title| Column { title, is_numeric: false };
+    let rows = lines.map(|mut row| {
+        row.resize(n, String::new());
+        row
+    });
+    let caption = caption.to_owned();
+    Table { caption, columns: header.into_iter().map(column).collect(), rows: rows.collect() }
+}
+
+impl Wording {
+    /// A cell of these tables: words are translated, numbers get the decimal sign of the language.
+    fn validation_cell(&self, cell: &str) -> String {
+        let has_words = cell.chars().filter(|c| c.is_alphabetic()).count() > 1;
+        if has_words { self.local(&self.term(cell)) } else { self.local(cell) }
+    }
+}

@@ -1,0 +1,22 @@
+//! A report as PDF: tagged, with an outline, embedded fonts, and tables that go over pages.
+//!
+//! The layout is found first, page by page, so that the number of pages is known; then the pages are
+//! drawn by `krilla`.
+
+mod fonts;
+
+mod lines;
+
+mod page;
+
+mod flow;
+
+mod table;
+
+mod draw;
+
+mod error;
+
+pub use draw::pdf;
+pub use error::PdfError;
+pub use page::{Drawing, Pixels};

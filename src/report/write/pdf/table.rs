@@ -1,0 +1,209 @@
+//! Tables that go over pages: the header is repeated, and a row that is higher than the room that is
+//! left is divided where a page of its own would be wasted.
+
+use crate::report::Table;
+use crate::report::write::pdf::flow::{Flow, LEADING, MARGIN_PT, Role, Style, caption_style};
+use crate::report::write::pdf::fonts::Fonts;
+use crate::report::write::pdf::lines::{lines, widest_word_pt};
+use crate::report::write::pdf::page::{Ink, Item, Owner};
+
+/// Size of the text in a table, points.
+const CELL_PT: f32 = 8.3;
+/// Distance of the text from the sides of its cell, points.
+const PADDING_PT: f32 = 3.5;
+/// The same above and below.
+const HIGH_PADDING_PT: f32 = 1.8;
+/// The widest that a column is for the sake of its longest word, as a share of the table.
+const WIDEST_WORD: f32 = 0.34;
+
+/// A table that is being set.
+struct Setting<'a> {
+    table: &'a Table,
+    /// Left edge and width of each column, points.
+    columns: Vec<[f32; 2]>,
+    owner: Owner,
+}
+
+/// Lines of the cells of a row.
+type Cells = Vec<Vec<String>>;
+
+/// Sets a table.
+pub(super) fn flow_table(flow: &mut Flow<'_>, table: &Table) {
+    if table.columns.is_empty() {
+        return;
+    }
+    let columns = columns(table, flow.fonts, flow.width_pt());
+    let setting = Setting { table, columns, owner: None };
+    let titles: Vec<String> = table.columns.iter().map(|column| column.title.clone()).collect();
+    let header = setting.cells(&titles, flow.fonts);
+    let first = table.rows.first().map(|row| setting.cells(row, flow.fonts));
+    let first_pt = first.map_or(0.0, |cells| height_pt(&cells).min(60.0));
+    let caption_pt = if table.caption.is_empty() { 0.0 } else { 2.0 * 8.5 * LEADING };
+    flow.need(caption_pt + height_pt(&header) + first_pt);
+    let summary = table.caption.clone();
+    let owner = flow.part(Role::Table { summary }, None);
+    let setting = Setting { owner, ..setting };
+    if !table.caption.is_empty() {
+        let caption = flow.part(Role::Caption, owner);
+        flow.text(&table.caption, Style { is_bold: true, ..caption_style() }, caption);
+        flow.y_pt += 1.5;
+    }
+    setting.header(flow, &header, true);
+    for row in &table.rows {
+        setting.row(flow, row, &header);
+    }
+}
+
+impl Setting<'_> {
+    fn cells(&self, row: &[String], fonts: &Fonts) -> Cells {
+        let cells = row.iter().zip(&self.columns);
+        cells
+            .map(|(cell, [_, width])| lines(cell, (fonts, CELL_PT), width - 2.0 * PADDING_PT))
+            .collect()
+    }
+
+    /// The titles of the columns; told to readers once.
+    fn header(&self, flow: &mut Flow<'_>, cells: &Cells, is_first: bool) {
+        let height_pt = height_pt(cells);
+        let rect_pt = [MARGIN_PT, flow.y_pt, flow.width_pt(), height_pt];
+        flow.push(Item::Fill { rect_pt, ink: Ink::Shade });
+        let row = if is_first { flow.part(Role::Row, self.owner) } else { None };
+        let owners: Vec<Owner> = cells
+            .iter()
+            .map(|_| if is_first { flow.part(Role::HeaderCell, row) } else { None })
+            .collect();
+        let all = cells.iter().map(Vec::len).max().unwrap_or(0);
+        self.slice(flow, (cells, &owners), (0, all), true);
+    }
+
+    fn row(&self, flow: &mut Flow<'_>, row: &[String], header: &Cells) {
+        let cells = self.cells(row, flow.fonts);
+        let n = cells.iter().map(Vec::len).max().unwrap_or(0);
+        let owner = flow.part(Role::Row, self.owner);
+        let owners: Vec<Owner> = cells.iter().map(|_| flow.part(Role::Cell, owner)).collect();
+        let step_pt = CELL_PT * LEADING;
+        let mut done = 0;
+        while done < n {
+            let room = (flow.room_pt() - 2.0 * HIGH_PADDING_PT) / step_pt;
+            let fits = room.max(0.0) as usize;
+            let left = n - done;
+            // A row that fits onto a page is not divided.
+            let is_small = left as f32 * step_pt < 0.4 * flow.page_pt();
+            if fits < left && (is_small || fits < 3) {
+                flow.new_page();
+                self.header(flow, header, false);
+                let room = (flow.room_pt() - 2.0 * HIGH_PADDING_PT) / step_pt;
+                if room < 1.0 {
+                    return; // A page that does not hold a line holds no table.
+                }
+                continue;
+            }
+            let take = left.min(fits);
+            self.slice(flow, (&cells, &owners), (done, take), false);
+            done += take;
+        }
+    }
+
+    /// Some lines of all cells of a row, and the rule below them.
+    fn slice(
+        &self,
+        flow: &mut Flow<'_>,
+        (cells, owners): (&Cells, &[Owner]),
+        (from, n): (usize, usize),
+        is_bold: bool,
+    ) {
+        let top_pt = flow.y_pt;
+        let ink = if is_bold { Ink::Heading } else { Ink::Text };
+        for (idx, (cell, [left_pt, width_pt])) in cells.iter().zip(&self.columns).enumerate() {
+            let is_numeric = self.table.columns.get(idx).is_some_and(|column| column.is_numeric);
+            let owner = owners.get(idx).copied().flatten();
+            for (row, line) in cell.iter().skip(from).take(n).enumerate() {
+                let text_pt = CELL_PT * flow.fonts.width(line);
+                let free_pt = (width_pt - 2.0 * PADDING_PT - text_pt).max(0.0);
+                let indent_pt = if is_numeric { free_pt } else { 0.0 };
+                // A cell without text would be missing in its row.
+                let line = if line.is_empty() { " " } else { line };
+                flow.y_pt = top_pt + HIGH_PADDING_PT + row as f32 * CELL_PT * LEADING;
+                let style = Style {
+                    size_pt: CELL_PT,
+                    ink,
+                    is_bold,
+                    left_pt: left_pt + PADDING_PT + indent_pt,
+                };
+                flow.line(line, style, owner);
+            }
+        }
+        flow.y_pt = top_pt + n as f32 * CELL_PT * LEADING + 2.0 * HIGH_PADDING_PT;
+        let rect_pt = [MARGIN_PT, flow.y_pt - 0.5, flow.width_pt(), 0.5];
+        flow.push(Item::Fill { rect_pt, ink: Ink::Rule });
+    }
+}
+
+fn height_pt(cells: &Cells) -> f32 {
+    let n = cells.iter().map(Vec::len).max().unwrap_or(0);
+    n as f32 * CELL_PT * LEADING + 2.0 * HIGH_PADDING_PT
+}
+
+/// Left edges and widths: what each column would like, as far as all of them fit; else the longest
+/// words first, and the rest by how much is wanted.
+fn columns(table: &Table, fonts: &Fonts, width_pt: f32) -> Vec<[f32; 2]> {
+    let n = table.columns.len();
+    let texts = |idx: usize| {
+        let cells = table.rows.iter().filter_map(move |row| row.get(idx));
+        cells.chain(table.columns.get(idx).map(|column| &column.title))
+    };
+    let padded = |pt: f32| pt + 2.0 * PADDING_PT + 0.5;
+    let size = |of: &dyn Fn(&str) -> f32, idx| texts(idx).map(|text| of(text)).fold(8.0, f32::max);
+    let wanted: Vec<f32> =
+        (0..n).map(|idx| padded(size(&|t| CELL_PT * fonts.width(t), idx))).collect();
+    let widest = WIDEST_WORD * width_pt;
+    let least: Vec<f32> = (0..n)
+        .map(|idx| padded(size(&|t| widest_word_pt(t, (fonts, CELL_PT)), idx)).min(widest))
+        .collect();
+    let widths = shared(&wanted, &least, width_pt);
+    let mut left_pt = MARGIN_PT;
+    let place = |width: f32| {
+        let column = [left_pt, width];
+        left_pt += width;
+        column
+    };
+    widths.into_iter().map(place).collect()
+}
+
+/// Widths that together are the width of the table.
+fn shared(wanted: &[f32], least: &[f32], width_pt: f32) -> Vec<f32> {
+    let (all_wanted, all_least): (f32, f32) = (wanted.iter().sum(), least.iter().sum());
+    if all_wanted <= width_pt {
+        // What is left over is shared alike.
+        let more = (width_pt - all_wanted) / wanted.len() as f32;
+        return wanted.iter().map(|want| want + more).collect();
+    }
+    if all_least >= width_pt {
+        return least.iter().map(|need| need * width_pt / all_least).collect();
+    }
+    // The root keeps one very long text from leaving nothing to the others.
+    let hunger: Vec<f32> =
+        wanted.iter().zip(least).map(|(want, need)| (want - need).max(0.0).sqrt()).collect();
+    let all: f32 = hunger.iter().sum::<f32>().max(1e-6);
+    let free = width_pt - all_least;
+    least.iter().zip(&hunger).map(|(need, hunger)| need + free * hunger / all).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_fill_the_table_and_no_more() {
+        for (wanted, least) in [
+            (vec![50.0, 60.0], vec![20.0, 20.0]),
+            (vec![900.0, 60.0, 80.0], vec![60.0, 50.0, 40.0]),
+            (vec![900.0, 900.0, 900.0], vec![300.0, 300.0, 300.0]),
+        ] {
+            let widths = shared(&wanted, &least, 480.0);
+            let sum: f32 = widths.iter().sum();
+            assert!((sum - 480.0).abs() < 0.01, "{widths:?}");
+            assert!(widths.iter().all(|width| *width > 20.0), "{widths:?}");
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! `report`: what it writes and refuses, and that its numbers are those that the commands print.
+
+#![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use impactlab::case_file::{CaseFile, Variant};
+use impactlab::data::Existing;
+use impactlab::study::{EvidenceChoice, ReconstructRequest};
+use tempfile::TempDir;
+
+use crate::program::{json, ok, program, text};
+
+const PIT: &str = "assets/examples/pit.impactlab";
+const EVIDENCE: &str = "tests/data/evidence/spin.toml";
+const VARIANT: [&str; 4] = ["--variant", "coasts", "--date", "2026-11-24"];
+
+fn written(case: &str, args: &[&str], name: &str, folder: &Path) -> Vec<u8> {
+    let out = folder.join(name);
+    let args = [&["report", case, "--out", text(&out)], args].concat();
+    ok(program().args(args).output().unwrap());
+    fs::read(out).unwrap()
+}
+
+/// Numbers with a decimal point in a text.
+fn numbers(text: &str) -> Vec<f64> {
+    let is_part = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-');
+    let words = text.split(|c: char| !is_part(c));
+    let words = words.map(|word| word.trim_end_matches(['.', '-']));
+    words.filter(|word| word.contains('.')).filter_map(|word| word.parse().ok()).collect()
+}
+
+#[test]
+fn the_numbers_are_those_that_the_commands_print() {
+    let folder = TempDir::new().unwrap();
+    let report = written(PIT, &VARIANT, "report.md", folder.path());
+    let report = String::from_utf8(report).unwrap();
+    let in_report = numbers(&report);
+    let printed = ok(program().args(["case", "run", PIT, "--variant", "coasts"]).output().unwrap());
+    let keys =
+        ["Δv over contact", "end position", "distance", "final heading", "final speed", "target:"];
+    let mut n_checked = 0;
+    for line in printed.lines().filter(|line| keys.iter().any(|key| line.starts_with(key))) {
+        for number in numbers(line) {
+            // The report has four digits where the command prints three decimals.
+            let tolerance = (0.5e-3 * number.abs()).max(0.6e-3);
+            assert!(
+                in_report.iter().any(|of| (of - number).abs() <= tolerance),
+                "{number} of {line:?} is not in the report"
+            );
+            n_checked += 1;
+        }
+    }
+    assert!(n_checked >= 10, "{n_checked}");
+}
+
+#[test]
+fn evidence_by_itself_gives_the_report_of_a_case_that_asks_for_its_reconstruction() {
+    let folder = TempDir::new().unwrap();
+    let evidence = folder.path().join("spin.toml");
+    fs::copy(PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(EVIDENCE), &evidence).unwrap();
+    let args = ["--date", "2026-11-24", "--particles", "60", "--seed", "3"];
+    let of_evidence = written(text(&evidence), &args, "evidence.md", folder.path());
+    let choice = EvidenceChoice::File(evidence);
+    let name = choice.load().unwrap().case;
+    let question = ReconstructRequest { particles: 60, seed: 3, ..ReconstructRequest::new(choice) };
+    let variant =
+        Variant { name: name.clone(), questions: vec![question.into()], ..Variant::default() };
+    let case = folder.path().join("case.impactlab");
+    CaseFile::new(name, variant).save(&case, Existing::Refuse).unwrap();
+    let of_case = written(text(&case), &args[..2], "case.md", folder.path());
+    assert_eq!(String::from_utf8(of_evidence).unwrap(), String::from_utf8(of_case).unwrap());
+    let out = folder.path().join("other.md");
+    let wrong =
+        program().args(["report", text(&case), "--seed", "1", "--out", text(&out)]).output();
+    let wrong = wrong.unwrap();
+    assert!(!wrong.status.success() && !out.exists());
+    assert!(String::from_utf8(wrong.stderr).unwrap().contains("case.impactlab: is a case"));
+}
+
+#[test]
+fn the_same_date_gives_the_same_bytes_and_nothing_is_overwritten_unasked() {
+    let folder = TempDir::new().unwrap();
+    let first = written(PIT, &VARIANT, "a.pdf", folder.path());
+    let again = written(PIT, &VARIANT, "b.pdf", folder.path());
+    assert!(first.starts_with(b"%PDF-") && first == again);
+    let out = folder.path().join("a.pdf");
+    let args = [&["report", PIT, "--out", text(&out), "--json"][..], &VARIANT].concat();
+    let refused = program().args(&args).output().unwrap();
+    assert_eq!(refused.status.code(), Some(1));
+    let error = String::from_utf8(refused.stderr).unwrap();
+    assert!(error.contains("a.pdf") && error.contains("--overwrite"), "{error}");
+    let told = json(&ok(program().args(&args).arg("--overwrite").output().unwrap()));
+    assert_eq!(told["date"], "2026-11-24");
+    assert_eq!((&told["sections"], &told["unanswered"]), (&10.into(), &0.into()));
+    assert!(told["pictures"].as_u64().unwrap() >= 5 && told["changes"] == json("[]"), "{told}");
+}
+
+#[test]
+fn what_is_wrong_with_the_arguments_is_said_and_nothing_is_written() {
+    let folder = TempDir::new().unwrap();
+    for (name, args, code, error) in [
+        ("report.docx", &[][..], 1, ".pdf, .md or .json"),
+        ("report.md", &["--date", "2026-02-30"], 2, "is no day"),
+        ("report.md", &["--variant", "nobody"], 1, "nobody"),
+        ("report.md", &["--language", "fr"], 2, "fr"),
+    ] {
+        let out = folder.path().join(name);
+        let args = [&["report", PIT, "--out", text(&out)][..], args].concat();
+        let refused = program().args(args).output().unwrap();
+        assert_eq!(refused.status.code(), Some(code), "{name}");
+        let told = String::from_utf8(refused.stderr).unwrap();
+        assert!(told.contains(error), "{told}");
+        assert!(!out.exists());
+    }
+}

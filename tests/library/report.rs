@@ -1,0 +1,378 @@
+//! Reports: every section, the numbers of the answers as the window shows them, the same bytes from the
+//! same case, and a PDF that other programs read.
+
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use impactlab::case_file::{CaseFile, CaseReport, Variant, pack, unpack};
+use impactlab::data::Existing;
+use impactlab::figure::Figure;
+use impactlab::report::{
+    Block, Language, Paper, Pixels, ReportDate, ReportDocument, ReportSettings, SectionKind,
+    VALIDATION_TABLES, pdf, report_case,
+};
+use impactlab::study::{
+    EvidenceChoice, ImpactRequest, Library, ReconstructRequest, Report, ScenarioChoice,
+};
+use impactlab::uncertainty::Badge;
+use impactlab::units::{Quantity, UnitSystem};
+
+/// Particles of a reconstruction that is asked only for the look of its report.
+const FEW_PARTICLES: usize = 60;
+
+fn settings(language: Language, units: UnitSystem, paper: Paper) -> ReportSettings {
+    let date = ReportDate::new(2026, 11, 24).expect("a day");
+    ReportSettings { language, units, paper, date }
+}
+
+fn english() -> ReportSettings {
+    settings(Language::En, UnitSystem::Si, Paper::A4)
+}
+
+fn report(case: &CaseFile, settings: &ReportSettings) -> (ReportDocument, CaseReport) {
+    let mut go_on = |_: impactlab::study::Event<'_>| ControlFlow::Continue(());
+    let outcome = report_case((case, &[]), settings, &Library::default(), &mut go_on);
+    outcome.expect("a case").complete().expect("nobody cancels")
+}
+
+/// The example of the program, asked once for all tests.
+fn pit() -> &'static (ReportDocument, CaseReport) {
+    static PIT: OnceLock<(ReportDocument, CaseReport)> = OnceLock::new();
+    PIT.get_or_init(|| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/examples/pit.impactlab");
+        report(&CaseFile::load(&path).expect("a case"), &english())
+    })
+}
+
+/// A case that reconstructs a staged collision, in a folder of its own.
+fn reconstruction(folder: &Path) -> CaseFile {
+    let staged = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/staged/evidence/s03.toml");
+    let evidence = folder.join("evidence.toml");
+    fs::copy(staged, &evidence).expect("copied");
+    let question = ReconstructRequest {
+        particles: FEW_PARTICLES,
+        ..ReconstructRequest::new(EvidenceChoice::File(evidence))
+    };
+    let variant = Variant {
+        name: "found".to_owned(),
+        questions: vec![question.into()],
+        ..Variant::default()
+    };
+    let mut case = CaseFile::new("Staged", variant);
+    case.record_files();
+    case
+}
+
+/// The reconstruction, asked once for all tests that only read it.
+fn staged() -> &'static (tempfile::TempDir, CaseFile, ReportDocument, CaseReport) {
+    static STAGED: OnceLock<(tempfile::TempDir, CaseFile, ReportDocument, CaseReport)> =
+        OnceLock::new();
+    STAGED.get_or_init(|| {
+        let folder = tempfile::tempdir().expect("a folder");
+        let case = reconstruction(folder.path());
+        let (document, answers) = report(&case, &english());
+        (folder, case, document, answers)
+    })
+}
+
+fn impact_case(name: &str, notes: &str) -> CaseFile {
+    let scenario = ScenarioChoice::File(PathBuf::from("pit-right-rear"));
+    let question = ImpactRequest { scenario, paper: false };
+    let variant =
+        Variant { name: name.to_owned(), questions: vec![question.into()], ..Variant::default() };
+    let mut case = CaseFile::new(name, variant);
+    case.notes = notes.to_owned();
+    case
+}
+
+/// All text of a document, a cell or paragraph a line.
+fn texts(document: &ReportDocument) -> Vec<String> {
+    let of_block = |block: &Block| match block {
+        Block::Heading { text, .. } | Block::Paragraph { text } | Block::Notice { text } => {
+            vec![text.clone()]
+        }
+        Block::List { items } => items.clone(),
+        Block::Table(table) => table.rows.concat(),
+        Block::Picture(picture) => vec![picture.caption.clone(), picture.alt.clone()],
+    };
+    document.sections.iter().flat_map(|section| &section.blocks).flat_map(of_block).collect()
+}
+
+fn assert_says(document: &ReportDocument, text: &str) {
+    assert!(texts(document).iter().any(|of| of.contains(text)), "{text:?} is not in the report");
+}
+
+#[test]
+fn the_example_has_every_section_and_the_numbers_of_its_answers() {
+    let (document, answers) = pit();
+    for kind in SectionKind::ALL {
+        let section = document.section(kind).expect("every section");
+        assert!(!section.blocks.is_empty(), "{kind:?} says nothing");
+    }
+    assert!(answers.is_clean());
+    let shown = |quantity: Quantity, si: f64| quantity.shown(si, UnitSystem::Si);
+    let interval = |quantity: Quantity, median: f64, ends: [f64; 2]| {
+        let parts = quantity.interval_parts(median, ends, UnitSystem::Si);
+        let [low, high] = parts.ends;
+        assert_says(document, &format!("{} {}", parts.median, parts.symbol));
+        assert_says(document, &format!("{low} to {high} {}", parts.symbol));
+    };
+    let mut kinds = [0; 4];
+    for answer in answers.variants.iter().flat_map(|variant| variant.reports()) {
+        match answer {
+            Report::Impact(report) => {
+                kinds[0] += 1;
+                for body in [&report.target, &report.bullet] {
+                    assert_says(document, &shown(Quantity::Speed, body.delta_v_magnitude_m_s));
+                    assert_says(document, &shown(Quantity::AngularVelocity, body.yaw_rate_rad_s));
+                    assert_says(
+                        document,
+                        &format!("{:.1} deg", body.pdof_deg.expect("a direction")),
+                    );
+                }
+                assert_says(document, &shown(Quantity::Impulse, report.impulse_magnitude_n_s));
+                assert_says(document, &shown(Quantity::Energy, report.dissipated_energy_j));
+            }
+            Report::Simulate(report) => {
+                kinds[1] += 1;
+                let end = report.end.expect("an end");
+                assert_says(document, &shown(Quantity::Speed, end.speed_m_s));
+                assert_says(document, &shown(Quantity::Length, report.distance_m.expect("a path")));
+                assert_says(document, &shown(Quantity::Angle, end.yaw_rad));
+            }
+            Report::PredictForce(report) => {
+                kinds[2] += 1;
+                let peak = &report.peak_n;
+                interval(Quantity::Force, peak.median, peak.interval(0.9).expect("90 %"));
+                let impulse = &report.impulse_n_s.magnitude;
+                interval(Quantity::Impulse, impulse.median, impulse.interval(0.9).expect("90 %"));
+            }
+            Report::PredictMotion(report) => {
+                kinds[3] += 1;
+                let outcome = &report.outcome;
+                interval(Quantity::Length, outcome.x_m.median, outcome.x_m.ninety);
+                let turn = &outcome.heading_change_rad;
+                interval(Quantity::Angle, turn.median, turn.ninety);
+            }
+            other => panic!("an answer of another kind: {other:?}"),
+        }
+        let told = serde_json::to_value(answer).expect("JSON");
+        for badge in told["badges"].as_array().expect("badges") {
+            assert_says(document, badge["text"].as_str().expect("a text"));
+        }
+        let is_told = |badge: &Badge| {
+            let of_answers = &document.section(SectionKind::Answers).expect("answers").blocks;
+            of_answers
+                .iter()
+                .any(|block| matches!(block, Block::Notice { text } if text.contains(&badge.text)))
+        };
+        let badges: Vec<Badge> = serde_json::from_value(told["badges"].clone()).expect("badges");
+        for badge in badges.iter().filter(|badge| badge.kind.is_warning()) {
+            assert!(is_told(badge), "{badge} does not stand at the answer");
+        }
+        for assumption in told["assumptions"].as_array().expect("assumptions") {
+            assert_says(document, assumption["reason"].as_str().expect("a reason"));
+        }
+        for model in told["model_digests"].as_array().into_iter().flatten() {
+            assert_says(document, model["sha256"].as_str().expect("a digest"));
+        }
+    }
+    assert_eq!(kinds, [3, 3, 3, 3]);
+    assert!(document.pictures().count() >= 9, "{}", document.pictures().count());
+}
+
+#[test]
+fn a_reconstruction_tells_evidence_courses_budget_and_prior() {
+    let (_, case, document, answers) = staged();
+    let Some(Report::Reconstruct(report)) = answers.variants[0].reports().next() else {
+        panic!("a reconstruction");
+    };
+    for of in &report.quantities {
+        let shown = of.shown(UnitSystem::Si);
+        for [low, high] in [&shown.interval_50, &shown.interval_90, &shown.interval_95] {
+            assert_says(document, format!("{low} to {high} {}", shown.unit).trim_end());
+        }
+    }
+    for item in &report.fit {
+        assert_says(document, &item.evidence);
+        assert_says(document, &format!("{:.3}", item.p));
+    }
+    for mode in &report.modes {
+        assert_says(document, &mode.name);
+    }
+    assert_eq!(report.priors.len(), count_of(document, "prior; from"));
+    assert_says(document, &case.files[0].sha256);
+    assert_says(document, "evidence.toml");
+    assert_says(document, "seed 0");
+    // What nobody said of the cars is told with rule, source and range.
+    assert_says(document, "yaw inertia");
+    assert!(texts(document).iter().filter(|text| *text == "estimated by rule").count() > 20);
+    let folder = case.files[0].path.parent().expect("a folder").display().to_string();
+    assert!(!document.to_markdown().contains(&folder), "a path of this machine is in the report");
+}
+
+fn count_of(document: &ReportDocument, start: &str) -> usize {
+    texts(document).iter().filter(|text| text.starts_with(start)).count()
+}
+
+#[test]
+fn the_same_case_gives_the_same_bytes_also_from_its_package() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (_, case, first, _) = staged();
+    let zip = folder.path().join("case.zip");
+    pack(case, &zip, Existing::Refuse).expect("packed");
+    let unpacked = unpack(&zip, &folder.path().join("elsewhere")).expect("unpacked");
+    let (again, _) = report(&CaseFile::load(&unpacked).expect("a case"), &english());
+    assert_eq!(first.to_json().expect("JSON"), again.to_json().expect("JSON"));
+    assert_eq!(first.to_markdown(), again.to_markdown());
+    let [first, again] = [first, &again].map(|of| pdf(of, Some(&gray)).expect("a PDF"));
+    assert!(first == again, "the PDF of the package is another one");
+}
+
+/// Draws any figure as a gray field.
+fn gray(_: &Figure) -> Result<Pixels, String> {
+    Ok(Pixels { size_px: [16, 9], rgba: [128, 128, 128, 255].repeat(16 * 9) })
+}
+
+#[test]
+fn the_pdf_is_read_back_with_its_pages_fonts_tags_and_text() {
+    let (document, _) = pit();
+    let bytes = pdf(document, Some(&gray)).expect("a PDF");
+    let read = lopdf::Document::load_mem(&bytes).expect("readable");
+    let pages = read.get_pages();
+    assert!((8..=40).contains(&pages.len()), "{} pages", pages.len());
+    let catalog = read.catalog().expect("a catalog");
+    for key in ["StructTreeRoot", "MarkInfo", "Outlines", "Lang"] {
+        assert!(catalog.has(key.as_bytes()), "the catalog has no {key}");
+    }
+    let fonts = read.objects.values().filter_map(|object| object.as_dict().ok());
+    let described = fonts.filter(|font| {
+        font.get(b"Type").and_then(|of| of.as_name()).is_ok_and(|name| name == b"FontDescriptor")
+    });
+    let mut n_fonts = 0;
+    for font in described {
+        n_fonts += 1;
+        assert!(font.has(b"FontFile2") || font.has(b"FontFile3"), "a font is not embedded");
+    }
+    assert!(n_fonts > 0);
+    let numbers: Vec<u32> = pages.keys().copied().collect();
+    let text: String =
+        numbers.iter().map(|page| read.extract_text(&[*page]).expect("text")).collect();
+    let joined: String = text.split_whitespace().collect();
+    for wanted in ["Questionsandanswers", "Page1of", "impulseonthestruckvehicle", "Kudlich", "Δv"]
+    {
+        assert!(joined.contains(wanted), "{wanted} cannot be extracted");
+    }
+}
+
+#[test]
+fn pages_have_the_size_of_the_paper() {
+    for (paper, size) in [(Paper::A4, [595.276, 841.89]), (Paper::Letter, [612.0, 792.0])] {
+        let case = impact_case("size", "");
+        let (document, _) = report(&case, &settings(Language::En, UnitSystem::Si, paper));
+        let bytes = pdf(&document, None).expect("a PDF");
+        let read = lopdf::Document::load_mem(&bytes).expect("readable");
+        for id in read.get_pages().values() {
+            let page = read.get_dictionary(*id).expect("a page");
+            let media = page.get(b"MediaBox").and_then(|of| of.as_array()).expect("a box");
+            let ends = [&media[2], &media[3]].map(|of| of.as_float().expect("a number"));
+            for (end, expected) in ends.into_iter().zip(size) {
+                assert!((end - expected).abs() < 0.01, "{paper:?}: {end} {expected}");
+            }
+        }
+    }
+}
+
+#[test]
+fn german_has_its_decimal_sign_date_and_words_and_us_units_their_symbols() {
+    let case = impact_case("pit", "");
+    let (german, answers) = report(&case, &settings(Language::De, UnitSystem::Us, Paper::A4));
+    let Some(Report::Impact(answer)) = answers.variants[0].reports().next() else {
+        panic!("an impact");
+    };
+    let delta_v = Quantity::Speed.shown(answer.target.delta_v_magnitude_m_s, UnitSystem::Us);
+    assert!(delta_v.ends_with("mph"));
+    assert_says(&german, &delta_v.replace('.', ","));
+    assert_eq!(german.date, "24.11.2026");
+    for word in ["Stoßziffer", "Gierrate", "Reibbeiwert", "Geschwindigkeitsänderung"] {
+        assert_says(&german, word);
+    }
+    // What there is in English only is marked.
+    assert_says(&german, "(engl.)");
+    let bytes = pdf(&german, None).expect("a PDF");
+    let read = lopdf::Document::load_mem(&bytes).expect("readable");
+    let language = read.catalog().and_then(|catalog| catalog.get(b"Lang")).expect("a language");
+    assert_eq!(language.as_str().expect("a text"), b"de");
+}
+
+#[test]
+fn a_file_that_is_missing_is_said_first() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let case = reconstruction(folder.path());
+    fs::remove_file(folder.path().join("evidence.toml")).expect("removed");
+    let (document, answers) = report(&case, &english());
+    assert!(!answers.is_clean());
+    let first = &document.sections[0].blocks[..2];
+    assert!(
+        matches!(&first[0], Block::Notice { text } if text.contains("evidence.toml is missing")),
+        "{first:?}"
+    );
+    assert!(matches!(&first[1], Block::Notice { text } if text.starts_with("1 of 1 questions")));
+    assert_says(&document, "No answer: ");
+    let folder = folder.path().display().to_string();
+    assert!(!document.to_markdown().contains(&folder), "a path of this machine is in the report");
+}
+
+#[test]
+fn hostile_names_break_neither_tables_nor_pages() {
+    let long = "Wolfeschlegelsteinhausenbergerdorff".repeat(40);
+    for name in [
+        "a|b|c\n| --- |\r\n# heading",
+        "<script>alert(1)</script> &amp; [x](y) `z`",
+        "\u{202e}right to left\u{0}\u{7f}\u{1b}[31m",
+        "漢字 🚗 \u{10ffff} e\u{301}",
+        "",
+        "   ",
+        &long,
+    ] {
+        let mut case = impact_case(name, name);
+        case.note(name);
+        for language in [Language::En, Language::De] {
+            let (document, _) = report(&case, &settings(language, UnitSystem::Si, Paper::Letter));
+            check_tables(&document.to_markdown());
+            let bytes = pdf(&document, None).unwrap_or_else(|error| panic!("{name:?}: {error}"));
+            let read = lopdf::Document::load_mem(&bytes).expect("readable");
+            assert!(!read.get_pages().is_empty());
+            let json: serde_json::Value =
+                serde_json::from_str(&document.to_json().expect("JSON")).expect("JSON");
+            assert_eq!(json["case"], name);
+        }
+    }
+}
+
+/// Every row of a table in Markdown has as many cells as the one above it.
+fn check_tables(markdown: &str) {
+    let mut width = None;
+    for line in markdown.lines() {
+        if !line.starts_with('|') {
+            width = None;
+            continue;
+        }
+        let n = line.replace("\\\\", "").replace("\\|", "").matches('|').count();
+        assert_eq!(*width.get_or_insert(n), n, "{line}");
+    }
+}
+
+#[test]
+fn the_numbers_of_the_validation_are_those_of_the_document() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/VALIDATION.md");
+    let text = fs::read_to_string(path).expect("the document");
+    for table in VALIDATION_TABLES {
+        let (_, below) = text.split_once(&format!("{}\n", table.heading)).expect(table.heading);
+        for line in table.lines {
+            assert!(below.lines().any(|of| of == *line), "{line} is not below {}", table.heading);
+        }
+    }
+}
