@@ -121,11 +121,12 @@ impl Population {
         let Some(proposal) = self.proposals.last() else { return };
         let of_each = self.z.par_iter().zip(&mut self.log_density);
         of_each.for_each(|(z, sum)| *sum = ln_sum_exp(&[*sum, proposal.ln_share(z)]));
-        let (n_prior, proposals) = (self.n_prior as f64, self.proposals.clone());
+        let (n_prior, proposals) = (self.n_prior as f64, std::mem::take(&mut self.proposals));
         self.push(z, log_likelihood, |z| {
             let of_mixtures = proposals.iter().map(|of| of.ln_share(z));
             ln_sum_exp(&std::iter::once(n_prior.ln()).chain(of_mixtures).collect::<Vec<f64>>())
         });
+        self.proposals = proposals;
     }
 
     /// Keeps what has a likelihood.

@@ -29,6 +29,16 @@ const ROUND_DRAWS: [f64; 2] = [1.0, 3.0];
 /// colder and narrower: it is worth more where it lies right and does not see what lies beside it.
 const FIT_ESS: f64 = 2.0;
 
+/// The same of every second fit where the evidence is sharp: after a part of the evaluations the
+/// posterior is not in sight.
+const SHARP_FIT_ESS: f64 = 0.25;
+
+/// That part of the evaluations, as a divisor.
+const SHARP_AFTER: usize = 3;
+
+/// Effective sample size of the posterior up to which it is not in sight.
+const IN_SIGHT_ESS: f64 = 100.0;
+
 /// Effective sample size that a mixture is fitted to at the least.
 const MIN_FIT_ESS: f64 = 200.0;
 
@@ -183,7 +193,13 @@ impl<T: Target + ?Sized> Run<'_, T> {
 
     /// Effective sample size that a mixture is fitted to.
     fn fit_ess(&self) -> f64 {
-        let wanted = (FIT_ESS * self.settings.n_particles as f64).max(MIN_FIT_ESS);
+        let is_late = self.population.n_draws() > self.settings.max_evaluations / SHARP_AFTER;
+        let is_sharp = is_late && self.posterior_ess() < IN_SIGHT_ESS;
+        let share = match is_sharp && self.population.n_rounds() % 2 == 1 {
+            true => SHARP_FIT_ESS,
+            false => FIT_ESS,
+        };
+        let wanted = (share * self.settings.n_particles as f64).max(MIN_FIT_ESS);
         wanted.min(self.population.n_prior() as f64 / 4.0).max(1.0)
     }
 
