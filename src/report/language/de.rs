@@ -331,9 +331,11 @@ pub(super) const WORDS: Words = Words {
         eine vorab angenommene Verteilung. Für jeden gezogenen Satz von Werten werden Stoß und \
         Auslaufbewegung bis zum Stillstand berechnet und danach gewichtet, wie gut sie zu den \
         Spuren passen, mit der Standardabweichung jeder Messung und einem Modellfehler, der \
-        längs der Bahn wächst. Ein sequentielles Monte-Carlo-Verfahren führt Partikel von der \
-        Vorab- zur Nachher-Verteilung; der Standardfehler der Wahrscheinlichkeiten folgt aus der \
-        Abstammung der Partikel, die Anpassung jeder Spur aus realisierten Abweichungen.",
+        längs der Bahn wächst. Ein sequentielles Monte-Carlo-Verfahren zieht aus der \
+        Vorabverteilung, dann aus Mischungen von Normalverteilungen, die den Spuren schrittweise \
+        folgen, und gewichtet jeden Zug nach der Dichte, aus der er stammt; der Standardfehler der \
+        Wahrscheinlichkeiten folgt aus den Gewichten, die Anpassung jeder Spur aus realisierten \
+        Abweichungen.",
     limits_reconstruction: "Stoß nach der Impulslösung mit Stoßziffer und Reibung, Bewegung nach dem 4DOF-Modell; \
         die Netze sind nicht beteiligt. Geschwindigkeit und Richtung des stoßenden Fahrzeugs \
         beruhen großenteils auf Annahmen. Eine Bewegung wird 40 s lang verfolgt.",

@@ -324,9 +324,10 @@ pub(super) const WORDS: Words = Words {
         has a distribution that was taken to be likely before. For each drawn set of values the \
         impact and the motion to rest are computed, and weighed by how well they go with what \
         was found, with the standard deviation of each measurement and an error of the model \
-        that grows along the path. A sequential Monte Carlo sampler moves particles from the \
-        prior to the posterior; the standard error of probabilities follows from the ancestry of \
-        the particles, the fit of each item from realized discrepancies.",
+        that grows along the path. A sequential Monte Carlo sampler draws from the prior, then \
+        from mixtures of normals that follow the evidence step by step, and weighs every draw by \
+        the density that it came from; the standard error of probabilities follows from the \
+        weights, the fit of each item from realized discrepancies.",
     limits_reconstruction: "Impact by momentum with restitution and friction, motion by the 4DOF model; the networks \
         take no part in it. Speed and heading of the striking car rest largely on what is \
         assumed of them. A motion is followed for 40 s.",
