@@ -365,11 +365,8 @@ pub(super) const WORDS: Words = Words {
     table_response: "Fehler, m, und Abdeckung",
     validation_reconstruction: "40 simulierte Stöße gegen das Heckviertel eines Mehrkörperfahrzeugs mit drei Massen, \
         alles bekannt; 20 davon wurden beim Einstellen des Verfahrens betrachtet \
-        („Einstellung“). Die Intervalle sind etwas zu schmal. Kein realer Unfall wurde geprüft.",
+        („Einstellung“). Kein realer Unfall wurde geprüft.",
     table_reconstruction: "Anteil der wahren Geschwindigkeiten in den Intervallen, %, und Fehler",
-    table_reconstruction_ranks: "100 Kollisionen aus der Vorabverteilung des Programms selbst: Ränge der Wahrheit unter \
-        den Partikeln und Anteil in den Intervallen; das Ziel p > 0,01 verfehlt die \
-        Geschwindigkeit des gestoßenen Fahrzeugs",
     validation_sheet: "Die Regeln tragen die Streuung der Fahrzeuge, aus denen sie stammen; sie steht bei jedem \
         Schätzwert.",
     no_methods: "Keine Antwort stammt aus einem Modell.",

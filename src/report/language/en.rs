@@ -354,12 +354,9 @@ pub(super) const WORDS: Words = Words {
         positions inside the regions.",
     table_response: "Errors, m, and coverage",
     validation_reconstruction: "40 simulated rear-quarter impacts on one multibody car of three masses, everything \
-        known; 20 of them were looked at while the method was set (“tuning”). Intervals are \
-        somewhat too narrow. No real collision was tried.",
+        known; 20 of them were looked at while the method was set (“tuning”). No real \
+        collision was tried.",
     table_reconstruction: "Share of the true speeds inside the intervals, %, and errors",
-    table_reconstruction_ranks: "100 collisions drawn from the program’s own prior: ranks of the truth among the \
-        particles, and share inside the intervals; the goal of p > 0.01 is missed by the speed \
-        of the struck car",
     validation_sheet: "The rules carry the scatter of the vehicles that they were made from; it is told beside \
         each estimate.",
     no_methods: "Nothing was answered by a model.",

@@ -279,7 +279,6 @@ pub(in crate::report) struct Words {
     pub table_response: &'static str,
     pub validation_reconstruction: &'static str,
     pub table_reconstruction: &'static str,
-    pub table_reconstruction_ranks: &'static str,
     pub validation_sheet: &'static str,
     pub no_methods: &'static str,
     pub no_sensitivity: &'static str,
