@@ -16,6 +16,7 @@ mod tire;
 
 mod as_printed;
 mod four_dof;
+mod friction_zone;
 
 mod ending;
 mod ending_file;
@@ -39,6 +40,7 @@ pub use ending::{
 pub use energy::MAX_ENERGY_GAIN;
 pub use fishhook::{USUAL_STEERING_RATIO, angle_at_third_g_rad, fishhook, fishhook_amplitude_rad};
 pub use four_dof::{CollisionForce, ContactPoint, VehicleEvaluation, VehicleInput};
+pub use friction_zone::FrictionZone;
 pub use loads::Wheel;
 pub use multibody_record::MultibodyRecord;
 pub use parameters::{GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters};
