@@ -4,6 +4,7 @@
 //! [`Command`] into a list, which is applied after the frame has been drawn.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use egui::Context;
 
@@ -15,6 +16,7 @@ use crate::app::network::Network;
 use crate::app::panes::Pane;
 use crate::app::path_dialog::PathDialog;
 use crate::app::reconstruction::ReconstructionCommand;
+use crate::app::report::ReportCommand;
 use crate::app::state::{Session, State, Subject};
 use crate::app::widgets::OUTDATED;
 use crate::app::workspaces::Workspace;
@@ -22,6 +24,7 @@ use crate::data::{ColumnMap, Existing, Severity};
 use crate::figure::Figure;
 use crate::reconstruct::evidence::Evidence;
 use crate::render::scene::ScenePicture;
+use crate::report::ReportDocument;
 use crate::study::SimulateAnswer;
 use crate::vehicle::DataSheet;
 
@@ -131,6 +134,10 @@ pub enum Command {
     CancelEvaluation,
     /// Act on the reconstruction.
     Reconstruct(ReconstructionCommand),
+    /// Make the report of the case, or show a part of it.
+    Report(ReportCommand),
+    /// Write a report to a file, in the format of its ending.
+    SaveReport(Arc<ReportDocument>, PathBuf),
     /// Bring a pane to the front.
     Show(Pane),
     /// Bring the training pane to the front and show this network in it.
@@ -234,14 +241,8 @@ impl State {
                 self.load(path, Some(map), context);
             }
             Command::CancelMapping => self.cancel_mapping(),
-            Command::ShowLicences(shown) => self.session.shows_licences = shown,
             Command::ReplayDataset(path) => self.replay(path, context),
             Command::CancelReplay(path) => self.cancel_replay(&path),
-            Command::SetTime(time_s) => self.session.time_s = time_s,
-            Command::SetSpeed(speed) => self.view.playback_speed = speed,
-            Command::StepTime(steps) => self.step_time(steps),
-            Command::TogglePlay => self.toggle_play(),
-            Command::FitPlots => self.session.fit_plots = true,
             Command::NewCase => self.leave(Leaving::New, context),
             Command::SaveCase => match self.case.path.clone() {
                 None => self.ask(Purpose::SaveCase, context),
@@ -267,7 +268,8 @@ impl State {
             | Command::SaveModel(..)
             | Command::SaveKept(..)
             | Command::SaveCaseAs(_)
-            | Command::PackCase(_) => {
+            | Command::PackCase(_)
+            | Command::SaveReport(..) => {
                 self.write(command, Existing::Refuse, context);
             }
             Command::Replace(command) => self.write(*command, Existing::Replace, context),
@@ -287,6 +289,20 @@ impl State {
             Command::Evaluate => self.evaluate(context),
             Command::CancelEvaluation => self.session.force.evaluation.cancel(),
             Command::Reconstruct(command) => self.reconstruct(command, context),
+            Command::Report(command) => self.report(command, context),
+            command => self.apply_to_view(command),
+        }
+    }
+
+    /// Carries out a command that changes what is shown and nothing else. Undo and redo are the app's.
+    fn apply_to_view(&mut self, command: Command) {
+        match command {
+            Command::ShowLicences(shown) => self.session.shows_licences = shown,
+            Command::SetTime(time_s) => self.session.time_s = time_s,
+            Command::SetSpeed(speed) => self.view.playback_speed = speed,
+            Command::StepTime(steps) => self.step_time(steps),
+            Command::TogglePlay => self.toggle_play(),
+            Command::FitPlots => self.session.fit_plots = true,
             Command::ShowTraining(network) => {
                 self.view.trained = network;
                 self.view.workspaces.show_pane(Pane::Training);
@@ -298,7 +314,7 @@ impl State {
             Command::Say(severity, text) => self.say(severity, text),
             Command::DismissMessage => drop(self.session.messages.pop()),
             Command::ShowMessages(shown) => self.session.shows_log = shown,
-            Command::Undo | Command::Redo => {}
+            _ => {}
         }
     }
 

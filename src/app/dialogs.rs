@@ -1,6 +1,7 @@
 //! The native file dialogs.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use rfd::AsyncFileDialog;
@@ -12,6 +13,7 @@ use crate::figure::Figure;
 use crate::jobs::{Job, Update};
 use crate::reconstruct::evidence::Evidence;
 use crate::render::scene::ScenePicture;
+use crate::report::ReportDocument;
 use crate::vehicle::DataSheet;
 
 /// File extension of model files.
@@ -50,6 +52,8 @@ pub enum Purpose {
     SaveCase,
     /// A zip for the case and its files.
     PackCase,
+    /// A file for a report, whose ending says the format.
+    Report(Arc<ReportDocument>),
 }
 
 impl Purpose {
@@ -69,6 +73,7 @@ impl Purpose {
             Self::SaveComparison => "A folder for the comparison",
             Self::SaveCase => "Save the case",
             Self::PackCase => "Pack the case and its files",
+            Self::Report(_) => "Save the report (.pdf, .md or .json)",
         }
     }
 
@@ -86,6 +91,7 @@ impl Purpose {
             Self::SaveComparison => "comparison",
             Self::SaveCase => "case.impactlab",
             Self::PackCase => "case.zip",
+            Self::Report(document) => return file_stem(&document.title) + ".pdf",
         };
         fixed.to_owned()
     }
@@ -130,6 +136,9 @@ impl Purpose {
             }
             Self::SaveCase => written(CASE_ENDING, &Command::SaveCaseAs),
             Self::PackCase => written("zip", &Command::PackCase),
+            Self::Report(document) => {
+                written("pdf", &|path| Command::SaveReport(Arc::clone(document), path))
+            }
         }]
     }
 }
@@ -246,6 +255,7 @@ async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
         Purpose::Scenario => save(dialog.add_filter("scenario", &["toml"]), name).await,
         Purpose::SaveCase => save(dialog.add_filter("case", &[CASE_ENDING]), name).await,
         Purpose::PackCase => save(dialog.add_filter("package", &["zip"]), name).await,
+        Purpose::Report(_) => save(dialog.add_filter("report", &["pdf", "md", "json"]), name).await,
     };
     one.iter().map(|file| file.path().to_owned()).collect()
 }

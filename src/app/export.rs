@@ -1,13 +1,15 @@
 //! Writes figures to files in the background, as pictures or as tables.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::data::{Existing, write_atomically};
 use crate::error_chain;
 use crate::figure::{Figure, write_figure_csv};
 use crate::jobs::Job;
 use crate::render::scene::{ScenePicture, scene_image};
-use crate::render::{Canvas, figure_image, save_png};
+use crate::render::{Canvas, figure_image, report_picture, save_png};
+use crate::report::{ReportDocument, ReportFormat};
 
 /// Starts writing a figure to a file: its numbers if the path ends in `.csv`, otherwise a PNG
 /// picture.
@@ -42,6 +44,25 @@ pub fn spawn_scene(
         let canvas = Canvas { dark, ..Canvas::default() };
         scene_image(&picture, canvas)
             .and_then(|image| save_png(&image, &path, existing))
+            .map_err(|error| error_chain(&error))?;
+        Ok(path)
+    })
+}
+
+/// Starts writing a report to a file, in the format of its ending, as [`spawn`] does for a figure.
+///
+/// # Errors
+/// The error of the operating system, if the thread cannot be started.
+pub fn spawn_report(
+    document: Arc<ReportDocument>,
+    (path, existing): (PathBuf, Existing),
+    wake: impl Fn() + Send + 'static,
+) -> std::io::Result<Job<Result<PathBuf, String>>> {
+    Job::spawn("export", wake, move |_| {
+        let format = ReportFormat::of(&path).map_err(|error| error_chain(&error))?;
+        let bytes = document.bytes(format, Some(&report_picture));
+        let bytes = bytes.map_err(|error| error_chain(&error))?;
+        write_atomically(&path, existing, |out| out.write_all(&bytes))
             .map_err(|error| error_chain(&error))?;
         Ok(path)
     })

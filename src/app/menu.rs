@@ -12,6 +12,7 @@ use crate::app::network::Network;
 use crate::app::panels;
 use crate::app::panes::Pane;
 use crate::app::reconstruction::ReconstructionCommand;
+use crate::app::report::ReportCommand;
 use crate::app::source::{Content, Source};
 use crate::app::state::{Session, State};
 use crate::app::widgets::duration_text;
@@ -100,6 +101,9 @@ fn file_menu_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
     ] {
         edit_item(ui, label, shortcut, (true, command), commands);
     }
+    if ui.add(icon_button(Icon::FileText, "Report…")).clicked() {
+        commands.push(Command::ShowWorkspace(Workspace::Report));
+    }
     let package = ui.add(icon_button(Icon::Archive, "Package…"));
     if package.on_hover_text("One zip of the case and all its files").clicked() {
         commands.push(Command::Ask(Purpose::PackCase));
@@ -182,10 +186,15 @@ fn help_menu_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
             ui.label(what);
             ui.end_row();
         }
-        ui.monospace("Ctrl+1, 2, 3, 4");
+        ui.monospace("Ctrl+1, 2, 3, 4, 5");
         ui.label("workspaces");
         ui.end_row();
     });
+    ui.separator();
+    ui.strong("Scene");
+    ui.label(
+        "Pointer over it: + and − zoom, Ctrl + arrows move it or turn the view in perspective.",
+    );
     ui.separator();
     ui.strong("Plots");
     ui.label("Hover to read values, click or drag in a time plot to move the cursor,");
@@ -237,6 +246,12 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
         {
             let cancel = Command::Reconstruct(ReconstructionCommand::Cancel);
             job_ui(ui, "Reconstructing", job, cancel, commands);
+        }
+        if let Some(job) = state.session.report.job()
+            && state.view.workspaces.shown != Workspace::Report
+        {
+            let cancel = Command::Report(ReportCommand::Cancel);
+            job_ui(ui, "Making the report", job, cancel, commands);
         }
         if state.session.shows_frame_times {
             ui.weak(state.session.frame_times.text());

@@ -56,11 +56,15 @@ pub enum Pane {
     Evaluation,
     /// The comparison of response models.
     ModelComparison,
+    /// Settings and sections of the report.
+    Report,
+    /// The report as it will be written.
+    ReportPages,
 }
 
 impl Pane {
     /// Every pane, in the order of the menu.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 21] = [
         Self::Case,
         Self::Data,
         Self::Cases,
@@ -80,6 +84,8 @@ impl Pane {
         Self::Training,
         Self::Evaluation,
         Self::ModelComparison,
+        Self::Report,
+        Self::ReportPages,
     ];
 
     /// Whether the pane shows nothing but the simulation of the subject.
@@ -109,6 +115,8 @@ impl Pane {
             Self::Training => "Training",
             Self::Evaluation => "Force evaluation",
             Self::ModelComparison => "Compare models",
+            Self::Report => "Report",
+            Self::ReportPages => "Report text",
         }
     }
 
@@ -134,6 +142,8 @@ impl Pane {
             Self::Training => Icon::GraduationCap,
             Self::Evaluation => Icon::Gauge,
             Self::ModelComparison => Icon::ChartBar,
+            Self::Report => Icon::FileText,
+            Self::ReportPages => Icon::BookOpen,
         }
     }
 }
@@ -181,6 +191,8 @@ impl Behavior<Pane> for PaneContext<'_> {
                 Pane::Training => panels::training_ui(ui, self),
                 Pane::Evaluation => panels::evaluation_ui(ui, self),
                 Pane::ModelComparison => panels::model_comparison_ui(ui, self),
+                Pane::Report => panels::report_ui(ui, self),
+                Pane::ReportPages => panels::report_pages_ui(ui, self),
             })
         });
         UiResponse::None

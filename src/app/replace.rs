@@ -24,6 +24,7 @@ impl Command {
             | Self::SaveKept(_, path)
             | Self::SaveCaseAs(path)
             | Self::PackCase(path)
+            | Self::SaveReport(_, path)
             | Self::Compare(ComparisonCommand::Save(path)) => Some(path),
             _ => None,
         }
@@ -72,6 +73,9 @@ impl State {
             }
             Command::SaveCaseAs(path) => self.save_case((path, existing), context),
             Command::PackCase(path) => self.pack_case((path, existing), context),
+            Command::SaveReport(document, path) => {
+                self.save_report(document, (&path, existing), context);
+            }
             Command::SaveModel(network, path) => {
                 self.save_model(network, (path, existing), context);
             }

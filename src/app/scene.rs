@@ -2,14 +2,21 @@
 
 use std::sync::Arc;
 
+use egui::Context;
 use serde::{Deserialize, Serialize};
 
+use crate::app::command::wake;
+use crate::app::latest::Latest;
 use crate::app::recording::{OverlaidRecording, overlaid};
+use crate::app::response::{DensityAnswer, DensityQuestion, MotionAnswer};
 use crate::app::source::Source;
+use crate::app::state::{Project, Session, State, View};
 use crate::app::variants::AnsweredVariant;
 use crate::render::scene::{Camera, Follow, SceneView};
-use crate::scene::{OtherMotion, Scene, SceneRole, SimulationScene, simulation_scene};
-use crate::study::{SimulateAnswer, Trust};
+use crate::scene::{
+    ForecastScene, OtherMotion, Scene, SceneRole, SimulationScene, add_forecast, simulation_scene,
+};
+use crate::study::{PredictMotionAnswer, SimulateAnswer, Trust};
 use crate::units::UnitSystem;
 
 /// From where the scene is seen, which is saved.
@@ -20,13 +27,20 @@ pub struct SceneSettings {
     pub camera: Camera,
     /// Which car stays in the middle.
     pub follow: Follow,
+    /// Whether the forecast is shown: draws of it as ghosts, and where it ends.
+    pub shows_forecast: bool,
 }
+
+/// Draws of the forecast that are shown as ghosts.
+const N_GHOSTS: usize = 30;
 
 /// The scene that is shown, and its picture.
 #[derive(Default)]
 pub struct SceneSession {
     /// The picture and the camera.
     pub view: SceneView,
+    /// The density of the position at the end of the forecast, while the scene shows it.
+    pub end_density: Latest<DensityQuestion>,
     built: Option<(SceneSource, Arc<Scene>)>,
 }
 
@@ -36,12 +50,49 @@ pub struct SceneSource {
     pub answer: Arc<SimulateAnswer>,
     /// Simulations of other variants, by name.
     pub others: Vec<(String, Arc<SimulateAnswer>)>,
+    /// The forecast, and the density of the position at its end once that is there.
+    pub forecast: Option<ShownForecast>,
     /// The recording beside them, with the number of its samples.
     pub recording: Option<(OverlaidRecording, usize)>,
     /// What restricts the simulation.
     pub trust: Trust,
     /// System of units of the labels.
     pub units: UnitSystem,
+}
+
+/// A forecast that a scene shows.
+#[derive(Clone)]
+pub struct ShownForecast {
+    /// The forecast.
+    pub motion: Arc<MotionAnswer>,
+    /// Seed of the draws that are ghosts.
+    pub seed: u64,
+    /// The density of the position at its end.
+    pub density: Option<Arc<DensityAnswer>>,
+}
+
+impl ShownForecast {
+    fn is_same(&self, other: &Self) -> bool {
+        let of = |shown: &Self| shown.density.as_ref().map(Arc::as_ptr);
+        Arc::ptr_eq(&self.motion, &other.motion) && self.seed == other.seed && of(self) == of(other)
+    }
+
+    /// Adds it to the scene of its simulation.
+    fn add_to(&self, scene: &mut Scene) {
+        let PredictMotionAnswer { report, analysis, forecast } = &self.motion.answer;
+        add_forecast(
+            scene,
+            &ForecastScene {
+                analysis,
+                forecast,
+                density: self.density.as_ref().map(|density| &density.map),
+                n_ghosts: N_GHOSTS,
+                seed: self.seed,
+            },
+        );
+        let said = Trust::new(&report.badges, &report.assumptions);
+        scene.trust.add_variant("forecast", &said);
+    }
 }
 
 impl SceneSource {
@@ -61,6 +112,10 @@ impl SceneSource {
         };
         Arc::ptr_eq(&self.answer, &other.answer)
             && are_same(&self.others, &other.others)
+            && match (&self.forecast, &other.forecast) {
+                (Some(a), Some(b)) => a.is_same(b),
+                (a, b) => a.is_none() && b.is_none(),
+            }
             && self.recording == other.recording
             && self.trust == other.trust
             && self.units == other.units
@@ -86,11 +141,49 @@ impl SceneSource {
             let (role, of) = (SceneRole::Recorded, None);
             others.push(OtherMotion { name, role, motion, offset_s: *offset_s, of });
         }
-        simulation_scene(&SimulationScene {
+        let mut scene = simulation_scene(&SimulationScene {
             analysis: &self.answer.analysis,
             others: &others,
             units: self.units,
             trust: &trust,
+        });
+        if let Some(forecast) = &self.forecast {
+            forecast.add_to(&mut scene);
+        }
+        scene
+    }
+}
+
+impl State {
+    /// Asks for the density at the end of the forecast while the scene shows that.
+    pub(in crate::app) fn update_scene(&mut self, context: &Context) {
+        let Session { scene, response, library, .. } = &mut self.session;
+        scene.end_density.poll();
+        let motion = response.forecast.ok().filter(|_| self.view.scene.shows_forecast).cloned();
+        match motion {
+            Some(motion) => {
+                let (window_s, gpu) = ([motion.end_s(); 2], response.gpu.clone());
+                let question = DensityQuestion { motion, window_s, gpu };
+                scene.end_density.ask(question, library, wake(context));
+            }
+            None => scene.end_density.forget(),
+        }
+    }
+
+    /// The forecast in the scene: the one that is of what is asked now, if it is to be shown.
+    pub(in crate::app) fn shown_forecast(
+        view: &View,
+        project: &Project,
+        session: &Session,
+    ) -> Option<ShownForecast> {
+        let forecast = &session.response.forecast;
+        let is_shown = view.scene.shows_forecast && !session.is_motion_late();
+        let motion = forecast.ok().filter(|_| is_shown)?;
+        let density = session.scene.end_density.ok().cloned();
+        Some(ShownForecast {
+            motion: Arc::clone(motion),
+            seed: project.response.forecast.seed,
+            density: density.filter(|density| Arc::ptr_eq(&density.motion, motion)),
         })
     }
 }

@@ -25,6 +25,7 @@ use crate::app::reconstruction::{
 };
 use crate::app::recording::OverlaidRecording;
 use crate::app::replay::Replays;
+use crate::app::report::{ReportSession, ReportView};
 use crate::app::response::{DensityChoice, ResponseProject, ResponseSession, ResponseView};
 use crate::app::scene::{SceneSession, SceneSettings};
 use crate::app::source::Source;
@@ -186,6 +187,8 @@ pub struct View {
     pub response: ResponseView,
     /// How the reconstruction is shown.
     pub reconstruction: ReconstructionView,
+    /// How reports are written.
+    pub report: ReportView,
     /// The network that the training pane shows.
     pub trained: Network,
     /// The cases that were opened or saved last, the latest first.
@@ -216,6 +219,7 @@ impl Default for View {
             force: ForceView::default(),
             response: ResponseView::default(),
             reconstruction: ReconstructionView::default(),
+            report: ReportView::default(),
             trained: Network::default(),
             recent: Vec::new(),
             column_maps: ColumnMaps::default(),
@@ -249,6 +253,8 @@ pub struct Session {
     pub response: ResponseSession,
     /// Evidence, run and answer of the reconstruction.
     pub reconstruction: ReconstructionSession,
+    /// The report of the case.
+    pub report: ReportSession,
     /// Models, comparisons and evaluations that are kept in the user's data folder.
     pub kept: KeptStatus,
     /// Trainings that have not ended and can go on.

@@ -40,8 +40,10 @@ impl State {
         self.update_simulation(context);
         self.update_force(context);
         self.update_response(context);
+        self.update_scene(context);
         self.update_reconstruction(context);
         self.update_variants(context);
+        self.update_report();
         self.update_kept(context);
         self.update_costs(context);
         self.advance_time(context);

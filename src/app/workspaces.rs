@@ -22,11 +22,14 @@ pub enum Workspace {
     Data,
     /// Train, evaluate and compare the networks.
     Models,
+    /// Make the report of the case.
+    Report,
 }
 
 impl Workspace {
     /// Every workspace, in the order in which they are offered.
-    pub const ALL: [Self; 4] = [Self::Case, Self::Reconstruct, Self::Data, Self::Models];
+    pub const ALL: [Self; 5] =
+        [Self::Case, Self::Reconstruct, Self::Data, Self::Models, Self::Report];
 
     /// The name that is shown.
     pub fn title(self) -> &'static str {
@@ -35,6 +38,7 @@ impl Workspace {
             Self::Reconstruct => "Reconstruct",
             Self::Data => "Data",
             Self::Models => "Models",
+            Self::Report => "Report",
         }
     }
 
@@ -45,6 +49,7 @@ impl Workspace {
             Self::Reconstruct => Icon::History,
             Self::Data => Icon::Database,
             Self::Models => Icon::BrainCircuit,
+            Self::Report => Icon::FileText,
         }
     }
 
@@ -55,6 +60,7 @@ impl Workspace {
             Self::Reconstruct => "Go from the evidence of a collision to the speeds before it",
             Self::Data => "Look through data sets and recordings, and compare them with the model",
             Self::Models => "Train, evaluate and compare the networks",
+            Self::Report => "Make the report of the case, as PDF, Markdown or JSON",
         }
     }
 
@@ -65,6 +71,7 @@ impl Workspace {
             Self::Reconstruct => reconstruct_layout(),
             Self::Data => data_layout(),
             Self::Models => models_layout(),
+            Self::Report => report_layout(),
         }
     }
 }
@@ -79,12 +86,14 @@ pub struct Workspaces {
     reconstruct: Layout,
     data: Layout,
     models: Layout,
+    report: Layout,
 }
 
 impl Default for Workspaces {
     fn default() -> Self {
-        let [case, reconstruct, data, models] = Workspace::ALL.map(Workspace::default_layout);
-        Self { shown: Workspace::default(), case, reconstruct, data, models }
+        let [case, reconstruct, data, models, report] =
+            Workspace::ALL.map(Workspace::default_layout);
+        Self { shown: Workspace::default(), case, reconstruct, data, models, report }
     }
 }
 
@@ -96,6 +105,7 @@ impl Workspaces {
             Workspace::Reconstruct => &self.reconstruct,
             Workspace::Data => &self.data,
             Workspace::Models => &self.models,
+            Workspace::Report => &self.report,
         }
     }
 
@@ -106,6 +116,7 @@ impl Workspaces {
             Workspace::Reconstruct => &mut self.reconstruct,
             Workspace::Data => &mut self.data,
             Workspace::Models => &mut self.models,
+            Workspace::Report => &mut self.report,
         }
     }
 
@@ -226,6 +237,15 @@ fn models_layout() -> Layout {
     let work = build.tabs(&[Pane::Models, Pane::Training, Pane::Evaluation, Pane::ModelComparison]);
     let root = build.linear(LinearDir::Horizontal, &[(data, 0.22), (work, 0.78)]);
     build.layout("model panes", root)
+}
+
+/// Settings and sections at the left, the report beside them.
+fn report_layout() -> Layout {
+    let mut build = Builder(Tiles::default());
+    let settings = build.tabs(&[Pane::Report]);
+    let pages = build.tabs(&[Pane::ReportPages]);
+    let root = build.linear(LinearDir::Horizontal, &[(settings, 0.24), (pages, 0.76)]);
+    build.layout("report panes", root)
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use crate::data::DataError;
 use crate::force::ForceError;
 use crate::learning::LearningError;
 use crate::ranges::OutOfRange;
-use crate::report::PdfError;
+use crate::report::{FormatError, WriteError};
 use crate::study::StudyError;
 
 /// A command that could not do its work.
@@ -108,11 +108,8 @@ pub enum CliError {
         path: PathBuf,
     },
     /// A report is of an unknown kind.
-    #[error("{}: cannot be made; expected a name that ends in .pdf, .md or .json", path.display())]
-    ReportKind {
-        /// As given.
-        path: PathBuf,
-    },
+    #[error(transparent)]
+    ReportFormat(#[from] FormatError),
     /// Settings of a reconstruction are given for the report of a case.
     #[error("{}: is a case, which says itself how many particles there are and their seed; leave out \
              --particles and --seed", path.display())]
@@ -128,13 +125,13 @@ pub enum CliError {
         /// The error of the operating system.
         source: io::Error,
     },
-    /// A report cannot be written as PDF.
+    /// A report cannot be written.
     #[error("{}: cannot be written", path.display())]
-    Pdf {
+    Report {
         /// The file.
         path: PathBuf,
         /// Why.
-        source: PdfError,
+        source: WriteError,
     },
     /// The clock tells no day.
     #[error("the clock of this machine tells no day; say it with --date YYYY-MM-DD")]

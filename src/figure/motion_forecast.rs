@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::analysis::{DensityMap, MOTION_BAND_LEVELS, MotionBands};
+use crate::analysis::{Analysis, DensityMap, MOTION_BAND_LEVELS, MotionBands};
 use crate::collision::{Footprint, Pose};
 use crate::data::{Channel, TimeSeries};
 use crate::figure::scene::{path_of, vehicle_outline};
@@ -10,7 +10,7 @@ use crate::figure::{
     Axis, Band, Figure, FigureElement, HeatMap, LineStyle, Path, Role, Series, pose_at,
 };
 use crate::response::{MotionDistribution, STEP_S};
-use crate::study::Trust;
+use crate::study::{PredictMotionAnswer, Trust};
 use crate::units::{Quantity, UnitSystem};
 use crate::vehicle::VehicleState;
 
@@ -49,6 +49,41 @@ pub struct MotionForecastFigure<'a> {
     pub units: UnitSystem,
     /// What restricts the forecast.
     pub trust: &'a Trust,
+}
+
+impl<'a> MotionForecastFigure<'a> {
+    /// A forecast without density, components, recorded and simulated motion.
+    pub fn of(
+        answer: &'a PredictMotionAnswer,
+        (bands, trust): (&'a MotionBands, &'a Trust),
+        (time_s, units): (f64, UnitSystem),
+    ) -> Self {
+        let PredictMotionAnswer { analysis, forecast, .. } = answer;
+        Self {
+            title: &analysis.name,
+            distribution: &forecast.distribution,
+            central: &forecast.central,
+            bands,
+            density: None,
+            components: false,
+            reference: None,
+            simulation: None,
+            footprint: analysis.footprint,
+            time_s,
+            units,
+            trust,
+        }
+    }
+
+    /// The same with the recorded and the simulated motion beside the forecast, as far as there are any.
+    #[must_use]
+    pub fn with_motions(self, analysis: &'a Analysis) -> Self {
+        Self {
+            reference: analysis.reference.as_ref(),
+            simulation: analysis.simulation.as_ref().map(|motion| &motion.series),
+            ..self
+        }
+    }
 }
 
 /// A quantity of a forecast that is shown over time.

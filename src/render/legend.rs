@@ -33,9 +33,11 @@ pub fn named(figure: &Figure) -> Vec<&FigureElement> {
     named
 }
 
-/// Whether the legend of a figure would cover most of a plot of this height, points.
-pub fn is_too_high(figure: &Figure, height: f32) -> bool {
-    named(figure).len() as f32 * NAME_HEIGHT > MAX_HEIGHT_SHARE * height
+/// Whether the legend of a figure has no place in a plot of this height, points: it would cover most of
+/// it, or it would cover bars, which fill a plot from edge to edge.
+pub fn has_no_place(figure: &Figure, height: f32) -> bool {
+    let has_bars = !figure.y.names.is_empty();
+    has_bars || named(figure).len() as f32 * NAME_HEIGHT > MAX_HEIGHT_SHARE * height
 }
 
 /// Draws the names of a figure with their colours in rows.
@@ -140,8 +142,10 @@ mod tests {
         figure.elements.push(FigureElement::line("other", Role::Target, vec![[0.0, 0.0]]));
         let names: Vec<&str> = named(&figure).iter().map(|element| element.name()).collect();
         assert_eq!(names, ["line", "other"]);
-        assert!(is_too_high(&figure, 60.0));
-        assert!(!is_too_high(&figure, 200.0));
+        assert!(has_no_place(&figure, 60.0));
+        assert!(!has_no_place(&figure, 200.0));
+        figure.y.names = vec!["a bar".to_owned()];
+        assert!(has_no_place(&figure, 200.0));
     }
 
     #[test]

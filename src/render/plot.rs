@@ -9,7 +9,7 @@ use egui_plot::{
 };
 
 use crate::figure::{Axis, Figure, FigureElement, HeatMap, LineStyle, Path, Series};
-use crate::render::legend::{emptiest_corner, is_too_high, legend_row_ui, named};
+use crate::render::legend::{emptiest_corner, has_no_place, legend_row_ui, named};
 use crate::render::theme;
 use crate::render::thin::thinned;
 use crate::render::ticks::{
@@ -97,7 +97,7 @@ pub struct FigureResponse {
 /// Draws a figure into the space that is available. Hovering shows values in the units of the axes.
 pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> FigureResponse {
     let all = options.height.unwrap_or_else(|| ui.available_height());
-    let is_row = options.legend && is_too_high(figure, all);
+    let is_row = options.legend && has_no_place(figure, all);
     let top = ui.cursor().top();
     if is_row {
         legend_row_ui(ui, figure);

@@ -46,6 +46,8 @@ pub use build::report_case;
 pub use document::{
     Block, Column, InputClass, Picture, ReportDocument, Section, SectionKind, Table,
 };
-pub use settings::{Language, Paper, ReportDate, ReportSettings};
+pub use settings::{DateError, Language, Paper, ReportDate, ReportSettings};
 pub use validation::{VALIDATION_TABLES, ValidationTable};
-pub use write::{Drawing, PdfError, Pixels, pdf};
+pub use write::{
+    Drawing, FormatError, PdfError, Pixels, ReportFormat, WriteError, column_widths, pdf,
+};

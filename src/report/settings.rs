@@ -2,13 +2,14 @@
 
 use std::fmt;
 use std::str::FromStr;
+use std::time::SystemTime;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::units::UnitSystem;
 
 /// Language of a report.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Language {
     /// English.
@@ -19,7 +20,7 @@ pub enum Language {
 }
 
 /// Size of the pages.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Paper {
     /// 210 mm × 297 mm.
@@ -93,6 +94,12 @@ impl ReportDate {
         is_day.then_some(Self { year, month, day })
     }
 
+    /// The day of an instant, in UTC; `None` outside of the years 1 to 9999.
+    pub fn of(instant: SystemTime) -> Option<Self> {
+        instant.duration_since(SystemTime::UNIX_EPOCH).ok()?;
+        humantime::format_rfc3339_seconds(instant).to_string().get(..10)?.parse().ok()
+    }
+
     /// Year, month and day.
     pub fn parts(self) -> (u16, u8, u8) {
         (self.year, self.month, self.day)
@@ -142,6 +149,10 @@ mod tests {
         assert_eq!(date.to_string(), "2026-11-24");
         assert_eq!(date.written(Language::De), "24.11.2026");
         assert!("2024-02-29".parse::<ReportDate>().is_ok());
+        let second = std::time::Duration::from_secs(1_782_000_000);
+        let of_instant = ReportDate::of(SystemTime::UNIX_EPOCH + second).unwrap();
+        assert_eq!(of_instant.to_string(), "2026-06-21");
+        assert_eq!(ReportDate::of(SystemTime::UNIX_EPOCH - second), None);
         for text in [
             "2026-02-29",
             "2026-13-01",

@@ -60,10 +60,12 @@ impl Trust {
             label: "outdated".to_owned(),
             text: "this is not the answer to what is asked now".to_owned(),
         });
-        let line = |badge: &Badge| TrustLine {
-            is_warning: badge.kind.is_warning(),
-            label: badge.kind.label().to_owned(),
-            text: badge.text.clone(),
+        let line = |badge: &Badge| {
+            let label = badge.kind.label();
+            // Many texts begin with their label, which stands before them already.
+            let begin = format!("{label}: ");
+            let text = badge.text.strip_prefix(&begin).unwrap_or(&badge.text).to_owned();
+            TrustLine { is_warning: badge.kind.is_warning(), label: label.to_owned(), text }
         };
         let mut lines: Vec<TrustLine> =
             outdated.into_iter().chain(self.badges.iter().map(line)).collect();

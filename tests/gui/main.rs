@@ -13,6 +13,7 @@ mod models;
 mod network_figures;
 mod pictures;
 mod reconstruct;
+mod report;
 mod response_network;
 mod scene;
 mod settings;

@@ -114,6 +114,20 @@ fn evidence_that_is_opened_is_run_edited_and_undone() {
     assert!(session.playing && session.time_s > 0.0);
     assert!(session.time_s <= state(&harness).end_time_s());
 
+    // The same with the cars as bodies, from above and in perspective.
+    harness.get_by_label("Cars").click();
+    harness.run_steps(4);
+    for view in ["From above", "Perspective"] {
+        harness.get_by_label(view).click();
+        harness.run_steps(4);
+        save(&mut harness, &format!("reconstruct-cars-{view}.png").to_lowercase().replace(' ', "-"));
+        assert!(harness.query_by_label("Picture of the scene").is_some());
+        assert!(harness.query_by_label("struck car at rest, 90 % ellipse").is_some());
+    }
+    harness.get_by_label("Plan").click();
+    harness.run_steps(4);
+    assert!(harness.query_by_label("Picture of the scene").is_none());
+
     // The struck car was found elsewhere: the answer is of other evidence until that is undone.
     let mut moved = evidence(&harness);
     moved.rest.as_mut().expect("a place of rest").x_m = 35.0;

@@ -9,6 +9,8 @@ use impactlab::render::scene::{Camera, Follow, ViewKind};
 use crate::harness::{apply, is_idle, open, step_until};
 use crate::pictures::save;
 
+const PIT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/examples/pit.impactlab");
+
 fn scene() -> Harness<'static, App> {
     let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")]);
     step_until(&mut harness, "the first case", is_idle);
@@ -100,4 +102,29 @@ fn the_wheel_zooms_about_the_pointer() {
     harness.run_steps(12);
     let after = camera(&harness);
     assert!(after.distance_m < 0.9 * before.distance_m, "{before:?} {after:?}");
+}
+
+#[test]
+fn the_forecast_stands_in_the_scene_if_it_is_wanted() {
+    let mut harness = open(&[PIT]);
+    step_until(&mut harness, "the forecast", |state| {
+        state.session.response.forecast.ok().is_some()
+    });
+    apply(&mut harness, Command::Show(Pane::Scene));
+    apply(&mut harness, Command::SetTime(2.0));
+    harness.run_steps(4);
+    let without = harness.render().expect("a picture");
+    harness.get_by_label("Forecast").click();
+    step_until(&mut harness, "the density at the end", |state| {
+        let density = state.session.scene.end_density.ok();
+        density.is_some_and(|density| density.map.window_s == [4.0; 2])
+    });
+    harness.run_steps(4);
+    save(&mut harness, "scene-forecast.png");
+    assert!(harness.render().expect("a picture") != without);
+    assert!(harness.query_by_label("draws of the forecast").is_some());
+    assert!(harness.query_by_label("90 % region").is_some());
+    harness.get_by_label("Forecast").click();
+    harness.run_steps(4);
+    assert!(harness.query_by_label("draws of the forecast").is_none());
 }

@@ -70,8 +70,9 @@ impl State {
         if !is_quit {
             return reasons;
         }
-        let Session { force, response, replays, exports, saving_case, reconstruction, .. } =
-            &self.session;
+        let Session {
+            force, response, replays, exports, saving_case, reconstruction, report, ..
+        } = &self.session;
         for (is_running, what) in [
             (force.training.run.is_running(), "The training of the force network"),
             (response.training.run.is_running(), "The training of the response network"),
@@ -86,6 +87,7 @@ impl State {
             (response.comparison.progress().is_some(), "A comparison or evaluation"),
             (force.evaluation.is_running(), "The evaluation of the force network"),
             (reconstruction.run.is_running(), "The reconstruction"),
+            (report.is_running(), "The report that is being made"),
             (
                 replays.values().any(|replay| replay.question.is_running()),
                 "The simulation of a data set",

@@ -69,8 +69,21 @@ impl State {
         [impact, simulate, force, motion, reconstruct].into_iter().flatten().collect()
     }
 
+    /// Whether no variant of the case asks anything.
+    pub(in crate::app) fn asks_nothing(&self) -> bool {
+        let file = &self.case.file;
+        let others = file.variants.iter().filter(|variant| variant.name != file.shown);
+        self.questions().is_empty() && others.into_iter().all(|of| of.questions.is_empty())
+    }
+
+    /// The case with the forms of the window in the variant that is shown.
+    pub(in crate::app) fn captured_case(&mut self) -> CaseFile {
+        self.capture();
+        self.case.file.clone()
+    }
+
     /// Whether data or networks are still being read, so that not every question can be asked yet.
-    fn is_loading(&self) -> bool {
+    pub(in crate::app) fn is_loading(&self) -> bool {
         let Session { sources, force, response, .. } = &self.session;
         let is_settled = sources.iter().all(Source::is_settled);
         !is_settled || force.model.current.is_none() || response.model.current.is_none()

@@ -29,7 +29,6 @@ use crate::figure::{
 };
 use crate::ranges::DRAWS;
 use crate::render::{FigureOptions, theme};
-use crate::response::STEP_S;
 use crate::study::{PredictMotionAnswer, Trust};
 use crate::units::UnitSystem;
 
@@ -215,7 +214,7 @@ fn shown_ui(ui: &mut Ui, view: &mut ResponseView, session: &Session, commands: &
         }
     });
     if view.density == DensityChoice::Window {
-        let end_s = session.response.forecast.ok().map_or(4.0, |answer| end_s(answer));
+        let end_s = session.response.forecast.ok().map_or(4.0, |answer| answer.end_s());
         ui.horizontal(|ui| {
             let [from_s, to_s] = &mut view.window_s;
             // The window ends with the motion, and does not end before it starts.
@@ -242,11 +241,6 @@ fn shown_ui(ui: &mut Ui, view: &mut ResponseView, session: &Session, commands: &
     });
 }
 
-/// Time of the last instant of the forecast, s.
-fn end_s(answer: &MotionAnswer) -> f64 {
-    answer.answer.forecast.distribution.n_instants().saturating_sub(1) as f64 * STEP_S
-}
-
 /// Draws the clock, the plan view with the density, and the bands of each quantity over time.
 fn figures_ui(
     ui: &mut Ui,
@@ -258,7 +252,7 @@ fn figures_ui(
     let PredictMotionAnswer { report, analysis, .. } = &answer.answer;
     let trust = Trust::new(&report.badges, &report.assumptions)
         .outdated_if(session.is_motion_awaited(choice.density) || are_others_awaited(variants));
-    let time_s = session.time_s.min(end_s(answer));
+    let time_s = session.time_s.min(answer.end_s());
     let is_shown = |density: &&Arc<DensityAnswer>| {
         // That of an earlier forecast is not drawn over the paths of this one.
         let is_of_this = Arc::ptr_eq(&density.motion, answer);
@@ -271,7 +265,7 @@ fn figures_ui(
     };
     let density = session.response.density.ok().filter(is_shown);
     let input = MotionForecastFigure {
-        density: density.map(|density| &density.map),
+        density: density.map(|density| density.map.as_ref()),
         components: choice.components,
         reference: analysis.reference.as_ref().filter(|_| choice.reference),
         simulation: motion_of(analysis).filter(|_| choice.simulation),
@@ -288,7 +282,7 @@ fn figures_ui(
         .map(|(name, answer, trust)| (*name, bare_figure((*answer, trust), (time_s, view.units))))
         .collect();
     let playback = (session.playing, view.playback_speed);
-    clock_ui(ui, (time_s, end_s(answer)), playback, commands);
+    clock_ui(ui, (time_s, answer.end_s()), playback, commands);
     let all = ui.available_height();
     let mut scene = forecast_scene_figure(&input);
     for (i, (name, other)) in others.iter().enumerate() {
@@ -327,7 +321,7 @@ fn figures_ui(
                     let heading = forecast_readout(&input, channel);
                     let response = figure_frame(ui, (&heading, &figure), &options, commands);
                     if let Some(picked_s) = response.picked_x {
-                        commands.push(Command::SetTime(picked_s.clamp(0.0, end_s(answer))));
+                        commands.push(Command::SetTime(picked_s.clamp(0.0, answer.end_s())));
                     }
                 }
             });
@@ -335,26 +329,12 @@ fn figures_ui(
     });
 }
 
-/// The figure of a forecast without density, components, recorded and simulated motion.
+/// The figure of a forecast by itself.
 fn bare_figure<'a>(
     (answer, trust): (&'a MotionAnswer, &'a Trust),
-    (time_s, units): (f64, UnitSystem),
+    shown: (f64, UnitSystem),
 ) -> MotionForecastFigure<'a> {
-    let PredictMotionAnswer { analysis, forecast, .. } = &answer.answer;
-    MotionForecastFigure {
-        title: &analysis.name,
-        distribution: &forecast.distribution,
-        central: &forecast.central,
-        bands: &answer.bands,
-        density: None,
-        components: false,
-        reference: None,
-        simulation: None,
-        footprint: analysis.footprint,
-        time_s,
-        units,
-        trust,
-    }
+    MotionForecastFigure::of(&answer.answer, (&answer.bands, trust), shown)
 }
 
 /// The motion by the 4DOF model, if there is one.

@@ -12,6 +12,7 @@ use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
 use crate::app::recording::overlaid;
 use crate::app::scene::{SceneSettings, SceneSource};
+use crate::app::state::{Session, State};
 use crate::app::variants::{are_others_awaited, other_simulations};
 use crate::app::widgets::{OUTDATED, badges_ui};
 use crate::figure::{Figure, analysis_scene_figure, recording_path};
@@ -55,6 +56,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let recorded = overlaid(project.recording.as_ref(), &session.sources);
     let n_recorded = recorded.as_ref().map_or(0, |(_, series, _)| series.n_samples());
     let source = SceneSource {
+        forecast: State::shown_forecast(view, project, session),
         answer: Arc::clone(&answer),
         others: SceneSource::others(variants),
         recording: project
@@ -65,6 +67,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         trust: trust.clone(),
         units: view.units,
     };
+    forecast_choice_ui(ui, &mut view.scene.shows_forecast, session);
     let scene = session.scene.scene(source, &session.sources);
     let time_s = session.time_s;
     let numbers = || {
@@ -80,7 +83,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         figure
     };
     let placed = session.scene.view.camera();
-    heading_ui(
+    scene_heading_ui(
         ui,
         (&scene, time_s),
         &mut view.scene,
@@ -100,16 +103,31 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     if session.fit_plots {
         session.scene.view.fit();
     }
-    let SceneSettings { camera, follow } = &mut view.scene;
+    let SceneSettings { camera, follow, .. } = &mut view.scene;
     let seen = (camera, *follow, ui.available_height());
     scene_view_ui(ui, (&scene, time_s), &mut session.scene.view, seen);
+}
+
+/// Draws the choice whether the forecast is shown.
+fn forecast_choice_ui(ui: &mut Ui, shows_forecast: &mut bool, session: &Session) {
+    let forecast = &session.response.forecast;
+    let is_there = forecast.ok().is_some() || forecast.is_waiting();
+    ui.add_enabled_ui(is_there || *shows_forecast, |ui| {
+        let choice = ui.checkbox(shows_forecast, "Forecast");
+        choice
+            .on_hover_text(
+                "30 draws of the motion forecast as ghosts, its central path, and where the CG is at its \
+                 end: density, regions of 50 and 90 %",
+            )
+            .on_disabled_hover_text("There is no forecast of this motion");
+    });
 }
 
 /// Draws what the scene shows, the choice of the view and of the car that is followed, and the menu that
 /// exports it.
 ///
 /// - `exported`: picture and numbers, which are made only when they are wanted.
-fn heading_ui(
+pub fn scene_heading_ui(
     ui: &mut Ui,
     (scene, time_s): (&Scene, f64),
     settings: &mut SceneSettings,

@@ -1,6 +1,7 @@
 //! The reconstruction in the window: its evidence, its run, and what is shown of it. The panes Evidence,
 //! Reconstructed scene and Speeds show them.
 
+mod cars;
 mod kept_runs;
 mod live;
 mod question;
@@ -8,6 +9,7 @@ mod settings;
 pub(in crate::app) mod stand_ins;
 mod update;
 
+pub use cars::{CarsSource, ReconstructedCars, ShownPaths};
 pub use kept_runs::KeptRuns;
 pub use live::LiveParticles;
 pub use question::{PreparedReconstruction, ReconstructionQuestion};
@@ -69,6 +71,10 @@ pub struct ReconstructionSession {
     pub preview: Option<EvidencePreview>,
     /// The run and the latest answer.
     pub run: QuestionJob<ReconstructionQuestion>,
+    /// How many answers there have been, so that two of them can be told apart.
+    pub n_answers: u64,
+    /// The scene with the cars as bodies.
+    pub cars: ReconstructedCars,
     /// The latest particles of the run that is under way.
     pub live: Option<LiveParticles>,
     news: Option<Receiver<LiveParticles>>,

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::app::scene::SceneSettings;
 use crate::reconstruct::ReconstructedQuantity;
 use crate::study::{EvidenceChoice, ReconstructRequest, VehicleChoice};
 
@@ -60,6 +61,10 @@ pub struct ReconstructionView {
     pub quantity: ReconstructedQuantity,
     /// The quantity that is drawn against it.
     pub against: ReconstructedQuantity,
+    /// Whether the scene has the cars as bodies instead of the plan in which evidence is placed.
+    pub shows_cars: bool,
+    /// From where these cars are seen.
+    pub scene: SceneSettings,
 }
 
 impl Default for ReconstructionView {
@@ -67,6 +72,8 @@ impl Default for ReconstructionView {
         Self {
             quantity: ReconstructedQuantity::TargetSpeed,
             against: ReconstructedQuantity::RoadFriction,
+            shows_cars: false,
+            scene: SceneSettings::default(),
         }
     }
 }

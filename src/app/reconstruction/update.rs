@@ -75,6 +75,7 @@ impl State {
         }
         if session.run.poll() {
             (session.mode, session.followed) = (None, FollowedParticle::default());
+            session.n_answers += 1;
             self.session.fit_plots = true;
         }
         let session = &mut self.session.reconstruction;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use crate::analysis::{DensityMap, DensityTask, MotionBands};
 use crate::data::Outcome;
 use crate::render::DensityGpu;
+use crate::response::STEP_S;
 use crate::study::{
     Library, Observer, PredictMotionAnswer, PredictMotionReport, PredictMotionRequest, Question,
     StudyError, check_window,
@@ -30,6 +31,11 @@ pub struct MotionAnswer {
 }
 
 impl MotionAnswer {
+    /// Time of the last instant, s.
+    pub fn end_s(&self) -> f64 {
+        self.answer.forecast.distribution.n_instants().saturating_sub(1) as f64 * STEP_S
+    }
+
     /// Whether the force that drives the motion was predicted by a force network.
     pub fn is_predicted(&self) -> bool {
         self.answer.report.force_model.is_some()
@@ -82,7 +88,7 @@ pub struct DensityAnswer {
     /// The prediction to which it belongs.
     pub motion: Arc<MotionAnswer>,
     /// The density.
-    pub map: DensityMap,
+    pub map: Arc<DensityMap>,
 }
 
 /// Two questions are equal if they refer to the same prediction in memory and the same times. The
@@ -120,6 +126,7 @@ impl Question for DensityQuestion {
             Some(values) => task.with(values),
             None => task.on_cpu(),
         };
-        Ok(Outcome::Complete(DensityAnswer { motion: Arc::clone(&self.motion), map }))
+        let (motion, map) = (Arc::clone(&self.motion), Arc::new(map));
+        Ok(Outcome::Complete(DensityAnswer { motion, map }))
     }
 }

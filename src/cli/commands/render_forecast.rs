@@ -92,18 +92,9 @@ pub(super) fn figure(
     let (density, bands) = (density.on_cpu(), MotionBands::of(&forecast.distribution, BAND_STRIDE));
     let trust = Trust::new(&answer.report.badges, &answer.report.assumptions);
     let input = MotionForecastFigure {
-        title: &analysis.name,
-        distribution: &forecast.distribution,
-        central: &forecast.central,
-        bands: &bands,
         density: Some(&density),
         components: true,
-        reference: analysis.reference.as_ref(),
-        simulation: analysis.simulation.as_ref().map(|motion| &motion.series),
-        footprint: analysis.footprint,
-        time_s: at_s,
-        units,
-        trust: &trust,
+        ..MotionForecastFigure::of(&answer, (&bands, &trust), (at_s, units)).with_motions(analysis)
     };
     let wanted = args.channel.map(Channel::from);
     let channel = FORECAST_CHANNELS.into_iter().find(|of| Some(of.channel) == wanted);

@@ -12,7 +12,7 @@ use crate::cli::console::{Console, Verdict, print_json, shown_path, under_bar};
 use crate::cli::options::{OverwriteArg, UnitsArg};
 use crate::data::write_atomically;
 use crate::report::{
-    Language, Paper, PdfError, ReportDate, ReportDocument, ReportSettings, pdf, report_case,
+    Drawing, Language, Paper, ReportDate, ReportFormat, ReportSettings, report_case,
 };
 use crate::study::{EvidenceChoice, ReconstructRequest};
 
@@ -85,14 +85,6 @@ enum PaperArg {
     Letter,
 }
 
-/// How a report is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Format {
-    Pdf,
-    Markdown,
-    Json,
-}
-
 /// What was written.
 #[derive(Debug, Serialize)]
 struct WrittenReport<'a> {
@@ -110,7 +102,7 @@ pub(in crate::cli) fn run(
     args: &ReportArgs,
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
-    let format = format_of(&args.out)?;
+    let format = ReportFormat::of(&args.out)?;
     if console.print_request {
         print_json(console.out, &args.case()?.variants)?;
         return Ok(Verdict::Clean);
@@ -121,7 +113,9 @@ pub(in crate::cli) fn run(
     let asked = (&case, args.variant.as_slice());
     let outcome = under_bar(|observer| report_case(asked, &settings, &console.library, observer))?;
     let (document, report) = outcome.complete().ok_or(CliError::Cancelled)?;
-    let bytes = bytes_of(&document, format, &args.out)?;
+    let bytes = document
+        .bytes(format, DRAWING)
+        .map_err(|source| CliError::Report { path: args.out.clone(), source })?;
     write_atomically(&args.out, args.overwrite.into(), |file| file.write_all(&bytes))?;
     let answers = report.variants.iter().flat_map(|variant| &variant.answers);
     let written = WrittenReport {
@@ -174,44 +168,21 @@ impl ReportArgs {
             PaperArg::A4 => Paper::A4,
             PaperArg::Letter => Paper::Letter,
         };
+        let today = || ReportDate::of(SystemTime::now());
         let date = self.date.or_else(today).ok_or(CliError::NoClock)?;
         Ok(ReportSettings { language, units: self.units.into(), paper, date })
     }
 }
 
-/// The day in UTC.
-fn today() -> Option<ReportDate> {
-    let now = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
-    now.get(..10)?.parse().ok()
-}
-
-fn format_of(path: &Path) -> Result<Format, CliError> {
-    let ending = path.extension().map(|end| end.to_ascii_lowercase());
-    match ending.as_deref().and_then(|end| end.to_str()) {
-        Some("pdf") => Ok(Format::Pdf),
-        Some("md") => Ok(Format::Markdown),
-        Some("json") => Ok(Format::Json),
-        _ => Err(CliError::ReportKind { path: path.to_owned() }),
-    }
-}
-
-fn bytes_of(document: &ReportDocument, format: Format, path: &Path) -> Result<Vec<u8>, CliError> {
-    match format {
-        Format::Markdown => Ok(document.to_markdown().into_bytes()),
-        Format::Json => Ok(document.to_json().map_err(std::io::Error::from)?.into_bytes()),
-        Format::Pdf => {
-            let drawn = written_pdf(document);
-            drawn.map_err(|source| CliError::Pdf { path: path.to_owned(), source })
-        }
-    }
-}
+/// Draws the pictures of a PDF; nothing in a build without drawing.
+const DRAWING: Option<&Drawing<'static>> = drawing();
 
 #[cfg(feature = "gui")]
-fn written_pdf(document: &ReportDocument) -> Result<Vec<u8>, PdfError> {
-    pdf(document, Some(&crate::render::report_picture))
+const fn drawing() -> Option<&'static Drawing<'static>> {
+    Some(&crate::render::report_picture)
 }
 
 #[cfg(not(feature = "gui"))]
-fn written_pdf(document: &ReportDocument) -> Result<Vec<u8>, PdfError> {
-    pdf(document, None)
+const fn drawing() -> Option<&'static Drawing<'static>> {
+    None
 }

@@ -40,19 +40,13 @@ pub(in crate::cli) fn write_motion_prediction(
     let density = DensityTask::new(&forecast.distribution, window_s).on_cpu();
     write_density(&path(&map), &density, said)?;
     let mut files = vec![trajectory, map];
+    let shown = (forecast.outcome.time_s, wanted.units);
     let input = MotionForecastFigure {
         title: &answer.report.scenario,
-        distribution: &forecast.distribution,
-        central: &forecast.central,
-        bands: &bands,
         density: Some(&density),
         components: true,
         reference: answer.analysis.reference.as_ref(),
-        simulation: None,
-        footprint: answer.analysis.footprint,
-        time_s: forecast.outcome.time_s,
-        units: wanted.units,
-        trust: &trust,
+        ..MotionForecastFigure::of(answer, (&bands, &trust), shown)
     };
     let mut figures = vec![("scene".to_owned(), forecast_scene_figure(&input))];
     for channel in FORECAST_CHANNELS {

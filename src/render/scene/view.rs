@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use egui::{
-    Color32, ColorImage, Image, Painter, Rect, Response, Sense, Stroke, TextureHandle,
-    TextureOptions, Ui, Vec2, pos2,
+    Color32, ColorImage, Image, Key, Modifiers, Painter, Rect, Response, Sense, Stroke,
+    TextureHandle, TextureOptions, Ui, Vec2, pos2,
 };
 use serde::{Deserialize, Serialize};
 
@@ -17,6 +17,13 @@ use crate::scene::{CarLook, Scene, SceneRole};
 const TURN_PER_POINT: f64 = 0.006;
 /// Logarithm of the zoom for each point that the wheel scrolls.
 const ZOOM_PER_POINT: f64 = 0.004;
+
+/// Angle of a turn for each press of an arrow key, rad.
+const TURN_PER_KEY: f64 = 0.1;
+/// Share of the picture by which the scene moves for each press of an arrow key.
+const SHARE_PER_KEY: f64 = 0.1;
+/// Zoom for each press of + or −.
+const ZOOM_PER_KEY: f64 = 1.25;
 
 /// Which car the camera follows.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -110,7 +117,7 @@ pub fn scene_view_ui(
     if response.double_clicked() {
         camera = usual.fitted(&scene.places_m(), size);
     }
-    camera = moved(ui, &response, (camera, rect), size);
+    camera = keyed(ui, &response, moved(ui, &response, (camera, rect), size), size);
     if let Some(target_m) = follow.target_m(scene, time_s) {
         camera.target_m = target_m;
     }
@@ -189,6 +196,40 @@ fn moved(ui: &Ui, response: &Response, (camera, rect): (Camera, Rect), size: [f6
         if factor != 1.0 {
             camera = camera.zoomed(size, (in_picture(pointer), factor));
         }
+    }
+    camera
+}
+
+/// The camera after what the keys do while the pointer is over the scene: + and − zoom about its middle;
+/// the arrows with Ctrl move it from above, and turn it in perspective.
+fn keyed(ui: &Ui, response: &Response, camera: Camera, size: [f64; 2]) -> Camera {
+    if !response.hovered() || ui.ctx().text_edit_focused() {
+        return camera;
+    }
+    let pressed =
+        |modifiers, key| ui.input_mut(|input| input.count_and_consume_key(modifiers, key));
+    let times = |key| pressed(Modifiers::COMMAND, key) as f64;
+    let way = [
+        times(Key::ArrowRight) - times(Key::ArrowLeft),
+        times(Key::ArrowDown) - times(Key::ArrowUp),
+    ];
+    let plain = |key| pressed(Modifiers::NONE, key) as f64;
+    let zoom = plain(Key::Plus) + plain(Key::Equals) - plain(Key::Minus);
+    let middle = size.map(|side| side / 2.0);
+    let mut camera = camera;
+    if way != [0.0; 2] {
+        camera = match camera.kind {
+            ViewKind::Perspective => {
+                camera.orbited([-way[0] * TURN_PER_KEY, way[1] * TURN_PER_KEY])
+            }
+            ViewKind::Above => {
+                let to = [0, 1].map(|i| middle[i] - way[i] * SHARE_PER_KEY * size[i]);
+                camera.panned(size, [middle, to])
+            }
+        };
+    }
+    if zoom != 0.0 {
+        camera = camera.zoomed(size, (middle, ZOOM_PER_KEY.powf(zoom)));
     }
     camera
 }

@@ -103,19 +103,11 @@ fn pictures(answer: &PredictMotionAnswer, wording: &Wording) -> Vec<PartPicture>
     let density = DensityTask::new(&forecast.distribution, [at_s; 2]).on_cpu();
     let bands = MotionBands::of(&forecast.distribution, BAND_STRIDE);
     let trust = Trust::new(&report.badges, &report.assumptions);
+    let shown = (at_s, wording.units);
     let input = MotionForecastFigure {
-        title: &analysis.name,
-        distribution: &forecast.distribution,
-        central: &forecast.central,
-        bands: &bands,
         density: Some(&density),
         components: true,
-        reference: analysis.reference.as_ref(),
-        simulation: analysis.simulation.as_ref().map(|motion| &motion.series),
-        footprint: analysis.footprint,
-        time_s: at_s,
-        units: wording.units,
-        trust: &trust,
+        ..MotionForecastFigure::of(answer, (&bands, &trust), shown).with_motions(analysis)
     };
     let name = [("name", &*report.scenario)];
     let scene = PartPicture {

@@ -363,10 +363,12 @@ pub(super) const WORDS: Words = Words {
         Fahrzeug nicht kennt: mittlerer Fehler über 4 s und der Endlage in m, Mittel (Median); \
         Anteil der Lagen in den Bereichen.",
     table_response: "Fehler, m, und Abdeckung",
-    validation_reconstruction: "40 simulierte Stöße gegen das Heckviertel eines Mehrkörperfahrzeugs mit drei Massen, \
-        alles bekannt; 20 davon wurden beim Einstellen des Verfahrens betrachtet \
+    validation_reconstruction: "40 simulierte Stöße gegen das Heckviertel eines Mehrkörperfahrzeugs mit drei Massen; \
+        20 davon wurden beim Einstellen des Verfahrens betrachtet \
         („Einstellung“). Kein realer Unfall wurde geprüft.",
-    table_reconstruction: "Anteil der wahren Geschwindigkeiten in den Intervallen, %, und Fehler",
+    table_reconstruction: "Anteil der wahren Geschwindigkeiten in den Intervallen, %, und Fehler; alles bekannt",
+    table_without_recorder: "Dasselbe ohne den Unfalldatenspeicher",
+    table_rest_alone: "Dasselbe allein mit Endlagen, Schaden, Massen und Reibwert",
     validation_sheet: "Die Regeln tragen die Streuung der Fahrzeuge, aus denen sie stammen; sie steht bei jedem \
         Schätzwert.",
     no_methods: "Keine Antwort stammt aus einem Modell.",

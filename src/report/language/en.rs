@@ -353,10 +353,11 @@ pub(super) const WORDS: Words = Words {
         seen the car: mean error over 4 s and of the rest position in m, mean (median); share of \
         positions inside the regions.",
     table_response: "Errors, m, and coverage",
-    validation_reconstruction: "40 simulated rear-quarter impacts on one multibody car of three masses, everything \
-        known; 20 of them were looked at while the method was set (“tuning”). No real \
+    validation_reconstruction: "40 simulated rear-quarter impacts on one multibody car of three masses; 20 of them were looked at while the method was set (“tuning”). No real \
         collision was tried.",
-    table_reconstruction: "Share of the true speeds inside the intervals, %, and errors",
+    table_reconstruction: "Share of the true speeds inside the intervals, %, and errors; everything known",
+    table_without_recorder: "The same without the event data recorder",
+    table_rest_alone: "The same with the rest poses, damage, masses and friction alone",
     validation_sheet: "The rules carry the scatter of the vehicles that they were made from; it is told beside \
         each estimate.",
     no_methods: "Nothing was answered by a model.",

@@ -279,6 +279,8 @@ pub(in crate::report) struct Words {
     pub table_response: &'static str,
     pub validation_reconstruction: &'static str,
     pub table_reconstruction: &'static str,
+    pub table_without_recorder: &'static str,
+    pub table_rest_alone: &'static str,
     pub validation_sheet: &'static str,
     pub no_methods: &'static str,
     pub no_sensitivity: &'static str,

@@ -6,4 +6,10 @@ mod markdown;
 
 mod pdf;
 
+mod columns;
+
+mod format;
+
+pub use columns::column_widths;
+pub use format::{FormatError, ReportFormat, WriteError};
 pub use pdf::{Drawing, PdfError, Pixels, pdf};

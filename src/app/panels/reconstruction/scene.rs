@@ -1,36 +1,49 @@
 //! The “Reconstructed scene” pane: what was found from above, the paths that go with it, and the car on
 //! one of them.
 
+use std::sync::Arc;
+
 use egui::{ComboBox, Ui};
 
 use crate::app::command::Command;
 use crate::app::looks::{Icon, icon_button};
 use crate::app::panels::reconstruction::scene_edit::SceneEdit;
 use crate::app::panels::reconstruction::{OUTDATED, notice_ui};
-use crate::app::panels::scene::clock_ui;
+use crate::app::panels::scene::{clock_ui, scene_heading_ui};
 use crate::app::panes::PaneContext;
 use crate::app::reconstruction::{
-    FollowedParticle, LiveParticles, PreparedReconstruction, ReconstructionCommand,
+    CarsSource, EvidencePreview, FollowedParticle, LiveParticles, PreparedReconstruction,
+    ReconstructedCars, ReconstructionCommand, ShownPaths,
 };
+use crate::app::scene::SceneSettings;
 use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, badges_ui, figure_frame};
 use crate::data::Severity;
-use crate::figure::{FollowedPath, ReconstructionScene, reconstruction_scene_figure};
+use crate::figure::{Figure, FollowedPath, ReconstructionScene, reconstruction_scene_figure};
+use crate::reconstruct::evidence::Evidence;
 use crate::render::FigureOptions;
+use crate::render::scene::{ScenePicture, SceneView, scene_view_ui};
+use crate::scene::{ReconstructionParts, Scene};
 use crate::study::{EvidenceChoice, ReconstructReport, Trust};
 use crate::units::{Quantity, UnitSystem, percent};
 
-/// Draws the choice of what is followed, the time slider and the plan view.
+/// Draws the choice of what is followed, the time slider, and the plan or the cars.
 pub fn reconstructed_scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
+    let mut cars = std::mem::take(&mut pane.session.reconstruction.cars);
+    scene_ui(ui, pane, &mut cars);
+    pane.session.reconstruction.cars = cars;
+}
+
+fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCars) {
     let PaneContext { project, view, session, commands, .. } = pane;
     let of = &session.reconstruction;
     let Some(preview) = &of.preview else {
         ui.weak("What was found and the paths that go with it, from above.");
         return;
     };
+    kind_ui(ui, &mut view.reconstruction.shows_cars);
     let is_outdated = of.is_outdated(&project.reconstruction);
     // Paths that go with other evidence are not drawn over this.
     let (live, answer) = (of.live.as_ref(), of.answer().filter(|_| !is_outdated));
-    let followed = of.followed_path().filter(|_| live.is_none() && !is_outdated);
     if let Some(live) = live {
         live_ui(ui, live, view.units);
     } else if let Some(answer) = answer {
@@ -45,24 +58,81 @@ pub fn reconstructed_scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         Some(answer) => trust_of(&answer.answer.report),
         None => Trust::default().outdated_if(live.is_some()),
     };
-    let followed =
-        followed.as_ref().map(|(name, path)| FollowedPath { name, path, time_s: session.time_s });
+    let followed = of.followed_path().filter(|_| live.is_none() && !is_outdated);
     let drawn = match (live, answer) {
         (Some(live), _) => live.paths.drawn.as_slice(),
         (None, Some(answer)) => answer.paths_of(of.mode).drawn.as_slice(),
         (None, None) => &[],
     };
-    let scene =
-        ReconstructionScene { evidence: &preview.evidence, cars: &preview.cars, drawn, followed };
-    let mut figure = reconstruction_scene_figure(&scene, &trust, view.units);
+    let figure = {
+        let followed = followed.as_ref();
+        let followed =
+            followed.map(|(name, path)| FollowedPath { name, path, time_s: session.time_s });
+        let (evidence, cars) = (&preview.evidence, &preview.cars);
+        let scene = ReconstructionScene { evidence, cars, drawn, followed };
+        reconstruction_scene_figure(&scene, &trust, view.units)
+    };
+    if !view.reconstruction.shows_cars {
+        let seen = (preview, of.adds_to, session.fit_plots);
+        if let Some(evidence) = plan_ui(ui, seen, figure, commands) {
+            project.reconstruction.evidence = Some(EvidenceChoice::Inline(Box::new(evidence)));
+        }
+        return;
+    }
+    let source = CarsSource {
+        evidence: preview.evidence.clone(),
+        paths: match (live, answer) {
+            (Some(live), _) => ShownPaths::Live(live.temperature, live.speeds_m_s),
+            (None, Some(_)) => ShownPaths::Answer(of.n_answers, of.mode),
+            (None, None) => ShownPaths::None,
+        },
+        followed: followed.is_some().then_some(of.followed),
+        units: view.units,
+        trust: trust.clone(),
+    };
+    let parts = ReconstructionParts {
+        evidence: &preview.evidence,
+        cars: &preview.cars,
+        drawn,
+        followed: followed.as_ref().map(|(name, path)| (name.as_str(), *path)),
+        units: view.units,
+        trust: &trust,
+    };
+    let scene = cars.scene(source, &parts);
+    if session.fit_plots {
+        cars.view.fit();
+    }
+    let settings = &mut view.reconstruction.scene;
+    cars_ui(ui, (&scene, session.time_s, figure), (&mut cars.view, settings), commands);
+}
+
+/// Draws the choice between the plan and the cars.
+fn kind_ui(ui: &mut Ui, shows_cars: &mut bool) {
+    ui.horizontal(|ui| {
+        for (kind, name, hint) in [
+            (false, "Plan", "Evidence is placed here: drag a place of rest, click along a mark"),
+            (true, "Cars", "The cars as bodies, from above or in perspective"),
+        ] {
+            ui.selectable_value(shows_cars, kind, name).on_hover_text(hint);
+        }
+    });
+}
+
+/// Draws the plan; returns the evidence if it was changed in it.
+fn plan_ui(
+    ui: &mut Ui,
+    (preview, adds_to, resets): (&EvidencePreview, Option<usize>, bool),
+    mut figure: Figure,
+    commands: &mut Vec<Command>,
+) -> Option<Evidence> {
     let mut evidence = preview.evidence.clone();
-    let mut edit = SceneEdit::begin(ui, (&preview.cars, of.adds_to));
+    let mut edit = SceneEdit::begin(ui, (&preview.cars, adds_to));
     figure.elements.extend(edit.handles(&evidence, figure.x.unit));
     let height = ui.available_height() - TITLE_HEIGHT - edit.hint_height();
     let height = height.max(MIN_PLOT_HEIGHT);
     let options = FigureOptions {
         id: "reconstructed scene".to_owned(),
-        reset: session.fit_plots,
+        reset: resets,
         view: edit.view(),
         pans: edit.pans(),
         height: Some(height),
@@ -71,9 +141,34 @@ pub fn reconstructed_scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     let shown = figure_frame(ui, (&figure.title, &figure), &options, commands);
     edit.apply(ui, (&shown, figure.x.unit), &mut evidence);
     ui.weak(edit.hint());
-    if evidence != preview.evidence {
-        project.reconstruction.evidence = Some(EvidenceChoice::Inline(Box::new(evidence)));
-    }
+    (evidence != preview.evidence).then_some(evidence)
+}
+
+/// Draws the cars at a time.
+fn cars_ui(
+    ui: &mut Ui,
+    (scene, time_s, figure): (&Arc<Scene>, f64, Figure),
+    (shown, settings): (&mut SceneView, &mut SceneSettings),
+    commands: &mut Vec<Command>,
+) {
+    // The motion ends where the car is at rest.
+    let time_s = time_s.min(scene.end_s);
+    let placed = shown.camera();
+    let exported = |settings: &SceneSettings| {
+        let picture = ScenePicture {
+            scene: Arc::clone(scene),
+            time_s,
+            camera: placed.unwrap_or(settings.camera),
+            is_placed: placed.is_some(),
+            distance_m: None,
+            follow: settings.follow,
+        };
+        (picture, figure.clone())
+    };
+    scene_heading_ui(ui, (scene, time_s), settings, exported, commands);
+    let SceneSettings { camera, follow, .. } = settings;
+    let seen = (camera, *follow, ui.available_height());
+    scene_view_ui(ui, (scene, time_s), shown, seen);
 }
 
 /// What restricts a reconstruction.

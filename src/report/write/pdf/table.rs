@@ -2,6 +2,7 @@
 //! left is divided where a page of its own would be wasted.
 
 use crate::report::Table;
+use crate::report::column_widths;
 use crate::report::write::pdf::flow::{Flow, LEADING, MARGIN_PT, Role, Style, caption_style};
 use crate::report::write::pdf::fonts::Fonts;
 use crate::report::write::pdf::lines::{lines, widest_word_pt};
@@ -160,7 +161,7 @@ fn columns(table: &Table, fonts: &Fonts, width_pt: f32) -> Vec<[f32; 2]> {
     let least: Vec<f32> = (0..n)
         .map(|idx| padded(size(&|t| widest_word_pt(t, (fonts, CELL_PT)), idx)).min(widest))
         .collect();
-    let widths = shared(&wanted, &least, width_pt);
+    let widths = column_widths(&wanted, &least, width_pt);
     let mut left_pt = MARGIN_PT;
     let place = |width: f32| {
         let column = [left_pt, width];
@@ -168,42 +169,4 @@ fn columns(table: &Table, fonts: &Fonts, width_pt: f32) -> Vec<[f32; 2]> {
         column
     };
     widths.into_iter().map(place).collect()
-}
-
-/// Widths that together are the width of the table.
-fn shared(wanted: &[f32], least: &[f32], width_pt: f32) -> Vec<f32> {
-    let (all_wanted, all_least): (f32, f32) = (wanted.iter().sum(), least.iter().sum());
-    if all_wanted <= width_pt {
-        // What is left over is shared alike.
-        let more = (width_pt - all_wanted) / wanted.len() as f32;
-        return wanted.iter().map(|want| want + more).collect();
-    }
-    if all_least >= width_pt {
-        return least.iter().map(|need| need * width_pt / all_least).collect();
-    }
-    // The root keeps one very long text from leaving nothing to the others.
-    let hunger: Vec<f32> =
-        wanted.iter().zip(least).map(|(want, need)| (want - need).max(0.0).sqrt()).collect();
-    let all: f32 = hunger.iter().sum::<f32>().max(1e-6);
-    let free = width_pt - all_least;
-    least.iter().zip(&hunger).map(|(need, hunger)| need + free * hunger / all).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn columns_fill_the_table_and_no_more() {
-        for (wanted, least) in [
-            (vec![50.0, 60.0], vec![20.0, 20.0]),
-            (vec![900.0, 60.0, 80.0], vec![60.0, 50.0, 40.0]),
-            (vec![900.0, 900.0, 900.0], vec![300.0, 300.0, 300.0]),
-        ] {
-            let widths = shared(&wanted, &least, 480.0);
-            let sum: f32 = widths.iter().sum();
-            assert!((sum - 480.0).abs() < 0.01, "{widths:?}");
-            assert!(widths.iter().all(|width| *width > 20.0), "{widths:?}");
-        }
-    }
 }

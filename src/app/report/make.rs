@@ -1,0 +1,92 @@
+//! Makes a report on a thread of its own: asks the questions, lays out the document, draws its pictures.
+
+use std::sync::Arc;
+
+use crate::case_file::{CaseFile, Change};
+use crate::data::Outcome;
+use crate::error_chain;
+use crate::jobs::{Job, Progress};
+use crate::render::report_picture;
+use crate::report::{Pixels, ReportDocument, ReportSettings, report_case};
+use crate::study::{Event, Library};
+
+/// What a report was made of. Another origin gives another report.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReportOrigin {
+    /// The content of the case, by [`OpenCase::fingerprint`](crate::app::case::OpenCase::fingerprint).
+    pub fingerprint: String,
+    /// The variants that are told of; empty for all.
+    pub variants: Vec<String>,
+    /// How it is written.
+    pub settings: ReportSettings,
+}
+
+/// A report with its pictures.
+#[derive(Debug)]
+pub struct MadeReport {
+    /// The document.
+    pub document: Arc<ReportDocument>,
+    /// Its pictures in their order, drawn or not.
+    pub pictures: Vec<DrawnPicture>,
+    /// Number of questions without an answer.
+    pub n_unanswered: usize,
+    /// What is not as it was when the case was saved.
+    pub changes: Vec<Change>,
+    /// What it was made of.
+    pub origin: ReportOrigin,
+}
+
+/// A picture, or why it could not be drawn.
+pub type DrawnPicture = Result<Pixels, String>;
+
+/// What the thread returns.
+pub(in crate::app) type Made = Result<Outcome<MadeReport>, String>;
+
+/// A report that is being made.
+pub(super) struct ReportJob {
+    pub(super) job: Job<Made>,
+}
+
+impl ReportJob {
+    /// Starts to make a report.
+    ///
+    /// # Errors
+    /// The error of the operating system, if the thread cannot be started.
+    pub(super) fn start(
+        (case, origin): (CaseFile, ReportOrigin),
+        library: &Arc<Library>,
+        wake: impl Fn() + Send + 'static,
+    ) -> std::io::Result<Self> {
+        let library = Arc::clone(library);
+        let job = Job::spawn("report", wake, move |tell| {
+            let mut observer = |event: Event<'_>| match event {
+                Event::Progress(progress) => tell(progress),
+                Event::Training(_) | Event::Sampling(_) => std::ops::ControlFlow::Continue(()),
+            };
+            let asked = (&case, origin.variants.as_slice());
+            let answered = report_case(asked, &origin.settings, &library, &mut observer);
+            let (document, report) = match answered.map_err(|error| error_chain(&error))? {
+                Outcome::Complete(answered) => answered,
+                Outcome::Cancelled => return Ok(Outcome::Cancelled),
+            };
+            let n = document.pictures().count() as u64;
+            let mut pictures = Vec::new();
+            for (i, picture) in document.pictures().enumerate() {
+                let progress = Progress::new(i as u64, n, "drawing pictures");
+                if tell(progress).is_break() {
+                    return Ok(Outcome::Cancelled);
+                }
+                pictures.push(report_picture(&picture.figure));
+            }
+            let answers = report.variants.iter().flat_map(|variant| &variant.answers);
+            Ok(Outcome::Complete(MadeReport {
+                document: Arc::new(document),
+                pictures,
+                n_unanswered: answers.filter(|answer| answer.error.is_some()).count(),
+                changes: report.changes,
+                origin,
+            }))
+        })?;
+        Ok(Self { job })
+    }
+}
