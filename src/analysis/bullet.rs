@@ -57,6 +57,7 @@ pub(super) fn bullet_track(
         },
         contact: ContactPoint { x_m, y_m, height_m },
         controls: Controls::default(),
+        friction_zones: settings.friction_zones.clone(),
     };
     Ok(Some(VehicleTrack { footprint, start, motion }))
 }
@@ -101,6 +102,7 @@ fn append_coasting(
     let manoeuvre = Manoeuvre {
         initial: recorded.end,
         duration_s: (settings.duration_s - recorded_end_s).max(OUTPUT_INTERVAL_S),
+        friction_zones: settings.friction_zones.clone(),
         ..Manoeuvre::default()
     };
     let coasting = vehicle.simulate(&manoeuvre, settings.integrator)?.series;

@@ -2,7 +2,7 @@
 
 use crate::analysis::{Analysis, AnalysisError, Settings, StruckVehicle, bullet::bullet_track};
 use crate::collision::{Footprint, SecondContact};
-use crate::compare::{recorded_manoeuvre, replay_case};
+use crate::compare::{MotionError, ReplayError, recorded_manoeuvre};
 use crate::data::{
     Case, DatasetKind, ForceAttributes, TrajectoryAttributes, check_contact_within,
     contact_interval,
@@ -20,30 +20,39 @@ pub fn analyse_case(case: &Case, settings: &Settings) -> Result<Analysis, Analys
     }
 }
 
-/// Replays a recorded trajectory from its initial state with its recorded force and friction.
+/// Replays a recorded trajectory from its initial state with its recorded force and friction; where
+/// friction zones are given, these hold instead.
 fn analyse_trajectory_case(case: &Case, settings: &Settings) -> Result<Analysis, AnalysisError> {
-    let replay = replay_case(case, &settings.target, settings.integrator)?;
-    let manoeuvre = recorded_manoeuvre(case, &settings.target)?;
+    let recorded = recorded_manoeuvre(case, &settings.target)?;
+    let manoeuvre = Manoeuvre { friction_zones: settings.friction_zones.clone(), ..recorded };
     let friction = TrajectoryAttributes::read(&case.attributes)?.mu;
     let vehicle = settings.target.clone().with_friction(friction);
+    let name = || case.name.clone();
+    let motion = vehicle
+        .simulate(&manoeuvre, settings.integrator)
+        .map_err(|source| ReplayError::Simulation { case: name(), source })?;
+    let error = MotionError::between(&motion.series, &case.series)
+        .map_err(|source| ReplayError::Series { case: name(), source })?;
     let struck = |load: &ContactLoad| StruckVehicle {
         vehicle: vehicle.clone(),
         initial: manoeuvre.initial,
         contact: load.contact,
         controls: manoeuvre.controls.clone(),
+        friction_zones: manoeuvre.friction_zones.clone(),
     };
     Ok(Analysis {
         name: case.name.clone(),
         footprint: Footprint::from(&settings.target.geometry),
         struck: manoeuvre.contact_load.as_ref().map(struck),
         controls: manoeuvre.controls.clone(),
+        friction_zones: settings.friction_zones.clone(),
         force: manoeuvre.contact_load.map(|load| load.force),
         vehicle,
-        simulation: Some(replay.motion),
+        simulation: Some(motion),
         reference: Some(case.series.clone()),
         second_contact: None,
         bullet: None,
-        error: Some(replay.error),
+        error: Some(error),
         notes: Vec::new(),
     })
 }
@@ -71,6 +80,7 @@ fn analyse_force_case(case: &Case, settings: &Settings) -> Result<Analysis, Anal
         controls: controls.clone(),
         duration_s: settings.duration_s,
         ends_at_rest: settings.ends_at_rest,
+        friction_zones: settings.friction_zones.clone(),
     };
     let motion = vehicle.simulate(&manoeuvre, settings.integrator)?;
     let footprint = Footprint::from(&vehicle.geometry);
@@ -90,7 +100,14 @@ fn analyse_force_case(case: &Case, settings: &Settings) -> Result<Analysis, Anal
         vehicle: vehicle.clone(),
         force: Some(force),
         controls: controls.clone(),
-        struck: Some(StruckVehicle { vehicle, initial, contact, controls }),
+        friction_zones: settings.friction_zones.clone(),
+        struck: Some(StruckVehicle {
+            vehicle,
+            initial,
+            contact,
+            controls,
+            friction_zones: settings.friction_zones.clone(),
+        }),
         reference: None,
         second_contact,
         bullet,
@@ -117,6 +134,7 @@ mod tests {
             ending: Ending::default(),
             duration_s: 4.0,
             ends_at_rest: false,
+            friction_zones: Vec::new(),
         }
     }
 

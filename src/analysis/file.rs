@@ -105,8 +105,14 @@ fn simulate(
         force: force.clone(),
         contact: *contact,
     });
-    let ends_at_rest = settings.ends_at_rest;
-    let manoeuvre = Manoeuvre { initial, contact_load, controls, duration_s, ends_at_rest };
+    let manoeuvre = Manoeuvre {
+        initial,
+        contact_load,
+        controls,
+        duration_s,
+        ends_at_rest: settings.ends_at_rest,
+        friction_zones: settings.friction_zones.clone(),
+    };
     Ok(settings.target.simulate(&manoeuvre, settings.integrator)?)
 }
 
@@ -122,6 +128,7 @@ fn of_load(
         initial,
         contact: *contact,
         controls: controls.clone(),
+        friction_zones: settings.friction_zones.clone(),
     });
     Analysis {
         name: name.to_owned(),
@@ -129,6 +136,7 @@ fn of_load(
         vehicle: settings.target.clone(),
         struck,
         controls,
+        friction_zones: settings.friction_zones.clone(),
         force: load.map(|(force, _)| force),
         simulation: None,
         reference: None,

@@ -20,7 +20,9 @@ mod vehicle_draws;
 use crate::collision::{Footprint, PulseError, ScenarioError, SecondContact};
 use crate::compare::{MotionError, ReplayError};
 use crate::data::{ContactOutside, DataError, ForceHistory, SeriesError, TimeSeries};
-use crate::vehicle::{Controls, Ending, Integrator, Motion, SimulationError, VehicleParameters};
+use crate::vehicle::{
+    Controls, Ending, FrictionZone, Integrator, Motion, SimulationError, VehicleParameters,
+};
 
 pub use case::analyse_case;
 pub use file::{DriveSetup, analyse_drive, analyse_recording};
@@ -58,6 +60,9 @@ pub struct Settings {
     /// Whether the simulation ends before its duration where the target has come to rest. The
     /// bullet is followed as long.
     pub ends_at_rest: bool,
+    /// Parts of the ground with their own friction, in the axes in which the motions are simulated;
+    /// elsewhere each vehicle has the friction of its tyres. Both vehicles move over them.
+    pub friction_zones: Vec<FrictionZone>,
 }
 
 /// Outline and motion of the striking vehicle.
@@ -87,6 +92,8 @@ pub struct Analysis {
     pub struck: Option<StruckVehicle>,
     /// What steers, drives, brakes and locks the wheels of the struck vehicle in the simulation.
     pub controls: Controls,
+    /// Parts of the ground with their own friction, over which the vehicles were simulated.
+    pub friction_zones: Vec<FrictionZone>,
     /// Motion of the target simulated with the 4DOF model; `None` if it could not be simulated, for
     /// the reason given in `notes`.
     pub simulation: Option<Motion>,

@@ -29,7 +29,8 @@ use crate::response::{
 };
 use crate::uncertainty::{ForceCurve, PlanarMixture};
 use crate::vehicle::{
-    ContactLoad, ContactPoint, Controls, Manoeuvre, VehicleInput, VehicleParameters, VehicleState,
+    ContactLoad, ContactPoint, Controls, FrictionZone, Manoeuvre, VehicleInput, VehicleParameters,
+    VehicleState,
 };
 
 /// Largest standard deviation of a component's heading with which its moments are propagated, rad.
@@ -67,6 +68,8 @@ pub struct StruckVehicle {
     pub contact: ContactPoint,
     /// What steers, brakes and locks the wheels.
     pub controls: Controls,
+    /// Parts of the ground with their own friction. A forecast with a network leaves them out.
+    pub friction_zones: Vec<FrictionZone>,
 }
 
 /// A forecast of the motion of the struck vehicle.
@@ -165,6 +168,7 @@ impl StruckVehicle {
             controls: self.controls.clone(),
             duration_s,
             ends_at_rest: false,
+            friction_zones: Vec::new(),
         };
         manoeuvre.inputs(STEP_S, (duration_s / STEP_S).round() as usize)
     }

@@ -63,6 +63,7 @@ pub fn analyse_scenario(
             initial: initial_state(vehicle, pose),
             contact,
             controls: Controls::default(),
+            friction_zones: settings.friction_zones.clone(),
         }
     };
     let mut struck = start(&scenario.target, &settings.target, &geometry.target);
@@ -85,6 +86,7 @@ pub fn analyse_scenario(
         footprint: scenario.target.footprint(),
         force: Some(force),
         controls: struck.controls.clone(),
+        friction_zones: settings.friction_zones.clone(),
         struck: Some(struck),
         simulation: Some(target),
         reference: None,
@@ -129,6 +131,7 @@ fn drive_on(
         controls: start.controls.clone(),
         duration_s: settings.duration_s,
         ends_at_rest: settings.ends_at_rest,
+        friction_zones: start.friction_zones.clone(),
     };
     Ok(start.vehicle.simulate(&manoeuvre, settings.integrator)?)
 }
@@ -153,6 +156,7 @@ mod tests {
             integrator: Integrator::Rk4,
             duration_s: 3.0,
             ends_at_rest: false,
+            friction_zones: Vec::new(),
         };
         let analysis = analyse_scenario(&scenario, &PulseSetup::default(), &settings).unwrap();
         let solution = scenario.solve().unwrap();
@@ -177,6 +181,7 @@ mod tests {
             ending: Ending::default(),
             duration_s: 4.0,
             ends_at_rest: false,
+            friction_zones: Vec::new(),
         };
         let meets = |scenario: &Scenario| {
             let analysis = analyse_scenario(scenario, &PulseSetup::default(), &settings).unwrap();

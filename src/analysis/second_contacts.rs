@@ -119,6 +119,7 @@ fn pushed(start: &StruckVehicle, force: ForceHistory, duration_s: f64) -> Option
         controls: start.controls.clone(),
         duration_s,
         ends_at_rest: false,
+        friction_zones: start.friction_zones.clone(),
     };
     Some(start.vehicle.simulate(&manoeuvre, Integrator::Rk4).ok()?.series)
 }

@@ -306,6 +306,7 @@ impl ForwardModel {
             controls: ending.controls(&vehicle),
             duration_s: LONGEST_MOTION_S,
             ends_at_rest: true,
+            friction_zones: Vec::new(),
         };
         let bullet = self.follows_bullet.then(|| self.bullet(&values, &impact));
         Prepared { values, impact, vehicle, manoeuvre, bullet }
@@ -400,6 +401,7 @@ impl ForwardModel {
             controls: Ending { brake, ..Ending::default() }.controls(&vehicle),
             duration_s: LONGEST_MOTION_S,
             ends_at_rest: true,
+            friction_zones: Vec::new(),
         };
         (vehicle, manoeuvre)
     }

@@ -9,7 +9,9 @@ use crate::data::{Channel, TimeSeries};
 use crate::scene::{CarBody, N_WHEELS};
 use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::frames::body_from_world;
-use crate::vehicle::{Controls, VehicleParameters, Wheel};
+use crate::vehicle::{
+    Controls, FrictionZone, TireParameters, VehicleParameters, Wheel, friction_at,
+};
 
 /// Speed below which the direction of a wheel's motion is not known, m/s.
 const LEAST_SPEED_M_S: f64 = 1e-3;
@@ -29,6 +31,28 @@ pub struct CarState {
     pub locked: [bool; N_WHEELS],
 }
 
+/// What locks the wheels of a car.
+#[derive(Debug, Clone, Copy)]
+pub struct CarControls<'a> {
+    /// What brakes and locks them.
+    pub controls: &'a Controls,
+    /// The vehicle whose tyres they have.
+    pub vehicle: &'a VehicleParameters,
+    /// Parts of the ground with their own friction.
+    pub friction_zones: &'a [FrictionZone],
+}
+
+impl CarControls<'_> {
+    /// The tyres with the friction of the ground at a place `[X, Y]`, m.
+    pub(super) fn tires_at(&self, place_m: [f64; 2]) -> TireParameters {
+        let tires = self.vehicle.tires;
+        TireParameters {
+            friction: friction_at(self.friction_zones, place_m, tires.friction),
+            ..tires
+        }
+    }
+}
+
 /// The motion of a car over time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct CarMotion {
@@ -39,12 +63,12 @@ pub struct CarMotion {
 impl CarMotion {
     /// The motion of a time series: X and Y are required, and what else is missing is zero.
     ///
-    /// - `controls`: what locks the wheels, with the vehicle whose tyres they have; without it they roll.
+    /// - `controls`: what locks the wheels; without it they roll.
     /// - returns `None` without X or Y, or without samples.
     pub fn of_series(
         series: &TimeSeries,
         body: &CarBody,
-        controls: Option<(&Controls, &VehicleParameters)>,
+        controls: Option<CarControls<'_>>,
     ) -> Option<Self> {
         let (x, y) = (series.get(Channel::X)?, series.get(Channel::Y)?);
         let value = |channel, idx: usize| -> Option<f64> {
@@ -72,10 +96,12 @@ impl CarMotion {
             let channels = [Channel::FzFl, Channel::FzFr, Channel::FzRl, Channel::FzRr];
             channels.get(wheel.index()).and_then(|channel| value(*channel, idx))
         };
-        motion.turn_wheels(body, |idx, time_s, wheel, velocity| {
-            let (controls, vehicle) = controls?;
-            let load_n = load(idx, wheel).unwrap_or_else(|| static_load_n(vehicle, wheel));
-            controls.is_locked(time_s, wheel, (velocity, load_n), &vehicle.tires).then_some(())
+        motion.turn_wheels(body, |(idx, pose), time_s, wheel, velocity| {
+            let of = controls?;
+            let load_n = load(idx, wheel).unwrap_or_else(|| static_load_n(of.vehicle, wheel));
+            let place_m = pose.world_from_body(of.vehicle.geometry.wheel_place_m(wheel));
+            let tires = of.tires_at(place_m);
+            of.controls.is_locked(time_s, wheel, (velocity, load_n), &tires).then_some(())
         });
         (n > 0).then_some(motion)
     }
@@ -145,18 +171,19 @@ impl CarMotion {
 
     /// Turns the wheels by the way that they roll.
     ///
-    /// - `is_locked`: of sample, time, wheel, and velocity of its centre `[along, across]` its own plane,
+    /// - `is_locked`: of sample and pose there, time, wheel, and velocity of its centre `[along, across]` its own plane,
     ///   m/s; `Some` where it is locked.
     fn turn_wheels(
         &mut self,
         body: &CarBody,
-        is_locked: impl Fn(usize, f64, Wheel, [f64; 2]) -> Option<()>,
+        is_locked: impl Fn((usize, Pose), f64, Wheel, [f64; 2]) -> Option<()>,
     ) {
         for idx in 0..self.states.len() {
             let velocities = self.wheel_velocities(idx, body);
             let time_s = self.time_s.get(idx).copied().unwrap_or(0.0);
+            let at = (idx, self.states.get(idx).map_or_else(Pose::default, |state| state.pose));
             let locked = Wheel::ALL
-                .map(|wheel| is_locked(idx, time_s, wheel, velocities[wheel.index()]).is_some());
+                .map(|wheel| is_locked(at, time_s, wheel, velocities[wheel.index()]).is_some());
             let step_s = self.time_s.get(idx + 1).map_or(0.0, |next| next - time_s);
             let Some(state) = self.states.get_mut(idx) else { return };
             state.locked = locked;
@@ -221,17 +248,26 @@ mod tests {
     };
 
     fn driven(ending: &Ending, speed_m_s: f64) -> (CarMotion, CarBody) {
+        driven_on(&[], ending, speed_m_s)
+    }
+
+    fn driven_on(zones: &[FrictionZone], ending: &Ending, speed_m_s: f64) -> (CarMotion, CarBody) {
         let vehicle = Preset::Reference.parameters();
         let controls = ending.controls(&vehicle);
         let manoeuvre = Manoeuvre {
             initial: VehicleState::driving_straight(speed_m_s),
             controls: controls.clone(),
             duration_s: 2.0,
+            friction_zones: zones.to_vec(),
             ..Manoeuvre::default()
         };
         let motion = vehicle.simulate(&manoeuvre, Integrator::Rk4).unwrap();
         let body = CarBody::new(&vehicle, &Footprint::from(&vehicle.geometry));
-        let of = CarMotion::of_series(&motion.series, &body, Some((&controls, &vehicle)));
+        let of = CarMotion::of_series(
+            &motion.series,
+            &body,
+            Some(CarControls { controls: &controls, vehicle: &vehicle, friction_zones: zones }),
+        );
         (of.unwrap(), body)
     }
 
@@ -261,6 +297,19 @@ mod tests {
         assert_eq!(late.turned_rad, later.turned_rad);
         assert!(later.pose.x_m > late.pose.x_m + 3.0, "it slides on");
         assert!(early.turned_rad[0] > 20.0);
+    }
+
+    #[test]
+    fn a_brake_that_the_road_holds_locks_the_wheels_on_ice() {
+        let ending = Ending { brake: Some(Braking::new(0.0, 0.5, 0.1)), ..Ending::default() };
+        let ice = FrictionZone {
+            name: "ice".to_owned(),
+            border_m: vec![[20.0, -9.0], [99.0, -9.0], [99.0, 0.0], [20.0, 0.0]],
+            friction: 0.1,
+        };
+        let (motion, _) = driven_on(&[ice], &ending, 25.0);
+        assert_eq!(motion.at(0.3).locked, [false; 4]);
+        assert_eq!(motion.at(1.5).locked, [false, true, false, true], "ice lies on the right");
     }
 
     #[test]

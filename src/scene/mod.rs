@@ -24,7 +24,7 @@ mod simulation;
 
 pub use body_class::BodyClass;
 pub use car_body::{CarBody, N_WHEELS};
-pub use car_motion::{CarMotion, CarState};
+pub use car_motion::{CarControls, CarMotion, CarState};
 pub use car_shape::CarShape;
 pub use forecast::{ForecastScene, add_forecast};
 pub use mesh::{Mesh, MeshTriangle, Surface, triangle_normal};

@@ -6,8 +6,8 @@ use crate::analysis::{Analysis, StruckVehicle};
 use crate::collision::Pose;
 use crate::data::{ForceAxes, TimeSeries};
 use crate::scene::{
-    CarBody, CarLook, CarMotion, CarShape, Scene, SceneArrow, SceneCar, SceneCross, SceneLine,
-    ScenePath, SceneRole,
+    CarBody, CarControls, CarLook, CarMotion, CarShape, Scene, SceneArrow, SceneCar, SceneCross,
+    SceneLine, ScenePath, SceneRole,
 };
 use crate::study::Trust;
 use crate::units::{Quantity, UnitSystem};
@@ -67,7 +67,11 @@ pub fn simulation_scene(input: &SimulationScene<'_>) -> Scene {
         add(&mut scene, ((other.name, ""), other.role, CarLook::Ghost), (&shape, motion));
     }
     if let Some(simulated) = &analysis.simulation {
-        let controls = (&analysis.controls, &analysis.vehicle);
+        let controls = CarControls {
+            controls: &analysis.controls,
+            vehicle: &analysis.vehicle,
+            friction_zones: &analysis.friction_zones,
+        };
         let motion = CarMotion::of_series(&simulated.series, &shape.body, Some(controls));
         let named = ("4DOF simulation", "struck");
         add(&mut scene, (named, SceneRole::Simulated, CarLook::Solid), (&shape, motion));
@@ -91,7 +95,11 @@ pub(super) fn struck_shape(analysis: &Analysis) -> Arc<CarShape> {
 pub(super) fn add_striking(scene: &mut Scene, analysis: &Analysis) {
     let Some(track) = &analysis.bullet else { return };
     let body = CarBody::new(&track.start.vehicle, &track.footprint);
-    let controls = (&track.start.controls, &track.start.vehicle);
+    let controls = CarControls {
+        controls: &track.start.controls,
+        vehicle: &track.start.vehicle,
+        friction_zones: &track.start.friction_zones,
+    };
     let motion = CarMotion::of_series(&track.motion, &body, Some(controls));
     let shape = Arc::new(CarShape::new(body));
     let named = ("striking vehicle", "striking");

@@ -15,7 +15,7 @@ use crate::ranges::{DRAWS, FORECAST_DURATION, REST_LIMIT};
 use crate::response::OutsideDomain;
 use crate::study::checks::{check, check_count};
 use crate::study::simulate_dataset::take_case;
-use crate::study::unused::{by_force_network, by_forecast};
+use crate::study::unused::{by_force_network, by_forecast, zones_by_network};
 use crate::study::{
     AssumedQuantity, Assumption, DEFAULT_DURATION_S, FlagReport, ImpliedContactReport, Library,
     ModelChoice, MotionSource, Observer, Provenance, Question, SeriesFile, SimulateAnswer,
@@ -232,6 +232,7 @@ impl Question for PredictMotionRequest {
         let (Some(struck), Some(own_force)) = (&analysis.struck, &analysis.force) else {
             return Err(StudyError::NoForce { name: name() });
         };
+        unused.extend(zones_by_network(struck));
         let model = library.response_model(&self.response_model)?;
         // A fleet has braked and dragged wheels, none that are steered or driven.
         let controls = &struck.controls;

@@ -135,6 +135,7 @@ impl SimulateRequest {
             integrator: self.integrator,
             duration_s: self.duration_s,
             ends_at_rest: self.until_rest,
+            friction_zones: Vec::new(),
         })
     }
 

@@ -6,7 +6,7 @@
 //! points approach, the force has little to do with what the network knows, and the question is
 //! refused.
 
-use crate::analysis::PulseSetup;
+use crate::analysis::{PulseSetup, StruckVehicle};
 use crate::collision::{
     DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, FrictionModel, Pose, RestitutionForm, Scenario,
     ScenarioGeometry, ScenarioVehicle,
@@ -27,6 +27,18 @@ const SIZE_TOLERANCE: f64 = 0.1;
 /// An input that is not used.
 pub(super) fn not_used(what: impl Into<String>, reason: &str) -> Assumption {
     Assumption::new(AssumedQuantity::NotUsed, what, reason)
+}
+
+/// Friction zones, which a forecast with a network does not know.
+pub(super) fn zones_by_network(struck: &StruckVehicle) -> Option<Assumption> {
+    let names: Vec<&str> = struck.friction_zones.iter().map(|zone| zone.name.as_str()).collect();
+    (!names.is_empty()).then(|| {
+        not_used(
+            format!("friction zones: {}", names.join(", ")),
+            "the response network has learned motions on one ground: the forecast has the friction of \
+             the vehicle's tyres everywhere",
+        )
+    })
 }
 
 /// What a force network does not use of a scenario.

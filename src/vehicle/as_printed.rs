@@ -13,6 +13,8 @@
 //!   roll does not influence yaw.
 //! - The front tyre forces are not rotated by the steer angle δ.
 //!
+//! Zones of the ground with their own friction are honoured as by the corrected equations.
+//!
 //! Drive and brake forces and the fall of friction beyond its peak are not part of these equations;
 //! the inputs and parameters for them have no effect. The paper does not say how the loop of loads,
 //! forces, accelerations and loads is resolved; here this is done by fixed-point passes as in
@@ -56,7 +58,7 @@ impl<P: Copy> VehicleConstants<P> {
         let mut yaw_moment = collision.yaw_moment_n_m;
         for _ in 0..=LOAD_PASSES {
             loads = self.loads_as_printed(acceleration, leaning_n_m);
-            let ([fx, fy], tire_moment) = self.tires_as_printed(x, u.steer_rad, &loads);
+            let ([fx, fy], tire_moment) = self.tires_as_printed(x, u, &loads);
             acceleration = [
                 (fx + collision.force_n[0]) * body.per_mass_1_kg,
                 (fy + collision.force_n[1]) * body.per_mass_1_kg,
@@ -89,7 +91,7 @@ impl<P: Copy> VehicleConstants<P> {
     fn tires_as_printed<T: Lanes + LanesOver<P>>(
         &self,
         x: &VehicleState<T>,
-        steer_rad: T,
+        u: &VehicleInput<T>,
         loads_n: &[T; 4],
     ) -> ([T; 2], T) {
         let (body, tires) = (&self.body, &self.tires);
@@ -101,7 +103,7 @@ impl<P: Copy> VehicleConstants<P> {
         let (half_track, front, rear) =
             (zero + body.half_track_m, zero + body.front_x_m, zero + body.rear_x_m);
         let (of_front, of_rear) =
-            ((steer_rad, tires.front_stiffness_1_rad), (zero, tires.rear_stiffness_1_rad));
+            ((u.steer_rad, tires.front_stiffness_1_rad), (zero, tires.rear_stiffness_1_rad));
         let wheels = [
             (front, half_track, of_front),
             (front, -half_track, of_front),
@@ -109,12 +111,17 @@ impl<P: Copy> VehicleConstants<P> {
             (rear, -half_track, of_rear),
         ];
         let (mut force, mut moment) = ([zero; 2], zero);
-        for ((px, py, (steer, stiffness)), &load) in wheels.into_iter().zip(loads_n) {
+        for (i, ((px, py, (steer, stiffness)), &load)) in
+            wheels.into_iter().zip(loads_n).enumerate()
+        {
+            let share = u.friction_share.map(|shares| shares[i]);
             let course =
                 ((x.vy_m_s + x.yaw_rate_rad_s * px) / (x.vx_m_s - x.yaw_rate_rad_s * py)).atan();
             let stiffness = (steer - course) * stiffness;
+            let stiffness = share.map_or(stiffness, |share| stiffness / share);
             let fx = resistance * load;
             let limit = load * tires.friction;
+            let limit = share.map_or(limit, |share| limit * share);
             let fy = -(stiffness / (stiffness * stiffness + 1.0).sqrt())
                 * (limit * limit - fx * fx).sqrt();
             force[0] += fx;

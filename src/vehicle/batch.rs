@@ -160,13 +160,18 @@ fn advance<S: Simd>(
     let Some(Numbered { of: first, .. }) = running.first() else { return };
     let (step_s, n_steps) = (first.step_s, first.steps_per_output);
     let is_acted_on = running.iter().any(|run| run.of.is_acted_on());
+    let has_zones = running.iter().any(|run| run.of.has_zones());
     let mut of_lanes = [const { StepInputs::RELEASED }; MAX_LANES];
     let mut inputs = steps_side_by_side(simd, &of_lanes);
     let mut x = states(simd, running);
     for step in 0..n_steps {
         if is_acted_on {
-            for (of_lane, run) in of_lanes.iter_mut().zip(running.iter()) {
-                *of_lane = run.of.inputs_of(step);
+            let now = match has_zones {
+                true => x.map(Packed::to_array),
+                false => [[0.0; MAX_LANES]; N_STATE],
+            };
+            for (lane, (of_lane, run)) in of_lanes.iter_mut().zip(running.iter()).enumerate() {
+                *of_lane = run.of.inputs_of(step, &now.map(|values| values[lane]));
             }
             inputs = steps_side_by_side(simd, &of_lanes);
         }
@@ -236,11 +241,16 @@ fn side_by_side<'a, S: Simd>(
 ) -> VehicleInput<Packed<S>> {
     let pack = Pack { simd, of };
     let is_braked = (0..MAX_LANES).any(|lane| of(lane).wheels.is_some());
+    let is_on_zones = (0..MAX_LANES).any(|lane| of(lane).friction_share.is_some());
     let struck = (0..MAX_LANES).find_map(|lane| of(lane).collision);
     VehicleInput {
         steer_rad: pack.number(|u| u.steer_rad),
         wheels: match is_braked {
             true => Some([pack.wheel(0), pack.wheel(1), pack.wheel(2), pack.wheel(3)]),
+            false => None,
+        },
+        friction_share: match is_on_zones {
+            true => Some([pack.share(0), pack.share(1), pack.share(2), pack.share(3)]),
             false => None,
         },
         collision: match struck {
@@ -279,6 +289,11 @@ impl<'a, S: Simd, F: Fn(usize) -> &'a VehicleInput<f64>> Pack<S, F> {
         }
     }
 
+    #[inline(always)]
+    fn share(&self, wheel: usize) -> Packed<S> {
+        self.number(|u| u.friction_share.map_or(1.0, |shares| shares[wheel]))
+    }
+
     /// - `kind`: the collision force of a lane.
     #[expect(
         clippy::manual_map,
@@ -313,7 +328,8 @@ mod tests {
     use super::*;
     use crate::data::{ForceAxes, ForceHistory, Sampling};
     use crate::vehicle::{
-        Braking, ContactLoad, DamagedWheel, Ending, HeldSteer, LibraryVehicle, Preset, Wheel,
+        Braking, ContactLoad, DamagedWheel, Ending, FrictionZone, HeldSteer, LibraryVehicle,
+        Preset, Wheel,
     };
 
     fn struck(force_n: [f64; 2], axes: ForceAxes, mz_n_m: Option<f64>) -> ContactLoad {
@@ -349,8 +365,20 @@ mod tests {
         ]
     }
 
+    /// No zones, and ice on the right beside and over a strip of gravel across the road.
+    fn zones() -> [Vec<FrictionZone>; 3] {
+        let zone = |name: &str, [x0, y0]: [f64; 2], [x1, y1]: [f64; 2], friction| FrictionZone {
+            name: name.to_owned(),
+            border_m: vec![[x0, y0], [x1, y0], [x1, y1], [x0, y1]],
+            friction,
+        };
+        let ice = zone("ice", [-50.0, -40.0], [80.0, 0.3], 0.08);
+        let gravel = zone("gravel", [4.0, -40.0], [9.0, 40.0], 0.55);
+        [Vec::new(), vec![ice.clone()], vec![ice, gravel]]
+    }
+
     /// Motions of different cars, on different roads, struck and not, that stand, roll, spin, brake and
-    /// slide, until they rest or for a time.
+    /// slide, on one ground or on several, until they rest or for a time.
     fn motions() -> Vec<(VehicleParameters, Manoeuvre)> {
         let mut cars: Vec<VehicleParameters> =
             Preset::ALL.iter().map(|preset| preset.parameters()).collect();
@@ -361,6 +389,7 @@ mod tests {
         cars.push(stiff);
         cars.push(Preset::Reference.parameters().with_equations(Equations::Paper));
         let endings = endings();
+        let zones = zones();
         (0..70)
             .map(|i| {
                 let vehicle = cars[i % cars.len()].clone().with_friction(0.3 + 0.01 * i as f64);
@@ -382,6 +411,7 @@ mod tests {
                     controls: endings[i % endings.len()].controls(&vehicle),
                     duration_s: if is_printed { 0.3 } else { 1.0 + (i % 9) as f64 * 0.37 },
                     ends_at_rest: i % 2 == 0,
+                    friction_zones: zones[i % zones.len()].clone(),
                 };
                 (vehicle, manoeuvre)
             })

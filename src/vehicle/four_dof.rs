@@ -80,6 +80,9 @@ pub struct VehicleInput<T> {
     /// What drives, brakes or locks each wheel, in the order of [`Wheel::ALL`](crate::vehicle::Wheel::ALL). With `None` all
     /// wheels roll freely.
     pub wheels: Option<[WheelEffort<T>; 4]>,
+    /// Friction of the ground under each wheel over that of the tyres of the vehicle, more than 0, in
+    /// the same order. With `None` it is that of the tyres.
+    pub friction_share: Option<[T; 4]>,
     /// Collision force; `None` if there is no contact.
     pub collision: Option<CollisionForce<T>>,
 }
@@ -88,13 +91,14 @@ impl<T: From<f64>> VehicleInput<T> {
     /// Input of a vehicle that coasts: steering wheel, throttle and brake are released (δ = 0, all
     /// wheels roll freely) and there is no contact.
     pub fn released() -> Self {
-        Self { steer_rad: T::from(0.0), wheels: None, collision: None }
+        Self { steer_rad: T::from(0.0), wheels: None, friction_share: None, collision: None }
     }
 }
 
 impl VehicleInput<f64> {
     /// [`VehicleInput::released`] as a constant.
-    pub const RELEASED: Self = Self { steer_rad: 0.0, wheels: None, collision: None };
+    pub const RELEASED: Self =
+        Self { steer_rad: 0.0, wheels: None, friction_share: None, collision: None };
 }
 
 impl<T: Lanes> VehicleInput<T> {
@@ -110,6 +114,7 @@ impl<T: Lanes> VehicleInput<T> {
         VehicleInput {
             steer_rad: convert(self.steer_rad),
             wheels: self.wheels.map(|wheels| wheels.map(|wheel| wheel.map(convert))),
+            friction_share: self.friction_share.map(|shares| shares.map(convert)),
             collision: self.collision.map(|collision| CollisionForce {
                 force_n: collision.force_n.map(convert),
                 in_world_axes: collision.in_world_axes,
@@ -280,7 +285,7 @@ impl<P: Copy> VehicleConstants<P> {
         let body = &self.body;
         let zero = x.vx_m_s.constant(0.0);
         let steer = Steer::of(u.steer_rad);
-        let slips = self.wheel_slips(x, &steer);
+        let slips = self.wheel_slips(x, &steer, u.friction_share.as_ref());
         let free = slips.free();
         let efforts = u.wheels.as_ref().map(side_by_side);
         let [front_n, rear_n] = [zero + body.front_static_n, zero + body.rear_static_n];
@@ -315,6 +320,7 @@ impl<P: Copy> VehicleConstants<P> {
         &self,
         x: &VehicleState<T>,
         steer: &Steer<T>,
+        friction_share: Option<&[T; 4]>,
     ) -> WheelSlip<Four<T>> {
         let body = &self.body;
         let tires = self.tires.along(x.vx_m_s, Four::splat);
@@ -329,7 +335,14 @@ impl<P: Copy> VehicleConstants<P> {
         let [of_front, of_rear] =
             [tires.front_stiffness_1_rad.0[0], tires.rear_stiffness_1_rad.0[0]];
         let stiffness = Four([of_front, of_front, of_rear, of_rear]);
-        tires.slip(stiffness, velocity_m_s, Four::splat(yaw_rate))
+        match friction_share {
+            None => tires.slip(stiffness, velocity_m_s, Four::splat(yaw_rate)),
+            Some(share) => tires.on_ground(Four(*share)).slip(
+                stiffness / Four(*share),
+                velocity_m_s,
+                Four::splat(yaw_rate),
+            ),
+        }
     }
 }
 

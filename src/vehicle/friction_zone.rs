@@ -2,6 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::ranges::{OutOfRange, POSITION, ROAD_FRICTION};
+
+/// Most corners of a border: more than any outline in a plan of a scene has.
+pub const MAX_BORDER_CORNERS: usize = 1000;
+
+/// Smallest area of a zone, m².
+const LEAST_AREA_M2: f64 = 1e-4;
+
 /// A part of the ground with its own friction. Where zones overlap, the last of a list holds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -13,4 +21,241 @@ pub struct FrictionZone {
     /// Peak friction coefficient μ between tyre and ground in it, in the range
     /// [`ROAD_FRICTION`](crate::ranges::ROAD_FRICTION).
     pub friction: f64,
+}
+
+/// Reason for which a zone is refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FrictionZoneError {
+    /// The friction is out of range.
+    #[error("friction zone {zone:?}")]
+    Friction {
+        /// Name of the zone.
+        zone: String,
+        /// The value and its range.
+        source: OutOfRange,
+    },
+    /// A coordinate is not finite or too large.
+    #[error("friction zone {zone:?}: corner {corner} of border_m")]
+    Corner {
+        /// Name of the zone.
+        zone: String,
+        /// Number of the corner, from 1.
+        corner: usize,
+        /// The value and its range.
+        source: OutOfRange,
+    },
+    /// There are too few different corners for an area, or too many.
+    #[error(
+        "friction zone {zone:?}: border_m has {n_corners} corners, expected 3 to {MAX_BORDER_CORNERS} \
+         different ones"
+    )]
+    Corners {
+        /// Name of the zone.
+        zone: String,
+        /// Number of corners; corners that repeat the one before count once.
+        n_corners: usize,
+    },
+    /// The corners lie on one line.
+    #[error("friction zone {zone:?}: border_m encloses no area, expected one of 1 cm² or more")]
+    NoArea {
+        /// Name of the zone.
+        zone: String,
+    },
+    /// Two sides of the border cross each other.
+    #[error(
+        "friction zone {zone:?}: the sides of border_m from corner {first} and from corner {second} \
+         cross, expected corners in their order along the border"
+    )]
+    Crossing {
+        /// Name of the zone.
+        zone: String,
+        /// Number of the corner at which one side begins, from 1.
+        first: usize,
+        /// The same of the other side.
+        second: usize,
+    },
+}
+
+impl FrictionZone {
+    /// Checks friction and border. Sides of the border may touch each other, as around a hole, but not
+    /// cross.
+    ///
+    /// # Errors
+    /// [`FrictionZoneError`], which names the zone and what is expected.
+    pub fn check(&self) -> Result<(), FrictionZoneError> {
+        let zone = || self.name.clone();
+        ROAD_FRICTION
+            .check(self.friction)
+            .map_err(|source| FrictionZoneError::Friction { zone: zone(), source })?;
+        for (idx, corner) in self.border_m.iter().enumerate() {
+            for value in *corner {
+                let corner = idx + 1;
+                POSITION.check(value).map_err(|source| FrictionZoneError::Corner {
+                    zone: zone(),
+                    corner,
+                    source,
+                })?;
+            }
+        }
+        let corners = self.different_corners();
+        if !(3..=MAX_BORDER_CORNERS).contains(&corners.len()) {
+            return Err(FrictionZoneError::Corners { zone: zone(), n_corners: corners.len() });
+        }
+        if let Some([first, second]) = crossing(&corners) {
+            return Err(FrictionZoneError::Crossing { zone: zone(), first, second });
+        }
+        if area_m2(&self.border_m) < LEAST_AREA_M2 {
+            return Err(FrictionZoneError::NoArea { zone: zone() });
+        }
+        Ok(())
+    }
+
+    /// Whether the zone holds a place `[X, Y]`, m: a ray from there crosses the border an odd number
+    /// of times. Of a place on the border nothing is promised.
+    pub fn holds(&self, [x, y]: [f64; 2]) -> bool {
+        let mut holds = false;
+        for_each_side(&self.border_m, |a, b| {
+            if (a[1] > y) != (b[1] > y) {
+                let x_at_y = a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
+                holds ^= x < x_at_y;
+            }
+        });
+        holds
+    }
+
+    /// The corners with their numbers from 1, without those that repeat the corner before.
+    fn different_corners(&self) -> Vec<(usize, [f64; 2])> {
+        let mut corners: Vec<(usize, [f64; 2])> = Vec::with_capacity(self.border_m.len());
+        for (idx, corner) in self.border_m.iter().enumerate() {
+            if corners.last().is_none_or(|(_, before)| before != corner) {
+                corners.push((idx + 1, *corner));
+            }
+        }
+        while let ([(_, first), _, ..], Some((_, last))) = (&corners[..], corners.last())
+            && first == last
+        {
+            corners.pop();
+        }
+        corners
+    }
+}
+
+/// Peak friction of the ground at a place `[X, Y]`, m.
+///
+/// - `zones`: where they overlap, the last one holds;
+/// - `elsewhere`: friction where there is no zone.
+pub fn friction_at(zones: &[FrictionZone], place_m: [f64; 2], elsewhere: f64) -> f64 {
+    let zone = zones.iter().rev().find(|zone| zone.holds(place_m));
+    zone.map_or(elsewhere, |zone| zone.friction)
+}
+
+/// Calls a function for each side of a polygon, with its two ends.
+fn for_each_side(polygon: &[[f64; 2]], mut of: impl FnMut([f64; 2], [f64; 2])) {
+    let Some(mut before) = polygon.last().copied() else { return };
+    for &corner in polygon {
+        of(before, corner);
+        before = corner;
+    }
+}
+
+/// Area of a polygon whose sides do not cross, m².
+fn area_m2(polygon: &[[f64; 2]]) -> f64 {
+    let [x0, y0] = polygon.first().copied().unwrap_or_default();
+    let mut twice = 0.0;
+    for_each_side(polygon, |[ax, ay], [bx, by]| {
+        twice += (ax - x0) * (by - y0) - (bx - x0) * (ay - y0);
+    });
+    twice.abs() / 2.0
+}
+
+/// The numbers of the corners at which two sides begin that cross; `None` if no sides do.
+fn crossing(corners: &[(usize, [f64; 2])]) -> Option<[usize; 2]> {
+    let n = corners.len();
+    let side = |i: usize| (corners[i].0, corners[i].1, corners[(i + 1) % n].1);
+    for i in 0..n {
+        let (first, a, b) = side(i);
+        for j in i + 2..n {
+            let (second, c, d) = side(j);
+            if cross(a, b, c, d) {
+                return Some([first, second]);
+            }
+        }
+    }
+    None
+}
+
+/// Whether the ends of each of two sides lie on different sides of the other one.
+fn cross(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> bool {
+    let turn = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| {
+        (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
+    };
+    turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn zone(border_m: &[[f64; 2]], friction: f64) -> FrictionZone {
+        FrictionZone { name: "ice".to_owned(), border_m: border_m.to_vec(), friction }
+    }
+
+    /// An L with its corner at the origin, 4 m long and 1 m wide.
+    const BENT: [[f64; 2]; 6] =
+        [[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [1.0, 1.0], [1.0, 4.0], [0.0, 4.0]];
+
+    #[test]
+    fn a_concave_zone_holds_what_lies_in_it_in_either_sense() {
+        let mut reversed = BENT;
+        reversed.reverse();
+        let mut closed = BENT.to_vec();
+        closed.push(BENT[0]);
+        for border in [&BENT[..], &reversed[..], &closed[..]] {
+            let zone = zone(border, 0.1);
+            zone.check().unwrap();
+            for (place, holds) in [
+                ([0.5, 0.5], true),
+                ([3.5, 0.5], true),
+                ([0.5, 3.5], true),
+                ([2.0, 2.0], false),
+                ([1.5, 1.5], false),
+                ([-0.1, 0.5], false),
+                ([5.0, 0.5], false),
+            ] {
+                assert_eq!(zone.holds(place), holds, "{place:?} in {border:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_last_zone_holds_where_two_overlap() {
+        let square = |low: f64, high: f64| [[low, low], [high, low], [high, high], [low, high]];
+        let zones = [zone(&square(0.0, 2.0), 0.1), zone(&square(1.0, 3.0), 0.4)];
+        for (place, friction) in [(0.5, 0.1), (1.5, 0.4), (2.5, 0.4), (3.5, 0.8)] {
+            assert_eq!(friction_at(&zones, [place; 2], 0.8), friction, "at {place}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_area_with_a_friction_is_refused() {
+        let bow_tie = [[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]];
+        let on_a_line = [[0.0, 0.0], [1.0, 1.0], [2.0, 2.0]];
+        let repeated = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 0.0]];
+        let lost = [[0.0, 0.0], [1.0, f64::NAN], [1.0, 1.0]];
+        let many: Vec<[f64; 2]> =
+            (0..1001).map(|i| f64::from(i) / 160.0).map(|rad| [rad.cos(), rad.sin()]).collect();
+        for (border, friction, expected) in [
+            (&BENT[..], 3.0, "friction zone \"ice\""),
+            (&BENT[..], f64::NAN, "friction zone \"ice\""),
+            (&bow_tie, 0.1, "from corner 1 and from corner 3 cross"),
+            (&on_a_line, 0.1, "encloses no area"),
+            (&repeated, 0.1, "has 2 corners, expected 3"),
+            (&[], 0.1, "has 0 corners"),
+            (&lost, 0.1, "corner 2 of border_m"),
+            (&many[..], 0.1, "has 1001 corners"),
+        ] {
+            let error = zone(border, friction).check().unwrap_err();
+            assert!(error.to_string().contains(expected), "{error} for {expected}");
+        }
+    }
 }

@@ -17,6 +17,7 @@ mod tire;
 mod as_printed;
 mod four_dof;
 mod friction_zone;
+mod ground;
 
 mod ending;
 mod ending_file;
@@ -40,7 +41,7 @@ pub use ending::{
 pub use energy::MAX_ENERGY_GAIN;
 pub use fishhook::{USUAL_STEERING_RATIO, angle_at_third_g_rad, fishhook, fishhook_amplitude_rad};
 pub use four_dof::{CollisionForce, ContactPoint, VehicleEvaluation, VehicleInput};
-pub use friction_zone::FrictionZone;
+pub use friction_zone::{FrictionZone, FrictionZoneError, MAX_BORDER_CORNERS, friction_at};
 pub use loads::Wheel;
 pub use multibody_record::MultibodyRecord;
 pub use parameters::{GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters};

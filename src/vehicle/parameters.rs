@@ -19,7 +19,7 @@ use crate::ranges::{
 };
 use crate::vehicle::sheet::SheetQuantity;
 use crate::vehicle::tire::{TireParameters, WHEEL_MASS_SHARE};
-use crate::vehicle::{DataSheet, Equations, MultibodyRecord, VehicleMismatch};
+use crate::vehicle::{DataSheet, Equations, MultibodyRecord, VehicleMismatch, Wheel};
 
 /// Parameters of one vehicle in SI units. [`VehicleParameters::load`] and
 /// [`VehicleParameters::parse`] check every value against its range.
@@ -108,6 +108,19 @@ impl GeometryParameters {
     /// Wheelbase l_f + l_r, m.
     pub fn wheelbase_m(&self) -> f64 {
         self.cg_to_front_axle_m + self.cg_to_rear_axle_m
+    }
+
+    /// Place `[x, y]` of the centre of a wheel in body axes, m.
+    pub fn wheel_place_m(&self, wheel: Wheel) -> [f64; 2] {
+        let half_m = self.track_width_m / 2.0;
+        let x_m = match wheel.is_front() {
+            true => self.cg_to_front_axle_m,
+            false => -self.cg_to_rear_axle_m,
+        };
+        match wheel {
+            Wheel::FrontLeft | Wheel::RearLeft => [x_m, half_m],
+            Wheel::FrontRight | Wheel::RearRight => [x_m, -half_m],
+        }
     }
 }
 

@@ -9,8 +9,8 @@
 //! ```
 //!
 //! The fastest modes are those of the tyres, whose rates λ fall as 1/|v| (`stability.rs`); h_ref is the
-//! step of [`VehicleParameters::simulate`]. While a contact force acts, h is at most 5 ms; the mean of
-//! the force over a step keeps the impulse exact.
+//! step of [`VehicleParameters::simulate`]. While a contact force acts and where the ground has friction
+//! zones, h is at most 5 ms; the mean of the force over a step keeps the impulse exact.
 //! Below 0.3 m/s a car that only slows down is not followed by small steps: it comes to rest at its
 //! present deceleration a, after `|v|/(2 a)` more of its present velocities.
 //! The largest difference to the reference step is measured by the test of this file.
@@ -20,6 +20,7 @@ use rayon::prelude::*;
 
 use crate::numerics::{MAX_LANES, Packed, Stage};
 use crate::vehicle::batch::steps_side_by_side;
+use crate::vehicle::ground::Ground;
 use crate::vehicle::run::{Inputs, StepInputs};
 use crate::vehicle::tire::SLIP_ANGLE_SPEED_M_S;
 use crate::vehicle::{
@@ -30,7 +31,7 @@ use crate::vehicle::{
 /// Longest step of a path, s.
 pub const MAX_PATH_STEP_S: f64 = 0.02;
 
-/// Longest step while a contact force acts, s.
+/// Longest step while a contact force acts or where the ground has friction zones, s.
 const CONTACT_STEP_S: f64 = 5e-3;
 
 /// K: step times rate of the tyres, of 2.8 at the most for stability.
@@ -131,6 +132,9 @@ struct Lane<'a> {
     idx: usize,
     constants: VehicleConstants<f64>,
     inputs: Inputs<'a>,
+    ground: Ground<'a>,
+    /// Whether the friction zones are such that the motion can be computed.
+    has_proper_ground: bool,
     last_change_s: f64,
     force_end_s: f64,
     duration_s: f64,
@@ -160,8 +164,11 @@ impl<'a> Lane<'a> {
             last_change_s: inputs.last_change_s(),
             force_end_s: inputs.force_end_s(),
             inputs,
+            ground: Ground::new(&manoeuvre.friction_zones, vehicle),
+            has_proper_ground: manoeuvre.friction_zones.iter().all(|zone| zone.check().is_ok()),
             duration_s: manoeuvre.duration_s,
-            shortest_step_s: reference_s / vehicle.braked_substeps(reference_s) as f64,
+            shortest_step_s: reference_s
+                / vehicle.braked_substeps(reference_s, &manoeuvre.friction_zones) as f64,
             longest_step_s: MAX_PATH_STEP_S.min(vehicle.roll_step_s()),
             step_per_speed_s2_m: RATE_TIMES_STEP
                 / (vehicle.tire_rate_at_rest_1_s() * SLIP_ANGLE_SPEED_M_S),
@@ -182,7 +189,7 @@ impl<'a> Lane<'a> {
     /// Notes where the vehicle is, and says why the path ends, if it does.
     fn record(&mut self, limit: PathLimit) -> Option<PathEnd> {
         let x = self.now();
-        if !self.state.iter().all(|value| value.is_finite()) {
+        if !self.state.iter().all(|value| value.is_finite()) || !self.has_proper_ground {
             return Some(PathEnd::Failed);
         }
         self.points.push(PathPoint {
@@ -219,9 +226,9 @@ impl<'a> Lane<'a> {
             return Some(PathEnd::Rest);
         }
         self.speed_m_s = speed_m_s;
-        let is_pushed = self.time_s < self.force_end_s;
+        let is_short = self.time_s < self.force_end_s || self.ground.has_zones();
         let longest_s =
-            if is_pushed { self.longest_step_s.min(CONTACT_STEP_S) } else { self.longest_step_s };
+            if is_short { self.longest_step_s.min(CONTACT_STEP_S) } else { self.longest_step_s };
         let by_tires_s = self.step_per_speed_s2_m * (speed_m_s + SLIP_ANGLE_SPEED_M_S);
         self.step_s = by_tires_s.min(longest_s).max(self.shortest_step_s);
         None
@@ -257,7 +264,8 @@ impl<'a> Lane<'a> {
     /// Inputs over the coming step. Wheels that roll freely are braked by nothing, so that every lane
     /// takes the same way through the equations.
     fn coming(&self) -> StepInputs<f64> {
-        let mut inputs = self.inputs.over(self.time_s, self.step_s);
+        let inputs = self.inputs.over(self.time_s, self.step_s);
+        let mut inputs = inputs.on(&self.ground, &self.state);
         for instant in &mut inputs.instants {
             instant.wheels.get_or_insert([WheelEffort::FREE; 4]);
         }
@@ -302,7 +310,9 @@ impl WithSimd for Task<'_, '_> {
                 }
                 steps_side_by_side(simd, &of_lanes)
             });
-            let is_settled = running.iter().all(|lane| lane.time_s >= lane.last_change_s);
+            let is_settled = running
+                .iter()
+                .all(|lane| lane.time_s >= lane.last_change_s && !lane.ground.has_zones());
             step(simd, &of_all, &inputs, &mut running);
             if !end_lanes(&mut running, self.limit, &mut ended) {
                 constants = Some(of_all);

@@ -35,6 +35,7 @@ fn manoeuvres(vehicle: &VehicleParameters) -> Vec<Manoeuvre> {
                 controls: endings[i as usize % 4].controls(vehicle),
                 duration_s: 30.0,
                 ends_at_rest: true,
+                friction_zones: Vec::new(),
             }
         })
         .collect()

@@ -5,12 +5,13 @@ use crate::numerics::{Stage, euler_step, rk4_step};
 use crate::ranges::SIMULATED_DURATION;
 use crate::vehicle::controls::Controls;
 use crate::vehicle::energy::{EnergyWatch, MAX_ENERGY_GAIN};
+use crate::vehicle::ground::Ground;
 use crate::vehicle::recorder::{Forces, Recorder};
 use crate::vehicle::rest::RestWatch;
 use crate::vehicle::{
-    CollisionForce, ContactLoad, Equations, Integrator, Manoeuvre, Motion, MotionFlag, N_STATE,
-    OUTPUT_INTERVAL_S, SimulationError, VehicleConstants, VehicleInput, VehicleParameters,
-    VehicleState,
+    CollisionForce, ContactLoad, Equations, FrictionZone, Integrator, Manoeuvre, Motion,
+    MotionFlag, N_STATE, OUTPUT_INTERVAL_S, SimulationError, VehicleConstants, VehicleInput,
+    VehicleParameters, VehicleState,
 };
 
 /// A motion that is being simulated. It stands at an output instant.
@@ -18,6 +19,7 @@ pub(super) struct Run<'a> {
     vehicle: &'a VehicleParameters,
     pub constants: VehicleConstants<f64>,
     inputs: Inputs<'a>,
+    ground: Ground<'a>,
     ends_at_rest: bool,
     /// Whether the motion goes on where its energy grows.
     is_baseline: bool,
@@ -43,14 +45,16 @@ impl<'a> Run<'a> {
     ) -> Result<Self, SimulationError> {
         let duration_s = SIMULATED_DURATION.check(manoeuvre.duration_s)?;
         vehicle.check_relations()?;
+        manoeuvre.friction_zones.iter().try_for_each(FrictionZone::check)?;
         let inputs = Inputs::new(manoeuvre);
         let rest = RestWatch::after(inputs.last_change_s());
-        let (step_s, steps_per_output) = steps(vehicle, integrator, &manoeuvre.controls);
+        let (step_s, steps_per_output) = steps(vehicle, integrator, manoeuvre);
         let n_outputs = (duration_s / OUTPUT_INTERVAL_S).round() as usize + 1;
         Ok(Self {
             vehicle,
             constants: vehicle.constants(),
             inputs,
+            ground: Ground::new(&manoeuvre.friction_zones, vehicle),
             ends_at_rest: manoeuvre.ends_at_rest,
             is_baseline: integrator == Integrator::Euler || vehicle.equations == Equations::Paper,
             step_s,
@@ -71,17 +75,27 @@ impl<'a> Run<'a> {
 
     /// Input over the interval that begins.
     pub fn coming(&self) -> VehicleInput<f64> {
-        self.inputs.over(self.time_s(), OUTPUT_INTERVAL_S).instants[0]
+        let inputs = self.inputs.over(self.time_s(), OUTPUT_INTERVAL_S);
+        inputs.on(&self.ground, &self.state).instants[0]
     }
 
-    /// Whether something may act over the interval that begins.
+    /// Whether the inputs of the interval that begins may be others than those of a vehicle that
+    /// coasts on one ground.
     pub fn is_acted_on(&self) -> bool {
-        self.inputs.may_act_from(self.time_s())
+        self.ground.has_zones() || self.inputs.may_act_from(self.time_s())
+    }
+
+    /// Whether the ground has zones, so that inputs depend on where the vehicle is.
+    pub fn has_zones(&self) -> bool {
+        self.ground.has_zones()
     }
 
     /// Inputs over a step of the interval that begins.
-    pub fn inputs_of(&self, step: usize) -> StepInputs<f64> {
-        self.inputs.over(self.time_s() + step as f64 * self.step_s, self.step_s)
+    ///
+    /// - `state`: at the start of the step; it counts where the ground has zones.
+    pub fn inputs_of(&self, step: usize, state: &[f64; N_STATE]) -> StepInputs<f64> {
+        let start_s = self.time_s() + step as f64 * self.step_s;
+        self.inputs.over(start_s, self.step_s).on(&self.ground, state)
     }
 
     fn time_s(&self) -> f64 {
@@ -127,7 +141,7 @@ impl<'a> Run<'a> {
     /// Goes on to the next output instant.
     pub fn advance(&mut self, integrator: Integrator) {
         for step in 0..self.steps_per_output {
-            let inputs = self.inputs_of(step);
+            let inputs = self.inputs_of(step, &self.state);
             let f = |stage, x: &[f64; N_STATE]| self.constants.derivative(x, inputs.at(stage));
             self.state = match integrator {
                 Integrator::Rk4 => rk4_step(f, &self.state, self.step_s),
@@ -151,10 +165,16 @@ impl<'a> Run<'a> {
 }
 
 /// Length of the steps of an integrator for a vehicle, s, and how many make an output interval.
-fn steps(vehicle: &VehicleParameters, integrator: Integrator, controls: &Controls) -> (f64, usize) {
+fn steps(
+    vehicle: &VehicleParameters,
+    integrator: Integrator,
+    manoeuvre: &Manoeuvre,
+) -> (f64, usize) {
     let step_s = integrator.step_s();
     let n_substeps = match integrator {
-        Integrator::Rk4 if controls.wheels.is_some() => vehicle.braked_substeps(step_s),
+        Integrator::Rk4 if manoeuvre.controls.wheels.is_some() => {
+            vehicle.braked_substeps(step_s, &manoeuvre.friction_zones)
+        }
         Integrator::Rk4 => vehicle.substeps(step_s),
         Integrator::Euler => 1,
     };
@@ -192,6 +212,7 @@ impl<'a> Inputs<'a> {
         let at = |time_s: f64| VehicleInput {
             steer_rad: steer.as_ref().map_or(0.0, |steer| steer.at(time_s)),
             wheels: wheels.as_ref().and_then(|wheels| wheels.at(time_s)),
+            friction_share: None,
             collision,
         };
         StepInputs { instants: instants_s.map(at) }
@@ -249,6 +270,15 @@ impl<'a> Inputs<'a> {
 impl StepInputs<f64> {
     /// Inputs of a vehicle that coasts.
     pub const RELEASED: Self = Self { instants: [VehicleInput::RELEASED; 3] };
+
+    /// The same inputs with the friction of the ground under the wheels.
+    ///
+    /// - `state`: at the start of the step.
+    pub fn on(mut self, ground: &Ground<'_>, state: &[f64; N_STATE]) -> Self {
+        let share = ground.friction_share(&VehicleState::from_array(*state));
+        self.instants.iter_mut().for_each(|instant| instant.friction_share = share);
+        self
+    }
 }
 
 impl<T> StepInputs<T> {

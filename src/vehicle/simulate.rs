@@ -15,7 +15,8 @@ use crate::vehicle::controls::Controls;
 use crate::vehicle::energy::MAX_ENERGY_GAIN;
 use crate::vehicle::run::{Inputs, Run};
 use crate::vehicle::{
-    ContactPoint, VehicleInput, VehicleMismatch, VehicleParameters, VehicleState, Wheel,
+    ContactPoint, FrictionZone, FrictionZoneError, VehicleInput, VehicleMismatch,
+    VehicleParameters, VehicleState, Wheel,
 };
 
 /// Roll angle beyond which the roll model is not valid, rad. It is 15°, about three times the angle
@@ -73,11 +74,17 @@ pub struct Manoeuvre {
     /// Whether the motion ends before its duration where the vehicle has come to rest: after the end
     /// of the force and the last change of the controls, see [`Motion::rest_s`].
     pub ends_at_rest: bool,
+    /// Parts of the ground with their own friction; elsewhere it is that of the vehicle's tyres. Each
+    /// wheel has the friction of the ground below its centre at the start of a step of the
+    /// integration, over the step. The controls do not know of them: a braking force that is a share
+    /// of μ m g has the μ of the vehicle.
+    pub friction_zones: Vec<FrictionZone>,
 }
 
 impl Manoeuvre {
     /// Inputs of the equations of motion for `n_steps` steps of `step_s` seconds from t = 0: the
     /// mean of the collision force over each step, and the steer angle at the start of the step.
+    /// They do not contain the friction zones, which depend on where the vehicle is.
     pub fn inputs(&self, step_s: f64, n_steps: usize) -> Vec<VehicleInput<f64>> {
         let inputs = Inputs::new(self);
         let over = |i: usize| inputs.over(i as f64 * step_s, step_s).instants[0];
@@ -179,6 +186,9 @@ pub enum SimulationError {
     /// Two parameters of the vehicle do not go together.
     #[error(transparent)]
     Vehicle(#[from] VehicleMismatch),
+    /// A friction zone has a friction out of range or no proper border.
+    #[error(transparent)]
+    FrictionZone(#[from] FrictionZoneError),
     /// The samples do not form a valid time series.
     #[error(transparent)]
     Series(#[from] SeriesError),
@@ -194,7 +204,8 @@ impl VehicleParameters {
     ///
     /// # Errors
     /// [`SimulationError::Duration`] if the duration is out of range, [`SimulationError::Vehicle`]
-    /// if two parameters do not go together, [`SimulationError::Diverged`] if the state becomes
+    /// if two parameters do not go together, [`SimulationError::FrictionZone`] if a zone is refused,
+    /// [`SimulationError::Diverged`] if the state becomes
     /// infinite or NaN, [`SimulationError::EnergyGain`] if the energy grows without a force,
     /// [`SimulationError::Series`] if the samples do not form a valid time series.
     pub fn simulate(

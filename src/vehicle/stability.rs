@@ -19,10 +19,10 @@
 //! 1996, section IV.2.
 
 use crate::units::STANDARD_GRAVITY_M_S2;
-use crate::vehicle::VehicleParameters;
 use crate::vehicle::tire::{
     LOCKED_SLIDING_SPEED_M_S, ROLLING_RESISTANCE_SPEED_M_S, SLIP_ANGLE_SPEED_M_S,
 };
+use crate::vehicle::{FrictionZone, VehicleParameters};
 
 /// Largest h λ of a step: half of what the linear modes would bear, as the tyres are not linear. The
 /// vehicles that come with the program have at most 0.96 at the reference step of 1 ms.
@@ -139,8 +139,12 @@ impl VehicleParameters {
     }
 
     /// The same for a vehicle whose wheels may be braked or locked.
-    pub(crate) fn braked_substeps(&self, step_s: f64) -> usize {
-        self.substeps(step_s).max(parts(self.braked_rate_1_s(), step_s))
+    ///
+    /// - `zones`: parts of the ground with their own friction.
+    pub(crate) fn braked_substeps(&self, step_s: f64, zones: &[FrictionZone]) -> usize {
+        let frictions = zones.iter().map(|zone| zone.friction);
+        let friction = frictions.fold(self.tires.friction, f64::max);
+        self.substeps(step_s).max(parts(self.braked_rate_1_s(friction), step_s))
     }
 
     /// The same for the roll alone, where something else bounds the energy of the planar motion.
@@ -186,12 +190,14 @@ impl VehicleParameters {
     }
 
     /// Fastest decay of a motion on locked wheels, 1/s: `max(κ, 1) μ g/ε (1 + m x²/I_zz')`.
-    fn braked_rate_1_s(&self) -> f64 {
+    ///
+    /// - `friction`: the largest friction of the ground.
+    fn braked_rate_1_s(&self, friction: f64) -> f64 {
         let (mass, geometry) = (&self.mass, &self.geometry);
         let arm_m = geometry.cg_to_front_axle_m.max(geometry.cg_to_rear_axle_m);
         let arm_m = arm_m.hypot(geometry.track_width_m / 2.0);
         let yaw_inertia = mass.yaw_inertia_kg_m2 * self.uncoupled_share();
-        let friction = self.tires.friction * self.tires.longitudinal_friction_ratio.max(1.0);
+        let friction = friction * self.tires.longitudinal_friction_ratio.max(1.0);
         let at_rest = friction * STANDARD_GRAVITY_M_S2 / LOCKED_SLIDING_SPEED_M_S;
         at_rest * (1.0 + mass.mass_kg * arm_m * (arm_m / yaw_inertia))
     }

@@ -199,6 +199,18 @@ impl TireParameters {
 }
 
 impl<T: Lanes> TireConstants<T> {
+    /// The tyres on a ground of another friction: peak, sliding and locked friction change alike.
+    ///
+    /// The cornering stiffness stays, as it belongs to the tyre: C = c/μ is divided by the share.
+    ///
+    /// - `share`: friction of the ground over that of the tyres.
+    #[inline(always)]
+    pub(super) fn on_ground(mut self, share: T) -> Self {
+        self.friction *= share;
+        self.sliding_friction *= share;
+        self
+    }
+
     /// Computes slip angle, friction and rolling resistance of a wheel, or of four.
     ///
     /// - `stiffness_1_rad`: C of the wheel, 1/rad;

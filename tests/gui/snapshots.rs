@@ -30,6 +30,7 @@ fn analysis(dataset: &str, case: &str) -> Analysis {
         duration_s: 4.0,
         ending: impactlab::vehicle::Ending::default(),
         ends_at_rest: false,
+        friction_zones: Vec::new(),
     };
     let dataset = dataset.expect("nothing cancels");
     analyse_case(dataset.case(case).expect("a shipped case"), &settings).expect("it runs")

@@ -38,6 +38,7 @@ fn motion(vehicle: &VehicleParameters, initial: VehicleState<f64>, ending: &Endi
         controls: ending.controls(vehicle),
         duration_s: 60.0,
         ends_at_rest: true,
+        friction_zones: Vec::new(),
         ..Manoeuvre::default()
     };
     vehicle.simulate(&manoeuvre, Integrator::Rk4).unwrap()

@@ -4,7 +4,7 @@ use crate::numerics::wrap_angle_rad;
 use crate::reconstruct::evidence::{Evidence, Mark, MarkKind, Measured, RestPose};
 use crate::reconstruct::likelihood::discrepancy::{Discrepancy, PathResidual, student};
 use crate::reconstruct::likelihood::onset::Onset;
-use crate::reconstruct::likelihood::track::{Nearest, Track, wheel_place_m};
+use crate::reconstruct::likelihood::track::{Nearest, Track};
 use crate::reconstruct::{CollisionMotion, Latent};
 use crate::vehicle::Wheel;
 
@@ -179,7 +179,7 @@ impl<'a> Comparison<'a> {
     }
 
     fn add_mark(&mut self, mark: &Mark) {
-        let place_m = wheel_place_m(&self.motion.vehicle.geometry, mark.wheel);
+        let place_m = self.motion.vehicle.geometry.wheel_place_m(mark.wheel);
         let wheel = self.track.wheel(place_m);
         let nearest = wheel.nearest(&mark.points_m);
         let onset = Onset::of(self.motion, self.track, mark.wheel, &wheel);

@@ -1,6 +1,6 @@
 //! The path of a car with what the comparison with marks needs of it.
 
-use crate::vehicle::{GeometryParameters, Path, PathEnd, PathPoint, Wheel};
+use crate::vehicle::{Path, PathEnd, PathPoint};
 
 /// Time between the points of a path that are kept, s.
 const POINT_INTERVAL_S: f64 = 0.018;
@@ -255,18 +255,5 @@ impl WheelTrack {
             (length > 1e-9).then(|| piece.map(|part| part / length))
         });
         moved.unwrap_or([1.0, 0.0])
-    }
-}
-
-/// Place of a wheel in the axes of the car, from the CG, m.
-pub(super) fn wheel_place_m(geometry: &GeometryParameters, wheel: Wheel) -> [f64; 2] {
-    let half_m = geometry.track_width_m / 2.0;
-    let x_m = match wheel.is_front() {
-        true => geometry.cg_to_front_axle_m,
-        false => -geometry.cg_to_rear_axle_m,
-    };
-    match wheel {
-        Wheel::FrontLeft | Wheel::RearLeft => [x_m, half_m],
-        Wheel::FrontRight | Wheel::RearRight => [x_m, -half_m],
     }
 }

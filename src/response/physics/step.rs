@@ -286,7 +286,7 @@ mod tests {
                 WheelEffort { drive_n, braking_n, locked }
             };
             let wheels = efforts.map(|wheels| wheels.map(effort));
-            let u = VehicleInput { steer_rad: 0.1, wheels, collision };
+            let u = VehicleInput { steer_rad: 0.1, wheels, friction_share: None, collision };
             let states = of_lanes.map(|[vx, vy, r]| VehicleState {
                 yaw_rad: vy, roll_rad: r / 50.0, ..state(vx, vy, r / 3.0)
             });
