@@ -35,6 +35,9 @@ sources! {
     /// vehicles sold in Canada, as served by the vPIC interface of the NHTSA and collected, rounded to
     /// 1 cm, in the public repository `shifter907/allcarsdb` (`data/body_configs.csv`).
     Cvs2024;
+    /// Esri, *World files for raster datasets*, ArcGIS documentation, 2024. The six numbers of a world
+    /// file; the last two are the middle of the left top pixel.
+    EsriWorldFiles;
     /// A. Gelman, X.-L. Meng, H. Stern, *Posterior predictive assessment of model fitness via realized
     /// discrepancies*, Statistica Sinica 6, 1996.
     GelmanMengStern1996;

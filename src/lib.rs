@@ -14,7 +14,7 @@
 //! 3. [`data`]: files become checked time series in SI units;
 //! 4. [`vehicle`]: parameters, tires and the equations of motion, which exist only here;
 //! 5. [`collision`]: the impact: impulse, contact geometry, scenarios, pulses, channel filter,
-//!    crush;
+//!    crush; [`site`]: the ground: orthophoto, lanes, zones of friction, drawings;
 //! 6. [`nn`], [`uncertainty`], [`compare`]: layers, parameters, optimiser and files of networks;
 //!    distributions of force curves and positions; comparison of a simulation with a reference;
 //! 7. [`learning`]: what the trainings of both networks have in common;
@@ -70,6 +70,7 @@ pub mod report;
 pub mod response;
 pub mod scene;
 pub mod shipped;
+pub mod site;
 pub mod study;
 pub mod uncertainty;
 pub mod units;

@@ -37,3 +37,15 @@ pub const MAX_RESULTS_BYTES: u64 = 64 << 20;
 
 /// Bytes of a model or a checkpoint. The networks here have a few megabytes.
 pub const MAX_MODEL_BYTES: u64 = 256 << 20;
+
+/// Bytes of an orthophoto.
+pub const MAX_PICTURE_BYTES: u64 = 1 << 30;
+
+/// Pixels of an orthophoto: 4 bytes each in memory, and a third more for its smaller copies.
+pub const MAX_PICTURE_PIXELS: u64 = 128 << 20;
+
+/// Bytes of a drawing.
+pub const MAX_DRAWING_BYTES: u64 = 64 << 20;
+
+/// Points of the lines of a drawing.
+pub const MAX_DRAWING_POINTS: usize = 2_000_000;

@@ -45,8 +45,8 @@ pub mod write;
 pub use attributes::{Attributes, Value};
 pub use budget::{
     MAX_CASE_CELLS, MAX_CASES, MAX_CASES_BYTES, MAX_CELL_BYTES, MAX_COLUMNS, MAX_DATASET_BYTES,
-    MAX_LINE_BYTES, MAX_MODEL_BYTES, MAX_RESULTS_BYTES, MAX_SETTINGS_BYTES, MAX_TABLE_BYTES,
-    MAX_WORKBOOK_BYTES,
+    MAX_DRAWING_BYTES, MAX_DRAWING_POINTS, MAX_LINE_BYTES, MAX_MODEL_BYTES, MAX_PICTURE_BYTES,
+    MAX_PICTURE_PIXELS, MAX_RESULTS_BYTES, MAX_SETTINGS_BYTES, MAX_TABLE_BYTES, MAX_WORKBOOK_BYTES,
 };
 pub use case_attributes::{AttributeColumn, ForceAttributes, StruckSide, TrajectoryAttributes};
 pub use case_braking::CaseBraking;

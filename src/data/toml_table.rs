@@ -200,6 +200,23 @@ impl<'a> TomlTable<'a> {
         }
     }
 
+    /// Reads a list of texts; `None` if there is no such key.
+    ///
+    /// # Errors
+    /// [`TomlError::Value`] if it is not a list, or at the first entry that is not a text.
+    pub fn strings(&mut self, key: &str) -> Result<Option<Vec<String>>, TomlError> {
+        let Some((_, value)) = self.take(key) else { return Ok(None) };
+        let expected = || "texts in quotes, [\"a\", \"b\"]".to_owned();
+        let Some(entries) = value.get_ref().as_array() else {
+            return Err(self.bad_value(key, value, expected()));
+        };
+        let text = |entry: &Spanned<DeValue<'_>>| match entry.get_ref().as_str() {
+            Some(text) => Ok(text.to_owned()),
+            None => Err(self.bad_value(key, entry, expected())),
+        };
+        entries.iter().map(text).collect::<Result<_, _>>().map(Some)
+    }
+
     /// Reads one of several words and returns its index in `words`; `None` if there is no such key.
     ///
     /// # Errors

@@ -260,6 +260,22 @@ ranges! {
 }
 
 ranges! {
+    /// The ground of a scene.
+    SITE = "site file";
+    SURVEY_COORDINATE: "coordinate of the ground" = real(Quantity::Length, [-2e7, 2e7]),
+        "coordinates of national grids reach 10⁷ m";
+    SITE_AZIMUTH: "azimuth of X" = real(Quantity::Angle, [-2.0 * PI, 2.0 * PI]),
+        "direction of X, clockwise from grid north";
+    PIXEL_COORDINATE: "point of an orthophoto" = in_unit("px", [0.0, 1e6]),
+        "column or row, counted from the left top corner of the picture";
+    PIXEL_SIZE: "pixel of an orthophoto" = real(Quantity::Length, [0.0005, 100.0]),
+        "side of a pixel on the ground";
+    SITE_DISTANCE: "distance on the ground" = real(Quantity::Length, [0.05, 1e5]),
+        "distance between two points of an orthophoto";
+    LANE_WIDTH: "lane width" = real(Quantity::Length, [0.5, 50.0]), "width of a lane";
+}
+
+ranges! {
     /// Pictures.
     PICTURES = "pictures";
     PICTURE_SIDE: "picture side" = whole([16, 16_384]), "width or height of a picture in pixels";

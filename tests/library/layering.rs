@@ -13,7 +13,7 @@ const LAYERS: &[&[&str]] = &[
     &["ranges", "numerics", "jobs"],
     &["data"],
     &["vehicle"],
-    &["collision"],
+    &["collision", "site"],
     &["nn", "uncertainty", "compare"],
     &["learning"],
     &["force", "response"],

@@ -1,0 +1,123 @@
+//! Why a site cannot be read.
+
+use std::path::PathBuf;
+
+use crate::data::{DataError, TomlError};
+
+/// The reason why a site file, or a file that it names, is refused.
+#[derive(Debug, thiserror::Error)]
+pub enum SiteError {
+    /// The site file is wrong at a place.
+    #[error(transparent)]
+    Toml(#[from] TomlError),
+    /// A file cannot be opened or written, is too large or is not text.
+    #[error(transparent)]
+    Data(#[from] DataError),
+    /// A line of a world file is not what it has to be.
+    #[error("{}:{line}: is {text:?}, expected {expected}", path.display())]
+    WorldFile {
+        /// The world file.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: usize,
+        /// What stands there.
+        text: String,
+        /// What is expected.
+        expected: &'static str,
+    },
+    /// Nothing says where the pixels of an orthophoto lie.
+    #[error(
+        "{}: has no world file beside it, expected {name}, or points_px with points_m or distance_m in \
+         the site file",
+        path.display()
+    )]
+    NoPlace {
+        /// The orthophoto.
+        path: PathBuf,
+        /// Name of the world file that was looked for.
+        name: String,
+    },
+    /// An orthophoto cannot be decoded.
+    #[error("{}: cannot be read as a picture, expected PNG, JPEG or TIFF", path.display())]
+    Picture {
+        /// The orthophoto.
+        path: PathBuf,
+        /// The error of the decoder.
+        source: image::ImageError,
+    },
+    /// An orthophoto is too large.
+    #[error(
+        "{}: has {} x {} pixels, expected at most {limit} in all; cut it to the scene or halve its \
+         resolution",
+        path.display(), size_px[0], size_px[1]
+    )]
+    TooManyPixels {
+        /// The orthophoto.
+        path: PathBuf,
+        /// Its width and height, pixels.
+        size_px: [u32; 2],
+        /// The largest permitted number of pixels.
+        limit: u64,
+    },
+    /// A point of an orthophoto lies outside of it.
+    #[error(
+        "{}: orthophoto.points_px has [{}, {}], expected a point within the {} x {} pixels of {}",
+        path.display(), point_px[0], point_px[1], size_px[0], size_px[1], picture.display()
+    )]
+    PointOutside {
+        /// The site file.
+        path: PathBuf,
+        /// The orthophoto.
+        picture: PathBuf,
+        /// The point, pixels.
+        point_px: [f64; 2],
+        /// Width and height of the orthophoto, pixels.
+        size_px: [u32; 2],
+    },
+    /// A drawing cannot be read.
+    #[error("{}: cannot be read as a DXF drawing: {message}", path.display())]
+    Drawing {
+        /// The drawing.
+        path: PathBuf,
+        /// What the reader says, with the line of the file.
+        message: String,
+    },
+    /// A drawing does not say in which unit it is.
+    #[error(
+        "{}: does not say in which unit it is drawn ($INSUNITS), expected unit in [dxf] of the site file",
+        path.display()
+    )]
+    NoUnit {
+        /// The drawing.
+        path: PathBuf,
+    },
+    /// A drawing has not the layer that is asked for.
+    #[error("{}: has no layer {layer:?}, expected one of {}", path.display(), known.join(", "))]
+    NoLayer {
+        /// The drawing.
+        path: PathBuf,
+        /// The layer.
+        layer: String,
+        /// The layers that have lines.
+        known: Vec<String>,
+    },
+    /// A drawing has too many points.
+    #[error("{}: has more than {limit} points; name the layers that are wanted", path.display())]
+    TooManyPoints {
+        /// The drawing.
+        path: PathBuf,
+        /// The largest permitted number of points.
+        limit: usize,
+    },
+    /// A drawing lies outside of the permitted coordinates.
+    #[error(
+        "{}: has a point at [{}, {}] m, expected coordinates of -2e7 to 2e7 m; is the unit right?",
+        path.display(), at_m[0], at_m[1]
+    )]
+    FarPoint {
+        /// The drawing.
+        path: PathBuf,
+        /// The point, m.
+        at_m: [f64; 2],
+    },
+}

@@ -1,0 +1,336 @@
+//! Reads a site file. Its key names contain the units; all places are in the axes of the site, X along
+//! the road and Y to the left, unless a key says otherwise.
+//!
+//! ```toml
+//! name = "Crossing of the two roads"
+//!
+//! [origin]                          # optional: the site in survey coordinates
+//! easting_m = 512345.0
+//! northing_m = 5423456.0
+//! x_axis_azimuth_deg = 75           # direction of X, clockwise from grid north; 90 if not given
+//!
+//! [orthophoto]
+//! file = "crossing.png"             # PNG, JPEG or TIFF, beside the site file or in a folder below it
+//! world_file = "crossing.pgw"       # found beside the picture if not given
+//! # or two of its points, [column, row] from the left top corner, with their places
+//! # points_px = [[120.5, 340], [1820, 352]]
+//! # points_m = [[0, 0], [42.5, 0]]
+//! # or with their distance: the picture is upright, its columns run along X
+//! # distance_m = 42.5
+//! # first_point_m = [0, 0]          # where the first one is
+//!
+//! [[lane]]
+//! name = "eastbound"
+//! centre_line_m = [[-60, -1.75], [90, -1.75]]
+//! width_m = 3.5                     # or left_edge_m and right_edge_m, seen along the lane
+//! left = "dashed"                   # none, solid, dashed
+//! right = "solid"
+//!
+//! [[kerb]]
+//! line_m = [[-60, -3.6], [90, -3.6]]
+//!
+//! [[friction_zone]]                 # where zones overlap, the last one holds
+//! name = "wet patch"
+//! border_m = [[8, -3.5], [20, -3.5], [20, 3.5], [8, 3.5]]
+//! friction = 0.35
+//!
+//! [dxf]
+//! file = "survey.dxf"               # in survey coordinates, if there is an [origin]
+//! unit = "m"                        # m, cm, mm, ft, us-survey-ft, in; that of the drawing if not given
+//! layers = ["KERB", "ROAD"]         # all that are switched on if not given
+//! ```
+
+use std::path::{Component, Path, PathBuf};
+
+use crate::data::{TomlError, TomlFile, TomlTable};
+use crate::ranges::{
+    LANE_WIDTH, PIXEL_COORDINATE, POSITION, ROAD_FRICTION, SITE_AZIMUTH, SITE_DISTANCE,
+    SURVEY_COORDINATE,
+};
+use crate::site::parts::file_name;
+use crate::site::picture::{is_picture_file, picture_size_px};
+use crate::site::{
+    DrawingFile, DrawingUnit, EdgeLine, Kerb, Lane, Orthophoto, PixelMap, Site, SiteError,
+    SiteOrigin, WorldFile, world_file_beside,
+};
+use crate::vehicle::FrictionZone;
+
+/// Keys of which one is the sign of a site file.
+const OWN_KEYS: [&str; 6] = ["origin", "orthophoto", "lane", "kerb", "friction_zone", "dxf"];
+
+impl Site {
+    /// Whether a TOML file is meant as a site: it has a table that no vehicle, scenario or evidence has.
+    pub fn is_meant_by(path: &Path) -> bool {
+        let Ok(text) = TomlFile::read(path) else { return false };
+        let file = TomlFile { path, text: &text };
+        !file.contains("struck_car") && OWN_KEYS.iter().any(|key| file.contains(key))
+    }
+
+    /// Reads a site file, or a picture as a site of its own ([`Site::of_picture`]). Orthophoto and drawing
+    /// are looked at but not decoded.
+    ///
+    /// # Errors
+    /// [`SiteError`] with file, line, key and what is expected.
+    pub fn load(path: &Path) -> Result<Self, SiteError> {
+        if is_picture_file(path) {
+            return Self::of_picture(path);
+        }
+        let text = TomlFile::read(path)?;
+        Self::from_toml(TomlFile { path, text: &text })
+    }
+
+    /// Reads the text of a site file. The files that it names begin at its folder.
+    ///
+    /// # Errors
+    /// The errors of [`Site::load`].
+    pub fn from_toml(file: TomlFile<'_>) -> Result<Self, SiteError> {
+        let root = file.parse()?;
+        let mut top = TomlTable::root(file, &root);
+        let folder = file.path.parent().unwrap_or(Path::new(""));
+        let name = top.string("name")?;
+        let origin = top.optional_table("origin")?.map(read_origin).transpose()?;
+        let place = (folder, origin.unwrap_or_default());
+        let orthophoto = match top.optional_table("orthophoto")? {
+            Some(table) => Some(read_orthophoto(table, place, file.path)?),
+            None => None,
+        };
+        let lanes = top.tables("lane")?.into_iter().map(read_lane).collect::<Result<_, _>>()?;
+        let kerbs = top.tables("kerb")?.into_iter().map(read_kerb).collect::<Result<_, _>>()?;
+        let zones = top.tables("friction_zone")?.into_iter().map(read_zone);
+        let friction_zones = zones.collect::<Result<_, _>>()?;
+        let drawing = match top.optional_table("dxf")? {
+            Some(table) => Some(read_drawing_file(table, folder)?),
+            None => None,
+        };
+        top.finish()?;
+        Ok(Self {
+            name: name.unwrap_or_else(|| file_name(file.path)),
+            path: file.path.to_owned(),
+            origin,
+            orthophoto,
+            lanes,
+            kerbs,
+            friction_zones,
+            drawing,
+        })
+    }
+}
+
+fn read_origin(mut table: TomlTable<'_>) -> Result<SiteOrigin, TomlError> {
+    let easting_m = table.require("easting", &SURVEY_COORDINATE)?;
+    let northing_m = table.require("northing", &SURVEY_COORDINATE)?;
+    let azimuth_rad = table.number("x_axis_azimuth", &SITE_AZIMUTH)?;
+    table.finish()?;
+    let usual = SiteOrigin::default();
+    Ok(SiteOrigin {
+        survey_m: [easting_m, northing_m],
+        x_axis_azimuth_rad: azimuth_rad.unwrap_or(usual.x_axis_azimuth_rad),
+    })
+}
+
+/// A file beside the site file or below it, so that a site can be moved with all that belongs to it.
+fn read_file(
+    table: &mut TomlTable<'_>,
+    key: &str,
+    folder: &Path,
+) -> Result<Option<PathBuf>, TomlError> {
+    let Some(name) = table.string(key)? else { return Ok(None) };
+    let parts = Path::new(&name).components();
+    let is_below = parts.clone().all(|part| matches!(part, Component::Normal(_)));
+    if !is_below || parts.count() == 0 || name.contains('\\') {
+        let expected = "a file beside the site file or in a folder below it, such as \"road.png\"";
+        return Err(table.refuse_last(expected));
+    }
+    Ok(Some(folder.join(name)))
+}
+
+fn required_file(
+    table: &mut TomlTable<'_>,
+    key: &str,
+    folder: &Path,
+) -> Result<PathBuf, TomlError> {
+    read_file(table, key, folder)?.ok_or_else(|| table.missing(key))
+}
+
+fn read_orthophoto(
+    mut table: TomlTable<'_>,
+    (folder, origin): (&Path, SiteOrigin),
+    site: &Path,
+) -> Result<Orthophoto, SiteError> {
+    let file = required_file(&mut table, "file", folder)?;
+    if !is_picture_file(&file) {
+        return Err(table.refuse_last("a .png, .jpg, .jpeg, .tif or .tiff file").into());
+    }
+    let size_px = picture_size_px(&file)?;
+    let map = match read_map(&mut table)? {
+        Some(map) => Some(map),
+        None => read_points(&mut table, (size_px, &file), site)?,
+    };
+    let world_file = match map {
+        Some(_) => None,
+        None => match read_file(&mut table, "world_file", folder)? {
+            Some(file) => Some(file),
+            None => Some(world_file_beside(&file)?),
+        },
+    };
+    let map = match (map, &world_file) {
+        (Some(map), _) => map,
+        (None, Some(file)) => PixelMap::of_world_file(&WorldFile::load(file)?, &origin),
+        (None, None) => return Err(table.missing("world_file").into()),
+    };
+    table.finish()?;
+    Ok(Orthophoto { file, world_file, size_px, map, is_placed: true })
+}
+
+/// The place of a picture by its corner and its pixels, as the window writes it.
+fn read_map(table: &mut TomlTable<'_>) -> Result<Option<PixelMap>, TomlError> {
+    let Some(corner_m) = table.point("corner_m", &SURVEY_COORDINATE)? else { return Ok(None) };
+    let Some(per_column_m) = table.point("per_column_m", &SURVEY_COORDINATE)? else {
+        return Err(table.missing("per_column_m"));
+    };
+    let Some(per_row_m) = table.point("per_row_m", &SURVEY_COORDINATE)? else {
+        return Err(table.missing("per_row_m"));
+    };
+    checked(PixelMap { corner_m, per_column_m, per_row_m }, table).map(Some)
+}
+
+/// The place of a picture by two of its points; `None` if the file has none.
+fn read_points(
+    table: &mut TomlTable<'_>,
+    (size_px, picture): ([u32; 2], &Path),
+    site: &Path,
+) -> Result<Option<PixelMap>, SiteError> {
+    let Some(points) = table.points("points_px", &PIXEL_COORDINATE)? else { return Ok(None) };
+    let Ok(px) = <[[f64; 2]; 2]>::try_from(points) else {
+        return Err(table.refuse_last("two points [column, row]").into());
+    };
+    let is_outside = |at: &&[f64; 2]| (0..2).any(|axis| at[axis] > f64::from(size_px[axis]));
+    if let Some(point_px) = px.iter().find(is_outside) {
+        let (path, picture) = (site.to_owned(), picture.to_owned());
+        return Err(SiteError::PointOutside { path, picture, point_px: *point_px, size_px });
+    }
+    if px[0] == px[1] {
+        return Err(table.refuse_last("two points that differ").into());
+    }
+    let places = table.points("points_m", &SURVEY_COORDINATE)?;
+    let map = match places {
+        Some(places) => {
+            let two = <[[f64; 2]; 2]>::try_from(places).ok();
+            let map = two.and_then(|metres| PixelMap::of_two_points(px, metres));
+            map.ok_or_else(|| table.refuse_last("two points [X, Y] that differ"))?
+        }
+        None => {
+            let Some(distance_m) = table.number("distance", &SITE_DISTANCE)? else {
+                return Err(table.missing("points_m or distance_m").into());
+            };
+            let first_m = table.point("first_point_m", &SURVEY_COORDINATE)?.unwrap_or([0.0; 2]);
+            let map = PixelMap::of_distance(px, distance_m, first_m);
+            map.ok_or_else(|| table.refuse_last("the distance of two points that differ"))?
+        }
+    };
+    Ok(Some(checked(map, table)?))
+}
+
+/// Refuses a map whose pixels are too small, too large or mirrored.
+fn checked(map: PixelMap, table: &TomlTable<'_>) -> Result<PixelMap, TomlError> {
+    match map.problem() {
+        Some(expected) => Err(table.refuse_last(expected)),
+        None => Ok(map),
+    }
+}
+
+/// A line of at least two points that differ.
+fn read_line(table: &mut TomlTable<'_>, key: &str) -> Result<Option<Vec<[f64; 2]>>, TomlError> {
+    let Some(mut points) = table.points(key, &SURVEY_COORDINATE)? else { return Ok(None) };
+    points.dedup();
+    if points.len() < 2 {
+        return Err(table.refuse_last("at least two points [X, Y] that differ"));
+    }
+    Ok(Some(points))
+}
+
+fn read_lane(mut table: TomlTable<'_>) -> Result<Lane, TomlError> {
+    let name = table.string("name")?.unwrap_or_default();
+    let centre = read_line(&mut table, "centre_line_m")?;
+    let width_m = table.number("width", &LANE_WIDTH)?;
+    let [left, right] = ["left_edge_m", "right_edge_m"].map(|key| read_line(&mut table, key));
+    let (left_m, right_m) = match (centre, left?, right?) {
+        (Some(centre), None, None) => {
+            let Some(width_m) = width_m else { return Err(table.missing("width_m")) };
+            (beside(&centre, width_m / 2.0), beside(&centre, -width_m / 2.0))
+        }
+        (None, Some(left), Some(right)) if width_m.is_none() => (left, right),
+        (None, Some(_), None) => return Err(table.missing("right_edge_m")),
+        (None, None, Some(_)) => return Err(table.missing("left_edge_m")),
+        (None, None, None) => return Err(table.missing("centre_line_m")),
+        _ => return Err(table.conflict("centre_line_m with width_m")),
+    };
+    let mut edge = |key| {
+        let chosen = table.choice(key, &EdgeLine::WORDS)?;
+        Ok::<_, TomlError>(chosen.map_or(EdgeLine::default(), |idx| EdgeLine::ALL[idx]))
+    };
+    let edges = [edge("left")?, edge("right")?];
+    table.finish()?;
+    Ok(Lane { name, left_m, right_m, edges })
+}
+
+/// The line at a distance to the left of another one, m; corners are mitred, sharp ones to at most twice
+/// the distance.
+fn beside(line_m: &[[f64; 2]], distance_m: f64) -> Vec<[f64; 2]> {
+    let way = |from: [f64; 2], to: [f64; 2]| {
+        let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+        let length = dx.hypot(dy);
+        [dx / length, dy / length]
+    };
+    let ways: Vec<[f64; 2]> = line_m.windows(2).map(|pair| way(pair[0], pair[1])).collect();
+    let at = |idx: usize| {
+        let before = ways[idx.saturating_sub(1)];
+        let after = ways[idx.min(ways.len() - 1)];
+        let [nx, ny] = [-(before[1] + after[1]), before[0] + after[0]];
+        // The mitre is longer than the distance by one over the cosine of half the turn.
+        let squared = (nx * nx + ny * ny).max(1.0);
+        let [x, y] = line_m[idx];
+        [x + 2.0 * distance_m * nx / squared, y + 2.0 * distance_m * ny / squared]
+    };
+    (0..line_m.len()).map(at).collect()
+}
+
+fn read_kerb(mut table: TomlTable<'_>) -> Result<Kerb, TomlError> {
+    let name = table.string("name")?.unwrap_or_default();
+    let line_m = read_line(&mut table, "line_m")?;
+    let Some(line_m) = line_m else { return Err(table.missing("line_m")) };
+    table.finish()?;
+    Ok(Kerb { name, line_m })
+}
+
+fn read_zone(mut table: TomlTable<'_>) -> Result<FrictionZone, TomlError> {
+    let name = table.string("name")?;
+    let Some(name) = name.filter(|name| !name.trim().is_empty()) else {
+        return Err(table.missing("name"));
+    };
+    let friction = table.require("friction", &ROAD_FRICTION)?;
+    let Some(mut border_m) = table.points("border_m", &POSITION)? else {
+        return Err(table.missing("border_m"));
+    };
+    if border_m.len() > 1 && border_m.first() == border_m.last() {
+        border_m.pop();
+    }
+    let zone = FrictionZone { name, border_m, friction };
+    if let Err(error) = zone.check() {
+        let expected = format!("a border around an area whose sides do not cross ({error})");
+        return Err(table.refuse_last(&expected));
+    }
+    table.finish()?;
+    Ok(zone)
+}
+
+fn read_drawing_file(mut table: TomlTable<'_>, folder: &Path) -> Result<DrawingFile, TomlError> {
+    let file = required_file(&mut table, "file", folder)?;
+    let unit = table.choice("unit", &DrawingUnit::WORDS)?.map(|idx| DrawingUnit::ALL[idx]);
+    let layers = table.strings("layers")?;
+    if layers.as_ref().is_some_and(Vec::is_empty) {
+        return Err(table.refuse_last("at least one layer"));
+    }
+    table.finish()?;
+    Ok(DrawingFile { file, unit, layers })
+}

@@ -1,0 +1,93 @@
+//! The ground of a scene: site files, world files, drawings and pictures.
+
+use std::path::Path;
+
+use impactlab::site::{
+    DrawingFile, DrawingUnit, PixelMap, Site, SiteOrigin, WorldFile, picture_size_px, read_drawing,
+    read_picture,
+};
+
+use crate::harness::{Answer, Format, run};
+use crate::mutation::Mutator;
+
+fn text_format(
+    (name, n_inputs): (&'static str, u64),
+    file_name: &'static str,
+    load: &dyn Fn(&Path) -> Answer,
+) {
+    let (seeds, mutate) = (Vec::new(), Mutator::text);
+    run(&Format { name, n_inputs, file_name, names_file: true, seeds, mutate, load });
+}
+
+#[test]
+fn site_files() {
+    text_format(("site", 8_000), "site.toml", &|path| match Site::load(path) {
+        Ok(site) => Answer::accepted(&(&site, site.north_rad(), site.contents())),
+        Err(error) => Answer::refused(&error),
+    });
+}
+
+#[test]
+fn world_files() {
+    text_format(("world-file", 8_000), "road.pgw", &|path| match WorldFile::load(path) {
+        Ok(world) => {
+            let map = PixelMap::of_world_file(&world, &SiteOrigin::default());
+            Answer::accepted(&(world, map, map.pixel([0.0, 0.0])))
+        }
+        Err(error) => Answer::refused(&error),
+    });
+}
+
+#[test]
+fn drawings() {
+    text_format(("dxf", 1_500), "survey.dxf", &|path| {
+        let unit = Some(DrawingUnit::Metre);
+        let of = DrawingFile { file: path.to_owned(), unit, layers: None };
+        match read_drawing(&of, &SiteOrigin::default()) {
+            Ok(drawing) => Answer::accepted(&drawing),
+            Err(error) => Answer::refused(&error),
+        }
+    });
+}
+
+#[test]
+fn pictures() {
+    let picture = image::RgbImage::from_fn(9, 7, |x, y| image::Rgb([x as u8, y as u8, 90]));
+    let formats = [image::ImageFormat::Png, image::ImageFormat::Jpeg, image::ImageFormat::Tiff];
+    let seeds = formats.map(|format| {
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        picture.write_to(&mut bytes, format).expect("a picture in memory");
+        bytes.into_inner()
+    });
+    run(&Format {
+        name: "picture",
+        n_inputs: 3_000,
+        file_name: "road.png",
+        names_file: true,
+        seeds: seeds.to_vec(),
+        mutate: changed_bytes,
+        load: &|path| match picture_size_px(path) {
+            // A picture may state more pixels than the memory that a test may take.
+            Ok([width, height]) if u64::from(width) * u64::from(height) > 1 << 20 => {
+                Answer::accepted(&[width, height])
+            }
+            Ok(size) => match read_picture(path) {
+                Ok(_) => Answer::accepted(&size),
+                Err(error) => Answer::refused(&error),
+            },
+            Err(error) => Answer::refused(&error),
+        },
+    });
+}
+
+/// The file with a few other bytes.
+fn changed_bytes(mutator: &mut Mutator, input: &[u8], _other: &[u8]) -> Vec<u8> {
+    let mut bytes = input.to_vec();
+    for _ in 0..1 + mutator.below(6) {
+        let (at, value) = (mutator.below(bytes.len().max(1)), mutator.below(256));
+        if let Some(byte) = bytes.get_mut(at) {
+            *byte = value as u8;
+        }
+    }
+    bytes
+}
