@@ -15,6 +15,10 @@ mod car_shape;
 mod proportions;
 mod wheel_mesh;
 
+mod ground;
+mod ground_picture;
+mod load_ground;
+
 mod car_motion;
 mod parts;
 
@@ -27,6 +31,9 @@ pub use car_body::{CarBody, N_WHEELS};
 pub use car_motion::{CarControls, CarMotion, CarState};
 pub use car_shape::CarShape;
 pub use forecast::{ForecastScene, add_forecast};
+pub use ground::{AreaKind, GroundArea, GroundLine, GroundLineKind, SceneGround};
+pub use ground_picture::GroundPicture;
+pub use load_ground::LoadedGround;
 pub use mesh::{Mesh, MeshTriangle, Surface, triangle_normal};
 pub use parts::{
     CarLook, Scene, SceneArrow, SceneCar, SceneCross, SceneDensity, SceneLine, ScenePath,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::analysis::DensityMap;
 use crate::collision::Pose;
-use crate::scene::{CarMotion, CarShape, CarState};
+use crate::scene::{CarMotion, CarShape, CarState, SceneGround};
 use crate::study::Trust;
 use crate::units::UnitSystem;
 
@@ -144,6 +144,8 @@ pub struct SceneDensity {
 pub struct Scene {
     /// What the scene is of.
     pub title: String,
+    /// What lies below everything else, if it is known.
+    pub ground: Option<Arc<SceneGround>>,
     /// Cars, from back to front.
     pub cars: Vec<SceneCar>,
     /// Paths of cars.

@@ -15,6 +15,7 @@ use crate::render::scene::frame::{Frame, draw_shadow};
 use crate::render::scene::ground::Ground;
 use crate::render::scene::lines::{Rows, Stroke};
 use crate::render::scene::raster::{TILE, Tile};
+use crate::render::scene::underlay::Underlay;
 use crate::render::scene::{Camera, Projection};
 use crate::scene::Scene;
 
@@ -96,11 +97,11 @@ impl SceneCanvas {
         self.ground.resize(width * height, Color32::BLACK);
         let projection = look.projection();
         let ground = ground_of(scene, look, &projection);
-        let strokes = ground.strokes();
+        let (strokes, underlay) = (ground.strokes(), Underlay::new(&ground));
         let rows = self.ground.par_chunks_mut(width.max(1) * TILE).enumerate();
         rows.for_each(|(idx, pixels)| {
             let mut rows = Rows { pixels, width, first: idx * TILE };
-            ground.fill(&mut rows);
+            ground.fill(&mut rows, &underlay);
             strokes.iter().for_each(|stroke| rows.stroke(stroke));
         });
     }

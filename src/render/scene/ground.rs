@@ -3,7 +3,9 @@
 use egui::Color32;
 
 use crate::render::scene::lines::{Rows, Stroke, over};
+use crate::render::scene::row_map::RowMap;
 use crate::render::scene::shade::{grid_colors, ground_color, mixed, role_color, sky_color};
+use crate::render::scene::underlay::{Underlay, ground_strokes};
 use crate::render::scene::{Projection, camera::NEAR_M};
 use crate::scene::{Scene, SceneDensity, SceneRole};
 use crate::units::{Quantity, UnitSystem};
@@ -21,6 +23,16 @@ const HAZE: [f64; 2] = [3.0, 14.0];
 const DENSITY_OPACITY: f32 = 0.72;
 /// Share of the colour of a role in the pale part of a line: a path that is still to come.
 const PALE: f32 = 0.45;
+/// The same over a picture of the ground.
+const PALE_OVER_PICTURE: f32 = 0.68;
+/// Opacity of the grid over a picture of the ground.
+const GRID_OVER_PICTURE: f32 = 0.3;
+/// How far the edge of a line reaches over a picture of the ground, points, and its opacity, so that
+/// lines of any colour are seen on any picture.
+const CASING_POINTS: f64 = 1.1;
+const CASING_OPACITY: f32 = 0.5;
+/// Width from which a line has such an edge, points: the edges of many thin ones would hide the picture.
+const LEAST_CASED: f64 = 1.0;
 /// Length and gap of dashes, points.
 const DASH: [f64; 2] = [8.0, 5.0];
 /// Time between the heading ticks along a path, s, and their half length, m.
@@ -69,11 +81,14 @@ struct Grid {
 
 impl Ground<'_> {
     /// Fills rows with ground, grid and density.
-    pub fn fill(&self, rows: &mut Rows<'_>) {
+    pub fn fill(&self, rows: &mut Rows<'_>, underlay: &Underlay<'_>) {
         let grid = self.grid();
         let (first, width) = (rows.first, rows.width.max(1));
         for (idx, row) in rows.pixels.chunks_mut(width).enumerate() {
-            self.fill_row(row, (first + idx) as f32 + 0.5, &grid);
+            let py = (first + idx) as f32 + 0.5;
+            let map = RowMap::new(grid.map, py);
+            underlay.fill_row(row, (py, &map), self.dark);
+            self.fill_row(row, &map, &grid);
         }
     }
 
@@ -100,34 +115,26 @@ impl Ground<'_> {
         }
     }
 
-    /// Fills a row. Coordinates are those off the target, for which single precision suffices.
-    fn fill_row(&self, row: &mut [Color32], py: f32, grid: &Grid) {
-        let (ground, sky, lines) =
-            (ground_color(self.dark), sky_color(self.dark), grid_colors(self.dark));
+    /// Draws grid, density, haze and sky over a row of ground.
+    fn fill_row(&self, row: &mut [Color32], map: &RowMap, grid: &Grid) {
+        let (sky, lines) = (sky_color(self.dark), grid_colors(self.dark));
         let is_parallel = self.projection.is_parallel();
-        let Grid { map: [mx, my, md], phase_m, steps_m, eye_m, haze_m, density_m } = grid;
-        let (nx, ny, nd) = (mx[0] + mx[2] * py, my[0] + my[2] * py, md[0] + md[2] * py);
+        let opacity = if self.has_picture() { GRID_OVER_PICTURE } else { 1.0 };
+        let Grid { phase_m, steps_m, eye_m, haze_m, density_m, .. } = grid;
         let role = role_color(SceneRole::Forecast, self.dark);
         for (column, pixel) in row.iter_mut().enumerate() {
-            let px = column as f32 + 0.5;
-            let d = nd + md[1] * px;
-            if d <= 1e-9 {
+            let Some(spot) = map.at(column) else {
                 *pixel = sky;
                 continue;
-            }
-            let per = 1.0 / d;
-            let (x, y) = ((nx + mx[1] * px) * per, (ny + my[1] * px) * per);
-            let change = |of: &[f32; 3], at: f32| {
-                let (a, b) = ((of[1] - at * md[1]) * per, (of[2] - at * md[2]) * per);
-                (a * a + b * b).sqrt().max(1e-9)
             };
-            let (change_x, change_y) = (change(mx, x), change(my, y));
-            let mut color = ground;
+            let [x, y] = spot.place;
+            let (change_x, change_y) = (map.change(&spot, 0), map.change(&spot, 1));
+            let mut color = *pixel;
             for (line, step_m) in lines.into_iter().zip(*steps_m) {
                 let along_x = line_cover(x + phase_m[0], change_x, step_m);
                 let share = along_x.max(line_cover(y + phase_m[1], change_y, step_m));
                 if share > 0.0 {
-                    color = over(color, line, share);
+                    color = over(color, line, opacity * share);
                 }
             }
             if let (Some(density), Some([low, high])) = (&self.scene.density, density_m)
@@ -151,12 +158,24 @@ impl Ground<'_> {
         }
     }
 
+    /// Whether there is a picture of the ground.
+    fn has_picture(&self) -> bool {
+        self.scene.ground.as_ref().is_some_and(|site| site.has_picture())
+    }
+
     /// The lines on the ground, in the order in which they are drawn.
     pub fn strokes(&self) -> Vec<Stroke> {
         let mut strokes = Vec::new();
+        if let Some(site) = &self.scene.ground {
+            ground_strokes(self, site, &mut strokes);
+        }
         for path in &self.scene.paths {
             let color = role_color(path.role, self.dark);
-            let share = if path.role == SceneRole::Muted { 0.75 } else { PALE };
+            let share = match (path.role, self.has_picture()) {
+                (SceneRole::Muted, _) => 0.75,
+                (_, true) => PALE_OVER_PICTURE,
+                (_, false) => PALE,
+            };
             let color = mixed(ground_color(self.dark), color, share);
             let width = if path.role == SceneRole::Muted { 0.9 } else { 1.6 };
             let points: Vec<[f64; 2]> =
@@ -209,8 +228,23 @@ impl Ground<'_> {
         }
     }
 
-    /// Adds a line on the ground.
+    /// Adds a line on the ground; over a picture, on a pale edge.
     pub fn line(&self, points_m: &[[f64; 2]], pen: Pen, strokes: &mut Vec<Stroke>) {
+        let first = strokes.len();
+        self.bare_line(points_m, pen, strokes);
+        if self.has_picture() && pen.width >= LEAST_CASED {
+            let edge = |stroke: &Stroke| Stroke {
+                half_width: stroke.half_width + (CASING_POINTS * self.points) as f32,
+                color: ground_color(self.dark),
+                opacity: CASING_OPACITY,
+                ..*stroke
+            };
+            let edges: Vec<Stroke> = strokes[first..].iter().map(edge).collect();
+            strokes.splice(first..first, edges);
+        }
+    }
+
+    fn bare_line(&self, points_m: &[[f64; 2]], pen: Pen, strokes: &mut Vec<Stroke>) {
         let half_width = (pen.width * self.points / 2.0) as f32;
         let mut push = |ends: [[f64; 2]; 2]| {
             let ends = ends.map(|end| end.map(|value| value as f32));
@@ -256,7 +290,7 @@ impl Ground<'_> {
     }
 
     /// A straight piece on the ground in the picture, without what is behind the camera.
-    fn piece(&self, ends_m: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
+    pub fn piece(&self, ends_m: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
         let [mut from, mut to] = ends_m.map(|[x, y]| self.projection.in_camera([x, y, 0.0]));
         if !self.projection.is_parallel() {
             let near = 2.0 * NEAR_M;
@@ -305,7 +339,7 @@ pub fn arrow_lines([tail, tip]: [[f64; 2]; 2]) -> [[[f64; 2]; 2]; 3] {
 /// How far a line of the grid covers a pixel, 0 to 1.
 ///
 /// - `at`: coordinate of the pixel, m; `change`: by how much it changes over a pixel, m, more than 0.
-fn line_cover(at: f32, change: f32, step_m: f32) -> f32 {
+pub fn line_cover(at: f32, change: f32, step_m: f32) -> f32 {
     let (cell, per) = (at / step_m, step_m / change);
     let distance = (cell - cell.round()).abs() * per;
     if distance >= 1.0 {

@@ -7,8 +7,8 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, pos2, vec
 
 use crate::render::scene::Projection;
 use crate::render::scene::ground::grid_step;
-use crate::render::scene::shade::{ground_color, role_color};
-use crate::scene::{CarLook, Scene, SceneRole};
+use crate::render::scene::shade::{ground_color, role_color, zone_color};
+use crate::scene::{AreaKind, CarLook, Scene, SceneRole};
 use crate::units::Quantity;
 
 /// Sizes of text, points.
@@ -22,6 +22,8 @@ const MAX_LABELS: usize = 60;
 const BAR_POINTS: f64 = 110.0;
 /// Length of the arrows of the axes, points.
 const AXIS_POINTS: f32 = 26.0;
+/// Half the length of the needle that points north, points.
+const NORTH_POINTS: f32 = 13.0;
 /// Opacity of what lies behind text.
 const PLATE: f32 = 0.78;
 
@@ -42,9 +44,11 @@ impl Labels<'_> {
     /// names, which give way, then the numbers along the grid where there is room.
     pub fn draw(&self, painter: &Painter, scene: &Scene, time_s: f64) {
         let mut taken = vec![self.scale_bar(painter, scene), self.axes(painter)];
+        taken.extend(self.north(painter, scene));
         self.stamp(painter, (scene, time_s), &mut taken);
         self.names(painter, (scene, time_s), &mut taken);
         self.arrows(painter, scene, &mut taken);
+        self.zones(painter, scene, &mut taken);
         match self.projection.is_parallel() {
             true => self.ticks_from_above(painter, scene, &mut taken),
             false => self.ticks_on_ground(painter, scene, &mut taken),
@@ -206,6 +210,50 @@ impl Labels<'_> {
         let place = Align2::CENTER_BOTTOM.anchor_size(middle - vec2(0.0, 3.0), galley.size());
         painter.galley(place.min, galley, color);
         plate
+    }
+
+    /// Names of zones of friction, each within its zone.
+    fn zones(&self, painter: &Painter, scene: &Scene, taken: &mut Vec<Rect>) {
+        let areas = scene.ground.iter().flat_map(|site| &site.areas);
+        for zone in areas.filter(|area| area.kind == AreaKind::FrictionZone) {
+            let at = zone.label_m().and_then(|[x, y]| self.on_screen([x, y, 0.0]));
+            let Some(at) = at else { continue };
+            let (font, color) = (FontId::proportional(SMALL + 1.0), zone_color(self.dark));
+            let galley = painter.layout_no_wrap(zone.name.clone(), font, color);
+            let mut place = Align2::CENTER_CENTER.anchor_size(at, galley.size());
+            for _ in 0..8 {
+                let Some(hit) = taken.iter().find(|other| other.intersects(place.expand(2.0)))
+                else {
+                    break;
+                };
+                place = place.translate(vec2(0.0, hit.bottom() + 4.0 - place.top()));
+            }
+            self.name((painter, place), (galley, color), taken);
+        }
+    }
+
+    /// The direction of grid north, below those of the axes.
+    fn north(&self, painter: &Painter, scene: &Scene) -> Option<Rect> {
+        let (sin, cos) = scene.ground.as_ref()?.north_rad?.sin_cos();
+        let [x, y] = self.projection.target_m();
+        let [middle, end] =
+            [0.0, 1.0].map(|way| self.on_screen([x + way * cos, y + way * sin, 0.0]));
+        let along = (end? - middle?).normalized() * NORTH_POINTS;
+        let origin = self.rect.right_top() + vec2(-46.0, 112.0);
+        let plate = Rect::from_center_size(origin, Vec2::splat(2.0 * NORTH_POINTS + 22.0));
+        painter.circle_filled(origin, plate.width() / 2.0, self.plate_color());
+        let (color, side) = (self.text_color(), vec2(-along.y, along.x) * 0.45);
+        let tail = origin - along * 0.75;
+        let needle = vec![origin + along * 0.6, tail + side, origin - along * 0.4, tail - side];
+        painter.add(egui::Shape::convex_polygon(
+            vec![needle[0], needle[1], needle[2]],
+            color,
+            Stroke::NONE,
+        ));
+        painter.add(egui::Shape::closed_line(needle, Stroke::new(1.0, color)));
+        let font = FontId::proportional(SMALL);
+        painter.text(origin + along * 1.25, Align2::CENTER_CENTER, "N", font, color);
+        Some(plate)
     }
 
     /// The directions of X and Y at the right top.

@@ -9,7 +9,11 @@ mod labels;
 mod lines;
 mod picture;
 mod raster;
+mod row_map;
 mod shade;
+mod underlay;
+#[cfg(test)]
+mod underlay_tests;
 mod view;
 
 pub use camera::{Camera, Projection, ViewKind};

@@ -4,7 +4,7 @@ use egui::Color32;
 
 use crate::figure::Role;
 use crate::render::theme;
-use crate::scene::{SceneRole, Surface};
+use crate::scene::{GroundLineKind, SceneRole, Surface};
 
 /// Direction to the sun, of unit length: from behind and from the right of a car that drives along X.
 const SUN: [f64; 3] = [-0.355, -0.413, 0.839];
@@ -34,6 +34,32 @@ pub fn role_color(role: SceneRole, dark: bool) -> Color32 {
 /// Colour of the ground.
 pub fn ground_color(dark: bool) -> Color32 {
     if dark { Color32::from_rgb(38, 41, 44) } else { Color32::from_rgb(236, 238, 239) }
+}
+
+/// Share of the colour of the ground over its picture, so that what lies on it stays clear.
+pub fn picture_wash(dark: bool) -> f32 {
+    if dark { 0.42 } else { 0.30 }
+}
+
+/// Colour of a lane where there is no picture.
+pub fn lane_color(dark: bool) -> Color32 {
+    if dark { Color32::from_rgb(55, 58, 62) } else { Color32::from_rgb(216, 219, 222) }
+}
+
+/// Colour of a zone of friction: the yellow of the palette of the theme, which nothing else has.
+pub fn zone_color(dark: bool) -> Color32 {
+    if dark { Color32::from_rgb(240, 228, 66) } else { Color32::from_rgb(122, 106, 0) }
+}
+
+/// Colour of a line on the ground.
+pub fn ground_line_color(kind: GroundLineKind, dark: bool) -> Color32 {
+    let (light_ground, dark_ground) = match kind {
+        GroundLineKind::Marking => ([255, 255, 255], [196, 199, 202]),
+        GroundLineKind::Kerb => ([158, 161, 164], [112, 116, 120]),
+        GroundLineKind::Drawing => ([96, 102, 110], [150, 156, 163]),
+    };
+    let [r, g, b] = if dark { dark_ground } else { light_ground };
+    Color32::from_rgb(r, g, b)
 }
 
 /// Colour of the sky above the horizon.

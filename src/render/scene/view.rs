@@ -3,15 +3,15 @@
 use std::sync::Arc;
 
 use egui::{
-    Color32, ColorImage, Image, Key, Modifiers, Painter, Rect, Response, Sense, Stroke,
+    Color32, ColorImage, Image, Key, Modifiers, Painter, Pos2, Rect, Response, Sense, Stroke,
     TextureHandle, TextureOptions, Ui, Vec2, pos2,
 };
 use serde::{Deserialize, Serialize};
 
 use crate::render::scene::labels::Labels;
-use crate::render::scene::shade::role_color;
-use crate::render::scene::{Camera, SceneCanvas, SceneLook, ScenePicture, ViewKind};
-use crate::scene::{CarLook, Scene, SceneRole};
+use crate::render::scene::shade::{ground_line_color, role_color, zone_color};
+use crate::render::scene::{Camera, Projection, SceneCanvas, SceneLook, ScenePicture, ViewKind};
+use crate::scene::{AreaKind, CarLook, GroundLineKind, Scene, SceneRole};
 
 /// Angle of a turn for each point that the mouse is dragged, rad.
 const TURN_PER_POINT: f64 = 0.006;
@@ -59,6 +59,10 @@ pub struct SceneView {
     image: Option<Arc<ColorImage>>,
     /// The camera; `None` fits it to the scene.
     camera: Option<Camera>,
+    /// Where the picture was drawn last, with its projection and the pixels per point.
+    seen: Option<(Rect, Projection, f32)>,
+    /// Whether clicks are taken by somebody else, so that a double click does not fit the camera.
+    pub takes_clicks: bool,
 }
 
 impl SceneView {
@@ -75,6 +79,22 @@ impl SceneView {
             // The size may still change.
             _ => self.camera = None,
         }
+    }
+
+    /// The place on the ground under a point of the window, m; `None` above the horizon or before
+    /// anything was drawn.
+    pub fn ground_at(&self, at: Pos2) -> Option<[f64; 2]> {
+        let (rect, projection, points) = self.seen.as_ref()?;
+        let off = (at - rect.min) * *points;
+        projection.ground_at([f64::from(off.x), f64::from(off.y)])
+    }
+
+    /// Where a place on the ground is in the window; `None` behind the camera.
+    pub fn on_screen(&self, [x, y]: [f64; 2]) -> Option<Pos2> {
+        let (rect, projection, points) = self.seen.as_ref()?;
+        let [px, py, _] = projection.project([x, y, 0.0])?;
+        let at = Vec2::new(px as f32, py as f32) / *points;
+        (at.x.is_finite() && at.y.is_finite()).then(|| rect.min + at)
     }
 
     /// The camera of the last picture, if it was moved or fitted.
@@ -114,7 +134,7 @@ pub fn scene_view_ui(
         Some(camera) if camera.kind == usual.kind => camera,
         _ => usual.fitted(&scene.places_m(), size),
     };
-    if response.double_clicked() {
+    if response.double_clicked() && !view.takes_clicks {
         camera = usual.fitted(&scene.places_m(), size);
     }
     camera = keyed(ui, &response, moved(ui, &response, (camera, rect), size), size);
@@ -128,6 +148,7 @@ pub fn scene_view_ui(
     paint(ui, (rect, view), (scene, time_s), &look);
     let projection = look.projection();
     let labels = Labels { rect, projection: &projection, points, dark };
+    view.seen = Some((rect, projection, points));
     labels.draw(&ui.painter().with_clip_rect(rect), scene, time_s);
     response
 }
@@ -240,13 +261,13 @@ fn legend_ui(ui: &mut Ui, scene: &Scene) {
     let font = egui::TextStyle::Small.resolve(ui.style());
     let (text_color, sample) = (ui.visuals().text_color(), Vec2::new(2.0 * font.size, font.size));
     ui.horizontal_wrapped(|ui| {
-        for (name, role, kind) in entries(scene) {
+        for (name, color, kind) in entries(scene, dark) {
             let galley = ui.painter().layout_no_wrap(name.to_owned(), font.clone(), text_color);
             let size = Vec2::new(sample.x + 5.0 + galley.size().x, galley.size().y.max(sample.y));
             let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
             response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, name));
             let place = egui::Align2::LEFT_CENTER.anchor_size(rect.left_center(), sample);
-            draw_sample(ui.painter(), place, (role_color(role, dark), kind));
+            draw_sample(ui.painter(), place, (color, kind));
             let at = rect.right_center() - Vec2::new(galley.size().x, galley.size().y / 2.0);
             ui.painter().galley(at, galley, text_color);
         }
@@ -264,6 +285,17 @@ fn draw_sample(painter: &Painter, rect: Rect, (color, kind): (Color32, Entry)) {
         Entry::Dashed => {
             painter.extend(egui::Shape::dashed_line(&[from, to], stroke, 5.0, 3.0));
         }
+        Entry::Hatched => {
+            painter.rect_filled(inside, 0.0, color.gamma_multiply(0.25));
+            let painter = painter.with_clip_rect(inside.intersect(painter.clip_rect()));
+            for i in 0..6 {
+                let x = inside.left() - inside.height() + 6.0 * i as f32;
+                let low = pos2(x, inside.bottom());
+                let high = low + Vec2::new(inside.height(), -inside.height());
+                painter.line_segment([low, high], Stroke::new(1.2, color));
+            }
+            painter.rect_stroke(inside, 0.0, Stroke::new(1.0, color), egui::StrokeKind::Inside);
+        }
         Entry::Point => drop(painter.circle_filled(rect.center(), 3.0, color)),
         Entry::Cross => {
             for slope in [1.0, -1.0] {
@@ -279,15 +311,16 @@ fn draw_sample(painter: &Painter, rect: Rect, (color, kind): (Color32, Entry)) {
 enum Entry {
     Solid,
     Ghost,
+    Hatched,
     Line,
     Dashed,
     Point,
     Cross,
 }
 
-/// Names of a scene, each once: cars, then lines and points, then what is not a role.
-fn entries(scene: &Scene) -> Vec<(&str, SceneRole, Entry)> {
-    let mut entries: Vec<(&str, SceneRole, Entry)> = Vec::new();
+/// Names of a scene, each once: cars, then lines and points, then what is not a role, then the ground.
+fn entries(scene: &Scene, dark: bool) -> Vec<(&str, Color32, Entry)> {
+    let mut entries: Vec<(&str, Color32, Entry)> = Vec::new();
     let cars = scene.cars.iter().rev().map(|car| {
         let kind = if car.look == CarLook::Solid { Entry::Solid } else { Entry::Ghost };
         (car.name.as_str(), car.role, kind)
@@ -303,10 +336,28 @@ fn entries(scene: &Scene) -> Vec<(&str, SceneRole, Entry)> {
         scene.density.iter().map(|of| (of.name.as_str(), SceneRole::Forecast, Entry::Ghost));
     let all =
         cars.chain(paths).chain(lines).chain(points).chain(arrows).chain(crosses).chain(density);
-    for entry in all.filter(|entry| !entry.0.is_empty()) {
+    let all = all.map(|(name, role, kind)| (name, role_color(role, dark), kind));
+    for entry in all.chain(ground_entries(scene, dark)).filter(|entry| !entry.0.is_empty()) {
         if entries.iter().all(|other| other.0 != entry.0) {
             entries.push(entry);
         }
     }
     entries
+}
+
+/// Names of what is on the ground.
+fn ground_entries(scene: &Scene, dark: bool) -> impl Iterator<Item = (&str, Color32, Entry)> {
+    let site = scene.ground.iter();
+    let areas = site.clone().flat_map(|site| &site.areas);
+    let zones = areas.filter(|area| area.kind == AreaKind::FrictionZone);
+    let zones = zones.map(move |zone| (zone.name.as_str(), zone_color(dark), Entry::Hatched));
+    let lines = site.flat_map(|site| &site.lines).map(move |line| {
+        let name = match line.kind {
+            GroundLineKind::Drawing => "drawing",
+            GroundLineKind::Kerb => "kerb",
+            GroundLineKind::Marking => "",
+        };
+        (name, ground_line_color(line.kind, dark), Entry::Line)
+    });
+    zones.chain(lines)
 }
