@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use zip::write::SimpleFileOptions;
 use zip::{ZipArchive, ZipWriter};
 
-use crate::case_file::used::files_in;
+use crate::case_file::used::{files_in, files_of_site};
 use crate::case_file::{CASE_ENDING, CaseError, CaseFile, is_case_file};
 use crate::data::{Existing, write_atomically};
 
@@ -42,10 +42,8 @@ pub fn pack(case: &CaseFile, to: &Path, existing: Existing) -> Result<(), CaseEr
     case.record_files();
     let mut entries = Vec::new();
     let mut places = Vec::new();
-    for (i, used) in case.used_paths().into_iter().enumerate() {
+    for (used, place) in placed_files(&case.used_paths())? {
         let missing = || CaseError::Missing { path: used.clone() };
-        let name = used.file_name().and_then(|name| name.to_str()).ok_or_else(missing)?;
-        let place = format!("{FILES}/{i}/{name}");
         if used.is_dir() {
             let io = |source| CaseError::Io { path: used.clone(), source };
             let inner = files_in(&used).map_err(io)?;
@@ -82,6 +80,43 @@ pub fn pack(case: &CaseFile, to: &Path, existing: Existing) -> Result<(), CaseEr
         zip.finish().map_err(io::Error::other)?;
         Ok(())
     })?)
+}
+
+/// Where each file goes in a package: into a folder of its own, but what a site names beside the site, so
+/// that its names lead there, and all sites of one folder into one.
+fn placed_files(used: &[PathBuf]) -> Result<Vec<(PathBuf, String)>, CaseError> {
+    let sites: Vec<(usize, &PathBuf, Vec<PathBuf>)> = used
+        .iter()
+        .enumerate()
+        .map(|(i, path)| (i, path, files_of_site(path)))
+        .filter(|(.., files)| !files.is_empty())
+        .collect();
+    let mut placed: Vec<(PathBuf, String)> = Vec::new();
+    let mut place = |path: &PathBuf, i: usize, folder: Option<&Path>| {
+        let missing = || CaseError::Missing { path: path.clone() };
+        let below = folder.and_then(|folder| path.strip_prefix(folder).ok());
+        let below = below.or_else(|| path.file_name().map(Path::new)).ok_or_else(missing)?;
+        let parts: Option<Vec<&str>> = below.iter().map(|part| part.to_str()).collect();
+        let name = format!("{FILES}/{i}/{}", parts.ok_or_else(missing)?.join("/"));
+        if placed.iter().all(|(_, other)| *other != name) {
+            placed.push((path.clone(), name));
+        }
+        Ok::<(), CaseError>(())
+    };
+    for (_, site, files) in &sites {
+        let is_beside =
+            |(_, other, _): &&(usize, &PathBuf, Vec<PathBuf>)| other.parent() == site.parent();
+        let i = sites.iter().find(is_beside).map_or(0, |(i, ..)| *i);
+        for path in std::iter::once(*site).chain(files) {
+            place(path, i, site.parent())?;
+        }
+    }
+    let is_of_site =
+        |path: &PathBuf| sites.iter().any(|(_, site, files)| *site == path || files.contains(path));
+    for (i, path) in used.iter().enumerate().filter(|(_, path)| !is_of_site(path)) {
+        place(path, i, None)?;
+    }
+    Ok(placed)
 }
 
 /// A name as that of a file without its ending, such as of a case or of the title of a figure.

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::case_file::paths::absolute_paths;
 use crate::case_file::{CaseError, CaseFile};
 use crate::data::write::{FileDigest, sha256_hex};
+use crate::site::{Site, is_picture_file};
 use crate::study::Request;
 
 /// Why a file is missing that the case has no content of.
@@ -112,12 +113,22 @@ pub(super) fn files_in(folder: &Path) -> io::Result<Vec<String>> {
     Ok(names)
 }
 
+/// Orthophoto, world file and drawing of a site; none for any other file, or if it cannot be read.
+pub(super) fn files_of_site(path: &Path) -> Vec<PathBuf> {
+    let is_site = is_picture_file(path) || path.extension().is_some_and(|end| end == "toml");
+    let site = is_site.then(|| Site::load(path).ok()).flatten();
+    site.map(|site| site.other_files()).unwrap_or_default()
+}
+
 impl CaseFile {
-    /// The files and folders that the variants name, without those that the program has made for itself.
+    /// The files and folders that the variants name, with those that a site names, and without those that
+    /// the program has made for itself.
     pub fn used_paths(&self) -> Vec<PathBuf> {
         let values = serde_json::to_value(&self.variants).unwrap_or_default();
         let is_known = |path: &PathBuf| self.files.iter().any(|file| file.path == *path);
         let mut paths = absolute_paths(&values);
+        let of_sites: Vec<PathBuf> = paths.iter().flat_map(|path| files_of_site(path)).collect();
+        paths.extend(of_sites);
         paths.retain(|path| path.parent().is_some() && (path.exists() || is_known(path)));
         paths.sort();
         paths.dedup();

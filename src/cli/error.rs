@@ -10,6 +10,7 @@ use crate::force::ForceError;
 use crate::learning::LearningError;
 use crate::ranges::OutOfRange;
 use crate::report::{FormatError, WriteError};
+use crate::site::SiteError;
 use crate::study::StudyError;
 
 /// A command that could not do its work.
@@ -24,6 +25,9 @@ pub enum CliError {
     /// A question has no answer.
     #[error(transparent)]
     Study(Box<StudyError>),
+    /// The ground of a scene cannot be read.
+    #[error(transparent)]
+    Site(#[from] SiteError),
     /// A file cannot be read or written.
     #[error(transparent)]
     Data(#[from] DataError),

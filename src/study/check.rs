@@ -12,6 +12,7 @@ use crate::data::{
     open, propose_columns, read_any_series,
 };
 use crate::error_chain;
+use crate::site::{Site, read_drawing, read_picture};
 use crate::study::question::progress_of;
 use crate::study::{
     CheckReport, DatasetReport, FileReport, InputFileReport, Library, Observer, PathProblem,
@@ -170,16 +171,32 @@ impl CheckReport {
     }
 }
 
-/// Reads a scenario, known by its striking vehicle, or a vehicle.
+/// Reads a site with what it names, a scenario, known by its striking vehicle, or a vehicle.
 fn input_file(path: &Path) -> Result<InputFileReport, StudyError> {
     let text = TomlFile::read(path)?;
+    if Site::is_meant_by(path) {
+        let site = Site::load(path)?;
+        if let Some(orthophoto) = &site.orthophoto {
+            read_picture(&orthophoto.file)?;
+        }
+        if let Some(drawing) = &site.drawing {
+            read_drawing(drawing, &site.origin.unwrap_or_default())?;
+        }
+        let contents = site.contents();
+        return Ok(InputFileReport {
+            path: path.to_owned(),
+            kind: "site",
+            name: site.name,
+            contents,
+        });
+    }
     let is_scenario = text.lines().any(|line| line.trim_start().starts_with("[bullet]"));
     let (kind, name) = if is_scenario {
         ("scenario", Scenario::load(path)?.name)
     } else {
         ("vehicle", VehicleParameters::load(path)?.name)
     };
-    Ok(InputFileReport { path: path.to_owned(), kind, name })
+    Ok(InputFileReport { path: path.to_owned(), kind, name, contents: Vec::new() })
 }
 
 /// A path that cannot be read; if its columns are the reason, with what they look like.

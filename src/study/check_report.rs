@@ -20,7 +20,7 @@ pub struct CheckReport {
     pub datasets: Vec<DatasetReport>,
     /// The files of time series.
     pub files: Vec<FileReport>,
-    /// The scenario and vehicle files.
+    /// The scenario, vehicle and site files.
     pub models: Vec<InputFileReport>,
     /// What cannot be read.
     pub problems: Vec<PathProblem>,
@@ -29,7 +29,7 @@ pub struct CheckReport {
     pub provenance: Provenance,
 }
 
-/// A scenario or vehicle file.
+/// A scenario, vehicle or site file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct InputFileReport {
     /// Its path.
@@ -38,6 +38,9 @@ pub struct InputFileReport {
     pub kind: &'static str,
     /// Its name.
     pub name: String,
+    /// What it consists of; nothing for a scenario or vehicle.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub contents: Vec<String>,
 }
 
 /// A data set.

@@ -11,11 +11,15 @@ use crate::learning::{LearningError, LoadError};
 use crate::ranges::OutOfRange;
 use crate::reconstruct::sampler::SamplerError;
 use crate::response::LogError;
+use crate::site::SiteError;
 use crate::vehicle::{Preset, SimulationError};
 
 /// A question that cannot be answered.
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
+    /// The ground cannot be read.
+    #[error(transparent)]
+    Site(#[from] SiteError),
     /// A number of the question is out of range.
     #[error("{field}")]
     OutOfRange {

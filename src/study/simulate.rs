@@ -1,5 +1,7 @@
 //! The motion of one struck vehicle by the 4DOF model: `simulate`.
 
+use std::path::PathBuf;
+
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::{
@@ -9,6 +11,7 @@ use crate::analysis::{
 use crate::collision::Scenario;
 use crate::data::{ContactOutside, DatasetKind, Outcome};
 use crate::ranges::{ROAD_FRICTION, SIMULATED_DURATION, VEHICLE_DRAWS};
+use crate::site::Site;
 use crate::study::checks::{check, check_all, check_count, check_given};
 use crate::study::inputs::{OpenVehicle, striking_vehicle, struck_vehicle};
 use crate::study::motion_source::{
@@ -23,7 +26,7 @@ use crate::study::{
     Question, SimulateReport, StudyError, VehicleChoice, badges,
 };
 use crate::uncertainty::Badge;
-use crate::vehicle::{ContactPoint, Ending, Equations, Integrator};
+use crate::vehicle::{ContactPoint, Ending, Equations, FrictionZone, Integrator};
 
 /// Asks where the struck vehicle goes, by the 4DOF model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -45,6 +48,9 @@ pub struct SimulateRequest {
     /// Peak friction of the road instead of the vehicle's.
     #[serde(default)]
     pub friction: Option<f64>,
+    /// The ground: a site file, whose zones have their own friction.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub site: Option<PathBuf>,
     /// Duration, s; a recorded motion has its own.
     #[serde(default = "default_duration_s")]
     pub duration_s: f64,
@@ -97,6 +103,7 @@ impl SimulateRequest {
             equations: None,
             integrator: Integrator::default(),
             friction: None,
+            site: None,
             duration_s: DEFAULT_DURATION_S,
             vehicle_draws: DEFAULT_VEHICLE_DRAWS,
             seed: 0,
@@ -135,8 +142,14 @@ impl SimulateRequest {
             integrator: self.integrator,
             duration_s: self.duration_s,
             ends_at_rest: self.until_rest,
-            friction_zones: Vec::new(),
+            friction_zones: self.friction_zones()?,
         })
+    }
+
+    /// The zones of the site.
+    fn friction_zones(&self) -> Result<Vec<FrictionZone>, StudyError> {
+        let site = self.site.as_deref().map(Site::load).transpose()?;
+        Ok(site.map_or_else(Vec::new, |site| site.friction_zones))
     }
 
     fn contact_outside(&self, outside: ContactOutside) -> StudyError {

@@ -11,6 +11,7 @@ mod contact;
 mod data_sheets;
 mod endings;
 mod force;
+mod ground;
 mod guide;
 mod log;
 mod program;

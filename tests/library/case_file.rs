@@ -203,3 +203,47 @@ fn what_is_no_case_is_refused_with_its_place() {
     says(&text.replace("\"shown\": \"b\"", "\"shown\": \"c\""), "no variant \"c\"");
     assert!(matches!(error(&text.replace("\"notes\"", "\"note\"")), CaseError::Syntax { .. }));
 }
+
+#[test]
+fn a_site_goes_with_everything_it_names_and_is_found_in_a_package() {
+    let folder = folder("site");
+    let road = folder.join("road");
+    fs::create_dir_all(road.join("photos")).expect("a folder");
+    let picture = image::RgbImage::from_pixel(40, 20, image::Rgb([90, 95, 100]));
+    picture.save(road.join("photos/road.png")).expect("a picture");
+    fs::write(road.join("photos/road.pgw"), "0.5\n0\n0\n-0.5\n0.25\n9.75\n").expect("written");
+    let zone = "[[friction_zone]]\nname = \"ice\"\nfriction = 0.1\n\
+                border_m = [[-50, -9], [90, -9], [90, 9], [-50, 9]]\n";
+    let text = format!("[orthophoto]\nfile = \"photos/road.png\"\n{zone}");
+    fs::write(road.join("site.toml"), text).expect("written");
+    let mut case = case(&force_file(&folder));
+    for variant in &mut case.variants {
+        for question in &mut variant.questions {
+            if let Request::Simulate(simulate) = question {
+                simulate.site = Some(road.join("site.toml"));
+            }
+        }
+    }
+    case.record_files();
+    let names = ["force.csv", "photos/road.pgw", "photos/road.png", "site.toml"];
+    let used: Vec<String> = case
+        .files
+        .iter()
+        .map(|file| file.path.strip_prefix(&road).unwrap_or(&file.path).display().to_string())
+        .collect();
+    assert!(names.iter().all(|name| used.iter().any(|path| path.ends_with(name))), "{used:?}");
+    let package = folder.join("case.zip");
+    pack(&case, &package, Existing::Refuse).expect("packed");
+    let unpacked = unpack(&package, &folder.join("unpacked")).expect("unpacked");
+    let opened = CaseFile::load(&unpacked).expect("loaded");
+    assert!(opened.changes().is_empty(), "{:?}", opened.changes());
+    fs::remove_dir_all(&road).expect("removed");
+    let report = opened.ask(&[], &Library::default(), &mut |_| std::ops::ControlFlow::Continue(()));
+    let report = report.expect("asked").complete().expect("answers");
+    assert!(report.is_clean(), "{report:?}");
+    // A change of the orthophoto is a change of the case.
+    let site = opened.used_paths().into_iter().find(|path| path.ends_with("site.toml"));
+    let photo = site.expect("a site").parent().expect("a folder").join("photos/road.png");
+    fs::write(&photo, "changed").expect("written");
+    assert!(opened.changes().contains(&Change::Changed { path: photo }), "{:?}", opened.changes());
+}

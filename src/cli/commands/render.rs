@@ -110,6 +110,10 @@ pub(super) struct VehicleArgs {
     /// For a single file with a force but no mz: where the force acts, as in simulate
     #[arg(long, value_name = "X,Y,Z", value_parser = contact_point, allow_hyphen_values = true)]
     contact: Option<ContactPoint>,
+    /// The ground: a site file with orthophoto, lanes, drawing and zones of their own friction, or an
+    /// orthophoto alone
+    #[arg(long, value_name = "SITE.toml")]
+    pub(super) site: Option<PathBuf>,
 }
 
 impl VehicleArgs {
@@ -124,6 +128,7 @@ impl VehicleArgs {
             vehicle: VehicleArg::choice(&self.vehicle),
             bullet: VehicleArg::choice(&self.bullet),
             vehicle_draws: 0,
+            site: self.site.clone(),
             ..SimulateRequest::new(source.motion_source(library, start)?)
         })
     }

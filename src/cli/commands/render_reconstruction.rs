@@ -1,5 +1,8 @@
 //! `impactlab render reconstruction`: what the evidence of a collision says.
 
+use std::path::PathBuf;
+use std::sync::Arc;
+
 use clap::{Args, ValueEnum};
 
 use crate::cli::CliError;
@@ -13,8 +16,8 @@ use crate::figure::{
     reconstruction_scene_figure,
 };
 use crate::reconstruct::ReconstructedQuantity;
-use crate::scene::{ReconstructionParts, reconstruction_scene};
-use crate::study::Trust;
+use crate::scene::{LoadedGround, ReconstructionParts, reconstruction_scene};
+use crate::study::{Assumption, Trust};
 use crate::units::UnitSystem;
 
 /// The evidence, and what is drawn.
@@ -25,6 +28,9 @@ pub(super) struct ReconstructionArgs {
     /// What is drawn
     #[arg(long, value_enum, default_value_t)]
     plot: PlotArg,
+    /// With cars as bodies: the ground below them, a site file or an orthophoto alone
+    #[arg(long, value_name = "SITE.toml")]
+    site: Option<PathBuf>,
     #[command(flatten)]
     pub(super) output: OutputArgs,
 }
@@ -75,7 +81,13 @@ pub(super) fn figure(
 ) -> Result<(Noted, Option<ShownScene>), CliError> {
     let answer = console.answer(&args.evidence.request())?;
     let (badges, assumptions) = (&answer.report.badges, &answer.report.assumptions);
-    let trust = Trust::new(badges, assumptions);
+    let mut trust = Trust::new(badges, assumptions);
+    let ground = args.site.as_deref().map(LoadedGround::load).transpose()?;
+    if let Some(ground) = &ground {
+        let zones = &ground.site.friction_zones;
+        trust.assumptions.extend(Assumption::zones_not_reconstructed(zones));
+    }
+    let mut notes = noted(&[], (badges, &trust.assumptions));
     let mut cars = None;
     let figure = match (args.plot.quantity(), args.plot) {
         (Some(quantity), _) => {
@@ -92,7 +104,7 @@ pub(super) fn figure(
                 _ => None,
             };
             cars = view.map(|view| {
-                let built = reconstruction_scene(&ReconstructionParts {
+                let mut built = reconstruction_scene(&ReconstructionParts {
                     evidence: scene.evidence,
                     cars: scene.cars,
                     drawn: scene.drawn,
@@ -100,11 +112,13 @@ pub(super) fn figure(
                     units,
                     trust: &trust,
                 });
+                built.ground = ground.as_ref().map(|loaded| Arc::clone(&loaded.ground));
                 let end_s = built.end_s;
                 ShownScene::fitted(built, end_s, view)
             });
             reconstruction_scene_figure(&scene, &trust, units)
         }
     };
-    Ok(((figure, noted(&[], (badges, assumptions))), cars))
+    notes.extend(ground.into_iter().flat_map(|loaded| loaded.notes));
+    Ok(((figure, notes), cars))
 }

@@ -1,5 +1,6 @@
 //! `impactlab render scene`: the cars of a case at a moment, from above or in perspective.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
@@ -10,9 +11,11 @@ use crate::cli::commands::render::{OutputArgs, VehicleArgs};
 use crate::cli::commands::render_figure::noted;
 use crate::cli::console::Console;
 use crate::cli::options::{SourceArgs, count, number};
-use crate::figure::{Figure, FigureElement, LineStyle, Path, Role, Series, analysis_scene_figure};
+use crate::figure::{self, Figure, FigureElement, LineStyle, Role, Series, analysis_scene_figure};
 use crate::ranges::{CAMERA_AZIMUTH, CAMERA_DISTANCE, CAMERA_ELEVATION, GHOSTS, INSTANT};
-use crate::scene::{ForecastScene, Scene, SimulationScene, add_forecast, simulation_scene};
+use crate::scene::{
+    ForecastScene, LoadedGround, Scene, SimulationScene, add_forecast, simulation_scene,
+};
 use crate::study::{ForceSource, PredictMotionRequest, SimulateAnswer, SimulateRequest, Trust};
 use crate::units::UnitSystem;
 
@@ -159,8 +162,18 @@ pub(super) fn scene(
         figure = figure.with_trust(&trust);
         scene.trust = trust;
     }
+    if let Some(path) = &args.vehicle.site {
+        notes.extend(add_ground(&mut scene, path)?);
+    }
     let (view, camera) = (args.view, args.camera);
     Ok((figure, notes, ShownScene { scene, time_s, view, camera }))
+}
+
+/// Puts the ground of a site below a scene; returns what there is to say of it.
+pub(super) fn add_ground(scene: &mut Scene, site: &Path) -> Result<Vec<String>, CliError> {
+    let LoadedGround { ground, notes, .. } = LoadedGround::load(site)?;
+    scene.ground = Some(ground);
+    Ok(notes)
 }
 
 /// Checks that there is a motion at a time.
@@ -209,7 +222,7 @@ fn drawn_paths(scene: &Scene, figure: &Figure) -> Vec<FigureElement> {
     let path = |(idx, path): (usize, &crate::scene::ScenePath)| {
         let states = path.motion.states();
         let points = states.iter().map(|state| shown([state.pose.x_m, state.pose.y_m])).collect();
-        FigureElement::Path(Path {
+        FigureElement::Path(figure::Path {
             series: Series {
                 name: format!("draw {} of the forecast", idx + 1),
                 role: Role::Muted,

@@ -71,6 +71,9 @@ pub(in crate::cli) struct SimulateArgs {
     /// Simulate until the vehicle has come to rest, for two minutes or the --duration at most
     #[arg(long, conflicts_with = "trajectory")]
     until_rest: bool,
+    /// The ground: a site file, whose zones have their own friction
+    #[arg(long, value_name = "SITE.toml", conflicts_with = "trajectory")]
+    site: Option<PathBuf>,
     #[command(flatten)]
     ending: EndingArgs,
     #[command(flatten)]
@@ -217,6 +220,7 @@ fn simulate_one(
         equations: args.equations.map(Equations::from),
         integrator: args.integrator.into(),
         friction: args.single.friction,
+        site: args.site.clone(),
         duration_s: args.single.duration.unwrap_or(match args.until_rest {
             true => REST_LIMIT.high,
             false => DEFAULT_DURATION_S,

@@ -1,17 +1,19 @@
-//! What a path and `--case` choose: a case of a data set, or a single file.
+//! What a path and `--case` choose: a case of a data set, a single file, or a scenario.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use crate::analysis::PulseSetup;
 use crate::cli::CliError;
+use crate::collision::SCENARIO_PRESETS;
 use crate::data::{ColumnMap, DataError, DatasetKind, FileKind};
-use crate::study::{Drive, Library, MotionSource, SeriesFile, StudyError};
+use crate::study::{Drive, Library, MotionSource, ScenarioChoice, SeriesFile, StudyError};
 
-/// What is shown: a case or a file.
+/// What is shown: a case, a file or a scenario.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct SourceArgs {
-    /// A data set (with --case) or a single file
+    /// A data set (with --case), a single file, or a scenario: a .toml file, or `pit-right-rear`
     pub(in crate::cli) path: PathBuf,
     /// The case of the data set
     #[arg(long, value_name = "NAME")]
@@ -22,7 +24,8 @@ pub(in crate::cli) struct SourceArgs {
 }
 
 impl SourceArgs {
-    /// What drives the motion: the case, the recorded motion, or the force or steer angle of a file.
+    /// What drives the motion: the case, the recorded motion, the force or steer angle of a file, or
+    /// the scenario.
     ///
     /// - `start`: what a single file does not say.
     pub(in crate::cli) fn motion_source(
@@ -34,6 +37,10 @@ impl SourceArgs {
         if !path.is_dir() {
             if let Some(case) = self.case.clone() {
                 return Err(CliError::CaseOfFile { path, case });
+            }
+            if is_scenario(&path) {
+                let (scenario, pulse) = (ScenarioChoice::File(path), PulseSetup::default());
+                return Ok(MotionSource::Scenario { scenario, pulse });
             }
             let file = SeriesFile { path, map: self.map.clone() };
             let kind: FileKind = library.series(&file)?.kind;
@@ -48,4 +55,10 @@ impl SourceArgs {
             None => Err(DataError::NotRecognised { path }.into()),
         }
     }
+}
+
+/// Whether a path is a scenario: the name of a shipped one, or a TOML file.
+fn is_scenario(path: &Path) -> bool {
+    let is_shipped = SCENARIO_PRESETS.iter().any(|(name, _)| Path::new(name) == path);
+    is_shipped || path.extension().is_some_and(|end| end == "toml")
 }

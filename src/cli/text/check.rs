@@ -25,7 +25,11 @@ pub(in crate::cli) fn print_check(out: &mut dyn Write, report: &CheckReport) -> 
         writeln!(out)?;
     }
     for model in &report.models {
-        writeln!(out, "{}: {}, {:?}\n", shown_path(&model.path), model.kind, model.name)?;
+        writeln!(out, "{}: {}, {:?}", shown_path(&model.path), model.kind, model.name)?;
+        for part in &model.contents {
+            writeln!(out, "  {part}")?;
+        }
+        writeln!(out)?;
     }
     let sets = || report.datasets.iter();
     let n_problems = report.problems.len() + sets().map(|set| set.problems.len()).sum::<usize>();

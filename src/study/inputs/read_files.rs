@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::data::Dataset;
+use crate::site::Site;
 use crate::study::{
     ConfigChoice, Drive, ForceQuestion, ForceSource, MotionSource, Request, ScenarioChoice,
     SeriesFile, SimulateRequest, TrainingOptions, VehicleChoice,
@@ -128,5 +129,9 @@ impl Files {
         }
         self.vehicle(&asked.vehicle);
         self.vehicle(&asked.bullet);
+        self.paths(&asked.site);
+        // What a site names that cannot be read is said when the question is asked.
+        let site = asked.site.as_ref().and_then(|path| Site::load(path).ok());
+        self.paths(&site.map(|site| site.other_files()).unwrap_or_default());
     }
 }

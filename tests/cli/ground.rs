@@ -1,0 +1,96 @@
+//! Site files on the command line: checked, simulated over, drawn.
+
+#![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
+
+use std::fs;
+use std::path::Path;
+
+use tempfile::TempDir;
+
+use crate::program::{json, ok, program};
+
+const SITE: &str = "assets/sites/country-road/site.toml";
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+/// A site that is ice all over.
+fn icy(folder: &Path, friction: f64) -> String {
+    let path = folder.join("ice.toml");
+    let border = "[[-500, -500], [500, -500], [500, 500], [-500, 500]]";
+    let zone =
+        format!("[[friction_zone]]\nname = \"ice\"\nborder_m = {border}\nfriction = {friction}\n");
+    fs::write(&path, zone).unwrap();
+    text(&path).to_owned()
+}
+
+#[test]
+fn check_says_what_a_site_consists_of() {
+    let out = ok(program().args(["check", SITE, "--json"]).output().unwrap());
+    let model = json(&out)["models"][0].clone();
+    assert_eq!(model["kind"], "site");
+    assert_eq!(model["name"], "Country road, synthetic");
+    let contents = model["contents"].to_string();
+    for part in ["orthophoto of 1680 x 840 pixels of 0.0800 m", "2 lanes", "2 friction zones"] {
+        assert!(contents.contains(part), "{contents}");
+    }
+    let printed = ok(program().args(["check", SITE]).output().unwrap());
+    assert!(printed.contains("site, \"Country road, synthetic\"\n  orthophoto of"), "{printed}");
+}
+
+#[test]
+fn a_wrong_site_is_an_error_with_its_place() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("site.toml");
+    fs::write(&path, "[[friction_zone]]\nname = \"ice\"\nfriction = 3\nborder_m = []\n").unwrap();
+    let simulate = ["simulate", "--scenario", "pit-right-rear", "--site", text(&path)];
+    let output = program().args(simulate).output().unwrap();
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    let expected = "site.toml:3:12: friction_zone[0].friction is 3, expected 0.01 to 2";
+    assert!(error.contains(expected), "{error}");
+}
+
+#[test]
+fn the_zones_of_a_site_are_what_the_wheels_stand_on() {
+    let folder = TempDir::new().unwrap();
+    let distance_m = |options: &[&str]| {
+        let braked = ["simulate", "--scenario", "pit-right-rear", "--brake", "0.9", "--until-rest"];
+        let all = [&braked[..], &["--vehicle-draws", "0", "--json"], options].concat();
+        let report = json(&ok(program().args(&all).output().unwrap()));
+        report["rest"]["distance_m"].as_f64().unwrap_or(f64::INFINITY)
+    };
+    let dry_m = distance_m(&[]);
+    let icy_m = distance_m(&["--site", &icy(folder.path(), 0.15)]);
+    assert!(icy_m > 2.0 * dry_m, "{dry_m} m, on ice {icy_m} m");
+    let far = icy(folder.path(), 0.15).replace("ice.toml", "far.toml");
+    let border = "[[4000, 4000], [4001, 4000], [4001, 4001]]";
+    let zone = format!("[[friction_zone]]\nname = \"far\"\nborder_m = {border}\nfriction = 0.1\n");
+    fs::write(&far, zone).unwrap();
+    assert_eq!(distance_m(&["--site", &far]), dry_m, "a zone without wheels changes nothing");
+}
+
+#[cfg(feature = "gui")]
+#[test]
+fn scenes_and_reconstructions_are_drawn_on_their_ground() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("scene.png");
+    let target = ["--size", "320x240", "--scale", "1", "--out", text(&out), "--overwrite"];
+    let drawn = |options: &[&str]| {
+        ok(program().args([options, &target].concat()).output().unwrap());
+        fs::read(&out).unwrap()
+    };
+    for view in ["above", "perspective"] {
+        let scene = ["render", "scene", "pit-right-rear", "--time", "1", "--view", view];
+        let bare = drawn(&scene);
+        let on_road = drawn(&[&scene[..], &["--site", SITE]].concat());
+        assert!(bare != on_road, "{view}");
+        assert!(on_road == drawn(&[&scene[..], &["--site", SITE]].concat()), "the same again");
+    }
+    let evidence = "datasets/staged/evidence/s05.toml";
+    let cars = ["render", "reconstruction", evidence, "--plot", "cars-above", "--particles", "60"];
+    let output = program().args([&cars[..], &["--site", SITE], &target].concat()).output().unwrap();
+    let printed = ok(output);
+    assert!(printed.contains("friction zones: grass verge, right, grass verge, left"), "{printed}");
+}
