@@ -11,6 +11,7 @@ use egui::Context;
 use crate::app::case::{Leaving, VariantCommand};
 use crate::app::dialogs::{FileDialog, Purpose};
 use crate::app::export;
+use crate::app::ground::GroundCommand;
 use crate::app::kept::{KeptEntry, ModelsDialog, Removal};
 use crate::app::network::Network;
 use crate::app::panes::Pane;
@@ -132,6 +133,10 @@ pub enum Command {
     Evaluate,
     /// Cancel the evaluation of the force model.
     CancelEvaluation,
+    /// Act on the ground of the scene.
+    Ground(GroundCommand),
+    /// Write the ground to a site file, which becomes that of the project.
+    SaveSite(PathBuf),
     /// Act on the reconstruction.
     Reconstruct(ReconstructionCommand),
     /// Make the report of the case, or show a part of it.
@@ -265,6 +270,7 @@ impl State {
             | Command::SaveScenario(_)
             | Command::SaveVehicle(..)
             | Command::SaveEvidence(..)
+            | Command::SaveSite(_)
             | Command::SaveModel(..)
             | Command::SaveKept(..)
             | Command::SaveCaseAs(_)
@@ -288,6 +294,7 @@ impl State {
             Command::Models(command) => self.change_models(command, context),
             Command::Evaluate => self.evaluate(context),
             Command::CancelEvaluation => self.session.force.evaluation.cancel(),
+            Command::Ground(command) => self.change_ground(command),
             Command::Reconstruct(command) => self.reconstruct(command, context),
             Command::Report(command) => self.report(command, context),
             command => self.apply_to_view(command),

@@ -88,6 +88,7 @@ impl State {
         let mut entries = Vec::new();
         entries.extend(self.vehicle_entries());
         entries.extend(self.scene_entries());
+        entries.extend(self.ground_entry());
         entries.push(self.impact_entry());
         entries.extend(self.session.sources.iter().map(|source| self.source_entry(source)));
         if self.session.sources.is_empty() {
@@ -134,6 +135,21 @@ impl State {
             ContentsEntry::new(Group::Scene, ("Road", road), Command::Show(Pane::Vehicle)),
             ContentsEntry::new(Group::Scene, ("After the impact", after), Command::Show(pane)),
         ]
+    }
+
+    /// The ground of the scene, if there is one.
+    fn ground_entry(&self) -> Option<ContentsEntry> {
+        let site = self.project.site.as_ref()?;
+        let ground = &self.session.ground;
+        let detail = match ground.shown() {
+            Some(loaded) => loaded.site.name.clone(),
+            None if ground.is_loading() => "loading…".to_owned(),
+            None => file_name(&site.file),
+        };
+        let missing = ground.shown().and_then(|loaded| loaded.notes.first().cloned());
+        let missing = ground.problem.clone().or(missing);
+        let show = Command::Show(Pane::Scene);
+        Some(ContentsEntry::new(Group::Scene, ("Ground", detail), show).missing(missing))
     }
 
     fn impact_entry(&self) -> ContentsEntry {

@@ -19,6 +19,9 @@ use crate::vehicle::DataSheet;
 /// File extension of model files.
 pub const MODEL_ENDING: &str = "safetensors";
 
+/// File extensions of site files and orthophotos.
+const GROUNDS: [&str; 6] = ["toml", "png", "jpg", "jpeg", "tif", "tiff"];
+
 /// The purpose for which the user is asked for a path.
 #[derive(Debug, Clone)]
 pub enum Purpose {
@@ -38,6 +41,10 @@ pub enum Purpose {
     Vehicle(Box<DataSheet>),
     /// A TOML file for the evidence of a reconstruction.
     Evidence(Box<Evidence>),
+    /// A site file or an orthophoto to open.
+    Ground,
+    /// A TOML file for the ground of the scene.
+    Site,
     /// A model file to open.
     OpenModel,
     /// A file for the current model of a network.
@@ -67,6 +74,8 @@ impl Purpose {
             Self::Scenario => "Save the scenario",
             Self::Vehicle(_) => "Save the vehicle",
             Self::Evidence(_) => "Save the evidence",
+            Self::Ground => "Open a ground",
+            Self::Site => "Save the ground",
             Self::OpenModel => "Open a model",
             Self::SaveModel(_) | Self::SaveKept(..) => "Save the model",
             Self::OpenComparison => "Open a comparison",
@@ -80,7 +89,10 @@ impl Purpose {
     /// The name that is proposed.
     pub(in crate::app) fn usual_name(&self) -> String {
         let fixed = match self {
-            Self::Folder | Self::Files | Self::OpenModel | Self::OpenComparison => "",
+            Self::Folder | Self::Files | Self::Ground | Self::OpenModel | Self::OpenComparison => {
+                ""
+            }
+            Self::Site => "site.toml",
             Self::Picture(figure) => return file_stem(&figure.title) + ".png",
             Self::ScenePicture(picture) => return file_stem(&picture.title()) + ".png",
             Self::Numbers(figure) => return file_stem(&figure.title) + ".csv",
@@ -98,7 +110,10 @@ impl Purpose {
 
     /// Whether something is written at the path.
     pub(in crate::app) fn writes(&self) -> bool {
-        !matches!(self, Self::Folder | Self::Files | Self::OpenModel | Self::OpenComparison)
+        !matches!(
+            self,
+            Self::Folder | Self::Files | Self::Ground | Self::OpenModel | Self::OpenComparison
+        )
     }
 
     /// The commands that follow once paths are known.
@@ -112,9 +127,10 @@ impl Purpose {
             written((&first, ending), was_asked, command)
         };
         vec![match self {
-            Self::Folder | Self::Files | Self::OpenModel | Self::OpenComparison => {
+            Self::Folder | Self::Files | Self::Ground | Self::OpenModel | Self::OpenComparison => {
                 Command::Open(paths)
             }
+            Self::Site => written("toml", &Command::SaveSite),
             Self::SaveComparison => Command::Compare(ComparisonCommand::Save(first)),
             Self::Picture(figure) => written("png", &|path| Command::Export(figure.clone(), path)),
             Self::ScenePicture(picture) => {
@@ -242,6 +258,8 @@ async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
         Purpose::OpenComparison => {
             dialog.add_filter("comparison.json", &["json"]).pick_file().await
         }
+        Purpose::Ground => dialog.add_filter("site file or orthophoto", &GROUNDS).pick_file().await,
+        Purpose::Site => save(dialog.add_filter("site file", &["toml"]), name).await,
         Purpose::OpenModel => dialog.add_filter("model", &[MODEL_ENDING]).pick_file().await,
         Purpose::SaveModel(_) | Purpose::SaveKept(..) => {
             save(dialog.add_filter("model", &[MODEL_ENDING]), name).await

@@ -25,8 +25,8 @@ use crate::study::VehicleChoice;
 use crate::vehicle::VehicleParameters;
 
 impl State {
-    /// Opens paths by their extension: `.impactlab` is a case, `.toml` evidence, a vehicle or a scenario,
-    /// `.safetensors` a model and `.json` a comparison. Any other path is loaded as data; a folder
+    /// Opens paths by their extension: `.impactlab` is a case, `.toml` a site, evidence, a vehicle or a
+    /// scenario, a picture an orthophoto, `.safetensors` a model and `.json` a comparison. Any other path is loaded as data; a folder
     /// is shown in the Data workspace, where its cases are chosen.
     pub(super) fn open(&mut self, paths: Vec<PathBuf>, context: &Context) {
         for path in paths {
@@ -34,6 +34,10 @@ impl State {
             let path = std::path::absolute(&path).unwrap_or(path);
             if is_case_file(&path) {
                 self.leave(Leaving::Open(path), context);
+                continue;
+            }
+            if Self::is_ground(&path) {
+                self.open_ground(path);
                 continue;
             }
             if path.extension().is_some_and(|ending| ending == "toml") {

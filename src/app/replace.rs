@@ -20,6 +20,7 @@ impl Command {
             | Self::SaveScenario(path)
             | Self::SaveVehicle(_, path)
             | Self::SaveEvidence(_, path)
+            | Self::SaveSite(path)
             | Self::SaveModel(_, path)
             | Self::SaveKept(_, path)
             | Self::SaveCaseAs(path)
@@ -71,6 +72,7 @@ impl State {
             Command::SaveEvidence(evidence, path) => {
                 self.write_text(&evidence.to_toml(), (&path, existing));
             }
+            Command::SaveSite(path) => self.save_site(&path, existing),
             Command::SaveCaseAs(path) => self.save_case((path, existing), context),
             Command::PackCase(path) => self.pack_case((path, existing), context),
             Command::SaveReport(document, path) => {

@@ -38,6 +38,7 @@ impl State {
             integrator: project.integrator,
             duration_s: project.duration_s,
             until_rest: project.until_rest,
+            site: project.site.as_ref().map(|site| site.file.clone()),
             ending: self.says_no_ending().then(|| project.ending.clone()).flatten(),
             ..SimulateRequest::new(self.motion_source()?)
         })

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::app::command::wake;
 use crate::app::latest::Latest;
+use crate::app::measure::Measuring;
 use crate::app::recording::{OverlaidRecording, overlaid};
 use crate::app::response::{DensityAnswer, DensityQuestion, MotionAnswer};
 use crate::app::source::Source;
@@ -14,7 +15,8 @@ use crate::app::state::{Project, Session, State, View};
 use crate::app::variants::AnsweredVariant;
 use crate::render::scene::{Camera, Follow, SceneView};
 use crate::scene::{
-    ForecastScene, OtherMotion, Scene, SceneRole, SimulationScene, add_forecast, simulation_scene,
+    ForecastScene, OtherMotion, Scene, SceneGround, SceneRole, SimulationScene, add_forecast,
+    simulation_scene,
 };
 use crate::study::{PredictMotionAnswer, SimulateAnswer, Trust};
 use crate::units::UnitSystem;
@@ -41,6 +43,8 @@ pub struct SceneSession {
     pub view: SceneView,
     /// The density of the position at the end of the forecast, while the scene shows it.
     pub end_density: Latest<DensityQuestion>,
+    /// What is measured on the ground.
+    pub measuring: Measuring,
     built: Option<(SceneSource, Arc<Scene>)>,
 }
 
@@ -54,6 +58,8 @@ pub struct SceneSource {
     pub forecast: Option<ShownForecast>,
     /// The recording beside them, with the number of its samples.
     pub recording: Option<(OverlaidRecording, usize)>,
+    /// The ground below it.
+    pub ground: Option<Arc<SceneGround>>,
     /// What restricts the simulation.
     pub trust: Trust,
     /// System of units of the labels.
@@ -117,6 +123,7 @@ impl SceneSource {
                 (a, b) => a.is_none() && b.is_none(),
             }
             && self.recording == other.recording
+            && self.ground.as_ref().map(Arc::as_ptr) == other.ground.as_ref().map(Arc::as_ptr)
             && self.trust == other.trust
             && self.units == other.units
     }
@@ -150,7 +157,7 @@ impl SceneSource {
         if let Some(forecast) = &self.forecast {
             forecast.add_to(&mut scene);
         }
-        scene
+        Scene { ground: self.ground.clone(), ..scene }
     }
 }
 

@@ -15,6 +15,7 @@ use crate::app::cost::Costs;
 use crate::app::dialogs::FileDialog;
 use crate::app::force::{ForceProject, ForceSession, ForceView};
 use crate::app::frame_times::FrameTimes;
+use crate::app::ground::{GroundSession, SiteChoice};
 use crate::app::import::{ColumnMaps, ImportDialog};
 use crate::app::kept::{KeptStatus, ModelsDialog};
 use crate::app::latest::Latest;
@@ -121,6 +122,9 @@ pub struct Project {
     pub show_pulses: bool,
     /// The scenario in the scenario pane.
     pub scenario: Scenario,
+    /// The ground of the scene, whose zones have their own friction.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub site: Option<SiteChoice>,
     /// Shape and duration of the pulse that spreads the impulse of the scenario over time.
     pub pulse: PulseSetup,
     /// Speed, contact point and controls for single files, which do not state them.
@@ -154,6 +158,7 @@ impl Default for Project {
             recording: None,
             show_pulses: false,
             scenario: Scenario::example(),
+            site: None,
             pulse: PulseSetup::default(),
             file_start: FileStart::default(),
             ending: None,
@@ -265,6 +270,8 @@ pub struct Session {
     pub models_dialog: Option<ModelsDialog>,
     /// The cases that the case table lists, in their order.
     pub cases: CaseList,
+    /// The ground of the scene.
+    pub ground: GroundSession,
     /// The scene that is shown, and its picture.
     pub scene: SceneSession,
     /// The time that is shown in the scene, s.

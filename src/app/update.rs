@@ -37,6 +37,7 @@ impl State {
         self.select_something();
         let Session { cases, sources, replays, .. } = &mut self.session;
         cases.update(sources, replays, &self.view);
+        self.update_ground(context);
         self.update_simulation(context);
         self.update_force(context);
         self.update_response(context);

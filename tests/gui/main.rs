@@ -6,6 +6,7 @@ mod case;
 mod conditioning;
 mod density_gpu;
 mod force_network;
+mod ground;
 mod harness;
 mod import;
 mod looks;

@@ -30,6 +30,7 @@ mod report;
 mod scenario;
 mod scenario_plan;
 mod scene;
+mod scene_ground;
 mod training;
 mod training_force;
 mod training_losses;

@@ -7,11 +7,13 @@ use egui::{Align, Layout, RichText, Slider, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
+use crate::app::ground::GroundSession;
 use crate::app::looks::{Icon, icon, icon_button};
 use crate::app::panels::analysis_or_hint;
+use crate::app::panels::scene_ground::{ground_menu_ui, measure_bar_ui, measured_ui};
 use crate::app::panes::PaneContext;
 use crate::app::recording::overlaid;
-use crate::app::scene::{SceneSettings, SceneSource};
+use crate::app::scene::{SceneSession, SceneSettings, SceneSource};
 use crate::app::state::{Session, State};
 use crate::app::variants::{are_others_awaited, other_simulations};
 use crate::app::widgets::{OUTDATED, badges_ui};
@@ -64,6 +66,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
             .clone()
             .filter(|_| recorded.is_some())
             .map(|of| (of, n_recorded)),
+        ground: session.ground.shown().map(|loaded| Arc::clone(&loaded.ground)),
         trust: trust.clone(),
         units: view.units,
     };
@@ -86,7 +89,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     scene_heading_ui(
         ui,
         (&scene, time_s),
-        &mut view.scene,
+        (&mut view.scene, &session.ground),
         |settings| {
             let picture = ScenePicture {
                 scene: Arc::clone(&scene),
@@ -103,9 +106,14 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     if session.fit_plots {
         session.scene.view.fit();
     }
+    let has_photo = scene.ground.as_ref().is_some_and(|ground| ground.has_picture());
+    measure_bar_ui(ui, &mut session.scene.measuring, (view.units, has_photo), commands);
+    session.scene.view.takes_clicks = session.scene.measuring.measure.is_some();
     let SceneSettings { camera, follow, .. } = &mut view.scene;
     let seen = (camera, *follow, ui.available_height());
-    scene_view_ui(ui, (&scene, time_s), &mut session.scene.view, seen);
+    let response = scene_view_ui(ui, (&scene, time_s), &mut session.scene.view, seen);
+    let SceneSession { view: drawn, measuring, .. } = &mut session.scene;
+    measured_ui(ui, (&response, drawn), measuring, view.units);
 }
 
 /// Draws the choice whether the forecast is shown.
@@ -130,7 +138,7 @@ fn forecast_choice_ui(ui: &mut Ui, shows_forecast: &mut bool, session: &Session)
 pub fn scene_heading_ui(
     ui: &mut Ui,
     (scene, time_s): (&Scene, f64),
-    settings: &mut SceneSettings,
+    (settings, ground): (&mut SceneSettings, &GroundSession),
     exported: impl Fn(&SceneSettings) -> (ScenePicture, Figure),
     commands: &mut Vec<Command>,
 ) {
@@ -144,6 +152,7 @@ pub fn scene_heading_ui(
                 .on_hover_text("Save or copy this scene")
                 .on_disabled_hover_text(OUTDATED);
             });
+            ground_menu_ui(ui, ground, commands);
             view_ui(ui, scene, settings);
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 let title = scene.heading(settings.camera.kind.phrase(), time_s);

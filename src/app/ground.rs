@@ -1,0 +1,181 @@
+//! The ground of the scene: the site that was opened, read on another thread, and where its orthophoto
+//! was put.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use egui::Context;
+use serde::{Deserialize, Serialize};
+
+use crate::app::command::wake;
+use crate::app::panes::Pane;
+use crate::app::state::State;
+use crate::data::{Existing, Severity, write_atomically};
+use crate::error_chain;
+use crate::jobs::{Job, Update};
+use crate::ranges::SITE_DISTANCE;
+use crate::scene::LoadedGround;
+use crate::site::{PixelMap, Site, is_picture_file};
+
+/// The site of a project.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SiteChoice {
+    /// The site file, or an orthophoto alone.
+    pub file: PathBuf,
+    /// Where the orthophoto was put in the window, instead of where the file says.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub map: Option<PixelMap>,
+}
+
+/// An action on the ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum GroundCommand {
+    /// Scale the orthophoto so that two places that are shown have a distance; the first one stays.
+    Scale {
+        /// The places as they are shown now, m.
+        ends_m: [[f64; 2]; 2],
+        /// Their true distance, m.
+        distance_m: f64,
+    },
+    /// Take the ground away.
+    Remove,
+}
+
+/// The ground that was read.
+#[derive(Default)]
+pub struct GroundSession {
+    /// What was asked for last.
+    asked: Option<PathBuf>,
+    job: Option<Job<Result<LoadedGround, String>>>,
+    read: Option<Arc<LoadedGround>>,
+    /// The ground with its orthophoto where the project puts it.
+    shown: Option<(Option<PixelMap>, Arc<LoadedGround>)>,
+    /// Why it cannot be shown.
+    pub problem: Option<String>,
+}
+
+impl GroundSession {
+    /// The ground that is shown.
+    pub fn shown(&self) -> Option<&Arc<LoadedGround>> {
+        self.shown.as_ref().map(|(_, ground)| ground)
+    }
+
+    /// Whether a ground is being read.
+    pub fn is_loading(&self) -> bool {
+        self.job.is_some()
+    }
+
+    /// Reads the ground again, since its files may have changed.
+    fn forget(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Starts to read a ground that has not been asked for, and receives the one that has been read.
+    ///
+    /// - returns what the user has to know.
+    fn update(
+        &mut self,
+        choice: Option<&SiteChoice>,
+        context: &Context,
+    ) -> Vec<(Severity, String)> {
+        let file = choice.map(|choice| &choice.file);
+        if file != self.asked.as_ref() {
+            self.forget();
+            self.asked = file.cloned();
+            if let Some(path) = file.cloned() {
+                let job = Job::spawn("ground", wake(context), move |_| {
+                    LoadedGround::load(&path).map_err(|error| error_chain(&error))
+                });
+                match job {
+                    Ok(job) => self.job = Some(job),
+                    Err(error) => self.problem = Some(error.to_string()),
+                }
+            }
+        }
+        let mut said = Vec::new();
+        match self.job.as_mut().map(Job::poll) {
+            None | Some(Update::Running) => {}
+            Some(Update::Finished(Ok(ground))) => {
+                said.extend(ground.notes.iter().map(|note| (Severity::Info, note.clone())));
+                (self.job, self.read) = (None, Some(Arc::new(ground)));
+            }
+            Some(Update::Finished(Err(why)) | Update::Panicked(why)) => {
+                said.push((Severity::Error, why.clone()));
+                (self.job, self.problem) = (None, Some(why));
+            }
+            Some(Update::Gone) => self.job = None,
+        }
+        let map = choice.and_then(|choice| choice.map);
+        if self.shown.as_ref().map(|(map, _)| map) != Some(&map) || self.read.is_none() {
+            let placed = |read: &Arc<LoadedGround>| match map {
+                Some(map) => Arc::new(read.placed(map)),
+                None => Arc::clone(read),
+            };
+            self.shown = self.read.as_ref().map(|read| (map, placed(read)));
+        }
+        said
+    }
+}
+
+impl State {
+    /// Whether a path is opened as the ground of the scene.
+    pub(in crate::app) fn is_ground(path: &Path) -> bool {
+        is_picture_file(path) || Site::is_meant_by(path)
+    }
+
+    /// Puts a site, or an orthophoto alone, below the scene.
+    pub(in crate::app) fn open_ground(&mut self, path: PathBuf) {
+        // A file that is opened again is read again.
+        self.session.ground.forget();
+        self.project.site = Some(SiteChoice { file: path, map: None });
+        self.ask_again();
+        self.session.shows_doors = false;
+        self.view.workspaces.show_pane(Pane::Scene);
+    }
+
+    /// Reads the ground of the project where that has changed.
+    pub(in crate::app) fn update_ground(&mut self, context: &Context) {
+        let said = self.session.ground.update(self.project.site.as_ref(), context);
+        said.into_iter().for_each(|(severity, text)| self.say(severity, text));
+    }
+
+    /// Carries out a command on the ground.
+    pub(in crate::app) fn change_ground(&mut self, command: GroundCommand) {
+        match command {
+            GroundCommand::Remove => self.project.site = None,
+            GroundCommand::Scale { ends_m: [from, to], distance_m } => {
+                let photo = self.session.ground.shown().and_then(|of| of.site.orthophoto.as_ref());
+                let shown_m = (to[0] - from[0]).hypot(to[1] - from[1]);
+                let (Some(photo), Some(site)) = (photo, &mut self.project.site) else { return };
+                let map = photo.map.scaled_about(from, distance_m / shown_m);
+                let is_possible = SITE_DISTANCE.contains(distance_m) && shown_m > 0.0;
+                match map.problem().filter(|_| is_possible) {
+                    None if is_possible => site.map = Some(map),
+                    problem => {
+                        let expected = problem.unwrap_or("a distance of 0.05 m to 100 km");
+                        let text = format!("the orthophoto keeps its scale, expected {expected}");
+                        self.say(Severity::Warning, text);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Writes the site that is shown as a site file, which becomes that of the project.
+    pub(in crate::app) fn save_site(&mut self, path: &Path, existing: Existing) {
+        let Some(ground) = self.session.ground.shown().cloned() else { return };
+        let text = match ground.site.to_toml(path.parent().unwrap_or(Path::new(""))) {
+            Ok(text) => text,
+            Err(error) => return self.say(Severity::Error, error.to_string()),
+        };
+        match write_atomically(path, existing, |out| out.write_all(text.as_bytes())) {
+            Ok(()) => {
+                self.say(Severity::Info, format!("{} written", path.display()));
+                self.project.site = Some(SiteChoice { file: path.to_owned(), map: None });
+                self.session.ground.forget();
+            }
+            Err(error) => self.say(Severity::Error, error_chain(&error)),
+        }
+    }
+}
