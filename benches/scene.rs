@@ -6,14 +6,16 @@
 #![allow(clippy::print_stdout)]
 
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
 use cpu_time::ProcessTime;
 use impactlab::analysis::DensityTask;
 use impactlab::render::scene::{Camera, SceneCanvas, SceneLook, ViewKind};
-use impactlab::scene::{ForecastScene, Scene, SimulationScene, add_forecast, simulation_scene};
+use impactlab::scene::{
+    ForecastScene, LoadedGround, Scene, SimulationScene, add_forecast, simulation_scene,
+};
 use impactlab::study::{ForceSource, Library, MotionSource, PredictMotionRequest, Question, Trust};
 use impactlab::units::UnitSystem;
 
@@ -87,5 +89,14 @@ fn main() {
     {
         measure(&format!("{name}, playing"), &scene, kind, false);
         measure(&format!("{name}, camera moves too"), &scene, kind, true);
+    }
+    let site = Path::new("assets/sites/country-road/site.toml");
+    let loaded = LoadedGround::load(site).expect("a shipped site");
+    let on_road = Arc::new(Scene { ground: Some(loaded.ground), ..(*scene).clone() });
+    println!("on an orthophoto with zones and lanes");
+    for (name, kind) in [("from above", ViewKind::Above), ("in perspective", ViewKind::Perspective)]
+    {
+        measure(&format!("{name}, playing"), &on_road, kind, false);
+        measure(&format!("{name}, camera moves too"), &on_road, kind, true);
     }
 }

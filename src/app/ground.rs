@@ -121,7 +121,8 @@ impl GroundSession {
 impl State {
     /// Whether a path is opened as the ground of the scene.
     pub(in crate::app) fn is_ground(path: &Path) -> bool {
-        is_picture_file(path) || Site::is_meant_by(path)
+        let is_toml = path.extension().is_some_and(|ending| ending == "toml");
+        is_picture_file(path) || is_toml && Site::is_meant_by(path)
     }
 
     /// Puts a site, or an orthophoto alone, below the scene.

@@ -150,7 +150,9 @@ pub struct Measuring {
 impl Measuring {
     /// Chooses what is measured next; what was begun is ended.
     pub fn choose(&mut self, measure: Option<Measure>) {
-        self.end();
+        if self.begun.is_some() {
+            self.end();
+        }
         self.measure = measure;
     }
 

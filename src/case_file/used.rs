@@ -113,11 +113,13 @@ pub(super) fn files_in(folder: &Path) -> io::Result<Vec<String>> {
     Ok(names)
 }
 
-/// Orthophoto, world file and drawing of a site; none for any other file, or if it cannot be read.
+/// Orthophoto, world file and drawing of a site; none for any other file.
 pub(super) fn files_of_site(path: &Path) -> Vec<PathBuf> {
-    let is_site = is_picture_file(path) || path.extension().is_some_and(|end| end == "toml");
-    let site = is_site.then(|| Site::load(path).ok()).flatten();
-    site.map(|site| site.other_files()).unwrap_or_default()
+    let is_toml = path.extension().is_some_and(|end| end == "toml");
+    match is_picture_file(path) || is_toml && Site::is_meant_by(path) {
+        true => Site::files_named_by(path),
+        false => Vec::new(),
+    }
 }
 
 impl CaseFile {

@@ -37,6 +37,11 @@ pub enum CliError {
     /// A steering-wheel angle that the road wheels cannot follow.
     #[error("the steering-wheel angle over the steering ratio is no angle of a road wheel")]
     SteeringWheel(#[from] OutOfRange),
+    /// A ground is given for a data set.
+    #[error(
+        "the cases of a trajectory data set are simulated on the road of their vehicle; leave out --site"
+    )]
+    SiteOfDataset,
     /// What happens to the wheels is said for a data set whose cases say it themselves.
     #[error(
         "the cases of a trajectory data set say themselves what happens to the wheels and how long \

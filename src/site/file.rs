@@ -62,8 +62,36 @@ impl Site {
     /// Whether a TOML file is meant as a site: it has a table that no vehicle, scenario or evidence has.
     pub fn is_meant_by(path: &Path) -> bool {
         let Ok(text) = TomlFile::read(path) else { return false };
+        let Ok(root) = (TomlFile { path, text: &text }).parse() else { return false };
+        let has = |key: &str| root.get_ref().contains_key(key);
+        !has("struck_car") && OWN_KEYS.into_iter().any(has)
+    }
+
+    /// The files that a site file, or an orthophoto as a site of its own, consists of beside itself:
+    /// orthophoto, world file, drawing. They need not exist, and nothing is said of a file that is wrong;
+    /// [`Site::load`] does that.
+    pub fn files_named_by(path: &Path) -> Vec<PathBuf> {
+        if is_picture_file(path) {
+            return world_file_beside(path).into_iter().collect();
+        }
+        let Ok(text) = TomlFile::read(path) else { return Vec::new() };
         let file = TomlFile { path, text: &text };
-        !file.contains("struck_car") && OWN_KEYS.iter().any(|key| file.contains(key))
+        let Ok(root) = file.parse() else { return Vec::new() };
+        let mut top = TomlTable::root(file, &root);
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut named = |table: &str, key: &str| {
+            let mut table = top.optional_table(table).ok().flatten()?;
+            read_file(&mut table, key, folder).ok().flatten()
+        };
+        let picture = named("orthophoto", "file");
+        let world = named("orthophoto", "world_file");
+        let is_placed = ["corner_m", "points_px"]
+            .into_iter()
+            .any(|key| file.contains(&format!("orthophoto.{key}")));
+        let beside = picture.as_deref().filter(|_| world.is_none() && !is_placed);
+        let beside = beside.and_then(|picture| world_file_beside(picture).ok());
+        let drawing = named("dxf", "file");
+        picture.into_iter().chain(world).chain(beside).chain(drawing).collect()
     }
 
     /// Reads a site file, or a picture as a site of its own ([`Site::of_picture`]). Orthophoto and drawing

@@ -84,11 +84,13 @@ fn world_files_are_in_survey_coordinates() {
     let text = "[origin]\neasting_m = 1000\nnorthing_m = 2000\n[orthophoto]\nfile = \"road.png\"\n";
     let site = read(folder.path(), text).unwrap();
     assert_eq!(site.orthophoto.as_ref().unwrap().map.corner_m, [0.0, 100.0]);
-    assert_eq!(site.other_files().len(), 2);
+    let site_file = folder.path().join("site.toml");
+    let named = ["road.png", "road.pgw"].map(|name| folder.path().join(name));
+    assert_eq!(Site::files_named_by(&site_file), named);
     // The picture alone: survey and site are the same.
     let alone = Site::load(&folder.path().join("road.png")).unwrap();
     assert_eq!(alone.orthophoto.as_ref().unwrap().map.corner_m, [1000.0, 2100.0]);
-    assert_eq!(alone.other_files(), [folder.path().join("road.pgw")]);
+    assert_eq!(Site::files_named_by(&alone.path), named[1..]);
     assert_eq!(alone.origin.unwrap_or_default(), SiteOrigin::default());
 }
 
@@ -126,8 +128,8 @@ fn a_wrong_file_is_refused_with_line_and_key() {
             "site.toml:8:2: orthophoto.points_m or distance_m is missing",
         ),
         (
-            with("points_m = [[-10, 0], [10, 0]]\n", "distance_km = 2\n"),
-            "site.toml:8:2: orthophoto.points_m or distance_m is missing",
+            with("points_m = [[-10, 0], [10, 0]]\n", "distance_m = 0.001\n"),
+            "site.toml:11:14: orthophoto.distance_m is 0.001, expected 0.05 to 100000",
         ),
         (with("width_ft = 12\n", ""), "site.toml:13:3: lane[0].width_m is missing"),
         (

@@ -168,15 +168,6 @@ impl Site {
         })
     }
 
-    /// The files that it consists of beside its own: orthophoto, world file, drawing.
-    pub fn other_files(&self) -> Vec<PathBuf> {
-        let orthophoto = self.orthophoto.as_ref();
-        let pictures = orthophoto.map(|of| of.file.clone()).filter(|file| *file != self.path);
-        let world = orthophoto.and_then(|of| of.world_file.clone());
-        let drawing = self.drawing.as_ref().map(|drawing| drawing.file.clone());
-        pictures.into_iter().chain(world).chain(drawing).collect()
-    }
-
     /// Direction of grid north in the axes of the site, counter-clockwise from X, rad.
     pub fn north_rad(&self) -> Option<f64> {
         let [x, y] = self.origin?.turned([0.0, 1.0]);

@@ -108,7 +108,9 @@ pub use simulate::{DEFAULT_DURATION_S, DEFAULT_VEHICLE_DRAWS, SimulateAnswer, Si
 pub use simulate_dataset::{
     ReplayedCaseReport, SimulateDatasetAnswer, SimulateDatasetReport, SimulateDatasetRequest,
 };
-pub use simulate_report::{EndState, FlagReport, ForceReport, RestState, SimulateReport};
+pub use simulate_report::{
+    EndState, FlagReport, ForceReport, FrictionZoneReport, RestState, SimulateReport,
+};
 pub use train_force::{TrainForceAnswer, TrainForceReport, TrainForceRequest};
 pub use train_response::{ResponseTrainingAnswer, ResponseTrainingReport, TrainResponseRequest};
 pub use trust::{Trust, TrustLine};

@@ -15,7 +15,29 @@ use crate::study::{
 use crate::uncertainty::{Badge, BadgeKind};
 use crate::units::percent;
 use crate::vehicle::frames::world_from_body;
-use crate::vehicle::{Motion, MotionFlag};
+use crate::vehicle::{FrictionZone, Motion, MotionFlag};
+
+/// A part of the ground with its own friction.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FrictionZoneReport {
+    /// What it is called.
+    pub name: String,
+    /// Peak friction in it.
+    pub friction: f64,
+}
+
+impl FrictionZoneReport {
+    fn of(zone: &FrictionZone) -> Self {
+        Self { name: zone.name.clone(), friction: zone.friction }
+    }
+
+    /// The zones with their friction in a few words; `None` if there are none.
+    pub fn listed(zones: &[Self]) -> Option<String> {
+        let one = |zone: &Self| format!("{} {}", zone.name, zone.friction);
+        let all: Vec<String> = zones.iter().map(one).collect();
+        (!all.is_empty()).then(|| all.join("; "))
+    }
+}
 
 /// The simulation of one vehicle, SI units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -30,6 +52,9 @@ pub struct SimulateReport {
     pub integrator: String,
     /// Peak friction of the road.
     pub friction: f64,
+    /// Parts of the ground with their own friction, in which the wheels may stand.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub friction_zones: Vec<FrictionZoneReport>,
     /// Duration of the simulation, s.
     pub duration_s: f64,
     /// The force on the vehicle.
@@ -250,6 +275,7 @@ impl SimulateReport {
             equations: word(&analysis.vehicle.equations),
             integrator: word(&request.integrator),
             friction: analysis.vehicle.tires.friction,
+            friction_zones: analysis.friction_zones.iter().map(FrictionZoneReport::of).collect(),
             duration_s: recorded_s.or(end_s).unwrap_or(request.duration_s),
             force: ForceReport::of(request, analysis),
             momentum: None,

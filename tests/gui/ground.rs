@@ -34,6 +34,14 @@ fn click(harness: &mut Harness<'_, App>, at: Pos2) {
     harness.run_steps(2);
 }
 
+/// Chooses what is measured in the menu of the pane.
+fn choose(harness: &mut Harness<'_, App>, measure: &str) {
+    harness.get_by_label("Measure").click();
+    harness.run_steps(2);
+    harness.get_by_label(measure).click();
+    harness.run_steps(2);
+}
+
 fn on_screen(harness: &Harness<'_, App>, at_m: [f64; 2]) -> Pos2 {
     harness.state().state().session.scene.view.on_screen(at_m).expect("before the camera")
 }
@@ -72,8 +80,7 @@ fn a_site_file_is_opened_drawn_and_asked_with() {
 #[test]
 fn lengths_are_measured_by_clicks_and_stay_on_the_ground() {
     let mut harness = on_road();
-    harness.get_by_label("Length").click();
-    harness.run_steps(2);
+    choose(&mut harness, "Length");
     for at_m in [[4.0, -2.0], [10.0, -2.0], [10.0, 3.0]] {
         let at = on_screen(&harness, at_m);
         click(&mut harness, at);
@@ -87,15 +94,13 @@ fn lengths_are_measured_by_clicks_and_stay_on_the_ground() {
     assert!((value - 11.0).abs() < 0.2, "{value} m");
     let text = measuring.done[0].text(UnitSystem::Us).expect("a length");
     assert!(text.contains("ft (last part"), "{text}");
-    harness.get_by_label("Area").click();
-    harness.run_steps(2);
+    choose(&mut harness, "Area");
     for at_m in [[20.0, -1.0], [26.0, -1.0], [26.0, 4.0], [20.0, 4.0]] {
         let at = on_screen(&harness, at_m);
         click(&mut harness, at);
     }
     harness.key_press(egui::Key::Escape);
-    harness.get_by_label("Angle").click();
-    harness.run_steps(2);
+    choose(&mut harness, "Angle");
     for at_m in [[36.0, 0.0], [30.0, 0.0], [30.0, 5.0]] {
         let at = on_screen(&harness, at_m);
         click(&mut harness, at);
@@ -157,8 +162,7 @@ fn an_orthophoto_alone_is_scaled_by_two_points_undone_and_saved() {
         .iter()
         .any(|message| message.text.contains("nothing says where its pixels lie"));
     assert!(said, "the user is told");
-    harness.get_by_label("Scale of the orthophoto").click();
-    harness.run_steps(2);
+    choose(&mut harness, "Scale of the orthophoto");
     for at_m in [[-6.0, 2.0], [4.0, 2.0]] {
         let at = on_screen(&harness, at_m);
         click(&mut harness, at);

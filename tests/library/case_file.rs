@@ -233,6 +233,12 @@ fn a_site_goes_with_everything_it_names_and_is_found_in_a_package() {
         .collect();
     assert!(names.iter().all(|name| used.iter().any(|path| path.ends_with(name))), "{used:?}");
     let package = folder.join("case.zip");
+    // Without the orthophoto there is no package.
+    let (photo, away) = (road.join("photos/road.png"), folder.join("away.png"));
+    fs::rename(&photo, &away).expect("moved");
+    let error = pack(&case, &package, Existing::Refuse).expect_err("incomplete");
+    assert!(matches!(&error, CaseError::Missing { path } if *path == photo), "{error}");
+    fs::rename(&away, &photo).expect("moved back");
     pack(&case, &package, Existing::Refuse).expect("packed");
     let unpacked = unpack(&package, &folder.join("unpacked")).expect("unpacked");
     let opened = CaseFile::load(&unpacked).expect("loaded");

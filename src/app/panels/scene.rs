@@ -9,8 +9,11 @@ use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
 use crate::app::ground::GroundSession;
 use crate::app::looks::{Icon, icon, icon_button};
+use crate::app::measure::Measuring;
 use crate::app::panels::analysis_or_hint;
-use crate::app::panels::scene_ground::{ground_menu_ui, measure_bar_ui, measured_ui};
+use crate::app::panels::scene_ground::{
+    ground_menu_ui, measure_bar_ui, measure_menu_ui, measured_ui,
+};
 use crate::app::panes::PaneContext;
 use crate::app::recording::overlaid;
 use crate::app::scene::{SceneSession, SceneSettings, SceneSource};
@@ -89,7 +92,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     scene_heading_ui(
         ui,
         (&scene, time_s),
-        (&mut view.scene, &session.ground),
+        (&mut view.scene, &session.ground, &mut session.scene.measuring),
         |settings| {
             let picture = ScenePicture {
                 scene: Arc::clone(&scene),
@@ -106,8 +109,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     if session.fit_plots {
         session.scene.view.fit();
     }
-    let has_photo = scene.ground.as_ref().is_some_and(|ground| ground.has_picture());
-    measure_bar_ui(ui, &mut session.scene.measuring, (view.units, has_photo), commands);
+    measure_bar_ui(ui, &mut session.scene.measuring, view.units, commands);
     session.scene.view.takes_clicks = session.scene.measuring.measure.is_some();
     let SceneSettings { camera, follow, .. } = &mut view.scene;
     let seen = (camera, *follow, ui.available_height());
@@ -138,7 +140,7 @@ fn forecast_choice_ui(ui: &mut Ui, shows_forecast: &mut bool, session: &Session)
 pub fn scene_heading_ui(
     ui: &mut Ui,
     (scene, time_s): (&Scene, f64),
-    (settings, ground): (&mut SceneSettings, &GroundSession),
+    (settings, ground, measuring): (&mut SceneSettings, &GroundSession, &mut Measuring),
     exported: impl Fn(&SceneSettings) -> (ScenePicture, Figure),
     commands: &mut Vec<Command>,
 ) {
@@ -153,6 +155,8 @@ pub fn scene_heading_ui(
                 .on_disabled_hover_text(OUTDATED);
             });
             ground_menu_ui(ui, ground, commands);
+            let has_photo = scene.ground.as_ref().is_some_and(|ground| ground.has_picture());
+            measure_menu_ui(ui, measuring, has_photo);
             view_ui(ui, scene, settings);
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 let title = scene.heading(settings.camera.kind.phrase(), time_s);

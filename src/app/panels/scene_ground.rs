@@ -54,39 +54,46 @@ pub fn ground_menu_ui(ui: &mut Ui, ground: &GroundSession, commands: &mut Vec<Co
     menu.response.on_hover_text("Orthophoto, lanes, drawing and zones of friction below the scene");
 }
 
-/// Draws the choice of what is measured, and the distance by which an orthophoto is scaled.
-pub fn measure_bar_ui(
-    ui: &mut Ui,
-    measuring: &mut Measuring,
-    (units, has_photo): (UnitSystem, bool),
-    commands: &mut Vec<Command>,
-) {
-    ui.horizontal_wrapped(|ui| {
-        ui.weak("Measure");
+/// Draws the menu of what is measured.
+pub fn measure_menu_ui(ui: &mut Ui, measuring: &mut Measuring, has_photo: bool) {
+    let menu = ui.menu_button((icon(Icon::Ruler), "Measure"), |ui| {
         for measure in Measure::ALL {
-            if measure == Measure::Scale && !has_photo {
-                continue;
-            }
+            let is_possible = measure != Measure::Scale || has_photo;
             let is_chosen = measuring.measure == Some(measure);
-            let label = ui.selectable_label(is_chosen, measure.label());
-            if label.on_hover_text(measure.hint()).clicked() {
+            let label = egui::Button::selectable(is_chosen, measure.label());
+            let label = ui.add_enabled(is_possible, label).on_hover_text(measure.hint());
+            if label.clicked() {
                 measuring.choose((!is_chosen).then_some(measure));
-                if !is_chosen {
-                    measuring.measure = Some(measure);
-                }
             }
         }
-        if let Some(measure) = measuring.measure {
-            match measuring.scale_ends_m() {
-                Some(ends_m) => scale_ui(ui, measuring, (ends_m, units), commands),
-                None => drop(ui.weak(measure.hint())),
-            }
-        }
+        ui.separator();
         ui.add_enabled_ui(!measuring.done.is_empty(), |ui| {
             if ui.button("Clear").on_hover_text("Remove everything that was measured").clicked() {
                 measuring.done.clear();
             }
         });
+    });
+    menu.response.on_hover_text("Lengths, angles and areas on the ground");
+}
+
+/// Draws what the user does next while something is measured, and the distance by which an orthophoto is
+/// scaled.
+pub fn measure_bar_ui(
+    ui: &mut Ui,
+    measuring: &mut Measuring,
+    units: UnitSystem,
+    commands: &mut Vec<Command>,
+) {
+    let Some(measure) = measuring.measure else { return };
+    ui.horizontal_wrapped(|ui| {
+        ui.strong(measure.label());
+        match measuring.scale_ends_m() {
+            Some(ends_m) => scale_ui(ui, measuring, (ends_m, units), commands),
+            None => drop(ui.weak(measure.hint())),
+        }
+        if ui.button("Done").on_hover_text("Stop measuring; what was measured stays").clicked() {
+            measuring.choose(None);
+        }
     });
 }
 

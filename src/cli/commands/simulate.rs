@@ -72,7 +72,7 @@ pub(in crate::cli) struct SimulateArgs {
     #[arg(long, conflicts_with = "trajectory")]
     until_rest: bool,
     /// The ground: a site file, whose zones have their own friction
-    #[arg(long, value_name = "SITE.toml", conflicts_with = "trajectory")]
+    #[arg(long, value_name = "SITE.toml")]
     site: Option<PathBuf>,
     #[command(flatten)]
     ending: EndingArgs,
@@ -103,8 +103,8 @@ A force sample stands for: the mean around its instant in finite-element files (
 columns, as in forces/ of the data sets); the mean over the coming interval in trajectories (with
 fx_body); else the value at its instant. --sampling overrules it.
 
-JSON, one vehicle: vehicle, equations, integrator, friction, duration_s, force {path, sampling, axes,
-  impulse_n_s [x, y], contact_start_s, contact_end_s, yaw_moment}, momentum {restitution, restitution_form,
+JSON, one vehicle: vehicle, equations, integrator, friction, friction_zones [{name, friction}]
+  (with --site), duration_s, force {path, sampling, axes, impulse_n_s [x, y], contact_start_s, contact_end_s, yaw_moment}, momentum {restitution, restitution_form,
   friction_limit, critical_impulse_ratio, regime, impulse_n_s} of a scenario, delta_v_m_s [x, y] and
   delta_v_magnitude_m_s over the contact (null without), end {x_m, y_m, yaw_rad, roll_rad,
   vx_m_s, vy_m_s, yaw_rate_rad_s, speed_m_s}, distance_m, rest {time_s, x_m, y_m, yaw_rad,
@@ -203,6 +203,7 @@ pub(in crate::cli) fn run(
         (Some(_), _) if args.until_rest || args.ending.ending()?.is_some() => {
             Err(CliError::EndingOfDataset)
         }
+        (Some(_), _) if args.site.is_some() => Err(CliError::SiteOfDataset),
         (Some(root), _) => simulate_dataset(args, root, console),
         (None, _) => simulate_one(args, source(args), console),
     }

@@ -10,7 +10,9 @@ use crate::cli::console::{
 use crate::cli::text::contact::surface;
 use crate::cli::text::motion_prediction::{rest_facts, shown_share};
 use crate::cli::text::sensitivity::print_sensitivity;
-use crate::study::{ForceReport, RestState, SimulateReport, VehicleUncertainty};
+use crate::study::{
+    ForceReport, FrictionZoneReport, RestState, SimulateReport, VehicleUncertainty,
+};
 use crate::units::{Quantity, UnitSystem, percent};
 
 /// A name and a value.
@@ -32,6 +34,8 @@ pub(in crate::cli) fn print_simulation(
     );
     let mut facts: Vec<Fact> =
         vec![("vehicle", report.vehicle.clone()), ("simulation", simulation)];
+    let zones = FrictionZoneReport::listed(&report.friction_zones);
+    facts.extend(zones.map(|zones| ("friction zones", zones)));
     facts.extend(report.force.iter().flat_map(|force| force_facts(force, &report.name, units)));
     facts.extend(report.momentum.iter().map(|momentum| ("momentum", surface(momentum))));
     if let Some(delta_v) = report.delta_v_m_s {

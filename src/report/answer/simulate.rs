@@ -10,7 +10,7 @@ use crate::report::method::Method;
 use crate::report::numbers::{Wording, fill};
 use crate::report::parts::{Part, PartPicture};
 use crate::report::{Block, Table};
-use crate::study::{SimulateAnswer, SimulateReport, Trust, VehicleUncertainty};
+use crate::study::{FrictionZoneReport, SimulateAnswer, SimulateReport, Trust, VehicleUncertainty};
 use crate::units::Quantity;
 
 /// What a simulation contributes.
@@ -57,6 +57,8 @@ fn facts(report: &SimulateReport, context: Context<'_>) -> Vec<Fact> {
         Fact::plain(words.road_friction, wording.given_number(report.friction)),
         Fact::plain(words.duration, wording.given(Quantity::Time, report.duration_s)),
     ];
+    let zones = FrictionZoneReport::listed(&report.friction_zones);
+    facts.extend(zones.map(|zones| Fact::plain(words.friction_zones, zones)));
     if let Some(force) = &report.force {
         let source = force.path.as_ref().map(|path| context.paths.name(path));
         facts.extend(source.map(|name| Fact::plain(words.force_file, name)));

@@ -102,6 +102,7 @@ pub(super) const WORDS: Words = Words {
     equations: "Bewegungsgleichungen",
     integrator: "Integrationsverfahren",
     road_friction: "Reibbeiwert der Fahrbahn",
+    friction_zones: "Bereiche mit eigenem Reibbeiwert",
     duration: "Dauer",
     force_file: "Datei der Kraft",
     peak_force: "größte Stoßkraft",

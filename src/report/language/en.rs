@@ -99,6 +99,7 @@ pub(super) const WORDS: Words = Words {
     equations: "equations of motion",
     integrator: "integration",
     road_friction: "friction of the road",
+    friction_zones: "zones of their own friction",
     duration: "duration",
     force_file: "file of the force",
     peak_force: "peak force",

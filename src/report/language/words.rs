@@ -89,6 +89,7 @@ pub(in crate::report) struct Words {
     pub equations: &'static str,
     pub integrator: &'static str,
     pub road_friction: &'static str,
+    pub friction_zones: &'static str,
     pub duration: &'static str,
     pub force_file: &'static str,
     pub peak_force: &'static str,

@@ -130,8 +130,6 @@ impl Files {
         self.vehicle(&asked.vehicle);
         self.vehicle(&asked.bullet);
         self.paths(&asked.site);
-        // What a site names that cannot be read is said when the question is asked.
-        let site = asked.site.as_ref().and_then(|path| Site::load(path).ok());
-        self.paths(&site.map(|site| site.other_files()).unwrap_or_default());
+        self.paths(&asked.site.as_deref().map(Site::files_named_by).unwrap_or_default());
     }
 }
