@@ -21,7 +21,8 @@ use crate::collision::{Footprint, PulseError, ScenarioError, SecondContact};
 use crate::compare::{MotionError, ReplayError};
 use crate::data::{ContactOutside, DataError, ForceHistory, SeriesError, TimeSeries};
 use crate::vehicle::{
-    Controls, Ending, FrictionZone, Integrator, Motion, SimulationError, VehicleParameters,
+    ControlledVehicle, Controls, Ending, FrictionZone, Integrator, Motion, SimulationError,
+    VehicleParameters,
 };
 
 pub use case::analyse_case;
@@ -108,6 +109,17 @@ pub struct Analysis {
     pub error: Option<MotionError>,
     /// Notes on the analysis for the user.
     pub notes: Vec<String>,
+}
+
+impl Analysis {
+    /// The struck vehicle with what acts on its wheels and the ground under them.
+    pub fn controlled(&self) -> ControlledVehicle<'_> {
+        ControlledVehicle {
+            vehicle: &self.vehicle,
+            controls: &self.controls,
+            friction_zones: &self.friction_zones,
+        }
+    }
 }
 
 /// Reason for which a case cannot be analysed.

@@ -29,8 +29,8 @@ use crate::response::{
 };
 use crate::uncertainty::{ForceCurve, PlanarMixture};
 use crate::vehicle::{
-    ContactLoad, ContactPoint, Controls, FrictionZone, Manoeuvre, VehicleInput, VehicleParameters,
-    VehicleState,
+    ContactLoad, ContactPoint, ControlledVehicle, Controls, FrictionZone, Manoeuvre, VehicleInput,
+    VehicleParameters, VehicleState,
 };
 
 /// Largest standard deviation of a component's heading with which its moments are propagated, rad.
@@ -156,6 +156,15 @@ pub enum MotionForecastError {
 }
 
 impl StruckVehicle {
+    /// The vehicle with what acts on its wheels and the ground under them.
+    pub fn controlled(&self) -> ControlledVehicle<'_> {
+        ControlledVehicle {
+            vehicle: &self.vehicle,
+            controls: &self.controls,
+            friction_zones: &self.friction_zones,
+        }
+    }
+
     /// Inputs of the vehicle at each time step under a force.
     pub(super) fn inputs(&self, force: &ForceHistory, duration_s: f64) -> Vec<VehicleInput<f64>> {
         let manoeuvre = Manoeuvre {

@@ -7,12 +7,10 @@ use crate::figure::scene::vehicle_outline;
 use crate::figure::{Axis, Figure, FigureElement, LineStyle, Path, Role, Series};
 use crate::numerics::interpolate;
 use crate::reconstruct::evidence::{Evidence, RestPose};
-use crate::reconstruct::{
-    Cars, Mode, QuantityEstimate, ReconstructedQuantity, ReconstructionTarget,
-};
+use crate::reconstruct::{Cars, Mode, QuantityEstimate, ReconstructionTarget};
 use crate::study::{ReconstructAnswer, Trust};
 use crate::units::{Quantity, UnitSystem};
-use crate::vehicle::{Path as VehiclePath, PathPoint};
+use crate::vehicle::{Path as VehiclePath, PathPoint, TireMark};
 
 /// Paths that are drawn.
 const N_PATHS: usize = 40;
@@ -33,6 +31,8 @@ pub struct ReconstructedPaths {
     pub drawn: Vec<VehiclePath>,
     /// Path of the particle whose speed of the struck car is nearest to the median.
     pub median: Option<VehiclePath>,
+    /// The marks that the tyres of the struck car leave in the motion of that particle.
+    pub marks: Vec<TireMark>,
 }
 
 impl ReconstructedPaths {
@@ -52,7 +52,7 @@ impl ReconstructedPaths {
         let every = z.len().div_ceil(N_PATHS).max(1);
         let chosen: Vec<Vec<f64>> = z.iter().step_by(every).cloned().collect();
         let drawn = target.model().motions(&chosen, |motion| motion.path);
-        Self { drawn, median: None }
+        Self { drawn, ..Self::default() }
     }
 
     fn among(
@@ -63,18 +63,15 @@ impl ReconstructedPaths {
         let z = &answer.particles.z;
         let every = members.len().div_ceil(N_PATHS).max(1);
         let some = members.iter().step_by(every);
-        let mut chosen: Vec<Vec<f64>> = some.filter_map(|idx| z.get(*idx).cloned()).collect();
-        let speeds = answer.posterior.of_quantity(ReconstructedQuantity::TargetSpeed);
-        let named = |of: &&QuantityEstimate| of.name == ReconstructedQuantity::TargetSpeed.key();
-        let median = quantities.iter().find(named).map(|of| of.median);
-        let nearest = median.and_then(|median| {
-            let off = |idx: &usize| speeds.get(*idx).map_or(f64::INFINITY, |v| (v - median).abs());
-            members.iter().min_by(|a, b| off(a).total_cmp(&off(b))).and_then(|idx| z.get(*idx))
-        });
-        chosen.extend(nearest.cloned());
-        let mut drawn = answer.target.model().motions(&chosen, |motion| motion.path);
-        let median = if nearest.is_some() { drawn.pop() } else { None };
-        Self { drawn, median }
+        let chosen: Vec<Vec<f64>> = some.filter_map(|idx| z.get(*idx).cloned()).collect();
+        let model = answer.target.model();
+        let drawn = model.motions(&chosen, |motion| motion.path);
+        let nearest = answer.posterior.nearest_to_median(members, quantities);
+        let nearest = nearest.and_then(|idx| z.get(idx)).map(std::slice::from_ref);
+        let followed =
+            nearest.map(|z| model.motions(z, |motion| (motion.tire_marks(), motion.path)));
+        let (marks, median) = followed.and_then(|mut followed| followed.pop()).unzip();
+        Self { drawn, median, marks: marks.unwrap_or_default() }
     }
 }
 
@@ -100,6 +97,8 @@ pub struct ReconstructionScene<'a> {
     pub drawn: &'a [VehiclePath],
     /// The path in front of them.
     pub followed: Option<FollowedPath<'a>>,
+    /// The marks that the tyres leave along that path.
+    pub marks: &'a [TireMark],
 }
 
 impl<'a> ReconstructionScene<'a> {
@@ -112,6 +111,7 @@ impl<'a> ReconstructionScene<'a> {
             cars: answer.target.model().cars(),
             drawn: &paths.drawn,
             followed: paths.median.as_ref().map(at_end),
+            marks: &paths.marks,
         }
     }
 }
@@ -141,6 +141,10 @@ pub fn reconstruction_scene_figure(
     let drawn = scene.drawn.iter().map(|of| path(("particles", Role::Muted), of));
     let mut elements: Vec<FigureElement> = drawn.collect();
     elements.extend(contact_elements(scene, &shown, units));
+    elements.extend(scene.marks.iter().map(|mark| {
+        let points = mark.points.iter().map(|point| shown(point.place_m)).collect();
+        FigureElement::line("tyre marks, computed", Role::Simulation, points)
+    }));
     elements.extend(evidence_elements(scene, &shown, units));
     if let Some(FollowedPath { name, path: followed, time_s }) = scene.followed {
         elements.push(path((name, Role::Model), followed));

@@ -184,6 +184,22 @@ impl Posterior {
         ends.iter().all(|end| end.is_finite()).then_some(ends)
     }
 
+    /// The particle whose speed of the struck car is nearest to a median, among some of them.
+    ///
+    /// - `members`: numbers of these particles;
+    /// - `quantities`: their quantities, with the median.
+    pub fn nearest_to_median(
+        &self,
+        members: &[usize],
+        quantities: &[QuantityEstimate],
+    ) -> Option<usize> {
+        let speed = ReconstructedQuantity::TargetSpeed;
+        let median = quantities.iter().find(|of| of.name == speed.key())?.median;
+        let speeds = self.of_quantity(speed);
+        let off = |idx: &usize| speeds.get(*idx).map_or(f64::INFINITY, |v| (v - median).abs());
+        members.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)))
+    }
+
     /// Every quantity with its intervals.
     pub fn quantities(&self) -> Vec<QuantityEstimate> {
         self.quantities_of(&(0..self.values.len()).collect::<Vec<_>>())

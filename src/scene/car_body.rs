@@ -2,13 +2,11 @@
 
 use crate::collision::Footprint;
 use crate::scene::BodyClass;
-use crate::vehicle::{VehicleParameters, Wheel};
+use crate::vehicle::{TIRE_WIDTH_RATIO, VehicleParameters, Wheel};
 
 /// Wheels of a car, in the order of [`Wheel::ALL`].
 pub const N_WHEELS: usize = 4;
 
-/// Width of a tyre over its radius: 0.2 m for 0.31 m.
-const TYRE_WIDTH_RATIO: f64 = 0.65;
 /// Share of the half width of the body within which the outer side of a tyre lies.
 const TYRE_INSIDE: f64 = 0.985;
 
@@ -56,7 +54,7 @@ impl CarBody {
 
     /// Width of a tyre, m.
     pub fn wheel_width_m(&self) -> f64 {
-        TYRE_WIDTH_RATIO * self.wheel_radius_m
+        TIRE_WIDTH_RATIO * self.wheel_radius_m
     }
 
     /// Centre of a wheel in body axes, m. A track that is wider than the body is drawn as wide as the

@@ -9,9 +9,7 @@ use crate::data::{Channel, TimeSeries};
 use crate::scene::{CarBody, N_WHEELS};
 use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::frames::body_from_world;
-use crate::vehicle::{
-    Controls, FrictionZone, TireParameters, VehicleParameters, Wheel, friction_at,
-};
+use crate::vehicle::{ControlledVehicle, VehicleParameters, Wheel};
 
 /// Speed below which the direction of a wheel's motion is not known, m/s.
 const LEAST_SPEED_M_S: f64 = 1e-3;
@@ -31,28 +29,6 @@ pub struct CarState {
     pub locked: [bool; N_WHEELS],
 }
 
-/// What locks the wheels of a car.
-#[derive(Debug, Clone, Copy)]
-pub struct CarControls<'a> {
-    /// What brakes and locks them.
-    pub controls: &'a Controls,
-    /// The vehicle whose tyres they have.
-    pub vehicle: &'a VehicleParameters,
-    /// Parts of the ground with their own friction.
-    pub friction_zones: &'a [FrictionZone],
-}
-
-impl CarControls<'_> {
-    /// The tyres with the friction of the ground at a place `[X, Y]`, m.
-    pub(super) fn tires_at(&self, place_m: [f64; 2]) -> TireParameters {
-        let tires = self.vehicle.tires;
-        TireParameters {
-            friction: friction_at(self.friction_zones, place_m, tires.friction),
-            ..tires
-        }
-    }
-}
-
 /// The motion of a car over time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct CarMotion {
@@ -68,7 +44,7 @@ impl CarMotion {
     pub fn of_series(
         series: &TimeSeries,
         body: &CarBody,
-        controls: Option<CarControls<'_>>,
+        controls: Option<ControlledVehicle<'_>>,
     ) -> Option<Self> {
         let (x, y) = (series.get(Channel::X)?, series.get(Channel::Y)?);
         let value = |channel, idx: usize| -> Option<f64> {
@@ -100,8 +76,7 @@ impl CarMotion {
             let of = controls?;
             let load_n = load(idx, wheel).unwrap_or_else(|| static_load_n(of.vehicle, wheel));
             let place_m = pose.world_from_body(of.vehicle.geometry.wheel_place_m(wheel));
-            let tires = of.tires_at(place_m);
-            of.controls.is_locked(time_s, wheel, (velocity, load_n), &tires).then_some(())
+            of.is_locked(time_s, wheel, place_m, (velocity, load_n)).then_some(())
         });
         (n > 0).then_some(motion)
     }
@@ -244,7 +219,7 @@ mod tests {
     use super::*;
     use crate::collision::Footprint;
     use crate::vehicle::{
-        Braking, DamagedWheel, Ending, Integrator, Manoeuvre, Preset, VehicleState,
+        Braking, DamagedWheel, Ending, FrictionZone, Integrator, Manoeuvre, Preset, VehicleState,
     };
 
     fn driven(ending: &Ending, speed_m_s: f64) -> (CarMotion, CarBody) {
@@ -266,7 +241,11 @@ mod tests {
         let of = CarMotion::of_series(
             &motion.series,
             &body,
-            Some(CarControls { controls: &controls, vehicle: &vehicle, friction_zones: zones }),
+            Some(ControlledVehicle {
+                controls: &controls,
+                vehicle: &vehicle,
+                friction_zones: zones,
+            }),
         );
         (of.unwrap(), body)
     }

@@ -28,7 +28,7 @@ mod simulation;
 
 pub use body_class::BodyClass;
 pub use car_body::{CarBody, N_WHEELS};
-pub use car_motion::{CarControls, CarMotion, CarState};
+pub use car_motion::{CarMotion, CarState};
 pub use car_shape::CarShape;
 pub use forecast::{ForecastScene, add_forecast};
 pub use ground::{AreaKind, GroundArea, GroundLine, GroundLineKind, SceneGround};
@@ -36,8 +36,8 @@ pub use ground_picture::GroundPicture;
 pub use load_ground::LoadedGround;
 pub use mesh::{Mesh, MeshTriangle, Surface, triangle_normal};
 pub use parts::{
-    CarLook, Scene, SceneArrow, SceneCar, SceneCross, SceneDensity, SceneLine, ScenePath,
-    ScenePoint, SceneRole,
+    CarLook, Scene, SceneArrow, SceneCar, SceneCross, SceneDensity, SceneLine, SceneMark,
+    ScenePath, ScenePoint, SceneRole,
 };
 pub use reconstruction::{ReconstructionParts, reconstruction_scene};
 pub use simulation::{OtherMotion, SimulationScene, simulation_scene};

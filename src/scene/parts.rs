@@ -7,6 +7,7 @@ use crate::collision::Pose;
 use crate::scene::{CarMotion, CarShape, CarState, SceneGround};
 use crate::study::Trust;
 use crate::units::UnitSystem;
+use crate::vehicle::TireMarkPoint;
 
 /// Least length of the longer side of what a scene shows, m.
 const LEAST_EXTENT_M: f64 = 12.0;
@@ -30,6 +31,8 @@ pub enum SceneRole {
     Variant(usize),
     /// In the background.
     Muted,
+    /// Rubber on the ground that is computed.
+    TireMark,
 }
 
 /// How a car is drawn.
@@ -95,6 +98,15 @@ pub struct SceneLine {
     pub points_m: Vec<[f64; 2]>,
 }
 
+/// The mark of a tyre on the ground, which grows as time passes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneMark {
+    /// Name in the legend.
+    pub name: String,
+    /// Its points in the order of time.
+    pub points: Vec<TireMarkPoint>,
+}
+
 /// A point on the ground that was found or measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScenePoint {
@@ -152,6 +164,8 @@ pub struct Scene {
     pub paths: Vec<ScenePath>,
     /// Lines on the ground.
     pub lines: Vec<SceneLine>,
+    /// Computed marks of tyres.
+    pub marks: Vec<SceneMark>,
     /// Points on the ground.
     pub points: Vec<ScenePoint>,
     /// Arrows on the ground.

@@ -7,14 +7,14 @@ use crate::collision::{Footprint, Pose};
 use crate::numerics::interpolate;
 use crate::reconstruct::Cars;
 use crate::reconstruct::evidence::{Evidence, RestPose};
-use crate::scene::simulation::{add, outline_m};
+use crate::scene::simulation::{add, add_marks, outline_m};
 use crate::scene::{
     CarBody, CarLook, CarMotion, CarShape, Scene, SceneCar, SceneLine, ScenePath, ScenePoint,
     SceneRole,
 };
 use crate::study::Trust;
 use crate::units::UnitSystem;
-use crate::vehicle::{Path, VehicleParameters};
+use crate::vehicle::{Path, TireMark, VehicleParameters};
 
 /// Points of an ellipse.
 const N_ELLIPSE: usize = 48;
@@ -34,6 +34,8 @@ pub struct ReconstructionParts<'a> {
     pub drawn: &'a [Path],
     /// The path that the car drives, with its name.
     pub followed: Option<(&'a str, &'a Path)>,
+    /// The marks that tyres leave along that path.
+    pub marks: &'a [TireMark],
     /// System of units of the labels.
     pub units: UnitSystem,
     /// What restricts the answer.
@@ -58,7 +60,8 @@ pub fn reconstruction_scene(input: &ReconstructionParts<'_>) -> Scene {
         has_ticks: false,
         motion: Arc::new(motion),
     }));
-    add_marks(&mut scene, evidence);
+    add_marks(&mut scene, input.marks);
+    add_found(&mut scene, evidence);
     for (rest, shape, [name, tag]) in [
         (
             &evidence.striking_rest,
@@ -107,7 +110,7 @@ fn motion_of(path: &Path, body: &CarBody) -> Option<CarMotion> {
 }
 
 /// Marks of tyres, and positions in a video.
-fn add_marks(scene: &mut Scene, evidence: &Evidence) {
+fn add_found(scene: &mut Scene, evidence: &Evidence) {
     for mark in &evidence.marks {
         scene.lines.push(SceneLine {
             name: format!("mark, {}", mark.wheel.label()),

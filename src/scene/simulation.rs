@@ -6,12 +6,13 @@ use crate::analysis::{Analysis, StruckVehicle};
 use crate::collision::Pose;
 use crate::data::{ForceAxes, TimeSeries};
 use crate::scene::{
-    CarBody, CarControls, CarLook, CarMotion, CarShape, Scene, SceneArrow, SceneCar, SceneCross,
-    SceneLine, ScenePath, SceneRole,
+    CarBody, CarLook, CarMotion, CarShape, Scene, SceneArrow, SceneCar, SceneCross, SceneLine,
+    SceneMark, ScenePath, SceneRole,
 };
 use crate::study::Trust;
 use crate::units::{Quantity, UnitSystem};
 use crate::vehicle::frames::world_from_body;
+use crate::vehicle::{TireMark, tire_marks};
 
 /// Length of the arrow of an impulse that is as large as 4 m/s of a car's mass, m.
 const ARROW_PER_SPEED_S: f64 = 0.75;
@@ -67,11 +68,8 @@ pub fn simulation_scene(input: &SimulationScene<'_>) -> Scene {
         add(&mut scene, ((other.name, ""), other.role, CarLook::Ghost), (&shape, motion));
     }
     if let Some(simulated) = &analysis.simulation {
-        let controls = CarControls {
-            controls: &analysis.controls,
-            vehicle: &analysis.vehicle,
-            friction_zones: &analysis.friction_zones,
-        };
+        let controls = analysis.controlled();
+        add_marks(&mut scene, &tire_marks(&simulated.series, controls));
         let motion = CarMotion::of_series(&simulated.series, &shape.body, Some(controls));
         let named = ("4DOF simulation", "struck");
         add(&mut scene, (named, SceneRole::Simulated, CarLook::Solid), (&shape, motion));
@@ -95,15 +93,20 @@ pub(super) fn struck_shape(analysis: &Analysis) -> Arc<CarShape> {
 pub(super) fn add_striking(scene: &mut Scene, analysis: &Analysis) {
     let Some(track) = &analysis.bullet else { return };
     let body = CarBody::new(&track.start.vehicle, &track.footprint);
-    let controls = CarControls {
-        controls: &track.start.controls,
-        vehicle: &track.start.vehicle,
-        friction_zones: &track.start.friction_zones,
-    };
+    let controls = track.start.controlled();
+    add_marks(scene, &tire_marks(&track.motion, controls));
     let motion = CarMotion::of_series(&track.motion, &body, Some(controls));
     let shape = Arc::new(CarShape::new(body));
     let named = ("striking vehicle", "striking");
     add(scene, (named, SceneRole::Striking, CarLook::Solid), (&shape, motion));
+}
+
+/// Adds marks of tyres that are computed.
+pub(super) fn add_marks(scene: &mut Scene, marks: &[TireMark]) {
+    scene.marks.extend(marks.iter().map(|mark| SceneMark {
+        name: "tyre marks, computed".to_owned(),
+        points: mark.points.clone(),
+    }));
 }
 
 /// Adds a car with its path and where it starts, if it has a motion.

@@ -57,6 +57,7 @@ mod simulate_report;
 mod train_force;
 mod train_response;
 mod trust;
+mod tyre_marks;
 mod unused;
 mod vehicle_uncertainty;
 
@@ -114,5 +115,6 @@ pub use simulate_report::{
 pub use train_force::{TrainForceAnswer, TrainForceReport, TrainForceRequest};
 pub use train_response::{ResponseTrainingAnswer, ResponseTrainingReport, TrainResponseRequest};
 pub use trust::{Trust, TrustLine};
+pub use tyre_marks::TyreMarkReport;
 pub use vehicle_uncertainty::VehicleUncertainty;
 pub(crate) use word::word;

@@ -13,8 +13,8 @@ use crate::reconstruct::sampler::{
     Particles, SamplerCheckpoint, SamplerReport, SamplerSettings, sample,
 };
 use crate::reconstruct::{
-    BudgetItem, Cars, Discrepancy, EvidenceFit, ForwardModel, HandCalculation, Mode, Posterior,
-    PriorComponent, QuantityEstimate, ReconstructionTarget,
+    BudgetItem, Cars, Discrepancy, EvidenceFit, ForwardModel, HandCalculation, MarkComparison,
+    Mode, Posterior, PriorComponent, QuantityEstimate, ReconstructionTarget,
 };
 use crate::study::checks::check_count;
 use crate::study::reconstruction_domain::{check_damage, of_road, of_vehicles};
@@ -80,6 +80,9 @@ pub struct ReconstructReport {
     pub modes: Vec<Mode>,
     /// How well each item of the evidence is explained.
     pub fit: Vec<EvidenceFit>,
+    /// Each mark that was found beside the one that its wheel leaves in the motion of the particle of
+    /// median speed.
+    pub marks: Vec<MarkComparison>,
     /// What further evidence would bring.
     pub budget: Vec<BudgetItem>,
     /// Effective sample size.
@@ -264,9 +267,11 @@ impl Question for ReconstructRequest {
         badges.extend(of_fit(&fit));
         badges.push(of_validation());
         badges.extend(badges::of_assumptions(&assumptions));
+        let quantities = posterior.quantities();
         let report = ReconstructReport {
             case: target.evidence().case.clone(),
-            quantities: posterior.quantities(),
+            marks: compared_marks(&target, (&particles, &posterior), &quantities),
+            quantities,
             modes: posterior.modes(&particles, &turned_rad),
             fit,
             budget: posterior.budget((particles.ess, self.seed)),
@@ -282,6 +287,22 @@ impl Question for ReconstructRequest {
         };
         Ok(Outcome::Complete(ReconstructAnswer { report, target, particles, posterior }))
     }
+}
+
+/// The marks that were found beside those of the particle of median speed.
+fn compared_marks(
+    target: &ReconstructionTarget,
+    (particles, posterior): (&Particles, &Posterior),
+    quantities: &[QuantityEstimate],
+) -> Vec<MarkComparison> {
+    let found = &target.evidence().marks;
+    let all: Vec<usize> = (0..particles.z.len()).collect();
+    let median = posterior.nearest_to_median(&all, quantities);
+    let Some(z) = median.and_then(|idx| particles.z.get(idx)).filter(|_| !found.is_empty()) else {
+        return Vec::new();
+    };
+    let computed = target.model().motions(std::slice::from_ref(z), |motion| motion.tire_marks());
+    MarkComparison::all(found, &computed.concat())
 }
 
 /// How far the sampling is: half of it is reaching the posterior.

@@ -10,7 +10,8 @@ use crate::compare::{MotionError, largest_yaw_change_rad};
 use crate::data::{Channel, ForceAxes, SeriesError, TimeSeries, contact_interval};
 use crate::numerics::interpolate;
 use crate::study::{
-    Assumption, MomentumReport, Provenance, SimulateRequest, VehicleUncertainty, word,
+    Assumption, MomentumReport, Provenance, SimulateRequest, TyreMarkReport, VehicleUncertainty,
+    word,
 };
 use crate::uncertainty::{Badge, BadgeKind};
 use crate::units::percent;
@@ -73,6 +74,8 @@ pub struct SimulateReport {
     pub rest: Option<RestState>,
     /// Largest change of yaw from the start, rad.
     pub largest_yaw_change_rad: Option<f64>,
+    /// The marks that tyres leave in the simulation, of the struck vehicle and of the striking one.
+    pub tyre_marks: Vec<TyreMarkReport>,
     /// How far the simulation lies from the recorded motion, where there is one.
     pub error: Option<MotionError>,
     /// How the end varies with what the data sheet of the struck vehicle leaves open.
@@ -285,6 +288,7 @@ impl SimulateReport {
             distance_m: series.map(distance_m).transpose()?,
             rest: motion.map(RestState::of).transpose()?.flatten(),
             largest_yaw_change_rad: series.map(largest_yaw_change_rad).transpose()?,
+            tyre_marks: TyreMarkReport::all(analysis),
             error: analysis.error.clone(),
             uncertainty: None,
             flags: motion

@@ -2,6 +2,7 @@
 //! and their integration over time.
 
 mod constants;
+mod controlled;
 mod controls;
 mod energy;
 pub mod frames;
@@ -30,9 +31,12 @@ mod stability;
 mod batch;
 mod path_batch;
 
+mod tire_marks;
+
 pub use as_printed::Equations;
 pub use batch::{SimulationRun, simulate_batch};
 pub use constants::VehicleConstants;
+pub use controlled::ControlledVehicle;
 pub use controls::{Controls, SteerHistory, WheelHistory};
 pub use ending::{
     Braking, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Driving, Ending, EngineBraking,
@@ -56,4 +60,10 @@ pub use simulate::{
 };
 pub use stability::VehicleMismatch;
 pub use state::{N_STATE, VehicleState};
+pub(crate) use tire::TIRE_WIDTH_RATIO;
 pub use tire::{TireParameters, WheelEffort, WheelSlip};
+pub(crate) use tire_marks::leaves_mark;
+pub use tire_marks::{
+    LARGEST_MARK_GAP_M, MARK_SLIP_RAD, MARK_SPEED_M_S, TireMark, TireMarkKind, TireMarkPoint,
+    tire_marks,
+};

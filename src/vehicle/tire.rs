@@ -191,7 +191,15 @@ impl<T> WheelEffort<T> {
     }
 }
 
+/// Width of a tyre over its rolling radius where nobody says it: 0.2 m for 0.31 m.
+pub(crate) const TIRE_WIDTH_RATIO: f64 = 0.65;
+
 impl TireParameters {
+    /// Width of a tyre by a rule, m: 0.65 rolling radii, as of 205/55 R16.
+    pub fn width_m(&self) -> f64 {
+        TIRE_WIDTH_RATIO * self.rolling_radius_m
+    }
+
     /// Equivalent mass `m_w = I_w/R²` of a spinning wheel, kg.
     pub fn wheel_mass_kg(&self) -> f64 {
         self.wheel_inertia_kg_m2 / (self.rolling_radius_m * self.rolling_radius_m)

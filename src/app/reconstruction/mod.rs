@@ -21,7 +21,7 @@ use std::sync::mpsc::Receiver;
 
 use crate::app::question_job::QuestionJob;
 use crate::reconstruct::evidence::Evidence;
-use crate::vehicle::Path;
+use crate::vehicle::{Path, TireMark};
 
 /// A path that is followed in the scene.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -111,6 +111,13 @@ impl ReconstructionSession {
                 Some((format!("draw {}", idx + 1), paths.drawn.get(idx)?))
             }
         }
+    }
+
+    /// The marks that tyres leave along the path that is followed, where they are known.
+    pub fn followed_marks(&self) -> Option<&[TireMark]> {
+        let is_median = self.followed == FollowedParticle::Median;
+        let paths = self.answer().filter(|_| is_median)?.paths_of(self.mode);
+        Some(&paths.marks)
     }
 
     /// Duration of the path that is followed, s; 0 without one.

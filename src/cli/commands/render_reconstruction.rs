@@ -109,6 +109,7 @@ pub(super) fn figure(
                     cars: scene.cars,
                     drawn: scene.drawn,
                     followed: scene.followed.map(|of| (of.name, of.path)),
+                    marks: scene.marks,
                     units,
                     trust: &trust,
                 });

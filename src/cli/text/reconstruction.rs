@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use crate::cli::console::{print_badges, print_table};
-use crate::reconstruct::QuantityEstimate;
+use crate::reconstruct::{MarkComparison, QuantityEstimate};
 use crate::study::ReconstructReport;
 use crate::units::{Quantity, UnitSystem, percent};
 
@@ -51,10 +51,30 @@ pub(in crate::cli) fn print_reconstruction(
         })
         .collect();
     print_table(out, &["evidence", "unit", "expected", "found", "p", ""], &rows)?;
+    print_marks(out, &report.marks, units)?;
     print_budget(out, report, units)?;
     let (ess, n) = (report.ess, report.n_simulations);
     writeln!(out, "\n{n} motions, effective sample size {ess:.0}")?;
     print_badges(out, &report.badges, &report.assumptions)
+}
+
+/// The marks that were found beside those that are computed.
+fn print_marks(out: &mut dyn Write, marks: &[MarkComparison], units: UnitSystem) -> io::Result<()> {
+    if marks.is_empty() {
+        return Ok(());
+    }
+    let unit = Quantity::Length.display_unit(units);
+    let length = |si: f64| format!("{:.2}", unit.from_si(si));
+    let known = |si: Option<f64>| si.map_or_else(|| "no mark".to_owned(), length);
+    let row = |mark: &MarkComparison| {
+        let lengths = [mark.found_length_m, mark.computed_length_m].map(length);
+        let distances = [mark.mean_distance_m, mark.largest_distance_m].map(known);
+        [vec![mark.wheel.label().to_owned()], lengths.to_vec(), distances.to_vec()].concat()
+    };
+    let rows: Vec<_> = marks.iter().map(row).collect();
+    writeln!(out, "\ntyre marks and those of a particle of median speed, {}", unit.symbol)?;
+    let titles = ["wheel", "found", "computed", "mean distance", "largest distance"];
+    print_table(out, &titles, &rows)
 }
 
 /// What further evidence would bring, the most useful first.

@@ -11,7 +11,7 @@ use crate::cli::text::contact::surface;
 use crate::cli::text::motion_prediction::{rest_facts, shown_share};
 use crate::cli::text::sensitivity::print_sensitivity;
 use crate::study::{
-    ForceReport, FrictionZoneReport, RestState, SimulateReport, VehicleUncertainty,
+    ForceReport, FrictionZoneReport, RestState, SimulateReport, TyreMarkReport, VehicleUncertainty,
 };
 use crate::units::{Quantity, UnitSystem, percent};
 
@@ -57,10 +57,37 @@ pub(in crate::cli) fn print_simulation(
     facts.extend(report.notes.iter().map(|note| ("note", note.clone())));
     facts.extend(out.map(|path| ("written", shown_path(path))));
     print_facts(text, &facts)?;
+    print_tyre_marks(text, &report.tyre_marks, units)?;
     if let Some(uncertainty) = &report.uncertainty {
         print_uncertainty(text, uncertainty, units)?;
     }
     print_badges(text, &report.badges, &report.assumptions)
+}
+
+/// Prints the marks that tyres leave.
+fn print_tyre_marks(
+    text: &mut dyn Write,
+    marks: &[TyreMarkReport],
+    units: UnitSystem,
+) -> io::Result<()> {
+    if marks.is_empty() {
+        return Ok(());
+    }
+    let unit = Quantity::Length.display_unit(units);
+    let length = |si: f64| format!("{:.1}", unit.from_si(si));
+    let row = |mark: &TyreMarkReport| {
+        let end =
+            |time_s: f64, [x, y]: [f64; 2]| vec![format!("{time_s:.2}"), length(x), length(y)];
+        let wheel = format!("{}, {}", mark.vehicle, mark.wheel.label());
+        let mut row = vec![wheel, mark.kind.label().to_owned(), length(mark.length_m)];
+        row.extend(end(mark.from_s, mark.start_m));
+        row.extend(end(mark.to_s, mark.end_m));
+        row
+    };
+    let rows: Vec<Vec<String>> = marks.iter().map(row).collect();
+    let [long, x, y] = ["length", "X", "Y"].map(|name| format!("{name} [{}]", unit.symbol));
+    writeln!(text, "\ntyre marks, computed")?;
+    print_table(text, &["wheel", "by", &long, "from [s]", &x, &y, "to [s]", &x, &y], &rows)
 }
 
 /// Prints how the end varies with what the data sheet leaves open, and what it depends on most.

@@ -1,19 +1,10 @@
-//! Where a wheel leaves a mark: where it slides by more than 8° or is locked, above 1 m/s.
+//! Where a wheel leaves a mark: where it slides by more than 8° or is locked, above 1 m/s, as in
+//! [`tire_marks`](crate::vehicle::tire_marks).
 
 use crate::reconstruct::CollisionMotion;
 use crate::reconstruct::likelihood::track::{Track, WheelTrack};
 use crate::units::STANDARD_GRAVITY_M_S2;
-use crate::vehicle::{VehicleParameters, Wheel, WheelEffort};
-
-/// Slip angle beyond which a tyre leaves a mark, rad: 8°. Tyres reach their largest side force at 6°
-/// to 10°, where the whole tread slides ([`Brach2011`](crate::bibliography::Brach2011), tyre marks).
-const MARK_SLIP_RAD: f64 = 0.139_626_340_159_546_36;
-
-/// Speed of the wheel above which it leaves a mark, m/s.
-const MARK_SPEED_M_S: f64 = 1.0;
-
-/// Gap that a mark may have, m.
-const LARGEST_GAP_M: f64 = 1.0;
+use crate::vehicle::{LARGEST_MARK_GAP_M, VehicleParameters, Wheel, WheelEffort, leaves_mark};
 
 /// Stands for the distance to where a wheel slides that never does, m.
 const NEVER_M: f64 = 30.0;
@@ -35,8 +26,7 @@ impl Onset {
                 let efforts = efforts.unwrap_or([WheelEffort::FREE; 4]);
                 let speed = u.hypot(w);
                 let is_locked = locks(&motion.vehicle, wheel, &efforts, u.abs() / (speed + 1e-6));
-                let slips = w.abs() > u.abs() * MARK_SLIP_RAD.tan();
-                (speed > MARK_SPEED_M_S && (slips || is_locked), is_locked)
+                (leaves_mark([u, w], is_locked), is_locked)
             })
             .unzip();
         Self { is_marking, is_locked }
@@ -75,7 +65,7 @@ impl Onset {
             at = next;
             if self.is_marking[at] {
                 end = at;
-            } else if (path.travelled_m[at] - path.travelled_m[end]).abs() > LARGEST_GAP_M {
+            } else if (path.travelled_m[at] - path.travelled_m[end]).abs() > LARGEST_MARK_GAP_M {
                 return Some(path.travelled_m[end]);
             }
         }

@@ -1,8 +1,8 @@
 //! The pixels of a scene, drawn on the CPU.
 //!
 //! What does not change with time (ground, grid, density, lines) is drawn when the camera, the size or
-//! the scene changes, and kept. A picture at another time copies it and adds shadows, cars, and the few
-//! lines that change. Rows are spread over threads of the canvas's own, so that a long computation
+//! the scene changes, and kept, as are the pieces of tyre marks in the order of time. A picture at another
+//! time copies it and adds the marks up to then, shadows, cars, and the few lines that change. Rows are spread over threads of the canvas's own, so that a long computation
 //! elsewhere does not make a picture wait.
 
 use std::sync::Arc;
@@ -14,6 +14,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use crate::render::scene::frame::{Frame, draw_shadow};
 use crate::render::scene::ground::Ground;
 use crate::render::scene::lines::{Rows, Stroke};
+use crate::render::scene::marks::MarkStrokes;
 use crate::render::scene::raster::{TILE, Tile};
 use crate::render::scene::underlay::Underlay;
 use crate::render::scene::{Camera, Projection};
@@ -51,6 +52,8 @@ pub struct SceneCanvas {
     /// The time of the picture.
     time_s: Option<f64>,
     ground: Vec<Color32>,
+    /// Marks of tyres as the camera sees them.
+    marks: MarkStrokes,
     pixels: Vec<Color32>,
     frame: Frame,
 }
@@ -97,6 +100,7 @@ impl SceneCanvas {
         self.ground.resize(width * height, Color32::BLACK);
         let projection = look.projection();
         let ground = ground_of(scene, look, &projection);
+        self.marks = MarkStrokes::of(&ground);
         let (strokes, underlay) = (ground.strokes(), Underlay::new(&ground));
         let rows = self.ground.par_chunks_mut(width.max(1) * TILE).enumerate();
         rows.for_each(|(idx, pixels)| {
@@ -112,12 +116,14 @@ impl SceneCanvas {
         self.frame.fill(&ground_of(scene, look, &projection), time_s);
         self.pixels.resize(self.ground.len(), Color32::BLACK);
         let Frame { objects, shadows, below, above, .. } = &self.frame;
+        let marks = self.marks.until(time_s);
         let ground = self.ground.par_chunks(width * TILE);
         let rows = self.pixels.par_chunks_mut(width * TILE).zip(ground).enumerate();
         rows.for_each_init(Tile::default, |tile, (idx, (pixels, ground))| {
             pixels.copy_from_slice(ground);
             let first = idx * TILE;
             let mut rows = Rows { pixels: &mut *pixels, width, first };
+            draw_strokes(&mut rows, marks);
             for shadow in shadows {
                 draw_shadow(&mut rows, shadow, (&projection, look.dark));
             }

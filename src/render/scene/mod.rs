@@ -7,6 +7,7 @@ mod frame;
 mod ground;
 mod labels;
 mod lines;
+mod marks;
 mod picture;
 mod raster;
 mod row_map;

@@ -20,6 +20,7 @@ pub type Rgb = [u8; 3];
 /// Colour of a role, for lines and labels.
 pub fn role_color(role: SceneRole, dark: bool) -> Color32 {
     let role = match role {
+        SceneRole::TireMark => return mark_color(dark),
         SceneRole::Recorded => Role::Reference,
         SceneRole::Simulated => Role::Simulation,
         SceneRole::Forecast => Role::Target,
@@ -29,6 +30,12 @@ pub fn role_color(role: SceneRole, dark: bool) -> Color32 {
         SceneRole::Muted => Role::Muted,
     };
     theme::color(role, dark)
+}
+
+/// Colour of rubber on the ground where it is darkest: black on the light ground; chalk on the dark one,
+/// on which black is not seen.
+pub fn mark_color(dark: bool) -> Color32 {
+    if dark { Color32::from_rgb(196, 188, 176) } else { Color32::from_rgb(28, 28, 30) }
 }
 
 /// Colour of the ground.

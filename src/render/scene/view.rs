@@ -328,14 +328,21 @@ fn entries(scene: &Scene, dark: bool) -> Vec<(&str, Color32, Entry)> {
     let lined = |is_dashed| if is_dashed { Entry::Dashed } else { Entry::Line };
     let paths = scene.paths.iter().map(|of| (of.name.as_str(), of.role, lined(of.is_dashed)));
     let lines = scene.lines.iter().map(|of| (of.name.as_str(), of.role, lined(of.is_dashed)));
+    let marks = scene.marks.iter().map(|of| (of.name.as_str(), SceneRole::TireMark, Entry::Solid));
     let points = scene.points.iter().map(|of| (of.name.as_str(), of.role, Entry::Point));
     let arrows = scene.arrows.iter().map(|of| ("impulse", of.role, Entry::Line));
     let crosses =
         scene.crosses.iter().map(|of| (of.name.as_str(), SceneRole::Evidence, Entry::Cross));
     let density =
         scene.density.iter().map(|of| (of.name.as_str(), SceneRole::Forecast, Entry::Ghost));
-    let all =
-        cars.chain(paths).chain(lines).chain(points).chain(arrows).chain(crosses).chain(density);
+    let all = cars
+        .chain(paths)
+        .chain(marks)
+        .chain(lines)
+        .chain(points)
+        .chain(arrows)
+        .chain(crosses)
+        .chain(density);
     let all = all.map(|(name, role, kind)| (name, role_color(role, dark), kind));
     for entry in all.chain(ground_entries(scene, dark)).filter(|entry| !entry.0.is_empty()) {
         if entries.iter().all(|other| other.0 != entry.0) {

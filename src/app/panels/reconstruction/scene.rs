@@ -64,12 +64,13 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
         (None, Some(answer)) => answer.paths_of(of.mode).drawn.as_slice(),
         (None, None) => &[],
     };
+    let marks = of.followed_marks().filter(|_| followed.is_some()).unwrap_or_default();
     let figure = {
         let followed = followed.as_ref();
         let followed =
             followed.map(|(name, path)| FollowedPath { name, path, time_s: session.time_s });
         let (evidence, cars) = (&preview.evidence, &preview.cars);
-        let scene = ReconstructionScene { evidence, cars, drawn, followed };
+        let scene = ReconstructionScene { evidence, cars, drawn, followed, marks };
         reconstruction_scene_figure(&scene, &trust, view.units)
     };
     if !view.reconstruction.shows_cars {
