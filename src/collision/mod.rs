@@ -33,6 +33,7 @@ mod pdof;
 mod restitution_line;
 
 mod contact_distribution;
+mod dented_outline;
 mod footprint;
 mod impact_case;
 mod outline_contact;
@@ -55,6 +56,7 @@ pub use channel_filter::{
     ChannelClass, ChannelFilter, FilterError, filter_channel, filter_history,
 };
 pub use contact_distribution::ContactDistribution;
+pub use dented_outline::DentedOutlines;
 pub use footprint::{Footprint, FootprintError, OffOutline, Pose, Side};
 pub use impact::{
     BodyAfter, ContactSurface, FrictionModel, Impact, ImpactBody, ImpactError, ImpactSolution,

@@ -22,6 +22,8 @@ mod load_ground;
 mod car_motion;
 mod parts;
 
+mod crush_outline;
+
 mod forecast;
 mod reconstruction;
 mod simulation;
@@ -36,8 +38,8 @@ pub use ground_picture::GroundPicture;
 pub use load_ground::LoadedGround;
 pub use mesh::{Mesh, MeshTriangle, Surface, triangle_normal};
 pub use parts::{
-    CarLook, Scene, SceneArrow, SceneCar, SceneCross, SceneDensity, SceneLine, SceneMark,
-    ScenePath, ScenePoint, SceneRole,
+    CarLook, Scene, SceneArrow, SceneCar, SceneCross, SceneCrush, SceneDensity, SceneLine,
+    SceneMark, ScenePath, ScenePoint, SceneRole,
 };
 pub use reconstruction::{ReconstructionParts, reconstruction_scene};
 pub use simulation::{OtherMotion, SimulationScene, simulation_scene};

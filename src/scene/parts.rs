@@ -107,6 +107,23 @@ pub struct SceneMark {
     pub points: Vec<TireMarkPoint>,
 }
 
+/// The outline of a car that another one has dented, from a time on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneCrush {
+    /// Name in the legend, with how it was made.
+    pub name: String,
+    /// Meaning of its colour.
+    pub role: SceneRole,
+    /// From when on it is shown, s.
+    pub from_s: f64,
+    /// The whole outline in body axes `[x, y]`, m, closed.
+    pub outline_m: Vec<[f64; 2]>,
+    /// The part of it that the other car has dented.
+    pub dent_m: Vec<[f64; 2]>,
+    /// The motion of the car.
+    pub motion: Arc<CarMotion>,
+}
+
 /// A point on the ground that was found or measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScenePoint {
@@ -166,6 +183,8 @@ pub struct Scene {
     pub lines: Vec<SceneLine>,
     /// Computed marks of tyres.
     pub marks: Vec<SceneMark>,
+    /// Dented outlines of cars.
+    pub crushes: Vec<SceneCrush>,
     /// Points on the ground.
     pub points: Vec<ScenePoint>,
     /// Arrows on the ground.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::analysis::{Analysis, StruckVehicle};
 use crate::collision::Pose;
 use crate::data::{ForceAxes, TimeSeries};
+use crate::scene::crush_outline::add_crush;
 use crate::scene::{
     CarBody, CarLook, CarMotion, CarShape, Scene, SceneArrow, SceneCar, SceneCross, SceneLine,
     SceneMark, ScenePath, SceneRole,
@@ -74,6 +75,7 @@ pub fn simulation_scene(input: &SimulationScene<'_>) -> Scene {
         let named = ("4DOF simulation", "struck");
         add(&mut scene, (named, SceneRole::Simulated, CarLook::Solid), (&shape, motion));
     }
+    add_crush(&mut scene, analysis);
     scene.end_s = scene.struck().map_or(0.0, |car| car.motion.end_s());
     scene.arrows.extend(impulse_arrow(analysis, units));
     scene.crosses.extend(analysis.second_contact.as_ref().map(|second| SceneCross {

@@ -121,6 +121,15 @@ impl Frame {
             let pen = Pen { color, width: 1.8, is_dashed: line.is_dashed };
             ground.line(&line.points_m, pen, &mut self.above);
         }
+        for crush in ground.scene.crushes.iter().filter(|crush| crush.from_s <= time_s) {
+            let (color, pose) = (role_color(crush.role, ground.dark), crush.motion.at(time_s).pose);
+            for (line, width) in [(&crush.outline_m, 1.3), (&crush.dent_m, 3.2)] {
+                let points: Vec<[f64; 2]> =
+                    line.iter().map(|at| pose.world_from_body(*at)).collect();
+                let pen = Pen { color, width, is_dashed: false };
+                ground.line(&points, pen, &mut self.above);
+            }
+        }
         for cross in &ground.scene.crosses {
             let color = role_color(SceneRole::Evidence, ground.dark);
             let is_met = cross.time_s <= time_s;
