@@ -11,6 +11,7 @@ use egui::Context;
 use crate::app::case::{Leaving, VariantCommand};
 use crate::app::dialogs::{FileDialog, Purpose};
 use crate::app::export;
+use crate::app::film::FilmForm;
 use crate::app::ground::GroundCommand;
 use crate::app::kept::{KeptEntry, ModelsDialog, Removal};
 use crate::app::network::Network;
@@ -24,6 +25,7 @@ use crate::app::workspaces::Workspace;
 use crate::data::{ColumnMap, Existing, Severity};
 use crate::figure::Figure;
 use crate::reconstruct::evidence::Evidence;
+use crate::render::film::Film;
 use crate::render::scene::ScenePicture;
 use crate::report::ReportDocument;
 use crate::study::SimulateAnswer;
@@ -74,6 +76,14 @@ pub enum Command {
     Export(Box<Figure>, PathBuf),
     /// Write a scene to a PNG file, as it is seen.
     ExportScene(Box<ScenePicture>, PathBuf),
+    /// Ask how a film of a scene is to be made.
+    AskFilm(Box<ScenePicture>),
+    /// Close that form.
+    CloseFilmForm,
+    /// Make a film and write it to an MP4 file, in the background.
+    SaveFilm(Box<Film>, PathBuf),
+    /// Cancel the film that is being made.
+    CancelFilm,
     /// Copy the numbers of a figure to the clipboard, as CSV.
     CopyNumbers(Box<Figure>),
     /// Begin a new case, after asking if something would be lost.
@@ -218,9 +228,9 @@ impl Command {
             Self::Ask(Purpose::Picture(figure) | Purpose::Numbers(figure))
             | Self::Export(figure, _)
             | Self::CopyNumbers(figure) => figure.trust.is_outdated,
-            Self::Ask(Purpose::ScenePicture(picture)) | Self::ExportScene(picture, _) => {
-                picture.scene.trust.is_outdated
-            }
+            Self::Ask(Purpose::ScenePicture(picture))
+            | Self::ExportScene(picture, _)
+            | Self::AskFilm(picture) => picture.scene.trust.is_outdated,
             _ => false,
         }
     }
@@ -267,6 +277,7 @@ impl State {
             Command::CancelPath => self.session.path_dialog = None,
             Command::Export(..)
             | Command::ExportScene(..)
+            | Command::SaveFilm(..)
             | Command::SaveScenario(_)
             | Command::SaveVehicle(..)
             | Command::SaveEvidence(..)
@@ -284,6 +295,11 @@ impl State {
                 Ok(text) => context.copy_text(text),
                 Err(error) => self.say(Severity::Error, error),
             },
+            Command::AskFilm(picture) => {
+                self.session.film.form = Some(FilmForm::new(*picture, self.view.dark));
+            }
+            Command::CloseFilmForm => self.session.film.form = None,
+            Command::CancelFilm => self.session.film.cancel(),
             Command::PredictCase => self.predict_case(),
             Command::PredictScenario => self.predict_scenario(),
             Command::UseModel(network, path) => self.use_model(network, path),

@@ -12,6 +12,7 @@ use crate::case_file::{CASE_ENDING, file_stem};
 use crate::figure::Figure;
 use crate::jobs::{Job, Update};
 use crate::reconstruct::evidence::Evidence;
+use crate::render::film::Film;
 use crate::render::scene::ScenePicture;
 use crate::report::ReportDocument;
 use crate::vehicle::DataSheet;
@@ -33,6 +34,8 @@ pub enum Purpose {
     Picture(Box<Figure>),
     /// A PNG file for a scene as it is seen.
     ScenePicture(Box<ScenePicture>),
+    /// An MP4 file for a film of a scene.
+    Film(Box<Film>),
     /// A CSV file for the numbers of a figure.
     Numbers(Box<Figure>),
     /// A TOML file for the scenario.
@@ -70,6 +73,7 @@ impl Purpose {
             Self::Folder => "Open a data set",
             Self::Files => "Open files",
             Self::Picture(_) | Self::ScenePicture(_) => "Save the picture",
+            Self::Film(_) => "Save the film",
             Self::Numbers(_) => "Save the numbers",
             Self::Scenario => "Save the scenario",
             Self::Vehicle(_) => "Save the vehicle",
@@ -95,6 +99,7 @@ impl Purpose {
             Self::Site => "site.toml",
             Self::Picture(figure) => return file_stem(&figure.title) + ".png",
             Self::ScenePicture(picture) => return file_stem(&picture.title()) + ".png",
+            Self::Film(film) => return file_stem(&film.picture.scene.title) + ".mp4",
             Self::Numbers(figure) => return file_stem(&figure.title) + ".csv",
             Self::Scenario => "scenario.toml",
             Self::Vehicle(sheet) => return file_stem(&sheet.name) + ".toml",
@@ -136,6 +141,7 @@ impl Purpose {
             Self::ScenePicture(picture) => {
                 written("png", &|path| Command::ExportScene(picture.clone(), path))
             }
+            Self::Film(film) => written("mp4", &|path| Command::SaveFilm(film.clone(), path)),
             Self::Numbers(figure) => written("csv", &|path| Command::Export(figure.clone(), path)),
             Self::Scenario => written("toml", &Command::SaveScenario),
             Self::Vehicle(sheet) => {
@@ -267,6 +273,7 @@ async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
         Purpose::Picture(_) | Purpose::ScenePicture(_) => {
             save(dialog.add_filter("picture", &["png"]), name).await
         }
+        Purpose::Film(_) => save(dialog.add_filter("film", &["mp4"]), name).await,
         Purpose::Numbers(_) => save(dialog.add_filter("table", &["csv"]), name).await,
         Purpose::Vehicle(_) => save(dialog.add_filter("vehicle", &["toml"]), name).await,
         Purpose::Evidence(_) => save(dialog.add_filter("evidence", &["toml"]), name).await,

@@ -253,6 +253,10 @@ pub fn status_ui(ui: &mut Ui, state: &State, commands: &mut Vec<Command>) {
             let cancel = Command::Report(ReportCommand::Cancel);
             job_ui(ui, "Making the report", job, cancel, commands);
         }
+        if let Some((path, job)) = state.session.film.running() {
+            let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+            job_ui(ui, &format!("Making {name}"), job, Command::CancelFilm, commands);
+        }
         if state.session.shows_frame_times {
             ui.weak(state.session.frame_times.text());
         }

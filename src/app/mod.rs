@@ -12,6 +12,7 @@ mod contents;
 mod cost;
 mod dialogs;
 mod export;
+mod film;
 mod force;
 mod frame_times;
 mod ground;
@@ -260,6 +261,7 @@ impl eframe::App for App {
         self.leaving_ui(ui, &mut commands);
         self.path_ui(ui, &mut commands);
         self.models_dialog_ui(ui, &mut commands);
+        self.film_ui(ui, &mut commands);
         menu::drop_hint_ui(ui);
         for command in commands {
             self.apply(command, ui.ctx());
@@ -357,6 +359,19 @@ impl App {
             let response = modal.show(ui.ctx(), show);
             if response.should_close() && commands.is_empty() {
                 commands.push(Command::Models(ModelsCommand::CloseDialog));
+            }
+        }
+    }
+
+    fn film_ui(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        let film = &mut self.state.session.film;
+        let is_busy = film.running().is_some();
+        if let Some(form) = &mut film.form {
+            let modal = egui::Modal::new(egui::Id::unique("film dialog"));
+            let show = |ui: &mut Ui| panels::film_ui(ui, form, is_busy, commands);
+            let response = modal.show(ui.ctx(), show);
+            if response.should_close() && commands.is_empty() {
+                commands.push(Command::CloseFilmForm);
             }
         }
     }

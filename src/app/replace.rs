@@ -17,6 +17,7 @@ impl Command {
         match self {
             Self::Export(_, path)
             | Self::ExportScene(_, path)
+            | Self::SaveFilm(_, path)
             | Self::SaveScenario(path)
             | Self::SaveVehicle(_, path)
             | Self::SaveEvidence(_, path)
@@ -63,6 +64,7 @@ impl State {
                     Err(error) => self.say(Severity::Error, error.to_string()),
                 }
             }
+            Command::SaveFilm(film, path) => self.make_film(*film, (path, existing), context),
             Command::SaveScenario(path) => {
                 self.write_text(&self.project.scenario.to_toml(), (&path, existing));
             }

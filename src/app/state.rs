@@ -13,6 +13,7 @@ use crate::app::case_table::CaseList;
 use crate::app::command::Command;
 use crate::app::cost::Costs;
 use crate::app::dialogs::FileDialog;
+use crate::app::film::FilmSession;
 use crate::app::force::{ForceProject, ForceSession, ForceView};
 use crate::app::frame_times::FrameTimes;
 use crate::app::ground::{GroundSession, SiteChoice};
@@ -310,6 +311,8 @@ pub struct Session {
     pub shows_licences: bool,
     /// The command that waits for the user's answer whether it may replace what exists.
     pub replacing: Option<Box<Command>>,
+    /// The film of the scene that is asked about or being made.
+    pub film: FilmSession,
     /// Jobs that write figures to files.
     pub exports: Vec<Job<Result<PathBuf, String>>>,
     /// The path that the user opened last. Its first case or file is selected once it is loaded.

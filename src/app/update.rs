@@ -25,6 +25,7 @@ impl State {
         self.poll_sources(commands);
         self.poll_replays();
         self.poll_exports();
+        self.poll_film();
         self.poll_case();
         self.leave_if_saved(context);
         if let Some(answer) = self.session.file_dialog.as_mut().and_then(|dialog| dialog.poll()) {

@@ -10,6 +10,7 @@ use crate::force::ForceError;
 use crate::learning::LearningError;
 use crate::ranges::OutOfRange;
 use crate::report::{FormatError, WriteError};
+use crate::scene::FilmTimingError;
 use crate::site::SiteError;
 use crate::study::StudyError;
 
@@ -78,6 +79,12 @@ pub enum CliError {
         /// The name asked for.
         case: String,
     },
+    /// Columns are assigned to a scenario.
+    #[error("{}: is a scenario, which has no columns; leave out --map", path.display())]
+    MapOfScenario {
+        /// The scenario.
+        path: PathBuf,
+    },
     /// Nothing of what a figure shows is known.
     #[error("{name}: nothing is known of {channel} over time")]
     NothingToShow {
@@ -116,6 +123,19 @@ pub enum CliError {
         /// As given.
         path: PathBuf,
     },
+    /// A film is of an unknown kind.
+    #[error("{}: cannot be made; expected a name that ends in .mp4, or a folder", path.display())]
+    FilmKind {
+        /// As given.
+        path: PathBuf,
+    },
+    /// A film shows instants that the motion does not have.
+    #[error(transparent)]
+    FilmTiming(#[from] FilmTimingError),
+    /// A film could not be made.
+    #[cfg(feature = "gui")]
+    #[error(transparent)]
+    Film(#[from] crate::render::film::FilmError),
     /// A report is of an unknown kind.
     #[error(transparent)]
     ReportFormat(#[from] FormatError),

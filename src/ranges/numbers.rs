@@ -287,4 +287,11 @@ ranges! {
     CAMERA_DISTANCE: "camera distance" = real(Quantity::Length, [2.0, 20_000.0]),
         "distance of the camera from what it looks at";
     GHOSTS: "ghosts" = whole([0, 200]), "paths that are drawn from a forecast into a scene";
+    FILM_SIDE: "film side" = whole([64, 3840]),
+        "width or height of a film in pixels, even; 3840 × 2160 is the largest film";
+    FILM_RATE: "frames per second" = whole([1, 120]), "frames of a film in a second of its time";
+    FILM_SPEED: "speed of a film" = real(Quantity::Ratio, [0.001, 100.0]),
+        "seconds of the scene that a film plays in a second; 0.1 is slow motion";
+    FILM_FRAMES: "frames of a film" = whole([2, 36_000]),
+        "frames of a whole film; 36000 are 20 minutes at 30 in a second";
 }

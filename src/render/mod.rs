@@ -3,6 +3,7 @@
 
 mod density;
 mod density_buffers;
+pub mod film;
 mod legend;
 mod offscreen;
 mod plot;

@@ -62,11 +62,22 @@ impl SoftwareRenderer {
         pixels_per_point: f32,
         background: Color32,
     ) -> RgbaImage {
-        let mut frame = Frame {
-            width: width as usize,
-            height: height as usize,
-            pixels: vec![background; width as usize * height as usize],
-        };
+        let mut image = ColorImage::filled([width as usize, height as usize], background);
+        self.draw_over(primitives, pixels_per_point, &mut image);
+        let opaque = |color: Color32| [color.r(), color.g(), color.b(), 255];
+        let bytes: Vec<u8> = image.pixels.into_iter().flat_map(opaque).collect();
+        RgbaImage::from_raw(width, height, bytes).unwrap_or_default()
+    }
+
+    /// Draws a frame over an image of the same size, whose pixels are opaque and stay so.
+    pub fn draw_over(
+        &self,
+        primitives: &[ClippedPrimitive],
+        pixels_per_point: f32,
+        image: &mut ColorImage,
+    ) {
+        let [width, height] = image.size;
+        let mut frame = Frame { width, height, pixels: std::mem::take(&mut image.pixels) };
         for ClippedPrimitive { clip_rect, primitive } in primitives {
             let Primitive::Mesh(mesh) = primitive else {
                 continue;
@@ -75,9 +86,7 @@ impl SoftwareRenderer {
                 frame.draw_mesh(mesh, texture, *clip_rect * pixels_per_point, pixels_per_point);
             }
         }
-        let opaque = |color: Color32| [color.r(), color.g(), color.b(), 255];
-        let bytes: Vec<u8> = frame.pixels.into_iter().flat_map(opaque).collect();
-        RgbaImage::from_raw(width, height, bytes).unwrap_or_default()
+        image.pixels = frame.pixels;
     }
 }
 

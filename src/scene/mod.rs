@@ -22,6 +22,7 @@ mod load_ground;
 mod car_motion;
 mod parts;
 
+mod film;
 mod crush_outline;
 
 mod forecast;
@@ -32,6 +33,7 @@ pub use body_class::BodyClass;
 pub use car_body::{CarBody, N_WHEELS};
 pub use car_motion::{CarMotion, CarState};
 pub use car_shape::CarShape;
+pub use film::{FilmInstant, FilmSection, FilmTiming, FilmTimingError};
 pub use forecast::{ForecastScene, add_forecast};
 pub use ground::{AreaKind, GroundArea, GroundLine, GroundLineKind, SceneGround};
 pub use ground_picture::GroundPicture;

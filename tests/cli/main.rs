@@ -10,6 +10,8 @@ mod commands;
 mod contact;
 mod data_sheets;
 mod endings;
+#[cfg(feature = "gui")]
+mod film;
 mod force;
 mod ground;
 mod guide;

@@ -5,6 +5,7 @@ mod both_faces;
 mod case;
 mod conditioning;
 mod density_gpu;
+mod film;
 mod force_network;
 mod ground;
 mod harness;

@@ -107,6 +107,9 @@ impl State {
                 reasons.push(format!("The {what} {name:?} is in no file and is lost."));
             }
         }
+        if self.session.film.running().is_some() {
+            reasons.push("A film that is being made is stopped and not written.".to_owned());
+        }
         if !exports.is_empty() || saving_case.is_some() {
             reasons.push("A file is still being written.".to_owned());
         }

@@ -199,6 +199,9 @@ fn export_menu_ui(
     if ui.add(icon_button(Icon::Image, "Save picture (PNG)…")).clicked() {
         commands.push(Command::Ask(Purpose::ScenePicture(Box::new(exported().0))));
     }
+    if ui.add(icon_button(Icon::Film, "Save film (MP4)…")).clicked() {
+        commands.push(Command::AskFilm(Box::new(exported().0)));
+    }
     if ui.add(icon_button(Icon::Table2, "Save numbers (CSV)…")).clicked() {
         commands.push(Command::Ask(Purpose::Numbers(Box::new(exported().1))));
     }

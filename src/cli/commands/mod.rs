@@ -20,6 +20,7 @@ pub(super) mod ranges;
 pub(super) mod reconstruct;
 pub(super) mod render;
 mod render_figure;
+mod render_film;
 mod render_forecast;
 mod render_reconstruction;
 mod render_scene;

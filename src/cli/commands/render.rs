@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::commands::render_figure;
+use crate::cli::commands::render_film::{self, FilmArgs};
 use crate::cli::commands::render_forecast::{self, ForecastArgs};
 use crate::cli::commands::render_reconstruction::{self, ReconstructionArgs};
 use crate::cli::commands::render_scene::{self, SceneArgs, ShownScene};
@@ -26,7 +27,20 @@ use crate::vehicle::ContactPoint;
 #[command(after_help = EXAMPLES)]
 pub(in crate::cli) struct RenderArgs {
     #[command(subcommand)]
-    figure: FigureArgs,
+    command: RenderCommand,
+}
+
+#[derive(Debug, Subcommand)]
+enum RenderCommand {
+    #[command(flatten)]
+    Figure(FigureArgs),
+    /// The scene as a film, from above or in perspective, with slow motion
+    #[command(after_help = "\
+Examples:\n  impactlab render film datasets/trajectories-fea --case FE_c002 --view perspective \
+--follow struck --slow 0..0.3=0.1 --out film.mp4\n  \
+impactlab render film datasets/trajectories-fea --case FE_c002 --fps 25 --out frames\n\n\
+JSON: out, title, n_frames, frames_per_s, duration_s, size_px [width, height], notes")]
+    Film(Box<FilmArgs>),
 }
 
 const EXAMPLES: &str = "\
@@ -223,12 +237,20 @@ struct RenderedFigure<'a> {
     notes: &'a [String],
 }
 
-/// Makes the figure, writes it and says so.
+/// Makes the figure or the film.
 pub(in crate::cli) fn run(
     args: &RenderArgs,
     console: &mut Console<'_>,
 ) -> Result<Verdict, CliError> {
-    let output = match &args.figure {
+    match &args.command {
+        RenderCommand::Figure(args) => figure(args, console),
+        RenderCommand::Film(args) => render_film::run(args, console),
+    }
+}
+
+/// Makes the figure, writes it and says so.
+fn figure(args: &FigureArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
+    let output = match args {
         FigureArgs::Force(args) => &args.output,
         FigureArgs::Motion(args) => &args.output,
         FigureArgs::Scene(args) => &args.output,
@@ -249,7 +271,7 @@ pub(in crate::cli) fn run(
     console.check_target(Some(&output.out), output.overwrite.into())?;
     let units = output.units.into();
     let mut scene: Option<ShownScene> = None;
-    let (mut figure, notes) = match &args.figure {
+    let (mut figure, notes) = match args {
         FigureArgs::Force(args) => {
             let class = args.cfc.map(ChannelClass::from);
             render_figure::force(&args.source, class, units, console)?

@@ -22,23 +22,30 @@ use crate::units::UnitSystem;
 #[derive(Debug, Args)]
 pub(super) struct SceneArgs {
     #[command(flatten)]
-    source: SourceArgs,
+    seen: SeenArgs,
     /// The moment at which the vehicles are drawn, s
     #[arg(long, value_parser = number(INSTANT))]
     time: f64,
+    #[command(flatten)]
+    pub(super) output: OutputArgs,
+}
+
+/// What a scene is of, and from where it is seen: the same for a picture and a film.
+#[derive(Debug, Args)]
+pub(super) struct SeenArgs {
+    #[command(flatten)]
+    source: SourceArgs,
     /// From where the scene is seen
     #[arg(long, value_enum, default_value_t)]
     view: ViewArg,
     #[command(flatten)]
     camera: CameraArgs,
-    /// Draw so many paths from a forecast of the response network under the recorded force, with its
-    /// density and regions at the moment; 0 asks for no forecast
+    /// Draw so many paths from a forecast of the response network under the recorded force, and into a
+    /// picture its density and regions at the moment; 0 asks for no forecast
     #[arg(long, value_name = "N", value_parser = count::<usize>(GHOSTS), default_value = "0")]
     ghosts: usize,
     #[command(flatten)]
     vehicle: VehicleArgs,
-    #[command(flatten)]
-    pub(super) output: OutputArgs,
 }
 
 /// Where the camera is.
@@ -89,6 +96,11 @@ impl ShownScene {
     /// A scene of which everything is seen.
     pub(super) fn fitted(scene: Scene, time_s: f64, view: ViewArg) -> Self {
         Self { scene, time_s, view, camera: CameraArgs::default() }
+    }
+
+    /// What the scene is of.
+    pub(super) fn subject(&self) -> String {
+        self.scene.title.clone()
     }
 
     /// What it shows.
@@ -142,13 +154,39 @@ pub(super) fn scene(
     units: UnitSystem,
     console: &mut Console<'_>,
 ) -> Result<(Figure, Vec<String>, ShownScene), CliError> {
+    let time_s = args.time;
+    let BuiltScene { analysis, scene, notes } = build(&args.seen, Some(time_s), units, console)?;
+    let mut figure = analysis_scene_figure((&analysis, &scene.trust), time_s, units);
+    figure.elements.extend(drawn_paths(&scene, &figure));
+    Ok((figure, notes, args.seen.shown(scene, time_s)))
+}
+
+/// A scene with what it was built from.
+pub(super) struct BuiltScene {
+    analysis: Analysis,
+    /// The scene.
+    pub(super) scene: Scene,
+    /// Notes on how it was made.
+    pub(super) notes: Vec<String>,
+}
+
+/// Builds the scene of a case or a file.
+///
+/// - `density_s`: the moment of the density of a forecast, which has to lie within the motion; a film
+///   has none.
+pub(super) fn build(
+    args: &SeenArgs,
+    density_s: Option<f64>,
+    units: UnitSystem,
+    console: &mut Console<'_>,
+) -> Result<BuiltScene, CliError> {
     let request = args.vehicle.request(&args.source, &console.library)?;
     let SimulateAnswer { report, analysis } = console.answer(&request)?;
-    let time_s = args.time;
-    check_time(&analysis, time_s)?;
+    if let Some(time_s) = density_s {
+        check_time(&analysis, time_s)?;
+    }
     let mut trust = Trust::new(&report.badges, &report.assumptions);
     let mut notes = noted(&report.notes, (&report.badges, &report.assumptions));
-    let mut figure = analysis_scene_figure((&analysis, &trust), time_s, units);
     let mut scene = simulation_scene(&SimulationScene {
         analysis: &analysis,
         others: &[],
@@ -156,17 +194,22 @@ pub(super) fn scene(
         trust: &trust,
     });
     if args.ghosts > 0 {
-        let said = add_ghosts((args, request), (&mut scene, &mut trust), console)?;
+        let asked = (request, args.ghosts, density_s);
+        let said = add_ghosts(asked, (&mut scene, &mut trust), console)?;
         notes.extend(said.into_iter().filter(|note| !notes.contains(note)).collect::<Vec<_>>());
-        figure.elements.extend(drawn_paths(&scene, &figure));
-        figure = figure.with_trust(&trust);
         scene.trust = trust;
     }
     if let Some(path) = &args.vehicle.site {
         notes.extend(add_ground(&mut scene, path)?);
     }
-    let (view, camera) = (args.view, args.camera);
-    Ok((figure, notes, ShownScene { scene, time_s, view, camera }))
+    Ok(BuiltScene { analysis, scene, notes })
+}
+
+impl SeenArgs {
+    /// A scene as these options show it.
+    pub(super) fn shown(&self, scene: Scene, time_s: f64) -> ShownScene {
+        ShownScene { scene, time_s, view: self.view, camera: self.camera }
+    }
 }
 
 /// Puts the ground of a site below a scene; returns what there is to say of it.
@@ -190,7 +233,7 @@ fn check_time(analysis: &Analysis, time_s: f64) -> Result<(), CliError> {
 
 /// Asks for a forecast and adds it to a scene; returns its notes.
 fn add_ghosts(
-    (args, motion): (&SceneArgs, SimulateRequest),
+    (motion, n_ghosts, density_s): (SimulateRequest, usize, Option<f64>),
     (scene, trust): (&mut Scene, &mut Trust),
     console: &mut Console<'_>,
 ) -> Result<Vec<String>, CliError> {
@@ -199,14 +242,16 @@ fn add_ghosts(
         ..PredictMotionRequest::new(motion.source, ForceSource::Given)
     };
     let answer = console.answer(&request)?;
-    let density = DensityTask::new(&answer.forecast.distribution, [args.time; 2]).on_cpu();
+    let density = density_s.map(|time_s| {
+        Arc::new(DensityTask::new(&answer.forecast.distribution, [time_s; 2]).on_cpu())
+    });
     add_forecast(
         scene,
         &ForecastScene {
             analysis: &answer.analysis,
             forecast: &answer.forecast,
-            density: Some(&Arc::new(density)),
-            n_ghosts: args.ghosts,
+            density: density.as_ref(),
+            n_ghosts,
             seed: request.seed,
         },
     );

@@ -16,6 +16,6 @@ pub(super) use ending::EndingArgs;
 pub(super) use evidence::EvidenceArgs;
 pub(super) use learning_data::LearningDataArgs;
 pub(super) use overwrite::OverwriteArg;
-pub(super) use quantity::{contact_point, count, number, size_px, window_s};
+pub(super) use quantity::{contact_point, count, film_section, number, size_px, window_s};
 pub(super) use source::SourceArgs;
 pub(super) use training::TrainingArgs;

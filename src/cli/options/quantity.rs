@@ -1,8 +1,10 @@
 //! Numbers with units as arguments: `20`, `72km/h`, `30deg/s`.
 
 use crate::ranges::{
-    CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, OutOfRange, PICTURE_SIDE, Range, WINDOW,
+    CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, FILM_SPEED, INSTANT, OutOfRange, PICTURE_SIDE, Range,
+    WINDOW,
 };
+use crate::scene::FilmSection;
 use crate::units::Quantity;
 use crate::vehicle::ContactPoint;
 
@@ -33,6 +35,9 @@ pub(in crate::cli) enum QuantityError {
     /// Not a size.
     #[error("expected width x height in pixels, such as 1600x1000")]
     NoSize,
+    /// Not a part of a film with its speed.
+    #[error("expected two moments in s and a speed, such as 0.2..0.6=0.1")]
+    NoSection,
 }
 
 /// A parser of a number in a range, in SI units unless the text names another unit.
@@ -86,6 +91,17 @@ pub(in crate::cli) fn size_px(text: &str) -> Result<[u32; 2], QuantityError> {
         Ok(side)
     };
     Ok([side(width)?, side(height)?])
+}
+
+/// A part of a film at a speed of its own, s unless it says otherwise: `0.2..0.6=0.1`.
+pub(in crate::cli) fn film_section(text: &str) -> Result<FilmSection, QuantityError> {
+    let (window, speed) = text.split_once('=').ok_or(QuantityError::NoSection)?;
+    let (from, to) = window.split_once("..").ok_or(QuantityError::NoSection)?;
+    let [from_s, to_s] = [number(INSTANT)(from)?, number(INSTANT)(to)?];
+    if from_s >= to_s {
+        return Err(QuantityError::WindowOrder { from_s, to_s });
+    }
+    Ok(FilmSection { from_s, to_s, speed: number(FILM_SPEED)(speed)? })
 }
 
 /// A finite number and, if there is one, its unit; SI without.
@@ -180,6 +196,23 @@ mod tests {
         let error = window_s("5,2").unwrap_err().to_string();
         assert_eq!(error, "5 s to 2 s ends before it starts; expected the earlier moment first");
         assert!(window_s("-1,2").is_err() && window_s("0,1e999").is_err());
+    }
+
+    #[test]
+    fn a_part_of_a_film_is_two_moments_and_a_speed() {
+        let section = film_section("200ms..0.6=0.1").unwrap();
+        assert_eq!((section.from_s, section.to_s, section.speed), (0.2, 0.6, 0.1));
+        for (text, part) in [
+            ("0.2..0.6", "such as 0.2..0.6=0.1"),
+            ("0.2=0.1", "such as 0.2..0.6=0.1"),
+            ("0.6..0.2=0.1", "0.6 s to 0.2 s ends before it starts"),
+            ("0.2..0.2=0.1", "ends before it starts"),
+            ("0.2..0.6=0", "speed of a film is 0, expected"),
+            ("0.2..0.6=slow", "expected a number"),
+        ] {
+            let error = film_section(text).unwrap_err().to_string();
+            assert!(error.contains(part), "{text}: {error}");
+        }
     }
 
     #[test]

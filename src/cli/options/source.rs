@@ -39,8 +39,13 @@ impl SourceArgs {
                 return Err(CliError::CaseOfFile { path, case });
             }
             if is_scenario(&path) {
-                let (scenario, pulse) = (ScenarioChoice::File(path), PulseSetup::default());
-                return Ok(MotionSource::Scenario { scenario, pulse });
+                return match self.map {
+                    Some(_) => Err(CliError::MapOfScenario { path }),
+                    None => Ok(MotionSource::Scenario {
+                        scenario: ScenarioChoice::File(path),
+                        pulse: PulseSetup::default(),
+                    }),
+                };
             }
             let file = SeriesFile { path, map: self.map.clone() };
             let kind: FileKind = library.series(&file)?.kind;
@@ -57,8 +62,8 @@ impl SourceArgs {
     }
 }
 
-/// Whether a path is a scenario: the name of a shipped one, or a TOML file.
+/// Whether a path is a scenario by its ending or its name.
 fn is_scenario(path: &Path) -> bool {
-    let is_shipped = SCENARIO_PRESETS.iter().any(|(name, _)| Path::new(name) == path);
-    is_shipped || path.extension().is_some_and(|end| end == "toml")
+    let is_toml = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
+    is_toml || SCENARIO_PRESETS.iter().any(|(name, _)| Path::new(name) == path)
 }

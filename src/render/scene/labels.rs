@@ -37,6 +37,8 @@ pub struct Labels<'a> {
     pub points: f32,
     /// Whether the theme is dark.
     pub dark: bool,
+    /// Seconds of the scene that are played in a second, which the time stamp of a film says.
+    pub speed: Option<f64>,
 }
 
 impl Labels<'_> {
@@ -367,7 +369,9 @@ impl Labels<'_> {
     /// The time at the left top, with what restricts the scene.
     fn stamp(&self, painter: &Painter, (scene, time_s): (&Scene, f64), taken: &mut Vec<Rect>) {
         let at = self.rect.left_top() + vec2(EDGE + 2.0, EDGE);
-        let text = format!("t = {time_s:.3} s");
+        let speed = self.speed.filter(|speed| *speed != 1.0);
+        let speed = speed.map_or(String::new(), |speed| format!("  × {speed}"));
+        let text = format!("t = {time_s:.3} s{speed}");
         let color = self.text_color();
         let mut place = self.text(painter, at, Align2::LEFT_TOP, (&text, USUAL + 1.0, color));
         taken.push(place);

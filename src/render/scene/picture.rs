@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use image::RgbaImage;
 
-use crate::render::scene::{Camera, Follow, SceneView, scene_view_ui};
-use crate::render::trust::framed_ui;
-use crate::render::{Canvas, RenderError, draw_offscreen};
+use crate::render::film::FrameRenderer;
+use crate::render::scene::{Camera, Follow};
+use crate::render::{Canvas, RenderError};
 use crate::scene::Scene;
 
 /// A scene at a time, as it is seen.
@@ -38,16 +38,8 @@ impl ScenePicture {
 /// # Errors
 /// [`RenderError::Size`] for a width or height outside the permitted range.
 pub fn scene_image(picture: &ScenePicture, canvas: Canvas) -> Result<RgbaImage, RenderError> {
-    let mut view = SceneView::default();
-    let mut camera = picture.camera;
-    draw_offscreen(canvas, |ui| {
-        egui::Frame::new().inner_margin(12.0).show(ui, |ui| {
-            framed_ui(ui, (&picture.title(), &picture.scene.trust), |ui, height| {
-                let height = height.unwrap_or_else(|| ui.available_height());
-                view.place(picture);
-                let shown = (&picture.scene, picture.time_s);
-                scene_view_ui(ui, shown, &mut view, (&mut camera, picture.follow, height));
-            });
-        });
-    })
+    let mut renderer = FrameRenderer::new(canvas)?;
+    let image = renderer.draw(picture, 1.0);
+    let [width, height] = canvas.size_px;
+    Ok(RgbaImage::from_raw(width, height, image.as_raw().to_vec()).unwrap_or_default())
 }

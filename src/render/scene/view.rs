@@ -63,16 +63,49 @@ pub struct SceneView {
     seen: Option<(Rect, Projection, f32)>,
     /// Whether clicks are taken by somebody else, so that a double click does not fit the camera.
     pub takes_clicks: bool,
+    /// Seconds of the scene that are played in a second, where the time stamp says it.
+    speed: Option<f64>,
+    /// Whether the picture is not painted, because whoever draws off screen copies it below the text.
+    is_underlaid: bool,
+    /// Left, top, width and height of the last picture on the screen, pixels.
+    area_px: [usize; 4],
 }
 
 impl SceneView {
+    /// A view whose picture is copied below the text and not painted, which takes far less time where
+    /// egui's triangles are drawn on the CPU.
+    pub(in crate::render) fn underlaid() -> Self {
+        Self { is_underlaid: true, ..Self::default() }
+    }
+
+    /// Says beside the time how fast it is played: seconds of the scene in a second.
+    pub(in crate::render) fn set_speed(&mut self, speed: f64) {
+        self.speed = Some(speed);
+    }
+
+    /// Copies the last picture to its place in an image of the whole screen.
+    pub(in crate::render) fn copy_into(&self, image: &mut ColorImage) {
+        let [left, top, width, _] = self.area_px;
+        let [stride, _] = image.size;
+        let rows = self.canvas.pixels().chunks_exact(width.max(1));
+        for (row, pixels) in rows.enumerate() {
+            let start = (top + row) * stride + left;
+            let n = width.min(stride.saturating_sub(left));
+            if let (Some(target), Some(source)) =
+                (image.pixels.get_mut(start..start + n), pixels.get(..n))
+            {
+                target.copy_from_slice(source);
+            }
+        }
+    }
+
     /// Fits the camera to the scene when it is drawn next.
     pub fn fit(&mut self) {
         self.camera = None;
     }
 
     /// Places the camera as a picture wants it.
-    pub(super) fn place(&mut self, picture: &ScenePicture) {
+    pub(in crate::render) fn place(&mut self, picture: &ScenePicture) {
         match (&mut self.camera, picture.distance_m) {
             _ if picture.is_placed => self.camera = Some(picture.camera),
             (Some(camera), Some(distance_m)) => camera.distance_m = distance_m,
@@ -145,9 +178,14 @@ pub fn scene_view_ui(
     view.camera = Some(camera);
     let dark = ui.visuals().dark_mode;
     let look = SceneLook { size_px, camera, dark, pixels_per_point: points };
-    paint(ui, (rect, view), (scene, time_s), &look);
+    let [left, top] = [left, top].map(|at| at.max(0.0) as usize);
+    view.area_px = [left, top, size_px[0], size_px[1]];
+    match view.is_underlaid {
+        true => drop(view.canvas.draw(scene, &look, time_s)),
+        false => paint(ui, (rect, view), (scene, time_s), &look),
+    }
     let projection = look.projection();
-    let labels = Labels { rect, projection: &projection, points, dark };
+    let labels = Labels { rect, projection: &projection, points, dark, speed: view.speed };
     view.seen = Some((rect, projection, points));
     labels.draw(&ui.painter().with_clip_rect(rect), scene, time_s);
     response

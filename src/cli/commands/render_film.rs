@@ -1,0 +1,169 @@
+//! `impactlab render film`: the cars of a case as a film, or as numbered pictures.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use serde::Serialize;
+
+use crate::cli::CliError;
+use crate::cli::commands::render_scene::{BuiltScene, SeenArgs, ShownScene, build};
+use crate::cli::console::{Console, Verdict, print_json, shown_path};
+use crate::cli::options::{OverwriteArg, UnitsArg, count, film_section, number, size_px};
+use crate::ranges::{FILM_RATE, FILM_SPEED, INSTANT, PICTURE_SCALE};
+use crate::scene::{FilmSection, FilmTiming};
+
+/// What is filmed, and how.
+#[derive(Debug, Args)]
+pub(super) struct FilmArgs {
+    #[command(flatten)]
+    seen: SeenArgs,
+    /// First moment; the start of the motion if not given
+    #[arg(long, value_name = "TIME", value_parser = number(INSTANT))]
+    from: Option<f64>,
+    /// Last moment; the end of the motion if not given
+    #[arg(long, value_name = "TIME", value_parser = number(INSTANT))]
+    to: Option<f64>,
+    /// Frames per second of the film
+    #[arg(long, value_name = "N", value_parser = count::<u32>(FILM_RATE), default_value = "30")]
+    fps: u32,
+    /// Seconds of the motion in a second of the film: 0.1 is slow motion throughout
+    #[arg(long, value_name = "FACTOR", value_parser = number(FILM_SPEED), default_value = "1")]
+    playback: f64,
+    /// A part of the motion at a speed of its own, such as 0.2..0.6=0.1; several times for several parts
+    #[arg(long, value_name = "FROM..TO=FACTOR", value_parser = film_section)]
+    slow: Vec<FilmSection>,
+    /// The film: a file that ends in .mp4; a name without an ending is a folder of numbered PNG files
+    #[arg(long, value_name = "FILE.mp4|DIR")]
+    out: PathBuf,
+    #[command(flatten)]
+    overwrite: OverwriteArg,
+    /// Units of the labels
+    #[arg(long, value_enum, default_value_t)]
+    units: UnitsArg,
+    /// Dark ground
+    #[arg(long)]
+    dark: bool,
+    /// Width x height, pixels, both even
+    #[arg(long, value_parser = size_px, default_value = "1920x1080")]
+    size: [u32; 2],
+    /// Pixels per point: larger text and lines
+    #[arg(long, value_parser = number(PICTURE_SCALE), default_value = "2")]
+    scale: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct RenderedFilm<'a> {
+    out: &'a Path,
+    title: String,
+    n_frames: usize,
+    frames_per_s: u32,
+    duration_s: f64,
+    size_px: [u32; 2],
+    notes: &'a [String],
+}
+
+/// Makes the film and says so.
+pub(super) fn run(args: &FilmArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
+    let kind = FilmKind::of(&args.out)?;
+    if kind == FilmKind::Mp4 {
+        console.check_target(Some(&args.out), args.overwrite.into())?;
+    }
+    let built = build(&args.seen, None, args.units.into(), console)?;
+    let BuiltScene { scene, notes, .. } = built;
+    let whole = FilmTiming::of_scene(&scene);
+    let timing = FilmTiming {
+        frames_per_s: args.fps,
+        from_s: args.from.unwrap_or(whole.from_s),
+        to_s: args.to.unwrap_or(whole.to_s),
+        speed: args.playback,
+        sections: args.slow.clone(),
+    };
+    let instants = timing.instants(&scene)?;
+    let shown = args.seen.shown(scene, timing.from_s);
+    let title = shown.subject();
+    let duration_s = instants.len() as f64 / f64::from(args.fps);
+    make(args, (kind, shown, timing))?;
+    let (n_frames, frames_per_s, size_px) = (instants.len(), args.fps, args.size);
+    let out = &args.out;
+    if console.json {
+        let answer =
+            RenderedFilm { out, title, n_frames, frames_per_s, duration_s, size_px, notes: &notes };
+        print_json(console.out, &answer)?;
+        return Ok(Verdict::Clean);
+    }
+    let text =
+        format!("{title}: {n_frames} frames, {duration_s:.2} s at {frames_per_s} in a second");
+    writeln!(console.out, "{}: {text}", shown_path(out))?;
+    for note in &notes {
+        writeln!(console.out, "note: {note}")?;
+    }
+    Ok(Verdict::Clean)
+}
+
+/// What is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum FilmKind {
+    Mp4,
+    Pictures,
+}
+
+impl FilmKind {
+    fn of(path: &Path) -> Result<Self, CliError> {
+        let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
+        match ending.as_deref().and_then(|ending| ending.to_str()) {
+            _ if cfg!(not(feature = "gui")) => Err(CliError::NoDrawing),
+            Some("mp4") => Ok(Self::Mp4),
+            None => Ok(Self::Pictures),
+            Some(_) => Err(CliError::FilmKind { path: path.to_owned() }),
+        }
+    }
+}
+
+/// Draws and writes the film under a progress bar.
+#[cfg(feature = "gui")]
+fn make(
+    args: &FilmArgs,
+    (kind, shown, timing): (FilmKind, ShownScene, FilmTiming),
+) -> Result<(), CliError> {
+    use crate::cli::console::under_bar;
+    use crate::data::Outcome;
+    use crate::data::write::{OutputFolder, RunRecord};
+    use crate::render::Canvas;
+    use crate::render::film::{Film, write_film, write_frames};
+    use crate::study::Event;
+
+    let FilmArgs { size, scale, dark, .. } = *args;
+    let canvas = Canvas { size_px: size, scale: scale as f32, dark };
+    let film = Film { picture: shown.picture(), timing, canvas };
+    let existing = args.overwrite.into();
+    let made = match kind {
+        FilmKind::Mp4 => under_bar(|observer| {
+            let mut report = |progress| observer(Event::Progress(progress));
+            write_film(&film, (&args.out, existing), &mut report)
+        })?,
+        FilmKind::Pictures => {
+            let folder = OutputFolder::begin(&args.out, existing, &[])?;
+            let drawn = under_bar(|observer| {
+                let mut report = |progress| observer(Event::Progress(progress));
+                write_frames(&film, folder.staging(), &mut report)
+            })?;
+            if let Outcome::Complete(()) = drawn {
+                let command = std::env::args_os().map(|arg| arg.to_string_lossy().into_owned());
+                folder.finish(RunRecord { command: command.collect(), ..RunRecord::default() })?;
+            }
+            drawn
+        }
+    };
+    made.complete().ok_or(CliError::Cancelled)
+}
+
+/// Reads what only a film needs, so that the options are the same in every build.
+#[cfg(not(feature = "gui"))]
+fn make(
+    args: &FilmArgs,
+    (_, shown, timing): (FilmKind, ShownScene, FilmTiming),
+) -> Result<(), CliError> {
+    let _ = (args.size, args.scale, args.dark, args.overwrite, timing);
+    shown.not_drawn();
+    Err(CliError::NoDrawing)
+}

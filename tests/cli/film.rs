@@ -1,0 +1,243 @@
+//! Films on the command line; one is played by a browser.
+
+use std::fs;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use crate::program::{TRAJECTORIES, answer, json, program, text};
+
+/// Browsers that are looked for.
+const BROWSERS: [&str; 4] =
+    ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
+/// Longest time to wait for a browser. Only one that hangs exceeds it.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// A page that plays a film and tells what it finds.
+const PAGE: &str = r#"<!doctype html><video id="v" src="film.mp4" muted preload="auto"></video><script>
+const v = document.getElementById("v"), told = { seen: [] };
+const tell = () => fetch("/told", { method: "POST", body: JSON.stringify(told) });
+const instants = [0.05, 0.75, 1.45];
+const seen = () => {
+  const c = document.createElement("canvas"), g = c.getContext("2d");
+  [c.width, c.height] = [v.videoWidth, v.videoHeight];
+  g.drawImage(v, 0, 0);
+  const pixels = g.getImageData(0, 0, c.width, c.height).data;
+  let sum = 0, hash = 0;
+  for (let i = 0; i < pixels.length; i += 4) {
+    sum += pixels[i] + pixels[i + 1] + pixels[i + 2];
+    hash = (31 * hash + pixels[i + 1]) | 0;
+  }
+  told.seen.push({ time_s: v.currentTime, mean: sum / pixels.length / 0.75, hash });
+};
+v.onerror = () => { told.error = v.error.message; tell(); };
+v.oncanplaythrough = () => {
+  v.oncanplaythrough = null;
+  Object.assign(told, { width: v.videoWidth, height: v.videoHeight, duration_s: v.duration });
+  v.currentTime = instants[0];
+};
+v.onseeked = () => {
+  seen();
+  if (told.seen.length < instants.length) v.currentTime = instants[told.seen.length];
+  else { v.onended = () => { told.ended = true; tell(); }; v.playbackRate = 4; v.play(); }
+};
+</script>"#;
+
+/// Makes a film of a shipped case and returns what the command says.
+fn film(out: &Path, options: &[&str]) -> Value {
+    let fixed = ["render", "film", TRAJECTORIES, "--case", "FE_c002", "--out", text(out)];
+    answer(&[&fixed, options].concat())
+}
+
+/// The error line of a film that is not made.
+fn refused(out: &Path, options: &[&str]) -> String {
+    let fixed = ["render", "film", TRAJECTORIES, "--case", "FE_c002", "--out", text(out)];
+    let output = program().args([&fixed, options].concat()).output().expect("it starts");
+    assert!(!output.status.success(), "{options:?}");
+    String::from_utf8(output.stderr).expect("UTF-8")
+}
+
+#[test]
+fn a_film_says_what_it_is_and_replaces_nothing_unasked() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("film.mp4");
+    let options = ["--size", "320x180", "--fps", "10", "--from", "0.2", "--to", "700ms"];
+    let said = film(&out, &[&options[..], &["--slow", "0.3..0.4=0.1"]].concat());
+    assert_eq!(said["title"], "FE_c002");
+    // 0.1 s, 0.1 s at a tenth, 0.3 s, and the last frame.
+    assert_eq!((&said["n_frames"], &said["frames_per_s"]), (&json("15"), &json("10")));
+    assert_eq!(said["size_px"], json("[320, 180]"));
+    let first = fs::read(&out).expect("a film");
+    assert_eq!(first.get(4..8), Some(&b"ftyp"[..]));
+
+    let again = refused(&out, &options);
+    assert!(again.contains("exists already; --overwrite replaces it"), "{again}");
+    assert!(fs::read(&out).expect("a film") == first);
+    film(&out, &[&options[..], &["--overwrite", "--dark"]].concat());
+    assert!(fs::read(&out).expect("a film") != first);
+}
+
+#[test]
+fn a_name_without_an_ending_is_a_folder_of_numbered_pictures() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("frames");
+    // A picture may have any size.
+    let options = ["--size", "321x181", "--fps", "5", "--to", "0.6", "--view", "perspective"];
+    let said = film(&out, &options);
+    assert_eq!(said["n_frames"], 4);
+    for idx in 1..=4 {
+        let picture = fs::read(out.join(format!("frame-{idx:05}.png"))).expect("a picture");
+        assert_eq!(picture.get(1..4), Some(&b"PNG"[..]));
+        // Width and height in the header of a PNG.
+        assert_eq!(picture.get(16..24), Some(&[0, 0, 1, 65, 0, 0, 0, 181][..]));
+    }
+    assert_eq!(fs::read_dir(&out).expect("a folder").count(), 5, "four pictures and a manifest");
+    assert!(refused(&out, &options).contains("holds the files of an earlier run"));
+}
+
+#[test]
+fn what_cannot_be_filmed_is_said_and_leaves_no_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let name = |name: &str| folder.path().join(name);
+    for (file, options, part) in [
+        ("film.webm", vec![], "expected a name that ends in .mp4, or a folder"),
+        ("film.mp4", vec!["--size", "321x180"], "321 × 180 pixels, expected even numbers"),
+        ("film.mp4", vec!["--size", "16x16"], "film side is 16, expected 64 to 3840"),
+        ("film.mp4", vec!["--to", "900"], "expected times between 0 s and"),
+        ("film.mp4", vec!["--from", "2", "--to", "1"], "from 2 s to 1 s; expected an end after"),
+        ("film.mp4", vec!["--slow", "0..1=0.1", "--slow", "0.5..2=0.1"], "do not overlap"),
+        ("film.mp4", vec!["--slow", "0..1"], "such as 0.2..0.6=0.1"),
+        ("film.mp4", vec!["--fps", "0"], "frames per second is 0, expected 1 to 120"),
+        ("film.mp4", vec!["--playback", "0.001", "--fps", "120"], "expected 2 to 36000"),
+        ("nowhere/film.mp4", vec![], "there is no folder"),
+    ] {
+        let error = refused(&name(file), &options);
+        assert!(error.contains(part), "{options:?}: {error}");
+    }
+    assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0);
+}
+
+#[test]
+fn a_scenario_is_filmed_too() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("film.mp4");
+    let options = ["--size", "320x180", "--fps", "5", "--to", "1", "--out", text(&out)];
+    let said = answer(&[&["render", "film", "pit-right-rear"], &options[..]].concat());
+    assert_eq!(said["n_frames"], 6);
+    assert!(out.exists());
+}
+
+/// The end of a browser, when the test ends.
+struct Browser(std::process::Child);
+
+impl Drop for Browser {
+    fn drop(&mut self) {
+        // It may have ended already.
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// Answers a request for the page or the film; returns what the page tells.
+fn serve(mut stream: TcpStream, film: &[u8]) -> std::io::Result<Option<String>> {
+    let mut lines = BufReader::new(stream.try_clone()?);
+    let (mut first, mut length, mut range) = (String::new(), 0, None);
+    lines.read_line(&mut first)?;
+    loop {
+        let mut line = String::new();
+        if lines.read_line(&mut line)? <= 2 {
+            break;
+        }
+        let line = line.to_ascii_lowercase();
+        if let Some(value) = line.strip_prefix("content-length:") {
+            length = value.trim().parse().unwrap_or(0);
+        }
+        if let Some(value) = line.strip_prefix("range: bytes=") {
+            let from = value.split('-').next().and_then(|from| from.parse::<usize>().ok());
+            range = from.filter(|from| *from < film.len());
+        }
+    }
+    let mut body = vec![0; length];
+    lines.read_exact(&mut body)?;
+    let (kind, content) = match first.split_whitespace().nth(1) {
+        Some("/film.mp4") => ("video/mp4", film),
+        Some("/") => ("text/html; charset=utf-8", PAGE.as_bytes()),
+        _ => ("text/plain", &b""[..]),
+    };
+    // A browser jumps only in a film of which it can ask for a part.
+    let (status, content, part) = match range.filter(|_| kind == "video/mp4") {
+        Some(from) => {
+            let n = film.len();
+            let part = format!("Content-Range: bytes {from}-{}/{n}\r\n", n - 1);
+            ("206 Partial Content", &content[from..], part)
+        }
+        None => ("200 OK", content, String::new()),
+    };
+    let n = content.len();
+    write!(
+        stream,
+        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {n}\r\n{part}\
+         Accept-Ranges: bytes\r\nConnection: close\r\n\r\n"
+    )?;
+    stream.write_all(content)?;
+    Ok(first.starts_with("POST /told").then(|| String::from_utf8_lossy(&body).into_owned()))
+}
+
+/// What a page tells that a browser opens; `None` without a browser.
+fn told_by_browser(film: &[u8]) -> Option<Value> {
+    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let address = format!("http://{}/", listener.local_addr().expect("an address"));
+    let profile = tempfile::tempdir().expect("a folder");
+    let start = |name: &&str| {
+        let mut command = Command::new(name);
+        command.args(["--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run"]);
+        command.arg("--autoplay-policy=no-user-gesture-required");
+        command.arg(format!("--user-data-dir={}", profile.path().display())).arg(&address);
+        command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().ok()
+    };
+    let _browser = Browser(BROWSERS.iter().find_map(start)?);
+    listener.set_nonblocking(true).expect("a listener that does not block");
+    let started = Instant::now();
+    loop {
+        assert!(started.elapsed() < PATIENCE, "the browser tells nothing");
+        let Ok((stream, _)) = listener.accept() else {
+            std::thread::sleep(Duration::from_millis(5));
+            continue;
+        };
+        stream.set_nonblocking(false).expect("a stream that blocks");
+        // A browser opens connections that it does not use.
+        stream.set_read_timeout(Some(Duration::from_millis(500))).expect("a timeout");
+        if let Ok(Some(told)) = serve(stream, film) {
+            return Some(json(&told));
+        }
+    }
+}
+
+#[test]
+fn a_browser_plays_the_film() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("film.mp4");
+    film(&out, &["--size", "640x360", "--fps", "10", "--to", "1.5", "--view", "perspective"]);
+    let film = fs::read(&out).expect("a film");
+    let Some(told) = told_by_browser(&film) else {
+        eprintln!("skipped: none of {BROWSERS:?} is installed to play the film");
+        return;
+    };
+    assert_eq!(told["error"], Value::Null, "{told}");
+    assert_eq!((&told["width"], &told["height"]), (&json("640"), &json("360")), "{told}");
+    assert_eq!(told["ended"], Value::Bool(true), "{told}");
+    let duration_s = told["duration_s"].as_f64().expect("a duration");
+    assert!((duration_s - 1.6).abs() < 0.02, "{told}");
+    let seen = told["seen"].as_array().expect("three instants");
+    let hashes: std::collections::BTreeSet<i64> =
+        seen.iter().filter_map(|of| of["hash"].as_i64()).collect();
+    assert_eq!(hashes.len(), 3, "something moves: {told}");
+    // A light ground and no picture that could not be decoded.
+    let is_light =
+        |of: &Value| of["mean"].as_f64().is_some_and(|mean| (200.0..255.0).contains(&mean));
+    assert!(seen.iter().all(is_light), "{told}");
+}

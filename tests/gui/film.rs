@@ -1,0 +1,237 @@
+//! Films of a scene: what is in the file is what the pictures show, and the window makes one.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
+
+use egui::ColorImage;
+use egui_kittest::kittest::Queryable;
+use impactlab::app::{Command, Pane};
+use impactlab::data::{Existing, Outcome};
+use impactlab::render::Canvas;
+use impactlab::render::film::{Film, FilmError, FrameRenderer, write_film};
+use impactlab::render::scene::{Camera, Follow, ScenePicture, ViewKind};
+use impactlab::scene::{FilmSection, FilmTiming, SimulationScene, simulation_scene};
+use impactlab::study::{Library, MotionSource, Question, SimulateRequest, Trust};
+use impactlab::units::UnitSystem;
+use openh264::decoder::Decoder;
+use openh264::formats::YUVSource;
+use shiguredo_mp4::boxes::SampleEntry;
+use shiguredo_mp4::demux::{Input, Mp4FileDemuxer};
+
+use crate::harness::{apply, is_idle, open, step_until};
+use crate::pictures::save;
+
+/// A small film of a shipped case, partly in slow motion.
+fn film() -> Film {
+    let dataset = concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/trajectories-fea").into();
+    let source = MotionSource::Case { dataset, case: "FE_c002".to_owned() };
+    let request = SimulateRequest { vehicle_draws: 0, ..SimulateRequest::new(source) };
+    let answer = request.answer(&Library::default(), &mut |_| ControlFlow::Continue(()));
+    let answer = answer.expect("a shipped case is simulated").complete().expect("not cancelled");
+    let scene = simulation_scene(&SimulationScene {
+        analysis: &answer.analysis,
+        others: &[],
+        units: UnitSystem::Si,
+        trust: &Trust::default(),
+    });
+    let timing = FilmTiming {
+        frames_per_s: 10,
+        from_s: 0.2,
+        to_s: 1.5,
+        sections: vec![FilmSection { from_s: 0.4, to_s: 0.5, speed: 0.25 }],
+        ..FilmTiming::of_scene(&scene)
+    };
+    let picture = ScenePicture {
+        scene: Arc::new(scene),
+        time_s: 0.0,
+        camera: Camera { kind: ViewKind::Perspective, ..Camera::default() },
+        is_placed: false,
+        distance_m: None,
+        follow: Follow::Struck,
+    };
+    Film { picture, timing, canvas: Canvas { size_px: [480, 270], scale: 1.0, dark: false } }
+}
+
+fn make(film: &Film, path: &Path) -> Result<Outcome<()>, FilmError> {
+    write_film(film, (path, Existing::Refuse), &mut |_| ControlFlow::Continue(()))
+}
+
+/// The frames of an MP4 file as red, green, blue and alpha, after a check of its table of frames.
+fn decoded(path: &Path, frames_per_s: u32) -> Vec<Vec<u8>> {
+    let file = std::fs::read(path).expect("the film is there");
+    let mut demuxer = Mp4FileDemuxer::new();
+    demuxer.handle_input(Input { position: 0, data: &file });
+    let [track] = demuxer.tracks().expect("a track") else { panic!("one track") };
+    assert_eq!(track.timescale.get(), frames_per_s);
+    let mut decoder = Decoder::new().expect("a decoder");
+    let mut frames: Vec<Vec<u8>> = Vec::new();
+    let mut stream: Vec<u8> = Vec::new();
+    while let Some(sample) = demuxer.next_sample().expect("a whole table of frames") {
+        assert_eq!((sample.timestamp, sample.duration), (frames.len() as u64, 1));
+        assert_eq!(sample.keyframe, frames.len().is_multiple_of(frames_per_s as usize));
+        stream.clear();
+        if let Some(SampleEntry::Avc1(entry)) = sample.sample_entry {
+            for set in entry.avcc_box.sps_list.iter().chain(&entry.avcc_box.pps_list) {
+                stream.extend([0, 0, 0, 1]);
+                stream.extend(set);
+            }
+        }
+        let start = sample.data_offset as usize;
+        let mut rest = &file[start..start + sample.data_size];
+        while let Some((length, behind)) = rest.split_first_chunk::<4>() {
+            let (unit, next) = behind.split_at(u32::from_be_bytes(*length) as usize);
+            stream.extend([0, 0, 0, 1]);
+            stream.extend(unit);
+            rest = next;
+        }
+        let frame = decoder.decode(&stream).expect("H.264").expect("a frame for every sample");
+        let (width, height) = frame.dimensions();
+        let mut pixels = vec![0; 4 * width * height];
+        frame.write_rgba8(&mut pixels);
+        frames.push(pixels);
+    }
+    frames
+}
+
+/// Mean difference of the colours of two pictures, of 255.
+fn difference(decoded: &[u8], drawn: &ColorImage) -> f64 {
+    let drawn = drawn.as_raw();
+    assert_eq!(decoded.len(), drawn.len());
+    let sum: f64 = decoded.iter().zip(drawn).map(|(a, b)| f64::from(a.abs_diff(*b))).sum();
+    sum / drawn.len() as f64
+}
+
+#[test]
+fn every_frame_is_the_picture_of_its_instant() {
+    let (folder, film) = (tempfile::tempdir().expect("a folder"), film());
+    let path = folder.path().join("film.mp4");
+    assert!(matches!(make(&film, &path), Ok(Outcome::Complete(()))));
+    let instants = film.instants().expect("a possible film");
+    // 0.2 s, 0.1 s at a quarter of the speed, 1 s: 1.6 s.
+    assert_eq!(instants.len(), 17);
+    let frames = decoded(&path, 10);
+    assert_eq!(frames.len(), instants.len());
+    let drawn: Vec<ColorImage> = instants
+        .iter()
+        .map(|instant| {
+            let picture = ScenePicture { time_s: instant.time_s, ..film.picture.clone() };
+            let mut renderer = FrameRenderer::new(film.canvas).expect("a possible size");
+            renderer.draw(&picture, instant.speed).clone()
+        })
+        .collect();
+    for (idx, frame) in frames.iter().enumerate() {
+        let own = difference(frame, &drawn[idx]);
+        let other = difference(frame, &drawn[(idx + 5) % drawn.len()]);
+        assert!(
+            own < 2.5 && other > 1.5 * own,
+            "frame {idx}: {own} of its own, {other} of another"
+        );
+    }
+}
+
+#[test]
+fn the_same_film_gives_the_same_bytes() {
+    let (folder, film) = (tempfile::tempdir().expect("a folder"), film());
+    let [a, b] = ["a.mp4", "b.mp4"].map(|name| folder.path().join(name));
+    for path in [&a, &b] {
+        assert!(matches!(make(&film, path), Ok(Outcome::Complete(()))));
+    }
+    assert!(std::fs::read(a).expect("a film") == std::fs::read(b).expect("a film"));
+}
+
+#[test]
+fn a_cancelled_film_leaves_no_file_and_an_existing_one_stays() {
+    let (folder, film) = (tempfile::tempdir().expect("a folder"), film());
+    let path = folder.path().join("film.mp4");
+    let cancelled = write_film(&film, (&path, Existing::Refuse), &mut |progress| {
+        assert_eq!(progress.total, 17);
+        if progress.done == 4 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    assert!(matches!(cancelled, Ok(Outcome::Cancelled)));
+    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
+
+    std::fs::write(&path, "mine").expect("a file");
+    let mut n_frames = 0;
+    let refused = write_film(&film, (&path, Existing::Refuse), &mut |_| {
+        n_frames += 1;
+        ControlFlow::Continue(())
+    });
+    assert!(refused.is_err_and(|error| error.to_string().contains("exists already")));
+    assert_eq!((n_frames, std::fs::read(&path).expect("a file")), (0, b"mine".to_vec()));
+    let cancelled = write_film(&film, (&path, Existing::Replace), &mut |_| ControlFlow::Break(()));
+    assert!(matches!(cancelled, Ok(Outcome::Cancelled)));
+    assert_eq!(std::fs::read(&path).expect("a file"), b"mine");
+}
+
+#[test]
+fn sizes_that_no_film_has_are_refused() {
+    let film = film();
+    for (size_px, part) in [
+        ([481, 270], "481 × 270 pixels, expected even numbers"),
+        ([480, 271], "expected even numbers"),
+        ([16, 270], "film side is 16, expected 64 to 3840"),
+        ([4096, 270], "film side is 4096, expected 64 to 3840"),
+        ([3840, 3840], "film side is 3840, expected 64 to 2160"),
+    ] {
+        let canvas = Canvas { size_px, ..film.canvas };
+        let error = Film { canvas, ..film.clone() }.instants().expect_err("no such film");
+        assert!(error.to_string().contains(part), "{size_px:?}: {error}");
+    }
+}
+
+#[test]
+fn the_window_makes_a_film_of_the_scene_as_it_is_seen() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("film.mp4");
+    let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")]);
+    step_until(&mut harness, "the first case", is_idle);
+    apply(&mut harness, Command::Show(Pane::Scene));
+    harness.run_steps(4);
+    // Every pane with a figure has a menu of this name.
+    for idx in 0..harness.get_all_by_label("Export").count() {
+        harness.get_all_by_label("Export").nth(idx).expect("a menu").click();
+        harness.run_steps(3);
+        if harness.query_by_label_contains("Save film (MP4)").is_some() {
+            break;
+        }
+    }
+    harness.get_by_label_contains("Save film (MP4)").click();
+    harness.run_steps(3);
+    harness.get_by_label("Add slow motion").click();
+    harness.run_steps(3);
+    save(&mut harness, "film-form.png");
+    let form = harness.state().state().session.film.form.clone().expect("the form is open");
+    assert_eq!(form.film.timing.sections.len(), 1);
+    assert!(form.film.picture.is_placed, "the camera is the one that is seen");
+    harness.get_by_label("Remove part 1").click();
+    harness.run_steps(3);
+
+    let mut film = form.film.clone();
+    (film.canvas.size_px, film.timing.to_s) = ([320, 180], 0.5);
+    film.timing.sections.clear();
+    let n_frames = film.instants().expect("a possible film").len();
+    apply(&mut harness, Command::SaveFilm(Box::new(film.clone()), path.clone()));
+    let session = &harness.state().state().session.film;
+    assert!(session.running().is_some() && session.form.is_none());
+    step_until(&mut harness, "the film", |state| state.session.film.running().is_none());
+    assert_eq!(decoded(&path, 30).len(), n_frames);
+    let said = |harness: &egui_kittest::Harness<'_, impactlab::app::App>| {
+        harness.state().state().session.messages.last().map(|message| message.text.clone())
+    };
+    assert!(said(&harness).is_some_and(|text| text.ends_with("film.mp4 written")));
+
+    // A film that exists already is asked about, and a cancelled one is not written.
+    apply(&mut harness, Command::SaveFilm(Box::new(film.clone()), path));
+    assert!(harness.state().state().session.replacing.is_some());
+    apply(&mut harness, Command::KeepExisting);
+    film.canvas.size_px = [1920, 1080];
+    film.timing = FilmTiming { frames_per_s: 120, ..FilmTiming::of_scene(&film.picture.scene) };
+    let other = folder.path().join("other.mp4");
+    apply(&mut harness, Command::SaveFilm(Box::new(film), other.clone()));
+    harness.run_steps(2);
+    apply(&mut harness, Command::CancelFilm);
+    step_until(&mut harness, "the end of the film", |state| state.session.film.running().is_none());
+    assert!(said(&harness).is_some_and(|text| text.ends_with("not written: cancelled")));
+    assert!(!other.exists());
+}
