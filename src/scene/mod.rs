@@ -22,8 +22,8 @@ mod load_ground;
 mod car_motion;
 mod parts;
 
-mod film;
 mod crush_outline;
+mod film;
 
 mod forecast;
 mod reconstruction;

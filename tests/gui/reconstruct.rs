@@ -120,7 +120,10 @@ fn evidence_that_is_opened_is_run_edited_and_undone() {
     for view in ["From above", "Perspective"] {
         harness.get_by_label(view).click();
         harness.run_steps(4);
-        save(&mut harness, &format!("reconstruct-cars-{view}.png").to_lowercase().replace(' ', "-"));
+        save(
+            &mut harness,
+            &format!("reconstruct-cars-{view}.png").to_lowercase().replace(' ', "-"),
+        );
         assert!(harness.query_by_label("Picture of the scene").is_some());
         assert!(harness.query_by_label("struck car at rest, 90 % ellipse").is_some());
     }

@@ -92,7 +92,7 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
     scene_heading_ui(
         ui,
         (&scene, time_s),
-        (&mut view.scene, &session.ground, &mut session.scene.measuring),
+        (&mut view.scene, Some((&session.ground, &mut session.scene.measuring))),
         |settings| {
             let picture = ScenePicture {
                 scene: Arc::clone(&scene),
@@ -136,11 +136,12 @@ fn forecast_choice_ui(ui: &mut Ui, shows_forecast: &mut bool, session: &Session)
 /// Draws what the scene shows, the choice of the view and of the car that is followed, and the menu that
 /// exports it.
 ///
+/// - `on_ground`: the ground and what is measured on it, where both can be changed;
 /// - `exported`: picture and numbers, which are made only when they are wanted.
 pub fn scene_heading_ui(
     ui: &mut Ui,
     (scene, time_s): (&Scene, f64),
-    (settings, ground, measuring): (&mut SceneSettings, &GroundSession, &mut Measuring),
+    (settings, on_ground): (&mut SceneSettings, Option<(&GroundSession, &mut Measuring)>),
     exported: impl Fn(&SceneSettings) -> (ScenePicture, Figure),
     commands: &mut Vec<Command>,
 ) {
@@ -154,9 +155,11 @@ pub fn scene_heading_ui(
                 .on_hover_text("Save or copy this scene")
                 .on_disabled_hover_text(OUTDATED);
             });
-            ground_menu_ui(ui, ground, commands);
-            let has_photo = scene.ground.as_ref().is_some_and(|ground| ground.has_picture());
-            measure_menu_ui(ui, measuring, has_photo);
+            if let Some((ground, measuring)) = on_ground {
+                ground_menu_ui(ui, ground, commands);
+                let has_photo = scene.ground.as_ref().is_some_and(|ground| ground.has_picture());
+                measure_menu_ui(ui, measuring, has_photo);
+            }
             view_ui(ui, scene, settings);
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 let title = scene.heading(settings.camera.kind.phrase(), time_s);

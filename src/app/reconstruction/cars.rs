@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::app::reconstruction::FollowedParticle;
 use crate::reconstruct::evidence::Evidence;
 use crate::render::scene::SceneView;
-use crate::scene::{ReconstructionParts, Scene, reconstruction_scene};
+use crate::scene::{ReconstructionParts, Scene, SceneGround, reconstruction_scene};
 use crate::study::Trust;
 use crate::units::UnitSystem;
 
@@ -46,14 +46,24 @@ pub struct ReconstructedCars {
 impl ReconstructedCars {
     /// The scene of a source. Other evidence is seen from the start: the camera is fitted to it.
     ///
-    /// - `parts`: what the source stands for.
-    pub fn scene(&mut self, source: CarsSource, parts: &ReconstructionParts<'_>) -> Arc<Scene> {
+    /// - `parts`: what the source stands for;
+    /// - `ground`: what lies below it.
+    pub fn scene(
+        &mut self,
+        source: CarsSource,
+        parts: &ReconstructionParts<'_>,
+        ground: Option<&Arc<SceneGround>>,
+    ) -> Arc<Scene> {
+        let is_on =
+            |scene: &Scene| scene.ground.as_ref().map(Arc::as_ptr) == ground.map(Arc::as_ptr);
         if let Some((built, scene)) = &self.built
             && *built == source
+            && is_on(scene)
         {
             return Arc::clone(scene);
         }
-        let scene = Arc::new(reconstruction_scene(parts));
+        let scene = Scene { ground: ground.cloned(), ..reconstruction_scene(parts) };
+        let scene = Arc::new(scene);
         let is_same = |(before, _): &(CarsSource, _)| {
             before.evidence == source.evidence && before.paths != ShownPaths::None
         };

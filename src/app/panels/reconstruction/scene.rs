@@ -96,10 +96,12 @@ fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>, cars: &mut ReconstructedCar
         cars: &preview.cars,
         drawn,
         followed: followed.as_ref().map(|(name, path)| (name.as_str(), *path)),
+        marks,
         units: view.units,
         trust: &trust,
     };
-    let scene = cars.scene(source, &parts);
+    let ground = session.ground.shown().map(|loaded| &loaded.ground);
+    let scene = cars.scene(source, &parts, ground);
     if session.fit_plots {
         cars.view.fit();
     }
@@ -166,7 +168,7 @@ fn cars_ui(
         };
         (picture, figure.clone())
     };
-    scene_heading_ui(ui, (scene, time_s), settings, exported, commands);
+    scene_heading_ui(ui, (scene, time_s), (settings, None), exported, commands);
     let SceneSettings { camera, follow, .. } = settings;
     let seen = (camera, *follow, ui.available_height());
     scene_view_ui(ui, (scene, time_s), shown, seen);
