@@ -271,9 +271,7 @@ impl State {
             Command::Leave { to, ask: false } => self.go(to, context),
             Command::SaveAndLeave => self.save_and_leave(context),
             Command::Stay => self.session.leaving = None,
-            Command::AskPath(purpose) => {
-                self.session.path_dialog = Some(PathDialog::new(purpose));
-            }
+            Command::AskPath(purpose) => self.ask_path(purpose),
             Command::CancelPath => self.session.path_dialog = None,
             Command::Export(..)
             | Command::ExportScene(..)
@@ -344,6 +342,10 @@ impl State {
     fn show_workspace(&mut self, workspace: Workspace) {
         self.view.workspaces.shown = workspace;
         self.session.shows_doors = false;
+    }
+
+    fn ask_path(&mut self, purpose: Purpose) {
+        self.session.path_dialog = Some(PathDialog::new(purpose));
     }
 
     fn ask(&mut self, purpose: Purpose, context: &Context) {

@@ -103,12 +103,19 @@ fn placed_files(used: &[PathBuf]) -> Result<Vec<(PathBuf, String)>, CaseError> {
         }
         Ok::<(), CaseError>(())
     };
-    for (_, site, files) in &sites {
-        let is_beside =
-            |(_, other, _): &&(usize, &PathBuf, Vec<PathBuf>)| other.parent() == site.parent();
-        let i = sites.iter().find(is_beside).map_or(0, |(i, ..)| *i);
+    // An orthophoto with a world file is a site of its own, too; below another site it goes with that.
+    let owner_of = |site: &PathBuf| {
+        let owner = sites.iter().find(|(.., files)| files.contains(site));
+        owner.map_or_else(|| site.clone(), |(_, owner, _)| (*owner).clone())
+    };
+    for (i, site, files) in &sites {
+        let owner = owner_of(site);
+        let beside = sites.iter().find(|(_, other, _)| {
+            owner_of(other).parent() == owner.parent() && owner_of(other) == **other
+        });
+        let i = beside.map_or(*i, |(i, ..)| *i);
         for path in std::iter::once(*site).chain(files) {
-            place(path, i, site.parent())?;
+            place(path, i, owner.parent())?;
         }
     }
     let is_of_site =

@@ -44,6 +44,9 @@ pub const MAX_PICTURE_BYTES: u64 = 1 << 30;
 /// Pixels of an orthophoto: 4 bytes each in memory, and a third more for its smaller copies.
 pub const MAX_PICTURE_PIXELS: u64 = 128 << 20;
 
+/// Pixels of a side of an orthophoto.
+pub const MAX_PICTURE_SIDE: u32 = 65_535;
+
 /// Bytes of a drawing.
 pub const MAX_DRAWING_BYTES: u64 = 64 << 20;
 

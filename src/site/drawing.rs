@@ -118,8 +118,8 @@ impl Placed {
 
 /// Collects the lines of a drawing.
 struct Reader<'a> {
-    drawing: &'a dxf::Drawing,
     layers: Option<&'a [String]>,
+    blocks: BTreeMap<&'a str, &'a dxf::Block>,
     /// Names of layers that are switched off.
     hidden: BTreeSet<&'a str>,
     seen_layers: BTreeSet<&'a str>,
@@ -132,7 +132,7 @@ impl<'a> Reader<'a> {
     fn new(drawing: &'a dxf::Drawing, layers: Option<&'a [String]>) -> Self {
         let hidden = drawing.layers().filter(|layer| !layer.is_layer_on);
         Self {
-            drawing,
+            blocks: drawing.blocks().map(|block| (block.name.as_str(), block)).collect(),
             layers,
             hidden: hidden.map(|layer| layer.name.as_str()).collect(),
             seen_layers: BTreeSet::new(),
@@ -185,7 +185,9 @@ impl<'a> Reader<'a> {
         (placed, layer): (&Placed, &'a str),
         depth: usize,
     ) {
-        let block = self.drawing.blocks().find(|block| block.name == insert.name);
+        // Blocks of nothing but blocks are counted, too.
+        self.n_points += 1;
+        let block = self.blocks.get(insert.name.as_str()).copied();
         let is_plain = insert.column_count <= 1 && insert.row_count <= 1;
         let Some(block) = block.filter(|_| is_plain && depth < MAX_DEPTH) else {
             return self.leave_out("INSERT".to_owned());
@@ -325,9 +327,9 @@ mod tests {
             bulge,
             ..Default::default()
         };
-        let mut closed = LwPolyline::default();
-        closed.vertices =
+        let vertices =
             vec![vertex(0.0, 0.0, 0.0), vertex(2000.0, 0.0, 1.0), vertex(2000.0, 4000.0, 0.0)];
+        let mut closed = LwPolyline { vertices, ..LwPolyline::default() };
         closed.set_is_closed(true);
         drawing.add_entity(on("ROAD", EntityType::LwPolyline(closed)));
         drawing.add_entity(on("ROAD", EntityType::Text(Text::default())));

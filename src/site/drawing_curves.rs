@@ -34,8 +34,7 @@ pub(super) fn arc(
 pub(super) fn bulged([from, to]: [[f64; 2]; 2], bulge: f64) -> Vec<[f64; 2]> {
     let angle_rad = 4.0 * bulge.atan();
     let n = (angle_rad.abs() / ARC_STEP_RAD).ceil();
-    let is_arc = n > 1.0; // An angle that is no number is none.
-    if !is_arc {
+    if n.is_nan() || n <= 1.0 {
         return vec![to];
     }
     // The centre lies on the perpendicular bisector of the chord.

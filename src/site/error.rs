@@ -47,8 +47,8 @@ pub enum SiteError {
     },
     /// An orthophoto is too large.
     #[error(
-        "{}: has {} x {} pixels, expected at most {limit} in all; cut it to the scene or halve its \
-         resolution",
+        "{}: has {} x {} pixels, expected at most {limit} in all and {side} on a side; cut it to the \
+         scene or halve its resolution",
         path.display(), size_px[0], size_px[1]
     )]
     TooManyPixels {
@@ -58,6 +58,8 @@ pub enum SiteError {
         size_px: [u32; 2],
         /// The largest permitted number of pixels.
         limit: u64,
+        /// The largest permitted width and height, pixels.
+        side: u32,
     },
     /// A point of an orthophoto lies outside of it.
     #[error(

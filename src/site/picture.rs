@@ -5,7 +5,7 @@ use std::path::Path;
 
 use image::{ImageDecoder, ImageFormat, ImageReader, Limits, RgbaImage};
 
-use crate::data::{DataError, MAX_PICTURE_BYTES, MAX_PICTURE_PIXELS, open_file};
+use crate::data::{DataError, MAX_PICTURE_BYTES, MAX_PICTURE_PIXELS, MAX_PICTURE_SIDE, open_file};
 use crate::site::SiteError;
 
 /// Endings of the names of pictures that are read, with their formats.
@@ -71,9 +71,11 @@ fn decoder(path: &Path) -> Result<impl ImageDecoder, SiteError> {
 
 fn checked_size(path: &Path, size_px: [u32; 2]) -> Result<[u32; 2], SiteError> {
     let [width, height] = size_px.map(u64::from);
-    if width * height > MAX_PICTURE_PIXELS {
+    let is_long = size_px.iter().any(|side| *side > MAX_PICTURE_SIDE);
+    if is_long || width * height > MAX_PICTURE_PIXELS {
         let path = path.to_owned();
-        return Err(SiteError::TooManyPixels { path, size_px, limit: MAX_PICTURE_PIXELS });
+        let (limit, side) = (MAX_PICTURE_PIXELS, MAX_PICTURE_SIDE);
+        return Err(SiteError::TooManyPixels { path, size_px, limit, side });
     }
     Ok(size_px)
 }

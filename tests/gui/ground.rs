@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use egui::Pos2;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, Measure, Pane, Subject};
+use impactlab::app::{App, Command, Measure, Pane};
 use impactlab::units::UnitSystem;
 
 use crate::harness::{apply, is_idle, open, step_until};
@@ -13,13 +13,14 @@ use crate::pictures::save;
 
 const SITE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/sites/country-road/site.toml");
 
+const SCENARIO: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/scenarios/pit_right_rear.toml");
+
 /// The shipped scenario on its road.
 fn on_road() -> Harness<'static, App> {
-    let mut harness = open(&[]);
-    apply(&mut harness, Command::Select(Subject::Scenario));
+    let mut harness = open(&[SCENARIO]);
     apply(&mut harness, Command::Open(vec![SITE.into()]));
     step_until(&mut harness, "the ground", |state| {
-        state.session.ground.shown().is_some() && is_idle(state)
+        state.session.ground.shown().is_some() && is_idle(state) && state.analysis().is_some()
     });
     apply(&mut harness, Command::Show(Pane::Scene));
     apply(&mut harness, Command::SetTime(1.0));
@@ -140,11 +141,10 @@ fn bare_picture(folder: &Path) -> PathBuf {
 fn an_orthophoto_alone_is_scaled_by_two_points_undone_and_saved() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = bare_picture(folder.path());
-    let mut harness = open(&[]);
-    apply(&mut harness, Command::Select(Subject::Scenario));
+    let mut harness = open(&[SCENARIO]);
     apply(&mut harness, Command::Open(vec![path.clone()]));
     step_until(&mut harness, "the ground", |state| {
-        state.session.ground.shown().is_some() && is_idle(state)
+        state.session.ground.shown().is_some() && is_idle(state) && state.analysis().is_some()
     });
     apply(&mut harness, Command::SetTime(0.2));
     harness.run_steps(4);
@@ -181,7 +181,7 @@ fn an_orthophoto_alone_is_scaled_by_two_points_undone_and_saved() {
     let site = folder.path().join("site.toml");
     apply(&mut harness, Command::SaveSite(site.clone()));
     step_until(&mut harness, "the site", |state| {
-        state.session.ground.shown().is_some() && is_idle(state)
+        state.session.ground.shown().is_some() && is_idle(state) && state.analysis().is_some()
     });
     assert_eq!(width_m(&harness), (scaled_m, true), "read back from the file");
     let read = impactlab::site::Site::load(&site).expect("a site file");
@@ -193,7 +193,7 @@ fn a_ground_that_cannot_be_read_is_said() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("site.toml");
     std::fs::write(&path, "[orthophoto]\nfile = \"none.png\"\n").expect("written");
-    let mut harness = open(&[]);
+    let mut harness = open(&[SCENARIO]);
     apply(&mut harness, Command::Open(vec![path]));
     step_until(&mut harness, "the error", |state| state.session.ground.problem.is_some());
     let problem = harness.state().state().session.ground.problem.clone().expect("an error");

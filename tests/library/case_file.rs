@@ -243,6 +243,7 @@ fn a_site_goes_with_everything_it_names_and_is_found_in_a_package() {
     let unpacked = unpack(&package, &folder.join("unpacked")).expect("unpacked");
     let opened = CaseFile::load(&unpacked).expect("loaded");
     assert!(opened.changes().is_empty(), "{:?}", opened.changes());
+    assert_eq!(opened.used_paths().len(), names.len(), "{:?}", opened.used_paths());
     fs::remove_dir_all(&road).expect("removed");
     let report = opened.ask(&[], &Library::default(), &mut |_| std::ops::ControlFlow::Continue(()));
     let report = report.expect("asked").complete().expect("answers");

@@ -104,8 +104,9 @@ columns, as in forces/ of the data sets); the mean over the coming interval in t
 fx_body); else the value at its instant. --sampling overrules it.
 
 JSON, one vehicle: vehicle, equations, integrator, friction, friction_zones [{name, friction}]
-  (with --site), duration_s, force {path, sampling, axes, impulse_n_s [x, y], contact_start_s, contact_end_s, yaw_moment}, momentum {restitution, restitution_form,
-  friction_limit, critical_impulse_ratio, regime, impulse_n_s} of a scenario, delta_v_m_s [x, y] and
+  (with --site), duration_s, force {path, sampling, axes, impulse_n_s [x, y], contact_start_s,
+  contact_end_s, yaw_moment}, momentum {restitution, restitution_form, friction_limit,
+  critical_impulse_ratio, regime, impulse_n_s} of a scenario, delta_v_m_s [x, y] and
   delta_v_magnitude_m_s over the contact (null without), end {x_m, y_m, yaw_rad, roll_rad,
   vx_m_s, vy_m_s, yaw_rate_rad_s, speed_m_s}, distance_m, rest {time_s, x_m, y_m, yaw_rad,
   distance_m} (null while it moves), largest_yaw_change_rad,
