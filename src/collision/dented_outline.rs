@@ -16,6 +16,9 @@ use crate::collision::{Footprint, Pose};
 /// Places along the common line.
 const N_PLACES: usize = 25;
 
+/// Points of a line `[X, Y]`, m.
+type Line = Vec<[f64; 2]>;
+
 /// Outlines of two vehicles in world axes, each dented by the other.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DentedOutlines {
@@ -76,11 +79,7 @@ fn crossings(a: &[[f64; 2]; 4], b: &[[f64; 2]; 4]) -> Option<[Crossing; 2]> {
 
 /// The part of an outline inside another one, from the first of two places on it to the second, and the
 /// part outside, from the second to the first.
-fn parts(
-    outline: &[[f64; 2]; 4],
-    [p, q]: [f64; 2],
-    other: &[[f64; 2]; 4],
-) -> Option<(Vec<[f64; 2]>, Vec<[f64; 2]>)> {
+fn parts(outline: &[[f64; 2]; 4], [p, q]: [f64; 2], other: &[[f64; 2]; 4]) -> Option<(Line, Line)> {
     let forwards = walk(outline, p, q);
     let mut backwards = walk(outline, q, p);
     let is_inside = |part: &[[f64; 2]]| holds(other, along(part, 0.5));

@@ -1,9 +1,12 @@
 use super::*;
 use crate::data::Channel;
+use crate::reconstruct::evidence::Mark;
 use crate::reconstruct::evidence::examples::{SPIN, read};
 use crate::reconstruct::sampler::Target;
-use crate::reconstruct::{Discrepancy, EvidenceFit, PriorComponent, ReconstructionTarget};
-use crate::vehicle::Integrator;
+use crate::reconstruct::{
+    Discrepancy, EvidenceFit, MarkComparison, PriorComponent, ReconstructionTarget,
+};
+use crate::vehicle::{Integrator, TireMarkKind};
 
 /// What is found beside the rest pose: a locked wheel, marks and a change of velocity.
 const FOUND: &str = r#"
@@ -43,6 +46,24 @@ fn particles(dim: usize) -> Vec<Vec<f64>> {
             z
         })
         .collect()
+}
+
+/// What was found is what the motion leaves: with its own marks it is explained to the last centimetre.
+#[test]
+fn a_motion_is_compared_with_marks_by_those_that_it_leaves() {
+    let target = target(&evidence());
+    let z = particles(target.dim()).remove(0);
+    let [motion] = &target.model().motions(&[z], |motion| motion)[..] else { panic!("one") };
+    let computed = motion.tire_marks();
+    let blocked = computed.iter().filter(|mark| mark.wheel == Wheel::RearRight);
+    let longest = blocked.max_by(|a, b| a.length_m().total_cmp(&b.length_m())).unwrap();
+    assert_eq!(longest.kind(), TireMarkKind::Locked);
+    let points_m: Vec<[f64; 2]> = longest.points.iter().map(|point| point.place_m).collect();
+    let found = Mark { wheel: Wheel::RearRight, kind: None, points_m, sigma_m: 0.1 };
+    let of = MarkComparison::all(&[found], &computed).remove(0);
+    assert!((of.found_length_m - of.computed_length_m).abs() < 1e-9, "{of:?}");
+    assert!(of.largest_distance_m.unwrap() < 1e-9, "{of:?}");
+    assert!(of.found_length_m > 5.0, "{of:?}");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The outlines of two cars, dented where they overlap most, from then on.
 //!
-//! The time is that of the largest overlap of the rigid outlines while the force acts. Each car takes half
+//! The time is that of the largest overlap of the rigid outlines while the force acts; where the overlap
+//! still grows when the force ends, it is that end, and the name says so. Each car takes half
 //! of the penetration (see [`DentedOutlines`]), so that the lines say where damage is to be looked for, and
 //! not how deep it is.
 
@@ -33,13 +34,16 @@ pub(super) fn add_crush(scene: &mut Scene, analysis: &Analysis) {
     let dented =
         DentedOutlines::of([(of_struck, &poses[0]), (of_striking, &poses[1])], STRUCK_SHARE);
     let Some(DentedOutlines { dent_m, outlines_m }) = dented else { return };
+    let when = match interval.1 - time_s > STEP_S / 2.0 {
+        true => format!("at the largest overlap, at {time_s:.3} s"),
+        false => {
+            format!("at the end of the force, at {time_s:.3} s, where the overlap still grows")
+        }
+    };
     let crushes = cars.iter().zip(&poses).zip(outlines_m).map(|((car, pose), outline_m)| {
         let in_body = |line: &[[f64; 2]]| line.iter().map(|at| pose.body_from_world(*at)).collect();
         SceneCrush {
-            name: format!(
-                "crush outlines at the largest overlap, at {time_s:.3} s: rigid outlines, half each"
-            ),
-            role: car.role,
+            name: format!("crush outlines {when}: rigid outlines, half each"),
             from_s: time_s,
             outline_m: in_body(&outline_m),
             dent_m: in_body(&dent_m),

@@ -33,6 +33,8 @@ pub enum SceneRole {
     Muted,
     /// Rubber on the ground that is computed.
     TireMark,
+    /// Outlines that are dented by construction.
+    Crush,
 }
 
 /// How a car is drawn.
@@ -112,8 +114,6 @@ pub struct SceneMark {
 pub struct SceneCrush {
     /// Name in the legend, with how it was made.
     pub name: String,
-    /// Meaning of its colour.
-    pub role: SceneRole,
     /// From when on it is shown, s.
     pub from_s: f64,
     /// The whole outline in body axes `[x, y]`, m, closed.

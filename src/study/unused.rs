@@ -181,3 +181,27 @@ pub(super) fn by_forecast(request: &PredictMotionRequest) -> Vec<Assumption> {
     }
     unused
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vehicle::{ContactPoint, Controls, FrictionZone, VehicleState};
+
+    #[test]
+    fn a_forecast_says_that_it_does_not_know_the_zones() {
+        let mut struck = StruckVehicle {
+            vehicle: Preset::Reference.parameters(),
+            initial: VehicleState::driving_straight(20.0),
+            contact: ContactPoint { x_m: -1.5, y_m: -0.9, height_m: 0.5 },
+            controls: Controls::default(),
+            friction_zones: Vec::new(),
+        };
+        assert_eq!(zones_by_network(&struck), None);
+        let border_m = vec![[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]];
+        let ice = FrictionZone { name: "ice".to_owned(), border_m, friction: 0.1 };
+        struck.friction_zones.push(ice);
+        let said = zones_by_network(&struck).unwrap();
+        assert_eq!(said.quantity, AssumedQuantity::NotUsed);
+        assert_eq!(said.value, "friction zones: ice");
+    }
+}

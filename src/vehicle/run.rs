@@ -274,7 +274,11 @@ impl StepInputs<f64> {
     /// The same inputs with the friction of the ground under the wheels.
     ///
     /// - `state`: at the start of the step.
+    #[inline(always)]
     pub fn on(mut self, ground: &Ground<'_>, state: &[f64; N_STATE]) -> Self {
+        if !ground.has_zones() {
+            return self;
+        }
         let share = ground.friction_share(&VehicleState::from_array(*state));
         self.instants.iter_mut().for_each(|instant| instant.friction_share = share);
         self

@@ -51,6 +51,28 @@ fn a_locked_wheel_and_a_scenario_that_brakes_change_the_path_and_coast_undoes_it
 }
 
 #[test]
+fn a_locked_stop_tells_its_four_marks_and_a_rolling_car_none() {
+    let stop = answer(&[&STRAIGHT[..], &["--brake", "1.5", "--until-rest"]].concat());
+    let marks = stop["tyre_marks"].as_array().unwrap();
+    assert_eq!(marks.len(), 4, "{stop}");
+    let end = stop["rest"]["time_s"].as_f64().unwrap();
+    for mark in marks {
+        assert_eq!((&mark["vehicle"], &mark["kind"]), (&"struck".into(), &"locked".into()));
+        let number = |key: &str| mark[key].as_f64().unwrap();
+        let x = |key: &str| mark[key][0].as_f64().unwrap();
+        // The brake rises over 0.3 s, and asks for more than the road holds from about 0.2 s on.
+        assert!((0.1..0.3).contains(&number("from_s")), "{mark}");
+        assert!((end - number("to_s")).abs() < 0.3, "{mark}");
+        assert!((number("length_m") - (x("end_m") - x("start_m"))).abs() < 1e-6, "{mark}");
+        // 20²/(2 · 0.8 · 0.8 g), the sliding friction of dry asphalt, a bit less where it is slower.
+        assert!((26.0..34.0).contains(&number("length_m")), "{mark}");
+    }
+    let shown = ok(program().args(STRAIGHT).args(["--brake", "1.5"]).output().unwrap());
+    assert!(shown.contains("tyre marks, computed") && shown.contains("struck, rear left"));
+    assert_eq!(answer(&STRAIGHT)["tyre_marks"], serde_json::json!([]));
+}
+
+#[test]
 fn steering_and_drive_are_said_by_options_and_by_the_scenario() {
     let end = |args: &[&str], key: &str| {
         answer(&[&STRAIGHT[..], args].concat())["end"][key].as_f64().unwrap()

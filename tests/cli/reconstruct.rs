@@ -42,6 +42,7 @@ fn speeds_have_intervals_and_the_same_seed_gives_the_same() {
         assert!(first[key].is_array(), "{key}");
     }
     assert_eq!(first["seed"], 3);
+    assert_eq!(first["marks"], Value::Array(Vec::new()), "no mark was found");
     let particles = fs::read_to_string(out.join("particles.csv")).unwrap();
     let header = particles.lines().next().unwrap();
     assert!(header.contains("target_speed_m_s"), "{header}");

@@ -6,24 +6,31 @@ use std::path::Path;
 use std::sync::Arc;
 
 use egui_kittest::image_snapshot;
-use impactlab::analysis::{Analysis, Settings, analyse_case};
+use impactlab::analysis::{Analysis, PulseSetup, Settings, analyse_case, analyse_scenario};
 use impactlab::collision::{ChannelClass, Scenario};
 use impactlab::data::{Channel, Dataset};
 use impactlab::figure::{
     Figure, analysis_force_figure, analysis_motion_figure, analysis_scene_figure, impact_figure,
 };
-use impactlab::render::scene::{Camera, Follow, ScenePicture, ViewKind, scene_image};
+use impactlab::render::scene::{
+    Camera, Follow, SceneCanvas, SceneLook, ScenePicture, ViewKind, scene_image,
+};
 use impactlab::render::{Canvas, figure_image};
-use impactlab::scene::{SimulationScene, simulation_scene};
+use impactlab::scene::{Scene, SimulationScene, simulation_scene};
 use impactlab::study::Trust;
 use impactlab::units::UnitSystem;
-use impactlab::vehicle::{Integrator, Preset};
+use impactlab::vehicle::{Braking, Ending, Integrator, Preset};
 
 fn analysis(dataset: &str, case: &str) -> Analysis {
     let mut report = |_| ControlFlow::Continue(());
     let root = Path::new("datasets").join(dataset);
     let dataset = Dataset::load(&root, &mut report).expect("shipped data").complete();
-    let settings = Settings {
+    let dataset = dataset.expect("nothing cancels");
+    analyse_case(dataset.case(case).expect("a shipped case"), &settings()).expect("it runs")
+}
+
+fn settings() -> Settings {
+    Settings {
         target: Preset::Reference.parameters(),
         bullet: Preset::Bullet2000.parameters(),
         integrator: Integrator::Rk4,
@@ -31,9 +38,15 @@ fn analysis(dataset: &str, case: &str) -> Analysis {
         ending: impactlab::vehicle::Ending::default(),
         ends_at_rest: false,
         friction_zones: Vec::new(),
-    };
-    let dataset = dataset.expect("nothing cancels");
-    analyse_case(dataset.case(case).expect("a shipped case"), &settings).expect("it runs")
+    }
+}
+
+/// A push on the rear quarter, after which the struck car is braked with locked wheels.
+fn braked_pit() -> Analysis {
+    let brake = Some(Braking::new(0.7, 1.4, 0.3));
+    let settings = Settings { ending: Ending { brake, ..Ending::default() }, ..settings() };
+    let pulse = PulseSetup::default();
+    analyse_scenario(&Scenario::example(), &pulse, &settings).expect("it runs")
 }
 
 fn check(figure: &Figure, dark: bool, name: &str) {
@@ -93,7 +106,46 @@ fn cars_from_above_and_in_perspective() {
     let recorded = analysis("trajectories-fea", "FE_c002");
     check_scene(&recorded, (ViewKind::Above, 2.0), ([320, 210], true), "cars_above");
     let force_case = analysis("fea", "c002");
-    check_scene(&force_case, (ViewKind::Perspective, 0.3), ([220, 130], false), "cars_perspective");
+    check_scene(&force_case, (ViewKind::Perspective, 0.3), ([440, 240], false), "cars_perspective");
+}
+
+/// Pixels that change if a part of a scene is left out.
+fn n_drawn(scene: &Scene, time_s: f64, leave_out: fn(&mut Scene)) -> usize {
+    let pixels = |scene: Scene| {
+        let size_px = [400, 250];
+        let camera = Camera { kind: ViewKind::Above, ..Camera::default() };
+        let camera = camera.fitted(&scene.places_m(), size_px.map(|side| side as f64));
+        let look = SceneLook { size_px, camera, dark: false, pixels_per_point: 1.0 };
+        let mut canvas = SceneCanvas::default();
+        assert!(canvas.draw(&Arc::new(scene), &look, time_s));
+        canvas.pixels().to_vec()
+    };
+    let mut without = scene.clone();
+    leave_out(&mut without);
+    let (all, rest) = (pixels(scene.clone()), pixels(without));
+    all.iter().zip(&rest).filter(|(a, b)| a != b).count()
+}
+
+#[test]
+fn marks_grow_and_outlines_are_dented_as_time_passes() {
+    let analysis = braked_pit();
+    let (trust, units) = (Trust::default(), UnitSystem::Si);
+    let input = SimulationScene { analysis: &analysis, others: &[], units, trust: &trust };
+    let scene = simulation_scene(&input);
+    let marked = [0.0, 0.5, 1.5, 3.5].map(|time_s| n_drawn(&scene, time_s, |of| of.marks.clear()));
+    assert_eq!(marked[0], 0, "nothing has slid yet");
+    assert!(marked.windows(2).all(|pair| pair[0] < pair[1]), "{marked:?}");
+    let [struck, striking] = &scene.crushes[..] else { panic!("{} outlines", scene.crushes.len()) };
+    assert_eq!(struck.from_s, striking.from_s);
+    // They go deeper into each other while the force acts, and the legend says so.
+    assert!((0.09..0.1).contains(&struck.from_s), "largest overlap at {} s", struck.from_s);
+    assert!(struck.name.contains("the overlap still grows"), "{}", struck.name);
+    let dented = [struck.from_s - 0.01, struck.from_s, 2.0]
+        .map(|time_s| n_drawn(&scene, time_s, |of| of.crushes.clear()));
+    assert_eq!(dented[0], 0, "before the largest overlap");
+    assert!(dented[1] > 50 && dented[2] > 50, "{dented:?}");
+    check_scene(&analysis, (ViewKind::Above, 3.5), ([520, 330], false), "marks_above");
+    check_scene(&analysis, (ViewKind::Perspective, 2.4), ([520, 300], true), "marks_perspective");
 }
 
 #[test]

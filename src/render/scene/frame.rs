@@ -23,6 +23,8 @@ const SHADOW_EDGE_M: f64 = 0.45;
 const SHADOW_SHIFT_M: [f64; 2] = [0.22, 0.26];
 /// The chevron ahead of a car: distance of its wings and of its tip from the front, and half width, m.
 const CHEVRON_M: [f64; 3] = [0.45, 0.95, 0.42];
+/// Height at which dents are drawn, m.
+const BUMPER_HEIGHT_M: f64 = 0.5;
 /// Half the size of the cross at a second contact, m.
 const CROSS_M: f64 = 0.6;
 
@@ -101,6 +103,11 @@ impl Frame {
 
     /// Lines that change with time.
     fn lines(&mut self, ground: &Ground<'_>, time_s: f64) {
+        // Marks that are computed would hide those that were found.
+        if !ground.scene.marks.is_empty() {
+            let found = ground.scene.lines.iter().filter(|line| line.role == SceneRole::Evidence);
+            found.for_each(|line| ground.scene_line(line, &mut self.below));
+        }
         let mut paths: Vec<&ScenePath> =
             ground.scene.paths.iter().filter(|path| path.role != SceneRole::Muted).collect();
         // The wider below the narrower, so that paths that lie over each other are all seen.
@@ -121,15 +128,7 @@ impl Frame {
             let pen = Pen { color, width: 1.8, is_dashed: line.is_dashed };
             ground.line(&line.points_m, pen, &mut self.above);
         }
-        for crush in ground.scene.crushes.iter().filter(|crush| crush.from_s <= time_s) {
-            let (color, pose) = (role_color(crush.role, ground.dark), crush.motion.at(time_s).pose);
-            for (line, width) in [(&crush.outline_m, 1.3), (&crush.dent_m, 3.2)] {
-                let points: Vec<[f64; 2]> =
-                    line.iter().map(|at| pose.world_from_body(*at)).collect();
-                let pen = Pen { color, width, is_dashed: false };
-                ground.line(&points, pen, &mut self.above);
-            }
-        }
+        self.crushes(ground, time_s);
         for cross in &ground.scene.crosses {
             let color = role_color(SceneRole::Evidence, ground.dark);
             let is_met = cross.time_s <= time_s;
@@ -158,6 +157,25 @@ impl Frame {
             if ground.projection.is_parallel() && car.look == CarLook::Solid {
                 self.wheels_from_above(ground, car, &state);
             }
+        }
+    }
+
+    /// Dented outlines. In perspective they lie on the ground below the cars, and the dents at the height
+    /// of bumpers; from above they lie over the cars, which would hide them.
+    fn crushes(&mut self, ground: &Ground<'_>, time_s: f64) {
+        let color = role_color(SceneRole::Crush, ground.dark);
+        for crush in ground.scene.crushes.iter().filter(|crush| crush.from_s <= time_s) {
+            let pose = crush.motion.at(time_s).pose;
+            let in_world = |line: &[[f64; 2]]| -> Vec<[f64; 2]> {
+                line.iter().map(|at| pose.world_from_body(*at)).collect()
+            };
+            let pen = |width| Pen { color, width, is_dashed: false };
+            let outline = in_world(&crush.outline_m);
+            let is_parallel = ground.projection.is_parallel();
+            let lines = if is_parallel { &mut self.above } else { &mut self.below };
+            ground.line(&outline, pen(1.3), lines);
+            let dent = in_world(&crush.dent_m);
+            ground.line_at((&dent, BUMPER_HEIGHT_M), pen(3.2), &mut self.above);
         }
     }
 

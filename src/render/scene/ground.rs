@@ -7,7 +7,7 @@ use crate::render::scene::row_map::RowMap;
 use crate::render::scene::shade::{grid_colors, ground_color, mixed, role_color, sky_color};
 use crate::render::scene::underlay::{Underlay, ground_strokes};
 use crate::render::scene::{Projection, camera::NEAR_M};
-use crate::scene::{Scene, SceneDensity, SceneRole};
+use crate::scene::{Scene, SceneDensity, SceneLine, SceneRole};
 use crate::units::{Quantity, UnitSystem};
 
 /// Least distance of coarse grid lines, points.
@@ -187,17 +187,7 @@ impl Ground<'_> {
             }
         }
         for line in self.scene.lines.iter().filter(|line| !line.is_above_cars) {
-            let color = role_color(line.role, self.dark);
-            // What has no name is help: where a car started.
-            let (color, width) = match line.name.is_empty() {
-                true => (mixed(ground_color(self.dark), color, 0.6), 1.1),
-                false => (color, 1.8),
-            };
-            self.line(
-                &line.points_m,
-                Pen { color, width, is_dashed: line.is_dashed },
-                &mut strokes,
-            );
+            self.scene_line(line, &mut strokes);
         }
         for point in &self.scene.points {
             let color = role_color(point.role, self.dark);
@@ -212,6 +202,17 @@ impl Ground<'_> {
             }
         }
         strokes
+    }
+
+    /// Adds a line of the scene.
+    pub fn scene_line(&self, line: &SceneLine, strokes: &mut Vec<Stroke>) {
+        let color = role_color(line.role, self.dark);
+        // What has no name is help: where a car started.
+        let (color, width) = match line.name.is_empty() {
+            true => (mixed(ground_color(self.dark), color, 0.6), 1.1),
+            false => (color, 1.8),
+        };
+        self.line(&line.points_m, Pen { color, width, is_dashed: line.is_dashed }, strokes);
     }
 
     fn ticks(&self, path: &crate::scene::ScenePath, color: Color32, strokes: &mut Vec<Stroke>) {
@@ -231,7 +232,7 @@ impl Ground<'_> {
     /// Adds a line on the ground; over a picture, on a pale edge.
     pub fn line(&self, points_m: &[[f64; 2]], pen: Pen, strokes: &mut Vec<Stroke>) {
         let first = strokes.len();
-        self.bare_line(points_m, pen, strokes);
+        self.line_at((points_m, 0.0), pen, strokes);
         if self.has_picture() && pen.width >= LEAST_CASED {
             let edge = |stroke: &Stroke| Stroke {
                 half_width: stroke.half_width + (CASING_POINTS * self.points) as f32,
@@ -244,7 +245,13 @@ impl Ground<'_> {
         }
     }
 
-    fn bare_line(&self, points_m: &[[f64; 2]], pen: Pen, strokes: &mut Vec<Stroke>) {
+    /// Adds a level line at a height above the ground, m.
+    pub fn line_at(
+        &self,
+        (points_m, height_m): (&[[f64; 2]], f64),
+        pen: Pen,
+        strokes: &mut Vec<Stroke>,
+    ) {
         let half_width = (pen.width * self.points / 2.0) as f32;
         let mut push = |ends: [[f64; 2]; 2]| {
             let ends = ends.map(|end| end.map(|value| value as f32));
@@ -252,7 +259,7 @@ impl Ground<'_> {
         };
         let (mut along, mut held) = (0.0, None);
         for pair in points_m.windows(2) {
-            let Some([from, to]) = self.piece([pair[0], pair[1]]) else {
+            let Some([from, to]) = self.piece([pair[0], pair[1]], height_m) else {
                 held = None;
                 continue;
             };
@@ -289,9 +296,10 @@ impl Ground<'_> {
         }
     }
 
-    /// A straight piece on the ground in the picture, without what is behind the camera.
-    pub fn piece(&self, ends_m: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
-        let [mut from, mut to] = ends_m.map(|[x, y]| self.projection.in_camera([x, y, 0.0]));
+    /// A straight level piece in the picture, without what is behind the camera.
+    pub fn piece(&self, ends_m: [[f64; 2]; 2], height_m: f64) -> Option<[[f64; 2]; 2]> {
+        let in_camera = |[x, y]: [f64; 2]| self.projection.in_camera([x, y, height_m]);
+        let [mut from, mut to] = ends_m.map(in_camera);
         if !self.projection.is_parallel() {
             let near = 2.0 * NEAR_M;
             if from[2] < near && to[2] < near {

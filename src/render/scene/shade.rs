@@ -21,6 +21,7 @@ pub type Rgb = [u8; 3];
 pub fn role_color(role: SceneRole, dark: bool) -> Color32 {
     let role = match role {
         SceneRole::TireMark => return mark_color(dark),
+        SceneRole::Crush => return crush_color(dark),
         SceneRole::Recorded => Role::Reference,
         SceneRole::Simulated => Role::Simulation,
         SceneRole::Forecast => Role::Target,
@@ -36,6 +37,11 @@ pub fn role_color(role: SceneRole, dark: bool) -> Color32 {
 /// on which black is not seen.
 pub fn mark_color(dark: bool) -> Color32 {
     if dark { Color32::from_rgb(196, 188, 176) } else { Color32::from_rgb(28, 28, 30) }
+}
+
+/// Colour of dented outlines, which stands out from every body and from the ground.
+fn crush_color(dark: bool) -> Color32 {
+    if dark { Color32::from_rgb(252, 250, 240) } else { Color32::from_rgb(12, 12, 14) }
 }
 
 /// Colour of the ground.

@@ -211,7 +211,7 @@ pub fn ground_strokes(ground: &Ground<'_>, site: &SceneGround, strokes: &mut Vec
         let half_width = (BORDER_POINTS * ground.points / 2.0) as f32;
         let color = zone_color(ground.dark);
         for pair in points.windows(2) {
-            if let Some(ends) = ground.piece([pair[0], pair[1]]) {
+            if let Some(ends) = ground.piece([pair[0], pair[1]], 0.0) {
                 let ends = ends.map(|end| end.map(|value| value as f32));
                 strokes.push(Stroke { ends, half_width, color, opacity: 1.0 });
             }
@@ -233,7 +233,7 @@ fn add_line(ground: &Ground<'_>, line: &GroundLine, strokes: &mut Vec<Stroke>) {
         let at = |i: usize| [0, 1].map(|k| pair[0][k] + way[k] * i as f64 / n);
         for i in 0..n as usize {
             let ends_m = [at(i), at(i + 1)];
-            let Some(ends) = ground.piece(ends_m) else { continue };
+            let Some(ends) = ground.piece(ends_m, 0.0) else { continue };
             let middle = [0, 1].map(|k| (ends_m[0][k] + ends_m[1][k]) / 2.0);
             let width = line.width_m * ground.projection.pixels_per_m(middle);
             let opacity = if line.width_m > 0.0 { (width / least).min(1.0) } else { 1.0 };

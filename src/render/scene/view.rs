@@ -367,7 +367,7 @@ fn entries(scene: &Scene, dark: bool) -> Vec<(&str, Color32, Entry)> {
     let paths = scene.paths.iter().map(|of| (of.name.as_str(), of.role, lined(of.is_dashed)));
     let lines = scene.lines.iter().map(|of| (of.name.as_str(), of.role, lined(of.is_dashed)));
     let marks = scene.marks.iter().map(|of| (of.name.as_str(), SceneRole::TireMark, Entry::Solid));
-    let crushes = scene.crushes.iter().map(|of| (of.name.as_str(), of.role, Entry::Line));
+    let crushes = scene.crushes.iter().map(|of| (of.name.as_str(), SceneRole::Crush, Entry::Line));
     let points = scene.points.iter().map(|of| (of.name.as_str(), of.role, Entry::Point));
     let arrows = scene.arrows.iter().map(|of| ("impulse", of.role, Entry::Line));
     let crosses =
