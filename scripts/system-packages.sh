@@ -44,10 +44,17 @@ install() {
     }
 }
 
-# A C compiler is what rustc links with.
+# A C compiler is what rustc links with; the encoder of films is C++.
 need_linker() {
-    if [ "$(uname -s)" = Linux ] && ! echo 'int main(void) { return 0; }' | cc -x c -o /dev/null - 2>/dev/null; then
+    if [ "$(uname -s)" != Linux ]; then
+        return 0
+    fi
+    if ! echo 'int main(void) { return 0; }' | cc -x c -o /dev/null - 2>/dev/null; then
         install "linking Rust programs" gcc libc6-dev
+    fi
+    if ! echo '#include <string>
+int main() { return std::string().size(); }' | c++ -x c++ -o /dev/null - 2>/dev/null; then
+        install "compiling the encoder of films" g++
     fi
 }
 

@@ -25,8 +25,8 @@
 //! 11. [`analysis`]: one case, from its file or scenario to a motion;
 //! 12. [`study`]: every question that can be asked, as a request with a report as its answer;
 //! 13. [`figure`], [`scene`]: the content of a plot, and of a scene in space, as plain data;
-//! 14. [`report`]: what an expert signs: a document of a case and its answers, as PDF, Markdown and
-//!     JSON;
+//! 14. [`report`], [`exchange`]: what an expert signs: a document of a case and its answers, as PDF,
+//!     Markdown and JSON; scenes and motions for other programs;
 //! 15. `render` (feature `gui`): one drawing function for the window and for pictures without a
 //!     window;
 //! 16. [`cli`] and `app` (feature `gui`): the command line and the window.
@@ -56,6 +56,7 @@ pub mod collision;
 pub mod compare;
 pub mod data;
 mod error_chain;
+pub mod exchange;
 pub mod figure;
 pub mod force;
 pub mod jobs;

@@ -10,7 +10,7 @@ use egui::Context;
 
 use crate::app::case::{Leaving, VariantCommand};
 use crate::app::dialogs::{FileDialog, Purpose};
-use crate::app::export;
+use crate::app::export::{self, SceneExport};
 use crate::app::film::FilmForm;
 use crate::app::ground::GroundCommand;
 use crate::app::kept::{KeptEntry, ModelsDialog, Removal};
@@ -76,6 +76,8 @@ pub enum Command {
     Export(Box<Figure>, PathBuf),
     /// Write a scene to a PNG file, as it is seen.
     ExportScene(Box<ScenePicture>, PathBuf),
+    /// Write a scene to a file for another program.
+    ExportExchange(Box<SceneExport>, PathBuf),
     /// Ask how a film of a scene is to be made.
     AskFilm(Box<ScenePicture>),
     /// Close that form.
@@ -231,6 +233,9 @@ impl Command {
             Self::Ask(Purpose::ScenePicture(picture))
             | Self::ExportScene(picture, _)
             | Self::AskFilm(picture) => picture.scene.trust.is_outdated,
+            Self::Ask(Purpose::Exchange(export)) | Self::ExportExchange(export, _) => {
+                export.scene.trust.is_outdated
+            }
             _ => false,
         }
     }
@@ -275,6 +280,7 @@ impl State {
             Command::CancelPath => self.session.path_dialog = None,
             Command::Export(..)
             | Command::ExportScene(..)
+            | Command::ExportExchange(..)
             | Command::SaveFilm(..)
             | Command::SaveScenario(_)
             | Command::SaveVehicle(..)

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use rfd::AsyncFileDialog;
 
 use crate::app::command::{Command, ComparisonCommand};
+use crate::app::export::SceneExport;
 use crate::app::network::Network;
 use crate::case_file::{CASE_ENDING, file_stem};
 use crate::figure::Figure;
@@ -34,6 +35,8 @@ pub enum Purpose {
     Picture(Box<Figure>),
     /// A PNG file for a scene as it is seen.
     ScenePicture(Box<ScenePicture>),
+    /// A file of a scene for another program.
+    Exchange(Box<SceneExport>),
     /// An MP4 file for a film of a scene.
     Film(Box<Film>),
     /// A CSV file for the numbers of a figure.
@@ -73,6 +76,7 @@ impl Purpose {
             Self::Folder => "Open a data set",
             Self::Files => "Open files",
             Self::Picture(_) | Self::ScenePicture(_) => "Save the picture",
+            Self::Exchange(_) => "Save the scene",
             Self::Film(_) => "Save the film",
             Self::Numbers(_) => "Save the numbers",
             Self::Scenario => "Save the scenario",
@@ -99,6 +103,9 @@ impl Purpose {
             Self::Site => "site.toml",
             Self::Picture(figure) => return file_stem(&figure.title) + ".png",
             Self::ScenePicture(picture) => return file_stem(&picture.title()) + ".png",
+            Self::Exchange(of) => {
+                return format!("{}.{}", file_stem(&of.scene.title), of.format.ending());
+            }
             Self::Film(film) => return file_stem(&film.picture.scene.title) + ".mp4",
             Self::Numbers(figure) => return file_stem(&figure.title) + ".csv",
             Self::Scenario => "scenario.toml",
@@ -140,6 +147,9 @@ impl Purpose {
             Self::Picture(figure) => written("png", &|path| Command::Export(figure.clone(), path)),
             Self::ScenePicture(picture) => {
                 written("png", &|path| Command::ExportScene(picture.clone(), path))
+            }
+            Self::Exchange(of) => {
+                written(of.format.ending(), &|path| Command::ExportExchange(of.clone(), path))
             }
             Self::Film(film) => written("mp4", &|path| Command::SaveFilm(film.clone(), path)),
             Self::Numbers(figure) => written("csv", &|path| Command::Export(figure.clone(), path)),
@@ -272,6 +282,9 @@ async fn ask(purpose: &Purpose) -> Vec<PathBuf> {
         }
         Purpose::Picture(_) | Purpose::ScenePicture(_) => {
             save(dialog.add_filter("picture", &["png"]), name).await
+        }
+        Purpose::Exchange(of) => {
+            save(dialog.add_filter("scene", &[of.format.ending()]), name).await
         }
         Purpose::Film(_) => save(dialog.add_filter("film", &["mp4"]), name).await,
         Purpose::Numbers(_) => save(dialog.add_filter("table", &["csv"]), name).await,

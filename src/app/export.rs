@@ -5,11 +5,13 @@ use std::sync::Arc;
 
 use crate::data::{Existing, write_atomically};
 use crate::error_chain;
+use crate::exchange::{DxfOptions, dxf, glb};
 use crate::figure::{Figure, write_figure_csv};
 use crate::jobs::Job;
 use crate::render::scene::{ScenePicture, scene_image};
 use crate::render::{Canvas, figure_image, report_picture, save_png};
 use crate::report::{ReportDocument, ReportFormat};
+use crate::scene::Scene;
 
 /// Starts writing a figure to a file: its numbers if the path ends in `.csv`, otherwise a PNG
 /// picture.
@@ -62,6 +64,59 @@ pub fn spawn_report(
         let format = ReportFormat::of(&path).map_err(|error| error_chain(&error))?;
         let bytes = document.bytes(format, Some(&report_picture));
         let bytes = bytes.map_err(|error| error_chain(&error))?;
+        write_atomically(&path, existing, |out| out.write_all(&bytes))
+            .map_err(|error| error_chain(&error))?;
+        Ok(path)
+    })
+}
+
+/// A scene for another program.
+#[derive(Debug, Clone)]
+pub struct SceneExport {
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// What is written.
+    pub format: SceneFormat,
+    /// Instants at which a drawing shows the outlines of the cars, s.
+    pub outlines_s: Vec<f64>,
+}
+
+/// A format for another program.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SceneFormat {
+    /// A drawing in metres.
+    Dxf,
+    /// The scene with its animation in 3D.
+    Glb,
+}
+
+impl SceneFormat {
+    /// Ending of the file.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Dxf => "dxf",
+            Self::Glb => "glb",
+        }
+    }
+}
+
+/// Starts writing a scene for another program, as [`spawn`] does for a figure.
+///
+/// # Errors
+/// The error of the operating system, if the thread cannot be started.
+pub fn spawn_exchange(
+    export: SceneExport,
+    (path, existing): (PathBuf, Existing),
+    wake: impl Fn() + Send + 'static,
+) -> std::io::Result<Job<Result<PathBuf, String>>> {
+    Job::spawn("export", wake, move |_| {
+        let SceneExport { scene, format, outlines_s } = export;
+        let mut bytes = Vec::new();
+        match format {
+            SceneFormat::Dxf => dxf(&scene, &DxfOptions { outlines_s }, &mut bytes),
+            SceneFormat::Glb => glb(&scene, &mut bytes),
+        }
+        .map_err(|error| error_chain(&error))?;
         write_atomically(&path, existing, |out| out.write_all(&bytes))
             .map_err(|error| error_chain(&error))?;
         Ok(path)

@@ -17,6 +17,7 @@ impl Command {
         match self {
             Self::Export(_, path)
             | Self::ExportScene(_, path)
+            | Self::ExportExchange(_, path)
             | Self::SaveFilm(_, path)
             | Self::SaveScenario(path)
             | Self::SaveVehicle(_, path)
@@ -60,6 +61,12 @@ impl State {
             Command::ExportScene(picture, path) => {
                 let wake = wake(context);
                 match export::spawn_scene(*picture, (path, existing), self.view.dark, wake) {
+                    Ok(job) => self.session.exports.push(job),
+                    Err(error) => self.say(Severity::Error, error.to_string()),
+                }
+            }
+            Command::ExportExchange(of, path) => {
+                match export::spawn_exchange(*of, (path, existing), wake(context)) {
                     Ok(job) => self.session.exports.push(job),
                     Err(error) => self.say(Severity::Error, error.to_string()),
                 }

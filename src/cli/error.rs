@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use crate::case_file::CaseError;
 use crate::collision::FilterError;
 use crate::data::DataError;
+use crate::exchange::ExchangeError;
 use crate::force::ForceError;
 use crate::learning::LearningError;
 use crate::ranges::OutOfRange;
@@ -94,8 +95,10 @@ pub enum CliError {
         channel: &'static str,
     },
     /// A moment lies outside the recorded motion.
-    #[error("--time is {time_s} s, expected between {start_s} s and {end_s} s")]
+    #[error("{option} is {time_s} s, expected between {start_s} s and {end_s} s")]
     TimeOutside {
+        /// The option.
+        option: &'static str,
         /// As given, s.
         time_s: f64,
         /// First sample, s.
@@ -123,6 +126,21 @@ pub enum CliError {
         /// As given.
         path: PathBuf,
     },
+    /// What is exported is of an unknown kind.
+    #[error(
+        "{}: cannot be made; expected a name that ends in .dxf, .glb or .csv, or --format",
+        path.display()
+    )]
+    ExportKind {
+        /// As given.
+        path: PathBuf,
+    },
+    /// Moments for outlines are given for something that has none.
+    #[error("--at says when a drawing shows outlines; leave it out, or write a drawing (.dxf)")]
+    OutlinesOfDrawing,
+    /// Nothing can be written for another program.
+    #[error(transparent)]
+    Exchange(#[from] ExchangeError),
     /// A film is of an unknown kind.
     #[error("{}: cannot be made; expected a name that ends in .mp4, or a folder", path.display())]
     FilmKind {

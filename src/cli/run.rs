@@ -8,8 +8,8 @@ use clap::{Parser, Subcommand};
 
 use crate::cli::CliError;
 use crate::cli::commands::{
-    app, ask, case, check, compare, condition, evaluate, fine_tune, impact, licences, predict,
-    ranges, reconstruct, render, report, simulate, train, vehicles,
+    app, ask, case, check, compare, condition, evaluate, export, fine_tune, impact, licences,
+    predict, ranges, reconstruct, render, report, simulate, train, vehicles,
 };
 use crate::cli::console::{Console, Escaped, Verdict, within_line};
 use crate::error_chain;
@@ -57,6 +57,7 @@ enum CliCommand {
     Compare(compare::CompareArgs),
     Reconstruct(reconstruct::ReconstructArgs),
     Render(render::RenderArgs),
+    Export(export::ExportArgs),
     Report(report::ReportArgs),
     Vehicles(vehicles::VehiclesArgs),
     #[command(alias = "licenses")]
@@ -129,6 +130,7 @@ fn dispatch(command: Option<CliCommand>, console: &mut Console<'_>) -> Result<Ve
         Some(CliCommand::Predict(args)) => predict::run(&args, console),
         Some(CliCommand::Reconstruct(args)) => reconstruct::run(&args, console),
         Some(CliCommand::Render(args)) => render::run(&args, console),
+        Some(CliCommand::Export(args)) => export::run(&args, console),
         Some(CliCommand::Report(args)) => report::run(&args, console),
         Some(CliCommand::Vehicles(args)) => vehicles::run(&args, console),
         Some(CliCommand::Licences(_)) => licences::run(console),

@@ -10,6 +10,7 @@ mod commands;
 mod contact;
 mod data_sheets;
 mod endings;
+mod export;
 #[cfg(feature = "gui")]
 mod film;
 mod force;

@@ -23,7 +23,7 @@ const LAYERS: &[&[&str]] = &[
     &["study"],
     &["case_file"],
     &["scene", "figure"],
-    &["report"],
+    &["report", "exchange"],
     &["render"],
     &["cli", "app"],
 ];

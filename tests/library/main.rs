@@ -14,6 +14,7 @@ mod data_shipped;
 mod data_writes;
 mod dependencies;
 mod endings;
+mod exchange;
 mod force_baselines;
 mod force_domain;
 mod force_model;

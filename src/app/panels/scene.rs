@@ -7,6 +7,7 @@ use egui::{Align, Layout, RichText, Slider, Ui};
 
 use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
+use crate::app::export::{SceneExport, SceneFormat};
 use crate::app::ground::GroundSession;
 use crate::app::looks::{Icon, icon, icon_button};
 use crate::app::measure::Measuring;
@@ -22,7 +23,7 @@ use crate::app::variants::{are_others_awaited, other_simulations};
 use crate::app::widgets::{OUTDATED, badges_ui};
 use crate::figure::{Figure, analysis_scene_figure, recording_path};
 use crate::render::scene::{Follow, ScenePicture, ViewKind, scene_view_ui};
-use crate::scene::Scene;
+use crate::scene::{FilmTiming, Scene};
 use crate::study::Trust;
 use crate::units::Quantity;
 
@@ -204,6 +205,17 @@ fn export_menu_ui(
     }
     if ui.add(icon_button(Icon::Film, "Save film (MP4)…")).clicked() {
         commands.push(Command::AskFilm(Box::new(exported().0)));
+    }
+    for (format, icon, label) in [
+        (SceneFormat::Dxf, Icon::PencilRuler, "Save drawing (DXF)…"),
+        (SceneFormat::Glb, Icon::Box, "Save 3D scene (glTF)…"),
+    ] {
+        if ui.add(icon_button(icon, label)).clicked() {
+            let ScenePicture { scene, time_s, .. } = exported().0;
+            let outlines_s = vec![FilmTiming::of_scene(&scene).from_s, time_s, scene.end_s];
+            let export = SceneExport { scene, format, outlines_s };
+            commands.push(Command::Ask(Purpose::Exchange(Box::new(export))));
+        }
     }
     if ui.add(icon_button(Icon::Table2, "Save numbers (CSV)…")).clicked() {
         commands.push(Command::Ask(Purpose::Numbers(Box::new(exported().1))));

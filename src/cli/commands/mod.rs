@@ -10,6 +10,7 @@ pub(super) mod evaluate;
 mod evaluate_force;
 mod evaluate_reconstruction;
 mod evaluate_response;
+pub(super) mod export;
 pub(super) mod fine_tune;
 pub(super) mod impact;
 pub(super) mod licences;

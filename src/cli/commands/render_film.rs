@@ -68,7 +68,7 @@ pub(super) fn run(args: &FilmArgs, console: &mut Console<'_>) -> Result<Verdict,
     if kind == FilmKind::Mp4 {
         console.check_target(Some(&args.out), args.overwrite.into())?;
     }
-    let built = build(&args.seen, None, args.units.into(), console)?;
+    let built = build(&args.seen.case, None, args.units.into(), console)?;
     let BuiltScene { scene, notes, .. } = built;
     let whole = FilmTiming::of_scene(&scene);
     let timing = FilmTiming {

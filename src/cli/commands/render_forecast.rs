@@ -86,7 +86,12 @@ pub(super) fn figure(
     check_window_end(args.window, duration_s)?;
     let at_s = args.time.unwrap_or(duration_s);
     if !(0.0..=duration_s).contains(&at_s) {
-        return Err(CliError::TimeOutside { time_s: at_s, start_s: 0.0, end_s: duration_s });
+        return Err(CliError::TimeOutside {
+            option: "--time",
+            time_s: at_s,
+            start_s: 0.0,
+            end_s: duration_s,
+        });
     }
     let density = DensityTask::new(&forecast.distribution, args.window.unwrap_or([at_s; 2]));
     let (density, bands) = (density.on_cpu(), MotionBands::of(&forecast.distribution, BAND_STRIDE));

@@ -14,7 +14,8 @@ use crate::cli::options::{SourceArgs, count, number};
 use crate::figure::{self, Figure, FigureElement, LineStyle, Role, Series, analysis_scene_figure};
 use crate::ranges::{CAMERA_AZIMUTH, CAMERA_DISTANCE, CAMERA_ELEVATION, GHOSTS, INSTANT};
 use crate::scene::{
-    ForecastScene, LoadedGround, Scene, SimulationScene, add_forecast, simulation_scene,
+    FilmTiming, ForecastScene, LoadedGround, Scene, SimulationScene, add_forecast,
+    simulation_scene,
 };
 use crate::study::{ForceSource, PredictMotionRequest, SimulateAnswer, SimulateRequest, Trust};
 use crate::units::UnitSystem;
@@ -34,12 +35,19 @@ pub(super) struct SceneArgs {
 #[derive(Debug, Args)]
 pub(super) struct SeenArgs {
     #[command(flatten)]
-    source: SourceArgs,
+    pub(super) case: CaseArgs,
     /// From where the scene is seen
     #[arg(long, value_enum, default_value_t)]
     view: ViewArg,
     #[command(flatten)]
     camera: CameraArgs,
+}
+
+/// What a scene is of.
+#[derive(Debug, Args)]
+pub(super) struct CaseArgs {
+    #[command(flatten)]
+    source: SourceArgs,
     /// Draw so many paths from a forecast of the response network under the recorded force, and into a
     /// picture its density and regions at the moment; 0 asks for no forecast
     #[arg(long, value_name = "N", value_parser = count::<usize>(GHOSTS), default_value = "0")]
@@ -155,7 +163,8 @@ pub(super) fn scene(
     console: &mut Console<'_>,
 ) -> Result<(Figure, Vec<String>, ShownScene), CliError> {
     let time_s = args.time;
-    let BuiltScene { analysis, scene, notes } = build(&args.seen, Some(time_s), units, console)?;
+    let BuiltScene { analysis, scene, notes } =
+        build(&args.seen.case, Some(time_s), units, console)?;
     let mut figure = analysis_scene_figure((&analysis, &scene.trust), time_s, units);
     figure.elements.extend(drawn_paths(&scene, &figure));
     Ok((figure, notes, args.seen.shown(scene, time_s)))
@@ -163,11 +172,26 @@ pub(super) fn scene(
 
 /// A scene with what it was built from.
 pub(super) struct BuiltScene {
-    analysis: Analysis,
+    /// Motions, force and vehicles.
+    pub(super) analysis: Analysis,
     /// The scene.
     pub(super) scene: Scene,
     /// Notes on how it was made.
     pub(super) notes: Vec<String>,
+}
+
+impl BuiltScene {
+    /// Checks that there is a motion at a time.
+    ///
+    /// - `option`: which says the time, for the error.
+    pub(super) fn check_time(&self, option: &'static str, time_s: f64) -> Result<(), CliError> {
+        check_time(&self.analysis, (option, time_s))
+    }
+
+    /// The first instant of the motion, s.
+    pub(super) fn start_s(&self) -> f64 {
+        FilmTiming::of_scene(&self.scene).from_s
+    }
 }
 
 /// Builds the scene of a case or a file.
@@ -175,7 +199,7 @@ pub(super) struct BuiltScene {
 /// - `density_s`: the moment of the density of a forecast, which has to lie within the motion; a film
 ///   has none.
 pub(super) fn build(
-    args: &SeenArgs,
+    args: &CaseArgs,
     density_s: Option<f64>,
     units: UnitSystem,
     console: &mut Console<'_>,
@@ -183,7 +207,7 @@ pub(super) fn build(
     let request = args.vehicle.request(&args.source, &console.library)?;
     let SimulateAnswer { report, analysis } = console.answer(&request)?;
     if let Some(time_s) = density_s {
-        check_time(&analysis, time_s)?;
+        check_time(&analysis, ("--time", time_s))?;
     }
     let mut trust = Trust::new(&report.badges, &report.assumptions);
     let mut notes = noted(&report.notes, (&report.badges, &report.assumptions));
@@ -220,14 +244,14 @@ pub(super) fn add_ground(scene: &mut Scene, site: &Path) -> Result<Vec<String>, 
 }
 
 /// Checks that there is a motion at a time.
-fn check_time(analysis: &Analysis, time_s: f64) -> Result<(), CliError> {
+fn check_time(analysis: &Analysis, (option, time_s): (&'static str, f64)) -> Result<(), CliError> {
     let simulation = analysis.simulation.as_ref().map(|motion| &motion.series);
     let Some(shown) = analysis.reference.as_ref().or(simulation) else { return Ok(()) };
     let [start_s, end_s] = [shown.time_s().first(), shown.time_s().last()]
         .map(|time| time.copied().unwrap_or_default());
     match (start_s..=end_s).contains(&time_s) {
         true => Ok(()),
-        false => Err(CliError::TimeOutside { time_s, start_s, end_s }),
+        false => Err(CliError::TimeOutside { option, time_s, start_s, end_s }),
     }
 }
 

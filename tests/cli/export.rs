@@ -1,0 +1,43 @@
+//! The command that writes for other programs.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::program::{TRAJECTORIES, answer, program, text};
+
+#[test]
+fn each_format_is_written_and_nothing_is_replaced_unasked() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let case = ["export", TRAJECTORIES, "--case", "FE_c002", "--out"];
+    for (file, options, format, begins) in [
+        ("a.dxf", vec!["--at", "0.5"], "dxf", "  0\r\nSECTION"),
+        ("a.glb", vec![], "glb", "glTF"),
+        ("a.csv", vec![], "motion", "time_s,"),
+        ("pulse.txt", vec!["--format", "hve-pulse"], "hve-pulse", "# FE_c002: collision force"),
+        ("motion.txt", vec!["--format", "hve-motion"], "hve-motion", "# FE_c002: motion"),
+    ] {
+        let out = folder.path().join(file);
+        let args = [&case[..], &[text(&out)], &options].concat();
+        let said = answer(&args);
+        assert_eq!((&said["format"], &said["title"]), (&Value::from(format), &"FE_c002".into()));
+        let written = fs::read(&out).expect("a file");
+        let start = String::from_utf8_lossy(&written[..begins.len()]).into_owned();
+        assert_eq!(start, begins, "{file}");
+        let again = program().args(&args).output().expect("it starts");
+        let error = String::from_utf8_lossy(&again.stderr).into_owned();
+        assert!(error.contains("exists already; --overwrite replaces it"), "{error}");
+    }
+    for (file, options, part) in [
+        ("a.step", vec![], "expected a name that ends in .dxf, .glb or .csv, or --format"),
+        ("b.glb", vec!["--at", "1"], "leave it out, or write a drawing (.dxf)"),
+        ("b.dxf", vec!["--at", "900"], "--at is 900 s, expected between"),
+    ] {
+        let out = folder.path().join(file);
+        let args = [&case[..], &[text(&out)], &options].concat();
+        let output = program().args(&args).output().expect("it starts");
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!output.status.success() && error.contains(part), "{error}");
+        assert!(!out.exists());
+    }
+}

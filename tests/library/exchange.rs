@@ -1,0 +1,200 @@
+//! What is written for other programs, read back.
+
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+
+use dxf::Drawing;
+use dxf::entities::EntityType;
+use gltf::animation::util::ReadOutputs;
+use impactlab::exchange::{DxfOptions, dxf, glb, hve_motion, hve_pulse};
+use impactlab::scene::{CarLook, Scene, SceneRole, SimulationScene, simulation_scene};
+use impactlab::study::{
+    Library, MotionSource, Question, ScenarioChoice, SimulateAnswer, SimulateRequest, Trust,
+};
+use impactlab::units::UnitSystem;
+use impactlab::vehicle::Wheel;
+
+/// The shipped scenario, simulated, and its scene.
+fn case() -> (SimulateAnswer, Scene) {
+    let scenario = ScenarioChoice::File(PathBuf::from("pit-right-rear"));
+    let source = MotionSource::Scenario { scenario, pulse: Default::default() };
+    let request = SimulateRequest { vehicle_draws: 0, ..SimulateRequest::new(source) };
+    let answer = request.answer(&Library::default(), &mut |_| ControlFlow::Continue(()));
+    let answer = answer.expect("a shipped scenario").complete().expect("not cancelled");
+    let trust = Trust::new(&answer.report.badges, &answer.report.assumptions);
+    let scene = simulation_scene(&SimulationScene {
+        analysis: &answer.analysis,
+        others: &[],
+        units: UnitSystem::Si,
+        trust: &trust,
+    });
+    (answer, scene)
+}
+
+#[test]
+fn a_drawing_has_metres_layers_closed_outlines_and_restrictions() {
+    let (_, scene) = case();
+    let instants = [0.0, 0.5, 1.25];
+    let options = DxfOptions { outlines_s: instants.to_vec() };
+    let [mut first, mut second] = [Vec::new(), Vec::new()];
+    dxf(&scene, &options, &mut first).expect("a drawing");
+    dxf(&scene, &options, &mut second).expect("a drawing");
+    assert!(first == second, "the same scene gives the same drawing");
+    let drawing = Drawing::load(&mut first.as_slice()).expect("a drawing that can be read");
+    assert_eq!(drawing.header.default_drawing_units, dxf::enums::Units::Meters);
+    let layers: Vec<&str> = drawing.layers().map(|layer| layer.name.as_str()).collect();
+    for layer in ["SIMULATED_PATH", "SIMULATED_OUTLINE", "STRIKING_PATH", "RESTRICTIONS"] {
+        assert!(layers.contains(&layer), "{layer} in {layers:?}");
+    }
+    let outlines = |layer: &str| -> Vec<Vec<[f64; 2]>> {
+        let of_layer = drawing.entities().filter(|entity| entity.common.layer == layer);
+        let closed = of_layer.filter_map(|entity| match &entity.specific {
+            EntityType::LwPolyline(line) if line.is_closed() => Some(line),
+            _ => None,
+        });
+        closed.map(|line| line.vertices.iter().map(|of| [of.x, of.y]).collect()).collect()
+    };
+    let car = scene.struck().expect("a struck car");
+    let drawn = outlines("SIMULATED_OUTLINE");
+    assert_eq!(drawn.len(), instants.len());
+    for (outline, time_s) in drawn.iter().zip(instants) {
+        let (pose, body) = (car.at(time_s).pose, &car.shape.body);
+        let front_left = pose.world_from_body([body.front_m, body.width_m / 2.0]);
+        let off = (outline[0][0] - front_left[0]).hypot(outline[0][1] - front_left[1]);
+        assert!(outline.len() == 4 && off < 1e-9, "at {time_s} s: {outline:?}, {front_left:?}");
+    }
+    let path = drawing.entities().find_map(|entity| match &entity.specific {
+        EntityType::LwPolyline(line) if entity.common.layer == "SIMULATED_PATH" => Some(line),
+        _ => None,
+    });
+    assert_eq!(path.expect("a path").vertices.len(), car.motion.states().len());
+    let texts: Vec<&str> = drawing
+        .entities()
+        .filter_map(|entity| match &entity.specific {
+            EntityType::Text(text) => Some(text.value.as_str()),
+            _ => None,
+        })
+        .collect();
+    assert!(texts.iter().any(|text| text.contains("second contact")), "{texts:?}");
+    assert!(texts.iter().any(|text| text.contains("0.500 s")), "{texts:?}");
+}
+
+/// A vector turned by a unit quaternion `[x, y, z, w]`.
+fn turned([x, y, z, w]: [f32; 4], v: [f64; 3]) -> [f64; 3] {
+    let ([x, y, z, w], u) = ([x, y, z, w].map(f64::from), v);
+    let cross = |a: [f64; 3], b: [f64; 3]| {
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    };
+    let t = cross([x, y, z], u).map(|value| 2.0 * value);
+    let second = cross([x, y, z], t);
+    std::array::from_fn(|i| u[i] + w * t[i] + second[i])
+}
+
+#[test]
+fn keys_of_the_animation_are_the_poses_of_the_scene() {
+    let (_, scene) = case();
+    let mut bytes = Vec::new();
+    glb(&scene, &mut bytes).expect("a scene");
+    let file = gltf::Gltf::from_slice(&bytes).expect("a valid file");
+    let blob = file.blob.as_deref().expect("numbers");
+    let animation = file.animations().next().expect("an animation");
+    // Of each car: body and four wheels turn, the car turns and moves.
+    let n_cars = scene.cars.iter().filter(|car| car.look == CarLook::Solid).count();
+    assert_eq!(animation.channels().count(), 7 * n_cars);
+    let car = scene.cars.iter().find(|car| car.role == SceneRole::Simulated).expect("a car");
+    let channels = |name: &str| {
+        let name = name.to_owned();
+        animation.channels().filter(move |channel| channel.target().node().name() == Some(&name))
+    };
+    let rotations = |name: &str| -> Vec<[f32; 4]> {
+        let lists = channels(name).filter_map(|channel| {
+            match channel.reader(|_| Some(blob)).read_outputs()? {
+                ReadOutputs::Rotations(all) => Some(all.into_f32().collect::<Vec<_>>()),
+                _ => None,
+            }
+        });
+        lists.into_iter().next().expect("rotations")
+    };
+    let places: Vec<[f32; 3]> = channels(&car.name)
+        .find_map(|channel| match channel.reader(|_| Some(blob)).read_outputs()? {
+            ReadOutputs::Translations(all) => Some(all.collect()),
+            _ => None,
+        })
+        .expect("places");
+    let times: Vec<f32> = channels(&car.name)
+        .next()
+        .and_then(|of| Some(of.reader(|_| Some(blob)).read_inputs()?.collect()))
+        .expect("times");
+    assert_eq!(places.len(), times.len());
+    assert!((f64::from(times[times.len() - 1]) - scene.end_s).abs() < 1e-4);
+    let (yaw, body) = (rotations(&car.name), rotations(&format!("{} body", car.name)));
+    let wheel = rotations(&format!("{} wheel FrontLeft", car.name));
+    for (idx, time_s) in times.iter().enumerate() {
+        let state = car.at(f64::from(*time_s));
+        let pose = state.pose;
+        let off =
+            (f64::from(places[idx][0]) - pose.x_m).hypot(f64::from(places[idx][1]) - pose.y_m);
+        assert!(off < 1e-3 && places[idx][2] == 0.0, "at {time_s} s: {off} m");
+        let near = |a: [f64; 3], b: [f64; 3], what: &str| {
+            let off = (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f64::max);
+            assert!(off < 5e-3, "{what} at {time_s} s: {a:?} instead of {b:?}");
+        };
+        let (sin, cos) = pose.yaw_rad.sin_cos();
+        near(turned(yaw[idx], [1.0, 0.0, 0.0]), [cos, sin, 0.0], "heading");
+        let (sin, cos) = state.roll_rad.sin_cos();
+        near(turned(body[idx], [0.0, 1.0, 0.0]), [0.0, cos, sin], "roll");
+        // A wheel turns from z towards x and is then steered.
+        let (turn, steer) = (state.turned_rad[Wheel::FrontLeft.index()], state.steer_rad[0]);
+        let top = [turn.sin() * steer.cos(), turn.sin() * steer.sin(), turn.cos()];
+        near(turned(wheel[idx], [0.0, 0.0, 1.0]), top, "wheel");
+    }
+    // Y of glTF is up: the root turns the up of the scene to it.
+    let root = file.nodes().find(|node| node.name() == Some("scene")).expect("a root");
+    let (_, rotation, _) = root.transform().decomposed();
+    let up = turned(rotation, [0.0, 0.0, 1.0]);
+    assert!((up[1] - 1.0).abs() < 1e-6, "{up:?}");
+    assert!(bytes.windows(14).any(|part| part == b"second contact"), "restrictions are told");
+}
+
+#[test]
+fn tables_for_hve_have_its_units_and_signs() {
+    let (answer, _) = case();
+    let analysis = &answer.analysis;
+    let [mut pulse, mut motion] = [Vec::new(), Vec::new()];
+    hve_pulse((analysis, Some("assumed: a pulse")), &mut pulse).expect("a pulse");
+    hve_motion((analysis, None), &mut motion).expect("a motion");
+    let rows = |text: &str| -> (Vec<String>, Vec<Vec<f64>>) {
+        let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+        let header = lines.next().expect("names").split('\t').map(str::to_owned).collect();
+        let number = |cell: &str| -> f64 { cell.parse().expect("a number") };
+        (header, lines.map(|line| line.split('\t').map(number).collect()).collect())
+    };
+    let text = String::from_utf8(pulse).expect("UTF-8");
+    assert!(text.contains("# restrictions: assumed: a pulse\n"), "{text}");
+    let (header, pulse) = rows(&text);
+    assert_eq!(header[..3], ["Time (sec)", "Fx (lb)", "Fy (lb)"]);
+    // The impulse, summed over the rows, in N s.
+    let lbf_n = 4.448_221_615_260_5;
+    let sum = |column: usize| -> f64 {
+        pulse.windows(2).map(|w| (w[1][0] - w[0][0]) * w[0][column] * lbf_n).sum()
+    };
+    let size = sum(1).hypot(sum(2));
+    assert!((size - 3026.0).abs() < 40.0, "{size} N s");
+    // The struck vehicle is hit from its right and pushed to its left: negative y of SAE.
+    assert!(sum(2) < 0.0 && pulse.iter().all(|row| row.iter().all(|v| v.is_finite())));
+    let mass_kg = analysis.vehicle.mass.mass_kg;
+    let row = pulse.iter().max_by(|a, b| a[2].abs().total_cmp(&b[2].abs())).expect("rows");
+    let side_g = row[2] * lbf_n / mass_kg / 9.806_65;
+    assert!((row[4] - side_g).abs() < 1e-3, "{row:?}: {side_g} g");
+
+    let (header, motion) = rows(&String::from_utf8(motion).expect("UTF-8"));
+    assert_eq!(header[..3], ["Time (sec)", "X (ft)", "Y (ft)"]);
+    let series = &analysis.simulation.as_ref().expect("a motion").series;
+    assert_eq!(motion.len(), series.n_samples());
+    let last = motion.last().expect("rows");
+    let end = |channel| *series.get(channel).and_then(|v| v.last()).expect("a channel");
+    use impactlab::data::Channel::{X, Y, Yaw};
+    assert!((last[1] * 0.3048 - end(X)).abs() < 1e-3, "{last:?}");
+    assert!((last[2] * 0.3048 + end(Y)).abs() < 1e-3, "{last:?}");
+    assert!((last[3] + end(Yaw).to_degrees()).abs() < 1e-3, "{last:?}");
+}
