@@ -17,7 +17,7 @@ use dxf::{Color, Drawing, LwPolylineVertex, Point};
 
 use crate::exchange::ExchangeError;
 use crate::exchange::looks::{is_draw, role_aci, role_name};
-use crate::scene::{Scene, SceneCar, SceneRole};
+use crate::scene::{Scene, SceneCar, SceneMark, SceneRole};
 
 /// Height of text, m.
 const TEXT_M: f64 = 0.4;
@@ -54,6 +54,15 @@ pub fn dxf(scene: &Scene, options: &DxfOptions, out: &mut dyn Write) -> Result<(
         let n = line.points_m.len() - usize::from(is_closed);
         let places = line.points_m.iter().take(n).copied();
         sheet.polyline((line.role, "LINE"), places, is_closed);
+    }
+    for piece in scene.marks.iter().flat_map(SceneMark::pieces) {
+        let places = piece.iter().map(|point| point.place_m);
+        sheet.polyline((SceneRole::TireMark, "LINE"), places, false);
+    }
+    for crush in &scene.crushes {
+        let pose = crush.motion.at(crush.from_s).pose;
+        let places = crush.outline_m.iter().map(|corner| pose.world_from_body(*corner));
+        sheet.polyline((SceneRole::Crush, "OUTLINE"), places, true);
     }
     for point in &scene.points {
         sheet.add((point.role, "POINT"), EntityType::ModelPoint(ModelPoint::new(at(point.at_m))));

@@ -26,6 +26,12 @@ pub fn add_lines(builder: &mut GltfBuilder, scene: &Scene) -> Vec<Index<Node>> {
     for of in &scene.lines {
         nodes.extend(line(builder, (&of.name, of.role), of.points_m.iter().copied()));
     }
+    for mark in &scene.marks {
+        for piece in mark.pieces() {
+            let places = piece.iter().map(|point| point.place_m);
+            nodes.extend(line(builder, (&mark.name, SceneRole::TireMark), places));
+        }
+    }
     for arrow in &scene.arrows {
         nodes.extend(line(builder, (&arrow.name, arrow.role), arrow.ends_m.into_iter()));
     }

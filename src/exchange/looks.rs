@@ -12,6 +12,8 @@ pub fn role_name(role: SceneRole) -> String {
         SceneRole::Evidence => "EVIDENCE".to_owned(),
         SceneRole::Variant(idx) => format!("VARIANT_{}", idx + 1),
         SceneRole::Muted => "OTHER".to_owned(),
+        SceneRole::TireMark => "TYRE_MARK".to_owned(),
+        SceneRole::Crush => "CRUSH".to_owned(),
     }
 }
 
@@ -25,6 +27,8 @@ pub fn role_rgb(role: SceneRole) -> [u8; 3] {
         SceneRole::Recorded => [60, 60, 60],
         SceneRole::Variant(_) => [140, 110, 40],
         SceneRole::Muted => [150, 150, 150],
+        SceneRole::TireMark => [40, 40, 40],
+        SceneRole::Crush => [190, 40, 40],
     }
 }
 
@@ -38,6 +42,8 @@ pub fn role_aci(role: SceneRole) -> u8 {
         SceneRole::Recorded => 8,
         SceneRole::Variant(_) => 42,
         SceneRole::Muted => 9,
+        SceneRole::TireMark => 250,
+        SceneRole::Crush => 1,
     }
 }
 

@@ -109,6 +109,14 @@ pub struct SceneMark {
     pub points: Vec<TireMarkPoint>,
 }
 
+impl SceneMark {
+    /// Its parts without the gaps between them.
+    pub fn pieces(&self) -> impl Iterator<Item = &[TireMarkPoint]> {
+        let pieces = self.points.split(|point| point.darkness <= 0.0);
+        pieces.filter(|piece| piece.len() > 1)
+    }
+}
+
 /// The outline of a car that another one has dented, from a time on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneCrush {

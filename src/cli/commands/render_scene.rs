@@ -14,8 +14,7 @@ use crate::cli::options::{SourceArgs, count, number};
 use crate::figure::{self, Figure, FigureElement, LineStyle, Role, Series, analysis_scene_figure};
 use crate::ranges::{CAMERA_AZIMUTH, CAMERA_DISTANCE, CAMERA_ELEVATION, GHOSTS, INSTANT};
 use crate::scene::{
-    FilmTiming, ForecastScene, LoadedGround, Scene, SimulationScene, add_forecast,
-    simulation_scene,
+    FilmTiming, ForecastScene, LoadedGround, Scene, SimulationScene, add_forecast, simulation_scene,
 };
 use crate::study::{ForceSource, PredictMotionRequest, SimulateAnswer, SimulateRequest, Trust};
 use crate::units::UnitSystem;
