@@ -22,9 +22,9 @@ impl Measure {
     /// What it is called.
     pub fn label(self) -> &'static str {
         match self {
-            Self::Length => "Length",
-            Self::Angle => "Angle",
-            Self::Area => "Area",
+            Self::Length => "Length of a line",
+            Self::Angle => "Angle of two lines",
+            Self::Area => "Area within a border",
             Self::Scale => "Scale of the orthophoto",
         }
     }

@@ -81,7 +81,7 @@ fn a_site_file_is_opened_drawn_and_asked_with() {
 #[test]
 fn lengths_are_measured_by_clicks_and_stay_on_the_ground() {
     let mut harness = on_road();
-    choose(&mut harness, "Length");
+    choose(&mut harness, "Length of a line");
     for at_m in [[4.0, -2.0], [10.0, -2.0], [10.0, 3.0]] {
         let at = on_screen(&harness, at_m);
         click(&mut harness, at);
@@ -95,13 +95,13 @@ fn lengths_are_measured_by_clicks_and_stay_on_the_ground() {
     assert!((value - 11.0).abs() < 0.2, "{value} m");
     let text = measuring.done[0].text(UnitSystem::Us).expect("a length");
     assert!(text.contains("ft (last part"), "{text}");
-    choose(&mut harness, "Area");
+    choose(&mut harness, "Area within a border");
     for at_m in [[20.0, -1.0], [26.0, -1.0], [26.0, 4.0], [20.0, 4.0]] {
         let at = on_screen(&harness, at_m);
         click(&mut harness, at);
     }
     harness.key_press(egui::Key::Escape);
-    choose(&mut harness, "Angle");
+    choose(&mut harness, "Angle of two lines");
     for at_m in [[36.0, 0.0], [30.0, 0.0], [30.0, 5.0]] {
         let at = on_screen(&harness, at_m);
         click(&mut harness, at);
