@@ -131,7 +131,8 @@ mod tests {
         let far = computed(Wheel::RearLeft, &[[0.0, 9.0], [4.0, 9.0]]);
         let near = computed(Wheel::RearLeft, &[[-1.0, 0.0], [4.0, 1.0]]);
         let other = computed(Wheel::RearRight, &[[0.0, 0.0], [4.0, 0.0]]);
-        let [of] = &MarkComparison::all(&[found.clone()], &[far, near, other.clone()])[..] else {
+        let found = [found];
+        let [of] = &MarkComparison::all(&found, &[far, near, other.clone()])[..] else {
             panic!("one mark was found");
         };
         let slope = 1.0 / 26.0_f64.sqrt();
@@ -140,7 +141,7 @@ mod tests {
         // From 1 m to 5 m beyond where the computed mark begins; the last place has its foot on it.
         assert!((of.mean_distance_m.unwrap() - 3.0 * slope).abs() < 1e-9, "{of:?}");
         assert!((of.largest_distance_m.unwrap() - 5.0 * slope).abs() < 1e-9, "{of:?}");
-        let none = MarkComparison::all(&[found], &[other]);
+        let none = MarkComparison::all(&found, &[other]);
         assert_eq!((none[0].computed_length_m, none[0].mean_distance_m), (0.0, None));
     }
 }

@@ -145,7 +145,6 @@ fn marks_grow_and_outlines_are_dented_as_time_passes() {
     assert_eq!(dented[0], 0, "before the largest overlap");
     assert!(dented[1] > 50 && dented[2] > 50, "{dented:?}");
     check_scene(&analysis, (ViewKind::Above, 3.5), ([520, 330], false), "marks_above");
-    check_scene(&analysis, (ViewKind::Perspective, 2.4), ([520, 300], true), "marks_perspective");
 }
 
 #[test]
