@@ -137,11 +137,14 @@ impl Package {
         needed.iter().map(ToString::to_string).collect()
     }
 
-    /// The lines of its files that name who has the copyright, else its authors.
+    /// The lines of its files, and of the sources of others that it compiles, that name who has the
+    /// copyright, else its authors.
     fn copyrights(&self) -> Vec<String> {
         let starts = ["license", "licence", "copying", "copyright", "notice"];
-        let mut files: Vec<PathBuf> = fs::read_dir(self.folder())
-            .expect("the sources of a crate that was built")
+        let own = fs::read_dir(self.folder()).expect("the sources of a crate that was built");
+        let others = fs::read_dir(self.folder().join("upstream")).into_iter().flatten();
+        let mut files: Vec<PathBuf> = own
+            .chain(others)
             .map(|entry| entry.expect("a file of the crate").path())
             .filter(|path| {
                 let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();

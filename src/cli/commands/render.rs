@@ -40,7 +40,7 @@ Examples:\n  impactlab render film datasets/trajectories-fea --case FE_c002 --vi
 --follow struck --slow 0..0.3=0.1 --out film.mp4\n  \
 impactlab render film datasets/trajectories-fea --case FE_c002 --fps 25 --out frames\n\n\
 JSON: out, title, n_frames, frames_per_s, duration_s, size_px [width, height], notes")]
-    Film(Box<FilmArgs>),
+    Film(FilmArgs),
 }
 
 const EXAMPLES: &str = "\

@@ -2,8 +2,8 @@
 //!
 //! The encoder is OpenH264 (H.264, constrained baseline, BSD licence), built from its source, in the
 //! container MP4. It was chosen by measurement: on one core it encodes 70 to 240 frames of a scene in a
-//! second at 1920 × 1080, while rav1e (AV1) at its fastest preset, without assembler, encodes 2 to 4 and
-//! makes the larger file. Browsers, presentation programs and the players of all systems play it. What
+//! second at 1920 × 1080, while rav1e (AV1) at its fastest preset, without assembler, encodes 1 to 4 and
+//! makes files of about the same size. Browsers, presentation programs and the players of all systems play it. What
 //! it needs more is a C++ compiler while the program is built; assembler is used where `nasm` is there.
 //! H.264 is covered by patents in some countries; who sells copies of this program in large numbers has
 //! to look at the terms of the patent pool.
