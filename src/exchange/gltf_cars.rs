@@ -15,7 +15,7 @@ use gltf::json::{Accessor, Animation, Index, Mesh, Node};
 
 use crate::exchange::gltf_buffer::GltfBuilder;
 use crate::exchange::gltf_lines::{material, mesh, primitive};
-use crate::exchange::looks::{role_name, surface_rgb};
+use crate::exchange::looks::{role_name, role_rgb};
 use crate::scene::{CarLook, CarState, Mesh as CarMesh, SceneCar, Surface, triangle_normal};
 use crate::vehicle::Wheel;
 
@@ -144,7 +144,7 @@ fn car_mesh(
         let positions: Vec<[f32; 3]> = corners.iter().flatten().map(|at| single(*at)).collect();
         let normals: Vec<[f32; 3]> =
             corners.iter().flat_map(|of| [single(triangle_normal(*of)); 3]).collect();
-        let rgb = surface_rgb(surface, car.role);
+        let rgb = surface.rgb(role_rgb(car.role));
         let title = format!("{} {surface:?}", role_name(car.role));
         let of_material = material(builder, title, (rgb, opacity));
         let lists = (positions.as_slice(), normals.as_slice());

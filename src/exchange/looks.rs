@@ -1,6 +1,6 @@
 //! Names and colours of what a scene shows, for formats that are drawn by other programs.
 
-use crate::scene::{CarLook, SceneCar, SceneRole, Surface};
+use crate::scene::{CarLook, SceneCar, SceneRole};
 
 /// Name of a role, as it begins the names of layers and materials.
 pub fn role_name(role: SceneRole) -> String {
@@ -44,22 +44,6 @@ pub fn role_aci(role: SceneRole) -> u8 {
         SceneRole::Muted => 9,
         SceneRole::TireMark => 250,
         SceneRole::Crush => 1,
-    }
-}
-
-/// Colour of a material of a car; of its body, the colour of its role.
-pub fn surface_rgb(surface: Surface, role: SceneRole) -> [u8; 3] {
-    match surface {
-        Surface::Body => role_rgb(role),
-        Surface::Trim => [52, 55, 58],
-        Surface::Windscreen => [58, 78, 92],
-        Surface::Glass => [36, 44, 52],
-        Surface::HeadLamp => [250, 246, 226],
-        Surface::TailLamp => [176, 24, 32],
-        Surface::Underbody => [24, 25, 27],
-        Surface::Tyre => [38, 39, 41],
-        Surface::Hub => [206, 209, 212],
-        Surface::HubGap => [96, 100, 104],
     }
 }
 

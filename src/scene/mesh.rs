@@ -25,6 +25,26 @@ pub enum Surface {
     HubGap,
 }
 
+impl Surface {
+    /// Colour of the material, 8 bits each for red, green and blue.
+    ///
+    /// - `body`: colour of the painted body.
+    pub fn rgb(self, body: [u8; 3]) -> [u8; 3] {
+        match self {
+            Self::Body => body,
+            Self::Trim => [52, 55, 58],
+            Self::Windscreen => [58, 78, 92],
+            Self::Glass => [36, 44, 52],
+            Self::HeadLamp => [250, 246, 226],
+            Self::TailLamp => [176, 24, 32],
+            Self::Underbody => [24, 25, 27],
+            Self::Tyre => [38, 39, 41],
+            Self::Hub => [206, 209, 212],
+            Self::HubGap => [96, 100, 104],
+        }
+    }
+}
+
 /// A triangle of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MeshTriangle {

@@ -18,6 +18,8 @@ const USUAL: f32 = 12.0;
 const EDGE: f32 = 6.0;
 /// Labels along an axis, at most.
 const MAX_LABELS: usize = 60;
+/// Steps by which a name gives way to others.
+const MAX_MOVES: usize = 8;
 /// Wanted length of the scale bar, points.
 const BAR_POINTS: f64 = 110.0;
 /// Length of the arrows of the axes, points.
@@ -222,14 +224,8 @@ impl Labels<'_> {
             let Some(at) = at else { continue };
             let (font, color) = (FontId::proportional(SMALL + 1.0), zone_color(self.dark));
             let galley = painter.layout_no_wrap(zone.name.clone(), font, color);
-            let mut place = Align2::CENTER_CENTER.anchor_size(at, galley.size());
-            for _ in 0..8 {
-                let Some(hit) = taken.iter().find(|other| other.intersects(place.expand(2.0)))
-                else {
-                    break;
-                };
-                place = place.translate(vec2(0.0, hit.bottom() + 4.0 - place.top()));
-            }
+            let place = Align2::CENTER_CENTER.anchor_size(at, galley.size());
+            let place = below_others(place, taken);
             self.name((painter, place), (galley, color), taken);
         }
     }
@@ -354,14 +350,8 @@ impl Labels<'_> {
             let Some(at) = self.on_screen([x, y, 0.0]) else { continue };
             let galley =
                 painter.layout_no_wrap(name.to_owned(), FontId::proportional(SMALL), color);
-            let mut place = Align2::CENTER_TOP.anchor_size(at + vec2(0.0, 9.0), galley.size());
-            for _ in 0..8 {
-                let Some(hit) = taken.iter().find(|other| other.intersects(place.expand(2.0)))
-                else {
-                    break;
-                };
-                place = place.translate(vec2(0.0, hit.bottom() + 4.0 - place.top()));
-            }
+            let place = Align2::CENTER_TOP.anchor_size(at + vec2(0.0, 9.0), galley.size());
+            let place = below_others(place, taken);
             self.name((painter, place), (galley, color), taken);
         }
     }
@@ -391,4 +381,15 @@ fn number(value: f64, step: f64) -> String {
     let decimals = (-step.log10().floor()).clamp(0.0, 6.0) as usize;
     // Adding zero turns a negative zero into a positive one.
     format!("{:.decimals$}", value + 0.0)
+}
+
+/// The place of a name, moved down until it stands on none of those that are there.
+fn below_others(mut place: Rect, taken: &[Rect]) -> Rect {
+    for _ in 0..MAX_MOVES {
+        let Some(hit) = taken.iter().find(|other| other.intersects(place.expand(2.0))) else {
+            break;
+        };
+        place = place.translate(vec2(0.0, hit.bottom() + 4.0 - place.top()));
+    }
+    place
 }

@@ -96,17 +96,8 @@ pub const LOCKED_COLOR: Rgb = [214, 39, 70];
 /// - `is_locked`: of the wheel, for its disc.
 pub fn surface_color(surface: Surface, body: Rgb, is_locked: bool) -> Rgb {
     match surface {
-        Surface::Body => body,
-        Surface::Trim => [52, 55, 58],
-        Surface::Windscreen => [58, 78, 92],
-        Surface::Glass => [36, 44, 52],
-        Surface::HeadLamp => [250, 246, 226],
-        Surface::TailLamp => [176, 24, 32],
-        Surface::Underbody => [24, 25, 27],
-        Surface::Tyre => [38, 39, 41],
         Surface::Hub | Surface::HubGap if is_locked => LOCKED_COLOR,
-        Surface::Hub => [206, 209, 212],
-        Surface::HubGap => [96, 100, 104],
+        surface => surface.rgb(body),
     }
 }
 
