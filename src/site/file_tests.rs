@@ -131,7 +131,7 @@ fn a_wrong_file_is_refused_with_line_and_key() {
             with("points_m = [[-10, 0], [10, 0]]\n", "distance_m = 0.001\n"),
             "site.toml:11:14: orthophoto.distance_m is 0.001, expected 0.05 to 100000",
         ),
-        (with("width_ft = 12\n", ""), "site.toml:13:3: lane[0].width_m is missing"),
+        (with("width_ft = 12\n", ""), "site.toml:13:1: lane[0].width_m is missing"),
         (
             with("width_ft = 12", "width_m = 0.1"),
             "site.toml:16:11: lane[0].width_m is 0.1, expected 0.5 to 50",
@@ -147,7 +147,7 @@ fn a_wrong_file_is_refused_with_line_and_key() {
         ),
         (
             with("friction = 0.35", "mu = 0.35"),
-            "site.toml:22:3: friction_zone[0].friction is missing",
+            "site.toml:22:1: friction_zone[0].friction is missing",
         ),
         (
             with("[20, 3.5], [8, 3.5]", "[8, 3.5], [20, 3.5]"),

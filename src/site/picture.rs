@@ -17,6 +17,9 @@ const ENDINGS: [(&str, ImageFormat); 5] = [
     ("tiff", ImageFormat::Tiff),
 ];
 
+/// Memory of a decoder that does not depend on the size of the picture, bytes.
+const DECODER_BYTES: u64 = 16 << 20;
+
 /// Whether a path has the ending of a picture that is read as an orthophoto.
 pub fn is_picture_file(path: &Path) -> bool {
     format_of(path).is_some()
@@ -46,8 +49,9 @@ pub fn read_picture(path: &Path) -> Result<RgbaImage, SiteError> {
     let (width, height) = decoder.dimensions();
     checked_size(path, [width, height])?;
     let mut limits = Limits::default();
-    // Up to 16 bits of 4 colours, and what the decoder needs beside them.
-    limits.max_alloc = Some(9 * MAX_PICTURE_PIXELS);
+    // Up to 16 bits of 4 colours, and what the decoder needs beside them. The size is that of the header,
+    // so that a small file of a small picture makes no decoder take much.
+    limits.max_alloc = Some(9 * u64::from(width) * u64::from(height) + DECODER_BYTES);
     decoder.set_limits(limits).map_err(wrong)?;
     Ok(image::DynamicImage::from_decoder(decoder).map_err(wrong)?.into_rgba8())
 }

@@ -54,8 +54,13 @@ impl WorldFile {
         let mut numbers = [0.0; 6];
         for (idx, number) in numbers.iter_mut().enumerate() {
             let found = at(idx).parse().ok().filter(|number: &f64| number.is_finite());
-            *number = found
-                .ok_or_else(|| wrong(idx + 1, at(idx), "a number, the six of a world file"))?;
+            *number = found.ok_or_else(|| {
+                let expected = "a number, the six of a world file";
+                match lines.get(idx) {
+                    Some(line) => wrong(idx + 1, line, expected),
+                    None => wrong(lines.len().max(1), "the end of the file", expected),
+                }
+            })?;
         }
         if let Some(idx) = (6..lines.len()).find(|idx| !at(*idx).is_empty()) {
             return Err(wrong(idx + 1, at(idx), "no more than the six lines of a world file"));

@@ -166,7 +166,7 @@ fn zones_are_drawn_where_they_are_and_nowhere_else() {
             .map(|[x, y, _]| [x, y])
             .collect();
         let [a, b] = [&with, &without].map(|scene| drawn(scene, camera));
-        let mut n_inside = 0;
+        let (mut n_inside, mut n_changed) = (0, 0);
         for (idx, (a, b)) in a.iter().zip(&b).enumerate() {
             let pixel = [(idx % SIZE[0]) as f64 + 0.5, (idx / SIZE[0]) as f64 + 0.5];
             // The border is a line of 1.6 pixels.
@@ -176,9 +176,12 @@ fn zones_are_drawn_where_they_are_and_nowhere_else() {
             }
             let is_inside = holds(at);
             n_inside += usize::from(is_inside);
-            assert_eq!(is_inside, a != b, "{kind:?} at {pixel:?}: {a:?} {b:?}");
+            n_changed += usize::from(a != b);
+            assert!(is_inside || a == b, "{kind:?} at {pixel:?}: {a:?} {b:?}");
         }
         assert!(n_inside > 2000, "{kind:?}: {n_inside}");
+        // The lines of the grid are drawn over the zone.
+        assert!(n_changed > n_inside * 9 / 10, "{kind:?}: {n_changed} of {n_inside}");
     }
 }
 
