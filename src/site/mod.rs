@@ -34,3 +34,4 @@ pub use parts::{DrawingFile, DrawingUnit, EdgeLine, Kerb, Lane, Orthophoto, Site
 pub use picture::{is_picture_file, picture_size_px, read_picture};
 pub use pixel_map::PixelMap;
 pub use world_file::{WorldFile, world_file_beside};
+pub use write::NotBelow;

@@ -159,7 +159,7 @@ impl Ground<'_> {
     }
 
     /// Whether there is a picture of the ground.
-    fn has_picture(&self) -> bool {
+    pub fn has_picture(&self) -> bool {
         self.scene.ground.as_ref().is_some_and(|site| site.has_picture())
     }
 

@@ -1,5 +1,7 @@
 //! Marks of tyres on the ground, in the picture and in the order of time.
 
+use egui::Color32;
+
 use crate::render::scene::ground::Ground;
 use crate::render::scene::lines::Stroke;
 use crate::render::scene::shade::{ground_color, mark_color, mixed};
@@ -12,6 +14,9 @@ const LEAST_PIECE: f32 = 1.2;
 const LEAST_HALF_WIDTH: f32 = 0.75;
 /// Share of the colour of rubber in the faintest and in the darkest mark.
 const SHARES: [f32; 2] = [0.30, 0.92];
+
+/// Colour of the faintest marks on the picture of a road, darker than its asphalt.
+const ASPHALT: Color32 = Color32::from_rgb(92, 92, 92);
 
 /// Pieces of marks with the times from which on they are there.
 #[derive(Default)]
@@ -56,11 +61,20 @@ fn add_mark(ground: &Ground<'_>, mark: &SceneMark, timed: &mut Vec<(f64, Stroke)
         if before.darkness > 0.0 {
             let half_width = half_width(ground, (before, point), way.map(|part| part / length));
             let share = SHARES[0] + (SHARES[1] - SHARES[0]) * before.darkness as f32;
-            let color = mixed(ground_color(ground.dark), mark_color(ground.dark), share);
+            let (under, rubber) = colors_of(ground);
+            let color = mixed(under, rubber, share);
             let stroke = Stroke { ends: [start, end], half_width, color, opacity: 1.0 };
             timed.push((point.time_s, stroke));
         }
         from = Some((point, end));
+    }
+}
+
+/// Colours of the ground and of rubber on it. A picture of a road has its own brightness in both themes.
+fn colors_of(ground: &Ground<'_>) -> (Color32, Color32) {
+    match ground.has_picture() {
+        true => (ASPHALT, mark_color(false)),
+        false => (ground_color(ground.dark), mark_color(ground.dark)),
     }
 }
 
