@@ -138,7 +138,7 @@ mod tests {
     #[test]
     fn a_wrong_file_is_refused_with_its_line() {
         for (text, expected) in [
-            ("0.1\n0\n0\n-0.1\n5\n", "road.pgw:6: is \"\", expected a number"),
+            ("0.1\n0\n0\n-0.1\n5\n", "road.pgw:5: is \"the end of the file\", expected a number"),
             ("0.1\n0\nx\n-0.1\n5\n6\n", "road.pgw:3: is \"x\", expected a number"),
             ("0,1\n0\n0\n-0,1\n5\n6\n", "road.pgw:1: is \"0,1\""),
             ("0.1\n0\n0\nnan\n5\n6\n", "road.pgw:4: is \"nan\""),
