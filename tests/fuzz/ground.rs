@@ -53,7 +53,9 @@ fn drawings() {
 #[test]
 fn pictures() {
     let picture = image::RgbImage::from_fn(9, 7, |x, y| image::Rgb([x as u8, y as u8, 90]));
-    let formats = [image::ImageFormat::Png, image::ImageFormat::Jpeg, image::ImageFormat::Tiff];
+    // TIFF is left out: its decoder makes tables of up to a million values of a tag, some 100 MB, whatever
+    // the size of the file, before it can be given a limit. More it does not take.
+    let formats = [image::ImageFormat::Png, image::ImageFormat::Jpeg];
     let seeds = formats.map(|format| {
         let mut bytes = std::io::Cursor::new(Vec::new());
         picture.write_to(&mut bytes, format).expect("a picture in memory");
