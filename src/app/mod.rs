@@ -42,6 +42,8 @@ mod response;
 mod scene;
 mod source;
 mod state;
+#[cfg(test)]
+mod state_tests;
 mod store;
 mod training;
 mod training_status;

@@ -1,0 +1,50 @@
+//! What of the state is stored between runs.
+
+use std::path::PathBuf;
+
+use crate::app::state::*;
+use crate::app::{Pane, Source, Workspace, Workspaces};
+use crate::collision::ChannelClass;
+use crate::units::UnitSystem;
+
+#[test]
+fn project_and_view_survive_a_restart() {
+    let mut state = State::default();
+    state.project.subject =
+        Some(Subject::Case { dataset: PathBuf::from("d"), case: "c001".to_owned() });
+    state.project.duration_s = 2.5;
+    state.project.channel_class = Some(ChannelClass::Cfc60);
+    state.view.units = UnitSystem::Us;
+    state.view.filter = "spin=1".to_owned();
+    state.project.force.scenario.mass_kg[1] = 1234.0;
+    state.project.force.model = Some(PathBuf::from("mine.safetensors"));
+    state.view.force.bands[0] = false;
+    state.session.sources.push(Source::failed(PathBuf::from("a.csv"), "gone".to_owned()));
+    let (restored, sources) = State::restore(&state.save().unwrap()).unwrap();
+    assert_eq!(restored.project, state.project);
+    assert_eq!(restored.view, state.view);
+    assert_eq!(sources, [PathBuf::from("a.csv")]);
+}
+
+#[test]
+fn a_layout_without_the_newer_panes_is_put_back() {
+    let mut state = State::default();
+    let tiles = &mut state.view.workspaces.layout_mut(Workspace::Models).tiles;
+    let pane =
+        |tile: &egui_tiles::Tile<Pane>| matches!(tile, egui_tiles::Tile::Pane(Pane::Training));
+    let training = tiles.iter().find(|(_, tile)| pane(tile)).map(|(id, _)| *id).unwrap();
+    tiles.remove(training);
+    let (restored, _) = State::restore(&state.save().unwrap()).unwrap();
+    assert_eq!(restored.view.workspaces, Workspaces::default());
+}
+
+#[test]
+fn a_damaged_or_foreign_save_is_not_read() {
+    let text = State::default().save().unwrap();
+    let error = |text: &str| State::restore(text).err().unwrap();
+    assert!(matches!(error(&text[..text.len() / 2]), RestoreError::Damaged(_)));
+    let later = error(&text.replace("\"version\":1", "\"version\":99"));
+    assert!(later.is_of_later_version(), "{later}");
+    let earlier = error(&text.replace("\"version\":1", "\"version\":0"));
+    assert!(!earlier.is_of_later_version(), "{earlier}");
+}
