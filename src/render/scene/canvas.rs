@@ -11,11 +11,13 @@ use egui::Color32;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-use crate::render::scene::frame::{Frame, draw_shadow};
+use crate::render::scene::frame::Frame;
 use crate::render::scene::ground::Ground;
 use crate::render::scene::lines::{Rows, Stroke};
 use crate::render::scene::marks::MarkStrokes;
+use crate::render::scene::moving_lines::MovingLines;
 use crate::render::scene::raster::{TILE, Tile};
+use crate::render::scene::shadow::draw_shadow;
 use crate::render::scene::underlay::Underlay;
 use crate::render::scene::{Camera, Projection};
 use crate::scene::Scene;
@@ -115,7 +117,7 @@ impl SceneCanvas {
         let projection = look.projection();
         self.frame.fill(&ground_of(scene, look, &projection), time_s);
         self.pixels.resize(self.ground.len(), Color32::BLACK);
-        let Frame { objects, shadows, below, above, .. } = &self.frame;
+        let Frame { objects, shadows, lines: MovingLines { below, above }, .. } = &self.frame;
         let marks = self.marks.until(time_s);
         let ground = self.ground.par_chunks(width * TILE);
         let rows = self.pixels.par_chunks_mut(width * TILE).zip(ground).enumerate();

@@ -3,15 +3,18 @@
 
 mod camera;
 mod canvas;
+mod cars;
 mod frame;
 mod ground;
 mod labels;
 mod lines;
 mod marks;
+mod moving_lines;
 mod picture;
 mod raster;
 mod row_map;
 mod shade;
+mod shadow;
 mod underlay;
 #[cfg(test)]
 mod underlay_tests;

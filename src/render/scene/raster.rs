@@ -30,8 +30,6 @@ pub struct Object {
     /// Opacity, 0 to 1. What is not opaque lets the ground shine through, shows its own front only, and
     /// lies behind everything that is opaque, so that this stays clear.
     pub opacity: f32,
-    /// The larger, the nearer.
-    pub nearness: f32,
 }
 
 impl Object {
