@@ -64,6 +64,9 @@ use egui_tiles::Tree;
 
 use crate::app::store::{OpenedState, Store, open_state};
 use crate::data::Severity;
+use crate::error_chain;
+use crate::render::scene::SceneView;
+use crate::render::scene::gpu::WindowDevice;
 use crate::render::{DensityGpu, theme};
 
 pub use case::{Leaving, OpenCase, VariantCommand};
@@ -81,6 +84,7 @@ pub use panes::Pane;
 pub use question_job::{Answered, QuestionJob};
 pub use reconstruction::{FollowedParticle, ReconstructionCommand, ReconstructionSession};
 pub use recording::OverlaidRecording;
+pub use renderer::RendererChoice;
 pub use replay::ReplayStatus;
 pub use report::{MadeReport, ReportCommand, ReportSession, ReportView};
 pub use response::{DensityChoice, ForceChoice, MotionAnswer, ResponseSession, TrainingMode};
@@ -118,10 +122,11 @@ pub struct App {
 /// - `paths`: files and folders to open. If there are none, the paths that were open at the end of
 ///   the last run are opened, otherwise the data sets of the repository. If those are not found
 ///   either, the window shows the example scenario.
+/// - `choice`: what draws the window.
 ///
 /// # Errors
 /// [`WindowError`] if there is no display or no graphics driver.
-pub fn run(paths: Vec<PathBuf>) -> Result<(), WindowError> {
+pub fn run(paths: Vec<PathBuf>, choice: RendererChoice) -> Result<(), WindowError> {
     let viewport = egui::ViewportBuilder::default()
         .with_icon(icon())
         .with_title("impactlab")
@@ -129,7 +134,7 @@ pub fn run(paths: Vec<PathBuf>) -> Result<(), WindowError> {
         .with_inner_size([1440.0, 900.0])
         .with_min_inner_size([900.0, 600.0])
         .with_drag_and_drop(true);
-    let options = eframe::NativeOptions { viewport, ..renderer::options() };
+    let options = eframe::NativeOptions { viewport, ..renderer::options(choice) };
     let state_file = eframe::storage_dir(APP_ID).map(|folder| folder.join(STATE_FILE));
     let create = |cc: &CreationContext<'_>| -> Result<Box<dyn eframe::App>, _> {
         Ok(Box::new(App::new(cc, paths, state_file)))
@@ -171,6 +176,7 @@ impl App {
             state.open_data_folder((folder, store.is_some()), &cc.egui_ctx);
         }
         state.session.response.gpu = graphics_processor(cc);
+        draw_scenes_on(cc, &mut state);
         if to_open.is_empty() && state.project.subject.is_none() {
             state.project.subject = Some(Subject::Scenario);
         }
@@ -218,6 +224,11 @@ impl eframe::App for App {
     fn logic(&mut self, context: &Context, _frame: &mut eframe::Frame) {
         let mut commands = Vec::new();
         self.state.update(context, &mut commands);
+        let session = &mut self.state.session;
+        let views = [&mut session.scene.view, &mut session.reconstruction.cars.view];
+        for refusal in views.map(SceneView::take_refusal).into_iter().flatten() {
+            self.state.say(Severity::Warning, scenes_on_cpu(&refusal));
+        }
         keyboard::commands(context, self.state.session.has_dialog(), &mut commands);
         let dropped = context.input(|input| input.raw.dropped_files.clone());
         let paths: Vec<PathBuf> = dropped.into_iter().map(|file| file.path().to_owned()).collect();
@@ -397,6 +408,23 @@ impl App {
             }
         }
     }
+}
+
+/// Lets the window's graphics device draw the scenes, if it has one that can.
+fn draw_scenes_on(cc: &CreationContext<'_>, state: &mut State) {
+    let Some(window) = &cc.wgpu_render_state else { return };
+    match WindowDevice::new(window) {
+        Ok(device) => {
+            state.session.scene.view.draw_on(device.clone());
+            state.session.reconstruction.cars.view.draw_on(device);
+        }
+        Err(error) => state.say(Severity::Warning, scenes_on_cpu(&error_chain(&error))),
+    }
+}
+
+/// Says why the graphics processor does not draw the scenes.
+fn scenes_on_cpu(why: &str) -> String {
+    format!("scenes are drawn by the processor, more slowly: {why}")
 }
 
 /// Returns the window's graphics processor for density maps. `None` if there is none or if it is

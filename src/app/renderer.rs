@@ -8,9 +8,31 @@
 use eframe::wgpu::{Backends, DeviceType, Instance, InstanceDescriptor};
 use eframe::{NativeOptions, Renderer};
 
-/// The options of the window with the renderer that suits the machine.
-pub fn options() -> NativeOptions {
-    if has_graphics_processor() || !has_open_gl() {
+/// What draws the window.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum RendererChoice {
+    /// What suits the machine.
+    #[default]
+    Automatic,
+    /// wgpu, which also draws the scenes.
+    Wgpu,
+    /// OpenGL; the scenes are drawn on the CPU.
+    OpenGl,
+}
+
+impl RendererChoice {
+    fn is_wgpu(self) -> bool {
+        match self {
+            Self::Automatic => has_graphics_processor() || !has_open_gl(),
+            Self::Wgpu => true,
+            Self::OpenGl => false,
+        }
+    }
+}
+
+/// The options of the window with a renderer.
+pub fn options(choice: RendererChoice) -> NativeOptions {
+    if choice.is_wgpu() {
         return NativeOptions { renderer: Renderer::Wgpu, ..NativeOptions::default() };
     }
     // Noise against banding has nothing to do in flat colours.

@@ -13,7 +13,8 @@ use std::sync::{Mutex, PoisonError};
 
 use eframe::wgpu;
 
-use crate::render::density_buffers::{Buffers, checked};
+use crate::render::density_buffers::Buffers;
+use crate::render::gpu::{GpuError, check_limit, checked, headless_device};
 use crate::uncertainty::{PlanarGrid, PlanarKernel, PlanarMixture};
 
 /// Number of points along a side of the tile that a workgroup computes, as in the shader.
@@ -25,37 +26,15 @@ const KERNEL_LEN: usize = 8;
 /// Reason for which the graphics processor cannot compute a density.
 #[derive(Debug, thiserror::Error)]
 pub enum DensityError {
-    /// No graphics driver was found.
-    #[error(
-        "no graphics driver is there; install one, as root on Debian or Ubuntu: \
-         apt-get install --no-install-recommends mesa-vulkan-drivers libvulkan1"
-    )]
-    NoAdapter(#[source] wgpu::RequestAdapterError),
-    /// The graphics driver does not provide a device.
-    #[error("the graphics driver gives no device")]
-    NoDevice(#[from] wgpu::RequestDeviceError),
-    /// The computation exceeds a limit of the device.
-    #[error("{what} is {got}, the graphics device takes {most}")]
-    Limit {
-        /// Quantity that exceeds the limit.
-        what: &'static str,
-        /// Value of the quantity.
-        got: u64,
-        /// Largest permitted value.
-        most: u64,
-    },
+    /// The graphics processor cannot be used.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
     /// The distance between the points of the grid is not positive and finite.
     #[error("step between points is {step_m:?} m, expected more than 0")]
     Step {
         /// Distance along x and y, m.
         step_m: [f64; 2],
     },
-    /// The device rejected a command.
-    #[error("the graphics device refuses a command")]
-    Device(#[from] wgpu::Error),
-    /// The values could not be read from the device.
-    #[error("the graphics device returns no values")]
-    NoValues(#[source] Box<dyn std::error::Error + Send + Sync>),
 }
 
 /// A graphics device that is ready to compute densities. Its buffers are kept between calls.
@@ -71,11 +50,11 @@ impl DensityGpu {
     /// Prepares the computation on an existing device, such as that of the window.
     ///
     /// # Errors
-    /// [`DensityError::Limit`] if a workgroup of the device is smaller than a tile of 16 × 16
-    /// points, [`DensityError::Device`] if the device rejects the shader.
-    pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, DensityError> {
+    /// [`GpuError::Limit`] if a workgroup of the device is smaller than a tile of 16 × 16 points,
+    /// [`GpuError::Device`] if the device rejects the shader.
+    pub fn new(device: wgpu::Device, queue: wgpu::Queue) -> Result<Self, GpuError> {
         let most = device.limits().max_compute_invocations_per_workgroup;
-        check("the size of a workgroup", (TILE * TILE) as u64, most.into())?;
+        check_limit("the size of a workgroup", (TILE * TILE) as u64, most.into())?;
         let pipeline = checked(&device, || {
             let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some("density"),
@@ -96,20 +75,9 @@ impl DensityGpu {
     /// Prepares the computation on a new device, without a window.
     ///
     /// # Errors
-    /// [`DensityError::NoAdapter`], [`DensityError::NoDevice`], and those of [`DensityGpu::new`].
-    pub fn headless() -> Result<Self, DensityError> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-        let adapter = instance.request_adapter(&wgpu::RequestAdapterOptions {
-            power_preference: wgpu::PowerPreference::HighPerformance,
-            ..wgpu::RequestAdapterOptions::default()
-        });
-        let adapter = pollster::block_on(adapter).map_err(DensityError::NoAdapter)?;
-        let device = adapter.request_device(&wgpu::DeviceDescriptor {
-            label: Some("density"),
-            required_limits: adapter.limits(),
-            ..wgpu::DeviceDescriptor::default()
-        });
-        let (device, queue) = pollster::block_on(device)?;
+    /// Those of [`headless_device`] and of [`DensityGpu::new`].
+    pub fn headless() -> Result<Self, GpuError> {
+        let (device, queue) = headless_device()?;
         Self::new(device, queue)
     }
 
@@ -121,9 +89,9 @@ impl DensityGpu {
     /// Density at the points of a grid, 1/m², row by row; see [`PlanarMixture::density_on`].
     ///
     /// # Errors
-    /// [`DensityError::Step`] for points that coincide, [`DensityError::Limit`] for more points or
-    /// parts than the device can take, [`DensityError::Device`] if it rejects a command,
-    /// [`DensityError::NoValues`] if the values cannot be read.
+    /// [`DensityError::Step`] for points that coincide; within [`DensityError::Gpu`],
+    /// [`GpuError::Limit`] for more points or parts than the device can take, [`GpuError::Device`] if it
+    /// rejects a command, [`GpuError::NoValues`] if the values cannot be read.
     pub fn density_on(
         &self,
         mixture: &PlanarMixture,
@@ -160,31 +128,27 @@ impl DensityGpu {
     }
 
     /// Sizes of the kernels and of the values, bytes.
-    fn bytes(&self, n_kernels: usize, n_points: usize) -> Result<[u64; 2], DensityError> {
+    fn bytes(&self, n_kernels: usize, n_points: usize) -> Result<[u64; 2], GpuError> {
         let limits = self.device.limits();
         let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         // The shader computes indices with 32 bits.
         let most = most.min(u32::MAX.into());
         let of = |n: usize, len: usize| (n as u64).saturating_mul((len * size_of::<f32>()) as u64);
         let bytes = [of(n_kernels, KERNEL_LEN), of(n_points, 1)];
-        check("the size of the parts in bytes", bytes[0], most)?;
-        check("the size of the grid in bytes", bytes[1], most)?;
+        check_limit("the size of the parts in bytes", bytes[0], most)?;
+        check_limit("the size of the grid in bytes", bytes[1], most)?;
         Ok(bytes)
     }
 
     /// Numbers of tiles along x and y.
-    fn tiles(&self, grid: &PlanarGrid) -> Result<[u32; 2], DensityError> {
+    fn tiles(&self, grid: &PlanarGrid) -> Result<[u32; 2], GpuError> {
         let tiles = grid.size.map(|n| n.div_ceil(TILE));
         let most = self.device.limits().max_compute_workgroups_per_dimension;
         for n in tiles {
-            check("the number of tiles along a side", n as u64, most.into())?;
+            check_limit("the number of tiles along a side", n as u64, most.into())?;
         }
         Ok(tiles.map(|n| n as u32))
     }
-}
-
-fn check(what: &'static str, got: u64, most: u64) -> Result<(), DensityError> {
-    if got > most { Err(DensityError::Limit { what, got, most }) } else { Ok(()) }
 }
 
 /// Sides of a cell, m; 1 m along an axis with a single point whose step is not valid.

@@ -1,11 +1,9 @@
 //! Buffers of the density computation on the graphics processor, and the commands that use them.
 
-use std::sync::mpsc;
-
 use eframe::wgpu;
 use wgpu::BufferUsages;
 
-use crate::render::DensityError;
+use crate::render::gpu::{GpuError, read_buffer};
 
 /// Size of the grid's uniform buffer, bytes: columns, rows and kernels, and a word of padding.
 const GRID_BYTES: u64 = 16;
@@ -95,48 +93,17 @@ impl Buffers {
     /// - `scale`: factor by which the values are multiplied.
     ///
     /// # Errors
-    /// [`DensityError::NoValues`], for example if the device was lost.
+    /// [`GpuError::NoValues`], for example if the device was lost.
     pub(super) fn read(
         &self,
         device: &wgpu::Device,
         n_points: usize,
         scale: f64,
-    ) -> Result<Vec<f64>, DensityError> {
+    ) -> Result<Vec<f64>, GpuError> {
         let bytes = (n_points * size_of::<f32>()) as u64;
-        let (sender, receiver) = mpsc::channel();
-        self.mapped.map_async(wgpu::MapMode::Read, 0..bytes, move |outcome| {
-            // The receiver no longer exists if polling has failed below.
-            let _ = sender.send(outcome);
-        });
-        device.poll(wgpu::PollType::wait_indefinitely()).map_err(no_values)?;
-        receiver.recv().map_err(no_values)?.map_err(no_values)?;
-        let view = self.mapped.get_mapped_range(0..bytes).map_err(no_values)?;
-        let (words, _) = view.as_chunks();
-        let values =
-            words.iter().map(|word| scale * f64::from(f32::from_le_bytes(*word))).collect();
-        drop(view);
-        self.mapped.unmap();
-        Ok(values)
+        read_buffer(device, &self.mapped, bytes, |view| {
+            let (words, _) = view.as_chunks();
+            words.iter().map(|word| scale * f64::from(f32::from_le_bytes(*word))).collect()
+        })
     }
-}
-
-fn no_values(source: impl std::error::Error + Send + Sync + 'static) -> DensityError {
-    DensityError::NoValues(Box::new(source))
-}
-
-/// Runs commands and turns an error that the device reports for them into a result.
-///
-/// # Errors
-/// [`DensityError::Device`] for an internal or a validation error or if memory is exhausted.
-pub(super) fn checked<T>(
-    device: &wgpu::Device,
-    commands: impl FnOnce() -> T,
-) -> Result<T, DensityError> {
-    use wgpu::ErrorFilter::{Internal, OutOfMemory, Validation};
-    let scopes = [Internal, OutOfMemory, Validation].map(|filter| device.push_error_scope(filter));
-    let done = commands();
-    // The error scopes are closed in the reverse order of opening.
-    let errors: Vec<_> =
-        scopes.into_iter().rev().filter_map(|scope| pollster::block_on(scope.pop())).collect();
-    errors.into_iter().next().map_or(Ok(done), |error| Err(error.into()))
 }

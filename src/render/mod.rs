@@ -4,6 +4,7 @@
 mod density;
 mod density_buffers;
 pub mod film;
+mod gpu;
 mod legend;
 mod offscreen;
 mod plot;
@@ -16,6 +17,7 @@ mod ticks;
 mod trust;
 
 pub use density::{DensityError, DensityGpu};
+pub use gpu::GpuError;
 pub use offscreen::{Canvas, RenderError, draw_offscreen, figure_image, save_png};
 pub use plot::{FigureOptions, FigureResponse, figure_ui};
 pub use report::report_picture;

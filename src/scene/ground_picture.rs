@@ -7,7 +7,7 @@ use image::RgbaImage;
 use crate::site::PixelMap;
 
 /// Side of a tile, pixels; a power of two.
-const TILE: usize = 128;
+pub const TILE: usize = 128;
 
 /// A picture of the ground. Its levels halve in size, each pixel of one being the mean of four of the
 /// level before, so that distant ground neither flickers nor is read pixel by pixel.
@@ -15,23 +15,39 @@ const TILE: usize = 128;
 pub struct GroundPicture {
     /// Where the pixels of the first level lie.
     pub map: PixelMap,
-    levels: Arc<[Level]>,
+    levels: Arc<[PictureLevel]>,
 }
+
+/// Smaller copies, the picture itself counted, at most: the smallest is 1/256 as wide.
+const MAX_LEVELS: usize = 9;
 
 /// One level: pixels `[red, green, blue, opacity]` in square tiles, so that neighbours in any direction
 /// are close in memory.
 #[derive(Debug, PartialEq)]
-struct Level {
+pub struct PictureLevel {
     size: [usize; 2],
     tiles_across: usize,
     pixels: Vec<[u8; 4]>,
 }
 
-impl Level {
+impl PictureLevel {
     fn new([width, height]: [usize; 2]) -> Self {
         let [across, down] = [width, height].map(|side| side.div_ceil(TILE).max(1));
         let pixels = vec![[0; 4]; across * down * TILE * TILE];
         Self { size: [width, height], tiles_across: across, pixels }
+    }
+
+    /// Width and height, pixels.
+    pub fn size(&self) -> [usize; 2] {
+        self.size
+    }
+
+    /// Its tiles: the left top pixel of each, and [`TILE`] rows of as many pixels
+    /// `[red, green, blue, opacity]`, of which those beyond the edge mean nothing.
+    pub fn tiles(&self) -> impl Iterator<Item = ([usize; 2], &[[u8; 4]])> {
+        let of = |idx: usize| [idx % self.tiles_across, idx / self.tiles_across];
+        let tiles = self.pixels.chunks_exact(TILE * TILE).enumerate();
+        tiles.map(move |(idx, pixels)| (of(idx).map(|place| place * TILE), pixels))
     }
 
     fn index(&self, x: usize, y: usize) -> usize {
@@ -44,6 +60,18 @@ impl Level {
         let [width, height] = self.size;
         let idx = self.index(x.min(width.saturating_sub(1)), y.min(height.saturating_sub(1)));
         self.pixels.get(idx).copied().unwrap_or_default()
+    }
+
+    /// A pixel, the one at its right, and those below them.
+    fn four_at(&self, x: usize, y: usize) -> [[u8; 4]; 4] {
+        let is_within = |at: usize, side: usize| at % TILE + 1 < TILE && at + 1 < side;
+        if is_within(x, self.size[0]) && is_within(y, self.size[1]) {
+            let start = self.index(x, y);
+            if let Some(pixels) = self.pixels.get(start..start + TILE + 2) {
+                return [pixels[0], pixels[1], pixels[TILE], pixels[TILE + 1]];
+            }
+        }
+        [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[i, j]| self.at(x + i, y + j))
     }
 
     fn set(&mut self, x: usize, y: usize, pixel: [u8; 4]) {
@@ -76,7 +104,7 @@ impl Level {
         let (u, v) = ((u - 0.5).max(0.0), (v - 0.5).max(0.0));
         let (x, y) = (u as usize, v as usize);
         let (fx, fy) = (u - x as f32, v - y as f32);
-        let [a, b, c, d] = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[i, j]| self.at(x + i, y + j));
+        let [a, b, c, d] = self.four_at(x, y);
         std::array::from_fn(|k| {
             let [a, b, c, d] = [a, b, c, d].map(|pixel| f32::from(pixel[k]));
             let (above, below) = (a + (b - a) * fx, c + (d - c) * fx);
@@ -104,12 +132,14 @@ impl GroundPicture {
     /// - `map`: where its pixels lie.
     pub fn new(picture: &RgbaImage, map: PixelMap) -> Self {
         let size = [picture.width(), picture.height()].map(|side| side as usize);
-        let mut first = Level::new(size);
+        let mut first = PictureLevel::new(size);
         for (x, y, pixel) in picture.enumerate_pixels() {
             first.set(x as usize, y as usize, pixel.0);
         }
         let mut levels = vec![first];
-        while let Some(half) = levels.last().filter(|of| of.size[0].max(of.size[1]) > 1) {
+        while let Some(half) = levels.last().filter(|of| of.size[0].max(of.size[1]) > 1)
+            && levels.len() < MAX_LEVELS
+        {
             let half = half.halved();
             levels.push(half);
         }
@@ -120,6 +150,21 @@ impl GroundPicture {
     #[must_use]
     pub fn placed(&self, map: PixelMap) -> Self {
         Self { map, levels: Arc::clone(&self.levels) }
+    }
+
+    /// Whether it has the same pixels, wherever they lie.
+    pub fn has_pixels_of(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.levels, &other.levels)
+    }
+
+    /// Width and height, pixels.
+    pub fn size(&self) -> [usize; 2] {
+        self.levels[0].size
+    }
+
+    /// The picture and its smaller copies, each half as wide and high as the one before, rounded up.
+    pub fn levels(&self) -> &[PictureLevel] {
+        &self.levels
     }
 
     /// Whether a point lies within the picture, in pixels of the first level.

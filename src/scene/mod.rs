@@ -36,7 +36,7 @@ pub use car_shape::CarShape;
 pub use film::{FilmInstant, FilmSection, FilmTiming, FilmTimingError};
 pub use forecast::{ForecastScene, add_forecast};
 pub use ground::{AreaKind, GroundArea, GroundLine, GroundLineKind, SceneGround};
-pub use ground_picture::GroundPicture;
+pub use ground_picture::{GroundPicture, PictureLevel, TILE};
 pub use load_ground::LoadedGround;
 pub use mesh::{Mesh, MeshTriangle, Surface, triangle_normal};
 pub use parts::{

@@ -5,7 +5,7 @@
 //! `IMPACTLAB_REQUIRE_GPU` is set.
 
 use impactlab::error_chain;
-use impactlab::render::{DensityError, DensityGpu};
+use impactlab::render::{DensityError, DensityGpu, GpuError};
 use impactlab::uncertainty::{PlanarGrid, PlanarMixture, PlanarPart};
 
 /// Largest difference as a share of the largest density. It allows for single precision and for the
@@ -17,7 +17,7 @@ fn device() -> Option<DensityGpu> {
     let may_lack = std::env::var_os("IMPACTLAB_REQUIRE_GPU").is_none();
     match DensityGpu::headless() {
         Ok(gpu) => Some(gpu),
-        Err(error @ DensityError::NoAdapter(_)) if may_lack => {
+        Err(error @ GpuError::NoAdapter(_)) if may_lack => {
             println!("nothing was compared: {}", error_chain(&error));
             None
         }
@@ -105,8 +105,11 @@ fn what_does_not_fit_is_an_error() {
     let mixture = path([0.0; 2]);
     let grid = |step_m, size| PlanarGrid { low_m: [0.0; 2], step_m: [step_m, 1e-4], size };
     let of = |grid| gpu.density_on(&mixture, &grid).map(|values| values.len());
-    assert!(matches!(of(grid(1e-4, [1 << 20, 1 << 20])), Err(DensityError::Limit { .. })));
-    assert!(matches!(of(grid(1e-4, [1 << 24, 1])), Err(DensityError::Limit { .. })));
+    assert!(matches!(
+        of(grid(1e-4, [1 << 20, 1 << 20])),
+        Err(DensityError::Gpu(GpuError::Limit { .. }))
+    ));
+    assert!(matches!(of(grid(1e-4, [1 << 24, 1])), Err(DensityError::Gpu(GpuError::Limit { .. }))));
     assert!(matches!(of(grid(0.0, [8, 8])), Err(DensityError::Step { .. })));
     assert!(matches!(of(grid(f64::NAN, [8, 8])), Err(DensityError::Step { .. })));
     assert_eq!(of(grid(1e-4, [0, 8])).unwrap(), 0);

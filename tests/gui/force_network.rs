@@ -273,3 +273,23 @@ fn a_model_is_evaluated_beside_the_baselines() {
     harness.run_steps(6);
     save(&mut harness, "evaluation-dark.png");
 }
+
+#[test]
+fn the_collision_follows_the_scenario_until_it_is_edited() {
+    let mut harness = open(&[]);
+    step_until(&mut harness, "the scenario", is_idle);
+    apply(&mut harness, Command::PredictScenario);
+    harness.run_steps(2);
+    let mass_kg =
+        |harness: &Harness<'_, App>| harness.state().state().project.force.scenario.mass_kg[0];
+    for of_target in [1500.0, 1800.0] {
+        harness.state_mut().state_mut().project.scenario.target.mass_kg = of_target;
+        harness.run_steps(2);
+        assert_eq!(mass_kg(&harness), of_target, "the mass of the scenario");
+    }
+    harness.state_mut().state_mut().project.force.scenario.mass_kg[0] = 1234.0;
+    harness.run_steps(2);
+    harness.state_mut().state_mut().project.scenario.target.mass_kg = 2000.0;
+    harness.run_steps(2);
+    assert_eq!(mass_kg(&harness), 1234.0, "what was edited stays");
+}

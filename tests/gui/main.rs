@@ -18,6 +18,7 @@ mod reconstruct;
 mod report;
 mod response_network;
 mod scene;
+mod scene_gpu;
 mod settings;
 mod snapshots;
 mod stored;

@@ -42,7 +42,7 @@ fn settings() -> Settings {
 }
 
 /// A push on the rear quarter, after which the struck car is braked with locked wheels.
-fn braked_pit() -> Analysis {
+pub fn braked_pit() -> Analysis {
     let brake = Some(Braking::new(0.7, 1.4, 0.3));
     let settings = Settings { ending: Ending { brake, ..Ending::default() }, ..settings() };
     let pulse = PulseSetup::default();

@@ -174,7 +174,7 @@ macro_rules! own { () => { $crate::cli::run() } }
 
 #[test]
 fn neighbours_are_named_only_where_allowed() {
-    let opens_the_window = "crate::app::run(paths)?;";
+    let opens_the_window = "crate::app::run(args.paths, renderer)?;";
     assert_eq!(violations("cli", opens_the_window), []);
     assert_eq!(violations("numerics", "use crate::jobs::Job;").len(), 1);
     assert_eq!(violations("app", "use crate::cli::run;").len(), 1);

@@ -2,12 +2,14 @@
 //! evaluation. The panes of these names show them.
 
 mod edit;
+mod follow;
 mod settings;
 mod update;
 
 pub use edit::{
     forget_contact, know_contact, set_bullet_heading, set_contact_x, set_mass, set_side,
 };
+pub use follow::FollowedScenario;
 pub use settings::{ForceProject, ForceTrainingForm, ForceView, Statistic};
 pub use update::RecordedCase;
 
@@ -27,6 +29,8 @@ pub struct ForceSession {
     pub forecast: Latest<PredictForceRequest>,
     /// The selected case, if it has a recorded force with which the prediction can be compared.
     pub recorded: Option<RecordedCase>,
+    /// The collision of the scenario pane, which that of the prediction follows.
+    pub followed: Option<FollowedScenario>,
     /// The training, running or finished.
     pub training: TrainingStatus<ForceModel>,
     /// The evaluation on a data set, running or finished.

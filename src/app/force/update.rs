@@ -39,6 +39,7 @@ impl State {
         let saved = force.model.poll_saving(library, &mut self.project.force.model);
         self.say_problem(problem);
         self.say_of_file(saved);
+        self.follow_scenario();
         self.find_recorded_case();
         self.poll_training(context);
         if self.session.force.evaluation.poll() {

@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
+#[cfg(feature = "gui")]
+use crate::app::RendererChoice;
 use crate::cli::CliError;
 use crate::cli::console::Verdict;
 
@@ -14,6 +16,21 @@ pub(in crate::cli) struct AppArgs {
     /// Data sets, files and scenarios to open
     #[arg(value_name = "PATH")]
     paths: Vec<PathBuf>,
+    /// What draws the window
+    #[arg(long, value_enum, default_value_t)]
+    renderer: WindowRenderer,
+}
+
+/// What draws the window.
+#[derive(Debug, Clone, Copy, Default, ValueEnum)]
+enum WindowRenderer {
+    /// The graphics processor if there is one, else OpenGL in software
+    #[default]
+    Auto,
+    /// wgpu (Vulkan, Metal, DirectX), also where it is emulated in software
+    Wgpu,
+    /// OpenGL; try it where the window stays empty
+    Opengl,
 }
 
 /// Opens the window and waits until it is closed.
@@ -34,7 +51,12 @@ pub(in crate::cli) fn run(args: AppArgs) -> Result<Verdict, CliError> {
     if !has_display(|name| std::env::var_os(name)) {
         return Err(CliError::NoDisplay);
     }
-    crate::app::run(args.paths)?;
+    let renderer = match args.renderer {
+        WindowRenderer::Auto => RendererChoice::Automatic,
+        WindowRenderer::Wgpu => RendererChoice::Wgpu,
+        WindowRenderer::Opengl => RendererChoice::OpenGl,
+    };
+    crate::app::run(args.paths, renderer)?;
     Ok(Verdict::Clean)
 }
 

@@ -298,6 +298,36 @@ impl Projection {
         self.in_picture(self.in_camera(point_m))
     }
 
+    /// A direction in the axes of the camera: to the right, up, and ahead of it.
+    pub fn direction_in_camera(&self, direction: [f64; 3]) -> [f64; 3] {
+        self.axes.map(|axis| (0..3).map(|i| axis[i] * direction[i]).sum())
+    }
+
+    /// Clip coordinates per metre to the right and up: everywhere from above, at a distance of 1 m in
+    /// perspective.
+    ///
+    /// - `size`: width and height of the picture, pixels.
+    pub fn clip_per_m(&self, size: [f64; 2]) -> [f64; 2] {
+        size.map(|side| 2.0 * self.scale / side)
+    }
+
+    /// Lowest and highest `[x, y]` in the picture that a ball may cover; `None` if part of it is behind
+    /// the camera.
+    pub fn bounds_of_ball(&self, middle_m: [f64; 3], radius_m: f64) -> Option<[[f64; 2]; 2]> {
+        let [right, up, ahead] = self.in_camera(middle_m);
+        let [x, y, _] = self.in_picture([right, up, ahead])?;
+        let near = ahead - radius_m;
+        let reach = match self.is_parallel {
+            true => [self.scale * radius_m; 2],
+            false if near < NEAR_M => return None,
+            // What is nearer by the radius lies further from the middle of the picture.
+            false => {
+                [right, up].map(|off| self.scale * radius_m / near * (1.0 + off.abs() / ahead))
+            }
+        };
+        Some([[x - reach[0], y - reach[1]], [x + reach[0], y + reach[1]]])
+    }
+
     /// Ground point under a pixel, m; `None` above the horizon.
     pub fn ground_at(&self, [px, py]: [f64; 2]) -> Option<[f64; 2]> {
         let (right, up) = ((px - self.middle[0]) / self.scale, (self.middle[1] - py) / self.scale);

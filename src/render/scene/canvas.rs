@@ -103,13 +103,7 @@ impl SceneCanvas {
         let projection = look.projection();
         let ground = ground_of(scene, look, &projection);
         self.marks = MarkStrokes::of(&ground);
-        let (strokes, underlay) = (ground.strokes(), Underlay::new(&ground));
-        let rows = self.ground.par_chunks_mut(width.max(1) * TILE).enumerate();
-        rows.for_each(|(idx, pixels)| {
-            let mut rows = Rows { pixels, width, first: idx * TILE };
-            ground.fill(&mut rows, &underlay);
-            strokes.iter().for_each(|stroke| rows.stroke(stroke));
-        });
+        draw_ground(&ground, look.size_px, &mut self.ground);
     }
 
     fn draw_frame(&mut self, scene: &Scene, look: &SceneLook, time_s: f64) {
@@ -138,11 +132,25 @@ impl SceneCanvas {
     }
 }
 
+/// Draws what does not change with time, but for marks of tyres.
+///
+/// - `pixels`: those of a picture of the size `width` and `height`, row by row from the top.
+pub fn draw_ground(ground: &Ground<'_>, [width, _]: [usize; 2], pixels: &mut [Color32]) {
+    let (strokes, underlay) = (ground.strokes(), Underlay::new(ground));
+    let rows = pixels.par_chunks_mut(width.max(1) * TILE).enumerate();
+    rows.for_each(|(idx, pixels)| {
+        let mut rows = Rows { pixels, width, first: idx * TILE };
+        ground.fill(&mut rows, &underlay);
+        strokes.iter().for_each(|stroke| rows.stroke(stroke));
+    });
+}
+
 fn draw_strokes(rows: &mut Rows<'_>, strokes: &[Stroke]) {
     strokes.iter().for_each(|stroke| rows.stroke(stroke));
 }
 
-fn ground_of<'a>(scene: &'a Scene, look: &SceneLook, projection: &'a Projection) -> Ground<'a> {
+/// What a picture of the ground is drawn with.
+pub fn ground_of<'a>(scene: &'a Scene, look: &SceneLook, projection: &'a Projection) -> Ground<'a> {
     let points = f64::from(look.pixels_per_point);
     Ground { scene, projection, dark: look.dark, points }
 }

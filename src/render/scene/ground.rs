@@ -2,25 +2,18 @@
 
 use egui::Color32;
 
+use crate::render::scene::grid::Grid;
 use crate::render::scene::lines::{Rows, Stroke, over};
 use crate::render::scene::row_map::RowMap;
 use crate::render::scene::shade::{grid_colors, ground_color, mixed, role_color, sky_color};
 use crate::render::scene::underlay::{Underlay, ground_strokes};
 use crate::render::scene::{Projection, camera::NEAR_M};
 use crate::scene::{Scene, SceneDensity, SceneLine, SceneRole};
-use crate::units::{Quantity, UnitSystem};
 
-/// Least distance of coarse grid lines, points.
-const COARSE_POINTS: f64 = 84.0;
-/// Fine lines between coarse ones.
-const FINE_PER_COARSE: f64 = 5.0;
-/// Distance of grid lines in the picture below which they fade, and at which they are gone, pixels.
-const FADING_PIXELS: [f32; 2] = [9.0, 3.0];
-/// Distances at which the ground begins to fade into the sky, and has done so, over the distance of the
-/// point that is looked at.
-const HAZE: [f64; 2] = [3.0, 14.0];
 /// Opacity of the largest density.
-const DENSITY_OPACITY: f32 = 0.72;
+pub const DENSITY_OPACITY: f32 = 0.72;
+/// Least share of the largest density that is drawn.
+pub const LEAST_DENSITY_SHARE: f32 = 0.003;
 /// Share of the colour of a role in the pale part of a line: a path that is still to come.
 const PALE: f32 = 0.45;
 /// The same over a picture of the ground.
@@ -41,19 +34,6 @@ const TICK_HALF_M: f64 = 0.9;
 /// Shortest piece of a line that is drawn by itself, pixels.
 const LEAST_PIECE: f64 = 1.2;
 
-/// The distance of coarse grid lines that fits the picture: 1, 2 or 5 times a power of ten.
-///
-/// - returns it in the unit of the scene and in m.
-pub fn grid_step(projection: &Projection, points: f64, units: UnitSystem) -> (f64, f64) {
-    let unit = Quantity::Length.display_unit(units);
-    let least = COARSE_POINTS * points / projection.pixels_per_m(projection.target_m());
-    let wanted = unit.from_si(least).max(1e-6);
-    let power = 10.0_f64.powf(wanted.log10().floor());
-    let steps = [1.0, 2.0, 5.0, 10.0].map(|factor| factor * power);
-    let step = steps.into_iter().find(|step| *step >= wanted).unwrap_or(wanted);
-    (step, unit.to_si(step))
-}
-
 /// What a picture of the ground is drawn with.
 pub struct Ground<'a> {
     /// The scene.
@@ -66,61 +46,40 @@ pub struct Ground<'a> {
     pub points: f64,
 }
 
-/// Numbers of the ground that are the same for every pixel; places are off the target, m.
-struct Grid {
-    map: [[f32; 3]; 3],
-    /// Coordinates of the target within a coarse cell, so that large coordinates lose no digits.
-    phase_m: [f32; 2],
-    /// Distances of fine and of coarse lines.
-    steps_m: [f32; 2],
-    eye_m: [f32; 2],
-    haze_m: [f32; 2],
-    /// Lowest and highest place of the density.
-    density_m: Option<[[f32; 2]; 2]>,
-}
-
 impl Ground<'_> {
     /// Fills rows with ground, grid and density.
     pub fn fill(&self, rows: &mut Rows<'_>, underlay: &Underlay<'_>) {
-        let grid = self.grid();
+        let grid = Grid::of(self);
         let (first, width) = (rows.first, rows.width.max(1));
+        let columns = self.covered_columns(&grid, width);
         for (idx, row) in rows.pixels.chunks_mut(width).enumerate() {
             let py = (first + idx) as f32 + 0.5;
             let map = RowMap::new(grid.map, py);
             underlay.fill_row(row, (py, &map), self.dark);
-            self.fill_row(row, &map, &grid);
+            self.fill_row(row, (&map, &columns), &grid);
         }
     }
 
-    fn grid(&self) -> Grid {
-        let target = self.projection.target_m();
-        let (_, step_m) = grid_step(self.projection, self.points, self.scene.units);
-        let [x, y, z] = self.projection.eye_m();
-        let eye = [x - target[0], y - target[1]];
-        let distance_m = eye[0].hypot(eye[1]).hypot(z);
-        let density_m = self.scene.density.as_ref().map(|density| {
-            let grid = &density.map.grid;
-            let [nx, ny] = grid.size.map(|n| n.saturating_sub(1) as f64);
-            let low = [grid.low_m[0] - target[0], grid.low_m[1] - target[1]];
-            let high = [low[0] + nx * grid.step_m[0], low[1] + ny * grid.step_m[1]];
-            [low, high].map(|place| place.map(|value| value as f32))
-        });
-        Grid {
-            map: self.projection.ground_map().map(|row| row.map(|value| value as f32)),
-            phase_m: target.map(|value| value.rem_euclid(step_m) as f32),
-            steps_m: [step_m / FINE_PER_COARSE, step_m].map(|step| step as f32),
-            eye_m: eye.map(|value| value as f32),
-            haze_m: HAZE.map(|factor| (factor * distance_m) as f32),
-            density_m,
+    /// How far the lines of the grid across X cover each column: from above, where that is the same in
+    /// every row; else nothing.
+    fn covered_columns(&self, grid: &Grid, width: usize) -> Vec<[f32; 2]> {
+        if !self.projection.is_parallel() {
+            return Vec::new();
         }
+        let map = RowMap::new(grid.map, 0.5);
+        let cover = |column| map.at(column).map_or([0.0; 2], |spot| grid.cover(0, &map, &spot));
+        (0..width).map(cover).collect()
     }
 
     /// Draws grid, density, haze and sky over a row of ground.
-    fn fill_row(&self, row: &mut [Color32], map: &RowMap, grid: &Grid) {
+    ///
+    /// - `columns`: that of [`Ground::covered_columns`].
+    fn fill_row(&self, row: &mut [Color32], (map, columns): (&RowMap, &[[f32; 2]]), grid: &Grid) {
         let (sky, lines) = (sky_color(self.dark), grid_colors(self.dark));
         let is_parallel = self.projection.is_parallel();
-        let opacity = if self.has_picture() { GRID_OVER_PICTURE } else { 1.0 };
-        let Grid { phase_m, steps_m, eye_m, haze_m, density_m, .. } = grid;
+        let opacity = self.grid_opacity();
+        let Grid { eye_m, haze_m, density_m, .. } = grid;
+        let first = map.at(0).map_or([0.0; 2], |spot| grid.cover(1, map, &spot));
         let role = role_color(SceneRole::Forecast, self.dark);
         for (column, pixel) in row.iter_mut().enumerate() {
             let Some(spot) = map.at(column) else {
@@ -128,11 +87,13 @@ impl Ground<'_> {
                 continue;
             };
             let [x, y] = spot.place;
-            let (change_x, change_y) = (map.change(&spot, 0), map.change(&spot, 1));
+            let [across_x, across_y] = match columns.get(column) {
+                Some(cover) => [*cover, first],
+                None => [0, 1].map(|axis| grid.cover(axis, map, &spot)),
+            };
             let mut color = *pixel;
-            for (line, step_m) in lines.into_iter().zip(*steps_m) {
-                let along_x = line_cover(x + phase_m[0], change_x, step_m);
-                let share = along_x.max(line_cover(y + phase_m[1], change_y, step_m));
+            for (i, line) in lines.into_iter().enumerate() {
+                let share = across_x[i].max(across_y[i]);
                 if share > 0.0 {
                     color = over(color, line, opacity * share);
                 }
@@ -142,7 +103,7 @@ impl Ground<'_> {
                 && (low[1]..high[1]).contains(&y)
             {
                 let share = density_share(density, [x - low[0], y - low[1]]);
-                if share > 0.003 {
+                if share > LEAST_DENSITY_SHARE {
                     color = over(color, role, DENSITY_OPACITY * share);
                 }
             }
@@ -156,6 +117,11 @@ impl Ground<'_> {
             }
             *pixel = color;
         }
+    }
+
+    /// Opacity of the grid.
+    pub fn grid_opacity(&self) -> f32 {
+        if self.has_picture() { GRID_OVER_PICTURE } else { 1.0 }
     }
 
     /// Whether there is a picture of the ground.
@@ -342,19 +308,6 @@ pub fn arrow_lines([tail, tip]: [[f64; 2]; 2]) -> [[[f64; 2]; 2]; 3] {
         std::array::from_fn(|i| tip[i] - head * along[i] + 0.45 * head * across[i])
     };
     [[tail, tip], [wing(1.0), tip], [wing(-1.0), tip]]
-}
-
-/// How far a line of the grid covers a pixel, 0 to 1.
-///
-/// - `at`: coordinate of the pixel, m; `change`: by how much it changes over a pixel, m, more than 0.
-pub fn line_cover(at: f32, change: f32, step_m: f32) -> f32 {
-    let (cell, per) = (at / step_m, step_m / change);
-    let distance = (cell - cell.round()).abs() * per;
-    if distance >= 1.0 {
-        return 0.0;
-    }
-    let [full, gone] = FADING_PIXELS;
-    (1.0 - distance) * ((per - gone) / (full - gone)).clamp(0.0, 1.0)
 }
 
 /// A density over its largest value.

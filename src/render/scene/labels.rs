@@ -6,7 +6,7 @@ use std::sync::Arc;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, pos2, vec2};
 
 use crate::render::scene::Projection;
-use crate::render::scene::ground::grid_step;
+use crate::render::scene::grid::grid_step;
 use crate::render::scene::shade::{ground_color, role_color, zone_color};
 use crate::scene::{AreaKind, CarLook, Scene, SceneRole};
 use crate::units::Quantity;

@@ -16,7 +16,7 @@ const LEAST_HALF_WIDTH: f32 = 0.75;
 const SHARES: [f32; 2] = [0.30, 0.92];
 
 /// Colour of the faintest marks on the picture of a road, darker than its asphalt.
-const ASPHALT: Color32 = Color32::from_rgb(92, 92, 92);
+pub const ASPHALT: Color32 = Color32::from_rgb(92, 92, 92);
 
 /// Pieces of marks with the times from which on they are there.
 #[derive(Default)]
@@ -36,6 +36,11 @@ impl MarkStrokes {
         timed.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (times_s, strokes) = timed.into_iter().unzip();
         Self { times_s, strokes }
+    }
+
+    /// All pieces in the order of time.
+    pub fn all(&self) -> &[Stroke] {
+        &self.strokes
     }
 
     /// The pieces that are there at a time.

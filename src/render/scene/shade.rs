@@ -7,10 +7,12 @@ use crate::render::theme;
 use crate::scene::{GroundLineKind, SceneRole, Surface};
 
 /// Direction to the sun, of unit length: from behind and from the right of a car that drives along X.
-const SUN: [f64; 3] = [-0.355, -0.413, 0.839];
+pub const SUN: [f64; 3] = [-0.355, -0.413, 0.839];
 /// Share of the light that comes from everywhere, and from the sun.
-const AMBIENT: f64 = 0.58;
-const DIFFUSE: f64 = 0.52;
+pub const AMBIENT: f64 = 0.58;
+pub const DIFFUSE: f64 = 0.52;
+/// Share that what is turned away from the sun lacks.
+pub const AWAY: f64 = 0.10;
 /// How far the colour of a role is mixed with grey where it covers a body.
 const BODY_GREY: f32 = 0.16;
 
@@ -115,7 +117,7 @@ pub fn body_color(role: SceneRole, dark: bool) -> Rgb {
 pub fn lit(color: Rgb, normal: [f64; 3]) -> Rgb {
     let toward: f64 = (0..3).map(|i| normal[i] * SUN[i]).sum();
     // What is turned away from the sun is darkened less the more it is turned up.
-    let light = AMBIENT + DIFFUSE * toward.max(0.0) + 0.10 * toward.min(0.0);
+    let light = AMBIENT + DIFFUSE * toward.max(0.0) + AWAY * toward.min(0.0);
     color.map(|v| (f64::from(v) * light).round().clamp(0.0, 255.0) as u8)
 }
 

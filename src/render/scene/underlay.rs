@@ -4,7 +4,8 @@ use egui::Color32;
 
 use crate::render::scene::Projection;
 use crate::render::scene::camera::NEAR_M;
-use crate::render::scene::ground::{Ground, grid_step, line_cover};
+use crate::render::scene::grid::{grid_step, line_cover};
+use crate::render::scene::ground::Ground;
 use crate::render::scene::lines::{Stroke, over};
 use crate::render::scene::row_map::RowMap;
 use crate::render::scene::shade::{
@@ -13,8 +14,8 @@ use crate::render::scene::shade::{
 use crate::scene::{AreaKind, GroundArea, GroundLine, GroundLineKind, GroundPicture, SceneGround};
 
 /// Opacity of the tint of a zone and of its hatching.
-const TINT: f32 = 0.13;
-const HATCH: f32 = 0.62;
+pub const TINT: f32 = 0.13;
+pub const HATCH: f32 = 0.62;
 /// Lines of the hatching between coarse lines of the grid.
 const HATCH_PER_COARSE: f64 = 5.0;
 /// Width of the border of a zone, points.
@@ -41,19 +42,23 @@ struct PlacedPicture<'a> {
 }
 
 /// A surface as it is seen.
-struct SeenArea {
+pub struct SeenArea {
     /// Corners of its border in the picture, without what is behind the camera.
-    corners: Vec<[f64; 2]>,
+    pub corners: Vec<[f64; 2]>,
     /// First row, and the one after the last.
     rows: [f64; 2],
-    color: Color32,
-    hatch: Option<Hatch>,
+    /// Its colour.
+    pub color: Color32,
+    /// Lines on it.
+    pub hatch: Option<Hatch>,
 }
 
 /// Parallel lines across X and Y.
-struct Hatch {
-    step_m: f32,
-    phase_m: f32,
+pub struct Hatch {
+    /// Their distance, m.
+    pub step_m: f32,
+    /// Sum of the coordinates of the point that is looked at within that distance, m.
+    pub phase_m: f32,
 }
 
 impl<'a> Underlay<'a> {
@@ -62,9 +67,7 @@ impl<'a> Underlay<'a> {
         let Some(site) = ground.scene.ground.as_deref() else { return Self::default() };
         let picture = site.picture.as_deref();
         let picture = picture.map(|picture| PlacedPicture::new(picture, ground));
-        let is_seen = |area: &&GroundArea| picture.is_none() || area.kind != AreaKind::Lane;
-        let areas = site.areas.iter().filter(is_seen);
-        Self { areas: areas.filter_map(|area| SeenArea::new(area, ground)).collect(), picture }
+        Self { areas: seen_areas(ground), picture }
     }
 
     /// Fills a row with the ground.
@@ -115,6 +118,14 @@ impl<'a> PlacedPicture<'a> {
             *pixel = over(*pixel, seen, opacity / 255.0);
         }
     }
+}
+
+/// The surfaces on the ground that are in the picture: no lanes over a picture of the ground.
+pub fn seen_areas(ground: &Ground<'_>) -> Vec<SeenArea> {
+    let site = ground.scene.ground.as_deref();
+    let is_seen = |area: &&GroundArea| !ground.has_picture() || area.kind != AreaKind::Lane;
+    let areas = site.into_iter().flat_map(|site| &site.areas).filter(is_seen);
+    areas.filter_map(|area| SeenArea::new(area, ground)).collect()
 }
 
 impl SeenArea {
@@ -168,7 +179,8 @@ impl SeenArea {
 }
 
 impl Hatch {
-    fn new(ground: &Ground<'_>) -> Self {
+    /// The hatching of the zones of a scene.
+    pub fn new(ground: &Ground<'_>) -> Self {
         let (_, step_m) = grid_step(ground.projection, ground.points, ground.scene.units);
         let step_m = step_m / HATCH_PER_COARSE;
         let [x, y] = ground.projection.target_m();
