@@ -20,7 +20,7 @@ use crate::vehicle::{Path, TireMark, VehicleParameters};
 const N_ELLIPSE: usize = 48;
 /// Half axis of an ellipse that holds 90 % of a plane normal distribution, standard deviations.
 const NINETY: f64 = 2.1460;
-/// Interval at which the motion along a path is kept, s.
+/// Longest interval at which the motion along a path is kept, s.
 const STEP_S: f64 = 0.05;
 
 /// What the scene of a reconstruction shows.
@@ -89,12 +89,14 @@ fn shape_of(vehicle: &VehicleParameters) -> Arc<CarShape> {
     Arc::new(CarShape::new(CarBody::new(vehicle, &outline)))
 }
 
-/// The motion along a path, at even intervals.
+/// The motion along a path, at even intervals of which the last one ends with the path.
 fn motion_of(path: &Path, body: &CarBody) -> Option<CarMotion> {
     let points = &path.points;
     let times: Vec<f64> = points.iter().map(|point| point.time_s).collect();
     let start_s = *times.first()?;
-    let n_steps = ((times.last()? - start_s) / STEP_S).ceil().clamp(0.0, 1e5) as usize;
+    let duration_s = times.last()? - start_s;
+    let n_steps = (duration_s / STEP_S).ceil().clamp(1.0, 1e5) as usize;
+    let step_s = duration_s / n_steps as f64;
     let at = |values: &[f64], time_s| interpolate(&times, values, time_s);
     let [x, y, yaw]: [Vec<f64>; 3] = [
         points.iter().map(|point| point.x_m).collect(),
@@ -102,11 +104,11 @@ fn motion_of(path: &Path, body: &CarBody) -> Option<CarMotion> {
         points.iter().map(|point| point.yaw_rad).collect(),
     ];
     let pose = |step: usize| {
-        let time_s = start_s + step as f64 * STEP_S;
+        let time_s = start_s + step as f64 * step_s;
         Some(Pose { x_m: at(&x, time_s)?, y_m: at(&y, time_s)?, yaw_rad: at(&yaw, time_s)? })
     };
     let poses: Option<Vec<Pose>> = (0..=n_steps).map(pose).collect();
-    CarMotion::of_poses(&poses?, STEP_S, body)
+    Some(CarMotion::of_poses(&poses?, step_s, body)?.later_by(start_s))
 }
 
 /// Marks of tyres, and positions in a video.
@@ -153,4 +155,35 @@ fn add_rest(scene: &mut Scene, (rest, shape): (&RestPose, &Arc<CarShape>), [name
         shape: Arc::clone(shape),
         motion: Arc::new(CarMotion::standing(pose)),
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vehicle::{PathEnd, PathPoint, Preset};
+
+    #[test]
+    fn a_motion_begins_and_ends_with_its_path() {
+        let point = |time_s: f64| PathPoint {
+            time_s,
+            x_m: 10.0 * time_s,
+            y_m: 0.0,
+            yaw_rad: 0.0,
+            vx_m_s: 10.0,
+            vy_m_s: 0.0,
+            yaw_rate_rad_s: 0.0,
+        };
+        let body = shape_of(&Preset::Reference.parameters()).body;
+        for (start_s, end_s) in [(0.0, 1.0), (0.0, 0.97), (0.2, 3.211), (0.0, 0.01)] {
+            let points = vec![point(start_s), point((start_s + end_s) / 2.0), point(end_s)];
+            let motion = motion_of(&Path { points, end: PathEnd::Rest }, &body).unwrap();
+            let first_s = motion.time_s().first().copied().unwrap();
+            assert_eq!(first_s, start_s, "{start_s} to {end_s} s");
+            assert!((motion.end_s() - end_s).abs() < 1e-12, "{} of {end_s} s", motion.end_s());
+            for time_s in [start_s, 0.5 * (start_s + end_s), end_s] {
+                let x_m = motion.at(time_s).pose.x_m;
+                assert!((x_m - 10.0 * time_s).abs() < 1e-9, "{x_m} m at {time_s} s");
+            }
+        }
+    }
 }
