@@ -86,6 +86,23 @@ pub enum CliError {
         /// The scenario.
         path: PathBuf,
     },
+    /// An option of a simulation is given for evidence.
+    #[error("{}: is the evidence of a collision, which is reconstructed without {option}; leave it out",
+            path.display())]
+    OptionOfSimulation {
+        /// The evidence.
+        path: PathBuf,
+        /// The option.
+        option: &'static str,
+    },
+    /// An option of a reconstruction is given for something else.
+    #[error("{}: is no evidence of a collision; leave out {option}", path.display())]
+    OptionOfEvidence {
+        /// The case, file or scenario.
+        path: PathBuf,
+        /// The option.
+        option: &'static str,
+    },
     /// Nothing of what a figure shows is known.
     #[error("{name}: nothing is known of {channel} over time")]
     NothingToShow {

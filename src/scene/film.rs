@@ -13,6 +13,10 @@
 use crate::ranges::{FILM_FRAMES, FILM_RATE, FILM_SPEED, OutOfRange};
 use crate::scene::Scene;
 
+/// An end of a film that is later than the motion by no more than this, s, or by the time of a frame, is
+/// taken for the end of the motion: nobody types the instant at which a car comes to rest.
+const END_TOLERANCE_S: f64 = 0.05;
+
 /// A part of the scene that is played at a speed of its own.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FilmSection {
@@ -64,6 +68,9 @@ pub enum FilmTimingError {
         /// Last instant, s.
         to_s: f64,
     },
+    /// The scene knows a single instant.
+    #[error("nothing moves in the scene, so that there is nothing to film")]
+    NoMotion,
     /// The film shows instants of which the scene knows nothing.
     #[error(
         "the film goes from {from_s} s to {to_s} s, expected times between {start_s} s and {end_s} s"
@@ -93,6 +100,25 @@ impl FilmTiming {
     pub fn of_scene(scene: &Scene) -> Self {
         let [from_s, to_s] = interval_s(scene);
         Self { frames_per_s: 30, from_s, to_s, speed: 1.0, sections: Vec::new() }
+    }
+
+    /// The same film with an end that the scene knows, if it ends later than the scene by less than a frame
+    /// or 0.05 s; any other film as it is.
+    ///
+    /// ```text
+    /// to' = end    if 0 < to − end < max(0.05 s, speed / frames per second)
+    /// ```
+    ///
+    /// - returns the film, and where it ended before if its end was moved, s.
+    pub fn ending_with_scene(mut self, scene: &Scene) -> (Self, Option<f64>) {
+        let [_, end_s] = interval_s(scene);
+        let asked_s = self.to_s;
+        let frame_s = self.speed / f64::from(self.frames_per_s);
+        let is_moved = asked_s > end_s && asked_s - end_s < frame_s.max(END_TOLERANCE_S);
+        if is_moved {
+            self.to_s = end_s;
+        }
+        (self, is_moved.then_some(asked_s))
     }
 
     /// Duration of the film, s of its own time.
@@ -163,6 +189,9 @@ impl FilmTiming {
         FILM_SPEED.check(self.speed)?;
         let Self { from_s, to_s, .. } = *self;
         let [start_s, end_s] = interval_s(scene);
+        if start_s >= end_s {
+            return Err(FilmTimingError::NoMotion);
+        }
         let within = start_s..=end_s;
         if !(within.contains(&from_s) && within.contains(&to_s)) {
             return Err(FilmTimingError::Outside { from_s, to_s, start_s, end_s });
@@ -257,6 +286,39 @@ mod tests {
         assert_eq!(overlapping, Err(FilmTimingError::Overlap { at_s: 2.0 }));
         let film = timing(1.0, &[(0.9, 4.0, 0.5), (-1.0, 0.1, 2.0)]);
         assert!((film.duration_s(&scene(5.0)).unwrap() - (0.05 + 0.8 + 0.2)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn an_end_just_after_the_motion_is_its_end_and_a_later_one_is_refused() {
+        let whole = scene(3.99);
+        for (to_s, frames_per_s, speed, moved) in [
+            (4.0, 30, 1.0, true),
+            (4.039, 120, 0.1, true),
+            (4.041, 120, 0.1, false),
+            (4.08, 10, 1.0, true),
+            (4.1, 10, 1.0, false),
+            (3.99, 30, 1.0, false),
+            (3.0, 30, 1.0, false),
+            (900.0, 30, 1.0, false),
+            (f64::NAN, 30, 1.0, false),
+        ] {
+            let asked = FilmTiming { frames_per_s, speed, ..timing(to_s, &[]) };
+            let (film, before_s) = asked.ending_with_scene(&whole);
+            assert_eq!(before_s, moved.then_some(to_s), "{to_s} s, {frames_per_s} in a second");
+            let is_known = moved || to_s <= 3.99;
+            assert_eq!(film.instants(&whole).is_ok(), is_known, "{to_s} s, {frames_per_s}");
+            if moved {
+                let last = film.instants(&whole).unwrap().pop().map(|of| of.time_s);
+                assert_eq!(last, Some(3.99));
+            }
+        }
+    }
+
+    #[test]
+    fn a_scene_in_which_nothing_moves_is_not_filmed() {
+        let still = scene(0.0);
+        let error = FilmTiming::of_scene(&still).instants(&still);
+        assert_eq!(error, Err(FilmTimingError::NoMotion));
     }
 
     #[test]

@@ -131,6 +131,78 @@ fn a_scenario_is_filmed_too() {
     assert!(out.exists());
 }
 
+/// A car that spun to rest, with few marks.
+const EVIDENCE: &str = "tests/data/evidence/spin.toml";
+
+#[test]
+fn a_reconstruction_is_filmed_from_its_evidence() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("film.mp4");
+    let few = ["render", "film", EVIDENCE, "--particles", "60", "--seed", "2"];
+    let seen = ["--view", "perspective", "--follow", "struck", "--size", "320x180", "--fps", "5"];
+    let said = answer(&[&few[..], &seen, &["--to", "1", "--out", text(&out)]].concat());
+    assert_eq!((&said["title"], &said["n_frames"]), (&json("\"spin\""), &json("6")));
+    let film = fs::read(&out).expect("a film");
+    assert_eq!(film.get(4..8), Some(&b"ftyp"[..]));
+    // Few particles restrict the answer, which is said here and burnt in.
+    let notes = said["notes"].as_array().expect("notes");
+    let is_said =
+        |part: &str| notes.iter().any(|of| of.as_str().is_some_and(|of| of.contains(part)));
+    assert!(is_said("few particles"), "{notes:?}");
+
+    // The same cars as the picture draws, on a road.
+    let pictures = folder.path().join("pictures");
+    let road = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/sites/country-road/site.toml");
+    let on_road = ["--to", "0.2", "--site", road, "--out", text(&pictures)];
+    let said = answer(&[&few[..], &seen, &on_road].concat());
+    assert_eq!(said["n_frames"], 2);
+    let notes = said["notes"].to_string();
+    assert!(notes.contains("a reconstruction takes one friction for the whole road"), "{notes}");
+    assert_eq!(fs::read_dir(&pictures).expect("a folder").count(), 3, "pictures and a manifest");
+}
+
+#[test]
+fn options_that_would_do_nothing_are_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("film.mp4");
+    let of_evidence = "is the evidence of a collision, which is reconstructed without";
+    let of_others = "is no evidence of a collision; leave out";
+    for (path, option, value, part) in [
+        (EVIDENCE, "--case", "c001", of_evidence),
+        (EVIDENCE, "--ghosts", "5", of_evidence),
+        (EVIDENCE, "--bullet", "reference-2000", of_evidence),
+        (EVIDENCE, "--speed", "20", of_evidence),
+        ("pit-right-rear", "--particles", "100", of_others),
+        ("pit-right-rear", "--seed", "1", of_others),
+        ("pit-right-rear", "--striking", "reference-2000", of_others),
+    ] {
+        let args = ["render", "film", path, option, value, "--out", text(&out)];
+        let output = program().args(args).output().expect("it starts");
+        let error = String::from_utf8(output.stderr).expect("UTF-8");
+        assert!(!output.status.success() && error.contains(&format!("{part} {option}")), "{error}");
+    }
+    assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 0);
+}
+
+#[test]
+fn an_end_just_after_the_motion_is_its_end_and_is_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("film.mp4");
+    let error = refused(&out, &["--to", "900"]);
+    let (_, end) = error.split_once("between 0 s and ").expect("the end of the motion");
+    let end_s: f64 = end.trim().trim_end_matches(" s").parse().expect("a number");
+    let options = ["--size", "320x180", "--fps", "30", "--from"];
+    let from = (end_s - 0.1).to_string();
+    let to = (end_s + 0.04).to_string();
+    let said = film(&out, &[&options[..], &[&from, "--to", &to]].concat());
+    assert_eq!(said["n_frames"], 4);
+    let notes = said["notes"].to_string();
+    assert!(notes.contains(&format!("--to is {to} s: the film ends with the motion")), "{notes}");
+    let later = (end_s + 0.06).to_string();
+    let error = refused(&folder.path().join("other.mp4"), &["--from", &from, "--to", &later]);
+    assert!(error.contains("expected times between"), "{error}");
+}
+
 /// The end of a browser, when the test ends.
 struct Browser(std::process::Child);
 

@@ -5,8 +5,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use egui::ColorImage;
+use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{Command, Pane};
+use impactlab::app::{App, Command, Pane};
 use impactlab::data::{Existing, Outcome};
 use impactlab::render::Canvas;
 use impactlab::render::film::{Film, FilmError, FrameRenderer, write_film};
@@ -21,6 +22,7 @@ use shiguredo_mp4::demux::{Input, Mp4FileDemuxer};
 
 use crate::harness::{apply, is_idle, open, step_until};
 use crate::pictures::save;
+use crate::reconstruct::evidence_in;
 
 /// A small film of a shipped case, partly in slow motion.
 fn film() -> Film {
@@ -180,14 +182,8 @@ fn sizes_that_no_film_has_are_refused() {
     }
 }
 
-#[test]
-fn the_window_makes_a_film_of_the_scene_as_it_is_seen() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join("film.mp4");
-    let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")]);
-    step_until(&mut harness, "the first case", is_idle);
-    apply(&mut harness, Command::Show(Pane::Scene));
-    harness.run_steps(4);
+/// Opens the form by the menu of the scene that is shown.
+fn ask_film(harness: &mut Harness<'_, App>) {
     // Every pane with a figure has a menu of this name.
     for idx in 0..harness.get_all_by_label("Export").count() {
         harness.get_all_by_label("Export").nth(idx).expect("a menu").click();
@@ -198,16 +194,87 @@ fn the_window_makes_a_film_of_the_scene_as_it_is_seen() {
     }
     harness.get_by_label_contains("Save film (MP4)").click();
     harness.run_steps(3);
+}
+
+/// The latest message.
+fn said(harness: &Harness<'_, App>) -> Option<String> {
+    harness.state().state().session.messages.last().map(|message| message.text.clone())
+}
+
+/// The film that the form asks about.
+fn asked_film(harness: &Harness<'_, App>) -> Film {
+    harness.state().state().session.film.form.clone().expect("the form is open").film
+}
+
+#[test]
+fn the_window_films_the_cars_of_a_reconstruction() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let evidence = evidence_in(folder.path());
+    let mut harness = open(&[evidence.to_str().expect("a plain name")]);
+    harness.run_steps(4);
+    harness.state_mut().state_mut().project.reconstruction.particles = 60;
+    harness.state_mut().state_mut().view.reconstruction.shows_cars = true;
+    harness.run_steps(4);
+    // Nothing moves before the evidence has been reconstructed.
+    ask_film(&mut harness);
+    assert!(harness.query_by_label_contains("nothing to film").is_some());
+    apply(&mut harness, Command::CloseFilmForm);
+    assert!(harness.state().state().session.film.form.is_none());
+
+    harness.get_by_label("Run").click();
+    harness.run_steps(4);
+    step_until(&mut harness, "the speeds", |state| {
+        let of = &state.session.reconstruction;
+        !of.run.is_running() && of.answer().is_some()
+    });
+    harness.run_steps(4);
+    ask_film(&mut harness);
+    save(&mut harness, "film-form-reconstruction.png");
+    let mut film = asked_film(&harness);
+    let scene = &film.picture.scene;
+    assert_eq!(scene.title, "spin");
+    assert!(scene.struck().is_some(), "the car drives");
+    assert_eq!([film.timing.from_s, film.timing.to_s], [0.0, scene.end_s]);
+    assert!(!scene.trust.badges.is_empty(), "few particles are a badge");
+
+    (film.canvas.size_px, film.timing.to_s) = ([320, 180], 0.3);
+    let n_frames = film.instants().expect("a possible film").len();
+    let path = folder.path().join("film.mp4");
+    apply(&mut harness, Command::SaveFilm(Box::new(film.clone()), path.clone()));
+    step_until(&mut harness, "the film", |state| state.session.film.running().is_none());
+    assert_eq!(decoded(&path, 30).len(), n_frames);
+    assert!(said(&harness).is_some_and(|text| text.ends_with("film.mp4 written")));
+
+    film.canvas.size_px = [1920, 1080];
+    film.timing = FilmTiming { frames_per_s: 120, ..FilmTiming::of_scene(&film.picture.scene) };
+    let other = folder.path().join("other.mp4");
+    apply(&mut harness, Command::SaveFilm(Box::new(film), other.clone()));
+    harness.run_steps(2);
+    apply(&mut harness, Command::CancelFilm);
+    step_until(&mut harness, "the end of the film", |state| state.session.film.running().is_none());
+    assert!(said(&harness).is_some_and(|text| text.ends_with("not written: cancelled")));
+    assert!(!other.exists());
+}
+
+#[test]
+fn the_window_makes_a_film_of_the_scene_as_it_is_seen() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("film.mp4");
+    let mut harness = open(&[concat!(env!("CARGO_MANIFEST_DIR"), "/datasets/fea")]);
+    step_until(&mut harness, "the first case", is_idle);
+    apply(&mut harness, Command::Show(Pane::Scene));
+    harness.run_steps(4);
+    ask_film(&mut harness);
     harness.get_by_label("Add slow motion").click();
     harness.run_steps(3);
     save(&mut harness, "film-form.png");
-    let form = harness.state().state().session.film.form.clone().expect("the form is open");
-    assert_eq!(form.film.timing.sections.len(), 1);
-    assert!(form.film.picture.is_placed, "the camera is the one that is seen");
+    let form = asked_film(&harness);
+    assert_eq!(form.timing.sections.len(), 1);
+    assert!(form.picture.is_placed, "the camera is the one that is seen");
     harness.get_by_label("Remove part 1").click();
     harness.run_steps(3);
 
-    let mut film = form.film.clone();
+    let mut film = form;
     (film.canvas.size_px, film.timing.to_s) = ([320, 180], 0.5);
     film.timing.sections.clear();
     let n_frames = film.instants().expect("a possible film").len();
@@ -216,9 +283,6 @@ fn the_window_makes_a_film_of_the_scene_as_it_is_seen() {
     assert!(session.running().is_some() && session.form.is_none());
     step_until(&mut harness, "the film", |state| state.session.film.running().is_none());
     assert_eq!(decoded(&path, 30).len(), n_frames);
-    let said = |harness: &egui_kittest::Harness<'_, impactlab::app::App>| {
-        harness.state().state().session.messages.last().map(|message| message.text.clone())
-    };
     assert!(said(&harness).is_some_and(|text| text.ends_with("film.mp4 written")));
 
     // A film that exists already is asked about, and a cancelled one is not written.

@@ -19,7 +19,7 @@ use crate::collision::ChannelClass;
 use crate::data::{Channel, write_atomically};
 use crate::figure::{Figure, write_figure_csv};
 use crate::ranges::{PICTURE_SCALE, SPEED};
-use crate::study::{Drive, ImpactRequest, Library, ScenarioChoice, SimulateRequest};
+use crate::study::{Drive, ImpactRequest, Library, ScenarioChoice, SimulateRequest, VehicleChoice};
 use crate::vehicle::ContactPoint;
 
 /// Draw a figure into a PNG, or write its numbers as CSV
@@ -34,11 +34,13 @@ pub(in crate::cli) struct RenderArgs {
 enum RenderCommand {
     #[command(flatten)]
     Figure(FigureArgs),
-    /// The scene as a film, from above or in perspective, with slow motion
+    /// The scene as a film, from above or in perspective, with slow motion; of the evidence of a
+    /// collision, the course of events that is reconstructed from it
     #[command(after_help = "\
 Examples:\n  impactlab render film datasets/trajectories-fea --case FE_c002 --view perspective \
 --follow struck --slow 0..0.3=0.1 --out film.mp4\n  \
-impactlab render film datasets/trajectories-fea --case FE_c002 --fps 25 --out frames\n\n\
+impactlab render film datasets/trajectories-fea --case FE_c002 --fps 25 --out frames\n  \
+impactlab render film datasets/staged/evidence/s11.toml --view perspective --out reconstruction.mp4\n\n\
 JSON: out, title, n_frames, frames_per_s, duration_s, size_px [width, height], notes")]
     Film(FilmArgs),
 }
@@ -131,6 +133,20 @@ pub(super) struct VehicleArgs {
 }
 
 impl VehicleArgs {
+    /// The struck vehicle.
+    pub(super) fn struck(&self) -> VehicleChoice {
+        VehicleArg::choice(&self.vehicle)
+    }
+
+    /// The options that say nothing of a reconstruction, each with whether it is there.
+    pub(super) fn given(&self) -> [(&'static str, bool); 3] {
+        [
+            ("--bullet", self.bullet.is_some()),
+            ("--speed", self.speed.is_some()),
+            ("--contact", self.contact.is_some()),
+        ]
+    }
+
     /// The simulation of what a path and `--case` choose.
     pub(super) fn request(
         &self,
@@ -139,7 +155,7 @@ impl VehicleArgs {
     ) -> Result<SimulateRequest, CliError> {
         let start = Drive { speed_m_s: self.speed, contact: self.contact, ..Drive::default() };
         Ok(SimulateRequest {
-            vehicle: VehicleArg::choice(&self.vehicle),
+            vehicle: self.struck(),
             bullet: VehicleArg::choice(&self.bullet),
             vehicle_draws: 0,
             site: self.site.clone(),

@@ -6,17 +6,24 @@ use clap::Args;
 use serde::Serialize;
 
 use crate::cli::CliError;
-use crate::cli::commands::render_scene::{BuiltScene, SeenArgs, ShownScene, build};
+use crate::cli::commands::render_reconstruction::cars_scene;
+use crate::cli::commands::render_scene::{BuiltScene, CaseArgs, SeenArgs, ShownScene, build};
 use crate::cli::console::{Console, Verdict, print_json, shown_path};
-use crate::cli::options::{OverwriteArg, UnitsArg, count, film_section, number, size_px};
+use crate::cli::options::{
+    OverwriteArg, UnitsArg, VehicleArg, count, film_section, number, size_px,
+};
 use crate::ranges::{FILM_RATE, FILM_SPEED, INSTANT, PICTURE_SCALE};
-use crate::scene::{FilmSection, FilmTiming};
+use crate::reconstruct::evidence::Evidence;
+use crate::scene::{FilmSection, FilmTiming, Scene};
+use crate::study::{EvidenceChoice, ReconstructRequest};
 
 /// What is filmed, and how.
 #[derive(Debug, Args)]
 pub(super) struct FilmArgs {
     #[command(flatten)]
     seen: SeenArgs,
+    #[command(flatten)]
+    sampled: SampledArgs,
     /// First moment; the start of the motion if not given
     #[arg(long, value_name = "TIME", value_parser = number(INSTANT))]
     from: Option<f64>,
@@ -51,6 +58,20 @@ pub(super) struct FilmArgs {
     scale: f64,
 }
 
+/// How a reconstruction is sampled, if the film is of one.
+#[derive(Debug, Args)]
+struct SampledArgs {
+    /// Of evidence: the striking car, where the evidence gives no value
+    #[arg(long, value_name = "NAME|FILE")]
+    striking: Option<VehicleArg>,
+    /// Of evidence: number of particles, as in reconstruct
+    #[arg(long, value_name = "N")]
+    particles: Option<usize>,
+    /// Of evidence: seed of all draws
+    #[arg(long)]
+    seed: Option<u64>,
+}
+
 #[derive(Debug, Serialize)]
 struct RenderedFilm<'a> {
     out: &'a Path,
@@ -68,16 +89,8 @@ pub(super) fn run(args: &FilmArgs, console: &mut Console<'_>) -> Result<Verdict,
     if kind == FilmKind::Mp4 {
         console.check_target(Some(&args.out), args.overwrite.into())?;
     }
-    let built = build(&args.seen.case, None, args.units.into(), console)?;
-    let BuiltScene { scene, notes, .. } = built;
-    let whole = FilmTiming::of_scene(&scene);
-    let timing = FilmTiming {
-        frames_per_s: args.fps,
-        from_s: args.from.unwrap_or(whole.from_s),
-        to_s: args.to.unwrap_or(whole.to_s),
-        speed: args.playback,
-        sections: args.slow.clone(),
-    };
+    let (scene, mut notes) = scene(args, console)?;
+    let timing = timing(args, &scene, &mut notes);
     let instants = timing.instants(&scene)?;
     let shown = args.seen.shown(scene, timing.from_s);
     let title = shown.subject();
@@ -98,6 +111,74 @@ pub(super) fn run(args: &FilmArgs, console: &mut Console<'_>) -> Result<Verdict,
         writeln!(console.out, "note: {note}")?;
     }
     Ok(Verdict::Clean)
+}
+
+/// The scene that is filmed, and notes on how it was made: a reconstruction of evidence, a simulation of
+/// everything else.
+fn scene(args: &FilmArgs, console: &mut Console<'_>) -> Result<(Scene, Vec<String>), CliError> {
+    let (case, units) = (&args.seen.case, args.units.into());
+    match reconstruction(case, &args.sampled)? {
+        Some(request) => cars_scene(&request, case.vehicle.site.as_deref(), units, console),
+        None => {
+            let BuiltScene { scene, notes, .. } = build(case, None, units, console)?;
+            Ok((scene, notes))
+        }
+    }
+}
+
+/// The reconstruction that is filmed, if the path is evidence.
+///
+/// # Errors
+/// [`CliError::OptionOfSimulation`] and [`CliError::OptionOfEvidence`] for an option that would have no
+/// effect.
+fn reconstruction(
+    case: &CaseArgs,
+    sampled: &SampledArgs,
+) -> Result<Option<ReconstructRequest>, CliError> {
+    let path = case.source.path.clone();
+    let SampledArgs { striking, particles, seed } = sampled;
+    let given = |options: &[(&'static str, bool)]| -> Option<&'static str> {
+        options.iter().find(|(_, is_there)| *is_there).map(|(option, _)| *option)
+    };
+    if !Evidence::is_meant_by(&path) {
+        let of_evidence = [
+            ("--striking", striking.is_some()),
+            ("--particles", particles.is_some()),
+            ("--seed", seed.is_some()),
+        ];
+        return match given(&of_evidence) {
+            Some(option) => Err(CliError::OptionOfEvidence { path, option }),
+            None => Ok(None),
+        };
+    }
+    let others = given(&case.source.given()).or_else(|| given(&case.vehicle.given()));
+    if let Some(option) = others.or_else(|| given(&[("--ghosts", case.ghosts > 0)])) {
+        return Err(CliError::OptionOfSimulation { path, option });
+    }
+    Ok(Some(ReconstructRequest {
+        vehicle: case.vehicle.struck(),
+        striking: VehicleArg::choice(striking),
+        particles: particles.unwrap_or(ReconstructRequest::DEFAULT_PARTICLES),
+        seed: seed.unwrap_or_default(),
+        ..ReconstructRequest::new(EvidenceChoice::File(path))
+    }))
+}
+
+/// The instants of the film; an end just after the motion is moved to its end, which is noted.
+fn timing(args: &FilmArgs, scene: &Scene, notes: &mut Vec<String>) -> FilmTiming {
+    let whole = FilmTiming::of_scene(scene);
+    let asked = FilmTiming {
+        frames_per_s: args.fps,
+        from_s: args.from.unwrap_or(whole.from_s),
+        to_s: args.to.unwrap_or(whole.to_s),
+        speed: args.playback,
+        sections: args.slow.clone(),
+    };
+    let (timing, before_s) = asked.ending_with_scene(scene);
+    notes.extend(before_s.map(|before_s| {
+        format!("--to is {before_s} s: the film ends with the motion, at {:.4} s", timing.to_s)
+    }));
+    timing
 }
 
 /// What is written.

@@ -1,6 +1,6 @@
 //! `impactlab render reconstruction`: what the evidence of a collision says.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
@@ -16,8 +16,8 @@ use crate::figure::{
     reconstruction_scene_figure,
 };
 use crate::reconstruct::ReconstructedQuantity;
-use crate::scene::{LoadedGround, ReconstructionParts, reconstruction_scene};
-use crate::study::{Assumption, Trust};
+use crate::scene::{LoadedGround, ReconstructionParts, Scene, reconstruction_scene};
+use crate::study::{Assumption, ReconstructAnswer, ReconstructRequest, Trust};
 use crate::units::UnitSystem;
 
 /// The evidence, and what is drawn.
@@ -79,47 +79,86 @@ pub(super) fn figure(
     units: UnitSystem,
     console: &mut Console<'_>,
 ) -> Result<(Noted, Option<ShownScene>), CliError> {
-    let answer = console.answer(&args.evidence.request())?;
-    let (badges, assumptions) = (&answer.report.badges, &answer.report.assumptions);
-    let mut trust = Trust::new(badges, assumptions);
-    let ground = args.site.as_deref().map(LoadedGround::load).transpose()?;
-    if let Some(ground) = &ground {
-        let zones = &ground.site.friction_zones;
-        trust.assumptions.extend(Assumption::zones_not_reconstructed(zones));
-    }
-    let mut notes = noted(&[], (badges, &trust.assumptions));
+    let of = Reconstructed::of(&args.evidence.request(), args.site.as_deref(), console)?;
+    let Reconstructed { answer, trust, .. } = &of;
     let mut cars = None;
     let figure = match (args.plot.quantity(), args.plot) {
         (Some(quantity), _) => {
             let prior = prior_values(&answer.target, quantity);
-            marginal_figure(&answer, (quantity, &prior), &trust, units)
+            marginal_figure(answer, (quantity, &prior), trust, units)
         }
-        (None, PlotArg::Budget) => budget_figure(&answer, &trust, units),
+        (None, PlotArg::Budget) => budget_figure(answer, trust, units),
         (None, _) => {
-            let paths = ReconstructedPaths::of(&answer);
-            let scene = ReconstructionScene::of(&answer, &paths);
+            let paths = ReconstructedPaths::of(answer);
             let view = match args.plot {
                 PlotArg::CarsAbove => Some(ViewArg::Above),
                 PlotArg::CarsPerspective => Some(ViewArg::Perspective),
                 _ => None,
             };
             cars = view.map(|view| {
-                let mut built = reconstruction_scene(&ReconstructionParts {
-                    evidence: scene.evidence,
-                    cars: scene.cars,
-                    drawn: scene.drawn,
-                    followed: scene.followed.map(|of| (of.name, of.path)),
-                    marks: scene.marks,
-                    units,
-                    trust: &trust,
-                });
-                built.ground = ground.as_ref().map(|loaded| Arc::clone(&loaded.ground));
+                let built = of.cars(&paths, units);
                 let end_s = built.end_s;
                 ShownScene::fitted(built, end_s, view)
             });
-            reconstruction_scene_figure(&scene, &trust, units)
+            reconstruction_scene_figure(&ReconstructionScene::of(answer, &paths), trust, units)
         }
     };
-    notes.extend(ground.into_iter().flat_map(|loaded| loaded.notes));
-    Ok(((figure, notes), cars))
+    Ok(((figure, of.notes()), cars))
+}
+
+/// The scene of a reconstruction with the cars as bodies and a particle of median speed, and notes on how
+/// it was made.
+pub(super) fn cars_scene(
+    request: &ReconstructRequest,
+    site: Option<&Path>,
+    units: UnitSystem,
+    console: &mut Console<'_>,
+) -> Result<(Scene, Vec<String>), CliError> {
+    let of = Reconstructed::of(request, site, console)?;
+    Ok((of.cars(&ReconstructedPaths::of(&of.answer), units), of.notes()))
+}
+
+/// A reconstruction with what restricts it, and the ground below its cars.
+struct Reconstructed {
+    answer: ReconstructAnswer,
+    trust: Trust,
+    ground: Option<LoadedGround>,
+}
+
+impl Reconstructed {
+    fn of(
+        request: &ReconstructRequest,
+        site: Option<&Path>,
+        console: &mut Console<'_>,
+    ) -> Result<Self, CliError> {
+        // A site that cannot be read is said before anything is sampled.
+        let ground = site.map(LoadedGround::load).transpose()?;
+        let answer = console.answer(request)?;
+        let mut trust = Trust::new(&answer.report.badges, &answer.report.assumptions);
+        if let Some(ground) = &ground {
+            let zones = &ground.site.friction_zones;
+            trust.assumptions.extend(Assumption::zones_not_reconstructed(zones));
+        }
+        Ok(Self { answer, trust, ground })
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let mut notes = noted(&[], (&self.answer.report.badges, &self.trust.assumptions));
+        notes.extend(self.ground.iter().flat_map(|ground| ground.notes.iter().cloned()));
+        notes
+    }
+
+    fn cars(&self, paths: &ReconstructedPaths, units: UnitSystem) -> Scene {
+        let scene = ReconstructionScene::of(&self.answer, paths);
+        let built = reconstruction_scene(&ReconstructionParts {
+            evidence: scene.evidence,
+            cars: scene.cars,
+            drawn: scene.drawn,
+            followed: scene.followed.map(|of| (of.name, of.path)),
+            marks: scene.marks,
+            units,
+            trust: &self.trust,
+        });
+        Scene { ground: self.ground.as_ref().map(|of| Arc::clone(&of.ground)), ..built }
+    }
 }

@@ -46,13 +46,13 @@ pub(super) struct SeenArgs {
 #[derive(Debug, Args)]
 pub(super) struct CaseArgs {
     #[command(flatten)]
-    source: SourceArgs,
+    pub(super) source: SourceArgs,
     /// Draw so many paths from a forecast of the response network under the recorded force, and into a
     /// picture its density and regions at the moment; 0 asks for no forecast
     #[arg(long, value_name = "N", value_parser = count::<usize>(GHOSTS), default_value = "0")]
-    ghosts: usize,
+    pub(super) ghosts: usize,
     #[command(flatten)]
-    vehicle: VehicleArgs,
+    pub(super) vehicle: VehicleArgs,
 }
 
 /// Where the camera is.

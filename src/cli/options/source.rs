@@ -24,6 +24,11 @@ pub(in crate::cli) struct SourceArgs {
 }
 
 impl SourceArgs {
+    /// The options that are given beside the path, each with whether it is there.
+    pub(in crate::cli) fn given(&self) -> [(&'static str, bool); 2] {
+        [("--case", self.case.is_some()), ("--map", self.map.is_some())]
+    }
+
     /// What drives the motion: the case, the recorded motion, the force or steer angle of a file, or
     /// the scenario.
     ///
