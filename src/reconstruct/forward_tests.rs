@@ -1,12 +1,12 @@
 use super::*;
 use crate::data::Channel;
-use crate::reconstruct::evidence::Mark;
 use crate::reconstruct::evidence::examples::{SPIN, read};
+use crate::reconstruct::evidence::{Mark, Measured};
 use crate::reconstruct::sampler::Target;
 use crate::reconstruct::{
-    Discrepancy, EvidenceFit, MarkComparison, PriorComponent, ReconstructionTarget,
+    Discrepancy, EvidenceFit, MarkComparison, PriorComponent, PriorSource, ReconstructionTarget,
 };
-use crate::vehicle::{Integrator, TireMarkKind};
+use crate::vehicle::{Integrator, Preset, TireMarkKind};
 
 /// What is found beside the rest pose: a locked wheel, marks and a change of velocity.
 const FOUND: &str = r#"
@@ -104,6 +104,48 @@ fn one_scale_that_weighed_both_cars_errs_for_both_alike() {
     z[scale] = 2.0;
     for (after, before) in masses(&z).iter().zip(before) {
         assert!((after / before / 0.02_f64.exp() - 1.0).abs() < 1e-4, "{after} {before}");
+    }
+}
+
+#[test]
+fn every_distribution_says_who_gave_it() {
+    let source_of = |evidence: &Evidence, vehicle: Option<&VehicleParameters>, latent: Latent| {
+        let prior = Prior::of(evidence, &Cars::of(evidence, vehicle, vehicle));
+        let of_latent = prior.components().iter().find(|of| of.latent == latent);
+        of_latent.map(|of| of.source)
+    };
+    let found = evidence();
+    let mut ranged = found.clone();
+    ranged.prior.target_speed_m_s = Some([10.0, 30.0]);
+    ranged.prior.restitution = Some([0.1, 0.3]);
+    ranged.shared_scale_sigma = Some(0.01);
+    let mut unknown = found.clone();
+    (unknown.friction, unknown.struck_car.mass_kg) = (None, None);
+    let mut angled = found.clone();
+    angled.damage.angle_rad = Some(Measured { value: 0.3, sigma: 0.1 });
+    let known = Preset::Reference.parameters();
+    assert!(known.sheet.is_none(), "every parameter of it is known");
+    let any = None;
+    for (evidence, vehicle, latent, source) in [
+        (&found, any, Latent::TargetSpeed, Some(PriorSource::Assumed)),
+        (&ranged, any, Latent::TargetSpeed, Some(PriorSource::Given)),
+        (&found, any, Latent::RestitutionShare, Some(PriorSource::Assumed)),
+        (&ranged, any, Latent::RestitutionShare, Some(PriorSource::Given)),
+        (&ranged, any, Latent::MassScaleFactor, Some(PriorSource::Given)),
+        (&found, any, Latent::HeadingTowards, Some(PriorSource::Assumed)),
+        (&angled, any, Latent::HeadingTowards, Some(PriorSource::Measured)),
+        (&found, any, Latent::ContactAlong, Some(PriorSource::Measured)),
+        (&found, any, Latent::RoadFriction, Some(PriorSource::Measured)),
+        (&unknown, any, Latent::RoadFriction, Some(PriorSource::Assumed)),
+        (&found, any, Latent::TargetMass, Some(PriorSource::Measured)),
+        (&unknown, any, Latent::TargetMass, Some(PriorSource::Estimated)),
+        (&unknown, Some(&known), Latent::TargetMass, Some(PriorSource::Given)),
+        (&found, any, Latent::YawInertiaFactor, Some(PriorSource::Estimated)),
+        // What is known is not in the prior.
+        (&found, Some(&known), Latent::YawInertiaFactor, None),
+        (&found, any, Latent::BrakeStart, Some(PriorSource::Assumed)),
+    ] {
+        assert_eq!(source_of(evidence, vehicle, latent), source, "{latent:?}");
     }
 }
 

@@ -42,4 +42,4 @@ pub use modes::{ParticleMode, cluster_keys, modes_by};
 pub use posterior::{
     BudgetItem, Mode, Posterior, QuantityEstimate, ReconstructedQuantity, ShownEstimate,
 };
-pub use prior::{Latent, LatentValues, Prior, PriorComponent};
+pub use prior::{Latent, LatentValues, Prior, PriorComponent, PriorSource};

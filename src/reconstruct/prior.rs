@@ -36,7 +36,7 @@ use serde::Serialize;
 
 use crate::collision::{ContactDistribution, Side};
 use crate::reconstruct::Distribution;
-use crate::reconstruct::cars::Cars;
+use crate::reconstruct::cars::{Car, Cars};
 use crate::reconstruct::evidence::{
     DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, DEFAULT_MASS_SHARE, DriverBraked, Evidence, Measured,
 };
@@ -167,6 +167,23 @@ pub struct PriorComponent {
     pub latent: Latent,
     /// Its distribution.
     pub distribution: Distribution,
+    /// Who says so.
+    pub source: PriorSource,
+}
+
+/// Where a distribution of the prior comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PriorSource {
+    /// Given as a range or a scatter with the evidence, or as a value of the chosen vehicle.
+    Given,
+    /// A measured value of the evidence and its standard deviation; the usual one where the evidence says
+    /// none.
+    Measured,
+    /// A rule of the data sheet with its scatter.
+    Estimated,
+    /// Nobody said it: a default of the program, in the table of [`Prior`].
+    Assumed,
 }
 
 /// The prior: independent distributions of the quantities that are open.
@@ -254,22 +271,37 @@ impl Prior {
         values
     }
 
-    fn add(&mut self, latent: Latent, distribution: Distribution) {
-        self.components.push(PriorComponent { latent, distribution });
+    fn add(&mut self, latent: Latent, source: PriorSource, distribution: Distribution) {
+        self.components.push(PriorComponent { latent, distribution, source });
     }
 
-    /// A range of the user, or a default.
-    fn open(&mut self, latent: Latent, range: Option<[f64; 2]>, default: Distribution) {
-        let of_user = range.map(|[low, high]| Distribution::Uniform { low, high });
-        self.add(latent, of_user.unwrap_or(default));
+    /// A default of the program.
+    fn assume(&mut self, latent: Latent, distribution: Distribution) {
+        self.add(latent, PriorSource::Assumed, distribution);
+    }
+
+    /// A range of the user, or what is known without one.
+    fn open(
+        &mut self,
+        latent: Latent,
+        range: Option<[f64; 2]>,
+        otherwise: (PriorSource, Distribution),
+    ) {
+        let of_user =
+            range.map(|[low, high]| (PriorSource::Given, Distribution::Uniform { low, high }));
+        let (source, distribution) = of_user.unwrap_or(otherwise);
+        self.add(latent, source, distribution);
     }
 
     fn add_speeds(&mut self, evidence: &Evidence) {
         let ranges = &evidence.prior;
         let any = Distribution::Uniform { low: 0.0, high: HIGHEST_SPEED_M_S };
+        let any = (PriorSource::Assumed, any);
         self.open(Latent::TargetSpeed, ranges.target_speed_m_s, any);
         match ranges.bullet_speed_m_s {
-            None if self.is_pit => self.add(Latent::SpeedDifference, normal(1.0, 3.0, -20.0, 20.0)),
+            None if self.is_pit => {
+                self.assume(Latent::SpeedDifference, normal(1.0, 3.0, -20.0, 20.0));
+            }
             range => self.open(Latent::BulletSpeed, range, any),
         }
         // Angles are turned towards the struck side, so that the mirror of a case is the same prior.
@@ -285,40 +317,51 @@ impl Prior {
         };
         let by_damage = evidence.damage.angle_rad.map(|angle| {
             let mean = angle.value * towards(evidence.damage.side);
-            normal(mean, angle.sigma, mean - PI, mean + PI)
+            (PriorSource::Measured, normal(mean, angle.sigma, mean - PI, mean + PI))
         });
+        let by_side = (PriorSource::Assumed, by_side);
         let heading = ranges.heading_difference_rad.map(turned);
         self.open(Latent::HeadingTowards, heading, by_damage.unwrap_or(by_side));
         let sideslip = ranges.bullet_sideslip_rad.map(turned);
         let mean = if self.is_pit { -0.10 } else { 0.0 };
-        self.open(Latent::SideslipTowards, sideslip, normal(mean, 0.20, -0.8, 0.8));
+        let usual = (PriorSource::Assumed, normal(mean, 0.20, -0.8, 0.8));
+        self.open(Latent::SideslipTowards, sideslip, usual);
     }
 
     fn add_contact(&mut self, evidence: &Evidence, cars: &Cars) {
         let damage = &evidence.damage;
         let Measured { value, sigma } = damage.along_m;
-        self.add(Latent::ContactAlong, normal(value, sigma, value - 2.0, value + 2.0));
+        let along = normal(value, sigma, value - 2.0, value + 2.0);
+        self.add(Latent::ContactAlong, PriorSource::Measured, along);
         let across = damage.depth_m.unwrap_or_else(|| cars.depth_of(damage.side));
         self.fixed.set(Latent::ContactAcross, across);
-        self.add(Latent::RestitutionShare, Distribution::Uniform { low: 0.0, high: 1.0 });
+        // Its bounds are a range of the user, or those of the program.
+        let source = match evidence.prior.restitution {
+            Some(_) => PriorSource::Given,
+            None => PriorSource::Assumed,
+        };
+        self.add(Latent::RestitutionShare, source, Distribution::Uniform { low: 0.0, high: 1.0 });
         let [low, high] = ContactDistribution::default().friction_limit;
         let friction = normal((low + high) / 2.0, (high - low) / 2.9, 0.0, 1.0);
+        let friction = (PriorSource::Assumed, friction);
         self.open(Latent::ContactFriction, evidence.prior.contact_friction, friction);
         let mean = if self.is_pit { 0.15 } else { 0.0 };
-        self.add(Latent::NormalTilt, normal(mean, 0.12, -0.5, 0.8));
-        self.add(Latent::PulseDuration, log_normal(0.12, 0.30, 0.04, 0.30));
+        self.assume(Latent::NormalTilt, normal(mean, 0.12, -0.5, 0.8));
+        self.assume(Latent::PulseDuration, log_normal(0.12, 0.30, 0.04, 0.30));
     }
 
     fn add_cars(&mut self, evidence: &Evidence, cars: &Cars) {
-        let friction = evidence
-            .friction
-            .unwrap_or(Measured { value: DEFAULT_FRICTION, sigma: DEFAULT_FRICTION_SIGMA });
-        self.add(Latent::RoadFriction, normal(friction.value, friction.sigma, 0.03, 1.6));
-        self.add(
+        let usual = Measured { value: DEFAULT_FRICTION, sigma: DEFAULT_FRICTION_SIGMA };
+        let (source, friction) = match evidence.friction {
+            Some(measured) => (PriorSource::Measured, measured),
+            None => (PriorSource::Assumed, usual),
+        };
+        self.add(Latent::RoadFriction, source, normal(friction.value, friction.sigma, 0.03, 1.6));
+        self.assume(
             Latent::TireFrictionFactor,
             log_normal(TIRE_FRICTION_FACTOR, TIRE_FRICTION_SCATTER, 0.7, 1.4),
         );
-        self.add(
+        self.assume(
             Latent::LongitudinalFrictionRatio,
             log_normal(LONGITUDINAL_FRICTION_RATIO, LONGITUDINAL_FRICTION_SCATTER, 0.8, 1.5),
         );
@@ -326,20 +369,13 @@ impl Prior {
             (Latent::TargetMass, evidence.struck_car.mass_kg, &cars.struck),
             (Latent::BulletMass, evidence.striking_car.mass_kg, &cars.striking),
         ] {
-            let kg = vehicle.parameters.mass.mass_kg;
-            let of_sheet = || Measured { value: kg, sigma: DEFAULT_MASS_SHARE * kg };
-            let distribution = match (measured, vehicle.mass_scatter()) {
-                (None, Some(sigma)) => log_normal(kg, sigma, 0.5 * kg, 2.0 * kg),
-                (measured, _) => {
-                    let Measured { value, sigma } = measured.unwrap_or_else(of_sheet);
-                    normal(value, sigma, 0.5 * value, 1.5 * value)
-                }
-            };
-            self.add(latent, distribution);
+            let (source, distribution) = mass_of(measured, vehicle);
+            self.add(latent, source, distribution);
         }
         if let Some(sigma) = evidence.shared_scale_sigma {
             let reach = (4.0 * sigma).exp();
-            self.add(Latent::MassScaleFactor, log_normal(1.0, sigma, 1.0 / reach, reach));
+            let scale = log_normal(1.0, sigma, 1.0 / reach, reach);
+            self.add(Latent::MassScaleFactor, PriorSource::Given, scale);
         }
         for (latent, quantity) in [
             (Latent::YawInertiaFactor, SheetQuantity::YawInertia),
@@ -349,7 +385,8 @@ impl Prior {
             match cars.struck.scatter(quantity) {
                 Some(sigma) => {
                     let reach = (3.0 * sigma).exp();
-                    self.add(latent, log_normal(1.0, sigma, 1.0 / reach, reach));
+                    let factor = log_normal(1.0, sigma, 1.0 / reach, reach);
+                    self.add(latent, PriorSource::Estimated, factor);
                 }
                 None => self.fixed.set(latent, 1.0),
             }
@@ -373,7 +410,7 @@ impl Prior {
                 Some(sigma) => {
                     let is_sliding = latent == Latent::SlidingRatio;
                     let sigma = if is_sliding { sigma.max(SLIDING_SCATTER) } else { sigma };
-                    self.add(latent, log_normal(value, sigma, low, high));
+                    self.add(latent, PriorSource::Estimated, log_normal(value, sigma, low, high));
                 }
                 None => self.fixed.set(latent, value),
             }
@@ -384,27 +421,28 @@ impl Prior {
         let ranges = &evidence.prior;
         match evidence.after.driver_braked {
             DriverBraked::Unknown => {
-                self.add(Latent::BrakeDecision, Distribution::Uniform { low: 0.0, high: 1.0 });
+                self.assume(Latent::BrakeDecision, Distribution::Uniform { low: 0.0, high: 1.0 });
             }
             DriverBraked::Yes => self.fixed.set(Latent::BrakeDecision, 0.0),
             DriverBraked::No => self.fixed.set(Latent::BrakeDecision, 1.0),
         }
         if evidence.after.driver_braked != DriverBraked::No {
-            let start = log_normal(0.9, 0.47, 0.1, 6.0);
+            let start = (PriorSource::Assumed, log_normal(0.9, 0.47, 0.1, 6.0));
             self.open(Latent::BrakeStart, ranges.brake_start_s, start);
-            self.add(Latent::BrakeRise, log_normal(0.4, 0.5, 0.1, 1.5));
-            self.add(Latent::FrontBrakeShift, normal(0.0, 0.05, -0.2, 0.2));
-            self.open(Latent::BrakeShare, ranges.brake_share, log_normal(0.8, 0.79, 0.05, 3.0));
+            self.assume(Latent::BrakeRise, log_normal(0.4, 0.5, 0.1, 1.5));
+            self.assume(Latent::FrontBrakeShift, normal(0.0, 0.05, -0.2, 0.2));
+            let share = (PriorSource::Assumed, log_normal(0.8, 0.79, 0.05, 3.0));
+            self.open(Latent::BrakeShare, ranges.brake_share, share);
         }
-        self.add(Latent::EngineBraking, Distribution::Uniform { low: 0.0, high: 0.8 });
-        self.add(Latent::SteerAngle, normal(0.0, 0.015, -0.2, 0.2));
+        self.assume(Latent::EngineBraking, Distribution::Uniform { low: 0.0, high: 0.8 });
+        self.assume(Latent::SteerAngle, normal(0.0, 0.015, -0.2, 0.2));
         if evidence.after.blocked_wheels.is_none() {
-            self.add(Latent::BlockedWheel, Distribution::Uniform { low: 0.0, high: 1.0 });
-            self.add(Latent::BlockedDrag, Distribution::Uniform { low: 0.2, high: 1.6 });
+            self.assume(Latent::BlockedWheel, Distribution::Uniform { low: 0.0, high: 1.0 });
+            self.assume(Latent::BlockedDrag, Distribution::Uniform { low: 0.2, high: 1.6 });
         }
         if evidence.striking_rest.is_some() {
-            self.add(Latent::BulletBrakeStart, log_normal(0.9, 0.47, 0.1, 6.0));
-            self.add(Latent::BulletBrakeShare, log_normal(0.6, 0.8, 0.02, 3.0));
+            self.assume(Latent::BulletBrakeStart, log_normal(0.9, 0.47, 0.1, 6.0));
+            self.assume(Latent::BulletBrakeShare, log_normal(0.6, 0.8, 0.02, 3.0));
         }
     }
 }
@@ -433,6 +471,21 @@ pub(super) fn towards(side: Side) -> f64 {
     match side {
         Side::Left | Side::Rear => -1.0,
         Side::Right | Side::Front => 1.0,
+    }
+}
+
+/// The mass of a car: as it was weighed, by the rule of its data sheet, or that of the chosen vehicle.
+fn mass_of(measured: Option<Measured>, vehicle: &Car) -> (PriorSource, Distribution) {
+    let kg = vehicle.parameters.mass.mass_kg;
+    let weighed =
+        |Measured { value, sigma }: Measured| normal(value, sigma, 0.5 * value, 1.5 * value);
+    match (measured, vehicle.mass_scatter()) {
+        (Some(measured), _) => (PriorSource::Measured, weighed(measured)),
+        (None, Some(sigma)) => (PriorSource::Estimated, log_normal(kg, sigma, 0.5 * kg, 2.0 * kg)),
+        (None, None) => {
+            let of_sheet = Measured { value: kg, sigma: DEFAULT_MASS_SHARE * kg };
+            (PriorSource::Given, weighed(of_sheet))
+        }
     }
 }
 

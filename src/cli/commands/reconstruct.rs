@@ -48,7 +48,7 @@ JSON: case; quantities [{name, unit, median, interval_50, interval_80, interval_
   delta_v_target_m_s, target_yaw_rate_after_rad_s; modes [{name, probability, standard_error, quantities}];
   fit [{evidence, unit, expected, found, p}]; budget [{known, sigma, now_m_s, then_m_s, ess, believable}]; ess,
   n_simulations, n_particles, log_evidence, by_hand_m_s [value, standard deviation],
-  priors [{latent, distribution}], assumptions, badges, seed";
+  priors [{latent, distribution, source}], assumptions, badges, seed";
 
 /// Files that are written.
 const KNOWN_FILES: [&str; 2] = ["particles.csv", "reconstruction.json"];

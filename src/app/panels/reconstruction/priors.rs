@@ -69,7 +69,7 @@ pub fn priors_ui(
 
 fn prior_row(
     ui: &mut Ui,
-    PriorComponent { latent, distribution }: &PriorComponent,
+    PriorComponent { latent, distribution, .. }: &PriorComponent,
     (after, units): (Option<[f64; 2]>, UnitSystem),
 ) {
     let unit = latent.quantity().display_unit(units);
