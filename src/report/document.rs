@@ -161,7 +161,7 @@ pub enum InputClass {
     Measured,
     /// A rule gives it from other values.
     Estimated,
-    /// The program assumed it, or it is a distribution that was taken to be likely before.
+    /// The program assumed it: nobody said it.
     Assumed,
 }
 

@@ -2,6 +2,7 @@
 
 use crate::reconstruct::{EvidenceFit, Mode};
 use crate::report::answer::reconstruct::quantities;
+use crate::report::answer::tyre_marks::compared_marks;
 use crate::report::numbers::{Wording, fill};
 use crate::report::{Block, Table};
 use crate::study::ReconstructReport;
@@ -15,9 +16,9 @@ pub(super) fn evidence_blocks(report: &ReconstructReport, wording: &Wording) -> 
         Block::heading(2, report.case.clone()),
         Block::paragraph(fill(words.fit_text, &[("level", &level)])),
         Block::Table(fit(report, wording)),
-        Block::Table(modes(report, wording)),
-        Block::paragraph(words.modes_text),
     ];
+    blocks.extend(compared_marks(report, wording));
+    blocks.extend([Block::Table(modes(report, wording)), Block::paragraph(words.modes_text)]);
     if report.modes.len() > 1 {
         blocks.extend(report.modes.iter().map(|mode| {
             let caption = fill(words.mode_caption, &[("mode", &wording.phrase(&mode.name))]);

@@ -1,7 +1,7 @@
 //! What was found after a collision, as rows of the table of inputs.
 
 use crate::reconstruct::evidence::{CarEvidence, DriverBraked, Evidence, Mark, Measured, RestPose};
-use crate::reconstruct::{Car, Distribution, PriorComponent};
+use crate::reconstruct::{Car, Distribution, PriorComponent, PriorSource};
 use crate::report::InputClass;
 use crate::report::answer::evidence::measured;
 use crate::report::answer::vehicle_inputs::estimate_row;
@@ -206,11 +206,17 @@ fn prior_row(prior: &PriorComponent, wording: &Wording) -> InputRow {
             ],
         ),
     };
+    let (class, source) = match prior.source {
+        PriorSource::Given => (InputClass::Given, words.source_prior_given),
+        PriorSource::Measured => (InputClass::Measured, words.source_prior_measured),
+        PriorSource::Estimated => (InputClass::Estimated, words.source_prior_rule),
+        PriorSource::Assumed => (InputClass::Assumed, words.source_prior),
+    };
     InputRow {
         group: words.prior.to_owned(),
         label: wording.term(prior.latent.label()),
         value: text,
-        class: InputClass::Assumed,
-        source: words.source_prior.to_owned(),
+        class,
+        source: source.to_owned(),
     }
 }

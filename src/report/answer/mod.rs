@@ -22,6 +22,8 @@ mod evidence;
 
 mod evidence_inputs;
 
+mod tyre_marks;
+
 use crate::report::numbers::Wording;
 use crate::report::parts::Part;
 use crate::report::paths::ShownPaths;

@@ -5,6 +5,7 @@ use crate::data::Channel;
 use crate::figure::{analysis_force_figure, analysis_motion_figure, analysis_scene_figure};
 use crate::report::answer::Context;
 use crate::report::answer::facts::{Fact, Meaning, fact_blocks, provenance_of};
+use crate::report::answer::tyre_marks::computed_marks;
 use crate::report::answer::vehicle_inputs::vehicle_rows;
 use crate::report::method::Method;
 use crate::report::numbers::{Wording, fill};
@@ -20,6 +21,7 @@ pub(super) fn part(answer: &SimulateAnswer, context: Context<'_>) -> Part {
     let asked = [("name", &*report.name), ("vehicle", &*report.vehicle)];
     let mut blocks = vec![Block::paragraph(fill(words.ask_simulate, &asked))];
     blocks.extend(fact_blocks(words.motion_caption, facts(report, context), wording));
+    blocks.extend(computed_marks(report, wording));
     let mut sensitivity = Vec::new();
     let mut draws = Vec::new();
     if let Some(uncertainty) = &report.uncertainty {

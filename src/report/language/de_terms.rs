@@ -46,6 +46,7 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("duration", "Dauer"),
     ("contact height", "Höhe des Kontakts"),
     ("vehicle", "gestoßenes Fahrzeug"),
+    ("struck", "gestoßenes Fahrzeug"),
     ("striking", "stoßendes Fahrzeug"),
     ("equations", "Bewegungsgleichungen"),
     ("integrator", "Integrationsverfahren"),
@@ -216,6 +217,7 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("rear_right", "hinten rechts"),
     ("sideways", "quer gleitend"),
     ("locked", "blockiert"),
+    ("side slip", "seitlich rutschend"),
     // Restrictions.
     ("outside the domain", "außerhalb des Gültigkeitsbereichs"),
     ("implausible contact", "unplausibler Kontakt"),
