@@ -10,7 +10,7 @@ use impactlab::app::{
     App, Command, ComparisonCommand, ForceChoice, Latest, Network, Pane, QuestionJob,
     ReconstructionCommand, State, Subject, TrainingCommand, TrainingMode,
 };
-use impactlab::study::{Question, Request};
+use impactlab::study::{Question, Request, SimulateAnswer};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -223,6 +223,36 @@ fn cases_and_files_are_simulated_alike() {
         let (request, answer) = latest(&state(&harness).session.analysis);
         CommandLine::of(&["simulate", option, path]).compare(request, &answer.report);
     }
+}
+
+#[test]
+fn a_scenario_on_a_road_with_zones_of_friction_is_simulated_alike() {
+    let site = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/sites/country-road/site.toml");
+    let folder = tempfile::tempdir().expect("a folder");
+    let braked = {
+        let pit = std::fs::read_to_string(SCENARIO).expect("the scenario");
+        let ending = "\n[ending]\nbrake_start_s = 0.3\nbrake_share = 0.9\n";
+        write(folder.path(), "braked.toml", &(pit + ending))
+    };
+    let mut harness = open(&[&*braked]);
+    step_until(&mut harness, "the scenario", |state| is_idle(state) && state.analysis().is_some());
+    let report = |state: &State| {
+        let (_, answer) = latest(&state.session.analysis);
+        serde_json::to_value(&answer.report).expect("JSON")
+    };
+    let off_road = report(state(&harness));
+    apply(&mut harness, Command::Open(vec![site.into()]));
+    step_until(&mut harness, "the ground", |state| {
+        let has_zones = |of: &SimulateAnswer| !of.report.friction_zones.is_empty();
+        is_idle(state) && state.analysis().is_some_and(has_zones)
+    });
+    let on_road = report(state(&harness));
+    assert_ne!(off_road["end"], on_road["end"], "the zones make a difference");
+    let (request, answer) = latest(&state(&harness).session.analysis);
+    // The window asks about a scenario in memory, the command line about a file.
+    CommandLine::of(&["simulate", "--scenario", &braked, "--site", site])
+        .asks_differently(&["source"])
+        .compare(request, &answer.report);
 }
 
 #[test]
