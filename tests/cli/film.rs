@@ -138,27 +138,18 @@ const EVIDENCE: &str = "tests/data/evidence/spin.toml";
 fn a_reconstruction_is_filmed_from_its_evidence() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("film.mp4");
-    let few = ["render", "film", EVIDENCE, "--particles", "60", "--seed", "2"];
+    let road = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/sites/country-road/site.toml");
+    let few = ["render", "film", EVIDENCE, "--particles", "60", "--seed", "2", "--site", road];
     let seen = ["--view", "perspective", "--follow", "struck", "--size", "320x180", "--fps", "5"];
     let said = answer(&[&few[..], &seen, &["--to", "1", "--out", text(&out)]].concat());
     assert_eq!((&said["title"], &said["n_frames"]), (&json("\"spin\""), &json("6")));
     let film = fs::read(&out).expect("a film");
     assert_eq!(film.get(4..8), Some(&b"ftyp"[..]));
-    // Few particles restrict the answer, which is said here and burnt in.
-    let notes = said["notes"].as_array().expect("notes");
-    let is_said =
-        |part: &str| notes.iter().any(|of| of.as_str().is_some_and(|of| of.contains(part)));
-    assert!(is_said("few particles"), "{notes:?}");
-
-    // The same cars as the picture draws, on a road.
-    let pictures = folder.path().join("pictures");
-    let road = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/sites/country-road/site.toml");
-    let on_road = ["--to", "0.2", "--site", road, "--out", text(&pictures)];
-    let said = answer(&[&few[..], &seen, &on_road].concat());
-    assert_eq!(said["n_frames"], 2);
+    // What restricts the answer is said here and burnt in.
     let notes = said["notes"].to_string();
-    assert!(notes.contains("a reconstruction takes one friction for the whole road"), "{notes}");
-    assert_eq!(fs::read_dir(&pictures).expect("a folder").count(), 3, "pictures and a manifest");
+    for part in ["few particles", "a reconstruction takes one friction for the whole road"] {
+        assert!(notes.contains(part), "{notes}");
+    }
 }
 
 #[test]
