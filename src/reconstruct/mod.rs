@@ -42,4 +42,7 @@ pub use modes::{ParticleMode, cluster_keys, modes_by};
 pub use posterior::{
     BudgetItem, Mode, Posterior, QuantityEstimate, ReconstructedQuantity, ShownEstimate,
 };
-pub use prior::{Latent, LatentValues, Prior, PriorComponent, PriorSource};
+pub use prior::{
+    BLOCKED_PROBABILITY, BRAKE_PROBABILITY, Latent, LatentValues, Prior, PriorComponent,
+    PriorSource,
+};

@@ -213,7 +213,7 @@ impl LatentValues {
 const HIGHEST_SPEED_M_S: f64 = 60.0;
 
 /// Probability that a driver brakes of whom nothing is known.
-const BRAKE_PROBABILITY: f64 = 0.75;
+pub const BRAKE_PROBABILITY: f64 = 0.75;
 
 /// Friction of a tyre over that which was measured on the road, and its scatter: other tyres differ.
 const TIRE_FRICTION_FACTOR: f64 = 1.02;
@@ -228,7 +228,7 @@ const LONGITUDINAL_FRICTION_SCATTER: f64 = 0.07;
 const SLIDING_SCATTER: f64 = 0.08;
 
 /// Probability that a wheel near the damage is blocked if nobody looked.
-const BLOCKED_PROBABILITY: f64 = 0.2;
+pub const BLOCKED_PROBABILITY: f64 = 0.2;
 
 impl Prior {
     /// The prior of a case.

@@ -78,13 +78,19 @@ impl Wording {
         self.local(&significant(value))
     }
 
-    /// A number that was given, with no more digits than it has.
+    /// A number that was given, with all its digits up to the eighth and no more than it has.
     pub fn given_number(&self, value: f64) -> String {
-        self.local(&trimmed(significant(value)))
+        self.local(&in_full(value))
     }
 
     /// The same with its unit.
     pub fn given(&self, quantity: Quantity, value_si: f64) -> String {
+        let unit = quantity.display_unit(self.units);
+        self.with_unit(&in_full(unit.from_si(value_si)), unit.symbol)
+    }
+
+    /// A number of a rule or an assumption, rounded as on the screen, without zeros at its end.
+    pub fn rounded(&self, quantity: Quantity, value_si: f64) -> String {
         let unit = quantity.display_unit(self.units);
         self.with_unit(&trimmed(significant(unit.from_si(value_si))), unit.symbol)
     }
@@ -149,6 +155,19 @@ impl Wording {
     }
 }
 
+/// Digits of a number that was given, at most: more would be those of the conversion of its unit.
+const GIVEN_DIGITS: i32 = 8;
+
+/// A number with the digits that it was given with.
+fn in_full(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return trimmed(significant(value));
+    }
+    let size = value.abs().log10().floor() as i32;
+    let decimals = (GIVEN_DIGITS - 1 - size).clamp(0, 12) as usize;
+    trimmed(format!("{value:.decimals$}"))
+}
+
 /// A number without zeros at the end of its decimals.
 pub(super) fn trimmed(number: String) -> String {
     match number.contains('.') {
@@ -203,6 +222,17 @@ mod tests {
         assert_eq!((&*interval.median, &*interval.range), ("31 m", "27 to 57 m"));
         let shown = Quantity::Length.shown_interval(30.741, [26.52, 57.24], UnitSystem::Si);
         assert_eq!(shown, "31 (27 to 57) m");
+    }
+
+    #[test]
+    fn what_was_given_keeps_its_digits() {
+        let en = wording(Language::En, UnitSystem::Si);
+        assert_eq!(en.given(Quantity::Mass, 1999.4567), "1999.4567 kg");
+        assert_eq!(en.given(Quantity::Length, -1.234567), "-1.234567 m");
+        assert_eq!(en.given(Quantity::Speed, 15.0), "54 km/h");
+        assert_eq!(en.given_number(0.1 + 0.2), "0.3");
+        assert_eq!(en.given_number(0.0), "0");
+        assert_eq!(en.rounded(Quantity::Mass, 1999.4567), "1999 kg");
     }
 
     #[test]

@@ -80,7 +80,12 @@ fn badge_rows(variants: &[VariantParts], wording: &Wording) -> Vec<[String; 4]> 
 fn sentence(badge: &Badge, wording: &Wording) -> String {
     let words = wording.words;
     let mut text = wording.quoted(&badge.text);
-    let is_said = |value: f64| badge.text.contains(&significant(value));
+    // A whole number of the text, so that 0 is not said by 10.
+    let is_number = |c: char| c.is_ascii_digit() || c == '.' || c == '-';
+    let is_said = |value: f64| {
+        let (said, mut numbers) = (significant(value), badge.text.split(|c| !is_number(c)));
+        numbers.any(|number| number.trim_end_matches('.') == said)
+    };
     if let (Some(quantity), Some(value)) = (&badge.quantity, badge.value)
         && !is_said(value)
     {

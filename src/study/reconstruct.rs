@@ -351,13 +351,13 @@ fn of_fit(fit: &[EvidenceFit]) -> Vec<Badge> {
     let unexplained = fit.iter().filter(|item| item.is_unexplained());
     unexplained
         .map(|item| {
+            let shown = |value: f64| format!("{value:.3} {}", item.unit).trim_end().to_owned();
             let text = format!(
-                "{}: found {:.3} {unit}, expected {:.3} {unit}: items of the evidence contradict each \
-                 other, or the course of events is another one; do not rely on the intervals",
+                "{}: found {}, expected {}: items of the evidence contradict each other, or the course \
+                 of events is another one; do not rely on the intervals",
                 item.evidence,
-                item.found,
-                item.expected,
-                unit = item.unit
+                shown(item.found),
+                shown(item.expected),
             );
             Badge::new(BadgeKind::EvidenceUnexplained, text)
                 .with_value(format!("p of {}", item.evidence), item.p)

@@ -19,6 +19,15 @@ pub const DEFAULT_MASS_SHARE: f64 = 0.03;
 pub const DEFAULT_FRICTION: f64 = 0.72;
 /// Its standard deviation.
 pub const DEFAULT_FRICTION_SIGMA: f64 = 0.13;
+/// Angle of damage, rad. Damage is bent by the turn of the cars during the contact. Assumed.
+pub const DEFAULT_ANGLE_SIGMA_RAD: f64 = 0.17;
 /// Speed before the impact in an event data recorder as a share of it: 4 %, the accuracy that 49 CFR
 /// 563 asks for with the rounding of the record.
 pub const DEFAULT_EDR_SPEED_SHARE: f64 = 0.04;
+/// Least standard deviation of that speed, m/s: the rounding of the record.
+const LEAST_EDR_SPEED_SIGMA_M_S: f64 = 0.3;
+
+/// Standard deviation of the speed before the impact in an event data recorder, m/s.
+pub fn default_edr_speed_sigma(speed_m_s: f64) -> f64 {
+    (DEFAULT_EDR_SPEED_SHARE * speed_m_s).max(LEAST_EDR_SPEED_SIGMA_M_S)
+}

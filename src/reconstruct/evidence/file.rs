@@ -76,9 +76,9 @@ use crate::ranges::{
     VEHICLE_YAW_INERTIA,
 };
 use crate::reconstruct::evidence::defaults::{
-    DEFAULT_DAMAGE_SIGMA_M, DEFAULT_EDR_SPEED_SHARE, DEFAULT_FRICTION_SIGMA,
+    DEFAULT_ANGLE_SIGMA_RAD, DEFAULT_DAMAGE_SIGMA_M, DEFAULT_FRICTION_SIGMA,
     DEFAULT_HEADING_SIGMA_RAD, DEFAULT_MARK_SIGMA_M, DEFAULT_MASS_SHARE, DEFAULT_REST_SIGMA_M,
-    DEFAULT_VIDEO_SIGMA_M,
+    DEFAULT_VIDEO_SIGMA_M, default_edr_speed_sigma,
 };
 use crate::reconstruct::evidence::{
     After, CarEvidence, Damage, DriverBraked, Edr, Evidence, Mark, MarkKind, Measured, PriorRanges,
@@ -92,10 +92,6 @@ pub(super) const SIDES: [(&str, Side); 4] =
     [("left", Side::Left), ("right", Side::Right), ("front", Side::Front), ("rear", Side::Rear)];
 pub(super) const MARK_KINDS: [(&str, MarkKind); 2] =
     [("side-slip", MarkKind::SideSlip), ("locked", MarkKind::Locked)];
-
-/// Smallest standard deviation of an angle of damage that stands in where none is given, rad. Damage
-/// is bent by the turn of the cars during the contact. Assumed.
-const DEFAULT_ANGLE_SIGMA_RAD: f64 = 0.17;
 
 impl Evidence {
     /// Whether a TOML file is meant as evidence: it has a table of the struck or the striking car, which
@@ -305,8 +301,8 @@ fn read_edr(mut table: TomlTable<'_>) -> Result<Edr, TomlError> {
     let delta_v_x_m_s = read_bounds(&mut table, "delta_v_x")?;
     let delta_v_y_m_s = read_bounds(&mut table, "delta_v_y")?;
     let ranges = (&EVIDENCE_SPEED, &SPEED_SIGMA);
-    let share = |speed: f64| (DEFAULT_EDR_SPEED_SHARE * speed).max(0.3);
-    let speed_before_m_s = measured(&mut table, "speed_before", ranges, share)?;
+    let sigma = default_edr_speed_sigma;
+    let speed_before_m_s = measured(&mut table, "speed_before", ranges, sigma)?;
     let x_m = table.number("sensor_x", &CONTACT_X)?.unwrap_or(0.0);
     let y_m = table.number("sensor_y", &CONTACT_Y)?.unwrap_or(0.0);
     let ends_s = table.number("ends", &PULSE_END)?;

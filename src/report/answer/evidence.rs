@@ -8,6 +8,9 @@ use crate::report::{Block, Table};
 use crate::study::ReconstructReport;
 use crate::units::{Quantity, significant};
 
+/// Probability below which a table says only that it is smaller.
+const LEAST_SHOWN_P: f64 = 0.001;
+
 /// The fit of each item, and the courses of events with their probabilities.
 pub(super) fn evidence_blocks(report: &ReconstructReport, wording: &Wording) -> Vec<Block> {
     let words = wording.words;
@@ -45,12 +48,20 @@ fn fit(report: &ReconstructReport, wording: &Wording) -> Table {
             wording.phrase(&item.evidence),
             in_unit(item.found, item.unit, wording),
             in_unit(item.expected, item.unit, wording),
-            wording.fixed(item.p, 3),
+            shown_p(item.p, wording),
             explained.to_owned(),
         ]
     };
     let columns = [words.evidence_item, words.found, words.expected, "p", words.verdict];
     Table::new(words.fit_caption, columns, report.fit.iter().map(row).collect()).numeric(&[1, 2, 3])
+}
+
+/// A probability with three decimals, and never as nothing.
+fn shown_p(p: f64, wording: &Wording) -> String {
+    match p < LEAST_SHOWN_P {
+        true => format!("< {}", wording.fixed(LEAST_SHOWN_P, 3)),
+        false => wording.fixed(p, 3),
+    }
 }
 
 fn modes(report: &ReconstructReport, wording: &Wording) -> Table {

@@ -1,7 +1,14 @@
 //! What was found after a collision, as rows of the table of inputs.
 
 use crate::reconstruct::evidence::{CarEvidence, DriverBraked, Evidence, Mark, Measured, RestPose};
-use crate::reconstruct::{Car, Distribution, PriorComponent, PriorSource};
+use crate::reconstruct::evidence::{
+    DEFAULT_ANGLE_SIGMA_RAD, DEFAULT_DAMAGE_SIGMA_M, DEFAULT_FRICTION_SIGMA,
+    DEFAULT_HEADING_SIGMA_RAD, DEFAULT_MARK_SIGMA_M, DEFAULT_MASS_SHARE, DEFAULT_REST_SIGMA_M,
+    DEFAULT_VIDEO_SIGMA_M, default_edr_speed_sigma,
+};
+use crate::reconstruct::{
+    BLOCKED_PROBABILITY, BRAKE_PROBABILITY, Car, Distribution, Latent, PriorComponent, PriorSource,
+};
 use crate::report::InputClass;
 use crate::report::answer::evidence::measured;
 use crate::report::answer::vehicle_inputs::estimate_row;
@@ -9,6 +16,7 @@ use crate::report::numbers::{Wording, fill};
 use crate::report::parts::InputRow;
 use crate::study::{ReconstructAnswer, ReconstructRequest, word};
 use crate::units::Quantity;
+use crate::vehicle::sheet::SheetQuantity;
 
 /// Evidence, estimates of both cars, and the prior.
 pub(super) fn evidence_rows(
@@ -19,7 +27,8 @@ pub(super) fn evidence_rows(
     let words = wording.words;
     let evidence = answer.target.evidence();
     let mut rows = Rows { wording, rows: Vec::new() };
-    rows.measured(words.road, (words.road_friction, Quantity::Ratio), evidence.friction);
+    let friction = (evidence.friction, DEFAULT_FRICTION_SIGMA);
+    rows.measured(words.road, (words.road_friction, Quantity::Ratio), friction);
     rows.car(words.struck_vehicle, &evidence.struck_car);
     rows.car(words.striking_vehicle, &evidence.striking_car);
     rows.scene(evidence);
@@ -34,7 +43,9 @@ pub(super) fn evidence_rows(
         // The answer is there, so that the vehicles could be read.
         let chosen = choice.chosen().ok().flatten();
         let estimates = Car::estimates_of(found, chosen.as_ref());
-        rows.rows.extend(estimates.iter().map(|of| estimate_row(of, group, wording)));
+        // The friction of the road is what was measured, or that of the prior.
+        let estimates = estimates.iter().filter(|of| of.quantity != SheetQuantity::Friction);
+        rows.rows.extend(estimates.map(|of| estimate_row(of, group, wording)));
     }
     let priors = answer.report.priors.iter().map(|prior| prior_row(prior, wording));
     rows.rows.extend(priors);
@@ -62,10 +73,27 @@ impl Rows<'_> {
         });
     }
 
-    fn measured(&mut self, group: &str, (label, quantity): (&str, Quantity), of: Option<Measured>) {
+    /// A value with its standard deviation.
+    ///
+    /// - `default`: the standard deviation that stands in where the evidence says none.
+    fn measured(
+        &mut self,
+        group: &str,
+        (label, quantity): (&str, Quantity),
+        (of, default): (Option<Measured>, f64),
+    ) {
         if let Some(Measured { value, sigma }) = of {
             let text = measured(quantity, [value, sigma], self.wording);
-            self.push(group, label, text, InputClass::Measured);
+            self.push_measured(group, label, text, sigma == default);
+        }
+    }
+
+    /// - `is_default`: whether the standard deviation is the one that stands in where the evidence says
+    ///   none.
+    fn push_measured(&mut self, group: &str, label: &str, value: String, is_default: bool) {
+        self.push(group, label, value, InputClass::Measured);
+        if let (Some(row), true) = (self.rows.last_mut(), is_default) {
+            row.source = self.wording.words.source_default_sigma.to_owned();
         }
     }
 
@@ -78,7 +106,8 @@ impl Rows<'_> {
 
     fn car(&mut self, group: &str, car: &CarEvidence) {
         let words = self.wording.words;
-        self.measured(group, (words.mass, Quantity::Mass), car.mass_kg);
+        let default = car.mass_kg.map_or(0.0, |mass| DEFAULT_MASS_SHARE * mass.value);
+        self.measured(group, (words.mass, Quantity::Mass), (car.mass_kg, default));
         for (key, quantity, value) in [
             ("cg to front axle", Quantity::Length, car.cg_to_front_axle_m),
             ("cg to rear axle", Quantity::Length, car.cg_to_rear_axle_m),
@@ -99,9 +128,10 @@ impl Rows<'_> {
         let side = self.wording.term(&word(&damage.side));
         self.push(words.damage, words.struck_side, side, InputClass::Given);
         let along = (words.contact_along, Quantity::Length);
-        self.measured(words.damage, along, Some(damage.along_m));
+        self.measured(words.damage, along, (Some(damage.along_m), DEFAULT_DAMAGE_SIGMA_M));
         self.given(words.damage, (words.contact_depth, Quantity::Length), damage.depth_m);
-        self.measured(words.damage, (words.damage_angle, Quantity::Angle), damage.angle_rad);
+        let angle = (damage.angle_rad, DEFAULT_ANGLE_SIGMA_RAD);
+        self.measured(words.damage, (words.damage_angle, Quantity::Angle), angle);
         self.rest(words.struck_at_rest, evidence.rest.as_ref());
         self.rest(words.striking_at_rest, evidence.striking_rest.as_ref());
         let braked = match evidence.after.driver_braked {
@@ -126,17 +156,19 @@ impl Rows<'_> {
         let Some(pose) = pose else { return };
         let sigma = pose.position_sigma_m;
         for (label, value) in [("X", pose.x_m), ("Y", pose.y_m)] {
-            let measured = Some(Measured { value, sigma });
+            let measured = (Some(Measured { value, sigma }), DEFAULT_REST_SIGMA_M);
             self.measured(group, (label, Quantity::Length), measured);
         }
-        self.measured(group, (self.wording.words.heading, Quantity::Angle), pose.heading_rad);
+        let heading = (pose.heading_rad, DEFAULT_HEADING_SIGMA_RAD);
+        self.measured(group, (self.wording.words.heading, Quantity::Angle), heading);
     }
 
     fn recorder(&mut self, evidence: &Evidence) {
         let words = self.wording.words;
         let edr = &evidence.edr;
         let speed = (words.speed_before, Quantity::Speed);
-        self.measured(words.recorder, speed, edr.speed_before_m_s);
+        let default = edr.speed_before_m_s.map_or(0.0, |of| default_edr_speed_sigma(of.value));
+        self.measured(words.recorder, speed, (edr.speed_before_m_s, default));
         for (axis, bounds) in [("x", edr.delta_v_x_m_s), ("y", edr.delta_v_y_m_s)] {
             if let Some([low, high]) = bounds {
                 let [low, high] = [low, high].map(|of| self.wording.given(Quantity::Speed, of));
@@ -150,7 +182,8 @@ impl Rows<'_> {
             for (axis, value) in [("X", position.x_m), ("Y", position.y_m)] {
                 let text = measured(Quantity::Length, [value, position.sigma_m], self.wording);
                 let label = format!("{axis}, {time}");
-                self.push(words.video, &label, text, InputClass::Measured);
+                let is_default = position.sigma_m == DEFAULT_VIDEO_SIGMA_M;
+                self.push_measured(words.video, &label, text, is_default);
             }
         }
     }
@@ -174,7 +207,7 @@ impl Rows<'_> {
         let kind = mark.kind.map(|kind| self.wording.term(&word(&kind)));
         let wheel = self.wording.term(&word(&mark.wheel));
         let label = kind.map_or(wheel.clone(), |kind| format!("{wheel}, {kind}"));
-        self.push(words.tyre_mark, &label, text, InputClass::Measured);
+        self.push_measured(words.tyre_mark, &label, text, mark.sigma_m == DEFAULT_MARK_SIGMA_M);
     }
 }
 
@@ -182,8 +215,17 @@ impl Rows<'_> {
 fn prior_row(prior: &PriorComponent, wording: &Wording) -> InputRow {
     let words = wording.words;
     let quantity = prior.latent.quantity();
-    let value = |si: f64| wording.given(quantity, si);
+    let value = |si: f64| wording.rounded(quantity, si);
+    let decision =
+        |template: &str, share: f64| fill(template, &[("share", &wording.percent(share))]);
     let text = match prior.distribution {
+        // Uniform draws that are compared with a bound.
+        _ if prior.latent == Latent::BrakeDecision => {
+            decision(words.decision_prior, BRAKE_PROBABILITY)
+        }
+        _ if prior.latent == Latent::BlockedWheel => {
+            decision(words.decision_by_number, BLOCKED_PROBABILITY)
+        }
         Distribution::Uniform { low, high } => {
             fill(words.uniform, &[("low", &value(low)), ("high", &value(high))])
         }
@@ -200,7 +242,7 @@ fn prior_row(prior: &PriorComponent, wording: &Wording) -> InputRow {
             words.log_normal_cut,
             &[
                 ("median", &value(median)),
-                ("sigma", &wording.given_number(sigma)),
+                ("sigma", &wording.rounded(Quantity::Ratio, sigma)),
                 ("low", &value(low)),
                 ("high", &value(high)),
             ],

@@ -54,13 +54,21 @@ fn facts(report: &PredictMotionReport, context: Context<'_>) -> Vec<Fact> {
     let wording = context.wording;
     let words = wording.words;
     let outcome = &report.outcome;
-    let meaning = Meaning(words.meaning_motion);
+    let is_one = report.n_forces <= 1 && report.n_vehicles == 0;
+    let meaning = Meaning(if is_one { words.meaning_motion_one } else { words.meaning_motion });
+    let moved_by = match report.force_model {
+        Some(_) => fill(words.moved_by_network, &[("n", &report.n_forces.to_string())]),
+        None => words.moved_by_given.to_owned(),
+    };
     let spread = |label: &str, quantity, of: &Spread| {
         Fact::ninety(wording, (label, quantity), (of.median, of.ninety), meaning)
     };
     let time = wording.value(Quantity::Time, outcome.time_s);
     let end = if outcome.is_at_rest { words.at_rest_after } else { words.moving_after };
-    let mut facts = vec![Fact::plain(words.end, fill(end, &[("time", &time)]))];
+    let mut facts = vec![
+        Fact::plain(words.moved_by, moved_by),
+        Fact::plain(words.end, fill(end, &[("time", &time)])),
+    ];
     let force = report.force.as_ref().map(|path| context.paths.name(path));
     facts.extend(force.map(|name| Fact::plain(words.force_file, name)));
     facts.extend(report.rest.iter().flat_map(|rest| rest_facts(rest, meaning, wording)));

@@ -14,11 +14,15 @@ use crate::report::numbers::{Wording, fill};
 use crate::report::parts::{Part, PartPicture};
 use crate::report::{Block, Table};
 use crate::study::{ReconstructAnswer, ReconstructReport, ReconstructRequest, Trust};
+use crate::uncertainty::BadgeKind;
 use crate::units::Quantity;
 
 /// Quantities whose distribution is drawn.
 const DRAWN: [ReconstructedQuantity; 2] =
     [ReconstructedQuantity::TargetSpeed, ReconstructedQuantity::ClosingSpeed];
+
+/// Restrictions with which an interval is no answer.
+const DOUBTS: [BadgeKind; 2] = [BadgeKind::EvidenceUnexplained, BadgeKind::FewParticles];
 
 /// What a reconstruction contributes.
 pub(super) fn part(
@@ -31,6 +35,12 @@ pub(super) fn part(
     let mut blocks = vec![Block::paragraph(fill(words.ask_reconstruct, &[("name", &report.case)]))];
     blocks.push(Block::Table(quantities(words.reconstruct_caption, &report.quantities, wording)));
     blocks.push(Block::List { items: meanings(report, wording) });
+    let doubts = report.badges.iter().filter(|badge| DOUBTS.contains(&badge.kind));
+    let mut doubts: Vec<String> = doubts.map(|badge| wording.term(badge.kind.label())).collect();
+    doubts.dedup();
+    for badge in doubts {
+        blocks.push(Block::paragraph(fill(words.meaning_doubtful, &[("badge", &badge)])));
+    }
     if let Some(by_hand) = report.by_hand_m_s {
         let [value, sigma] = by_hand_text(by_hand, wording);
         let values = [("value", &*value), ("sigma", &*sigma)];

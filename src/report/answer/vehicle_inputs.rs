@@ -5,6 +5,7 @@ use crate::report::flatten::{FlatRow, flatten};
 use crate::report::numbers::Wording;
 use crate::report::parts::InputRow;
 use crate::report::paths::ShownPaths;
+use crate::units::Quantity;
 use crate::vehicle::VehicleParameters;
 use crate::vehicle::sheet::Estimate;
 
@@ -52,6 +53,11 @@ pub(super) fn vehicle_rows(
 /// What the rules of a data sheet say of a quantity that it leaves open.
 pub(super) fn estimate_row(estimate: &Estimate, group: &str, wording: &Wording) -> InputRow {
     let Estimate { quantity, unit, median, ninety, rule, source } = estimate;
+    let shown = Quantity::ALL.iter().find(|of| of.si_unit().symbol == *unit && !unit.is_empty());
+    let shown = shown.map(|of| of.display_unit(wording.units));
+    let in_shown = |value: f64| shown.as_ref().map_or(value, |unit| unit.from_si(value));
+    let unit = shown.as_ref().map_or(*unit, |unit| unit.symbol);
+    let (median, ninety) = (&in_shown(*median), &ninety.map(in_shown));
     let decimals = (ninety[1] - ninety[0]).abs();
     let decimals = match decimals > 0.0 && decimals.is_finite() {
         true => (1 - decimals.log10().floor() as i32).clamp(0, 6) as usize,

@@ -152,7 +152,8 @@ pub(super) const WORDS: Words = Words {
     implied_ratio: "sich ergebendes Impulsverhältnis P_τ/P_n",
     momentum_beside: "Impulslösung zum Vergleich",
     meaning_force: "{quantity}: mit einer Wahrscheinlichkeit von 90 % zwischen {low} und {high}, nach der \
-        Verteilung des Kraftnetzes; wie oft solche Intervalle zutrafen, steht in Abschnitt 7.",
+        Verteilung des Kraftnetzes. Wie oft solche Intervalle zutrafen, steht in Abschnitt 7 für \
+        die Größen, die geprüft wurden.",
     contact_open: "Der Kontaktpunkt ist offen: er wurde aus dem der Trainingsfälle gezogen.",
     body_open: "Der Aufbau des stoßenden Fahrzeugs ist offen: er wurde aus dem der Trainingsfälle \
         gezogen.",
@@ -164,14 +165,20 @@ pub(super) const WORDS: Words = Words {
     force_forecast_picture: "Vorhergesagte Kraft von „{name}“: Betrag über der Zeit mit Bändern",
     forecast_caption: "Vorhergesagte Bewegung",
     meaning_motion: "{quantity}: mit einer Wahrscheinlichkeit von 90 % zwischen {low} und {high}, nach der \
-        Verteilung des Bewegungsnetzes über die gezogenen Kräfte und Fahrzeuge; wie oft solche \
-        Bereiche zutrafen, steht in Abschnitt 7.",
+        Verteilung des Bewegungsnetzes über die gezogenen Kräfte und Fahrzeuge. Wie oft solche \
+        Bereiche des Ortes zutrafen, steht in Abschnitt 7.",
+    meaning_motion_one: "{quantity}: mit einer Wahrscheinlichkeit von 90 % zwischen {low} und {high}, nach der \
+        Verteilung des Bewegungsnetzes für diese eine Kraft und dieses Fahrzeug, deren eigene \
+        Unsicherheit fehlt. Wie oft solche Bereiche des Ortes zutrafen, steht in Abschnitt 7.",
+    moved_by: "bewegt durch",
+    moved_by_given: "die Kraft der Frage wie angegeben, in einem Verlauf",
+    moved_by_network: "{n} Ziehungen des Kraftnetzes",
     end: "Ende",
     at_rest_after: "Stillstand nach {time}",
     moving_after: "nach {time}, noch in Bewegung",
     heading_change: "Änderung des Gierwinkels",
-    speed_at_end: "Geschwindigkeit am Ende, Mittel",
-    yaw_rate_at_end: "Gierrate am Ende, Mittel",
+    speed_at_end: "Geschwindigkeit am Ende, Mittel der mittleren Bahnen",
+    yaw_rate_at_end: "Betrag der Gierrate am Ende, Mittel der mittleren Bahnen",
     p_quarter_turn: "Wahrscheinlichkeit einer Vierteldrehung oder mehr",
     p_half_turn: "Wahrscheinlichkeit einer halben Drehung oder mehr",
     learned_duration: "Das Bewegungsnetz hat aus Bewegungen von bis zu {time} gelernt; was danach kommt, ist \
@@ -180,8 +187,10 @@ pub(super) const WORDS: Words = Words {
     forecast_yaw_picture: "Vorhersage von „{name}“: Gierwinkel über der Zeit mit Bändern",
     reconstruct_caption: "Was die Spuren über die Geschwindigkeiten sagen, vor dem Aufprall, wenn nicht anders \
         gesagt",
-    meaning_posterior: "{quantity}: mit einer Wahrscheinlichkeit von 90 % zwischen {low} und {high}, gegeben die \
-        Spuren, wenn die Annahmen in Abschnitt 3 und die Modelle in Abschnitt 5 zutreffen.",
+    meaning_posterior: "{quantity}: mit einer Wahrscheinlichkeit von 90 % zwischen {low} und {high}, unter \
+        Berücksichtigung der Spuren, wenn die Annahmen in Abschnitt 3 und die Modelle in \
+        Abschnitt 5 zutreffen.",
+    meaning_doubtful: "Auf diese Intervalle ist kein Verlass: siehe die Warnung „{badge}“ in Abschnitt 6.",
     by_hand: "Zum Vergleich ergibt die Rechnung von Hand, aus der Auslaufstrecke mit mittlerer \
         Verzögerung und dem Impuls, für das gestoßene Fahrzeug {value} ± {sigma} (eine \
         Standardabweichung).",
@@ -260,6 +269,9 @@ pub(super) const WORDS: Words = Words {
     source_prior_rule: "Vorabverteilung; Regel des Datenblatts mit ihrer Streuung",
     source_prior: "Vorabverteilung; Vorgabewert des Programms",
     source_evidence_sigma: "Spuren",
+    source_default_sigma: "Spuren; ± ist das des Programms, wo die Spuren keines nennen",
+    decision_prior: "mit einer Wahrscheinlichkeit von {share}",
+    decision_by_number: "jedes der beiden Räder am Schaden mit einer Wahrscheinlichkeit von {share}, sonst keines",
     source_evidence: "Spuren",
     source_question: "Frage",
     source_file: "Datei, siehe Abschnitt 9",
@@ -324,7 +336,7 @@ pub(super) const WORDS: Words = Words {
         Kraft über der Zeit am Kontaktpunkt. Integriert wird nach Runge–Kutta mit fester \
         Schrittweite, die für Fahrzeuge mit schnelleren Eigenformen geteilt wird.",
     limits_four_dof: "Nicken, Hub, Reifeneinlauf, Rückstellmomente und Achskinematik fehlen; die Fahrbahn ist \
-        eben und hat unter allen Rädern denselben Reibbeiwert. Ein abhebendes Rad oder ein \
+        eben; ein Rad hat den Reibbeiwert der Fahrbahn oder der Zone, in der es steht. Ein abhebendes Rad oder ein \
         Wankwinkel über 15° wird gemeldet; ein Überschlag wird nicht simuliert. Ein zweiter \
         Kontakt der Fahrzeuge wird gemeldet und nicht berechnet.",
     method_force: "Kraftnetz",
@@ -415,7 +427,8 @@ pub(super) const WORDS: Words = Words {
     name: "Name",
     no_models: "Kein trainiertes Netz hat geantwortet.",
     reproduce_text: "Dieselbe Version ergibt mit denselben Dateien, Startwerten und Einstellungen dieselben \
-        Zahlen; ein Bericht desselben Falls mit demselben Datum hat dieselben Bytes.",
+        Zahlen auf der gleichen Art von Prozessor; ein anderer kann letzte Stellen anders runden, \
+        was Ziehungen verschiebt. Ein Bericht desselben Falls mit demselben Datum hat dieselben Bytes.",
     case_saved_by: "Der Fall wurde mit Version {version} gespeichert; dieser Bericht stammt von Version \
         {now}.",
     log_caption: "Was wann geschah, UTC",

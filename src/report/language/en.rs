@@ -149,7 +149,8 @@ pub(super) const WORDS: Words = Words {
     implied_ratio: "implied impulse ratio P_τ/P_n",
     momentum_beside: "momentum solution beside it",
     meaning_force: "{quantity}: between {low} and {high} with a probability of 90 %, by the distribution of \
-        the force network; how often such intervals held is said in section 7.",
+        the force network. Section 7 says how often such intervals held, for those quantities that \
+        were validated.",
     contact_open: "The contact point is open: it was drawn from that of the training cases.",
     body_open: "The body of the striking vehicle is open: it was drawn from that of the training cases.",
     probability: "Probability",
@@ -161,14 +162,20 @@ pub(super) const WORDS: Words = Words {
     force_forecast_picture: "Predicted force of “{name}”: size over time with its bands",
     forecast_caption: "Predicted motion",
     meaning_motion: "{quantity}: between {low} and {high} with a probability of 90 %, by the distribution of \
-        the response network over the forces and vehicles that were drawn; how often such \
-        regions held is said in section 7.",
+        the response network over the forces and vehicles that were drawn. Section 7 says how often \
+        such regions of the position held.",
+    meaning_motion_one: "{quantity}: between {low} and {high} with a probability of 90 %, by the distribution of \
+        the response network for this one force and vehicle, whose own uncertainty is left out. \
+        Section 7 says how often such regions of the position held.",
+    moved_by: "moved by",
+    moved_by_given: "the force of the question as given, in one course",
+    moved_by_network: "{n} draws of the force network",
     end: "end",
     at_rest_after: "at rest after {time}",
     moving_after: "after {time}, still moving",
     heading_change: "change of heading",
-    speed_at_end: "speed at the end, mean",
-    yaw_rate_at_end: "yaw rate at the end, mean",
+    speed_at_end: "speed at the end, mean of the central paths",
+    yaw_rate_at_end: "size of the yaw rate at the end, mean of the central paths",
     p_quarter_turn: "probability of a quarter turn or more",
     p_half_turn: "probability of a half turn or more",
     learned_duration: "The response network has learned from motions of up to {time}; what comes after that is \
@@ -179,6 +186,7 @@ pub(super) const WORDS: Words = Words {
     reconstruct_caption: "What the evidence says of the speeds, before the impact unless said otherwise",
     meaning_posterior: "{quantity}: between {low} and {high} with a probability of 90 %, given the evidence, if \
         the assumptions of section 3 and the models of section 5 hold.",
+    meaning_doubtful: "These intervals are not to be relied on: see the warning “{badge}” in section 6.",
     by_hand: "By hand, from the distance on the road with a drag factor and the momentum, the struck \
         car has {value} ± {sigma} (one standard deviation), for comparison.",
     particles: "particles:",
@@ -256,6 +264,9 @@ pub(super) const WORDS: Words = Words {
     source_prior_rule: "prior; rule of the data sheet with its scatter",
     source_prior: "prior; default of the program",
     source_evidence_sigma: "evidence",
+    source_default_sigma: "evidence; ± is that of the program, where the evidence says none",
+    decision_prior: "with a probability of {share}",
+    decision_by_number: "each of the two wheels near the damage with a probability of {share}, else none",
     source_evidence: "evidence",
     source_question: "question",
     source_file: "file, see section 9",
@@ -319,7 +330,7 @@ pub(super) const WORDS: Words = Words {
         Equations are integrated by the Runge–Kutta method with a fixed step, which is divided \
         for vehicles with faster modes.",
     limits_four_dof: "Pitch, heave, tyre relaxation, aligning moments and suspension kinematics are left out; \
-        the road is flat with one friction under all wheels. A lifted wheel or a roll beyond 15° \
+        the road is flat; a wheel has the friction of the road, or that of the zone it is in. A lifted wheel or a roll beyond 15° \
         is flagged; a rollover is not simulated. A second contact of the vehicles is flagged and \
         not computed.",
     method_force: "Force network",
@@ -402,7 +413,8 @@ pub(super) const WORDS: Words = Words {
     network: "Network",
     name: "Name",
     no_models: "No trained network answered.",
-    reproduce_text: "The same version with the same files, seeds and settings gives the same numbers; a \
+    reproduce_text: "The same version with the same files, seeds and settings gives the same numbers on the same \
+        kind of processor; another one may round the last digits differently, which shifts draws. A \
         report of the same case with the same date has the same bytes.",
     case_saved_by: "The case was saved by version {version}; this report was made by version {now}.",
     log_caption: "What was done and when, UTC",
