@@ -1,5 +1,8 @@
 //! Measuring on the ground of a scene: lengths, angles and areas between places that were clicked.
 
+use std::sync::Arc;
+
+use crate::scene::{MeasureTextAt, Scene, SceneMeasure};
 use crate::units::{Quantity, UnitSystem};
 
 /// What is measured.
@@ -82,6 +85,18 @@ impl Measurement {
         }
     }
 
+    /// How it is shown; `None` without the points that it needs.
+    pub fn in_scene(&self, units: UnitSystem) -> Option<SceneMeasure> {
+        let text_at = match self.measure {
+            Measure::Length | Measure::Scale => MeasureTextAt::End,
+            Measure::Angle => MeasureTextAt::Vertex,
+            Measure::Area => MeasureTextAt::Middle,
+        };
+        let is_closed = self.measure == Measure::Area;
+        let (points_m, text) = (self.points_m.clone(), self.text(units)?);
+        Some(SceneMeasure { points_m, is_closed, text, text_at })
+    }
+
     /// The value in the units that are shown; for a length also that of its last part.
     pub fn text(&self, units: UnitSystem) -> Option<String> {
         let value = self.value()?;
@@ -148,6 +163,16 @@ pub struct Measuring {
 }
 
 impl Measuring {
+    /// A scene with what was measured, for pictures and films of it.
+    pub fn added_to(&self, scene: &Arc<Scene>) -> Arc<Scene> {
+        let measures = self.done.iter().filter_map(|of| of.in_scene(scene.units));
+        let measures: Vec<SceneMeasure> = measures.collect();
+        match measures.is_empty() {
+            true => Arc::clone(scene),
+            false => Arc::new(Scene { measures, ..(**scene).clone() }),
+        }
+    }
+
     /// Chooses what is measured next; what was begun is ended.
     pub fn choose(&mut self, measure: Option<Measure>) {
         if self.begun.is_some() {

@@ -40,8 +40,8 @@ pub use ground_picture::{GroundPicture, PictureLevel, TILE};
 pub use load_ground::LoadedGround;
 pub use mesh::{Mesh, MeshTriangle, Surface, triangle_normal};
 pub use parts::{
-    CarLook, Scene, SceneArrow, SceneCar, SceneCross, SceneCrush, SceneDensity, SceneLine,
-    SceneMark, ScenePath, ScenePoint, SceneRole,
+    CarLook, MeasureTextAt, Scene, SceneArrow, SceneCar, SceneCross, SceneCrush, SceneDensity,
+    SceneLine, SceneMark, SceneMeasure, ScenePath, ScenePoint, SceneRole,
 };
 pub use reconstruction::{ReconstructionParts, reconstruction_scene};
 pub use simulation::{OtherMotion, SimulationScene, simulation_scene};

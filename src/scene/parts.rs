@@ -176,6 +176,30 @@ pub struct SceneDensity {
     pub peak: f64,
 }
 
+/// Something that was measured on the ground.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneMeasure {
+    /// The places that were clicked, `[X, Y]`, m.
+    pub points_m: Vec<[f64; 2]>,
+    /// Whether the last place is joined to the first.
+    pub is_closed: bool,
+    /// The value with its unit.
+    pub text: String,
+    /// Where the value stands.
+    pub text_at: MeasureTextAt,
+}
+
+/// Where the value of what was measured stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MeasureTextAt {
+    /// At the last place.
+    End,
+    /// At the second place: the vertex of an angle.
+    Vertex,
+    /// In the middle of all places.
+    Middle,
+}
+
 /// A scene over the whole course of events.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Scene {
@@ -199,6 +223,8 @@ pub struct Scene {
     pub arrows: Vec<SceneArrow>,
     /// Where cars meet again.
     pub crosses: Vec<SceneCross>,
+    /// What was measured on the ground.
+    pub measures: Vec<SceneMeasure>,
     /// Density of a position.
     pub density: Option<SceneDensity>,
     /// The last instant, s.

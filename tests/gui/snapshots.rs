@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use egui_kittest::image_snapshot;
 use impactlab::analysis::{Analysis, PulseSetup, Settings, analyse_case, analyse_scenario};
+use impactlab::app::{Measure, Measuring};
 use impactlab::collision::{ChannelClass, Scenario};
 use impactlab::data::{Channel, Dataset};
 use impactlab::figure::{
@@ -145,6 +146,35 @@ fn marks_grow_and_outlines_are_dented_as_time_passes() {
     assert_eq!(dented[0], 0, "before the largest overlap");
     assert!(dented[1] > 50 && dented[2] > 50, "{dented:?}");
     check_scene(&analysis, (ViewKind::Above, 3.5), ([520, 330], false), "marks_above");
+}
+
+#[test]
+fn what_was_measured_is_in_the_picture() {
+    let analysis = analysis("fea", "c002");
+    let trust = Trust::default();
+    let input =
+        SimulationScene { analysis: &analysis, others: &[], units: UnitSystem::Si, trust: &trust };
+    let scene = simulation_scene(&input);
+    let mut measuring = Measuring { measure: Some(Measure::Length), ..Measuring::default() };
+    for at_m in [[0.0, -3.0], [8.0, -3.0]] {
+        measuring.click(at_m);
+    }
+    measuring.end();
+    let pixels = |scene: &Arc<Scene>| {
+        let camera = Camera { kind: ViewKind::Above, ..Camera::default() };
+        let (scene, distance_m) = (Arc::clone(scene), None);
+        let follow = Follow::Nothing;
+        let picture =
+            ScenePicture { scene, time_s: 0.3, camera, is_placed: false, distance_m, follow };
+        let canvas = Canvas { size_px: [480, 300], scale: 1.0, dark: false };
+        scene_image(&picture, canvas).expect("a picture").into_raw()
+    };
+    let plain = Arc::new(scene);
+    let measured = measuring.added_to(&plain);
+    assert_eq!(measured.measures[0].text, "8.00 m");
+    let (without, with) = (pixels(&plain), pixels(&measured));
+    let n_changed = without.chunks(4).zip(with.chunks(4)).filter(|(a, b)| a != b).count();
+    assert!((200..8000).contains(&n_changed), "{n_changed} pixels");
 }
 
 #[test]

@@ -89,14 +89,14 @@ pub fn scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {
         }
         figure
     };
-    let placed = session.scene.view.camera();
+    let (placed, measured) = (session.scene.view.camera(), session.scene.measuring.clone());
     scene_heading_ui(
         ui,
         (&scene, time_s),
         (&mut view.scene, Some((&session.ground, &mut session.scene.measuring))),
         |settings| {
             let picture = ScenePicture {
-                scene: Arc::clone(&scene),
+                scene: measured.added_to(&scene),
                 time_s,
                 camera: placed.unwrap_or(settings.camera),
                 is_placed: placed.is_some(),

@@ -1,20 +1,14 @@
 //! The ground in the “Scene” pane: its menu, and measuring on it.
 
-use egui::{
-    Align2, Color32, DragValue, FontId, Key, Modifiers, Painter, Pos2, Rect, Response, Stroke, Ui,
-    vec2,
-};
+use egui::{DragValue, Key, Modifiers, Painter, Pos2, Response, Ui, vec2};
 
 use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
 use crate::app::ground::{GroundCommand, GroundSession};
 use crate::app::looks::{Icon, icon, icon_button};
 use crate::app::measure::{Measure, Measurement, Measuring};
-use crate::render::scene::SceneView;
+use crate::render::scene::{SceneView, draw_measure, draw_measure_text, measure_text_place};
 use crate::units::{Quantity, UnitSystem};
-
-/// Size of the values beside what is measured, points.
-const TEXT_POINTS: f32 = 12.0;
 
 /// Draws the menu of the ground.
 pub fn ground_menu_ui(ui: &mut Ui, ground: &GroundSession, commands: &mut Vec<Command>) {
@@ -167,47 +161,16 @@ impl Drawn<'_> {
         let is_open = of.measure != Measure::Scale || of.points_m.len() < 2;
         let next = pointer.filter(|_| is_open).and_then(|at| self.view.ground_at(at));
         seen.points_m.extend(next);
-        let (line, edge) = match self.dark {
-            true => (Color32::WHITE, Color32::from_black_alpha(170)),
-            false => (Color32::from_rgb(20, 22, 24), Color32::from_white_alpha(190)),
-        };
         let places: Vec<Pos2> =
             seen.points_m.iter().filter_map(|at| self.view.on_screen(*at)).collect();
-        let mut path = places.clone();
-        if of.measure == Measure::Area && places.len() > 2 {
-            path.extend(places.first().copied());
-        }
-        for (width, color) in [(4.0, edge), (1.6, line)] {
-            self.painter.line(path.clone(), Stroke::new(width, color));
-        }
-        for place in &places {
-            self.painter.circle_filled(*place, 3.5, edge);
-            self.painter.circle_filled(*place, 2.2, line);
-        }
-        let Some(text) = seen.text(self.units) else { return };
-        let at = match (next.and(pointer), of.measure) {
-            (Some(pointer), _) => Some(pointer + vec2(14.0, 12.0)),
-            (None, Measure::Angle) => places.get(1).map(|at| *at + vec2(10.0, 8.0)),
-            (None, Measure::Area) => middle(&places),
-            (None, _) => places.last().map(|at| *at + vec2(10.0, 8.0)),
+        draw_measure(&self.painter, (&places, of.measure == Measure::Area), self.dark);
+        let Some(shown) = seen.in_scene(self.units) else { return };
+        let at = match next.and(pointer) {
+            Some(pointer) => Some(pointer + vec2(14.0, 12.0)),
+            None => measure_text_place(&places, shown.text_at),
         };
-        let Some(at) = at else { return };
-        let galley = self.painter.layout_no_wrap(text, FontId::proportional(TEXT_POINTS), line);
-        let place = Align2::LEFT_TOP.anchor_size(at, galley.size());
-        let place = within(place, self.painter.clip_rect().shrink(4.0));
-        self.painter.rect_filled(place.expand2(vec2(4.0, 2.0)), 2.0, edge);
-        self.painter.galley(place.min, galley, line);
+        if let Some(at) = at {
+            draw_measure_text(&self.painter, (shown.text, at), self.dark);
+        }
     }
-}
-
-fn middle(places: &[Pos2]) -> Option<Pos2> {
-    let sum = places.iter().fold(egui::Vec2::ZERO, |sum, at| sum + at.to_vec2());
-    (!places.is_empty()).then(|| (sum / places.len() as f32).to_pos2())
-}
-
-/// A rectangle moved so that it lies within another, as far as it fits.
-fn within(rect: Rect, outer: Rect) -> Rect {
-    let over = (rect.max - outer.max).max(egui::Vec2::ZERO);
-    let rect = rect.translate(-over);
-    rect.translate((outer.min - rect.min).max(egui::Vec2::ZERO))
 }

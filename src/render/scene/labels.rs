@@ -7,6 +7,7 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, Vec2, pos2, vec
 
 use crate::render::scene::Projection;
 use crate::render::scene::grid::grid_step;
+use crate::render::scene::measures::{draw_measure, draw_measure_text, measure_text_place};
 use crate::render::scene::shade::{ground_color, role_color, zone_color};
 use crate::scene::{AreaKind, CarLook, Scene, SceneRole};
 use crate::units::Quantity;
@@ -53,9 +54,21 @@ impl Labels<'_> {
         self.names(painter, (scene, time_s), &mut taken);
         self.arrows(painter, scene, &mut taken);
         self.zones(painter, scene, &mut taken);
+        self.measures(painter, scene);
         match self.projection.is_parallel() {
             true => self.ticks_from_above(painter, scene, &mut taken),
             false => self.ticks_on_ground(painter, scene, &mut taken),
+        }
+    }
+
+    fn measures(&self, painter: &Painter, scene: &Scene) {
+        for measure in &scene.measures {
+            let on_screen = |[x, y]: &[f64; 2]| self.on_screen([*x, *y, 0.0]);
+            let places: Vec<Pos2> = measure.points_m.iter().filter_map(on_screen).collect();
+            draw_measure(painter, (&places, measure.is_closed), self.dark);
+            if let Some(at) = measure_text_place(&places, measure.text_at) {
+                draw_measure_text(painter, (measure.text.clone(), at), self.dark);
+            }
         }
     }
 

@@ -12,6 +12,7 @@ mod labels;
 mod legend;
 mod lines;
 mod marks;
+mod measures;
 mod moving_lines;
 mod picture;
 mod raster;
@@ -25,5 +26,6 @@ mod view;
 
 pub use camera::{Camera, Projection, ViewKind};
 pub use canvas::{SceneCanvas, SceneLook};
+pub use measures::{draw_measure, draw_measure_text, measure_text_place};
 pub use picture::{ScenePicture, scene_image};
 pub use view::{Follow, SceneView, scene_view_ui};
