@@ -5,11 +5,17 @@ use std::path::Path;
 use egui::{Context, Ui};
 
 use crate::app::command::{Command, ComparisonCommand, wake};
+use crate::app::dialogs::MODEL_ENDING;
 use crate::app::export;
 use crate::app::state::State;
-use crate::data::write::MANIFEST_FILE;
-use crate::data::{Existing, Severity, write_atomically};
+use crate::case_file::is_case_file;
+use crate::collision::Scenario;
+use crate::data::write::{MANIFEST_FILE, check_inputs};
+use crate::data::{DataError, Existing, Severity, write_atomically};
 use crate::error_chain;
+use crate::reconstruct::evidence::Evidence;
+use crate::site::Site;
+use crate::vehicle::VehicleParameters;
 
 impl Command {
     /// The file or folder that the command writes; `None` for all other commands.
@@ -47,6 +53,9 @@ impl State {
     /// said to be wanted, the user is asked first.
     pub(super) fn write(&mut self, command: Command, existing: Existing, context: &Context) {
         self.session.replacing = None;
+        if let Some(Err(error)) = command.target().map(|path| self.check_inputs(&command, path)) {
+            return self.say(Severity::Error, error_chain(&error));
+        }
         if existing == Existing::Refuse && command.replaces_something() {
             self.session.replacing = Some(Box::new(command));
             return;
@@ -96,6 +105,23 @@ impl State {
             }
             other => self.apply(other, context),
         }
+    }
+
+    /// Refuses to write over a file that the case rests on. A document that is edited in the window, or a
+    /// network, may go back to its own file.
+    fn check_inputs(&self, command: &Command, path: &Path) -> Result<(), DataError> {
+        let is_own = match command {
+            Command::SaveScenario(_) => Scenario::load(path).is_ok(),
+            Command::SaveVehicle(..) => VehicleParameters::load(path).is_ok(),
+            Command::SaveEvidence(..) => Evidence::load(path).is_ok(),
+            Command::SaveSite(_) => Site::is_meant_by(path),
+            Command::SaveModel(..) | Command::SaveKept(..) => {
+                path.extension().is_some_and(|ending| ending == MODEL_ENDING)
+            }
+            Command::SaveCaseAs(_) => is_case_file(path),
+            _ => false,
+        };
+        if is_own { Ok(()) } else { check_inputs(path, &self.files_in_use()) }
     }
 
     /// Writes a short text and tells the user that it has been written, or why it could not be.

@@ -15,6 +15,7 @@ use zip::{ZipArchive, ZipWriter};
 
 use crate::case_file::used::{files_in, files_of_site};
 use crate::case_file::{CASE_ENDING, CaseError, CaseFile, is_case_file};
+use crate::data::write::check_inputs;
 use crate::data::{Existing, write_atomically};
 
 /// Folder of the files within a package.
@@ -38,6 +39,7 @@ pub fn pack(case: &CaseFile, to: &Path, existing: Existing) -> Result<(), CaseEr
     if let Some(path) = case.missing_inputs().into_iter().next() {
         return Err(CaseError::Missing { path });
     }
+    check_inputs(to, &case.input_files())?;
     let mut case = case.clone();
     case.record_files();
     let mut entries = Vec::new();

@@ -137,6 +137,16 @@ impl CaseFile {
         paths
     }
 
+    /// Every file that an answer to the case rests on, with those within its data sets.
+    pub fn input_files(&self) -> Vec<PathBuf> {
+        let questions = self.variants.iter().flat_map(|variant| &variant.questions);
+        let mut paths = self.used_paths();
+        paths.extend(questions.flat_map(Request::files_read));
+        paths.sort();
+        paths.dedup();
+        paths
+    }
+
     /// Reads the content of every file that the variants name, by which changes will be known. A file
     /// that is missing keeps the content that it had.
     pub fn record_files(&mut self) {

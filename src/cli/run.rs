@@ -11,7 +11,7 @@ use crate::cli::commands::{
     app, ask, case, check, compare, condition, evaluate, export, fine_tune, impact, licences,
     predict, ranges, reconstruct, render, report, simulate, train, vehicles,
 };
-use crate::cli::console::{Console, Escaped, Verdict, within_line};
+use crate::cli::console::{Console, Escaped, Targets, Verdict, within_line};
 use crate::error_chain;
 use crate::study::Library;
 
@@ -82,6 +82,7 @@ pub fn run() -> ExitCode {
         json: cli.json,
         print_request: cli.print_request,
         library: Library::default(),
+        targets: Targets::default(),
         out: &mut out,
     };
     let verdict = dispatch(cli.command, &mut console);

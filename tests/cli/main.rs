@@ -16,6 +16,7 @@ mod film;
 mod force;
 mod ground;
 mod guide;
+mod inputs;
 mod log;
 mod program;
 mod ranges;

@@ -33,6 +33,26 @@ fn names(folder: &Path) -> Vec<String> {
 }
 
 #[test]
+fn the_window_never_writes_over_a_file_that_the_case_rests_on() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("force.csv");
+    let recording = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/fea/forces/c001.csv");
+    fs::copy(recording, &path).expect("a recording");
+    let before = fs::read(&path).expect("a recording");
+    let mut harness = open(&[path.to_str().expect("UTF-8")]);
+    step_until(&mut harness, "the recording", is_idle);
+    for save in [Command::SaveScenario(path.clone()), Command::SaveCaseAs(path.clone())] {
+        for command in [save.clone(), Command::Replace(Box::new(save))] {
+            apply(&mut harness, command);
+            harness.run_steps(3);
+            assert!(messages(&harness).contains("is an input ("), "{}", messages(&harness));
+            assert!(state(&harness).session.replacing.is_none(), "nothing to be asked");
+        }
+    }
+    assert!(fs::read(&path).expect("a recording") == before);
+}
+
+#[test]
 fn the_window_asks_before_it_replaces_a_file() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("scenario.toml");

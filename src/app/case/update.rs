@@ -76,6 +76,19 @@ impl State {
         self.questions().is_empty() && others.into_iter().all(|of| of.questions.is_empty())
     }
 
+    /// The files that the case rests on, with its own and with everything that is open.
+    pub(in crate::app) fn files_in_use(&self) -> Vec<PathBuf> {
+        let mut file = self.case.file.clone();
+        let shown = file.shown.clone();
+        if let Some(variant) = file.variant_mut(&shown) {
+            variant.forms = serde_json::to_value(self.forms()).unwrap_or_default();
+            variant.questions = self.questions();
+        }
+        let sources = self.session.sources.iter().map(|source| source.path.clone());
+        let own = self.case.path.iter().cloned();
+        file.input_files().into_iter().chain(sources).chain(own).collect()
+    }
+
     /// The case with the forms of the window in the variant that is shown.
     pub(in crate::app) fn captured_case(&mut self) -> CaseFile {
         self.capture();

@@ -103,6 +103,8 @@ pub(in crate::cli) fn run(args: &CaseArgs, console: &mut Console<'_>) -> Result<
         CaseCommand::Check(args) => check_case(args, console),
         CaseCommand::Pack(args) => {
             let case = CaseFile::load(&args.case)?;
+            console.check_target(Some(&args.out), args.overwrite.into())?;
+            console.reads(&[args.case.clone()])?;
             pack(&case, &args.out, args.overwrite.into())?;
             writeln!(console.out, "{} written", shown_path(&args.out))?;
             Ok(Verdict::Clean)

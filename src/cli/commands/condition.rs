@@ -8,7 +8,6 @@ use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::options::{BadCasesArg, LearningDataArgs, OverwriteArg};
 use crate::cli::text::{Trained, print_response_training};
-use crate::data::check_target;
 use crate::learning::ModelFile;
 use crate::shipped::ModelSource;
 use crate::study::{FineTuneRequest, Learning, ModelChoice, TrainingOptions};
@@ -73,9 +72,7 @@ pub(in crate::cli) fn run(
         },
         ..args.data.request()
     };
-    if !console.print_request {
-        check_target(&args.out, args.overwrite.into())?;
-    }
+    console.check_target(Some(&args.out), args.overwrite.into())?;
     let Some(answer) = console.ask(&request)? else { return Ok(Verdict::Clean) };
     answer.model.save(&args.out, args.overwrite.into())?;
     let trained = Trained { model: &args.out, report: &answer.report };

@@ -71,6 +71,7 @@ pub(in crate::cli) fn run(
         resume: args.resume,
         ..args.evidence.request()
     };
+    console.keeps(args.checkpoint.as_deref());
     let out = args.out.as_deref();
     let into = out.map(|folder| (folder, args.overwrite.into(), &KNOWN_FILES[..]));
     let answer = console.ask_into(&request, into, |output, answer| {

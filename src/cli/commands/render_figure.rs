@@ -7,8 +7,8 @@ use crate::collision::{ChannelClass, filter_history};
 use crate::data::{Channel, contact_interval};
 use crate::figure::{Figure, ForceFigure, analysis_motion_figure, force_figure, impact_figure};
 use crate::study::{
-    Assumption, Drive, ImpactRequest, RecordedForceRequest, SimulateAnswer, SimulateRequest,
-    StudyError, Trust,
+    Assumption, Drive, ImpactRequest, RecordedForceRequest, Request, SimulateAnswer,
+    SimulateRequest, StudyError, Trust,
 };
 use crate::uncertainty::Badge;
 use crate::units::UnitSystem;
@@ -35,7 +35,8 @@ pub(super) fn force(
     console: &mut Console<'_>,
 ) -> Result<Noted, CliError> {
     let source = source.motion_source(&console.library, Drive::default())?;
-    let recorded = console.answer(&RecordedForceRequest { source })?;
+    let files = Request::from(SimulateRequest::new(source.clone())).files_read();
+    let recorded = console.answer_reading(&RecordedForceRequest { source }, &files)?;
     let (name, raw) = (recorded.name, recorded.force);
     let filtered = class.map(|class| filter_history(class, &raw)).transpose();
     let filtered = filtered.map_err(|source| CliError::Filter { name: name.clone(), source })?;

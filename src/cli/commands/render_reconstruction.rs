@@ -132,7 +132,7 @@ impl Reconstructed {
         console: &mut Console<'_>,
     ) -> Result<Self, CliError> {
         // A site that cannot be read is said before anything is sampled.
-        let ground = site.map(LoadedGround::load).transpose()?;
+        let ground = site.map(|site| console.ground(site)).transpose()?;
         let answer = console.answer(request)?;
         let mut trust = Trust::new(&answer.report.badges, &answer.report.assumptions);
         if let Some(ground) = &ground {

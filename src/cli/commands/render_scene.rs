@@ -205,6 +205,7 @@ pub(super) fn build(
 ) -> Result<BuiltScene, CliError> {
     let request = args.vehicle.request(&args.source, &console.library)?;
     let SimulateAnswer { report, analysis } = console.answer(&request)?;
+    console.answered(&report.provenance);
     if let Some(time_s) = density_s {
         check_time(&analysis, ("--time", time_s))?;
     }
@@ -223,7 +224,7 @@ pub(super) fn build(
         scene.trust = trust;
     }
     if let Some(path) = &args.vehicle.site {
-        notes.extend(add_ground(&mut scene, path)?);
+        notes.extend(add_ground(&mut scene, path, console)?);
     }
     Ok(BuiltScene { analysis, scene, notes })
 }
@@ -236,8 +237,12 @@ impl SeenArgs {
 }
 
 /// Puts the ground of a site below a scene; returns what there is to say of it.
-pub(super) fn add_ground(scene: &mut Scene, site: &Path) -> Result<Vec<String>, CliError> {
-    let LoadedGround { ground, notes, .. } = LoadedGround::load(site)?;
+pub(super) fn add_ground(
+    scene: &mut Scene,
+    site: &Path,
+    console: &mut Console<'_>,
+) -> Result<Vec<String>, CliError> {
+    let LoadedGround { ground, notes, .. } = console.ground(site)?;
     scene.ground = Some(ground);
     Ok(notes)
 }
@@ -265,6 +270,7 @@ fn add_ghosts(
         ..PredictMotionRequest::new(motion.source, ForceSource::Given)
     };
     let answer = console.answer(&request)?;
+    console.answered(&answer.report.provenance);
     let density = density_s.map(|time_s| {
         Arc::new(DensityTask::new(&answer.forecast.distribution, [time_s; 2]).on_cpu())
     });

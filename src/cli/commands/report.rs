@@ -109,6 +109,8 @@ pub(in crate::cli) fn run(
     }
     console.check_target(Some(&args.out), args.overwrite.into())?;
     let case = args.case()?;
+    console.reads(&[args.case.clone()])?;
+    console.reads(&case.input_files())?;
     let settings = args.settings()?;
     let asked = (&case, args.variant.as_slice());
     let outcome = under_bar(|observer| report_case(asked, &settings, &console.library, observer))?;

@@ -6,9 +6,11 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use crate::cli::CliError;
-use crate::cli::console::{print_json, under_bar, within_line};
-use crate::data::write::{FileDigest, OutputFolder, RunRecord};
-use crate::data::{Existing, check_target};
+use crate::cli::console::{Targets, print_json, under_bar, within_line};
+use crate::data::Existing;
+use crate::data::write::OutputFolder;
+use crate::scene::LoadedGround;
+use crate::site::Site;
 use crate::study::{Assumption, Library, Provenance, Question, Request};
 use crate::uncertainty::Badge;
 
@@ -36,6 +38,8 @@ pub(in crate::cli) struct Console<'a> {
     pub(in crate::cli) print_request: bool,
     /// What has been read already.
     pub(in crate::cli) library: Library,
+    /// What will be written.
+    pub(in crate::cli) targets: Targets,
     /// Standard output.
     pub(in crate::cli) out: &'a mut dyn Write,
 }
@@ -54,27 +58,89 @@ impl Console<'_> {
         self.answer(question).map(Some)
     }
 
-    /// Answers a question under a progress bar.
-    pub(in crate::cli) fn answer<Q: Question>(
+    /// Answers a question under a progress bar. If a file that it reads is to be written, that is an
+    /// error before any work.
+    pub(in crate::cli) fn answer<Q>(&mut self, question: &Q) -> Result<Q::Answer, CliError>
+    where
+        Q: Question + Into<Request>,
+    {
+        self.targets.ask(&question.clone().into())?;
+        self.answer_reading(question, &[])
+    }
+
+    /// Answers a question of which no [`Request`] is made, likewise.
+    ///
+    /// - `files`: which it reads.
+    pub(in crate::cli) fn answer_reading<Q: Question>(
         &mut self,
         question: &Q,
+        files: &[PathBuf],
     ) -> Result<Q::Answer, CliError> {
+        self.reads(files)?;
         let outcome = under_bar(|observer| question.answer(&self.library, observer))?;
         // Nobody cancels here: Ctrl-C ends the whole program.
         outcome.complete().ok_or(CliError::Cancelled)
     }
 
     /// Says before the work begins what stands in the way of a file; of nothing if only the question
-    /// is to be printed.
+    /// is to be printed. What is read from then on, by a question or as [`Console::reads`] says, must
+    /// not be this file, whether it may be replaced or not.
     pub(in crate::cli) fn check_target(
-        &self,
+        &mut self,
         path: Option<&Path>,
         existing: Existing,
     ) -> Result<(), CliError> {
         match path {
-            Some(path) if !self.print_request => Ok(check_target(path, existing)?),
+            Some(path) if !self.print_request => self.targets.add(path, existing),
             _ => Ok(()),
         }
+    }
+
+    /// The same for a file that a question writes itself, and checks, while it is answered.
+    pub(in crate::cli) fn keeps(&mut self, path: Option<&Path>) {
+        if let Some(path) = path {
+            self.targets.add_kept(path);
+        }
+    }
+
+    /// Says which files are about to be read without a question.
+    ///
+    /// # Errors
+    /// [`WriteError::IsInput`](crate::data::write::WriteError::IsInput) if one of them is to be written.
+    pub(in crate::cli) fn reads(&mut self, files: &[PathBuf]) -> Result<(), CliError> {
+        self.targets.read(files)
+    }
+
+    /// Takes seed and networks of an answer into the manifest of the folder that is expected.
+    pub(in crate::cli) fn answered(&mut self, provenance: &Provenance) {
+        self.targets.answered(provenance);
+    }
+
+    /// Reads the ground of a scene, with everything that its site names.
+    pub(in crate::cli) fn ground(&mut self, site: &Path) -> Result<LoadedGround, CliError> {
+        let mut files = vec![site.to_owned()];
+        files.extend(Site::files_named_by(site));
+        self.reads(&files)?;
+        Ok(LoadedGround::load(site)?)
+    }
+
+    /// Says that there will be a folder of results ([`Console::begin_folder`]).
+    pub(in crate::cli) fn expect_folder(&mut self) {
+        self.targets.expect_folder();
+    }
+
+    /// Begins a folder of results.
+    ///
+    /// - returns the folder, and what its manifest says: what was asked and read since
+    ///   [`Console::expect_folder`].
+    #[cfg(feature = "gui")]
+    pub(in crate::cli) fn begin_folder(
+        &self,
+        folder: &Path,
+        existing: Existing,
+    ) -> Result<(OutputFolder, crate::data::write::RunRecord), CliError> {
+        let (record, read) = self.targets.run_record();
+        Ok((OutputFolder::begin(folder, existing, &[])?.protecting(read)?, record))
     }
 
     /// Answers a question and writes files of the answer into a folder, which is prepared before
@@ -96,17 +162,13 @@ impl Console<'_> {
             return self.ask(question);
         };
         let output = OutputFolder::begin(folder, existing, known)?;
+        self.targets.expect_folder();
         let request: Request = question.clone().into();
-        let inputs = digests(&request.input_files());
+        let output = output.protecting(request.files_read())?;
         let answer = self.answer(question)?;
-        let Provenance { seed, model_digests, .. } = write(&output, &answer)?;
-        output.finish(RunRecord {
-            command: std::env::args_os().map(|arg| arg.to_string_lossy().into_owned()).collect(),
-            request: serde_json::to_value(&request).map_err(io::Error::from)?,
-            seed,
-            models: model_digests,
-            inputs,
-        })?;
+        self.targets.answered(&write(&output, &answer)?);
+        let (record, _) = self.targets.run_record();
+        output.finish(record)?;
         Ok(Some(answer))
     }
 
@@ -121,12 +183,6 @@ impl Console<'_> {
         }
         Ok(text(self.out)?)
     }
-}
-
-/// The content of files. One that cannot be read is left out: the question that names it says why.
-fn digests(files: &[PathBuf]) -> Vec<FileDigest> {
-    let digest = |path: &PathBuf| FileDigest::of(path.to_string_lossy(), path).ok();
-    files.iter().filter_map(digest).collect()
 }
 
 /// Prints what an answer rests on that nobody said.

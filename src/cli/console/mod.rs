@@ -4,8 +4,10 @@ mod command_line;
 mod escaped;
 mod output;
 mod progress;
+mod targets;
 
 pub(super) use command_line::{Console, Verdict, print_assumptions, print_badges, print_settings};
 pub(super) use escaped::{Escaped, shown_path, within_line};
 pub(super) use output::{print_facts, print_json, print_table, shown, shown_vector};
 pub(super) use progress::under_bar;
+pub(super) use targets::Targets;

@@ -7,7 +7,7 @@ use clap::Args;
 use crate::cli::CliError;
 use crate::cli::console::Console;
 use crate::cli::options::{BadCasesArg, OverwriteArg};
-use crate::data::{Existing, check_target};
+use crate::data::Existing;
 use crate::study::{TrainingOptions, checkpoint_beside};
 
 /// Where a model goes and how it is trained.
@@ -54,14 +54,13 @@ impl TrainingArgs {
     /// # Errors
     /// What stands in the way of the model, so that it is told before the training begins. A
     /// training that exists and is not to go on is refused by the question itself.
-    pub(in crate::cli) fn existing(&self, console: &Console<'_>) -> Result<Existing, CliError> {
+    pub(in crate::cli) fn existing(&self, console: &mut Console<'_>) -> Result<Existing, CliError> {
         let existing = match checkpoint_beside(&self.out).exists() {
             true => Existing::Replace,
             false => self.overwrite.into(),
         };
-        if !console.print_request {
-            check_target(&self.out, existing)?;
-        }
+        console.check_target(Some(&self.out), existing)?;
+        console.keeps(Some(&checkpoint_beside(&self.out)));
         Ok(existing)
     }
 }

@@ -12,6 +12,18 @@ pub enum WriteError {
         /// The file.
         path: PathBuf,
     },
+    /// The file is one of those that its content is computed from.
+    #[error(
+        "{}: is an input ({}) of what is to be written, so it is not replaced, not even with \
+         --overwrite; choose another name",
+        path.display(), input.display()
+    )]
+    IsInput {
+        /// The file that was to be written.
+        path: PathBuf,
+        /// The same file, as it was named as an input.
+        input: PathBuf,
+    },
     /// The folder holds files of an earlier run, and nobody said that they may be replaced.
     #[error("{}: holds the files of an earlier run; --overwrite replaces them", path.display())]
     HoldsResults {

@@ -11,7 +11,7 @@ use crate::data::DataError;
 use crate::data::write::file::{Target, sync_folder};
 use crate::data::write::manifest::earlier_files;
 use crate::data::write::{
-    Existing, FileDigest, MANIFEST_FILE, Manifest, RunRecord, WriteError, WriterLock,
+    Existing, FileDigest, MANIFEST_FILE, Manifest, RunRecord, WriteError, WriterLock, check_inputs,
     write_atomically,
 };
 
@@ -30,6 +30,10 @@ pub struct OutputFolder {
     existing: Existing,
     started: SystemTime,
     staging: TempDir,
+    /// Names of files that will be written, as far as they were known at the beginning.
+    known: Vec<String>,
+    /// Files that the results are computed from.
+    inputs: Vec<PathBuf>,
     lock: WriterLock,
     _made: MadeFolders,
 }
@@ -84,8 +88,24 @@ impl OutputFolder {
         let [prefix, suffix] = STAGING;
         let staging = builder.prefix(prefix).suffix(suffix).tempdir_in(folder);
         let staging = staging.map_err(WriteError::io(folder))?;
-        let (folder, started) = (folder.to_owned(), SystemTime::now());
-        Ok(Self { folder, existing, started, staging, lock, _made: made })
+        let known = known.iter().map(|&name| name.to_owned()).collect();
+        let (folder, started, inputs) = (folder.to_owned(), SystemTime::now(), Vec::new());
+        Ok(Self { folder, existing, started, staging, known, inputs, lock, _made: made })
+    }
+
+    /// The same folder, in which files that the results are computed from are neither replaced nor
+    /// removed as those of an earlier run.
+    ///
+    /// # Errors
+    /// [`WriteError::IsInput`] within [`DataError::Write`] for one that would be.
+    pub fn protecting(mut self, inputs: Vec<PathBuf>) -> Result<Self, DataError> {
+        let earlier = earlier_files(&self.folder).unwrap_or_default();
+        let names = self.known.iter().chain(earlier.iter().map(|file| &file.name));
+        for name in names.map(String::as_str).chain([MANIFEST_FILE]) {
+            check_inputs(&self.folder.join(name), &inputs)?;
+        }
+        self.inputs = inputs;
+        Ok(self)
     }
 
     /// The staging folder, into which the files are to be written.
@@ -110,7 +130,9 @@ impl OutputFolder {
         let files = staged_files(self.staging.path()).map_err(to_error())?;
         let mut targets = Vec::with_capacity(files.len());
         for file in &files {
-            targets.push(Target::find(&folder.join(&file.name), existing)?);
+            let path = folder.join(&file.name);
+            check_inputs(&path, &self.inputs)?;
+            targets.push(Target::find(&path, existing)?);
         }
         let earlier = earlier_files(folder).unwrap_or_default();
         let manifest_path = folder.join(MANIFEST_FILE);

@@ -1,7 +1,8 @@
 //! Writes files in such a way that nothing is lost: a reader never finds an incomplete file, nothing
 //! that exists is replaced unasked, and what a killed write has left is removed by the next one.
 //!
-//! - [`write_atomically`] writes one file, [`check_target`] says beforehand what it would refuse.
+//! - [`write_atomically`] writes one file, [`check_target`] says beforehand what it would refuse,
+//!   [`check_inputs`] whether it would replace what its content is computed from.
 //! - [`OutputFolder`] writes a folder of files that belong together, with a [`Manifest`] of how they
 //!   were made.
 //! - [`WriterLock`] keeps two writers apart.
@@ -10,6 +11,7 @@ mod digest;
 mod error;
 mod file;
 mod folder;
+mod inputs;
 mod lock;
 mod manifest;
 mod series;
@@ -19,6 +21,7 @@ pub use digest::{FileDigest, sha256_hex};
 pub use error::WriteError;
 pub use file::{Existing, check_target, write_atomically};
 pub use folder::OutputFolder;
+pub use inputs::check_inputs;
 pub use lock::WriterLock;
 pub use manifest::{MANIFEST_FILE, Manifest, ModelDigest, RunRecord};
 pub use series::{

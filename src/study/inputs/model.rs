@@ -1,7 +1,7 @@
 //! Which trained network answers.
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
@@ -29,6 +29,14 @@ impl ModelChoice {
     /// A model file.
     pub fn file(path: impl Into<PathBuf>) -> Self {
         Self::Source(ModelSource::File(path.into()))
+    }
+
+    /// The file that it stands in, if it is one of the user.
+    pub fn path(&self) -> Option<&Path> {
+        match self {
+            Self::Source(ModelSource::File(path)) => Some(path),
+            Self::Source(_) | Self::Held { .. } => None,
+        }
     }
 }
 

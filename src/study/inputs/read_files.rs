@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use crate::data::Dataset;
 use crate::site::Site;
 use crate::study::{
-    ConfigChoice, Drive, ForceQuestion, ForceSource, MotionSource, Request, ScenarioChoice,
-    SeriesFile, SimulateRequest, TrainingOptions, VehicleChoice,
+    ConfigChoice, Drive, ForceQuestion, ForceSource, ModelChoice, MotionSource, Request,
+    ScenarioChoice, SeriesFile, SimulateRequest, TrainingOptions, VehicleChoice,
 };
 
 impl Request {
@@ -70,6 +70,24 @@ impl Request {
             }
         }
         files.0
+    }
+
+    /// Every file that the answer rests on: those of [`Request::input_files`] and trained networks.
+    pub fn files_read(&self) -> Vec<PathBuf> {
+        let networks: Vec<&ModelChoice> = match self {
+            Self::PredictForce(asked) => vec![&asked.model],
+            Self::PredictMotion(asked) => match &asked.force {
+                ForceSource::Predicted(model) => vec![model, &asked.response_model],
+                ForceSource::Given | ForceSource::File(_) => vec![&asked.response_model],
+            },
+            Self::FineTune(asked) => asked.model.iter().collect(),
+            Self::EvaluateForce(asked) => vec![&asked.model],
+            Self::EvaluateResponse(asked) => vec![&asked.model],
+            Self::Compare(asked) => asked.model.iter().collect(),
+            _ => Vec::new(),
+        };
+        let networks = networks.into_iter().filter_map(ModelChoice::path).map(Path::to_owned);
+        self.input_files().into_iter().chain(networks).collect()
     }
 }
 

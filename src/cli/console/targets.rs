@@ -1,0 +1,95 @@
+//! What a command is going to write, and what it has read by then: a file that is read is never
+//! replaced, and a folder of results says what they were made from.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::cli::CliError;
+use crate::data::write::{FileDigest, RunRecord, check_inputs};
+use crate::data::{Existing, check_target};
+use crate::study::{Provenance, Request};
+
+/// The files that a command will write, and what it has asked and read since.
+#[derive(Debug, Default)]
+pub(in crate::cli) struct Targets {
+    files: Vec<PathBuf>,
+    has_folder: bool,
+    /// How the files of a folder came about, as far as it is known.
+    record: RunRecord,
+    /// Everything that was read for the folder.
+    read: Vec<PathBuf>,
+}
+
+impl Targets {
+    /// Adds a file, and says what stands in its way.
+    pub(super) fn add(&mut self, path: &Path, existing: Existing) -> Result<(), CliError> {
+        self.add_kept(path);
+        Ok(check_target(path, existing)?)
+    }
+
+    /// Adds a file of which the question that writes it sees itself whether it can be written.
+    pub(super) fn add_kept(&mut self, path: &Path) {
+        self.files.push(path.to_owned());
+    }
+
+    /// Says that there will be a folder of results, whose manifest has what is asked from now on.
+    pub(super) fn expect_folder(&mut self) {
+        self.has_folder = true;
+    }
+
+    /// Takes a question that is about to be asked. Of several the last one stands in a manifest, since
+    /// it holds those before it.
+    ///
+    /// # Errors
+    /// Where a file that it reads is one of those that will be written.
+    pub(super) fn ask(&mut self, request: &Request) -> Result<(), CliError> {
+        self.refuse(&request.files_read())?;
+        if self.has_folder {
+            self.record.request = serde_json::to_value(request).map_err(io::Error::from)?;
+            self.read.extend(request.files_read());
+            self.digest(&request.input_files());
+        }
+        Ok(())
+    }
+
+    /// Takes files that are about to be read.
+    ///
+    /// # Errors
+    /// Where one of them will be written.
+    pub(super) fn read(&mut self, inputs: &[PathBuf]) -> Result<(), CliError> {
+        self.refuse(inputs)?;
+        if self.has_folder {
+            self.read.extend_from_slice(inputs);
+            self.digest(inputs);
+        }
+        Ok(())
+    }
+
+    /// Takes seed and networks of an answer into the manifest.
+    pub(super) fn answered(&mut self, provenance: &Provenance) {
+        self.record.seed = provenance.seed.or(self.record.seed);
+        let of = provenance.model_digests.iter();
+        let new: Vec<_> = of.filter(|of| !self.record.models.contains(of)).cloned().collect();
+        self.record.models.extend(new);
+    }
+
+    /// How the files of a folder came about, and everything that was read for them.
+    pub(super) fn run_record(&self) -> (RunRecord, Vec<PathBuf>) {
+        let command = std::env::args_os().map(|arg| arg.to_string_lossy().into_owned()).collect();
+        (RunRecord { command, ..self.record.clone() }, self.read.clone())
+    }
+
+    fn refuse(&self, inputs: &[PathBuf]) -> Result<(), CliError> {
+        Ok(self.files.iter().try_for_each(|target| check_inputs(target, inputs))?)
+    }
+
+    /// Adds the content of files. One that cannot be read is left out: the question that names it says
+    /// why.
+    fn digest(&mut self, files: &[PathBuf]) {
+        for path in files {
+            let digest = FileDigest::of(path.to_string_lossy(), path).ok();
+            let inputs = &mut self.record.inputs;
+            inputs.extend(digest.filter(|of| !inputs.contains(of)));
+        }
+    }
+}
