@@ -97,6 +97,31 @@ fn a_name_without_an_ending_is_a_folder_of_numbered_pictures() {
     }
     assert_eq!(fs::read_dir(&out).expect("a folder").count(), 5, "four pictures and a manifest");
     assert!(refused(&out, &options).contains("holds the files of an earlier run"));
+    let manifest = fs::read_to_string(out.join("manifest.json")).expect("a manifest");
+    let manifest = json(&manifest);
+    assert_eq!(manifest["request"]["question"], "simulate");
+    let inputs = manifest["inputs"].as_array().expect("inputs");
+    let is_recording = |input: &&Value| {
+        input["name"].as_str().is_some_and(|name| name.ends_with("trajectories/FE_c002.csv"))
+    };
+    assert!(inputs.iter().any(|input| is_recording(&input)), "{inputs:?}");
+}
+
+#[test]
+fn the_manifest_of_pictures_names_the_ground() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("frames");
+    let site = "assets/sites/country-road/site.toml";
+    let size = ["--size", "64x64", "--fps", "5", "--to", "0.3", "--out", text(&out)];
+    answer(&[&["render", "film", "pit-right-rear", "--site", site], &size[..]].concat());
+    let manifest = json(&fs::read_to_string(out.join("manifest.json")).expect("a manifest"));
+    assert_eq!(manifest["request"]["site"], site);
+    let name = |input: &Value| input["name"].as_str().unwrap_or_default().to_owned();
+    let names: Vec<String> =
+        manifest["inputs"].as_array().expect("inputs").iter().map(name).collect();
+    for file in ["site.toml", "orthophoto.jpg", "orthophoto.jgw", "edges.dxf"] {
+        assert_eq!(names.iter().filter(|name| name.ends_with(file)).count(), 1, "{file} {names:?}");
+    }
 }
 
 #[test]

@@ -86,8 +86,9 @@ struct RenderedFilm<'a> {
 /// Makes the film and says so.
 pub(super) fn run(args: &FilmArgs, console: &mut Console<'_>) -> Result<Verdict, CliError> {
     let kind = FilmKind::of(&args.out)?;
-    if kind == FilmKind::Mp4 {
-        console.check_target(Some(&args.out), args.overwrite.into())?;
+    match kind {
+        FilmKind::Mp4 => console.check_target(Some(&args.out), args.overwrite.into())?,
+        FilmKind::Pictures => console.expect_folder(),
     }
     let (scene, mut notes) = scene(args, console)?;
     let timing = timing(args, &scene, &mut notes);
@@ -95,7 +96,7 @@ pub(super) fn run(args: &FilmArgs, console: &mut Console<'_>) -> Result<Verdict,
     let shown = args.seen.shown(scene, timing.from_s);
     let title = shown.subject();
     let duration_s = instants.len() as f64 / f64::from(args.fps);
-    make(args, (kind, shown, timing))?;
+    make(args, (kind, shown, timing), console)?;
     let (n_frames, frames_per_s, size_px) = (instants.len(), args.fps, args.size);
     let out = &args.out;
     if console.json {
@@ -205,10 +206,10 @@ impl FilmKind {
 fn make(
     args: &FilmArgs,
     (kind, shown, timing): (FilmKind, ShownScene, FilmTiming),
+    console: &Console<'_>,
 ) -> Result<(), CliError> {
     use crate::cli::console::under_bar;
     use crate::data::Outcome;
-    use crate::data::write::{OutputFolder, RunRecord};
     use crate::render::Canvas;
     use crate::render::film::{Film, write_film, write_frames};
     use crate::study::Event;
@@ -223,14 +224,13 @@ fn make(
             write_film(&film, (&args.out, existing), &mut report)
         })?,
         FilmKind::Pictures => {
-            let folder = OutputFolder::begin(&args.out, existing, &[])?;
+            let (folder, record) = console.begin_folder(&args.out, existing)?;
             let drawn = under_bar(|observer| {
                 let mut report = |progress| observer(Event::Progress(progress));
                 write_frames(&film, folder.staging(), &mut report)
             })?;
             if let Outcome::Complete(()) = drawn {
-                let command = std::env::args_os().map(|arg| arg.to_string_lossy().into_owned());
-                folder.finish(RunRecord { command: command.collect(), ..RunRecord::default() })?;
+                folder.finish(record)?;
             }
             drawn
         }
@@ -243,8 +243,9 @@ fn make(
 fn make(
     args: &FilmArgs,
     (_, shown, timing): (FilmKind, ShownScene, FilmTiming),
+    console: &Console<'_>,
 ) -> Result<(), CliError> {
-    let _ = (args.size, args.scale, args.dark, args.overwrite, timing);
+    let _ = (args.size, args.scale, args.dark, args.overwrite, timing, console);
     shown.not_drawn();
     Err(CliError::NoDrawing)
 }
