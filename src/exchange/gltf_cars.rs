@@ -14,6 +14,7 @@ use gltf::json::validation::Checked;
 use gltf::json::{Accessor, Animation, Index, Mesh, Node};
 
 use crate::exchange::gltf_buffer::GltfBuilder;
+use crate::exchange::gltf_frame::GltfFrame;
 use crate::exchange::gltf_lines::{material, mesh, primitive};
 use crate::exchange::looks::{role_name, role_rgb};
 use crate::scene::{CarLook, CarState, Mesh as CarMesh, SceneCar, Surface, triangle_normal};
@@ -44,6 +45,8 @@ pub struct Keys<'a> {
     pub time_s: &'a [f64],
     /// The same in the file.
     pub times: Index<Accessor>,
+    /// From where times and places are counted.
+    pub frame: GltfFrame,
 }
 
 /// Adds a car with its animation; returns its node, in the axes of the scene.
@@ -83,7 +86,7 @@ pub fn add_car(
     let node = builder.root.push(Node {
         children: Some(children),
         name: Some(name.to_owned()),
-        translation: Some(place(&first)),
+        translation: Some(place(&keys.frame, &first)),
         rotation: Some(UnitQuaternion(about_z(first.pose.yaw_rad))),
         ..Node::default()
     });
@@ -92,7 +95,7 @@ pub fn add_car(
         let output = builder.list(&values, None);
         add_channel(animation, (target, Property::Rotation), (keys.times, output));
     }
-    let places: Vec<[f32; 3]> = states.iter().map(place).collect();
+    let places: Vec<[f32; 3]> = states.iter().map(|state| place(&keys.frame, state)).collect();
     let output = builder.list(&places, None);
     add_channel(animation, (node, Property::Translation), (keys.times, output));
     node
@@ -192,8 +195,9 @@ fn rotations(states: &[CarState], of: impl Fn(&CarState) -> Quaternion) -> Vec<Q
     states.iter().map(continued).collect()
 }
 
-fn place(state: &CarState) -> [f32; 3] {
-    [state.pose.x_m as f32, state.pose.y_m as f32, 0.0]
+fn place(frame: &GltfFrame, state: &CarState) -> [f32; 3] {
+    let [x, y] = frame.place([state.pose.x_m, state.pose.y_m]);
+    [x, y, 0.0]
 }
 
 fn about_x(angle_rad: f64) -> Quaternion {

@@ -3,10 +3,10 @@
 //!
 //! glTF has Y up: the node `scene` turns the axes of the scene into those of glTF, so that X of the scene
 //! is X, Y (to the left) is −Z, and Z (up) is Y; the nodes below it are in the axes of the scene, in
-//! metres. Time of the animation is time of the scene, from its first instant.
+//! metres. Times and places are counted from a [`GltfFrame`], which stands in the `extras` of the asset.
 //!
 //! Keys are close enough for a wheel to turn by less than a third of a turn between two of them, since a
-//! rotation goes the shorter way. Marks of locked wheels, densities and points are left out.
+//! rotation goes the shorter way. Densities and points are left out.
 
 use std::borrow::Cow;
 use std::io::Write;
@@ -18,6 +18,7 @@ use gltf::json::{Animation, Asset, Node, Scene as GltfScene};
 use crate::exchange::ExchangeError;
 use crate::exchange::gltf_buffer::GltfBuilder;
 use crate::exchange::gltf_cars::{Keys, add_car, unique_names};
+use crate::exchange::gltf_frame::GltfFrame;
 use crate::exchange::gltf_lines::add_lines;
 use crate::exchange::looks::is_draw;
 use crate::scene::{Scene, SceneCar};
@@ -36,8 +37,9 @@ const MAX_KEYS: f64 = 200_000.0;
 pub fn glb(scene: &Scene, out: &mut dyn Write) -> Result<(), ExchangeError> {
     let mut builder = GltfBuilder::default();
     let cars: Vec<&SceneCar> = scene.cars.iter().filter(|car| !is_draw(car)).collect();
-    let time_s = key_times_s(scene, &cars);
-    let single: Vec<[f32; 1]> = time_s.iter().map(|time| [*time as f32]).collect();
+    let frame = GltfFrame::of(scene);
+    let time_s = key_times_s(scene.end_s, frame.start_s, &cars);
+    let single: Vec<[f32; 1]> = time_s.iter().map(|time| [frame.time(*time)]).collect();
     let times = builder.list(&single, None);
     let mut animation = Animation {
         extensions: None,
@@ -46,8 +48,8 @@ pub fn glb(scene: &Scene, out: &mut dyn Write) -> Result<(), ExchangeError> {
         name: Some("motion".to_owned()),
         samplers: Vec::new(),
     };
-    let mut children = add_lines(&mut builder, scene);
-    let keys = Keys { time_s: &time_s, times };
+    let mut children = add_lines(&mut builder, scene, &frame);
+    let keys = Keys { time_s: &time_s, times, frame };
     for (car, name) in cars.iter().zip(unique_names(&cars)) {
         children.push(add_car(&mut builder, &mut animation, (car, &name), &keys));
     }
@@ -75,11 +77,18 @@ pub fn glb(scene: &Scene, out: &mut dyn Write) -> Result<(), ExchangeError> {
         ..Asset::default()
     };
     builder.describe_buffer();
-    write(builder, out)
+    write(builder, &frame, out)
 }
 
-fn write(builder: GltfBuilder, out: &mut dyn Write) -> Result<(), ExchangeError> {
-    let json = serde_json::to_vec(&builder.root)?;
+fn write(
+    builder: GltfBuilder,
+    frame: &GltfFrame,
+    out: &mut dyn Write,
+) -> Result<(), ExchangeError> {
+    let mut root = serde_json::to_value(&builder.root)?;
+    // The types of the library have no extras as it is built here.
+    root["asset"]["extras"] = frame.extras();
+    let json = serde_json::to_vec(&root)?;
     let bytes = builder.bytes.len().saturating_add(json.len());
     // Two chunks with a head of 8 bytes each, padded to 4 bytes, behind a head of 12.
     if u32::try_from(bytes.saturating_add(64)).is_err() {
@@ -91,13 +100,8 @@ fn write(builder: GltfBuilder, out: &mut dyn Write) -> Result<(), ExchangeError>
 }
 
 /// Times of the keys, s: from the first instant to the last at the same distance.
-fn key_times_s(scene: &Scene, cars: &[&SceneCar]) -> Vec<f64> {
-    let firsts = cars.iter().filter(|car| car.motion.time_s().len() > 1);
-    let first_s = firsts
-        .filter_map(|car| car.motion.time_s().first().copied())
-        .fold(f64::INFINITY, f64::min)
-        .min(scene.end_s);
-    let duration_s = scene.end_s - first_s;
+fn key_times_s(end_s: f64, first_s: f64, cars: &[&SceneCar]) -> Vec<f64> {
+    let duration_s = end_s - first_s;
     let fastest = cars.iter().map(|car| fastest_turn_rad_s(car)).fold(0.0, f64::max);
     let step_s = LARGEST_STEP_S.min(LARGEST_TURN_RAD / fastest.max(1.0));
     let n = (duration_s / step_s).ceil().clamp(1.0, MAX_KEYS);

@@ -6,6 +6,7 @@ use gltf::json::validation::Checked;
 use gltf::json::{Index, Material, Mesh, Node, buffer};
 
 use crate::exchange::gltf_buffer::GltfBuilder;
+use crate::exchange::gltf_frame::GltfFrame;
 use crate::exchange::looks::{role_name, role_rgb};
 use crate::scene::{Scene, SceneRole};
 
@@ -17,23 +18,25 @@ const GROUND_ROOM_M: f64 = 15.0;
 const GROUND_RGB: [u8; 3] = [205, 208, 210];
 
 /// Adds ground, paths and lines; returns their nodes, in the axes of the scene.
-pub fn add_lines(builder: &mut GltfBuilder, scene: &Scene) -> Vec<Index<Node>> {
-    let mut nodes = vec![ground(builder, scene)];
+pub fn add_lines(builder: &mut GltfBuilder, scene: &Scene, frame: &GltfFrame) -> Vec<Index<Node>> {
+    let mut nodes = vec![ground(builder, scene, frame)];
     for path in &scene.paths {
         let places = path.motion.states().iter().map(|state| [state.pose.x_m, state.pose.y_m]);
-        nodes.extend(line(builder, (&path.name, path.role), places));
+        nodes.extend(line((builder, frame), (&path.name, path.role), places));
     }
     for of in &scene.lines {
-        nodes.extend(line(builder, (&of.name, of.role), of.points_m.iter().copied()));
+        let places = of.points_m.iter().copied();
+        nodes.extend(line((builder, frame), (&of.name, of.role), places));
     }
     for mark in &scene.marks {
         for piece in mark.pieces() {
             let places = piece.iter().map(|point| point.place_m);
-            nodes.extend(line(builder, (&mark.name, SceneRole::TireMark), places));
+            nodes.extend(line((builder, frame), (&mark.name, SceneRole::TireMark), places));
         }
     }
     for arrow in &scene.arrows {
-        nodes.extend(line(builder, (&arrow.name, arrow.role), arrow.ends_m.into_iter()));
+        let ends = arrow.ends_m.into_iter();
+        nodes.extend(line((builder, frame), (&arrow.name, arrow.role), ends));
     }
     nodes
 }
@@ -101,12 +104,13 @@ pub fn mesh(builder: &mut GltfBuilder, name: String, primitives: Vec<Primitive>)
 }
 
 fn line(
-    builder: &mut GltfBuilder,
+    (builder, frame): (&mut GltfBuilder, &GltfFrame),
     (name, role): (&str, SceneRole),
     places_m: impl Iterator<Item = [f64; 2]>,
 ) -> Option<Index<Node>> {
     let finite = places_m.filter(|place| place.iter().all(|value| value.is_finite()));
-    let places: Vec<[f32; 3]> = finite.map(|[x, y]| [x as f32, y as f32, LINE_HEIGHT_M]).collect();
+    let placed = |[x, y]: [f32; 2]| [x, y, LINE_HEIGHT_M];
+    let places: Vec<[f32; 3]> = finite.map(|at| placed(frame.place(at))).collect();
     if places.len() < 2 {
         return None;
     }
@@ -117,10 +121,10 @@ fn line(
     Some(builder.root.push(Node { mesh: Some(mesh), name: Some(name), ..Node::default() }))
 }
 
-fn ground(builder: &mut GltfBuilder, scene: &Scene) -> Index<Node> {
+fn ground(builder: &mut GltfBuilder, scene: &Scene, frame: &GltfFrame) -> Index<Node> {
     let [low, high] = scene.extent_m();
-    let [x0, y0] = low.map(|value| (value - GROUND_ROOM_M) as f32);
-    let [x1, y1] = high.map(|value| (value + GROUND_ROOM_M) as f32);
+    let [x0, y0] = frame.place(low.map(|value| value - GROUND_ROOM_M));
+    let [x1, y1] = frame.place(high.map(|value| value + GROUND_ROOM_M));
     let corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y0], [x1, y1], [x0, y1]];
     let places = corners.map(|[x, y]| [x, y, 0.0]);
     let material = material(builder, "ground".to_owned(), (GROUND_RGB, 1.0));

@@ -6,12 +6,14 @@ mod dxf_drawing;
 mod gltf_buffer;
 mod gltf_cars;
 mod gltf_file;
+mod gltf_frame;
 mod gltf_lines;
 mod hve;
 mod looks;
 
 pub use dxf_drawing::{DxfOptions, dxf};
 pub use gltf_file::glb;
+pub use gltf_frame::GltfFrame;
 pub use hve::{hve_motion, hve_pulse};
 
 /// The reason why something is not written for another program.

@@ -6,10 +6,11 @@ use std::path::PathBuf;
 use dxf::Drawing;
 use dxf::entities::EntityType;
 use gltf::animation::util::ReadOutputs;
-use impactlab::exchange::{DxfOptions, dxf, glb, hve_motion, hve_pulse};
-use impactlab::scene::{CarLook, Scene, SceneRole, SimulationScene, simulation_scene};
+use impactlab::exchange::{DxfOptions, GltfFrame, dxf, glb, hve_motion, hve_pulse};
+use impactlab::scene::{CarLook, Scene, SceneGround, SceneRole, SimulationScene, simulation_scene};
 use impactlab::study::{
-    Library, MotionSource, Question, ScenarioChoice, SimulateAnswer, SimulateRequest, Trust,
+    Library, MotionSource, Question, ScenarioChoice, SeriesFile, SimulateAnswer, SimulateRequest,
+    Trust,
 };
 use impactlab::units::UnitSystem;
 use impactlab::vehicle::Wheel;
@@ -88,6 +89,87 @@ fn turned([x, y, z, w]: [f32; 4], v: [f64; 3]) -> [f64; 3] {
     let t = cross([x, y, z], u).map(|value| 2.0 * value);
     let second = cross([x, y, z], t);
     std::array::from_fn(|i| u[i] + w * t[i] + second[i])
+}
+
+/// A recorded motion at a clock that counts from 1970, in survey coordinates.
+fn surveyed() -> (SimulateAnswer, Scene) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("survey.csv");
+    let mut rows = "time_s,x_m,y_m,yaw_rad,vx_m_s,vy_m_s,yaw_rate_rad_s\n".to_owned();
+    for idx in 0..=200 {
+        let time_s = f64::from(idx) * 0.01;
+        let (x_m, y_m) = (512_345.25 + 15.0 * time_s, 5_423_456.37);
+        rows += &format!("{:.2},{x_m:.4},{y_m:.4},0,15,0,0\n", 1.7e9 + time_s);
+    }
+    std::fs::write(&path, rows).expect("written");
+    let source = MotionSource::Trajectory { file: SeriesFile::new(&path), contact: None };
+    let request = SimulateRequest { vehicle_draws: 0, ..SimulateRequest::new(source) };
+    let answer = request.answer(&Library::default(), &mut |_| ControlFlow::Continue(()));
+    let answer = answer.expect("a motion").complete().expect("not cancelled");
+    let trust = Trust::new(&answer.report.badges, &answer.report.assumptions);
+    let scene = simulation_scene(&SimulationScene {
+        analysis: &answer.analysis,
+        others: &[],
+        units: UnitSystem::Si,
+        trust: &trust,
+    });
+    (answer, scene)
+}
+
+#[test]
+fn a_clock_from_1970_and_survey_coordinates_keep_their_precision() {
+    let (answer, scene) = surveyed();
+    let frame = GltfFrame::of(&scene);
+    assert_eq!((frame.start_s, frame.origin_m), (1.7e9, [512_000.0, 5_423_000.0]));
+    let notes = frame.notes().join("\n");
+    for part in ["time 0 of the animation is 1700000000 s", "X 512000 m, Y 5423000 m"] {
+        assert!(notes.contains(part), "{notes}");
+    }
+    let mut bytes = Vec::new();
+    glb(&scene, &mut bytes).expect("a scene");
+    let file = gltf::Gltf::from_slice(&bytes).expect("a valid file");
+    let blob = file.blob.as_deref().expect("numbers");
+    let animation = file.animations().next().expect("an animation");
+    let channel = animation
+        .channels()
+        .find(|channel| channel.target().property() == gltf::animation::Property::Translation);
+    let channel = channel.expect("a car that moves");
+    let reader = channel.reader(|_| Some(blob));
+    let times: Vec<f32> = reader.read_inputs().expect("times").collect();
+    assert_eq!(times[0], 0.0, "no time is negative");
+    assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "times grow: {:?}", &times[..4]);
+    assert!((times[times.len() - 1] - 2.0).abs() < 1e-3, "{:?}", times.last());
+    let Some(ReadOutputs::Translations(places)) = reader.read_outputs() else { panic!("places") };
+    let places: Vec<[f32; 3]> = places.collect();
+    let first = scene.struck().expect("a car").motion.states()[0].pose;
+    for (got, expected) in places[0].iter().zip([first.x_m - 512_000.0, first.y_m - 5_423_000.0]) {
+        assert!((f64::from(*got) - expected).abs() < 1e-4, "{:?} for {first:?}", places[0]);
+    }
+    let head = String::from_utf8_lossy(&bytes);
+    assert!(
+        head.contains("\"extras\":{\"origin_m\":[512000.0,5423000.0],\"time_0_s\":1700000000.0}")
+    );
+
+    // Drawing and tables have their numbers in double precision.
+    let mut drawing = Vec::new();
+    let outlines_s = vec![scene.end_s];
+    dxf(&scene, &DxfOptions { outlines_s }, &mut drawing).expect("a drawing");
+    let drawing = Drawing::load(&mut drawing.as_slice()).expect("a drawing that can be read");
+    let ys = drawing.entities().filter_map(|entity| match &entity.specific {
+        EntityType::LwPolyline(line) if entity.common.layer == "RECORDED_PATH" => {
+            line.vertices.first().map(|of| of.y)
+        }
+        _ => None,
+    });
+    let ys: Vec<f64> = ys.collect();
+    assert!(ys.iter().all(|y| (y - 5_423_456.37).abs() < 1e-6) && !ys.is_empty(), "{ys:?}");
+    let mut table = Vec::new();
+    hve_motion((&answer.analysis, None), &mut table).expect("a motion");
+    let table = String::from_utf8(table).expect("UTF-8");
+    let first = table.lines().find(|line| line.starts_with("17")).expect("rows");
+    let cells: Vec<f64> = first.split('\t').map_while(|cell| cell.parse().ok()).take(3).collect();
+    assert_eq!(cells[0], 1.7e9);
+    assert!((cells[2] * 0.3048 + 5_423_456.37).abs() < 1e-3, "{cells:?}");
 }
 
 #[test]

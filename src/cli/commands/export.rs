@@ -11,7 +11,7 @@ use crate::cli::commands::render_scene::{BuiltScene, CaseArgs, build};
 use crate::cli::console::{Console, Verdict, print_json, shown_path};
 use crate::cli::options::{OverwriteArg, number};
 use crate::data::{write_atomically, write_restricted_series_csv};
-use crate::exchange::{DxfOptions, ExchangeError, dxf, glb, hve_motion, hve_pulse};
+use crate::exchange::{DxfOptions, ExchangeError, GltfFrame, dxf, glb, hve_motion, hve_pulse};
 use crate::ranges::INSTANT;
 use crate::units::UnitSystem;
 
@@ -89,7 +89,11 @@ pub(in crate::cli) fn run(
         built.check_time("--at", *time_s)?;
     }
     write(args, (format, &built))?;
-    let (out, title, notes) = (&args.out, &built.scene.title, &built.notes);
+    let mut notes = built.notes.clone();
+    if format == FormatArg::Glb {
+        notes.extend(GltfFrame::of(&built.scene).notes());
+    }
+    let (out, title, notes) = (&args.out, &built.scene.title, notes.as_slice());
     if console.json {
         print_json(console.out, &Exported { out, format, title, notes })?;
         return Ok(Verdict::Clean);
