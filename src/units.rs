@@ -64,6 +64,13 @@ pub enum UnitSystem {
     Us,
 }
 
+/// The foot of the United States survey, exactly 1200/3937 m: national grids are in it, while everything
+/// else is in feet of 0.3048 m. At 17 000 000 ft the two are 10 m apart.
+///
+/// Source: National Bureau of Standards, Federal Register 24, 5348 (1959).
+pub const US_SURVEY_FOOT: Unit =
+    Unit { quantity: Quantity::Length, symbol: "us survey ft", si_per_unit: 1200.0 / 3937.0 };
+
 /// A unit of a [`Quantity`].
 ///
 /// ```text

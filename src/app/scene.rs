@@ -196,6 +196,11 @@ impl State {
 }
 
 impl SceneSession {
+    /// Smallest and largest `[X, Y]` of the scene that was shown last, m.
+    pub(in crate::app) fn extent_m(&self) -> Option<[[f64; 2]; 2]> {
+        self.built.as_ref().map(|(_, scene)| scene.extent_m())
+    }
+
     /// The scene of a source. Another subject is seen from the start: the camera is fitted to it.
     pub fn scene(&mut self, source: SceneSource, sources: &[Source]) -> Arc<Scene> {
         if let Some((built, scene)) = &self.built

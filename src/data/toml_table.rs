@@ -243,8 +243,21 @@ impl<'a> TomlTable<'a> {
     /// [`TomlError::Value`] if the value is not a number or outside the range, and
     /// [`TomlError::Conflict`] if the number is given in two units.
     pub fn number(&mut self, base: &str, range: &Range) -> Result<Option<f64>, TomlError> {
+        self.number_in(base, range, range.quantity.units())
+    }
+
+    /// Reads a number as [`TomlTable::number`] does, in one of the given units.
+    ///
+    /// # Errors
+    /// The same as for [`TomlTable::number`].
+    pub fn number_in(
+        &mut self,
+        base: &str,
+        range: &Range,
+        units: &[Unit],
+    ) -> Result<Option<f64>, TomlError> {
         let mut found: Option<(String, f64)> = None;
-        for unit in range.quantity.units() {
+        for unit in units {
             let key = key_with_unit(base, unit);
             let Some((_, value)) = self.take(&key) else {
                 continue;

@@ -1,8 +1,9 @@
 //! The lines of a drawing in the format DXF, as points on the ground.
 //!
 //! Read are lines, polylines with their arcs, circles, arcs, ellipses, splines, and what blocks that are
-//! inserted have of them, as far as they lie in the plane of the ground. What else the drawing holds, such
-//! as texts and dimensions, is counted.
+//! inserted have of them, as far as they lie in the plane of the ground and are shown: not on layers that
+//! are switched off or frozen, and not made invisible themselves. What else the drawing shows, such as
+//! texts and dimensions, is counted.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -14,10 +15,14 @@ use dxf::{Point, Vector};
 use crate::data::{MAX_DRAWING_BYTES, MAX_DRAWING_POINTS, read_bytes};
 use crate::ranges::SURVEY_COORDINATE;
 use crate::site::drawing_curves::{arc, bulged, spline};
-use crate::site::{DrawingFile, DrawingUnit, SiteError, SiteOrigin};
+use crate::site::frozen_layers::frozen_layers;
+use crate::site::parts::{extent_of, extent_text};
+use crate::site::{DrawingFile, LengthUnit, SiteError, SiteOrigin};
 
 /// Blocks within blocks, at most.
 const MAX_DEPTH: usize = 8;
+/// Largest distance between an arc and its chords, m.
+const CHORD_ERROR_M: f64 = 0.005;
 /// Least vertical part of the normal of what lies in the plane of the ground.
 const LEAST_NORMAL: f64 = 0.999;
 
@@ -28,6 +33,40 @@ pub struct Drawing {
     pub lines: Vec<DrawnLine>,
     /// How much of each kind is left out, by the name of the kind.
     pub left_out: BTreeMap<String, usize>,
+    /// Name of its unit.
+    pub unit: &'static str,
+    /// Whether its frozen layers are not known, so that they are drawn.
+    pub has_unknown_frozen: bool,
+}
+
+/// What was read of a drawing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DrawingSummary {
+    /// Name of its unit.
+    pub unit: &'static str,
+    /// Number of lines.
+    pub n_lines: usize,
+    /// Smallest and largest `[X, Y]` of the lines, m; `None` without lines.
+    pub extent_m: Option<[[f64; 2]; 2]>,
+}
+
+impl Drawing {
+    /// Unit, number of lines and place.
+    pub fn summary(&self) -> DrawingSummary {
+        let points = self.lines.iter().flat_map(|line| line.points_m.iter().copied());
+        let (unit, n_lines) = (self.unit, self.lines.len());
+        DrawingSummary { unit, n_lines, extent_m: extent_of(points) }
+    }
+}
+
+impl DrawingSummary {
+    /// In words, after the name of the drawing.
+    pub fn contents(&self) -> String {
+        let Self { unit, n_lines, extent_m } = self;
+        let lines = if *n_lines == 1 { "line" } else { "lines" };
+        let place = extent_m.map(extent_text).unwrap_or_default();
+        format!(" in {unit}, {n_lines} {lines}{place}")
+    }
 }
 
 /// A line of a drawing.
@@ -55,10 +94,13 @@ pub fn read_drawing(of: &DrawingFile, origin: &SiteOrigin) -> Result<Drawing, Si
         Ok(loaded) => loaded.map_err(|error| wrong(error.to_string()))?,
         Err(_) => return Err(wrong("it is damaged".to_owned())),
     };
-    let stated = stated_unit_m(drawing.header.default_drawing_units);
-    let unit_m = of.unit.map(DrawingUnit::length_m).or(stated);
-    let unit_m = unit_m.ok_or_else(|| SiteError::NoUnit { path: path.to_owned() })?;
+    let chosen = of.unit.map(|unit| (unit.word(), unit.length_m()));
+    let unit = chosen.or_else(|| stated_unit(drawing.header.default_drawing_units));
+    let (unit, unit_m) = unit.ok_or_else(|| SiteError::NoUnit { path: path.to_owned() })?;
+    let frozen = frozen_layers(&bytes);
     let mut reader = Reader::new(&drawing, of.layers.as_deref());
+    reader.hide(&drawing, frozen.as_deref().unwrap_or_default());
+    reader.chord_error = CHORD_ERROR_M / unit_m;
     let whole = Placed { along: [1.0, 0.0], across: [0.0, 1.0], at: [0.0; 2] };
     reader.entities(drawing.entities(), (&whole, None), 0);
     if reader.n_points > MAX_DRAWING_POINTS {
@@ -70,7 +112,9 @@ pub fn read_drawing(of: &DrawingFile, origin: &SiteOrigin) -> Result<Drawing, Si
         let known = known.iter().take(40).map(|name| (*name).to_owned()).collect();
         return Err(SiteError::NoLayer { path: path.to_owned(), layer: layer.clone(), known });
     }
-    let mut found = Drawing { lines: reader.lines, left_out: reader.left_out };
+    let (lines, left_out) = (reader.lines, reader.left_out);
+    let has_unknown_frozen = frozen.is_none() && of.layers.is_none();
+    let mut found = Drawing { lines, left_out, unit, has_unknown_frozen };
     for point in found.lines.iter_mut().flat_map(|line| &mut line.points_m) {
         let survey_m = point.map(|value| value * unit_m);
         if !survey_m.iter().all(|value| SURVEY_COORDINATE.contains(*value)) {
@@ -81,19 +125,20 @@ pub fn read_drawing(of: &DrawingFile, origin: &SiteOrigin) -> Result<Drawing, Si
     Ok(found)
 }
 
-/// Length of the unit that a drawing states, m; `None` if it states none, or one that no drawing of a
-/// road has.
-fn stated_unit_m(unit: Units) -> Option<f64> {
+/// Name and length of the unit that a drawing states, m; `None` if it states none, or one that no drawing
+/// of a road has.
+fn stated_unit(unit: Units) -> Option<(&'static str, f64)> {
+    let of = |unit: LengthUnit| Some((unit.word(), unit.length_m()));
     match unit {
-        Units::Meters => Some(DrawingUnit::Metre.length_m()),
-        Units::Decimeters => Some(0.1),
-        Units::Centimeters => Some(DrawingUnit::Centimetre.length_m()),
-        Units::Millimeters => Some(DrawingUnit::Millimetre.length_m()),
-        Units::Kilometers => Some(1000.0),
-        Units::Feet => Some(DrawingUnit::Foot.length_m()),
-        Units::USSurveyFeet => Some(DrawingUnit::SurveyFoot.length_m()),
-        Units::Inches => Some(DrawingUnit::Inch.length_m()),
-        Units::Yards => Some(0.9144),
+        Units::Meters => of(LengthUnit::Metre),
+        Units::Decimeters => Some(("dm", 0.1)),
+        Units::Centimeters => of(LengthUnit::Centimetre),
+        Units::Millimeters => of(LengthUnit::Millimetre),
+        Units::Kilometers => Some(("km", 1000.0)),
+        Units::Feet => of(LengthUnit::Foot),
+        Units::USSurveyFeet => of(LengthUnit::SurveyFoot),
+        Units::Inches => of(LengthUnit::Inch),
+        Units::Yards => Some(("yd", 0.9144)),
         _ => None,
     }
 }
@@ -106,6 +151,11 @@ struct Placed {
 }
 
 impl Placed {
+    /// The most by which it enlarges a length.
+    fn scale(&self) -> f64 {
+        self.along[0].hypot(self.along[1]).max(self.across[0].hypot(self.across[1]))
+    }
+
     fn turned(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         std::array::from_fn(|i| x * self.along[i] + y * self.across[i])
     }
@@ -121,7 +171,11 @@ struct Reader<'a> {
     layers: Option<&'a [String]>,
     blocks: BTreeMap<&'a str, &'a dxf::Block>,
     /// Names of layers that are switched off.
-    hidden: BTreeSet<&'a str>,
+    off: BTreeSet<&'a str>,
+    /// Names of layers that are frozen: what is on them is not shown even as a part of a block.
+    frozen: BTreeSet<&'a str>,
+    /// Largest distance between an arc and its chords, in the unit of the drawing.
+    chord_error: f64,
     seen_layers: BTreeSet<&'a str>,
     lines: Vec<DrawnLine>,
     n_points: usize,
@@ -130,15 +184,34 @@ struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     fn new(drawing: &'a dxf::Drawing, layers: Option<&'a [String]>) -> Self {
-        let hidden = drawing.layers().filter(|layer| !layer.is_layer_on);
         Self {
             blocks: drawing.blocks().map(|block| (block.name.as_str(), block)).collect(),
             layers,
-            hidden: hidden.map(|layer| layer.name.as_str()).collect(),
+            off: BTreeSet::new(),
+            frozen: BTreeSet::new(),
+            chord_error: CHORD_ERROR_M,
             seen_layers: BTreeSet::new(),
             lines: Vec::new(),
             n_points: 0,
             left_out: BTreeMap::new(),
+        }
+    }
+
+    /// Hides the layers that are switched off or frozen.
+    ///
+    /// - `is_frozen`: of each layer, in the order of the drawing.
+    fn hide(&mut self, drawing: &'a dxf::Drawing, is_frozen: &[bool]) {
+        let off = drawing.layers().filter(|layer| !layer.is_layer_on);
+        self.off = off.map(|layer| layer.name.as_str()).collect();
+        let frozen = drawing.layers().zip(is_frozen).filter(|(_, is_frozen)| **is_frozen);
+        self.frozen = frozen.map(|(layer, _)| layer.name.as_str()).collect();
+    }
+
+    /// Whether what is on a layer is drawn: the layers that are asked for, or those that are shown.
+    fn is_shown(&self, layer: &str) -> bool {
+        match self.layers {
+            Some(layers) => layers.iter().any(|wanted| wanted == layer),
+            None => !self.off.contains(layer) && !self.frozen.contains(layer),
         }
     }
 
@@ -150,7 +223,8 @@ impl<'a> Reader<'a> {
         depth: usize,
     ) {
         for entity in entities {
-            if entity.common.is_in_paper_space || self.n_points > MAX_DRAWING_POINTS {
+            let is_seen = !entity.common.is_in_paper_space && entity.common.is_visible;
+            if !is_seen || self.n_points > MAX_DRAWING_POINTS {
                 continue;
             }
             let own = entity.common.layer.as_str();
@@ -159,20 +233,16 @@ impl<'a> Reader<'a> {
                 self.insert(insert, (placed, layer), depth);
                 continue;
             }
-            match points_of(&entity.specific) {
+            match points_of(&entity.specific, self.chord_error / placed.scale()) {
                 Some(points) => self.add(&points, placed, layer),
-                None => self.leave_out(kind_of(&entity.specific)),
+                None => self.leave_out(layer, kind_of(&entity.specific)),
             }
         }
     }
 
     fn add(&mut self, points: &[[f64; 2]], placed: &Placed, layer: &'a str) {
         self.seen_layers.insert(layer);
-        let is_shown = match self.layers {
-            Some(layers) => layers.iter().any(|wanted| wanted == layer),
-            None => !self.hidden.contains(layer),
-        };
-        if is_shown && points.len() > 1 {
+        if self.is_shown(layer) && points.len() > 1 {
             self.n_points += points.len();
             let points_m = points.iter().map(|point| placed.placed(*point)).collect();
             self.lines.push(DrawnLine { layer: layer.to_owned(), points_m });
@@ -187,13 +257,17 @@ impl<'a> Reader<'a> {
     ) {
         // Blocks of nothing but blocks are counted, too.
         self.n_points += 1;
+        // What a frozen insert holds is not shown, on whatever layer it is.
+        if self.layers.is_none() && self.frozen.contains(layer) {
+            return;
+        }
         let block = self.blocks.get(insert.name.as_str()).copied();
         let is_plain = insert.column_count <= 1 && insert.row_count <= 1;
         let Some(block) = block.filter(|_| is_plain && depth < MAX_DEPTH) else {
-            return self.leave_out("INSERT".to_owned());
+            return self.leave_out(layer, "INSERT".to_owned());
         };
         let Some(mirror) = mirror(&insert.extrusion_direction) else {
-            return self.leave_out("INSERT".to_owned());
+            return self.leave_out(layer, "INSERT".to_owned());
         };
         let (sin, cos) = insert.rotation.to_radians().sin_cos();
         let own = Placed {
@@ -208,8 +282,10 @@ impl<'a> Reader<'a> {
         self.entities(block.entities.iter(), (&inner, Some(layer)), depth + 1);
     }
 
-    fn leave_out(&mut self, kind: String) {
-        *self.left_out.entry(kind).or_default() += 1;
+    fn leave_out(&mut self, layer: &str, kind: String) {
+        if self.is_shown(layer) {
+            *self.left_out.entry(kind).or_default() += 1;
+        }
     }
 }
 
@@ -220,36 +296,39 @@ fn kind_of(entity: &EntityType) -> String {
 }
 
 /// The points of an entity; `None` for what is no line in the plane of the ground.
-fn points_of(entity: &EntityType) -> Option<Vec<[f64; 2]>> {
+///
+/// - `error`: largest distance between an arc and its chords.
+fn points_of(entity: &EntityType, error: f64) -> Option<Vec<[f64; 2]>> {
     let flat = |point: &Point| [point.x, point.y];
     let points = match entity {
         EntityType::Line(line) => vec![flat(&line.p1), flat(&line.p2)],
         EntityType::LwPolyline(line) => {
             let vertices = line.vertices.iter().map(|of| ([of.x, of.y], of.bulge));
-            mirrored(polyline(vertices.collect(), line.is_closed()), &line.extrusion_direction)?
+            let points = polyline(vertices.collect(), line.is_closed(), error);
+            mirrored(points, &line.extrusion_direction)?
         }
         EntityType::Polyline(line) => {
             if line.is_3d_polygon_mesh() || line.is_polyface_mesh() {
                 return None;
             }
             let vertices = line.vertices().map(|of| (flat(&of.location), of.bulge));
-            mirrored(polyline(vertices.collect(), line.is_closed()), &line.normal)?
+            mirrored(polyline(vertices.collect(), line.is_closed(), error), &line.normal)?
         }
         EntityType::Circle(of) => {
             let axes = [[of.radius, 0.0], [0.0, of.radius]];
-            let points = arc(flat(&of.center), axes, [0.0, std::f64::consts::TAU]);
+            let points = arc(flat(&of.center), axes, [0.0, std::f64::consts::TAU], error);
             mirrored(points, &of.normal)?
         }
         EntityType::Arc(of) => {
             let axes = [[of.radius, 0.0], [0.0, of.radius]];
             let ends = [of.start_angle, of.end_angle].map(f64::to_radians);
-            mirrored(arc(flat(&of.center), axes, ends), &of.normal)?
+            mirrored(arc(flat(&of.center), axes, ends, error), &of.normal)?
         }
         EntityType::Ellipse(of) => {
             let mirror = mirror(&of.normal)?;
             let ([x, y], ratio) = ([of.major_axis.x, of.major_axis.y], of.minor_axis_ratio);
             let axes = [[x, y], [-mirror * ratio * y, mirror * ratio * x]];
-            arc(flat(&of.center), axes, [of.start_parameter, of.end_parameter])
+            arc(flat(&of.center), axes, [of.start_parameter, of.end_parameter], error)
         }
         EntityType::Spline(of) => {
             let control: Vec<[f64; 2]> = of.control_points.iter().map(flat).collect();
@@ -272,147 +351,20 @@ fn mirrored(points: Vec<[f64; 2]>, normal: &Vector) -> Option<Vec<[f64; 2]>> {
     Some(points.into_iter().map(|[x, y]| [mirror * x, y]).collect())
 }
 
-/// The points of a polyline.
+/// The points of a polyline, at most a few more than a drawing may have.
 ///
 /// - `vertices`: each with the bulge of the side that follows.
-fn polyline(vertices: Vec<([f64; 2], f64)>, is_closed: bool) -> Vec<[f64; 2]> {
+fn polyline(vertices: Vec<([f64; 2], f64)>, is_closed: bool, error: f64) -> Vec<[f64; 2]> {
     let Some(first) = vertices.first().copied() else { return Vec::new() };
     let mut points = vec![first.0];
     for pair in vertices.windows(2) {
-        points.extend(bulged([pair[0].0, pair[1].0], pair[0].1));
-    }
-    if let Some(last) = vertices.last().filter(|_| is_closed) {
-        points.extend(bulged([last.0, first.0], last.1));
-    }
-    points
-}
-
-#[cfg(test)]
-mod tests {
-    use dxf::LwPolylineVertex;
-    use dxf::entities::{Circle, Insert, Line, LwPolyline, Text};
-    use dxf::enums::AcadVersion;
-
-    use super::*;
-
-    fn on(layer: &str, specific: EntityType) -> Entity {
-        let mut entity = Entity::new(specific);
-        entity.common.layer = layer.to_owned();
-        entity
-    }
-
-    fn line(from: [f64; 2], to: [f64; 2]) -> EntityType {
-        let point = |[x, y]: [f64; 2]| Point::new(x, y, 0.0);
-        EntityType::Line(Line::new(point(from), point(to)))
-    }
-
-    fn saved(drawing: &dxf::Drawing) -> (tempfile::TempDir, DrawingFile) {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("survey.dxf");
-        drawing.save_file(&file).unwrap();
-        (folder, DrawingFile { file, unit: None, layers: None })
-    }
-
-    #[test]
-    fn lines_come_back_in_metres_and_in_the_axes_of_the_site() {
-        let mut drawing = dxf::Drawing::new();
-        drawing.header.version = AcadVersion::R2010;
-        drawing.header.default_drawing_units = Units::Millimeters;
-        let far = [3.5e9, 5.4e9];
-        let at = |x: f64, y: f64| [far[0] + x, far[1] + y];
-        drawing.add_entity(on("KERB", line(at(0.0, 0.0), at(10_000.0, 0.0))));
-        let vertex = |x: f64, y: f64, bulge| LwPolylineVertex {
-            x: far[0] + x,
-            y: far[1] + y,
-            bulge,
-            ..Default::default()
-        };
-        let vertices =
-            vec![vertex(0.0, 0.0, 0.0), vertex(2000.0, 0.0, 1.0), vertex(2000.0, 4000.0, 0.0)];
-        let mut closed = LwPolyline { vertices, ..LwPolyline::default() };
-        closed.set_is_closed(true);
-        drawing.add_entity(on("ROAD", EntityType::LwPolyline(closed)));
-        drawing.add_entity(on("ROAD", EntityType::Text(Text::default())));
-        let (_folder, mut of) = saved(&drawing);
-        let origin = SiteOrigin { survey_m: [3.5e6, 5.4e6], ..SiteOrigin::default() };
-        let read = read_drawing(&of, &origin).unwrap();
-        assert_eq!(read.lines.len(), 2);
-        let [from, to] = [read.lines[0].points_m[0], read.lines[0].points_m[1]];
-        assert!(from[0].hypot(from[1]) < 1e-6 && (to[0] - 10.0).hypot(to[1]) < 1e-6, "{to:?}");
-        let outline = &read.lines[1].points_m;
-        assert_eq!(outline.first(), outline.last());
-        let widest = outline.iter().map(|point| point[0]).fold(0.0, f64::max);
-        assert!((widest - 4.0).abs() < 1e-6, "the arc reaches 2 m beyond its chord: {widest}");
-        assert_eq!(read.left_out.get("Text"), Some(&1));
-        of.layers = Some(vec!["KERB".to_owned()]);
-        assert_eq!(read_drawing(&of, &origin).unwrap().lines.len(), 1);
-        of.layers = Some(vec!["WALL".to_owned()]);
-        let error = read_drawing(&of, &origin).unwrap_err().to_string();
-        assert!(error.ends_with("has no layer \"WALL\", expected one of KERB, ROAD"), "{error}");
-    }
-
-    #[test]
-    fn the_unit_has_to_be_known_and_the_coordinates_possible() {
-        let mut drawing = dxf::Drawing::new();
-        drawing.header.version = AcadVersion::R2010;
-        drawing.add_entity(on("0", line([0.0, 0.0], [3.0e7, 1.0])));
-        let (_folder, mut of) = saved(&drawing);
-        let origin = SiteOrigin::default();
-        let error = read_drawing(&of, &origin).unwrap_err().to_string();
-        assert!(error.contains("does not say in which unit it is drawn"), "{error}");
-        of.unit = Some(DrawingUnit::Metre);
-        let error = read_drawing(&of, &origin).unwrap_err().to_string();
-        assert!(error.contains("is the unit right?"), "{error}");
-        of.unit = Some(DrawingUnit::Foot);
-        let read = read_drawing(&of, &origin).unwrap();
-        assert!((read.lines[0].points_m[1][0] - 9.144e6).abs() < 1e-6);
-    }
-
-    #[test]
-    fn blocks_are_turned_scaled_and_placed() {
-        let mut drawing = dxf::Drawing::new();
-        drawing.header.version = AcadVersion::R2010;
-        drawing.header.default_drawing_units = Units::Meters;
-        let mut block = dxf::Block { name: "SIGN".to_owned(), ..Default::default() };
-        block.base_point = Point::new(1.0, 0.0, 0.0);
-        block.entities.push(on("0", line([1.0, 0.0], [2.0, 0.0])));
-        let circle = Circle::new(Point::new(1.0, 1.0, 0.0), 0.5);
-        block.entities.push(on("0", EntityType::Circle(circle)));
-        drawing.add_block(block);
-        let insert = Insert {
-            name: "SIGN".to_owned(),
-            location: Point::new(10.0, 20.0, 0.0),
-            rotation: 90.0,
-            x_scale_factor: 2.0,
-            y_scale_factor: 2.0,
-            ..Insert::default()
-        };
-        drawing.add_entity(on("SIGNS", EntityType::Insert(insert)));
-        let (_folder, of) = saved(&drawing);
-        let read = read_drawing(&of, &SiteOrigin::default()).unwrap();
-        assert_eq!(read.lines.len(), 2);
-        assert!(read.lines.iter().all(|line| line.layer == "SIGNS"));
-        let [from, to] = [read.lines[0].points_m[0], read.lines[0].points_m[1]];
-        assert!((from[0] - 10.0).hypot(from[1] - 20.0) < 1e-9, "{from:?}");
-        assert!((to[0] - 10.0).hypot(to[1] - 22.0) < 1e-9, "{to:?}");
-        let circle = &read.lines[1].points_m;
-        assert!(circle.iter().all(|p| ((p[0] - 8.0).hypot(p[1] - 20.0) - 1.0).abs() < 1e-9));
-    }
-
-    #[test]
-    fn a_damaged_drawing_is_an_error() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("bad.dxf");
-        for text in ["", "not a drawing", "0\nSECTION\n2\nENTITIES\n0\nLINE\n10\nabc\n"] {
-            std::fs::write(&file, text).unwrap();
-            let unit = Some(DrawingUnit::Metre);
-            let of = DrawingFile { file: file.clone(), unit, layers: None };
-            match read_drawing(&of, &SiteOrigin::default()) {
-                Ok(read) => assert_eq!(read, Drawing::default(), "{text:?}"),
-                Err(error) => {
-                    assert!(error.to_string().contains("bad.dxf: cannot be read"), "{error}")
-                }
-            }
+        points.extend(bulged([pair[0].0, pair[1].0], pair[0].1, error));
+        if points.len() > MAX_DRAWING_POINTS {
+            return points;
         }
     }
+    if let Some(last) = vertices.last().filter(|_| is_closed) {
+        points.extend(bulged([last.0, first.0], last.1, error));
+    }
+    points
 }

@@ -5,13 +5,14 @@
 //! name = "Crossing of the two roads"
 //!
 //! [origin]                          # optional: the site in survey coordinates
-//! easting_m = 512345.0
+//! easting_m = 512345.0              # or easting_ft (0.3048 m), easting_us_survey_ft (1200/3937 m)
 //! northing_m = 5423456.0
 //! x_axis_azimuth_deg = 75           # direction of X, clockwise from grid north; 90 if not given
 //!
 //! [orthophoto]
 //! file = "crossing.png"             # PNG, JPEG or TIFF, beside the site file or in a folder below it
 //! world_file = "crossing.pgw"       # found beside the picture if not given
+//! unit = "m"                        # of the world file: m, ft, us_survey_ft; m if not given
 //! # or two of its points, [column, row] from the left top corner, with their places
 //! # points_px = [[120.5, 340], [1820, 352]]
 //! # points_m = [[0, 0], [42.5, 0]]
@@ -36,7 +37,7 @@
 //!
 //! [dxf]
 //! file = "survey.dxf"               # in survey coordinates, if there is an [origin]
-//! unit = "m"                        # m, cm, mm, ft, us-survey-ft, in; that of the drawing if not given
+//! unit = "m"                        # m, cm, mm, ft, us_survey_ft, in; that of the drawing if not given
 //! layers = ["KERB", "ROAD"]         # all that are switched on if not given
 //! ```
 
@@ -50,9 +51,10 @@ use crate::ranges::{
 use crate::site::parts::file_name;
 use crate::site::picture::{is_picture_file, picture_size_px};
 use crate::site::{
-    DrawingFile, DrawingUnit, EdgeLine, Kerb, Lane, Orthophoto, PixelMap, Site, SiteError,
+    DrawingFile, EdgeLine, Kerb, Lane, LengthUnit, Orthophoto, PixelMap, Site, SiteError,
     SiteOrigin, WorldFile, world_file_beside,
 };
+use crate::units::{Quantity, US_SURVEY_FOOT};
 use crate::vehicle::FrictionZone;
 
 /// Keys of which one is the sign of a site file.
@@ -145,8 +147,8 @@ impl Site {
 }
 
 fn read_origin(mut table: TomlTable<'_>) -> Result<SiteOrigin, TomlError> {
-    let easting_m = table.require("easting", &SURVEY_COORDINATE)?;
-    let northing_m = table.require("northing", &SURVEY_COORDINATE)?;
+    let easting_m = read_survey_coordinate(&mut table, "easting")?;
+    let northing_m = read_survey_coordinate(&mut table, "northing")?;
     let azimuth_rad = table.number("x_axis_azimuth", &SITE_AZIMUTH)?;
     table.finish()?;
     let usual = SiteOrigin::default();
@@ -154,6 +156,13 @@ fn read_origin(mut table: TomlTable<'_>) -> Result<SiteOrigin, TomlError> {
         survey_m: [easting_m, northing_m],
         x_axis_azimuth_rad: azimuth_rad.unwrap_or(usual.x_axis_azimuth_rad),
     })
+}
+
+/// A coordinate of the origin, whose unit may also be the foot of the United States survey.
+fn read_survey_coordinate(table: &mut TomlTable<'_>, base: &str) -> Result<f64, TomlError> {
+    let units = [Quantity::Length.units(), &[US_SURVEY_FOOT]].concat();
+    let found = table.number_in(base, &SURVEY_COORDINATE, &units)?;
+    found.ok_or_else(|| table.missing(&format!("{base}_m")))
 }
 
 /// A file beside the site file or below it, so that a site can be moved with all that belongs to it.
@@ -201,13 +210,20 @@ fn read_orthophoto(
             None => Some(world_file_beside(&file)?),
         },
     };
+    let (words, units) = LengthUnit::OF_WORLD_FILES;
+    let unit = table.choice("unit", &words)?.map(|idx| units[idx]);
+    if unit.is_some() && world_file.is_none() {
+        let expected = "no unit, which is that of a world file: this picture is placed in metres";
+        return Err(table.refuse_last(expected).into());
+    }
+    let world_unit = unit.unwrap_or_default();
     let map = match (map, &world_file) {
         (Some(map), _) => map,
-        (None, Some(file)) => PixelMap::of_world_file(&WorldFile::load(file)?, &origin),
+        (None, Some(file)) => PixelMap::of_world_file(&WorldFile::load(file, world_unit)?, &origin),
         (None, None) => return Err(table.missing("world_file").into()),
     };
     table.finish()?;
-    Ok(Orthophoto { file, world_file, size_px, map, is_placed: true })
+    Ok(Orthophoto { file, world_file, world_unit, size_px, map, is_placed: true })
 }
 
 /// The place of a picture by its corner and its pixels, as the window writes it.
@@ -354,7 +370,7 @@ fn read_zone(mut table: TomlTable<'_>) -> Result<FrictionZone, TomlError> {
 
 fn read_drawing_file(mut table: TomlTable<'_>, folder: &Path) -> Result<DrawingFile, TomlError> {
     let file = required_file(&mut table, "file", folder)?;
-    let unit = table.choice("unit", &DrawingUnit::WORDS)?.map(|idx| DrawingUnit::ALL[idx]);
+    let unit = table.choice("unit", &LengthUnit::WORDS)?.map(|idx| LengthUnit::ALL[idx]);
     let layers = table.strings("layers")?;
     if layers.as_ref().is_some_and(Vec::is_empty) {
         return Err(table.refuse_last("at least one layer"));

@@ -95,6 +95,37 @@ fn world_files_are_in_survey_coordinates() {
 }
 
 #[test]
+fn the_unit_of_a_world_file_and_feet_of_the_survey_are_read_and_come_back() {
+    let folder = folder();
+    let world = "0.5\n0\n0\n-0.5\n17000000.25\n1000099.75\n";
+    std::fs::write(folder.path().join("road.pgw"), world).unwrap();
+    let text = |foot: &str| {
+        format!(
+            "[origin]\neasting_{foot} = 17000000\nnorthing_{foot} = 1000000\n[orthophoto]\n\
+             file = \"road.png\"\nunit = \"{foot}\"\n"
+        )
+    };
+    for (foot, foot_m) in [("ft", 0.3048), ("us_survey_ft", 1200.0 / 3937.0)] {
+        let site = read(folder.path(), &text(foot)).unwrap();
+        let [easting_m, _] = site.origin.unwrap().survey_m;
+        assert!((easting_m - 17e6 * foot_m).abs() < 1e-6, "{foot}: {easting_m}");
+        let map = site.orthophoto.as_ref().unwrap().map;
+        let off = (map.corner_m[0]).hypot(map.corner_m[1] - 100.0 * foot_m);
+        assert!(off < 1e-6, "{foot}: {map:?}");
+        assert!((map.per_column_m[0] - 0.5 * foot_m).abs() < 1e-12, "{foot}: {map:?}");
+        let again = read(folder.path(), &site.to_toml(folder.path()).unwrap()).unwrap();
+        assert_eq!(again.orthophoto, site.orthophoto, "{foot}");
+        let contents = site.contents(None).join("; ");
+        assert!(contents.ends_with(&format!("world file in {foot}")), "{contents}");
+    }
+    let mixed = text("ft").replace("easting_ft", "easting_m = 1\neasting_ft");
+    assert!(read(folder.path(), &mixed).unwrap_err().contains("easting_"));
+    let unit = SITE.replace("points_px", "unit = \"ft\"\npoints_px");
+    let error = read(folder.path(), &unit).unwrap_err();
+    assert!(error.contains("orthophoto.unit is \"ft\", expected no unit"), "{error}");
+}
+
+#[test]
 fn a_wrong_file_is_refused_with_line_and_key() {
     let folder = folder();
     let with = |from: &str, to: &str| SITE.replace(from, to);

@@ -22,15 +22,19 @@ mod write;
 
 mod drawing;
 mod drawing_curves;
+mod frozen_layers;
 mod picture;
 
 #[cfg(test)]
+mod drawing_tests;
+#[cfg(test)]
 mod file_tests;
 
-pub use drawing::{Drawing, DrawnLine, read_drawing};
+pub use drawing::{Drawing, DrawingSummary, DrawnLine, read_drawing};
 pub use error::SiteError;
 pub use origin::SiteOrigin;
-pub use parts::{DrawingFile, DrawingUnit, EdgeLine, Kerb, Lane, Orthophoto, Site};
+pub(crate) use parts::extent_of;
+pub use parts::{DrawingFile, EdgeLine, Kerb, Lane, LengthUnit, Orthophoto, Site};
 pub use picture::{is_picture_file, picture_size_px, read_picture};
 pub use pixel_map::PixelMap;
 pub use world_file::{WorldFile, world_file_beside};

@@ -2,7 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::site::{PixelMap, SiteError, SiteOrigin, WorldFile, picture_size_px, world_file_beside};
+use crate::site::{
+    DrawingSummary, PixelMap, SiteError, SiteOrigin, WorldFile, picture_size_px, world_file_beside,
+};
+use crate::units::US_SURVEY_FOOT;
 use crate::vehicle::FrictionZone;
 
 /// Side of a pixel of a picture of which nothing says where it lies, m; its middle is then at the origin.
@@ -36,6 +39,8 @@ pub struct Orthophoto {
     pub file: PathBuf,
     /// The world file that says where it lies, if it is one.
     pub world_file: Option<PathBuf>,
+    /// The unit of the numbers in the world file.
+    pub world_unit: LengthUnit,
     /// Width and height, pixels.
     pub size_px: [u32; 2],
     /// Where its pixels lie.
@@ -92,15 +97,16 @@ pub struct DrawingFile {
     /// The drawing.
     pub file: PathBuf,
     /// Its unit; that which the drawing states, if `None`.
-    pub unit: Option<DrawingUnit>,
+    pub unit: Option<LengthUnit>,
     /// The layers that are shown; all that are switched on, if `None`.
     pub layers: Option<Vec<String>>,
 }
 
-/// The unit of a drawing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum DrawingUnit {
+/// The unit of a drawing or of a world file.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum LengthUnit {
     /// Metres.
+    #[default]
     Metre,
     /// Centimetres.
     Centimetre,
@@ -114,12 +120,28 @@ pub enum DrawingUnit {
     Inch,
 }
 
-impl DrawingUnit {
-    /// Their words in a site file, in the order of [`DrawingUnit::ALL`].
-    pub const WORDS: [&str; 6] = ["m", "cm", "mm", "ft", "us-survey-ft", "in"];
-    /// All of them.
-    pub const ALL: [Self; 6] =
-        [Self::Metre, Self::Centimetre, Self::Millimetre, Self::Foot, Self::SurveyFoot, Self::Inch];
+impl LengthUnit {
+    /// Their words in a site file, in the order of [`LengthUnit::ALL`]; the last one is another spelling.
+    pub const WORDS: [&str; 7] = ["m", "cm", "mm", "ft", "us_survey_ft", "in", "us-survey-ft"];
+    /// What the words mean.
+    pub const ALL: [Self; 7] = [
+        Self::Metre,
+        Self::Centimetre,
+        Self::Millimetre,
+        Self::Foot,
+        Self::SurveyFoot,
+        Self::Inch,
+        Self::SurveyFoot,
+    ];
+    /// The words for a world file, with what they mean.
+    pub const OF_WORLD_FILES: ([&str; 3], [Self; 3]) =
+        (["m", "ft", "us_survey_ft"], [Self::Metre, Self::Foot, Self::SurveyFoot]);
+
+    /// Its word.
+    pub fn word(self) -> &'static str {
+        let idx = Self::ALL.iter().position(|of| *of == self).unwrap_or_default();
+        Self::WORDS[idx]
+    }
 
     /// Its length, m.
     pub fn length_m(self) -> f64 {
@@ -128,7 +150,7 @@ impl DrawingUnit {
             Self::Centimetre => 0.01,
             Self::Millimetre => 0.001,
             Self::Foot => 0.3048,
-            Self::SurveyFoot => 1200.0 / 3937.0,
+            Self::SurveyFoot => US_SURVEY_FOOT.si_per_unit,
             Self::Inch => 0.0254,
         }
     }
@@ -144,7 +166,10 @@ impl Site {
         let size_px = picture_size_px(path)?;
         let world_file = world_file_beside(path).ok();
         let map = match &world_file {
-            Some(file) => PixelMap::of_world_file(&WorldFile::load(file)?, &SiteOrigin::default()),
+            Some(file) => {
+                let world = WorldFile::load(file, LengthUnit::Metre)?;
+                PixelMap::of_world_file(&world, &SiteOrigin::default())
+            }
             None => {
                 let [width, height] = size_px.map(|side| ASSUMED_PIXEL_M * f64::from(side));
                 PixelMap {
@@ -160,7 +185,14 @@ impl Site {
             name: file_name(path),
             path: file.clone(),
             origin: None,
-            orthophoto: Some(Orthophoto { file, world_file, size_px, map, is_placed }),
+            orthophoto: Some(Orthophoto {
+                file,
+                world_file,
+                world_unit: LengthUnit::Metre,
+                size_px,
+                map,
+                is_placed,
+            }),
             lanes: Vec::new(),
             kerbs: Vec::new(),
             friction_zones: Vec::new(),
@@ -175,7 +207,9 @@ impl Site {
     }
 
     /// What it consists of, in words.
-    pub fn contents(&self) -> Vec<String> {
+    ///
+    /// - `drawing`: what of its drawing was read, if that is known.
+    pub fn contents(&self, drawing: Option<&DrawingSummary>) -> Vec<String> {
         let counted = |n: usize, what: &str| match n {
             0 => None,
             1 => Some(format!("1 {what}")),
@@ -184,14 +218,48 @@ impl Site {
         let orthophoto = self.orthophoto.as_ref().map(|of| {
             let [width, height] = of.size_px;
             let [pixel_m, _] = of.map.pixel_size_m();
-            let known = if of.is_placed { "" } else { ", place and scale not known" };
-            format!("orthophoto of {width} x {height} pixels of {pixel_m:.4} m{known}")
+            let place = match (of.is_placed, &of.world_file) {
+                (false, _) => ", place and scale not known".to_owned(),
+                (true, None) => extent_text(of.extent_m()),
+                (true, Some(_)) => {
+                    format!(
+                        "{}, world file in {}",
+                        extent_text(of.extent_m()),
+                        of.world_unit.word()
+                    )
+                }
+            };
+            format!("orthophoto of {width} x {height} pixels of {pixel_m:.4} m{place}")
         });
-        let drawing = self.drawing.as_ref().map(|of| format!("drawing {}", file_name(&of.file)));
+        let drawing = self.drawing.as_ref().map(|of| {
+            let said = drawing.map(|of| of.contents()).unwrap_or_default();
+            format!("drawing {}{said}", file_name(&of.file))
+        });
         let zones = counted(self.friction_zones.len(), "friction zone");
         let counts = [counted(self.lanes.len(), "lane"), counted(self.kerbs.len(), "kerb"), zones];
         orthophoto.into_iter().chain(counts.into_iter().flatten()).chain(drawing).collect()
     }
+}
+
+impl Orthophoto {
+    /// The rectangle along X and Y that holds it: smallest and largest `[X, Y]`, m.
+    pub fn extent_m(&self) -> [[f64; 2]; 2] {
+        extent_of(self.map.corners_m(self.size_px)).unwrap_or_default()
+    }
+}
+
+/// Smallest and largest coordinates of points, m; `None` without points.
+pub(crate) fn extent_of(points_m: impl IntoIterator<Item = [f64; 2]>) -> Option<[[f64; 2]; 2]> {
+    let mut points_m = points_m.into_iter();
+    let first = points_m.next()?;
+    Some(points_m.fold([first; 2], |[low, high], at| {
+        [std::array::from_fn(|i| low[i].min(at[i])), std::array::from_fn(|i| high[i].max(at[i]))]
+    }))
+}
+
+/// Where something lies, after what it is.
+pub(super) fn extent_text([low, high]: [[f64; 2]; 2]) -> String {
+    format!(", X {:.1} to {:.1} m, Y {:.1} to {:.1} m", low[0], high[0], low[1], high[1])
 }
 
 /// The name of a file without its folder.

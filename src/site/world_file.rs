@@ -15,9 +15,9 @@ use std::path::{Path, PathBuf};
 
 use crate::data::{MAX_SETTINGS_BYTES, read_utf8};
 use crate::ranges::{PIXEL_SIZE, SURVEY_COORDINATE};
-use crate::site::{PixelMap, SiteError, SiteOrigin};
+use crate::site::{LengthUnit, PixelMap, SiteError, SiteOrigin};
 
-/// The six numbers of a world file, m.
+/// The six numbers of a world file, in metres. The file itself does not say its unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WorldFile {
     /// From a pixel to the one at its right, easting and northing: A and D.
@@ -31,17 +31,19 @@ pub struct WorldFile {
 impl WorldFile {
     /// Reads a world file.
     ///
+    /// - `unit`: of its numbers.
+    ///
     /// # Errors
     /// [`SiteError::WorldFile`] with the line, [`SiteError::Data`].
-    pub fn load(path: &Path) -> Result<Self, SiteError> {
-        Self::parse(&read_utf8(path, MAX_SETTINGS_BYTES)?, path)
+    pub fn load(path: &Path, unit: LengthUnit) -> Result<Self, SiteError> {
+        Self::parse(&read_utf8(path, MAX_SETTINGS_BYTES)?, path, unit)
     }
 
     /// Reads the text of a world file.
     ///
     /// # Errors
     /// [`SiteError::WorldFile`] with the line.
-    pub fn parse(text: &str, path: &Path) -> Result<Self, SiteError> {
+    pub fn parse(text: &str, path: &Path, unit: LengthUnit) -> Result<Self, SiteError> {
         let wrong = |line: usize, text: &str, expected| SiteError::WorldFile {
             path: path.to_owned(),
             line,
@@ -65,7 +67,7 @@ impl WorldFile {
         if let Some(idx) = (6..lines.len()).find(|idx| !at(*idx).is_empty()) {
             return Err(wrong(idx + 1, at(idx), "no more than the six lines of a world file"));
         }
-        let [a, d, b, e, c, f] = numbers;
+        let [a, d, b, e, c, f] = numbers.map(|number| number * unit.length_m());
         let world = Self { per_column_m: [a, d], per_row_m: [b, e], first_pixel_m: [c, f] };
         for (idx, [x, y]) in [(usize::from(a == 0.0), [a, d]), (3, [b, e])] {
             if !PIXEL_SIZE.contains(x.hypot(y)) {
@@ -85,7 +87,7 @@ impl WorldFile {
         Ok(world)
     }
 
-    /// The text of the file.
+    /// The text of the file, in metres.
     pub fn to_text(&self) -> String {
         let ([a, d], [b, e], [c, f]) = (self.per_column_m, self.per_row_m, self.first_pixel_m);
         [a, d, b, e, c, f].map(|number| format!("{number}\n")).concat()
@@ -123,7 +125,19 @@ mod tests {
     use super::*;
 
     fn parse(text: &str) -> Result<WorldFile, String> {
-        WorldFile::parse(text, Path::new("road.pgw")).map_err(|error| error.to_string())
+        let path = Path::new("road.pgw");
+        WorldFile::parse(text, path, LengthUnit::Metre).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn feet_become_metres_in_all_six_numbers() {
+        let text = "0.5\n0\n0\n-0.5\n17000000\n1000000\n";
+        let read = |unit| WorldFile::parse(text, Path::new("road.pgw"), unit).unwrap();
+        let (foot, survey) = (read(LengthUnit::Foot), read(LengthUnit::SurveyFoot));
+        assert_eq!((foot.per_column_m, foot.per_row_m), ([0.1524, 0.0], [0.0, -0.1524]));
+        assert!((foot.first_pixel_m[0] - 5_181_600.0).abs() < 1e-6, "{foot:?}");
+        let apart_m = survey.first_pixel_m[0] - foot.first_pixel_m[0];
+        assert!((apart_m - 10.363).abs() < 1e-2, "the two feet differ by {apart_m} m");
     }
 
     #[test]

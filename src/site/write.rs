@@ -4,7 +4,7 @@ use std::path::Path;
 
 use toml::{Table, Value};
 
-use crate::site::{DrawingUnit, EdgeLine, Kerb, Lane, Orthophoto, Site};
+use crate::site::{EdgeLine, Kerb, Lane, LengthUnit, Orthophoto, Site};
 use crate::vehicle::FrictionZone;
 
 /// A file of a site that its site file cannot name, because it is in another folder.
@@ -46,8 +46,7 @@ impl Site {
             let mut table = Table::new();
             set(&mut table, "file", name_below(&drawing.file, folder)?);
             if let Some(unit) = drawing.unit {
-                let idx = DrawingUnit::ALL.iter().position(|of| *of == unit).unwrap_or_default();
-                set(&mut table, "unit", DrawingUnit::WORDS[idx]);
+                set(&mut table, "unit", unit.word());
             }
             if let Some(layers) = &drawing.layers {
                 set(&mut table, "layers", layers.clone());
@@ -62,7 +61,12 @@ fn orthophoto_table(of: &Orthophoto, folder: &Path) -> Result<Table, NotBelow> {
     let mut table = Table::new();
     set(&mut table, "file", name_below(&of.file, folder)?);
     match &of.world_file {
-        Some(world) => set(&mut table, "world_file", name_below(world, folder)?),
+        Some(world) => {
+            set(&mut table, "world_file", name_below(world, folder)?);
+            if of.world_unit != LengthUnit::Metre {
+                set(&mut table, "unit", of.world_unit.word());
+            }
+        }
         None => {
             set(&mut table, "corner_m", pair(of.map.corner_m));
             set(&mut table, "per_column_m", pair(of.map.per_column_m));

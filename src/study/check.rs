@@ -179,10 +179,9 @@ fn input_file(path: &Path) -> Result<InputFileReport, StudyError> {
         if let Some(orthophoto) = &site.orthophoto {
             read_picture(&orthophoto.file)?;
         }
-        if let Some(drawing) = &site.drawing {
-            read_drawing(drawing, &site.origin.unwrap_or_default())?;
-        }
-        let contents = site.contents();
+        let origin = site.origin.unwrap_or_default();
+        let drawing = site.drawing.as_ref().map(|of| read_drawing(of, &origin)).transpose()?;
+        let contents = site.contents(drawing.map(|of| of.summary()).as_ref());
         return Ok(InputFileReport {
             path: path.to_owned(),
             kind: "site",

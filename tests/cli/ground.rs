@@ -32,7 +32,13 @@ fn check_says_what_a_site_consists_of() {
     assert_eq!(model["kind"], "site");
     assert_eq!(model["name"], "Country road, synthetic");
     let contents = model["contents"].to_string();
-    for part in ["orthophoto of 1680 x 840 pixels of 0.0800 m", "2 lanes", "2 friction zones"] {
+    for part in [
+        "orthophoto of 1680 x 840 pixels of 0.0800 m, X ",
+        "world file in m",
+        "2 lanes",
+        "2 friction zones",
+        "drawing edges.dxf in m, ",
+    ] {
         assert!(contents.contains(part), "{contents}");
     }
     let printed = ok(program().args(["check", SITE]).output().unwrap());
@@ -50,6 +56,31 @@ fn a_wrong_site_is_an_error_with_its_place() {
     assert_eq!(output.status.code(), Some(1));
     let expected = "site.toml:3:12: friction_zone[0].friction is 3, expected 0.01 to 2";
     assert!(error.contains(expected), "{error}");
+}
+
+#[test]
+fn a_ground_that_lies_elsewhere_is_said_to_do_so() {
+    let folder = TempDir::new().unwrap();
+    let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sites/country-road");
+    for name in ["site.toml", "edges.dxf", "orthophoto.jpg", "orthophoto.jgw"] {
+        fs::copy(assets.join(name), folder.path().join(name)).unwrap();
+    }
+    let path = folder.path().join("site.toml");
+    let site = fs::read_to_string(&path).unwrap();
+    let out = folder.path().join("out.dxf");
+    let notes = || {
+        let args = ["export", "pit-right-rear", "--site", text(&path), "--out", text(&out)];
+        let said = ok(program().args(args).args(["--overwrite", "--json"]).output().unwrap());
+        json(&said)["notes"].to_string()
+    };
+    assert!(!notes().contains("away from the scene"), "{}", notes());
+    // Everything is in survey coordinates, which nothing is subtracted from any more.
+    let (start, end) = (site.find("[origin]").unwrap(), site.find("[orthophoto]").unwrap());
+    fs::write(&path, format!("{}{}", &site[..start], &site[end..])).unwrap();
+    let far = notes();
+    for name in ["orthophoto.jpg: lies 5447", "edges.dxf: lies 5447"] {
+        assert!(far.contains(name), "{name}: {far}");
+    }
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use impactlab::site::{
-    DrawingFile, DrawingUnit, PixelMap, Site, SiteOrigin, WorldFile, picture_size_px, read_drawing,
+    DrawingFile, LengthUnit, PixelMap, Site, SiteOrigin, WorldFile, picture_size_px, read_drawing,
     read_picture,
 };
 
@@ -22,14 +22,17 @@ fn text_format(
 #[test]
 fn site_files() {
     text_format(("site", 8_000), "site.toml", &|path| match Site::load(path) {
-        Ok(site) => Answer::accepted(&(&site, site.north_rad(), site.contents())),
+        Ok(site) => Answer::accepted(&(&site, site.north_rad(), site.contents(None))),
         Err(error) => Answer::refused(&error),
     });
 }
 
 #[test]
 fn world_files() {
-    text_format(("world-file", 8_000), "road.pgw", &|path| match WorldFile::load(path) {
+    text_format(("world-file", 8_000), "road.pgw", &|path| match WorldFile::load(
+        path,
+        LengthUnit::Foot,
+    ) {
         Ok(world) => {
             let map = PixelMap::of_world_file(&world, &SiteOrigin::default());
             Answer::accepted(&(world, map, map.pixel([0.0, 0.0])))
@@ -41,7 +44,7 @@ fn world_files() {
 #[test]
 fn drawings() {
     text_format(("dxf", 1_500), "survey.dxf", &|path| {
-        let unit = Some(DrawingUnit::Metre);
+        let unit = Some(LengthUnit::Metre);
         let of = DrawingFile { file: path.to_owned(), unit, layers: None };
         match read_drawing(&of, &SiteOrigin::default()) {
             Ok(drawing) => Answer::accepted(&drawing),

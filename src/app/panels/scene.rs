@@ -157,7 +157,7 @@ pub fn scene_heading_ui(
                 .on_disabled_hover_text(OUTDATED);
             });
             if let Some((ground, measuring)) = on_ground {
-                ground_menu_ui(ui, ground, commands);
+                ground_menu_ui(ui, (ground, scene), commands);
                 let has_photo = scene.ground.as_ref().is_some_and(|ground| ground.has_picture());
                 measure_menu_ui(ui, measuring, has_photo);
             }

@@ -8,19 +8,29 @@ use crate::app::ground::{GroundCommand, GroundSession};
 use crate::app::looks::{Icon, icon, icon_button};
 use crate::app::measure::{Measure, Measurement, Measuring};
 use crate::render::scene::{SceneView, draw_measure, draw_measure_text, measure_text_place};
+use crate::scene::Scene;
 use crate::units::{Quantity, UnitSystem};
 
 /// Draws the menu of the ground.
-pub fn ground_menu_ui(ui: &mut Ui, ground: &GroundSession, commands: &mut Vec<Command>) {
+///
+/// - `scene`: below which it lies.
+pub fn ground_menu_ui(
+    ui: &mut Ui,
+    (ground, scene): (&GroundSession, &Scene),
+    commands: &mut Vec<Command>,
+) {
     let menu = ui.menu_button((icon(Icon::Map), "Ground"), |ui| {
         let shown = ground.shown();
         match (shown, &ground.problem) {
             (Some(loaded), _) => {
                 ui.strong(&loaded.site.name);
-                for part in loaded.site.contents() {
+                for part in loaded.contents() {
                     ui.label(part);
                 }
                 for note in &loaded.notes {
+                    ui.weak(note);
+                }
+                for note in loaded.far_notes(scene.extent_m()) {
                     ui.weak(note);
                 }
             }

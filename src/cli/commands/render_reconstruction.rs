@@ -81,7 +81,7 @@ pub(super) fn figure(
 ) -> Result<(Noted, Option<ShownScene>), CliError> {
     let of = Reconstructed::of(&args.evidence.request(), args.site.as_deref(), console)?;
     let Reconstructed { answer, trust, .. } = &of;
-    let mut cars = None;
+    let (mut cars, mut notes) = (None, of.notes());
     let figure = match (args.plot.quantity(), args.plot) {
         (Some(quantity), _) => {
             let prior = prior_values(&answer.target, quantity);
@@ -97,13 +97,14 @@ pub(super) fn figure(
             };
             cars = view.map(|view| {
                 let built = of.cars(&paths, units);
+                notes.extend(of.far_notes(&built));
                 let end_s = built.end_s;
                 ShownScene::fitted(built, end_s, view)
             });
             reconstruction_scene_figure(&ReconstructionScene::of(answer, &paths), trust, units)
         }
     };
-    Ok(((figure, of.notes()), cars))
+    Ok(((figure, notes), cars))
 }
 
 /// The scene of a reconstruction with the cars as bodies and a particle of median speed, and notes on how
@@ -115,7 +116,9 @@ pub(super) fn cars_scene(
     console: &mut Console<'_>,
 ) -> Result<(Scene, Vec<String>), CliError> {
     let of = Reconstructed::of(request, site, console)?;
-    Ok((of.cars(&ReconstructedPaths::of(&of.answer), units), of.notes()))
+    let scene = of.cars(&ReconstructedPaths::of(&of.answer), units);
+    let notes = of.notes().into_iter().chain(of.far_notes(&scene)).collect();
+    Ok((scene, notes))
 }
 
 /// A reconstruction with what restricts it, and the ground below its cars.
@@ -146,6 +149,11 @@ impl Reconstructed {
         let mut notes = noted(&[], (&self.answer.report.badges, &self.trust.assumptions));
         notes.extend(self.ground.iter().flat_map(|ground| ground.notes.iter().cloned()));
         notes
+    }
+
+    /// What of the ground lies too far from the scene to be seen.
+    fn far_notes(&self, scene: &Scene) -> Vec<String> {
+        self.ground.iter().flat_map(|ground| ground.far_notes(scene.extent_m())).collect()
     }
 
     fn cars(&self, paths: &ReconstructedPaths, units: UnitSystem) -> Scene {

@@ -242,9 +242,11 @@ pub(super) fn add_ground(
     site: &Path,
     console: &mut Console<'_>,
 ) -> Result<Vec<String>, CliError> {
-    let LoadedGround { ground, notes, .. } = console.ground(site)?;
+    let loaded = console.ground(site)?;
+    let far = loaded.far_notes(scene.extent_m());
+    let LoadedGround { ground, notes, .. } = loaded;
     scene.ground = Some(ground);
-    Ok(notes)
+    Ok(notes.into_iter().chain(far).collect())
 }
 
 /// Checks that there is a motion at a time.
