@@ -18,6 +18,7 @@ use dxf::{Color, Drawing, LwPolylineVertex, Point};
 use crate::exchange::ExchangeError;
 use crate::exchange::looks::{is_draw, role_aci, role_name};
 use crate::scene::{Scene, SceneCar, SceneMark, SceneRole};
+use crate::site::SiteOrigin;
 
 /// Height of text, m.
 const TEXT_M: f64 = 0.4;
@@ -150,9 +151,10 @@ impl Sheet {
     fn notes(&mut self, scene: &Scene) {
         let [low, _] = scene.extent_m();
         let title = format!("{}, metres, X along the road, Y to the left", scene.title);
+        let survey = scene.ground.as_ref().map(|ground| survey_text(ground.origin.as_ref()));
         let restrictions = scene.trust.restrictions().into_iter().chain(scene.trust.assumed());
         let said = restrictions.map(|line| format!("{}: {}", line.label, line.text));
-        for (idx, value) in std::iter::once(title).chain(said).enumerate() {
+        for (idx, value) in std::iter::once(title).chain(survey).chain(said).enumerate() {
             let place = [low[0], low[1] - (idx + 2) as f64 * LINE_M];
             self.add_to(RESTRICTIONS.to_owned(), 1, EntityType::Text(text(place, &value)));
         }
@@ -175,6 +177,18 @@ impl Sheet {
         }
         Ok(drawing.save(&mut out)?)
     }
+}
+
+/// Where a drawing with a ground lies in survey coordinates.
+fn survey_text(origin: Option<&SiteOrigin>) -> String {
+    let Some(SiteOrigin { survey_m: [easting_m, northing_m], x_axis_azimuth_rad }) = origin else {
+        return "in the axes of the site, which has no origin in survey coordinates".to_owned();
+    };
+    let azimuth_deg = x_axis_azimuth_rad.to_degrees();
+    format!(
+        "in the axes of the site: origin at easting {easting_m} m, northing {northing_m} m, X at \
+         {azimuth_deg:.6} deg clockwise from grid north"
+    )
 }
 
 /// A line of text in one row, whose line ends would break the file.

@@ -17,6 +17,7 @@ use crate::analysis::Analysis;
 use crate::data::{Channel, ForceAxes, ForceHistory, Sampling, TimeSeries};
 use crate::exchange::ExchangeError;
 use crate::units::{Quantity, STANDARD_GRAVITY_M_S2};
+use crate::vehicle::ContactPoint;
 use crate::vehicle::frames::body_from_world;
 
 /// Columns of the force on a vehicle.
@@ -51,6 +52,9 @@ pub fn hve_pulse(
     writeln!(out, "# mass {:.1} lb", to("lb", Quantity::Mass, mass_kg))?;
     writeln!(out, "# each row has {}", sampling_text(force.sampling))?;
     let moment = force.mz_n_m.as_ref();
+    for line in moment_lines(analysis, moment.is_some()) {
+        writeln!(out, "# {line}")?;
+    }
     let mut columns = PULSE_COLUMNS.to_vec();
     columns.extend(moment.map(|_| "Mz (ft-lb)"));
     writeln!(out, "{}", columns.join("\t"))?;
@@ -120,6 +124,28 @@ fn head(
         writeln!(out, "# restrictions: {}", one_line(said))?;
     }
     Ok(())
+}
+
+/// What there is to say of yaw moment and point of contact, of which HVE needs one.
+fn moment_lines(analysis: &Analysis, has_moment: bool) -> Vec<String> {
+    if has_moment {
+        return vec![
+            "the point of contact is missing; Mz is about the centre of gravity".to_owned(),
+        ];
+    }
+    let missing = "the yaw moment Mz is missing: the force does not say it".to_owned();
+    let place = match &analysis.struck {
+        None => "the point of contact is missing".to_owned(),
+        Some(struck) => {
+            let ContactPoint { x_m, y_m, height_m } = struck.contact;
+            let [x, y, z] = [x_m, -y_m, height_m].map(|m| to("ft", Quantity::Length, m) + 0.0);
+            format!(
+                "point of contact: x {x:.3} ft, y {y:.3} ft from the centre of gravity, {z:.3} ft above the \
+                 ground; Mz follows from it"
+            )
+        }
+    };
+    vec![missing, place]
 }
 
 fn sampling_text(sampling: Sampling) -> &'static str {

@@ -39,7 +39,7 @@ pub struct FilmTiming {
     pub to_s: f64,
     /// Seconds of the scene that are played in a second outside the sections, in [`FILM_SPEED`].
     pub speed: f64,
-    /// Parts with a speed of their own, in any order; parts outside the film are left out.
+    /// Parts with a speed of their own, in any order, each at least partly within the film.
     pub sections: Vec<FilmSection>,
 }
 
@@ -84,6 +84,21 @@ pub enum FilmTimingError {
         start_s: f64,
         /// Last instant of the scene, s.
         end_s: f64,
+    },
+    /// A section lies before or after the film.
+    #[error(
+        "a section from {from_s} s to {to_s} s lies outside the film, expected times between {film_from_s} s \
+         and {film_to_s} s"
+    )]
+    SectionOutside {
+        /// First instant of the section, s.
+        from_s: f64,
+        /// Last instant of the section, s.
+        to_s: f64,
+        /// First instant of the film, s.
+        film_from_s: f64,
+        /// Last instant of the film, s.
+        film_to_s: f64,
     },
     /// Two sections share instants.
     #[error(
@@ -133,7 +148,7 @@ impl FilmTiming {
     ///
     /// # Errors
     /// [`FilmTimingError`]: a number outside its range, an end before a beginning, instants outside the
-    /// scene, sections that overlap, or more frames than [`FILM_FRAMES`] permits.
+    /// scene, sections that overlap or lie outside the film, or more frames than [`FILM_FRAMES`] permits.
     pub fn instants(&self, scene: &Scene) -> Result<Vec<FilmInstant>, FilmTimingError> {
         let pieces = self.pieces(scene)?;
         let duration_s: f64 = pieces.iter().map(Piece::duration_s).sum();
@@ -168,9 +183,6 @@ impl FilmTiming {
         let mut at_s = self.from_s;
         for section in sections {
             let (from_s, to_s) = (section.from_s.max(self.from_s), section.to_s.min(self.to_s));
-            if from_s >= to_s {
-                continue;
-            }
             if at_s < from_s {
                 pieces.push(Piece { from_s: at_s, to_s: from_s, speed: self.speed });
             }
@@ -206,6 +218,16 @@ impl FilmTiming {
             if !(from_s.is_finite() && to_s.is_finite() && from_s < to_s) {
                 let (what, from_s, to_s) = ("a section goes", *from_s, *to_s);
                 return Err(FilmTimingError::Order { what, from_s, to_s });
+            }
+            let (film_from_s, film_to_s) = (self.from_s, self.to_s);
+            if *to_s <= film_from_s || film_to_s <= *from_s {
+                let (from_s, to_s) = (*from_s, *to_s);
+                return Err(FilmTimingError::SectionOutside {
+                    from_s,
+                    to_s,
+                    film_from_s,
+                    film_to_s,
+                });
             }
         }
         sections.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
@@ -280,10 +302,17 @@ mod tests {
     }
 
     #[test]
-    fn sections_beyond_the_film_are_left_out_and_others_cut() {
-        let film = timing(1.0, &[(2.0, 3.0, 0.01), (0.9, 4.0, 0.5), (-1.0, 0.1, 2.0)]);
+    fn sections_beyond_the_film_are_refused_and_others_cut() {
+        for (from_s, to_s) in [(2.0, 3.0), (1.0, 1.5), (-2.0, 0.0)] {
+            let error = timing(1.0, &[(from_s, to_s, 0.1)]).instants(&scene(5.0)).unwrap_err();
+            let expected = format!(
+                "a section from {from_s} s to {to_s} s lies outside the film, expected times between 0 s and 1 s"
+            );
+            assert_eq!(error.to_string(), expected);
+        }
+        let film = timing(1.0, &[(0.95, 3.0, 0.01), (0.9, 4.0, 0.5), (-1.0, 0.1, 2.0)]);
         let overlapping = film.instants(&scene(5.0));
-        assert_eq!(overlapping, Err(FilmTimingError::Overlap { at_s: 2.0 }));
+        assert_eq!(overlapping, Err(FilmTimingError::Overlap { at_s: 0.95 }));
         let film = timing(1.0, &[(0.9, 4.0, 0.5), (-1.0, 0.1, 2.0)]);
         assert!((film.duration_s(&scene(5.0)).unwrap() - (0.05 + 0.8 + 0.2)).abs() < 1e-9);
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::scene::GroundPicture;
-use crate::site::{Drawing, EdgeLine, Lane, Site};
+use crate::site::{Drawing, EdgeLine, Lane, Site, SiteOrigin};
 use crate::vehicle::FrictionZone;
 
 /// Width of the marking of a lane and of a kerb, m.
@@ -23,6 +23,8 @@ pub struct SceneGround {
     pub lines: Vec<GroundLine>,
     /// Direction of grid north, counter-clockwise from X, rad.
     pub north_rad: Option<f64>,
+    /// Where the scene lies in survey coordinates, if that is known.
+    pub origin: Option<SiteOrigin>,
 }
 
 /// What a surface is.
@@ -87,7 +89,7 @@ impl SceneGround {
         });
         let markings = site.lanes.iter().flat_map(markings);
         let lines = of_drawing.chain(markings).chain(kerbs).collect();
-        Self { picture, areas, lines, north_rad: site.north_rad() }
+        Self { picture, areas, lines, north_rad: site.north_rad(), origin: site.origin }
     }
 
     /// Whether there is a picture.

@@ -135,6 +135,7 @@ fn what_cannot_be_filmed_is_said_and_leaves_no_file() {
         ("film.mp4", vec!["--to", "900"], "expected times between 0 s and"),
         ("film.mp4", vec!["--from", "2", "--to", "1"], "from 2 s to 1 s; expected an end after"),
         ("film.mp4", vec!["--slow", "0..1=0.1", "--slow", "0.5..2=0.1"], "do not overlap"),
+        ("film.mp4", vec!["--slow", "10..12=0.1"], "lies outside the film, expected times between"),
         ("film.mp4", vec!["--slow", "0..1"], "such as 0.2..0.6=0.1"),
         ("film.mp4", vec!["--fps", "0"], "frames per second is 0, expected 1 to 120"),
         ("film.mp4", vec!["--playback", "0.001", "--fps", "120"], "expected 2 to 36000"),

@@ -8,6 +8,7 @@ use dxf::entities::EntityType;
 use gltf::animation::util::ReadOutputs;
 use impactlab::exchange::{DxfOptions, GltfFrame, dxf, glb, hve_motion, hve_pulse};
 use impactlab::scene::{CarLook, Scene, SceneGround, SceneRole, SimulationScene, simulation_scene};
+use impactlab::site::SiteOrigin;
 use impactlab::study::{
     Library, MotionSource, Question, ScenarioChoice, SeriesFile, SimulateAnswer, SimulateRequest,
     Trust,
@@ -173,6 +174,26 @@ fn a_clock_from_1970_and_survey_coordinates_keep_their_precision() {
 }
 
 #[test]
+fn a_drawing_says_where_its_site_lies() {
+    let (_, mut scene) = case();
+    let said = |scene: &Scene| {
+        let mut bytes = Vec::new();
+        dxf(scene, &DxfOptions::default(), &mut bytes).expect("a drawing");
+        String::from_utf8_lossy(&bytes).into_owned()
+    };
+    assert!(!said(&scene).contains("axes of the site"));
+    let survey_m = [512_345.0, 5_423_456.0];
+    let origin = SiteOrigin { survey_m, x_axis_azimuth_rad: 78_f64.to_radians() };
+    let ground = SceneGround { origin: Some(origin), ..SceneGround::default() };
+    scene.ground = Some(std::sync::Arc::new(ground));
+    let text =
+        "origin at easting 512345 m, northing 5423456 m, X at 78.000000 deg clockwise from grid";
+    assert!(said(&scene).contains(text));
+    scene.ground = Some(std::sync::Arc::new(SceneGround::default()));
+    assert!(said(&scene).contains("which has no origin in survey coordinates"));
+}
+
+#[test]
 fn keys_of_the_animation_are_the_poses_of_the_scene() {
     let (_, scene) = case();
     let mut bytes = Vec::new();
@@ -264,6 +285,8 @@ fn tables_for_hve_have_its_units_and_signs() {
     assert!((size - 3026.0).abs() < 40.0, "{size} N s");
     // The struck vehicle is hit from its right and pushed to its left: negative y of SAE.
     assert!(sum(2) < 0.0 && pulse.iter().all(|row| row.iter().all(|v| v.is_finite())));
+    assert!(text.contains("# the yaw moment Mz is missing"), "{text}");
+    assert!(text.contains("# point of contact: x -"), "{text}");
     let mass_kg = analysis.vehicle.mass.mass_kg;
     let row = pulse.iter().max_by(|a, b| a[2].abs().total_cmp(&b[2].abs())).expect("rows");
     let side_g = row[2] * lbf_n / mass_kg / 9.806_65;
