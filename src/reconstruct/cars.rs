@@ -99,7 +99,8 @@ impl Car {
     /// A vehicle of which every parameter is known, with what the evidence says otherwise.
     fn measured(evidence: &CarEvidence, vehicle: &VehicleParameters) -> Self {
         let mass_kg = evidence.mass_kg.map_or(vehicle.mass.mass_kg, |mass| mass.value);
-        let mut parameters = lean(vehicle.clone()).with_mass(mass_kg, evidence.yaw_inertia_kg_m2);
+        let mut parameters =
+            lean(vehicle.clone()).scaled_to_mass(mass_kg, evidence.yaw_inertia_kg_m2);
         let geometry = &mut parameters.geometry;
         for (own, found) in [
             (&mut geometry.cg_to_front_axle_m, evidence.cg_to_front_axle_m),
@@ -168,6 +169,7 @@ fn lean(vehicle: VehicleParameters) -> VehicleParameters {
         name: String::new(),
         source: String::new(),
         estimates: BTreeMap::new(),
+        stated: BTreeMap::new(),
         sheet: None,
         ..vehicle
     }

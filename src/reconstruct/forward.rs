@@ -318,7 +318,7 @@ impl ForwardModel {
         let mass_kg = values.get(Latent::TargetMass);
         let yaw_inertia = sheet.mass.yaw_inertia_kg_m2 * mass_kg / sheet.mass.mass_kg
             * values.get(Latent::YawInertiaFactor);
-        let mut vehicle = sheet.clone().with_mass(mass_kg, Some(yaw_inertia));
+        let mut vehicle = sheet.clone().scaled_to_mass(mass_kg, Some(yaw_inertia));
         let tires = &mut vehicle.tires;
         tires.friction = values.get(Latent::RoadFriction) * values.get(Latent::TireFrictionFactor);
         tires.sliding_friction_ratio = values.get(Latent::SlidingRatio);
@@ -376,7 +376,7 @@ impl ForwardModel {
         impact: &ImpactState,
     ) -> (VehicleParameters, Manoeuvre) {
         let mass_kg = values.get(Latent::BulletMass);
-        let mut vehicle = self.cars.striking.parameters.clone().with_mass(mass_kg, None);
+        let mut vehicle = self.cars.striking.parameters.clone().scaled_to_mass(mass_kg, None);
         vehicle.tires.friction = values.get(Latent::RoadFriction);
         let brake = Some(Braking::new(
             values.get(Latent::BulletBrakeStart),

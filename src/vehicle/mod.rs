@@ -11,6 +11,7 @@ mod multibody_record;
 mod parameters;
 mod preset;
 mod rest;
+mod scaled_mass;
 pub mod sheet;
 mod state;
 mod tire;

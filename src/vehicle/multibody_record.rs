@@ -149,6 +149,7 @@ impl MultibodyRecord {
                 longitudinal_friction_ratio: SAME_IN_ALL_DIRECTIONS,
             },
             estimates: estimates(),
+            stated: BTreeMap::new(),
             sheet: None,
         }
     }

@@ -46,6 +46,9 @@ pub struct VehicleParameters {
     /// value was estimated.
     #[serde(default)]
     pub estimates: BTreeMap<String, String>,
+    /// Values that were said elsewhere than by the source: for each key of the file, what they replace.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub stated: BTreeMap<String, String>,
     /// The data sheet from which the parameters follow, if they do: it says how uncertain each
     /// estimate is, and what else changes with the mass. It is not part of a full vehicle file.
     #[serde(skip)]
@@ -181,40 +184,6 @@ impl VehicleParameters {
     /// file.
     pub fn with_equations(mut self, equations: Equations) -> Self {
         self.equations = equations;
-        self
-    }
-
-    /// The same vehicle with another mass. Where the parameters follow from a data sheet, those that
-    /// were estimated from the mass follow it. Otherwise sprung mass, roll inertia, product of
-    /// inertia, roll stiffness and roll damping are scaled in proportion to the mass. The values are
-    /// not checked.
-    ///
-    /// - `mass_kg`: total mass, kg.
-    /// - `yaw_inertia_kg_m2`: yaw moment of inertia, kg m²; with `None` it is scaled in proportion
-    ///   to the mass too, unless a data sheet states it.
-    pub fn with_mass(mut self, mass_kg: f64, yaw_inertia_kg_m2: Option<f64>) -> Self {
-        if let Some(sheet) = &self.sheet {
-            let mut sheet = DataSheet::clone(sheet);
-            sheet.state(SheetQuantity::Mass, mass_kg);
-            if let Some(inertia) = yaw_inertia_kg_m2 {
-                sheet.state(SheetQuantity::YawInertia, inertia);
-            }
-            return sheet.vehicle().with_equations(self.equations);
-        }
-        let ratio = mass_kg / self.mass.mass_kg;
-        let mass = &mut self.mass;
-        mass.yaw_inertia_kg_m2 = yaw_inertia_kg_m2.unwrap_or(mass.yaw_inertia_kg_m2 * ratio);
-        let suspension = &mut self.suspension;
-        for value in [
-            &mut mass.mass_kg,
-            &mut mass.sprung_mass_kg,
-            &mut mass.roll_inertia_kg_m2,
-            &mut mass.roll_yaw_product_kg_m2,
-            &mut suspension.roll_stiffness_n_m_rad,
-            &mut suspension.roll_damping_n_m_s_rad,
-        ] {
-            *value *= ratio;
-        }
         self
     }
 

@@ -282,10 +282,15 @@ fn parameters_ui(ui: &mut Ui, vehicle: &VehicleParameters) {
     let Ok(tables) = toml::Table::try_from(vehicle) else { return };
     Grid::new("parameters").striped(true).num_columns(2).show(ui, |ui| {
         for (table, values) in &tables {
-            let Some(values) = values.as_table().filter(|_| table != "estimates") else { continue };
+            let is_value = table != "estimates" && table != "stated";
+            let Some(values) = values.as_table().filter(|_| is_value) else { continue };
             for (key, value) in values {
-                let is_estimate = vehicle.estimates.contains_key(&format!("{table}.{key}"));
-                let mark = if is_estimate { " (estimate)" } else { "" };
+                let name = format!("{table}.{key}");
+                let mark = match vehicle.stated.get(&name) {
+                    _ if vehicle.estimates.contains_key(&name) => " (estimate)".to_owned(),
+                    Some(said) => format!(" ({said})"),
+                    None => String::new(),
+                };
                 value_row(ui, key, &format!("{value}{mark}"));
             }
         }

@@ -10,7 +10,7 @@ use crate::vehicle::VehicleParameters;
 use crate::vehicle::sheet::Estimate;
 
 /// Every parameter with its source. What follows from a data sheet is told by the estimates of that,
-/// with their intervals; what a vehicle file estimates, by its rule.
+/// with their intervals; what a vehicle file estimates, by its rule; what was said elsewhere, by that.
 ///
 /// - `group`: what the vehicle is called in the table.
 pub(super) fn vehicle_rows(
@@ -21,7 +21,8 @@ pub(super) fn vehicle_rows(
     let told = serde_json::to_value(vehicle).unwrap_or_default();
     let rows = flatten(&told, wording, &ShownPaths::default());
     let is_text = |row: &&FlatRow| {
-        row.path.first().is_none_or(|name| name != "estimates") && row.key != "source"
+        row.path.first().is_none_or(|name| name != "estimates" && name != "stated")
+            && row.key != "source"
     };
     let mut inputs: Vec<InputRow> = rows
         .iter()
@@ -29,12 +30,13 @@ pub(super) fn vehicle_rows(
         .map(|row| {
             let name = format!("{}.{}", row.path.join("."), row.key);
             let rule = vehicle.estimates.get(&name);
+            let said = rule.or_else(|| vehicle.stated.get(&name)).unwrap_or(&vehicle.source);
             InputRow {
                 group: group.to_owned(),
                 label: wording.key(&row.key),
                 value: row.value.clone(),
                 class: if rule.is_some() { InputClass::Estimated } else { InputClass::Given },
-                source: wording.quoted(rule.unwrap_or(&vehicle.source)),
+                source: wording.quoted(said),
             }
         })
         .collect();
@@ -71,5 +73,33 @@ pub(super) fn estimate_row(estimate: &Estimate, group: &str, wording: &Wording) 
         value: format!("{} (90 %: {})", interval.median, interval.range),
         class: InputClass::Estimated,
         source: wording.quoted(&format!("{rule}; {source}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::{Language, Paper, ReportDate, ReportSettings};
+    use crate::units::UnitSystem;
+    use crate::vehicle::Preset;
+
+    #[test]
+    fn what_another_mass_has_changed_is_not_said_to_be_of_the_file() {
+        let date = ReportDate::new(2026, 1, 2).unwrap();
+        let (language, units, paper) = (Language::En, UnitSystem::Si, Paper::A4);
+        let wording = Wording::new(&ReportSettings { language, units, paper, date });
+        let file = Preset::Reference.parameters();
+        let rows = vehicle_rows(&file.clone().with_mass(1500.0, None), "struck car", &wording);
+        let by_value = |value: &str| rows.iter().find(|row| row.value.starts_with(value)).unwrap();
+        let mass = by_value("1500");
+        assert_eq!(mass.class, InputClass::Given);
+        assert!(mass.source.contains("instead of 2000 kg"), "{}", mass.source);
+        let of_file = rows.iter().filter(|row| row.source.contains(&file.source)).count();
+        let untouched = vehicle_rows(&file, "struck car", &wording);
+        let before = untouched.iter().filter(|row| row.source.contains(&file.source)).count();
+        assert!(of_file + 7 >= before && of_file < before, "{of_file} of {before}");
+        let scaled = rows.iter().filter(|row| row.source.contains("from 2000 to 1500 kg"));
+        assert_eq!(scaled.filter(|row| row.class == InputClass::Estimated).count(), 6);
+        assert!(rows.iter().all(|row| !row.value.contains("said with")), "a note is no value");
     }
 }

@@ -123,7 +123,7 @@ fn varied(vehicle: &VehicleParameters, rng: &mut ChaCha8Rng) -> VehicleParameter
     let mut factor =
         |spread: f64| (spread * rng.sample::<f64, _>(StandardNormal)).clamp(-0.5, 0.5).exp();
     let mass_kg = vehicle.mass.mass_kg * factor(PARAMETER_SPREAD);
-    let mut varied = vehicle.clone().with_mass(mass_kg, None);
+    let mut varied = vehicle.clone().scaled_to_mass(mass_kg, None);
     varied.mass.yaw_inertia_kg_m2 *= factor(PARAMETER_SPREAD / 2.0);
     let (tires, suspension) = (&mut varied.tires, &mut varied.suspension);
     tires.cornering_coefficient_front_per_rad *= factor(PARAMETER_SPREAD);

@@ -68,6 +68,7 @@ impl DataSheet {
                 longitudinal_friction_ratio: SAME_IN_ALL_DIRECTIONS,
             },
             estimates: self.rules(),
+            stated: BTreeMap::new(),
             sheet: None,
         }
     }
