@@ -104,7 +104,7 @@ pub(in crate::cli) fn run(args: &CaseArgs, console: &mut Console<'_>) -> Result<
         CaseCommand::Pack(args) => {
             let case = CaseFile::load(&args.case)?;
             console.check_target(Some(&args.out), args.overwrite.into())?;
-            console.reads(&[args.case.clone()])?;
+            console.reads(std::slice::from_ref(&args.case))?;
             pack(&case, &args.out, args.overwrite.into())?;
             writeln!(console.out, "{} written", shown_path(&args.out))?;
             Ok(Verdict::Clean)

@@ -109,7 +109,7 @@ pub(in crate::cli) fn run(
     }
     console.check_target(Some(&args.out), args.overwrite.into())?;
     let case = args.case()?;
-    console.reads(&[args.case.clone()])?;
+    console.reads(std::slice::from_ref(&args.case))?;
     console.reads(&case.input_files())?;
     let settings = args.settings()?;
     let asked = (&case, args.variant.as_slice());
