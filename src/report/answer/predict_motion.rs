@@ -83,7 +83,7 @@ fn facts(report: &PredictMotionReport, context: Context<'_>) -> Vec<Fact> {
         ),
         Fact::plain(
             words.region_90,
-            wording.with_unit(&format!("{:.1}", outcome.region_90_m2), "m²"),
+            shown_area(outcome.region_90_m2, wording),
         ),
         Fact::plain(words.p_quarter_turn, wording.percent(outcome.p_quarter_turn)),
         Fact::plain(words.p_half_turn, wording.percent(outcome.p_half_turn)),
@@ -92,6 +92,13 @@ fn facts(report: &PredictMotionReport, context: Context<'_>) -> Vec<Fact> {
     facts.extend(hooking.map(|p| Fact::plain(words.p_hooking, wording.percent(p))));
     facts.extend(report.implied_contact.iter().flat_map(|of| implied_facts(of, wording)));
     facts
+}
+
+/// An area in squares of the unit of lengths.
+fn shown_area(area_m2: f64, wording: &Wording) -> String {
+    let unit = Quantity::Length.display_unit(wording.units);
+    let area = area_m2 / unit.to_si(1.0).powi(2);
+    wording.with_unit(&format!("{area:.1}"), &format!("{}²", unit.symbol))
 }
 
 fn domain(report: &PredictMotionReport, wording: &Wording) -> Vec<String> {

@@ -104,7 +104,7 @@ pub(super) const WORDS: Words = Words {
     road_friction: "Reibbeiwert der Fahrbahn",
     friction_zones: "Bereiche mit eigenem Reibbeiwert",
     duration: "Dauer",
-    force_file: "Datei der Kraft",
+    force_file: "Kraftdatei",
     peak_force: "größte Stoßkraft",
     delta_v_contact: "Δv über den Kontakt, mit Reifenkräften",
     end_position: "Lage am Ende",
@@ -262,7 +262,7 @@ pub(super) const WORDS: Words = Words {
     prior: "vorab angenommene Verteilung",
     uniform: "zwischen {low} und {high}, jeder Wert gleich wahrscheinlich",
     normal_cut: "normal, {mean} ± {sigma}, abgeschnitten bei {low} und {high}",
-    log_normal_cut: "Logarithmus normal, Median {median}, σ des Logarithmus {sigma}, abgeschnitten bei {low} \
+    log_normal_cut: "lognormal, Median {median}, σ des Logarithmus {sigma}, abgeschnitten bei {low} \
         und {high}",
     source_prior_given: "Vorabverteilung; mit den Spuren oder durch das gewählte Fahrzeug vorgegeben",
     source_prior_measured: "Vorabverteilung; gemessen, nach den Spuren",

@@ -257,7 +257,7 @@ pub(super) const WORDS: Words = Words {
     prior: "taken to be likely before",
     uniform: "between {low} and {high}, each value equally likely",
     normal_cut: "normal, {mean} ± {sigma}, cut off at {low} and {high}",
-    log_normal_cut: "logarithm normal, median {median}, σ of the logarithm {sigma}, cut off at {low} and \
+    log_normal_cut: "log-normal, median {median}, σ of the logarithm {sigma}, cut off at {low} and \
         {high}",
     source_prior_given: "prior; given with the evidence, or by the chosen vehicle",
     source_prior_measured: "prior; measured, by the evidence",
