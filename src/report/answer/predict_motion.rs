@@ -81,10 +81,7 @@ fn facts(report: &PredictMotionReport, context: Context<'_>) -> Vec<Fact> {
             words.yaw_rate_at_end,
             wording.value(Quantity::AngularVelocity, outcome.yaw_rate_rad_s),
         ),
-        Fact::plain(
-            words.region_90,
-            shown_area(outcome.region_90_m2, wording),
-        ),
+        Fact::plain(words.region_90, shown_area(outcome.region_90_m2, wording)),
         Fact::plain(words.p_quarter_turn, wording.percent(outcome.p_quarter_turn)),
         Fact::plain(words.p_half_turn, wording.percent(outcome.p_half_turn)),
     ]);
