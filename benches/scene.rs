@@ -54,14 +54,14 @@ fn scene() -> Scene {
 /// What draws.
 enum Canvas {
     Cpu(SceneCanvas),
-    Gpu(Arc<SceneDevice>, GpuCanvas),
+    Gpu(Arc<SceneDevice>, Box<GpuCanvas>),
 }
 
 impl Canvas {
     fn new(device: Option<&Arc<SceneDevice>>) -> Self {
         match device {
             None => Self::Cpu(SceneCanvas::default()),
-            Some(on) => Self::Gpu(Arc::clone(on), GpuCanvas::new(Arc::clone(on))),
+            Some(on) => Self::Gpu(Arc::clone(on), Box::new(GpuCanvas::new(Arc::clone(on)))),
         }
     }
 
