@@ -53,14 +53,14 @@ fn scene() -> Scene {
 
 /// What draws.
 enum Canvas {
-    Cpu(SceneCanvas),
+    Cpu(Box<SceneCanvas>),
     Gpu(Arc<SceneDevice>, Box<GpuCanvas>),
 }
 
 impl Canvas {
     fn new(device: Option<&Arc<SceneDevice>>) -> Self {
         match device {
-            None => Self::Cpu(SceneCanvas::default()),
+            None => Self::Cpu(Box::default()),
             Some(on) => Self::Gpu(Arc::clone(on), Box::new(GpuCanvas::new(Arc::clone(on)))),
         }
     }
