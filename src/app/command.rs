@@ -22,7 +22,7 @@ use crate::app::report::ReportCommand;
 use crate::app::state::{Session, State, Subject};
 use crate::app::widgets::OUTDATED;
 use crate::app::workspaces::Workspace;
-use crate::data::{ColumnMap, Existing, Severity};
+use crate::data::{ColumnMap, Existing, Severity, contact_interval};
 use crate::figure::Figure;
 use crate::reconstruct::evidence::Evidence;
 use crate::render::film::Film;
@@ -66,6 +66,8 @@ pub enum Command {
     /// Move the time by this number of arrow-key steps of 0.05 s and stop playback; negative values
     /// move back.
     StepTime(f64),
+    /// Move the time to the end of the contact, if the force is known, and stop playback.
+    ToContactEnd,
     /// Play this many seconds of the motion in a second.
     SetSpeed(f64),
     /// Start or stop the playback. At the end of the motion it starts again from zero.
@@ -328,6 +330,7 @@ impl State {
             Command::SetTime(time_s) => self.session.time_s = time_s,
             Command::SetSpeed(speed) => self.view.playback_speed = speed,
             Command::StepTime(steps) => self.step_time(steps),
+            Command::ToContactEnd => self.show_contact_end(),
             Command::TogglePlay => self.toggle_play(),
             Command::FitPlots => self.session.fit_plots = true,
             Command::ShowTraining(network) => {
@@ -415,6 +418,15 @@ impl State {
         let end = self.end_time_s();
         self.session.playing = false;
         self.session.time_s = (self.session.time_s + steps * TIME_STEP_S).clamp(0.0, end);
+    }
+
+    fn show_contact_end(&mut self) {
+        let force = self.analysis().and_then(|answer| answer.analysis.force.as_ref());
+        if let Some((_, end_s)) = force.and_then(contact_interval) {
+            let end = self.end_time_s();
+            self.session.playing = false;
+            self.session.time_s = end_s.clamp(0.0, end);
+        }
     }
 
     fn toggle_play(&mut self) {

@@ -26,11 +26,12 @@ pub const SAVE_AS: KeyboardShortcut =
     KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S);
 
 /// The keys that act without a modifier, with the description that the help menu shows.
-pub const PLAIN_KEYS: [(Key, &str); 7] = [
+pub const PLAIN_KEYS: [(Key, &str); 8] = [
     (Key::Space, "play or pause"),
     (Key::ArrowLeft, "a step back in time"),
     (Key::ArrowRight, "a step on in time"),
     (Key::Home, "to the impact"),
+    (Key::End, "to the end of the contact"),
     (Key::ArrowUp, "previous case"),
     (Key::ArrowDown, "next case"),
     (Key::F, "fit plots to their data"),
@@ -98,6 +99,7 @@ fn plain(key: Key) -> Option<Command> {
         Key::ArrowLeft => Some(Command::StepTime(-1.0)),
         Key::ArrowRight => Some(Command::StepTime(1.0)),
         Key::Home => Some(Command::SetTime(0.0)),
+        Key::End => Some(Command::ToContactEnd),
         Key::ArrowUp => Some(Command::SelectNeighbour(-1)),
         Key::ArrowDown => Some(Command::SelectNeighbour(1)),
         Key::F => Some(Command::FitPlots),

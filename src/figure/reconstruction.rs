@@ -58,7 +58,7 @@ pub fn marginal_figure(
             name: "before the evidence".to_owned(),
             role: Role::Muted,
             style: LineStyle::Solid,
-            points: histogram(&prior, range),
+            points: frequency_polygon(&prior, range),
         }),
         FigureElement::Band(band("after it", &histogram(&posterior, range))),
     ];
@@ -87,8 +87,8 @@ fn range_of(posterior: &[f64], prior: &[f64]) -> [f64; 2] {
     [room(prior_low, low).min(low), -room(-prior_high, -high).min(-high)]
 }
 
-/// Densities as a line of steps.
-fn histogram(values: &[f64], [low, high]: [f64; 2]) -> Vec<[f64; 2]> {
+/// Densities of equal classes over a range, and the width of a class.
+fn densities(values: &[f64], [low, high]: [f64; 2]) -> (Vec<f64>, f64) {
     let step = (high - low) / N_CLASSES as f64;
     let mut counts = vec![0_usize; N_CLASSES];
     for value in values {
@@ -98,13 +98,27 @@ fn histogram(values: &[f64], [low, high]: [f64; 2]) -> Vec<[f64; 2]> {
         }
     }
     let density = |count: usize| count as f64 / (values.len() as f64 * step);
-    let steps = counts.iter().enumerate();
+    (counts.into_iter().map(density).collect(), step)
+}
+
+/// Densities as a line of steps.
+fn histogram(values: &[f64], range: [f64; 2]) -> Vec<[f64; 2]> {
+    let (densities, step) = densities(values, range);
+    let steps = densities.iter().enumerate();
     steps
-        .flat_map(|(i, count)| {
-            let left = low + step * i as f64;
-            [[left, density(*count)], [left + step, density(*count)]]
+        .flat_map(|(i, density)| {
+            let left = range[0] + step * i as f64;
+            [[left, *density], [left + step, *density]]
         })
         .collect()
+}
+
+/// Densities as a line through the middles of the classes. Steps of less than a pixel would be drawn as
+/// spots.
+fn frequency_polygon(values: &[f64], range: [f64; 2]) -> Vec<[f64; 2]> {
+    let (densities, step) = densities(values, range);
+    let middles = densities.iter().enumerate();
+    middles.map(|(i, density)| [range[0] + step * (i as f64 + 0.5), *density]).collect()
 }
 
 fn band(name: &str, line: &[[f64; 2]]) -> Band {

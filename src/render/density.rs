@@ -75,7 +75,7 @@ impl DensityGpu {
     /// Prepares the computation on a new device, without a window.
     ///
     /// # Errors
-    /// Those of [`headless_device`] and of [`DensityGpu::new`].
+    /// [`GpuError::NoAdapter`] and [`GpuError::NoDevice`], and those of [`DensityGpu::new`].
     pub fn headless() -> Result<Self, GpuError> {
         let (device, queue) = headless_device()?;
         Self::new(device, queue)

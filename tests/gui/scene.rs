@@ -67,6 +67,22 @@ fn the_view_is_switched_by_its_label_and_moved_by_the_mouse() {
 }
 
 #[test]
+fn the_time_line_goes_to_start_and_end_of_the_contact() {
+    let mut harness = scene();
+    let time_s = |harness: &Harness<'_, App>| harness.state().state().session.time_s;
+    harness.key_press(egui::Key::End);
+    harness.run_steps(2);
+    let answer = harness.state().state().analysis().expect("a simulation");
+    let force = answer.analysis.force.as_ref().expect("a force");
+    let (_, end_s) = impactlab::data::contact_interval(force).expect("a contact");
+    assert_eq!(time_s(&harness), end_s);
+    assert!((0.02..0.3).contains(&end_s), "{end_s} s");
+    harness.key_press(egui::Key::Home);
+    harness.run_steps(2);
+    assert_eq!(time_s(&harness), 0.0);
+}
+
+#[test]
 fn the_camera_follows_the_struck_car() {
     let mut harness = scene();
     harness.state_mut().state_mut().view.scene.follow = Follow::Struck;
