@@ -222,6 +222,9 @@ fn a_cancelled_training_is_kept_as_such_and_can_be_resumed_but_is_not_used() {
     drop(harness);
 
     let mut harness = desk.open(&[]);
+    step_until(&mut harness, "the cancelled training", |state| {
+        !state.session.unfinished.list.trainings.is_empty()
+    });
     assert_eq!(in_use(&harness).1, "shipped", "nor is it after a restart");
     assert!(entries(&harness)[0].is_cancelled);
     show_models(&mut harness);
