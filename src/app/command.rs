@@ -421,6 +421,10 @@ impl State {
     }
 
     fn show_contact_end(&mut self) {
+        // The motions of a reconstruction begin with an impact of no duration.
+        if self.view.workspaces.shown == Workspace::Reconstruct {
+            return;
+        }
         let force = self.analysis().and_then(|answer| answer.analysis.force.as_ref());
         if let Some((_, end_s)) = force.and_then(contact_interval) {
             let end = self.end_time_s();
