@@ -10,15 +10,17 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use egui::Color32;
+use image::{Rgba, RgbaImage};
 use impactlab::analysis::DensityTask;
 use impactlab::error_chain;
 use impactlab::render::GpuError;
 use impactlab::render::scene::gpu::{GpuCanvas, SceneDevice};
 use impactlab::render::scene::{Camera, SceneCanvas, SceneLook, ViewKind};
 use impactlab::scene::{
-    ForecastScene, LoadedGround, Scene, SceneGround, SimulationScene, add_forecast,
+    ForecastScene, GroundPicture, LoadedGround, Scene, SceneGround, SimulationScene, add_forecast,
     simulation_scene,
 };
+use impactlab::site::PixelMap;
 use impactlab::study::{ForceSource, Library, MotionSource, PredictMotionRequest, Question, Trust};
 use impactlab::units::UnitSystem;
 
@@ -196,6 +198,31 @@ fn what_is_kept_does_not_show() {
         fresh.draw(scene, &look, time_s).expect("it is drawn");
         fresh.read(&mut from_fresh).expect("it is read");
         assert!(from_kept == from_fresh, "{look:?} at {time_s} s");
+    }
+}
+
+/// A picture of the ground that is too large for the device is drawn on the processor, and leaves no
+/// trace in the scenes after it.
+#[test]
+fn a_ground_that_is_too_large_for_the_device_is_drawn_too() {
+    let Some(device) = device() else { return };
+    let side = device.device().limits().max_texture_dimension_2d + 1;
+    let (forecast, mut wide) = (Arc::new(forecast_scene()), braked_scene());
+    let stripes = RgbaImage::from_fn(side, 8, |x, _| Rgba([(x / 64 % 2 * 90) as u8, 80, 60, 255]));
+    let (per_column_m, per_row_m) = ([100.0 / f64::from(side), 0.0], [0.0, -2.0]);
+    let map = PixelMap { corner_m: [-20.0, 8.0], per_column_m, per_row_m };
+    let picture = Some(Arc::new(GroundPicture::new(&stripes, map)));
+    wide.ground = Some(Arc::new(SceneGround { picture, ..SceneGround::default() }));
+    // The density is another one in the picture that the device refuses.
+    wide.density.clone_from(&forecast.density);
+    let (wide, look) = (Arc::new(wide), look_at(&forecast, ViewKind::Above, false));
+    let bare = Arc::new(braked_scene());
+    let (mut cpu, mut gpu) = (SceneCanvas::default(), GpuCanvas::new(device));
+    for (name, scene) in
+        [("bare", &bare), ("wide", &wide), ("after", &forecast), ("wide-2", &wide), ("end", &bare)]
+    {
+        let pictures = both((&mut cpu, &mut gpu), scene, (&look, 1.0));
+        compare(&pictures, SIZE, name);
     }
 }
 

@@ -54,6 +54,12 @@ fn corner_of(index: u32) -> vec2<f32> {
     return vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 2.0 - 1.0;
 }
 
+// Clip coordinates of a corner of a rectangle by its lowest and highest pixel.
+fn corner_of_bounds(index: u32, bounds: vec4<f32>) -> vec4<f32> {
+    let middle = (bounds.xy + bounds.zw) / 2.0;
+    return in_clip(middle + corner_of(index) * (bounds.zw - middle));
+}
+
 // A triangle that covers the whole picture.
 @vertex
 fn whole(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {

@@ -31,7 +31,7 @@ pub struct GroundResources {
     corners: GrowingBuffer,
     /// Surfaces on the ground.
     pub areas: GrowingBuffer,
-    /// All of it, bound.
+    /// All of it, bound; `None` as soon as a part is another one.
     pub group: Option<wgpu::BindGroup>,
 }
 
@@ -58,10 +58,10 @@ impl GroundResources {
         pipelines: &Pipelines,
         ground: &Ground<'_>,
     ) -> Result<(), GpuError> {
-        let mut is_new = self.update_density((device, queue), ground.scene)?;
-        is_new |= self.update_picture((device, queue), ground.scene)?;
-        is_new |= self.update_areas((device, queue), ground);
-        if let (Some(corners), true) = (self.corners.buffer(), is_new || self.group.is_none()) {
+        self.update_density((device, queue), ground.scene)?;
+        self.update_picture((device, queue), ground.scene)?;
+        self.update_areas((device, queue), ground);
+        if let (Some(corners), None) = (self.corners.buffer(), &self.group) {
             let views = [&self.density.1, &self.picture.1];
             self.group = Some(pipelines.ground_group(device, views, corners));
         }
@@ -77,13 +77,13 @@ impl GroundResources {
         &mut self,
         (device, queue): (&wgpu::Device, &wgpu::Queue),
         scene: &Scene,
-    ) -> Result<bool, GpuError> {
+    ) -> Result<(), GpuError> {
         let map = scene.density.as_ref().map(|density| &density.map);
         if is_same(map, self.density.0.as_ref()) {
-            return Ok(false);
+            return Ok(());
         }
-        self.density.0 = map.cloned();
-        let Some(map) = map else { return Ok(false) };
+        self.density.0 = None;
+        let Some(map) = map else { return Ok(()) };
         let size = map.grid.size;
         check_side(device, size)?;
         let [width, height] = size.map(|n| n.max(1) as u32);
@@ -95,15 +95,16 @@ impl GroundResources {
             let extent = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
             queue.write_texture(made.as_image_copy(), bytes, rows(width), extent);
         }
-        self.density.1 = made.create_view(&Default::default());
-        Ok(true)
+        self.density = (Some(Arc::clone(map)), made.create_view(&Default::default()));
+        self.group = None;
+        Ok(())
     }
 
     fn update_picture(
         &mut self,
         (device, queue): (&wgpu::Device, &wgpu::Queue),
         scene: &Scene,
-    ) -> Result<bool, GpuError> {
+    ) -> Result<(), GpuError> {
         let picture = scene.ground.as_ref().and_then(|site| site.picture.as_ref());
         let held = self.picture.0.as_ref();
         // A picture that was only moved has the same pixels.
@@ -113,10 +114,10 @@ impl GroundResources {
             _ => false,
         };
         if is_kept {
-            return Ok(false);
+            return Ok(());
         }
         self.picture.0 = None;
-        let Some(picture) = picture else { return Ok(false) };
+        let Some(picture) = picture else { return Ok(()) };
         let levels = picture.levels();
         // Every level is at least as large as it has pixels: sides are halved and rounded down here.
         let unit = 1_usize << levels.len().saturating_sub(1);
@@ -127,10 +128,11 @@ impl GroundResources {
             write_level(queue, (&made, number), level);
         }
         self.picture = (Some(Arc::clone(picture)), made.create_view(&Default::default()));
-        Ok(true)
+        self.group = None;
+        Ok(())
     }
 
-    fn update_areas(&mut self, device: (&wgpu::Device, &wgpu::Queue), ground: &Ground<'_>) -> bool {
+    fn update_areas(&mut self, device: (&wgpu::Device, &wgpu::Queue), ground: &Ground<'_>) {
         let mut corners: Vec<[f32; 2]> = Vec::new();
         let mut areas = Vec::new();
         for area in seen_areas(ground) {
@@ -144,7 +146,9 @@ impl GroundResources {
             });
         }
         self.areas.write(device, &areas);
-        self.corners.write(device, &corners)
+        if self.corners.write(device, &corners) {
+            self.group = None;
+        }
     }
 }
 

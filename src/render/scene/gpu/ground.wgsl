@@ -74,9 +74,7 @@ fn area_corner(
     @location(1) range: vec4<u32>,
     @location(2) color: vec4<f32>,
 ) -> AreaPixel {
-    let middle = (bounds.xy + bounds.zw) / 2.0;
-    let pixel = middle + corner_of(index) * (bounds.zw - middle);
-    return AreaPixel(in_clip(pixel), range.xyz, color);
+    return AreaPixel(corner_of_bounds(index, bounds), range.xyz, color);
 }
 
 @fragment

@@ -49,9 +49,7 @@ fn shadow_corner(
     @location(1) pose: vec4<f32>,
     @location(2) half_size: vec2<f32>,
 ) -> ShadowPixel {
-    let middle = (bounds.xy + bounds.zw) / 2.0;
-    let pixel = middle + corner_of(index) * (bounds.zw - middle);
-    return ShadowPixel(in_clip(pixel), pose, half_size);
+    return ShadowPixel(corner_of_bounds(index, bounds), pose, half_size);
 }
 
 @fragment
