@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::app::command::wake;
 use crate::app::panes::Pane;
-use crate::app::state::State;
+use crate::app::state::{Session, State};
 use crate::data::{Existing, Severity, write_atomically};
 use crate::error_chain;
 use crate::jobs::{Job, Update};
@@ -73,12 +73,12 @@ impl GroundSession {
 
     /// Starts to read a ground that has not been asked for, and receives the one that has been read.
     ///
-    /// - `scene_m`: smallest and largest `[X, Y]` of the scene, m;
+    /// - `extent_m`: gives smallest and largest `[X, Y]` of the scene, m;
     /// - returns what the user has to know.
     fn update(
         &mut self,
         choice: Option<&SiteChoice>,
-        scene_m: [[f64; 2]; 2],
+        extent_m: impl Fn() -> [[f64; 2]; 2],
         context: &Context,
     ) -> Vec<(Severity, String)> {
         let file = choice.map(|choice| &choice.file);
@@ -100,7 +100,7 @@ impl GroundSession {
             None | Some(Update::Running) => {}
             Some(Update::Finished(Ok(ground))) => {
                 said.extend(ground.notes.iter().map(|note| (Severity::Info, note.clone())));
-                let far = ground.far_notes(scene_m);
+                let far = ground.far_notes(extent_m());
                 said.extend(far.into_iter().map(|note| (Severity::Warning, note)));
                 (self.job, self.read) = (None, Some(Arc::new(ground)));
             }
@@ -141,8 +141,9 @@ impl State {
 
     /// Reads the ground of the project where that has changed.
     pub(in crate::app) fn update_ground(&mut self, context: &Context) {
-        let scene_m = self.session.scene.extent_m().unwrap_or_default();
-        let said = self.session.ground.update(self.project.site.as_ref(), scene_m, context);
+        let Session { scene, ground, .. } = &mut self.session;
+        let extent_m = || scene.extent_m().unwrap_or_default();
+        let said = ground.update(self.project.site.as_ref(), extent_m, context);
         said.into_iter().for_each(|(severity, text)| self.say(severity, text));
     }
 

@@ -73,7 +73,7 @@ pub enum FilmTimingError {
     NoMotion,
     /// The film shows instants of which the scene knows nothing.
     #[error(
-        "the film goes from {from_s} s to {to_s} s, expected times between {start_s} s and {end_s} s"
+        "the film goes from {from_s} s to {to_s} s, expected times between {start_s:.3} s and {end_s:.3} s"
     )]
     Outside {
         /// First instant of the film, s.
@@ -87,8 +87,8 @@ pub enum FilmTimingError {
     },
     /// A section lies before or after the film.
     #[error(
-        "a section from {from_s} s to {to_s} s lies outside the film, expected times between {film_from_s} s \
-         and {film_to_s} s"
+        "a section from {from_s} s to {to_s} s lies outside the film, expected times between {film_from_s:.3} s \
+         and {film_to_s:.3} s"
     )]
     SectionOutside {
         /// First instant of the section, s.
@@ -306,7 +306,7 @@ mod tests {
         for (from_s, to_s) in [(2.0, 3.0), (1.0, 1.5), (-2.0, 0.0)] {
             let error = timing(1.0, &[(from_s, to_s, 0.1)]).instants(&scene(5.0)).unwrap_err();
             let expected = format!(
-                "a section from {from_s} s to {to_s} s lies outside the film, expected times between 0 s and 1 s"
+                "a section from {from_s} s to {to_s} s lies outside the film, expected times between 0.000 s and 1.000 s"
             );
             assert_eq!(error.to_string(), expected);
         }
