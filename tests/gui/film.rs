@@ -245,15 +245,19 @@ fn the_window_films_the_cars_of_a_reconstruction() {
     assert_eq!(decoded(&path, 30).len(), n_frames);
     assert!(said(&harness).is_some_and(|text| text.ends_with("film.mp4 written")));
 
+    cancel_a_long_one(&mut harness, film, &folder.path().join("other.mp4"));
+}
+
+/// Begins a film that takes long and cancels it, after which nothing of it is left.
+fn cancel_a_long_one(harness: &mut Harness<'_, App>, mut film: Film, path: &Path) {
     film.canvas.size_px = [1920, 1080];
     film.timing = FilmTiming { frames_per_s: 120, ..FilmTiming::of_scene(&film.picture.scene) };
-    let other = folder.path().join("other.mp4");
-    apply(&mut harness, Command::SaveFilm(Box::new(film), other.clone()));
+    apply(harness, Command::SaveFilm(Box::new(film), path.to_owned()));
     harness.run_steps(2);
-    apply(&mut harness, Command::CancelFilm);
-    step_until(&mut harness, "the end of the film", |state| state.session.film.running().is_none());
-    assert!(said(&harness).is_some_and(|text| text.ends_with("not written: cancelled")));
-    assert!(!other.exists());
+    apply(harness, Command::CancelFilm);
+    step_until(harness, "the end of the film", |state| state.session.film.running().is_none());
+    assert!(said(harness).is_some_and(|text| text.ends_with("not written: cancelled")));
+    assert!(!path.exists());
 }
 
 #[test]
@@ -289,13 +293,5 @@ fn the_window_makes_a_film_of_the_scene_as_it_is_seen() {
     apply(&mut harness, Command::SaveFilm(Box::new(film.clone()), path));
     assert!(harness.state().state().session.replacing.is_some());
     apply(&mut harness, Command::KeepExisting);
-    film.canvas.size_px = [1920, 1080];
-    film.timing = FilmTiming { frames_per_s: 120, ..FilmTiming::of_scene(&film.picture.scene) };
-    let other = folder.path().join("other.mp4");
-    apply(&mut harness, Command::SaveFilm(Box::new(film), other.clone()));
-    harness.run_steps(2);
-    apply(&mut harness, Command::CancelFilm);
-    step_until(&mut harness, "the end of the film", |state| state.session.film.running().is_none());
-    assert!(said(&harness).is_some_and(|text| text.ends_with("not written: cancelled")));
-    assert!(!other.exists());
+    cancel_a_long_one(&mut harness, film, &folder.path().join("other.mp4"));
 }

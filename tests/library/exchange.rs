@@ -19,10 +19,14 @@ use impactlab::vehicle::Wheel;
 /// The shipped scenario, simulated, and its scene.
 fn case() -> (SimulateAnswer, Scene) {
     let scenario = ScenarioChoice::File(PathBuf::from("pit-right-rear"));
-    let source = MotionSource::Scenario { scenario, pulse: Default::default() };
+    simulated(MotionSource::Scenario { scenario, pulse: Default::default() })
+}
+
+/// A motion and its scene.
+fn simulated(source: MotionSource) -> (SimulateAnswer, Scene) {
     let request = SimulateRequest { vehicle_draws: 0, ..SimulateRequest::new(source) };
     let answer = request.answer(&Library::default(), &mut |_| ControlFlow::Continue(()));
-    let answer = answer.expect("a shipped scenario").complete().expect("not cancelled");
+    let answer = answer.expect("a motion").complete().expect("not cancelled");
     let trust = Trust::new(&answer.report.badges, &answer.report.assumptions);
     let scene = simulation_scene(&SimulationScene {
         analysis: &answer.analysis,
@@ -103,18 +107,7 @@ fn surveyed() -> (SimulateAnswer, Scene) {
         rows += &format!("{:.2},{x_m:.4},{y_m:.4},0,15,0,0\n", 1.7e9 + time_s);
     }
     std::fs::write(&path, rows).expect("written");
-    let source = MotionSource::Trajectory { file: SeriesFile::new(&path), contact: None };
-    let request = SimulateRequest { vehicle_draws: 0, ..SimulateRequest::new(source) };
-    let answer = request.answer(&Library::default(), &mut |_| ControlFlow::Continue(()));
-    let answer = answer.expect("a motion").complete().expect("not cancelled");
-    let trust = Trust::new(&answer.report.badges, &answer.report.assumptions);
-    let scene = simulation_scene(&SimulationScene {
-        analysis: &answer.analysis,
-        others: &[],
-        units: UnitSystem::Si,
-        trust: &trust,
-    });
-    (answer, scene)
+    simulated(MotionSource::Trajectory { file: SeriesFile::new(&path), contact: None })
 }
 
 #[test]

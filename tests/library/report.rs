@@ -6,35 +6,32 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use impactlab::analysis::PulseSetup;
 use impactlab::case_file::{CaseFile, CaseReport, Variant, pack, unpack};
 use impactlab::data::Existing;
 use impactlab::figure::Figure;
 use impactlab::report::{
-    Block, Language, Paper, Pixels, ReportDate, ReportDocument, ReportSettings, SectionKind, Table,
+    Block, Language, Paper, Pixels, ReportDate, ReportDocument, ReportSettings, SectionKind,
     VALIDATION_TABLES, pdf, report_case,
 };
 use impactlab::study::{
-    EvidenceChoice, ImpactRequest, Library, MotionSource, ReconstructRequest, Report,
-    ScenarioChoice, SimulateReport, SimulateRequest,
+    EvidenceChoice, ImpactRequest, Library, ReconstructRequest, Report, ScenarioChoice,
 };
 use impactlab::uncertainty::Badge;
 use impactlab::units::{Quantity, UnitSystem};
-use impactlab::vehicle::{Braking, Ending};
 
 /// Particles of a reconstruction that is asked only for the look of its report.
 const FEW_PARTICLES: usize = 60;
 
-fn settings(language: Language, units: UnitSystem, paper: Paper) -> ReportSettings {
+pub fn settings(language: Language, units: UnitSystem, paper: Paper) -> ReportSettings {
     let date = ReportDate::new(2026, 11, 24).expect("a day");
     ReportSettings { language, units, paper, date }
 }
 
-fn english() -> ReportSettings {
+pub fn english() -> ReportSettings {
     settings(Language::En, UnitSystem::Si, Paper::A4)
 }
 
-fn report(case: &CaseFile, settings: &ReportSettings) -> (ReportDocument, CaseReport) {
+pub fn report(case: &CaseFile, settings: &ReportSettings) -> (ReportDocument, CaseReport) {
     let mut go_on = |_: impactlab::study::Event<'_>| ControlFlow::Continue(());
     let outcome = report_case((case, &[]), settings, &Library::default(), &mut go_on);
     outcome.expect("a case").complete().expect("nobody cancels")
@@ -69,7 +66,7 @@ fn reconstruction(folder: &Path) -> CaseFile {
 }
 
 /// The reconstruction, asked once for all tests that only read it.
-fn staged() -> &'static (tempfile::TempDir, CaseFile, ReportDocument, CaseReport) {
+pub fn staged() -> &'static (tempfile::TempDir, CaseFile, ReportDocument, CaseReport) {
     static STAGED: OnceLock<(tempfile::TempDir, CaseFile, ReportDocument, CaseReport)> =
         OnceLock::new();
     STAGED.get_or_init(|| {
@@ -80,7 +77,7 @@ fn staged() -> &'static (tempfile::TempDir, CaseFile, ReportDocument, CaseReport
     })
 }
 
-fn impact_case(name: &str, notes: &str) -> CaseFile {
+pub fn impact_case(name: &str, notes: &str) -> CaseFile {
     let scenario = ScenarioChoice::File(PathBuf::from("pit-right-rear"));
     let question = ImpactRequest { scenario, paper: false };
     let variant =
@@ -214,132 +211,6 @@ fn a_reconstruction_tells_evidence_courses_budget_and_prior() {
     assert!(texts(document).iter().filter(|text| *text == "estimated by rule").count() > 20);
     let folder = case.files[0].path.parent().expect("a folder").display().to_string();
     assert!(!document.to_markdown().contains(&folder), "a path of this machine is in the report");
-}
-
-/// The tables of a document whose caption begins so.
-fn tables<'a>(document: &'a ReportDocument, caption: &str) -> Vec<&'a Table> {
-    let blocks = document.sections.iter().flat_map(|section| &section.blocks);
-    let tables = blocks.filter_map(|block| match block {
-        Block::Table(table) => Some(table),
-        _ => None,
-    });
-    tables.filter(|table| table.caption.starts_with(caption)).collect()
-}
-
-#[test]
-fn each_distribution_of_the_prior_says_who_gave_it() {
-    let (_, _, document, _) = staged();
-    let priors = tables(document, "found: taken to be likely before");
-    let [priors] = priors[..] else { panic!("one table: {}", priors.len()) };
-    let says = |label: &str| {
-        let of_label = |row: &&Vec<String>| row[0] == label;
-        priors.rows.iter().find(of_label).map(|row| [&*row[2], &*row[3]]).expect(label)
-    };
-    for (label, class, source) in [
-        ("friction of the road", "measured", "prior; measured, by the evidence"),
-        ("mass of the struck car", "measured", "prior; measured, by the evidence"),
-        ("mass of the striking car", "measured", "prior; measured, by the evidence"),
-        ("contact along the side", "measured", "prior; measured, by the evidence"),
-        (
-            "yaw inertia over the estimate",
-            "estimated by rule",
-            "prior; rule of the data sheet with its scatter",
-        ),
-        (
-            "rolling resistance",
-            "estimated by rule",
-            "prior; rule of the data sheet with its scatter",
-        ),
-        ("speed of the struck car", "assumed", "prior; default of the program"),
-        ("driver brakes from", "assumed", "prior; default of the program"),
-    ] {
-        assert_eq!(says(label), [class, source], "{label}");
-    }
-}
-
-/// A case that simulates the shipped scenario with brakes that lock its wheels.
-fn braked_simulation() -> CaseFile {
-    let scenario = ScenarioChoice::File(PathBuf::from("pit-right-rear"));
-    let source = MotionSource::Scenario { scenario, pulse: PulseSetup::default() };
-    let question = SimulateRequest {
-        vehicle_draws: 0,
-        ending: Some(Ending { brake: Some(Braking::new(0.3, 1.5, 0.1)), ..Ending::default() }),
-        ..SimulateRequest::new(source)
-    };
-    let questions = vec![question.into()];
-    CaseFile::new("braked", Variant { name: "braked".to_owned(), questions, ..Variant::default() })
-}
-
-fn simulated(answers: &CaseReport) -> &SimulateReport {
-    let Some(Report::Simulate(report)) = answers.variants[0].reports().next() else {
-        panic!("a simulation");
-    };
-    report
-}
-
-#[test]
-fn computed_tyre_marks_have_the_figures_of_the_answer_in_both_languages_and_units() {
-    let case = braked_simulation();
-    for (language, units, caption, to, [locked, struck]) in [
-        (
-            Language::En,
-            UnitSystem::Si,
-            "Tyre marks that the simulation leaves",
-            "to",
-            ["locked", "struck, "],
-        ),
-        (
-            Language::De,
-            UnitSystem::Us,
-            "Reifenspuren, die die Simulation hinterlässt",
-            "bis",
-            ["blockiert", "gestoßenes Fahrzeug, "],
-        ),
-    ] {
-        let (document, answers) = report(&case, &settings(language, units, Paper::A4));
-        let marks = &simulated(&answers).tyre_marks;
-        assert!(marks.len() > 3, "{marks:?}");
-        let [table] = tables(&document, caption)[..] else { panic!("{caption}: one table") };
-        assert_eq!(table.rows.len(), marks.len());
-        let shown = |quantity: Quantity, si: f64| match language {
-            Language::En => quantity.shown(si, units),
-            Language::De => quantity.shown(si, units).replace('.', ","),
-        };
-        for (row, mark) in table.rows.iter().zip(marks) {
-            let [from, end] = [mark.from_s, mark.to_s].map(|of| shown(Quantity::Time, of));
-            assert_eq!(row[2], shown(Quantity::Length, mark.length_m));
-            assert_eq!(row[3], format!("{from} {to} {end}"));
-            for place in mark.start_m.into_iter().chain(mark.end_m) {
-                assert!(row[4].contains(&shown(Quantity::Length, place)), "{row:?} {mark:?}");
-            }
-        }
-        let says =
-            |column: usize, text: &str| table.rows.iter().any(|row| row[column].contains(text));
-        assert!(says(1, locked) && says(0, struck), "{:?}", table.rows);
-    }
-    // Without a simulation there are no marks and no table of them.
-    let (document, _) = report(&impact_case("pit", ""), &english());
-    assert!(tables(&document, "Tyre marks").is_empty());
-}
-
-#[test]
-fn found_tyre_marks_stand_beside_the_computed_ones() {
-    let (_, _, document, answers) = staged();
-    let Some(Report::Reconstruct(report)) = answers.variants[0].reports().next() else {
-        panic!("a reconstruction");
-    };
-    let [table] = tables(document, "Tyre marks that were found")[..] else { panic!("one table") };
-    assert_eq!((report.marks.len(), table.rows.len()), (4, 4));
-    let shown = |si: Option<f64>| {
-        si.map_or_else(|| "no mark".to_owned(), |si| Quantity::Length.shown(si, UnitSystem::Si))
-    };
-    for (row, mark) in table.rows.iter().zip(&report.marks) {
-        let computed = mark.mean_distance_m.map(|_| mark.computed_length_m);
-        let lengths = [Some(mark.found_length_m), computed];
-        let distances = [mark.mean_distance_m, mark.largest_distance_m];
-        let expected: Vec<String> = lengths.into_iter().chain(distances).map(shown).collect();
-        assert_eq!(row[1..], expected, "{mark:?}");
-    }
 }
 
 fn count_of(document: &ReportDocument, start: &str) -> usize {
