@@ -354,7 +354,7 @@ mod tests {
     fn nonsense_is_refused() {
         let whole = scene(2.0);
         let outside = timing(2.5, &[]).instants(&whole).unwrap_err().to_string();
-        assert!(outside.contains("between 0 s and 2 s"), "{outside}");
+        assert!(outside.contains("between 0.000 s and 2.000 s"), "{outside}");
         for (to_s, sections) in [
             (0.0, vec![]),
             (f64::NAN, vec![]),

@@ -132,7 +132,7 @@ fn what_cannot_be_filmed_is_said_and_leaves_no_file() {
         ("film.webm", vec![], "expected a name that ends in .mp4, or a folder"),
         ("film.mp4", vec!["--size", "321x180"], "321 × 180 pixels, expected even numbers"),
         ("film.mp4", vec!["--size", "16x16"], "film side is 16, expected 64 to 3840"),
-        ("film.mp4", vec!["--to", "900"], "expected times between 0 s and"),
+        ("film.mp4", vec!["--to", "900"], "expected times between 0.000 s and"),
         ("film.mp4", vec!["--from", "2", "--to", "1"], "from 2 s to 1 s; expected an end after"),
         ("film.mp4", vec!["--slow", "0..1=0.1", "--slow", "0.5..2=0.1"], "do not overlap"),
         ("film.mp4", vec!["--slow", "10..12=0.1"], "lies outside the film, expected times between"),
