@@ -206,7 +206,7 @@ fn an_end_just_after_the_motion_is_its_end_and_is_said() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().join("film.mp4");
     let error = refused(&out, &["--to", "900"]);
-    let (_, end) = error.split_once("between 0 s and ").expect("the end of the motion");
+    let (_, end) = error.split_once("between 0.000 s and ").expect("the end of the motion");
     let end_s: f64 = end.trim().trim_end_matches(" s").parse().expect("a number");
     let options = ["--size", "320x180", "--fps", "30", "--from"];
     let from = (end_s - 0.1).to_string();
