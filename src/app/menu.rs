@@ -203,7 +203,7 @@ fn help_menu_ui(ui: &mut Ui, commands: &mut Vec<Command>) {
         "wheel in a plan or Ctrl + wheel to zoom, right-drag for a zoom box, double click to fit.",
     );
     ui.separator();
-    ui.label(format!("impactlab {}", env!("CARGO_PKG_VERSION")));
+    ui.label(format!("impactlab {}", crate::VERSION));
     ui.label("The shipped data are simulations, not measurements.");
     if ui.button("Licences…").clicked() {
         commands.push(Command::ShowLicences(true));

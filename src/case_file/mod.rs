@@ -107,7 +107,7 @@ impl CaseFile {
         Self {
             format: store::FORMAT.to_owned(),
             version: store::VERSION,
-            program: env!("CARGO_PKG_VERSION").to_owned(),
+            program: crate::VERSION.to_owned(),
             name: name.into(),
             notes: String::new(),
             shown: variant.name.clone(),

@@ -77,7 +77,7 @@ impl CaseFile {
             if is_used { relative(path, &folder) } else { None }
         };
         let mut case = self.with_paths(&to_relative).map_err(wrong)?;
-        case.program = env!("CARGO_PKG_VERSION").to_owned();
+        case.program = crate::VERSION.to_owned();
         Ok(serde_json::to_string_pretty(&case).map_err(wrong)? + "\n")
     }
 

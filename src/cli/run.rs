@@ -17,7 +17,7 @@ use crate::study::Library;
 
 /// What happens when one vehicle hits another, and in the second after
 #[derive(Debug, Parser)]
-#[command(name = "impactlab", version, max_term_width = 100, after_help = EXAMPLES)]
+#[command(name = "impactlab", version = crate::VERSION, max_term_width = 100, after_help = EXAMPLES)]
 struct Cli {
     #[command(subcommand)]
     command: Option<CliCommand>,

@@ -64,7 +64,8 @@ impl<E: EpochDetail> EpochRecord<E> {
 /// - `T`: what only this kind of network records of its training.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrainingRecord<E, T> {
-    /// Version of this program.
+    /// Version of this program, without the digest of its source: a model file has the same bytes as
+    /// long as data, settings and training are the same.
     pub version: String,
     /// What the data were called.
     pub data: String,

@@ -34,7 +34,7 @@ pub(super) fn provenance_blocks(
     (wording, paths): (&Wording, &ShownPaths),
 ) -> Vec<Block> {
     let words = wording.words;
-    let versions = [("version", case.program()), ("now", env!("CARGO_PKG_VERSION"))];
+    let versions = [("version", case.program()), ("now", crate::VERSION)];
     // Evidence by itself was never saved as a case.
     let is_saved = !(case.log.is_empty() && case.files.is_empty() && case.models.is_empty());
     let saved = is_saved.then(|| Block::paragraph(fill(words.case_saved_by, &versions)));

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
+use crate::VERSION;
 use crate::data::write::ModelDigest;
 use crate::learning::ModelFile;
 use crate::study::StudyError;
@@ -20,7 +21,7 @@ const TRAINED: &str = "trained";
 /// Version of the program, seed and trained networks of an answer. It is part of every report.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
-    /// Version of the program that answered.
+    /// Version of the program that answered, [`VERSION`].
     pub version: Cow<'static, str>,
     /// The seed of all draws, where there are any and the report does not have it elsewhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -33,7 +34,7 @@ pub struct Provenance {
 impl Default for Provenance {
     /// An answer of this program without draws and networks.
     fn default() -> Self {
-        Self { version: env!("CARGO_PKG_VERSION").into(), seed: None, model_digests: Vec::new() }
+        Self { version: VERSION.into(), seed: None, model_digests: Vec::new() }
     }
 }
 

@@ -76,7 +76,7 @@ fn a_folder_of_results_is_replaced_only_where_that_is_said_and_holds_one_run() {
 
     let manifest = json(&fs::read_to_string(out.join("manifest.json")).unwrap());
     assert_eq!(manifest["program"], "impactlab");
-    assert_eq!(manifest["version"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(manifest["version"], impactlab::VERSION);
     assert_eq!(manifest["complete"], true);
     assert_eq!(manifest["seed"], 5);
     assert_eq!(manifest["request"]["question"], "predict_force");
@@ -120,7 +120,7 @@ fn every_report_says_which_program_seed_and_models_gave_it() {
     let of_file =
         |name: &str| sha256_hex(&fs::read(format!("assets/models/{name}.safetensors")).unwrap());
     let told = json(&ok(program().args(PREDICT_FORCE).arg("--json").output().unwrap()));
-    assert_eq!(told["version"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(told["version"], impactlab::VERSION);
     assert_eq!(told["seed"], 0);
     assert_eq!(told["model_digests"][0]["network"], "force");
     assert_eq!(told["model_digests"][0]["name"], "shipped");
@@ -144,7 +144,7 @@ fn every_report_says_which_program_seed_and_models_gave_it() {
         &["simulate", "--dataset", TRAJECTORIES, "--case", "FE_c001"],
     ] {
         let told = json(&ok(program().args(args).arg("--json").output().unwrap()));
-        assert_eq!(told["version"], env!("CARGO_PKG_VERSION"), "{args:?}");
+        assert_eq!(told["version"], impactlab::VERSION, "{args:?}");
         assert!(told.get("seed").is_none(), "{args:?}: nothing is drawn");
     }
 }

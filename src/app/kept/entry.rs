@@ -116,7 +116,7 @@ impl KeptEntry {
     pub fn new(kind: KeptKind, (name, data): (String, String), question: Request) -> Self {
         Self {
             version: VERSION,
-            program: env!("CARGO_PKG_VERSION").to_owned(),
+            program: crate::VERSION.to_owned(),
             kind,
             name,
             finished: humantime::format_rfc3339_seconds(std::time::SystemTime::now()).to_string(),

@@ -72,7 +72,7 @@ impl Manifest {
     pub(super) fn new(run: RunRecord, started: SystemTime, files: Vec<FileDigest>) -> Self {
         Self {
             program: PROGRAM,
-            version: env!("CARGO_PKG_VERSION"),
+            version: crate::VERSION,
             complete: true,
             started: humantime::format_rfc3339_seconds(started).to_string(),
             seconds: started.elapsed().map_or(0.0, |elapsed| elapsed.as_secs_f64()),

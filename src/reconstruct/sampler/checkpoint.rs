@@ -6,13 +6,11 @@ use serde::{Deserialize, Serialize};
 
 use super::population::Population;
 use super::{SamplerError, SamplerSettings};
+use crate::VERSION;
 use crate::data::{Existing, read_bytes, write_atomically};
 
 /// Largest checkpoint that is read, bytes: many times that of the longest run.
 const MAX_BYTES: u64 = 1 << 30;
-
-/// Version of the program that wrote the file; another one may draw other particles.
-const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// The file that a run is saved in every now and then.
 #[derive(Debug, Clone, PartialEq)]
