@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use image::ImageFormat;
 use impactlab::site::{
     DrawingFile, LengthUnit, PixelMap, Site, SiteOrigin, WorldFile, picture_size_px, read_drawing,
     read_picture,
@@ -55,33 +56,47 @@ fn drawings() {
 
 #[test]
 fn pictures() {
+    pictures_of(("picture", "road.png"), &[ImageFormat::Png, ImageFormat::Jpeg], 0);
+}
+
+/// The decoder of TIFF makes tables of up to a million values of a tag, whatever the size of the file,
+/// before it can be given a limit.
+#[test]
+fn tiff_pictures() {
+    pictures_of(("tiff", "road.tif"), &[ImageFormat::Tiff], 128 << 20);
+}
+
+/// - `fixed_bytes`: memory that the decoder takes whatever the size of the file, bytes.
+fn pictures_of(
+    (name, file_name): (&'static str, &'static str),
+    formats: &[ImageFormat],
+    fixed_bytes: u64,
+) {
     let picture = image::RgbImage::from_fn(9, 7, |x, y| image::Rgb([x as u8, y as u8, 90]));
-    // TIFF is left out: its decoder makes tables of up to a million values of a tag, some 100 MB, whatever
-    // the size of the file, before it can be given a limit. More it does not take.
-    let formats = [image::ImageFormat::Png, image::ImageFormat::Jpeg];
-    let seeds = formats.map(|format| {
+    let seed = |format: &ImageFormat| {
         let mut bytes = std::io::Cursor::new(Vec::new());
-        picture.write_to(&mut bytes, format).expect("a picture in memory");
+        picture.write_to(&mut bytes, *format).expect("a picture in memory");
         bytes.into_inner()
-    });
-    run(&Format {
-        name: "picture",
-        n_inputs: 3_000,
-        file_name: "road.png",
-        names_file: true,
-        seeds: seeds.to_vec(),
-        mutate: changed_bytes,
-        load: &|path| match picture_size_px(path) {
-            // A picture may state more pixels than the memory that a test may take.
-            Ok([width, height]) if u64::from(width) * u64::from(height) > 1 << 20 => {
-                Answer::accepted(&[width, height])
-            }
-            Ok(size) => match read_picture(path) {
-                Ok(_) => Answer::accepted(&size),
-                Err(error) => Answer::refused(&error),
-            },
+    };
+    let load = |path: &Path| match picture_size_px(path) {
+        // A picture may state more pixels than the memory that a test may take.
+        Ok([width, height]) if u64::from(width) * u64::from(height) > 1 << 20 => {
+            Answer::accepted(&[width, height])
+        }
+        Ok(size) => match read_picture(path) {
+            Ok(_) => Answer::accepted(&size),
             Err(error) => Answer::refused(&error),
         },
+        Err(error) => Answer::refused(&error),
+    };
+    run(&Format {
+        name,
+        n_inputs: 3_000,
+        file_name,
+        names_file: true,
+        seeds: formats.iter().map(seed).collect(),
+        mutate: changed_bytes,
+        load: &|path| Answer { fixed_bytes, ..load(path) },
     });
 }
 

@@ -77,6 +77,8 @@ pub struct Answer {
     pub messages: Vec<String>,
     /// A value that is not finite, with what stands around it.
     pub not_finite: Option<String>,
+    /// Memory that may be taken beside [`memory_limit_bytes`], whatever the size of the file, bytes.
+    pub fixed_bytes: u64,
 }
 
 impl Answer {
@@ -321,7 +323,7 @@ impl Trial<'_> {
         seen.longest = seen.longest.max(took);
         seen.most_bytes = seen.most_bytes.max(memory.bytes_max);
         let answer = outcome.expect("the loader was called").map_err(|payload| said(&*payload))?;
-        let limit = memory_limit_bytes(input.len());
+        let limit = memory_limit_bytes(input.len()) + answer.fixed_bytes;
         if took > LONGEST {
             return Err(format!("took {:.1} s for {} bytes", took.as_secs_f64(), input.len()));
         }
