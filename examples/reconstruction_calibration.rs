@@ -7,7 +7,8 @@
 //! ```
 //!
 //! A third and a fourth argument are the number of particles, 150 without, and of motions that each
-//! reconstruction may take, 8000 without.
+//! reconstruction may take, 8000 without; a fifth one is a site file, in whose friction zones the wheels
+//! stand.
 //!
 //! The case gives cars, road, damage and the accuracies. Half of the collisions leave rest pose and
 //! recorded speed, half rest pose and three positions in a video. What is printed is a line for each
@@ -27,6 +28,8 @@ use impactlab::reconstruct::{
     Cars, Discrepancy, ForwardModel, RankedQuantity, Ranks, ReconstructedQuantity,
     ReconstructionTarget,
 };
+use impactlab::site::Site;
+use impactlab::vehicle::FrictionZone;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -59,15 +62,18 @@ fn kinds_of_evidence(case: &Evidence, idx: usize) -> Evidence {
     evidence
 }
 
-fn target(evidence: &Evidence) -> ReconstructionTarget {
-    let cars = Cars::of(evidence, None, None);
-    let model = ForwardModel::new(evidence, cars);
+fn model(evidence: &Evidence, zones: &[FrictionZone]) -> ForwardModel {
+    ForwardModel::new(evidence, Cars::of(evidence, None, None)).on_zones(zones.to_vec())
+}
+
+fn target(evidence: &Evidence, zones: &[FrictionZone]) -> ReconstructionTarget {
+    let model = model(evidence, zones);
     ReconstructionTarget::new(evidence.clone(), model, Discrepancy::default())
 }
 
 /// - `size`: number of particles, and of motions at the most.
 fn ranked(
-    case: &Evidence,
+    (case, zones): (&Evidence, &[FrictionZone]),
     [n_particles, max_evaluations]: [usize; 2],
     idx: usize,
 ) -> Result<Vec<RankedQuantity>, Box<dyn Error + Send + Sync>> {
@@ -76,7 +82,7 @@ fn ranked(
         let mut evidence = kinds_of_evidence(case, idx);
         // Nothing that says where the car was, so that every motion is followed to rest.
         let (rest, positions) = (evidence.rest.take(), std::mem::take(&mut evidence.positions));
-        let model = ForwardModel::new(&evidence, Cars::of(&evidence, None, None));
+        let model = model(&evidence, zones);
         let evidence = Evidence { rest, positions, ..evidence };
         ReconstructionTarget::new(evidence, model, Discrepancy::default())
     };
@@ -92,7 +98,7 @@ fn ranked(
         }
     }
     let (truth, evidence) = drawn.ok_or("no collision of the prior can be simulated")?;
-    let target = target(&evidence);
+    let target = target(&evidence, zones);
     let settings = SamplerSettings {
         n_particles,
         seed: idx as u64,
@@ -127,8 +133,10 @@ fn main() -> Result<(), Box<dyn Error + Send + Sync>> {
     let mut number = |default: usize| args.next().map_or(Ok(default), |n| n.parse::<usize>());
     let (n, size) = (number(500)?, [number(150)?, number(8000)?]);
     let case = Evidence::load(Path::new(&path))?;
+    let site = args.next().map(|site| Site::load(Path::new(&site))).transpose()?;
+    let zones = site.map_or_else(Vec::new, |site| site.friction_zones);
     let all: Result<Vec<_>, _> =
-        (0..n).into_par_iter().map(|idx| ranked(&case, size, idx)).collect();
+        (0..n).into_par_iter().map(|idx| ranked((&case, &zones), size, idx)).collect();
     let mut ranks = vec![Ranks::default(); QUANTITIES.len()];
     for quantities in all? {
         for (ranks, of) in ranks.iter_mut().zip(quantities) {

@@ -131,8 +131,11 @@ impl State {
 
     /// Puts a site, or an orthophoto alone, below the scene.
     pub(in crate::app) fn open_ground(&mut self, path: PathBuf) {
-        // A file that is opened again is read again.
+        // A file that is opened again is read again, and an answer is of what it said before.
         self.session.ground.forget();
+        if self.project.reconstruction.site.as_ref() == Some(&path) {
+            self.drop_reconstruction();
+        }
         self.project.site = Some(SiteChoice { file: path, map: None });
         self.ask_again();
         self.session.shows_doors = false;

@@ -175,8 +175,8 @@ pub enum CliError {
     #[error(transparent)]
     ReportFormat(#[from] FormatError),
     /// Settings of a reconstruction are given for the report of a case.
-    #[error("{}: is a case, which says itself how many particles there are and their seed; leave out \
-             --particles and --seed", path.display())]
+    #[error("{}: is a case, which says itself how many particles there are, their seed and their \
+             ground; leave out --particles, --seed and --site", path.display())]
     ReportOfCase {
         /// The case.
         path: PathBuf,

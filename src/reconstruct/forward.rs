@@ -5,7 +5,8 @@
 //!
 //! Assumptions: the struck car drives straight ahead before the impact; both cars are rigid during it
 //! and touch at one point; the striking car touches with the corner or the front that its heading turns
-//! towards the struck side; the contact lies 0.55 m above the road.
+//! towards the struck side; the contact lies 0.55 m above the road. Where the ground has zones, each wheel
+//! stands on the friction of its own.
 
 use rayon::prelude::*;
 
@@ -15,14 +16,15 @@ use crate::collision::{
 };
 use crate::data::{ForceAxes, ForceHistory, Sampling};
 use crate::numerics::wrap_angle_rad;
+use crate::ranges::ROAD_FRICTION;
 use crate::reconstruct::evidence::Evidence;
 use crate::reconstruct::prior::towards;
 use crate::reconstruct::{Cars, Latent, LatentValues, Prior};
 use crate::units::STANDARD_GRAVITY_M_S2;
 use crate::vehicle::{
     Braking, ContactLoad, ContactPoint, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Ending,
-    EngineBraking, HeldSteer, Manoeuvre, Path, PathLimit, SimulationRun, VehicleParameters,
-    VehicleState, Wheel, simulate_paths,
+    EngineBraking, FrictionZone, HeldSteer, Manoeuvre, Path, PathLimit, SimulationRun,
+    VehicleParameters, VehicleState, Wheel, simulate_paths,
 };
 
 /// Height of the contact above the road, m: sills and bumpers of passenger cars.
@@ -116,6 +118,7 @@ pub struct ForwardModel {
     near: [Wheel; 2],
     restitution: Option<[f64; 2]>,
     follows_bullet: bool,
+    zones: Vec<FrictionZone>,
     limit: PathLimit,
 }
 
@@ -153,9 +156,17 @@ impl ForwardModel {
             near: wheels_near(side, cars.is_hit_behind_cg(evidence)),
             restitution: evidence.prior.restitution,
             follows_bullet: evidence.striking_rest.is_some(),
+            zones: Vec::new(),
             limit: PathLimit { distance_m },
             cars,
         }
+    }
+
+    /// The same on a ground with zones of their own friction, in the axes of the evidence.
+    #[must_use]
+    pub fn on_zones(self, zones: Vec<FrictionZone>) -> Self {
+        let prior = if zones.is_empty() { self.prior } else { self.prior.with_zones() };
+        Self { prior, zones, ..self }
     }
 
     /// The prior of the case.
@@ -166,6 +177,11 @@ impl ForwardModel {
     /// The vehicles of the case.
     pub fn cars(&self) -> &Cars {
         &self.cars
+    }
+
+    /// Parts of the ground with their own friction.
+    pub fn zones(&self) -> &[FrictionZone] {
+        &self.zones
     }
 
     /// The impact of a particle, without the motion after it.
@@ -306,7 +322,7 @@ impl ForwardModel {
             controls: ending.controls(&vehicle),
             duration_s: LONGEST_MOTION_S,
             ends_at_rest: true,
-            friction_zones: Vec::new(),
+            friction_zones: self.zones_under(&values, values.get(Latent::TireFrictionFactor)),
         };
         let bullet = self.follows_bullet.then(|| self.bullet(&values, &impact));
         Prepared { values, impact, vehicle, manoeuvre, bullet }
@@ -369,6 +385,22 @@ impl ForwardModel {
         Ending { brake, engine, drive: None, damage, steer: Some(steer) }
     }
 
+    /// The zones of the ground with the friction that a car has in them, within the range of a zone:
+    ///
+    /// ```text
+    /// μ = μ_site · f_zone · f_tyre
+    /// ```
+    ///
+    /// - `tire_factor`: f_tyre, friction of the tyres of the car over that which was measured.
+    fn zones_under(&self, values: &LatentValues, tire_factor: f64) -> Vec<FrictionZone> {
+        let factor = values.get(Latent::ZoneFrictionFactor) * tire_factor;
+        let under = |zone: &FrictionZone| FrictionZone {
+            friction: (zone.friction * factor).clamp(ROAD_FRICTION.low, ROAD_FRICTION.high),
+            ..zone.clone()
+        };
+        self.zones.iter().map(under).collect()
+    }
+
     /// The striking car and what happens to it.
     fn bullet(
         &self,
@@ -401,7 +433,7 @@ impl ForwardModel {
             controls: Ending { brake, ..Ending::default() }.controls(&vehicle),
             duration_s: LONGEST_MOTION_S,
             ends_at_rest: true,
-            friction_zones: Vec::new(),
+            friction_zones: self.zones_under(values, 1.0),
         };
         (vehicle, manoeuvre)
     }

@@ -235,3 +235,35 @@ fn cars_that_draw_apart_are_no_explanation_of_damage() {
     let [of_hit, of_miss] = target.log_likelihoods(&z)[..] else { panic!("two motions") };
     assert!(of_hit.is_finite() && of_miss == f64::NEG_INFINITY, "{of_hit} {of_miss}");
 }
+
+#[test]
+fn the_wheels_stand_on_the_zones_of_the_ground() {
+    let evidence = evidence();
+    let cars = Cars::of(&evidence, None, None);
+    let road = ForwardModel::new(&evidence, cars.clone());
+    let border_m = vec![[10.0, -40.0], [200.0, -40.0], [200.0, 40.0], [10.0, 40.0]];
+    let ice = FrictionZone { name: "ice".to_owned(), border_m, friction: 0.2 };
+    let none = road.clone().on_zones(Vec::new());
+    let icy = road.clone().on_zones(vec![ice]);
+    let n = road.prior().components().len();
+    assert_eq!(none.prior().components(), road.prior().components());
+    assert_eq!(icy.prior().components().len(), n + 1);
+    let travelled_m = |model: &ForwardModel, z: &[f64]| {
+        let [motion] = &model.motions(&[z.to_vec()], |motion| motion)[..] else { panic!("one") };
+        let pairs = motion.path.points.windows(2);
+        let way = pairs.map(|p| (p[1].x_m - p[0].x_m).hypot(p[1].y_m - p[0].y_m)).sum::<f64>();
+        (way, motion.manoeuvre.friction_zones.first().map(|zone| zone.friction))
+    };
+    // 20 m/s.
+    let mut z = vec![0.0; n + 1];
+    z[0] = -0.43;
+    let (on_road, of_road) = travelled_m(&road, &z[..n]);
+    let (on_ice, of_ice) = travelled_m(&icy, &z);
+    assert_eq!(of_road, None);
+    assert!((of_ice.unwrap() - 0.2 * 1.02).abs() < 1e-3, "tyres are a little better: {of_ice:?}");
+    assert!(on_ice > 1.5 * on_road, "{on_ice} m on ice, {on_road} m on the road");
+    // A zone that is better than the site says stops the car earlier; the friction stays in its range.
+    z[n] = 2.0;
+    let (on_better, of_better) = travelled_m(&icy, &z);
+    assert!(on_better < on_ice && of_better.unwrap() > 1.3 * of_ice.unwrap(), "{on_better}");
+}

@@ -9,6 +9,7 @@
 //!
 //! Sources: [`Brach2011`](crate::bibliography::Brach2011), drag factors and the critical drag of a
 //! spinning car, whose mean over a spin is about half of that of locked wheels; planar impact.
+//! Where the ground has zones of their own friction, μ is its mean along d.
 //! Marks count with the mean over the four wheels. Without marks s is taken from the spin: the drag of
 //! a spinning car is 0.5 μ on the average. The normal part of Δv is that of the event data recorder,
 //! or it is left at what its prior says.
@@ -19,6 +20,7 @@ use crate::collision::Side;
 use crate::reconstruct::Cars;
 use crate::reconstruct::evidence::{DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, Evidence, Measured};
 use crate::units::STANDARD_GRAVITY_M_S2;
+use crate::vehicle::{FrictionZone, friction_at};
 
 /// Sliding over peak friction.
 const SLIDING_RATIO: f64 = 0.8;
@@ -28,6 +30,8 @@ const ROLLING_DRAG: f64 = 0.03;
 const SPIN_DRAG_SHARE: f64 = 0.5;
 /// Restitution of the hand calculation.
 const RESTITUTION: f64 = 0.3;
+/// Places on the way to rest at which the friction of the ground is looked up.
+const N_ON_THE_WAY: usize = 200;
 /// Change of velocity across where no recorder tells it, m/s, and its standard deviation: what a PIT
 /// manoeuvre usually brings.
 const USUAL_DELTA_V_M_S: Measured = Measured { value: 1.2, sigma: 0.5 };
@@ -43,12 +47,15 @@ pub struct HandCalculation {
 
 impl HandCalculation {
     /// The speeds of a case; `None` if its rest position is not known.
-    pub fn of(evidence: &Evidence, cars: &Cars) -> Option<Self> {
+    ///
+    /// - `zones`: parts of the ground with their own friction.
+    pub fn of(evidence: &Evidence, cars: &Cars, zones: &[FrictionZone]) -> Option<Self> {
         let rest = evidence.rest?;
         let distance_m = rest.x_m.hypot(rest.y_m);
-        let friction = evidence
+        let road = evidence
             .friction
             .unwrap_or(Measured { value: DEFAULT_FRICTION, sigma: DEFAULT_FRICTION_SIGMA });
+        let friction = friction_on_the_way(road, [rest.x_m, rest.y_m], zones);
         let (drag_share, scatter) = drag_share(evidence, distance_m, friction.value);
         let drag = friction.value * drag_share;
         let after = (2.0 * STANDARD_GRAVITY_M_S2 * drag * distance_m).sqrt();
@@ -66,6 +73,19 @@ impl HandCalculation {
         let target_speed_m_s = by_record.map_or(own, |record| combined(own, record));
         Some(Self { target_speed_m_s, closing_speed_m_s: closing(evidence, cars) })
     }
+}
+
+/// Mean friction on the straight way from the impact to rest, with the relative scatter of the road.
+fn friction_on_the_way(road: Measured, rest_m: [f64; 2], zones: &[FrictionZone]) -> Measured {
+    if zones.is_empty() {
+        return road;
+    }
+    let at = |i: usize| {
+        let share = (i as f64 + 0.5) / N_ON_THE_WAY as f64;
+        friction_at(zones, rest_m.map(|of| share * of), road.value)
+    };
+    let mean = (0..N_ON_THE_WAY).map(at).sum::<f64>() / N_ON_THE_WAY as f64;
+    Measured { value: mean, sigma: road.sigma * mean / road.value }
 }
 
 /// Drag over friction, with its standard deviation.
@@ -135,15 +155,22 @@ mod tests {
         let file = TomlFile { path: std::path::Path::new("case.toml"), text };
         let mut evidence = Evidence::from_toml(file).unwrap();
         let cars = Cars::of(&evidence, None, None);
-        let hand = HandCalculation::of(&evidence, &cars).unwrap().target_speed_m_s;
+        let hand = HandCalculation::of(&evidence, &cars, &[]).unwrap().target_speed_m_s;
         let expected = (2.0 * 9.806_65 * 0.7 * 0.8 * 30.0_f64).sqrt();
         assert!((hand.value - expected).abs() < 1e-6, "{hand:?}, expected {expected}");
         // A recorder that is as good moves it half way, and narrows it.
         evidence.edr.speed_before_m_s = Some(Measured { value: expected + 1.0, ..hand });
-        let both = HandCalculation::of(&evidence, &cars).unwrap().target_speed_m_s;
+        let both = HandCalculation::of(&evidence, &cars, &[]).unwrap().target_speed_m_s;
         assert!((both.value - expected - 0.5).abs() < 1e-6, "{both:?}");
         assert!((both.sigma * 2_f64.sqrt() / hand.sigma - 1.0).abs() < 1e-9, "{both:?}");
+        // The second half of the way on ice takes the friction that both halves have on the average.
+        evidence.edr.speed_before_m_s = None;
+        let border_m = vec![[15.0, -5.0], [40.0, -5.0], [40.0, 5.0], [15.0, 5.0]];
+        let ice = FrictionZone { name: "ice".to_owned(), border_m, friction: 0.1 };
+        let icy = HandCalculation::of(&evidence, &cars, &[ice]).unwrap().target_speed_m_s;
+        let share = (0.4_f64 / 0.7).sqrt();
+        assert!((icy.value / expected - share).abs() < 1e-6, "{icy:?}, expected {share} of it");
         evidence.rest = None;
-        assert_eq!(HandCalculation::of(&evidence, &cars), None);
+        assert_eq!(HandCalculation::of(&evidence, &cars, &[]), None);
     }
 }

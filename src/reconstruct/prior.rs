@@ -28,6 +28,7 @@
 //! | each wheel near the damage blocked | 1 of 5, if nobody looked | assumed |
 //! | mass of a car of which no mass is known | log-normal, by its length and width where they are known, else 1790 kg, factor 1.19 | vehicles of the library |
 //! | one scale that weighed both cars, over what it shows | log-normal, 1, as said | [`Evidence::shared_scale_sigma`] |
+//! | friction of the zones of a site over that which the site says, in all zones alike | log-normal, 1, factor 1.16 | assumed: grass, gravel and wet patches are known less well than the road |
 //! | yaw inertia, tyre curves, sliding friction, rolling resistance | the rules of the data sheet with their scatter | [`DataSheet`](crate::vehicle::DataSheet) |
 
 use std::f64::consts::PI;
@@ -143,6 +144,8 @@ latents! {
     BulletBrakeStart: "bullet_brake_start_s", "s", "striking driver brakes from";
     /// Its braking force over the largest that the road can hold.
     BulletBrakeShare: "bullet_brake_share", "", "braking of the striking car";
+    /// Friction of the zones of the ground over that which the site says, in all of them alike.
+    ZoneFrictionFactor: "zone_friction_factor", "", "friction of the zones over that of the site";
 }
 
 impl Latent {
@@ -224,6 +227,9 @@ const TIRE_FRICTION_SCATTER: f64 = 0.09;
 const LONGITUDINAL_FRICTION_RATIO: f64 = 1.15;
 const LONGITUDINAL_FRICTION_SCATTER: f64 = 0.07;
 
+/// Scatter of the friction of a zone about that which a site says.
+const ZONE_FRICTION_SCATTER: f64 = 0.15;
+
 /// Least scatter of sliding over peak friction, for the same reason.
 const SLIDING_SCATTER: f64 = 0.08;
 
@@ -244,6 +250,15 @@ impl Prior {
         prior.add_cars(evidence, cars);
         prior.add_ending(evidence);
         prior
+    }
+
+    /// The same for a ground on which there are zones with their own friction.
+    #[must_use]
+    pub fn with_zones(mut self) -> Self {
+        let reach = (3.0 * ZONE_FRICTION_SCATTER).exp();
+        let factor = log_normal(1.0, ZONE_FRICTION_SCATTER, 1.0 / reach, reach);
+        self.assume(Latent::ZoneFrictionFactor, factor);
+        self
     }
 
     /// Its components, in the order of z.

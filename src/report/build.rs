@@ -15,7 +15,9 @@ use crate::report::paths::ShownPaths;
 use crate::report::provenance::{change_notice, log_blocks, provenance_blocks};
 use crate::report::validation::validation_blocks;
 use crate::report::validity::validity_blocks;
-use crate::report::{Block, InputClass, Language, ReportDocument, ReportSettings, Table};
+use crate::report::{
+    Block, InputClass, Language, PictureContent, ReportDocument, ReportSettings, Table,
+};
 use crate::study::{Library, Observer};
 use crate::units::UnitSystem;
 
@@ -101,7 +103,7 @@ impl Builder<'_> {
             language: settings.language,
             units: settings.units,
             paper: settings.paper,
-            program: env!("CARGO_PKG_VERSION").to_owned(),
+            program: crate::VERSION.to_owned(),
             sections: sections.collect(),
         }
     }
@@ -110,8 +112,7 @@ impl Builder<'_> {
     fn answers(&self, variants: &[VariantParts]) -> Vec<Block> {
         let (settings, words) = (self.settings, self.wording.words);
         let date = settings.date.written(settings.language);
-        let values =
-            [("case", &*self.case.name), ("date", &*date), ("version", env!("CARGO_PKG_VERSION"))];
+        let values = [("case", &*self.case.name), ("date", &*date), ("version", crate::VERSION)];
         let mut blocks = Vec::new();
         blocks.extend(change_notice(&self.report.changes, self.wording, self.paths));
         blocks.extend(self.unanswered(variants));
@@ -197,7 +198,7 @@ impl Builder<'_> {
         for variant in variants {
             let mut of_variant = Vec::new();
             for picture in parts_of(variant).flat_map(|part| &part.pictures) {
-                if drawn.iter().any(|of| of.figure == picture.figure) {
+                if drawn.iter().any(|of| of.content == picture.content) {
                     continue;
                 }
                 drawn.push(picture);
@@ -206,7 +207,7 @@ impl Builder<'_> {
                     number,
                     caption: format!("{} {number}: {}", words.figure, picture.caption),
                     alt: self.alt(picture),
-                    figure: picture.figure.clone(),
+                    content: picture.content.clone(),
                 })));
             }
             if variants.len() > 1 && !of_variant.is_empty() {
@@ -219,7 +220,15 @@ impl Builder<'_> {
 
     /// What a picture shows, for those who cannot see it.
     fn alt(&self, picture: &PartPicture) -> String {
-        let figure = &picture.figure;
+        let words = self.wording.words;
+        let figure = match &picture.content {
+            PictureContent::Figure(figure) => figure,
+            PictureContent::Scene(still) => {
+                let names = still.names().join(", ");
+                let values = [("title", &*picture.caption), ("names", &*names)];
+                return fill(words.scene_alt, &values);
+            }
+        };
         let mut names: Vec<&str> = Vec::new();
         for name in figure.elements.iter().map(FigureElement::name) {
             if !name.is_empty() && !names.contains(&name) {
@@ -232,7 +241,7 @@ impl Builder<'_> {
             ("y", &*figure.y.text()),
             ("names", &*names.join(", ")),
         ];
-        fill(self.wording.words.axes_alt, &values)
+        fill(words.axes_alt, &values)
     }
 
     /// The inputs of each variant, of the later ones only what the first does not have.

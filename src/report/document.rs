@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::figure::Figure;
 use crate::report::{Language, Paper};
+use crate::scene::SceneStill;
 use crate::units::UnitSystem;
 
 /// A report.
@@ -137,7 +138,7 @@ pub struct Column {
     pub is_numeric: bool,
 }
 
-/// A picture: a figure that is drawn where the document is written.
+/// A picture, which is drawn where the document is written.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Picture {
     /// Its number in the report.
@@ -148,7 +149,16 @@ pub struct Picture {
     pub alt: String,
     /// What is drawn.
     #[serde(skip)]
-    pub figure: Figure,
+    pub content: PictureContent,
+}
+
+/// What a picture is drawn from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PictureContent {
+    /// Curves over axes.
+    Figure(Box<Figure>),
+    /// Cars on the ground at a moment.
+    Scene(SceneStill),
 }
 
 /// Where an input comes from.

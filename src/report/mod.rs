@@ -44,7 +44,7 @@ mod write;
 
 pub use build::report_case;
 pub use document::{
-    Block, Column, InputClass, Picture, ReportDocument, Section, SectionKind, Table,
+    Block, Column, InputClass, Picture, PictureContent, ReportDocument, Section, SectionKind, Table,
 };
 pub use settings::{DateError, Language, Paper, ReportDate, ReportSettings};
 pub use validation::{VALIDATION_TABLES, ValidationTable};

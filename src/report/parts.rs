@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 
 use crate::figure::Figure;
 use crate::report::method::Method;
-use crate::report::{Block, InputClass};
+use crate::report::{Block, InputClass, PictureContent};
+use crate::scene::SceneStill;
 use crate::study::Assumption;
 use crate::uncertainty::Badge;
 
@@ -14,7 +15,19 @@ pub(super) struct PartPicture {
     /// What it shows.
     pub caption: String,
     /// What is drawn.
-    pub figure: Figure,
+    pub content: PictureContent,
+}
+
+impl PartPicture {
+    /// Curves over axes.
+    pub fn figure(caption: String, figure: Figure) -> Self {
+        Self { caption, content: PictureContent::Figure(Box::new(figure)) }
+    }
+
+    /// Cars on the ground at a moment.
+    pub fn still(caption: String, still: SceneStill) -> Self {
+        Self { caption, content: PictureContent::Scene(still) }
+    }
 }
 
 /// A value that an answer rests on.

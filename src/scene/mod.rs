@@ -28,6 +28,7 @@ mod film;
 mod forecast;
 mod reconstruction;
 mod simulation;
+mod still;
 
 pub use body_class::BodyClass;
 pub use car_body::{CarBody, N_WHEELS};
@@ -45,3 +46,4 @@ pub use parts::{
 };
 pub use reconstruction::{ReconstructionParts, reconstruction_scene};
 pub use simulation::{OtherMotion, SimulationScene, simulation_scene};
+pub use still::{SceneStill, ViewKind};

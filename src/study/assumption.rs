@@ -9,7 +9,7 @@ use crate::collision::{
     ScenarioGeometry, TOUCH_TOLERANCE_M,
 };
 use crate::vehicle::sheet::Estimate;
-use crate::vehicle::{ContactPoint, FrictionZone, VehicleParameters};
+use crate::vehicle::{ContactPoint, VehicleParameters};
 
 /// What was assumed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -83,14 +83,6 @@ impl Assumption {
         reason: impl Into<String>,
     ) -> Self {
         Self { quantity, value: value.into(), reason: reason.into() }
-    }
-
-    /// The zones of friction of a site below a reconstruction, which does not know them.
-    pub fn zones_not_reconstructed(zones: &[FrictionZone]) -> Option<Self> {
-        let names: Vec<&str> = zones.iter().map(|zone| zone.name.as_str()).collect();
-        let value = format!("friction zones: {}", names.join(", "));
-        let reason = "a reconstruction takes one friction for the whole road";
-        (!names.is_empty()).then(|| Self::new(AssumedQuantity::NotUsed, value, reason))
     }
 
     /// Each parameter that was estimated because the data sheet of a vehicle does not state it.

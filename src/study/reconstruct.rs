@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use crate::VERSION;
 use crate::data::Outcome;
 use crate::jobs::Progress;
 use crate::nn::sha256_hex;
@@ -16,11 +17,12 @@ use crate::reconstruct::{
     BudgetItem, Cars, Discrepancy, EvidenceFit, ForwardModel, HandCalculation, MarkComparison,
     Mode, Posterior, PriorComponent, QuantityEstimate, ReconstructionTarget,
 };
+use crate::site::Site;
 use crate::study::checks::check_count;
 use crate::study::reconstruction_domain::{check_damage, of_road, of_vehicles};
 use crate::study::{
-    AssumedQuantity, Assumption, Event, Library, Observer, Provenance, Question, Sampling,
-    StudyError, VehicleChoice, badges,
+    AssumedQuantity, Assumption, Event, FrictionZoneReport, Library, Observer, Provenance,
+    Question, Sampling, StudyError, VehicleChoice, badges,
 };
 use crate::uncertainty::{Badge, BadgeKind};
 
@@ -41,6 +43,9 @@ pub struct ReconstructRequest {
     /// The striking car, likewise.
     #[serde(default)]
     pub striking: VehicleChoice,
+    /// Site file whose friction zones the wheels stand on, in the axes of the evidence.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub site: Option<PathBuf>,
     /// Number of particles.
     #[serde(default = "default_particles")]
     pub particles: usize,
@@ -95,6 +100,9 @@ pub struct ReconstructReport {
     pub log_evidence: f64,
     /// Speed of the struck car by hand, m/s, and its standard deviation, for comparison.
     pub by_hand_m_s: Option<[f64; 2]>,
+    /// The parts of the ground with their own friction.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub friction_zones: Vec<FrictionZoneReport>,
     /// What was taken to be likely before.
     pub priors: Vec<PriorComponent>,
     /// What nobody said.
@@ -129,6 +137,7 @@ impl ReconstructRequest {
             evidence,
             vehicle: VehicleChoice::Automatic,
             striking: VehicleChoice::Automatic,
+            site: None,
             particles: Self::DEFAULT_PARTICLES,
             seed: 0,
             checkpoint: None,
@@ -140,13 +149,13 @@ impl ReconstructRequest {
     fn checkpoint(
         &self,
         evidence: &Evidence,
-        cars: &Cars,
+        model: &ForwardModel,
     ) -> Result<Option<SamplerCheckpoint>, StudyError> {
         let Some(path) = self.checkpoint.clone() else { return Ok(None) };
         if path.exists() && !self.resume {
             return Err(StudyError::ReconstructionExists { path });
         }
-        let digest = sha256_hex([likelihood_of(evidence, cars).as_bytes()]);
+        let digest = sha256_hex([likelihood_of(evidence, model).as_bytes()]);
         Ok(Some(SamplerCheckpoint { path, digest, resume: self.resume }))
     }
 
@@ -155,17 +164,25 @@ impl ReconstructRequest {
         Ok(Cars::of(evidence, struck.as_ref(), striking.as_ref()))
     }
 
-    /// Digest of all that the particles follow from.
-    ///
-    /// - `program`: what the program that samples them is told by.
+    /// The forward model of the case.
     ///
     /// # Errors
-    /// [`StudyError`], if evidence or vehicles cannot be read.
-    pub fn run_digest(&self, program: &str) -> Result<String, StudyError> {
+    /// [`StudyError`], if vehicles or site cannot be read.
+    pub fn model(&self, evidence: &Evidence) -> Result<ForwardModel, StudyError> {
+        let site = self.site.as_deref().map(Site::load).transpose()?;
+        let zones = site.map_or_else(Vec::new, |site| site.friction_zones);
+        Ok(ForwardModel::new(evidence, self.cars(evidence)?).on_zones(zones))
+    }
+
+    /// Digest of all that the particles follow from, this build of the program included.
+    ///
+    /// # Errors
+    /// [`StudyError`], if evidence, vehicles or site cannot be read.
+    pub fn run_digest(&self) -> Result<String, StudyError> {
         let evidence = self.evidence.load()?;
-        let likelihood = likelihood_of(&evidence, &self.cars(&evidence)?);
+        let likelihood = likelihood_of(&evidence, &self.model(&evidence)?);
         let settings = format!("{:?}", self.settings());
-        Ok(sha256_hex([program, &likelihood, &settings].map(str::as_bytes)))
+        Ok(sha256_hex([VERSION, &likelihood, &settings].map(str::as_bytes)))
     }
 
     fn settings(&self) -> SamplerSettings {
@@ -179,8 +196,9 @@ impl ReconstructRequest {
 }
 
 /// All that the likelihood of a case is made from.
-fn likelihood_of(evidence: &Evidence, cars: &Cars) -> String {
-    format!("{evidence:?} {cars:?} {:?}", Discrepancy::default())
+fn likelihood_of(evidence: &Evidence, model: &ForwardModel) -> String {
+    let (cars, zones) = (model.cars(), model.zones());
+    format!("{evidence:?} {cars:?} {zones:?} {:?}", Discrepancy::default())
 }
 
 impl EvidenceChoice {
@@ -230,17 +248,18 @@ impl Question for ReconstructRequest {
         observer: &mut Observer<'_>,
     ) -> Result<Outcome<ReconstructAnswer>, StudyError> {
         let evidence = self.evidence.load()?;
-        let cars = self.cars(&evidence)?;
-        let assumptions = assumptions(&evidence, &cars);
-        check_damage(&evidence.damage, &cars).map_err(|source| StudyError::ContactOffVehicle {
+        let model = self.model(&evidence)?;
+        let cars = model.cars();
+        let assumptions = assumptions(&evidence, &model);
+        check_damage(&evidence.damage, cars).map_err(|source| StudyError::ContactOffVehicle {
             name: self.evidence.name(),
             vehicle: "the struck car".to_owned(),
             source,
         })?;
-        let mut outside = of_vehicles(&cars);
+        let mut outside = of_vehicles(cars);
         outside.extend(of_road(evidence.friction));
-        let checkpoint = self.checkpoint(&evidence, &cars)?;
-        let model = ForwardModel::new(&evidence, cars);
+        let checkpoint = self.checkpoint(&evidence, &model)?;
+        let friction_zones = model.zones().iter().map(FrictionZoneReport::of).collect();
         let target = ReconstructionTarget::new(evidence, model, Discrepancy::default());
         let settings = self.settings();
         let mut before = None;
@@ -257,7 +276,8 @@ impl Question for ReconstructRequest {
             })?;
         let posterior = Posterior::of(&target, &particles);
         let (fit, turned_rad) = target.fit(&particles);
-        let by_hand = HandCalculation::of(target.evidence(), target.model().cars());
+        let ground = target.model().zones();
+        let by_hand = HandCalculation::of(target.evidence(), target.model().cars(), ground);
         let by_hand_m_s = by_hand.map(|hand| {
             let speed = hand.target_speed_m_s;
             [speed.value, speed.sigma]
@@ -280,6 +300,7 @@ impl Question for ReconstructRequest {
             n_particles: particles.z.len(),
             log_evidence: particles.log_evidence,
             by_hand_m_s,
+            friction_zones,
             priors: target.model().prior().components().to_vec(),
             assumptions,
             badges,
@@ -367,7 +388,8 @@ fn of_fit(fit: &[EvidenceFit]) -> Vec<Badge> {
 }
 
 /// What the evidence leaves open and the defaults of the prior fill.
-fn assumptions(evidence: &Evidence, cars: &Cars) -> Vec<Assumption> {
+fn assumptions(evidence: &Evidence, model: &ForwardModel) -> Vec<Assumption> {
+    let cars = model.cars();
     let mut all = Vec::new();
     let mut add = |quantity, value: &str, reason: &str| {
         all.push(Assumption::new(quantity, value, reason));
@@ -391,6 +413,11 @@ fn assumptions(evidence: &Evidence, cars: &Cars) -> Vec<Assumption> {
         let value = format!("road friction {DEFAULT_FRICTION} ± {DEFAULT_FRICTION_SIGMA}");
         let reason = "dry and wet asphalt together; otherwise: [road] friction";
         add(AssumedQuantity::VehicleParameter, &value, reason);
+    }
+    if !model.zones().is_empty() {
+        let value = "friction of the zones of the site, each ± 15 %";
+        let reason = "nothing says how well it is known; all zones are better or worse together";
+        add(AssumedQuantity::VehicleParameter, value, reason);
     }
     let estimated = cars.struck.estimated().count();
     if estimated > 0 {

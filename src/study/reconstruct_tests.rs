@@ -1,6 +1,7 @@
 use std::ops::ControlFlow;
 
 use super::*;
+use crate::reconstruct::Latent;
 use crate::reconstruct::evidence::Measured;
 use crate::reconstruct::evidence::examples::{SPIN, read};
 
@@ -92,4 +93,46 @@ fn numbers_out_of_range_are_refused_before_the_work() {
     let error = ReconstructRequest { particles: 1, ..request(60) };
     let outcome = error.answer(&Library::default(), &mut |_| ControlFlow::Continue(()));
     assert!(outcome.unwrap_err().to_string().starts_with("particles"));
+}
+
+/// A car whose way ends on ice: with the zone the speed is found, without it a far higher one is.
+#[test]
+fn a_way_over_ice_is_no_sign_of_a_high_speed() {
+    let folder = tempfile::tempdir().unwrap();
+    let site = folder.path().join("site.toml");
+    let ice = "name = \"lake\"\n[[friction_zone]]\nname = \"ice\"\nfriction = 0.15\n\
+               border_m = [[20, -60], [300, -60], [300, 60], [20, 60]]\n";
+    std::fs::write(&site, ice).unwrap();
+    let mut evidence = read(SPIN);
+    evidence.edr.speed_before_m_s = None;
+    let inline = |evidence: &Evidence| EvidenceChoice::Inline(Box::new(evidence.clone()));
+    let asked = ReconstructRequest { site: Some(site), ..request(100) };
+
+    // The motion of the medians at 20 m/s, of which the place of rest is found.
+    let model = asked.model(&evidence).unwrap();
+    let mut z = vec![0.0; model.prior().components().len()];
+    z[0] = -0.43;
+    let [truth] = &model.motions(&[z], |motion| motion)[..] else { panic!("one motion") };
+    let end = truth.path.points.last().unwrap();
+    let rest = evidence.rest.as_mut().unwrap();
+    (rest.x_m, rest.y_m) = (end.x_m, end.y_m);
+    rest.heading_rad.as_mut().unwrap().value = end.yaw_rad;
+    assert!(end.x_m > 30.0, "it rests on the ice: {end:?}");
+
+    let speed = |request: &ReconstructRequest| {
+        let report = answer(request).report;
+        (report.quantities[0].clone(), report)
+    };
+    let (known, report) =
+        speed(&ReconstructRequest { evidence: inline(&evidence), ..asked.clone() });
+    let true_m_s = truth.impact.target_speed_m_s;
+    assert!((known.median / true_m_s - 1.0).abs() < 0.25, "{true_m_s} m/s, {known:?}");
+    assert_eq!(report.friction_zones[0].name, "ice");
+    assert!(report.priors.iter().any(|of| of.latent == Latent::ZoneFrictionFactor));
+    let said = report.assumptions.iter().any(|of| of.value.contains("zones of the site"));
+    assert!(said, "{:?}", report.assumptions);
+    let without = ReconstructRequest { site: None, evidence: inline(&evidence), ..asked };
+    let (blind, report) = speed(&without);
+    assert!(blind.interval_95[0] > true_m_s, "{true_m_s} m/s, {blind:?}");
+    assert!(report.friction_zones.is_empty());
 }

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use crate::data::write::FileDigest;
+use crate::VERSION;
 use crate::data::{DataError, Existing, MAX_RESULTS_BYTES, Outcome, read_bytes, write_atomically};
 use crate::error_chain;
 use crate::nn::sha256_hex;
@@ -43,10 +43,10 @@ pub(super) struct CaseEstimates {
     pub(super) methods: Vec<SpeedEstimates>,
 }
 
-/// Cases that are kept in files as soon as they are finished.
+/// Cases that are kept in files as soon as they are finished. Those of another build of the program are
+/// not taken for its own.
 pub(super) struct FinishedCases<'a> {
     folder: Option<&'a Path>,
-    program: String,
 }
 
 /// The content of such a file.
@@ -93,7 +93,7 @@ impl Asked<'_> {
         let cost = (answer.report.ess, answer.report.n_simulations);
         let ours = SpeedEstimates::of_posterior(&answer.posterior, cost, seconds());
         let started = Instant::now();
-        let hand = HandCalculation::of(evidence, answer.target.model().cars());
+        let hand = HandCalculation::of(evidence, answer.target.model().cars(), &[]);
         let by_hand = SpeedEstimates::by_hand(hand.as_ref(), started.elapsed().as_secs_f64());
         let mut methods = vec![ours, by_hand];
         if of.swarm {
@@ -115,7 +115,7 @@ impl<'a> FinishedCases<'a> {
         if let Some(folder) = folder {
             fs::create_dir_all(folder).map_err(|source| DataError::io(folder, source))?;
         }
-        Ok(Self { folder, program: program() })
+        Ok(Self { folder })
     }
 
     /// The speeds of a case: from its file if the same program has estimated them from the same
@@ -133,7 +133,7 @@ impl<'a> FinishedCases<'a> {
         };
         let file = folder.join(format!("{}-{}.json", asked.case, word(&asked.known)));
         let settings = (of.particles, of.seed, of.swarm);
-        let question = format!("{} {} {settings:?} {evidence:?}", self.program, asked.case);
+        let question = format!("{VERSION} {} {settings:?} {evidence:?}", asked.case);
         let question = sha256_hex([question.as_bytes()]);
         let saved = read_bytes(&file, MAX_RESULTS_BYTES).ok();
         let saved = saved.and_then(|bytes| serde_json::from_slice::<Saved>(&bytes).ok());
@@ -149,12 +149,4 @@ impl<'a> FinishedCases<'a> {
         })?;
         Ok(Outcome::Complete(saved.estimates))
     }
-}
-
-/// What tells one program from another: its version and, as far as it can read itself, its content, so
-/// that estimates of a program that was changed without a new version are not taken for its own.
-fn program() -> String {
-    let own = std::env::current_exe().and_then(|path| FileDigest::of("", &path));
-    let content = own.map_or_else(|_| String::new(), |digest| digest.sha256);
-    format!("{} {content}", env!("CARGO_PKG_VERSION"))
 }

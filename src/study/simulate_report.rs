@@ -28,7 +28,7 @@ pub struct FrictionZoneReport {
 }
 
 impl FrictionZoneReport {
-    fn of(zone: &FrictionZone) -> Self {
+    pub(super) fn of(zone: &FrictionZone) -> Self {
         Self { name: zone.name.clone(), friction: zone.friction }
     }
 
@@ -195,13 +195,17 @@ impl From<&SecondContact> for FlagReport {
             position_m: Some(second.point_m),
             closing_speed_m_s: Some(speed),
             probability: None,
-            message: format!(
-                "the vehicles {how} at {:.2} s, near x {x:.1} m, y {y:.1} m, closing at {speed:.1} \
-                 m/s: {NOT_COMPUTED}",
-                second.time_s
-            ),
+            message: second_contact_text(how, second.time_s, [x, y], speed),
         }
     }
+}
+
+/// A second contact of a single motion, for a person.
+fn second_contact_text(how: &str, time_s: f64, [x, y]: [f64; 2], speed_m_s: f64) -> String {
+    format!(
+        "the vehicles {how} at {time_s:.2} s, near x {x:.1} m, y {y:.1} m, closing at \
+         {speed_m_s:.1} m/s: {NOT_COMPUTED}"
+    )
 }
 
 impl From<&SecondContacts> for FlagReport {
@@ -211,23 +215,27 @@ impl From<&SecondContacts> for FlagReport {
             true => "meet again",
             false => "go deeper into each other",
         };
+        let time_s = met.time_s.median;
         let ([from_s, to_s], [slow, fast]) = (met.time_s.ninety, met.closing_speed_m_s.ninety);
+        let message = match met.n_draws {
+            // One known force on one known vehicle: nothing is drawn.
+            1 => second_contact_text(how, time_s, [x, y], speed),
+            n_draws => format!(
+                "the vehicles {how} in {} of {n_draws} draws, at {time_s:.2} s (90 %: {from_s:.2} to \
+                 {to_s:.2}), near x {x:.1} m, y {y:.1} m, closing at {speed:.1} m/s (90 %: \
+                 {slow:.1} to {fast:.1}): {NOT_COMPUTED}",
+                percent(met.probability),
+            ),
+        };
         Self {
             kind: BadgeKind::SecondContact,
-            time_s: met.time_s.median,
+            time_s,
             wheel: None,
             roll_rad: None,
             position_m: Some([x, y]),
             closing_speed_m_s: Some(speed),
             probability: Some(met.probability),
-            message: format!(
-                "the vehicles {how} in {} of {} draws, at {:.2} s (90 %: {from_s:.2} to \
-                 {to_s:.2}), near x {x:.1} m, y {y:.1} m, closing at {speed:.1} m/s (90 %: \
-                 {slow:.1} to {fast:.1}): {NOT_COMPUTED}",
-                percent(met.probability),
-                met.n_draws,
-                met.time_s.median,
-            ),
+            message,
         }
     }
 }

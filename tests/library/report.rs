@@ -8,10 +8,9 @@ use std::sync::OnceLock;
 
 use impactlab::case_file::{CaseFile, CaseReport, Variant, pack, unpack};
 use impactlab::data::Existing;
-use impactlab::figure::Figure;
 use impactlab::report::{
-    Block, Language, Paper, Pixels, ReportDate, ReportDocument, ReportSettings, SectionKind,
-    VALIDATION_TABLES, pdf, report_case,
+    Block, Language, Paper, PictureContent, Pixels, ReportDate, ReportDocument, ReportSettings,
+    SectionKind, VALIDATION_TABLES, pdf, report_case,
 };
 use impactlab::study::{
     EvidenceChoice, ImpactRequest, Library, ReconstructRequest, Report, ScenarioChoice,
@@ -232,7 +231,7 @@ fn the_same_case_gives_the_same_bytes_also_from_its_package() {
 }
 
 /// Draws any figure as a gray field.
-fn gray(_: &Figure) -> Result<Pixels, String> {
+fn gray(_: &PictureContent) -> Result<Pixels, String> {
     Ok(Pixels { size_px: [16, 9], rgba: [128, 128, 128, 255].repeat(16 * 9) })
 }
 

@@ -5,7 +5,7 @@
 //! reconstructions/DIGEST.run    the latest state of the run of one question
 //! ```
 //!
-//! The digest is that of the question and of the program, so that a run goes on only where it would give
+//! The digest is that of the question and of this build of the program, so that a run goes on only where it would give
 //! the same particles again. The files only save time: one that cannot be used is sampled again.
 
 use std::path::{Path, PathBuf};
@@ -27,16 +27,12 @@ const MAX_RUNS: usize = 20;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KeptRuns {
     folder: PathBuf,
-    /// Size and date of the program: another program may draw other particles.
-    program: String,
 }
 
 impl KeptRuns {
     /// The runs in the user's data folder.
     pub fn new(data_folder: &Path) -> Self {
-        let program = std::env::current_exe().and_then(|path| path.metadata());
-        let program = program.map(|of| format!("{} {:?}", of.len(), of.modified().ok()));
-        Self { folder: data_folder.join(FOLDER), program: program.unwrap_or_default() }
+        Self { folder: data_folder.join(FOLDER) }
     }
 
     /// The file of the run of a question, whether it exists or not.
@@ -44,7 +40,7 @@ impl KeptRuns {
     /// # Errors
     /// As [`ReconstructRequest::run_digest`].
     pub fn file_of(&self, request: &ReconstructRequest) -> Result<PathBuf, StudyError> {
-        let digest = request.run_digest(&self.program)?;
+        let digest = request.run_digest()?;
         Ok(self.folder.join(digest).with_extension(ENDING))
     }
 

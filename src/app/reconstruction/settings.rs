@@ -1,5 +1,7 @@
 //! The settings of the reconstruction, which are saved between runs.
 
+use std::path::PathBuf;
+
 use serde::{Deserialize, Serialize};
 
 use crate::app::scene::SceneSettings;
@@ -16,6 +18,8 @@ pub struct ReconstructionProject {
     pub vehicle: VehicleChoice,
     /// The striking car, likewise.
     pub striking: VehicleChoice,
+    /// The site file of the ground, if that has friction zones.
+    pub site: Option<PathBuf>,
     /// Number of particles.
     pub particles: usize,
     /// Seed of all draws.
@@ -28,6 +32,7 @@ impl Default for ReconstructionProject {
             evidence: None,
             vehicle: VehicleChoice::default(),
             striking: VehicleChoice::default(),
+            site: None,
             particles: ReconstructRequest::DEFAULT_PARTICLES,
             seed: 0,
         }
@@ -46,6 +51,7 @@ impl ReconstructionProject {
         Some(ReconstructRequest {
             vehicle: self.vehicle.clone(),
             striking: self.striking.clone(),
+            site: self.site.clone(),
             particles: self.particles,
             seed: self.seed,
             ..ReconstructRequest::new(evidence)

@@ -29,6 +29,8 @@ pub struct EvidencePreview {
     pub evidence: Evidence,
     /// The choice of the struck and of the striking car.
     chosen: [VehicleChoice; 2],
+    /// The site on whose friction zones the wheels stand.
+    site: Option<PathBuf>,
     /// Why a chosen vehicle cannot be used.
     pub problem: Option<String>,
     /// The vehicles.
@@ -38,7 +40,9 @@ pub struct EvidencePreview {
 }
 
 impl EvidencePreview {
-    fn of(evidence: &Evidence, chosen: [VehicleChoice; 2]) -> Self {
+    fn of(evidence: &Evidence, project: &ReconstructionProject) -> Self {
+        let chosen = [&project.vehicle, &project.striking].map(VehicleChoice::clone);
+        let site = project.site.clone();
         let mut problem = None;
         let [struck, striking] = chosen.each_ref().map(|choice| {
             choice.chosen().unwrap_or_else(|error| {
@@ -47,8 +51,15 @@ impl EvidencePreview {
             })
         });
         let cars = Cars::of(evidence, struck.as_ref(), striking.as_ref());
-        let priors = Prior::of(evidence, &cars).components().to_vec();
-        Self { evidence: evidence.clone(), chosen, problem, cars, priors }
+        let prior = Prior::of(evidence, &cars);
+        let prior = if site.is_some() { prior.with_zones() } else { prior };
+        let priors = prior.components().to_vec();
+        Self { evidence: evidence.clone(), chosen, site, problem, cars, priors }
+    }
+
+    /// Whether it is of these vehicles and of this ground.
+    fn is_of(&self, project: &ReconstructionProject) -> bool {
+        self.chosen.each_ref() == [&project.vehicle, &project.striking] && self.site == project.site
     }
 }
 
@@ -69,6 +80,7 @@ impl State {
     ///
     /// Evidence whose run is kept is answered without being asked.
     pub(in crate::app) fn update_reconstruction(&mut self, context: &Context) {
+        self.stand_on_ground();
         let session = &mut self.session.reconstruction;
         while let Some(particles) = session.news.as_ref().and_then(|news| news.try_recv().ok()) {
             session.live = Some(particles);
@@ -89,12 +101,10 @@ impl State {
             session.file = Some(ReadEvidence { path: path.clone(), evidence });
         }
         let evidence = self.evidence();
-        let ReconstructionProject { vehicle, striking, .. } = &self.project.reconstruction;
+        let project = &self.project.reconstruction;
         let known = self.session.reconstruction.preview.as_ref();
-        let is_of = |of: &EvidencePreview| of.chosen.each_ref() == [vehicle, striking];
-        if evidence != known.filter(|of| is_of(of)).map(|of| &of.evidence) {
-            let chosen = [vehicle, striking].map(VehicleChoice::clone);
-            let preview = evidence.map(|evidence| EvidencePreview::of(evidence, chosen));
+        if evidence != known.filter(|of| of.is_of(project)).map(|of| &of.evidence) {
+            let preview = evidence.map(|evidence| EvidencePreview::of(evidence, project));
             let n_marks = preview.as_ref().map_or(0, |of| of.evidence.marks.len());
             let session = &mut self.session.reconstruction;
             session.preview = preview;
@@ -105,6 +115,24 @@ impl State {
             if request.is_some_and(|request| runs.is_some_and(|runs| runs.holds(&request))) {
                 self.run_reconstruction(context);
             }
+        }
+    }
+
+    /// Lets the wheels of the reconstruction stand on the friction zones of the ground that is shown. A
+    /// ground without zones changes no answer, and one that is still being read leaves everything as it is.
+    fn stand_on_ground(&mut self) {
+        let site = match (&self.project.site, self.session.ground.shown()) {
+            (Some(_), None) => return,
+            (Some(choice), Some(ground)) => {
+                let has_zones = !ground.site.friction_zones.is_empty();
+                has_zones.then(|| choice.file.clone())
+            }
+            (None, _) => None,
+        };
+        let project = &mut self.project.reconstruction;
+        let site = site.filter(|_| project.evidence.is_some());
+        if project.site != site {
+            project.site = site;
         }
     }
 

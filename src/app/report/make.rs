@@ -76,7 +76,7 @@ impl ReportJob {
                 if tell(progress).is_break() {
                     return Ok(Outcome::Cancelled);
                 }
-                pictures.push(report_picture(&picture.figure));
+                pictures.push(report_picture(&picture.content));
             }
             let answers = report.variants.iter().flat_map(|variant| &variant.answers);
             Ok(Outcome::Complete(MadeReport {

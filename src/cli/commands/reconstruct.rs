@@ -39,6 +39,7 @@ Example:
   impactlab reconstruct case.toml --out case-result
 
 World axes: origin at the CG of the struck car at first contact, X along its heading, Y to the left.
+A site file has the same axes; its friction is known within 15 %, in all zones alike.
 How often the intervals hold was tried on simulated collisions only: docs/guide/limits.md.
 Whoever hit a flank behind the CG is taken to have matched the speed, as in a PIT manoeuvre; [prior] in
 the evidence file says otherwise.
@@ -48,6 +49,7 @@ JSON: case; quantities [{name, unit, median, interval_50, interval_80, interval_
   delta_v_target_m_s, target_yaw_rate_after_rad_s; modes [{name, probability, standard_error, quantities}];
   fit [{evidence, unit, expected, found, p}]; budget [{known, sigma, now_m_s, then_m_s, ess, believable}]; ess,
   n_simulations, n_particles, log_evidence, by_hand_m_s [value, standard deviation],
+  friction_zones [{name, friction}] (with --site),
   priors [{latent, distribution, source}], assumptions, badges, seed";
 
 /// Files that are written.

@@ -119,7 +119,7 @@ pub(super) fn run(args: &FilmArgs, console: &mut Console<'_>) -> Result<Verdict,
 fn scene(args: &FilmArgs, console: &mut Console<'_>) -> Result<(Scene, Vec<String>), CliError> {
     let (case, units) = (&args.seen.case, args.units.into());
     match reconstruction(case, &args.sampled)? {
-        Some(request) => cars_scene(&request, case.vehicle.site.as_deref(), units, console),
+        Some(request) => cars_scene(&request, units, console),
         None => {
             let BuiltScene { scene, notes, .. } = build(case, None, units, console)?;
             Ok((scene, notes))
@@ -159,6 +159,7 @@ fn reconstruction(
     Ok(Some(ReconstructRequest {
         vehicle: case.vehicle.struck(),
         striking: VehicleArg::choice(striking),
+        site: case.vehicle.site.clone(),
         particles: particles.unwrap_or(ReconstructRequest::DEFAULT_PARTICLES),
         seed: seed.unwrap_or_default(),
         ..ReconstructRequest::new(EvidenceChoice::File(path))

@@ -1,6 +1,5 @@
 //! `impactlab render reconstruction`: what the evidence of a collision says.
 
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
@@ -17,7 +16,7 @@ use crate::figure::{
 };
 use crate::reconstruct::ReconstructedQuantity;
 use crate::scene::{LoadedGround, ReconstructionParts, Scene, reconstruction_scene};
-use crate::study::{Assumption, ReconstructAnswer, ReconstructRequest, Trust};
+use crate::study::{ReconstructAnswer, ReconstructRequest, Trust};
 use crate::units::UnitSystem;
 
 /// The evidence, and what is drawn.
@@ -28,9 +27,6 @@ pub(super) struct ReconstructionArgs {
     /// What is drawn
     #[arg(long, value_enum, default_value_t)]
     plot: PlotArg,
-    /// With cars as bodies: the ground below them, a site file or an orthophoto alone
-    #[arg(long, value_name = "SITE.toml")]
-    site: Option<PathBuf>,
     #[command(flatten)]
     pub(super) output: OutputArgs,
 }
@@ -79,7 +75,7 @@ pub(super) fn figure(
     units: UnitSystem,
     console: &mut Console<'_>,
 ) -> Result<(Noted, Option<ShownScene>), CliError> {
-    let of = Reconstructed::of(&args.evidence.request(), args.site.as_deref(), console)?;
+    let of = Reconstructed::of(&args.evidence.request(), console)?;
     let Reconstructed { answer, trust, .. } = &of;
     let (mut cars, mut notes) = (None, of.notes());
     let figure = match (args.plot.quantity(), args.plot) {
@@ -111,11 +107,10 @@ pub(super) fn figure(
 /// it was made.
 pub(super) fn cars_scene(
     request: &ReconstructRequest,
-    site: Option<&Path>,
     units: UnitSystem,
     console: &mut Console<'_>,
 ) -> Result<(Scene, Vec<String>), CliError> {
-    let of = Reconstructed::of(request, site, console)?;
+    let of = Reconstructed::of(request, console)?;
     let scene = of.cars(&ReconstructedPaths::of(&of.answer), units);
     let notes = of.notes().into_iter().chain(of.far_notes(&scene)).collect();
     Ok((scene, notes))
@@ -129,19 +124,12 @@ struct Reconstructed {
 }
 
 impl Reconstructed {
-    fn of(
-        request: &ReconstructRequest,
-        site: Option<&Path>,
-        console: &mut Console<'_>,
-    ) -> Result<Self, CliError> {
-        // A site that cannot be read is said before anything is sampled.
+    fn of(request: &ReconstructRequest, console: &mut Console<'_>) -> Result<Self, CliError> {
+        // A picture of a site that cannot be read is said before anything is sampled.
+        let site = request.site.as_deref();
         let ground = site.map(|site| console.ground(site)).transpose()?;
         let answer = console.answer(request)?;
-        let mut trust = Trust::new(&answer.report.badges, &answer.report.assumptions);
-        if let Some(ground) = &ground {
-            let zones = &ground.site.friction_zones;
-            trust.assumptions.extend(Assumption::zones_not_reconstructed(zones));
-        }
+        let trust = Trust::new(&answer.report.badges, &answer.report.assumptions);
         Ok(Self { answer, trust, ground })
     }
 

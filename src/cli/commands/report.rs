@@ -34,6 +34,9 @@ pub(in crate::cli) struct ReportArgs {
     /// Of an evidence file: seed of all draws; a case says it itself
     #[arg(long)]
     seed: Option<u64>,
+    /// Of an evidence file: the ground, in whose friction zones the wheels stand; a case says it itself
+    #[arg(long, value_name = "SITE.toml")]
+    site: Option<PathBuf>,
     /// Only this variant; several if given again
     #[arg(long, value_name = "NAME")]
     variant: Vec<String>,
@@ -144,17 +147,19 @@ impl ReportArgs {
     fn case(&self) -> Result<CaseFile, CliError> {
         let path = &self.case;
         if is_case_file(path) {
-            return match (self.particles, self.seed) {
-                (None, None) => Ok(CaseFile::load(path)?),
+            return match (self.particles, self.seed, &self.site) {
+                (None, None, None) => Ok(CaseFile::load(path)?),
                 _ => Err(CliError::ReportOfCase { path: path.clone() }),
             };
         }
         let io = |source| CliError::ReportInput { path: path.clone(), source };
-        let choice = EvidenceChoice::File(std::path::absolute(path).map_err(io)?);
+        let absolute = |path: &PathBuf| std::path::absolute(path).map_err(io);
+        let choice = EvidenceChoice::File(absolute(path)?);
         let name = choice.load()?.case;
         let question = ReconstructRequest {
             particles: self.particles.unwrap_or(ReconstructRequest::DEFAULT_PARTICLES),
             seed: self.seed.unwrap_or_default(),
+            site: self.site.as_ref().map(absolute).transpose()?,
             ..ReconstructRequest::new(choice)
         };
         let questions = vec![question.into()];

@@ -19,6 +19,9 @@ pub(in crate::cli) struct EvidenceArgs {
     /// The striking car, likewise
     #[arg(long, value_name = "NAME|FILE")]
     striking: Option<VehicleArg>,
+    /// The ground in the axes of the evidence: a site file, in whose friction zones the wheels stand
+    #[arg(long, value_name = "SITE.toml")]
+    pub(in crate::cli) site: Option<PathBuf>,
     /// Number of particles
     #[arg(long, value_name = "N", default_value_t = ReconstructRequest::DEFAULT_PARTICLES)]
     particles: usize,
@@ -33,6 +36,7 @@ impl EvidenceArgs {
         ReconstructRequest {
             vehicle: VehicleArg::choice(&self.vehicle),
             striking: VehicleArg::choice(&self.striking),
+            site: self.site.clone(),
             particles: self.particles,
             seed: self.seed,
             ..ReconstructRequest::new(EvidenceChoice::File(self.evidence.clone()))

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use crate::cli::console::{print_badges, print_table};
 use crate::reconstruct::{MarkComparison, QuantityEstimate};
-use crate::study::ReconstructReport;
+use crate::study::{FrictionZoneReport, ReconstructReport};
 use crate::units::{Quantity, UnitSystem, percent};
 
 /// Prints quantities, modes, fit and budget.
@@ -21,6 +21,9 @@ pub(in crate::cli) fn print_reconstruction(
         let [value, sigma] = [value, sigma].map(|si| unit.from_si(si));
         let symbol = unit.symbol;
         writeln!(out, "by hand: struck car {value:.1} ± {sigma:.1} {symbol} (one sigma)")?;
+    }
+    if let Some(zones) = FrictionZoneReport::listed(&report.friction_zones) {
+        writeln!(out, "friction zones: {zones}")?;
     }
     if report.modes.len() > 1 {
         writeln!(out)?;

@@ -4,7 +4,9 @@
 use crate::reconstruct::CollisionMotion;
 use crate::reconstruct::likelihood::track::{Track, WheelTrack};
 use crate::units::STANDARD_GRAVITY_M_S2;
-use crate::vehicle::{LARGEST_MARK_GAP_M, VehicleParameters, Wheel, WheelEffort, leaves_mark};
+use crate::vehicle::{
+    LARGEST_MARK_GAP_M, VehicleParameters, Wheel, WheelEffort, friction_at, leaves_mark,
+};
 
 /// Stands for the distance to where a wheel slides that never does, m.
 const NEVER_M: f64 = 30.0;
@@ -19,13 +21,16 @@ pub(super) struct Onset {
 impl Onset {
     pub fn of(motion: &CollisionMotion, track: &Track, wheel: Wheel, path: &WheelTrack) -> Self {
         let held = motion.manoeuvre.controls.wheels.as_ref();
-        let states = track.points.iter().zip(&path.velocity_m_s);
+        let zones = &motion.manoeuvre.friction_zones;
+        let states = track.points.iter().zip(&path.velocity_m_s).zip(&path.at_m);
         let (is_marking, is_locked) = states
-            .map(|(at, &[u, w])| {
+            .map(|((at, &[u, w]), &place_m)| {
+                let friction = friction_at(zones, place_m, motion.vehicle.tires.friction);
                 let efforts = held.and_then(|held| held.at(at.time_s));
                 let efforts = efforts.unwrap_or([WheelEffort::FREE; 4]);
                 let speed = u.hypot(w);
-                let is_locked = locks(&motion.vehicle, wheel, &efforts, u.abs() / (speed + 1e-6));
+                let along = u.abs() / (speed + 1e-6);
+                let is_locked = locks((&motion.vehicle, friction), wheel, &efforts, along);
                 (leaves_mark([u, w], is_locked), is_locked)
             })
             .unzip();
@@ -86,15 +91,16 @@ impl Onset {
 /// Whether a wheel is locked: by damage, or by more braking than the road can turn it against, at the
 /// load that braking shifts to the front axle.
 ///
+/// - `friction`: peak friction of the ground under the wheel;
 /// - `along`: share of the velocity of the wheel that is in its plane.
 fn locks(
-    vehicle: &VehicleParameters,
+    (vehicle, friction): (&VehicleParameters, f64),
     wheel: Wheel,
     efforts: &[WheelEffort<f64>; 4],
     along: f64,
 ) -> bool {
     let effort = &efforts[wheel.index()];
-    let friction = vehicle.tires.friction * vehicle.tires.longitudinal_friction_ratio;
+    let friction = friction * vehicle.tires.longitudinal_friction_ratio;
     let weight_n = vehicle.mass.mass_kg * STANDARD_GRAVITY_M_S2;
     let braking_n = efforts.iter().map(|effort| effort.braking_n).sum::<f64>();
     let geometry = &vehicle.geometry;

@@ -8,6 +8,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use serde::{Deserialize, Serialize};
 
+use crate::scene::ViewKind;
+
 /// Half the angle over the height of the picture that the camera sees, rad.
 const HALF_FIELD_RAD: f64 = 0.30;
 /// Range of the distance from the point that is looked at, m.
@@ -20,27 +22,6 @@ const MARGIN: f64 = 1.16;
 const HEIGHT_M: f64 = 1.6;
 /// Closest distance that is drawn, m.
 pub const NEAR_M: f64 = 0.2;
-
-/// How the scene is seen.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ViewKind {
-    /// From above, to scale: X to the right, Y up.
-    #[default]
-    Above,
-    /// In perspective.
-    Perspective,
-}
-
-impl ViewKind {
-    /// The view in a sentence.
-    pub fn phrase(self) -> &'static str {
-        match self {
-            Self::Above => "from above",
-            Self::Perspective => "in perspective",
-        }
-    }
-}
 
 /// A camera.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

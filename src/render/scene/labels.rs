@@ -23,10 +23,19 @@ const MAX_LABELS: usize = 60;
 const MAX_MOVES: usize = 8;
 /// Wanted length of the scale bar, points.
 const BAR_POINTS: f64 = 110.0;
-/// Length of the arrows of the axes, points.
-const AXIS_POINTS: f32 = 26.0;
-/// Half the length of the needle that points north, points.
+/// Radius of the plate below the axes, points: a share of the height of the picture within limits.
+const AXES_SHARE: f32 = 0.16;
+const AXES_RADII: [f32; 2] = [24.0, 40.0];
+/// Length of the arrows of the axes over the radius of their plate.
+const ARROW_SHARE: f32 = 0.65;
+/// Width of what the time stamp takes, and height of each of its lines, points.
+const STAMP_WIDTH: f32 = 116.0;
+const STAMP_LINE: f32 = 17.0;
+/// Width and height of what the scale bar takes, points.
+const BAR_SIZE: Vec2 = vec2(150.0, 46.0);
+/// Half the length of the needle that points north, and width of the plate below it, points.
 const NORTH_POINTS: f32 = 13.0;
+const NORTH_PLATE: f32 = 2.0 * NORTH_POINTS + 22.0;
 /// Opacity of what lies behind text.
 const PLATE: f32 = 0.78;
 
@@ -250,8 +259,10 @@ impl Labels<'_> {
         let [middle, end] =
             [0.0, 1.0].map(|way| self.on_screen([x + way * cos, y + way * sin, 0.0]));
         let along = (end? - middle?).normalized() * NORTH_POINTS;
-        let origin = self.rect.right_top() + vec2(-46.0, 112.0);
-        let plate = Rect::from_center_size(origin, Vec2::splat(2.0 * NORTH_POINTS + 22.0));
+        let axes = axes_plate(self.rect);
+        let size = Vec2::splat(NORTH_PLATE);
+        let origin = axes.center_bottom() + vec2(0.0, 2.0 + size.y / 2.0);
+        let plate = Rect::from_center_size(origin, size);
         painter.circle_filled(origin, plate.width() / 2.0, self.plate_color());
         let (color, side) = (self.text_color(), vec2(-along.y, along.x) * 0.45);
         let tail = origin - along * 0.75;
@@ -270,16 +281,16 @@ impl Labels<'_> {
     /// The directions of X and Y at the right top.
     fn axes(&self, painter: &Painter) -> Rect {
         let color = self.text_color();
-        let origin = self.rect.right_top() + vec2(-46.0, 46.0);
-        let plate = Rect::from_center_size(origin, vec2(80.0, 80.0));
-        painter.circle_filled(origin, 40.0, self.plate_color());
+        let plate = axes_plate(self.rect);
+        let (origin, radius) = (plate.center(), plate.width() / 2.0);
+        painter.circle_filled(origin, radius, self.plate_color());
         let [x, y] = self.projection.target_m();
         let Some(middle) = self.on_screen([x, y, 0.0]) else { return plate };
         // A metre at the target, whatever its size in the picture.
         for (name, [dx, dy]) in [("X", [1.0, 0.0]), ("Y", [0.0, 1.0])] {
             let Some(end) = self.on_screen([x + dx, y + dy, 0.0]) else { continue };
             let per_m = self.projection.pixels_per_m([x, y]) as f32 / self.points;
-            let along: Vec2 = (end - middle) / per_m.max(1e-6) * AXIS_POINTS;
+            let along: Vec2 = (end - middle) / per_m.max(1e-6) * radius * ARROW_SHARE;
             let tip = origin + along;
             let stroke = Stroke::new(1.6, color);
             painter.line_segment([origin, tip], stroke);
@@ -387,6 +398,30 @@ impl Labels<'_> {
             taken.push(place);
         }
     }
+}
+
+/// Where the plate below the axes is in a picture.
+fn axes_plate(picture: Rect) -> Rect {
+    let [least, most] = AXES_RADII;
+    let radius = (AXES_SHARE * picture.height()).clamp(least, most);
+    let origin = picture.right_top() + vec2(-radius - EDGE, radius + EDGE);
+    Rect::from_center_size(origin, Vec2::splat(2.0 * radius))
+}
+
+/// What text and symbols cover of a picture, wherever its camera is: the axes with north, the scale bar,
+/// the time with what restricts the scene.
+pub fn covered(picture: Rect, scene: &Scene) -> [Rect; 3] {
+    let has_north = scene.ground.as_ref().is_some_and(|ground| ground.north_rad.is_some());
+    let mut axes = axes_plate(picture);
+    axes.max.y += if has_north { NORTH_PLATE } else { 0.0 };
+    let warnings = scene.trust.restrictions().into_iter().filter(|line| line.is_warning);
+    let lines = 1 + warnings.count();
+    let stamp = Vec2::new(STAMP_WIDTH, EDGE + STAMP_LINE * lines as f32);
+    [
+        axes,
+        Rect::from_min_max(picture.max - BAR_SIZE, picture.max),
+        Rect::from_min_size(picture.min, stamp),
+    ]
 }
 
 /// A number with the decimals that its step requires.

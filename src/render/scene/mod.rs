@@ -24,7 +24,8 @@ mod underlay;
 mod underlay_tests;
 mod view;
 
-pub use camera::{Camera, Projection, ViewKind};
+pub use crate::scene::ViewKind;
+pub use camera::{Camera, Projection};
 pub use canvas::{SceneCanvas, SceneLook};
 pub use measures::{draw_measure, draw_measure_text, measure_text_place};
 pub use picture::{ScenePicture, scene_image};

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error_chain;
 use crate::render::scene::gpu::{WindowCanvas, WindowDevice};
-use crate::render::scene::labels::Labels;
+use crate::render::scene::labels::{Labels, covered};
 use crate::render::scene::legend::legend_ui;
 use crate::render::scene::{Camera, Projection, SceneCanvas, SceneLook, ScenePicture, ViewKind};
 use crate::scene::Scene;
@@ -26,6 +26,10 @@ const TURN_PER_KEY: f64 = 0.1;
 const SHARE_PER_KEY: f64 = 0.1;
 /// Zoom for each press of + or −.
 const ZOOM_PER_KEY: f64 = 1.25;
+
+/// Step by which a fitted camera goes back to clear the edge of the picture, and most steps.
+const STEP_BACK: f64 = 1.05;
+const MAX_STEPS_BACK: i32 = 8;
 
 /// Which car the camera follows.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -181,10 +185,10 @@ pub fn scene_view_ui(
     let size = size_px.map(|side| side as f64);
     let mut camera = match view.camera {
         Some(camera) if camera.kind == usual.kind => camera,
-        _ => usual.fitted(&scene.places_m(), size),
+        _ => fitted_clear(*usual, scene, (rect, points)),
     };
     if response.double_clicked() && !view.takes_clicks {
-        camera = usual.fitted(&scene.places_m(), size);
+        camera = fitted_clear(*usual, scene, (rect, points));
     }
     camera = keyed(ui, &response, moved(ui, &response, (camera, rect), size), size);
     if let Some(target_m) = follow.target_m(scene, time_s) {
@@ -205,6 +209,27 @@ pub fn scene_view_ui(
     view.seen = Some((rect, projection, points));
     labels.draw(&ui.painter().with_clip_rect(rect), scene, time_s);
     response
+}
+
+/// The camera from which everything is seen, as far back that nothing lies under the text and the symbols
+/// at the edge; as near as it can be where the picture is too small for that.
+///
+/// - `(rect, points)`: the picture, and its pixels per point.
+fn fitted_clear(usual: Camera, scene: &Scene, (rect, points): (Rect, f32)) -> Camera {
+    let size = [rect.width(), rect.height()].map(|side| f64::from(side * points));
+    let (places_m, covered) = (scene.places_m(), covered(rect, scene));
+    let nearest = usual.fitted(&places_m, size);
+    let is_clear = |camera: &Camera| {
+        let projection = Projection::new(camera, size);
+        places_m.iter().all(|[x, y]| {
+            let seen = projection.project([*x, *y, 0.0]);
+            let seen = seen.map(|[px, py, _]| rect.min + Vec2::new(px as f32, py as f32) / points);
+            seen.is_none_or(|at| covered.iter().all(|rect| !rect.contains(at)))
+        })
+    };
+    let back =
+        |step: i32| Camera { distance_m: nearest.distance_m * STEP_BACK.powi(step), ..nearest };
+    (0..=MAX_STEPS_BACK).map(back).find(is_clear).unwrap_or(nearest)
 }
 
 /// Draws the picture, if it has changed, and shows it: on the graphics processor, or here from the first

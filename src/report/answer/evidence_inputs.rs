@@ -12,6 +12,7 @@ use crate::reconstruct::{
 use crate::report::InputClass;
 use crate::report::answer::evidence::measured;
 use crate::report::answer::vehicle_inputs::estimate_row;
+use crate::report::answer::zone_inputs::zone_rows;
 use crate::report::numbers::{Wording, fill};
 use crate::report::parts::InputRow;
 use crate::study::{ReconstructAnswer, ReconstructRequest, word};
@@ -29,6 +30,7 @@ pub(super) fn evidence_rows(
     let mut rows = Rows { wording, rows: Vec::new() };
     let friction = (evidence.friction, DEFAULT_FRICTION_SIGMA);
     rows.measured(words.road, (words.road_friction, Quantity::Ratio), friction);
+    rows.rows.extend(zone_rows(answer.target.model().zones(), wording));
     rows.car(words.struck_vehicle, &evidence.struck_car);
     rows.car(words.striking_vehicle, &evidence.striking_car);
     rows.scene(evidence);

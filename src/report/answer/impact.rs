@@ -20,10 +20,8 @@ pub(super) fn part(answer: &ImpactAnswer, context: Context<'_>) -> Part {
     blocks.push(Block::Table(vehicles(report, wording)));
     let trust = Trust::new(&report.badges, &report.assumptions);
     let figure = impact_figure((&answer.scenario, &answer.solution), &trust, wording.units).ok();
-    let picture = figure.map(|figure| PartPicture {
-        caption: fill(words.impact_picture, &[("name", &report.name)]),
-        figure,
-    });
+    let caption = || fill(words.impact_picture, &[("name", &report.name)]);
+    let picture = figure.map(|figure| PartPicture::figure(caption(), figure));
     Part {
         kind: words.title_impact.to_owned(),
         title: format!("{}: {}", words.title_impact, report.name),

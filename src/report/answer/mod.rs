@@ -10,6 +10,8 @@ mod inputs;
 
 mod vehicle_inputs;
 
+mod zone_inputs;
+
 mod simulate;
 
 mod predict_force;
@@ -23,6 +25,8 @@ mod evidence;
 mod evidence_inputs;
 
 mod tyre_marks;
+
+mod stills;
 
 use crate::report::numbers::Wording;
 use crate::report::parts::Part;
@@ -43,9 +47,13 @@ pub(super) struct Context<'a> {
 pub(super) fn part_of(request: &Request, answer: &Answer, context: Context<'_>) -> Part {
     let part = match (request, answer) {
         (_, Answer::Impact(answer)) => impact::part(answer, context),
-        (_, Answer::Simulate(answer)) => simulate::part(answer, context),
+        (Request::Simulate(request), Answer::Simulate(answer)) => {
+            simulate::part(request, answer, context)
+        }
         (_, Answer::PredictForce(answer)) => predict_force::part(answer, context),
-        (_, Answer::PredictMotion(answer)) => predict_motion::part(answer, context),
+        (Request::PredictMotion(request), Answer::PredictMotion(answer)) => {
+            predict_motion::part(request, answer, context)
+        }
         (Request::Reconstruct(request), Answer::Reconstruct(answer)) => {
             reconstruct::part(request, answer, context)
         }

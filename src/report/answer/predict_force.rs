@@ -129,8 +129,6 @@ fn picture(answer: &PredictForceAnswer, wording: &Wording) -> PartPicture {
         units: wording.units,
         trust: &trust,
     };
-    PartPicture {
-        caption: fill(wording.words.force_forecast_picture, &[("name", &report.scenario)]),
-        figure: forecast_figure(ForceComponent::Magnitude, &input),
-    }
+    let caption = fill(wording.words.force_forecast_picture, &[("name", &report.scenario)]);
+    PartPicture::figure(caption, forecast_figure(ForceComponent::Magnitude, &input))
 }

@@ -1,27 +1,32 @@
 //! A predicted motion in a report.
 
+use std::sync::Arc;
+
 use crate::analysis::{DensityTask, MotionBands, Spread};
 use crate::data::Channel;
-use crate::figure::{
-    FORECAST_CHANNELS, MotionForecastFigure, forecast_channel_figure, forecast_scene_figure,
-};
+use crate::figure::{FORECAST_CHANNELS, MotionForecastFigure, forecast_channel_figure};
 use crate::report::Block;
 use crate::report::answer::Context;
 use crate::report::answer::facts::{Fact, Meaning, fact_blocks, provenance_of};
 use crate::report::answer::predict_force::{applicability, implied_facts};
 use crate::report::answer::simulate::{rest_facts, sensitivity_table};
+use crate::report::answer::stills::forecast_still;
 use crate::report::answer::vehicle_inputs::vehicle_rows;
 use crate::report::method::Method;
 use crate::report::numbers::{Wording, fill};
 use crate::report::parts::{Part, PartPicture};
-use crate::study::{PredictMotionAnswer, PredictMotionReport, Trust};
+use crate::study::{PredictMotionAnswer, PredictMotionReport, PredictMotionRequest, Trust};
 use crate::units::Quantity;
 
 /// Every how many steps the bands over time have an edge.
 const BAND_STRIDE: usize = 5;
 
 /// What a predicted motion contributes.
-pub(super) fn part(answer: &PredictMotionAnswer, context: Context<'_>) -> Part {
+pub(super) fn part(
+    request: &PredictMotionRequest,
+    answer: &PredictMotionAnswer,
+    context: Context<'_>,
+) -> Part {
     let (report, wording) = (&answer.report, context.wording);
     let words = wording.words;
     let asked = [("name", &*report.scenario), ("vehicle", &*report.vehicle)];
@@ -38,7 +43,7 @@ pub(super) fn part(answer: &PredictMotionAnswer, context: Context<'_>) -> Part {
         kind: words.title_motion.to_owned(),
         title: format!("{}: {}", words.title_motion, report.scenario),
         answer: blocks,
-        pictures: pictures(answer, wording),
+        pictures: pictures(request, answer, wording),
         inputs: vehicle_rows(&answer.analysis.vehicle, words.struck_vehicle, wording),
         sensitivity: sensitivity_table(&report.sensitivity, wording).into_iter().collect(),
         domain: domain(report, wording),
@@ -108,28 +113,27 @@ fn domain(report: &PredictMotionReport, wording: &Wording) -> Vec<String> {
     lines
 }
 
-fn pictures(answer: &PredictMotionAnswer, wording: &Wording) -> Vec<PartPicture> {
+fn pictures(
+    request: &PredictMotionRequest,
+    answer: &PredictMotionAnswer,
+    wording: &Wording,
+) -> Vec<PartPicture> {
     let (words, report) = (wording.words, &answer.report);
     let (forecast, analysis) = (&answer.forecast, &answer.analysis);
     let at_s = report.outcome.time_s;
-    let density = DensityTask::new(&forecast.distribution, [at_s; 2]).on_cpu();
+    let density = Arc::new(DensityTask::new(&forecast.distribution, [at_s; 2]).on_cpu());
     let bands = MotionBands::of(&forecast.distribution, BAND_STRIDE);
     let trust = Trust::new(&report.badges, &report.assumptions);
+    let still = forecast_still((request, answer), (&density, &trust), wording);
     let shown = (at_s, wording.units);
     let input = MotionForecastFigure {
-        density: Some(&density),
         components: true,
         ..MotionForecastFigure::of(answer, (&bands, &trust), shown).with_motions(analysis)
     };
-    let name = [("name", &*report.scenario)];
-    let scene = PartPicture {
-        caption: fill(words.forecast_scene_picture, &name),
-        figure: forecast_scene_figure(&input),
-    };
     let yaw = FORECAST_CHANNELS.into_iter().find(|of| of.channel == Channel::Yaw);
-    let yaw = yaw.map(|channel| PartPicture {
-        caption: fill(words.forecast_yaw_picture, &name),
-        figure: forecast_channel_figure(&input, channel),
+    let yaw = yaw.map(|channel| {
+        let caption = fill(words.forecast_yaw_picture, &[("name", &report.scenario)]);
+        PartPicture::figure(caption, forecast_channel_figure(&input, channel))
     });
-    [scene].into_iter().chain(yaw).collect()
+    [still].into_iter().chain(yaw).collect()
 }

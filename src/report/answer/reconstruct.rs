@@ -1,5 +1,7 @@
 //! A reconstruction in a report.
 
+use std::path::Path;
+
 use crate::figure::{
     ReconstructedPaths, ReconstructionScene, budget_figure, marginal_figure, prior_values,
     reconstruction_scene_figure,
@@ -9,11 +11,14 @@ use crate::report::answer::Context;
 use crate::report::answer::evidence::evidence_blocks;
 use crate::report::answer::evidence_inputs::evidence_rows;
 use crate::report::answer::facts::provenance_of;
+use crate::report::answer::stills::reconstruction_still;
 use crate::report::method::Method;
 use crate::report::numbers::{Wording, fill};
 use crate::report::parts::{Part, PartPicture};
 use crate::report::{Block, Table};
-use crate::study::{ReconstructAnswer, ReconstructReport, ReconstructRequest, Trust};
+use crate::study::{
+    FrictionZoneReport, ReconstructAnswer, ReconstructReport, ReconstructRequest, Trust,
+};
 use crate::uncertainty::BadgeKind;
 use crate::units::Quantity;
 
@@ -33,6 +38,10 @@ pub(super) fn part(
     let (report, wording) = (&answer.report, context.wording);
     let words = wording.words;
     let mut blocks = vec![Block::paragraph(fill(words.ask_reconstruct, &[("name", &report.case)]))];
+    if let Some(zones) = FrictionZoneReport::listed(&report.friction_zones) {
+        let zones = [("zones", &*wording.local(&zones))];
+        blocks.push(Block::paragraph(fill(words.zones_reconstructed, &zones)));
+    }
     blocks.push(Block::Table(quantities(words.reconstruct_caption, &report.quantities, wording)));
     blocks.push(Block::List { items: meanings(report, wording) });
     let doubts = report.badges.iter().filter(|badge| DOUBTS.contains(&badge.kind));
@@ -56,7 +65,7 @@ pub(super) fn part(
         kind: words.title_reconstruct.to_owned(),
         title: format!("{}: {}", words.title_reconstruct, report.case),
         answer: blocks,
-        pictures: pictures(answer, wording),
+        pictures: pictures(request.site.as_deref(), answer, wording),
         inputs: evidence_rows(request, answer, wording),
         evidence: evidence_blocks(report, wording),
         sensitivity: vec![
@@ -138,29 +147,35 @@ fn budget(report: &ReconstructReport, wording: &Wording) -> Table {
     Table::new(words.budget_caption, columns, rows.collect())
 }
 
-fn pictures(answer: &ReconstructAnswer, wording: &Wording) -> Vec<PartPicture> {
+fn pictures(
+    site: Option<&Path>,
+    answer: &ReconstructAnswer,
+    wording: &Wording,
+) -> Vec<PartPicture> {
     let (words, units, report) = (wording.words, wording.units, &answer.report);
     let trust = Trust::new(&report.badges, &report.assumptions);
     let name = ("name", &*report.case);
     let paths = ReconstructedPaths::of(answer);
     let scene = ReconstructionScene::of(answer, &paths);
-    let mut pictures = vec![PartPicture {
-        caption: fill(words.reconstruction_picture, &[name]),
-        figure: reconstruction_scene_figure(&scene, &trust, units),
-    }];
+    let plan = PartPicture::figure(
+        fill(words.reconstruction_picture, &[name]),
+        reconstruction_scene_figure(&scene, &trust, units),
+    );
+    let still = reconstruction_still((answer, &paths), site, &trust, wording);
+    let mut pictures: Vec<PartPicture> = still.into_iter().chain([plan]).collect();
     for quantity in DRAWN {
         let prior = prior_values(&answer.target, quantity);
         let label = wording.term(quantity.label());
-        pictures.push(PartPicture {
-            caption: fill(words.marginal_picture, &[name, ("quantity", &label)]),
-            figure: marginal_figure(answer, (quantity, &prior), &trust, units),
-        });
+        pictures.push(PartPicture::figure(
+            fill(words.marginal_picture, &[name, ("quantity", &label)]),
+            marginal_figure(answer, (quantity, &prior), &trust, units),
+        ));
     }
     if report.budget.iter().any(|item| item.believable) {
-        pictures.push(PartPicture {
-            caption: fill(words.budget_picture, &[name]),
-            figure: budget_figure(answer, &trust, units),
-        });
+        pictures.push(PartPicture::figure(
+            fill(words.budget_picture, &[name]),
+            budget_figure(answer, &trust, units),
+        ));
     }
     pictures
 }

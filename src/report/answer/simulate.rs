@@ -1,21 +1,31 @@
 //! The simulation of one vehicle in a report.
 
+use std::path::Path;
+
 use crate::analysis::{RestOutcome, Sensitivity, Spread};
 use crate::data::Channel;
-use crate::figure::{analysis_force_figure, analysis_motion_figure, analysis_scene_figure};
+use crate::figure::{analysis_force_figure, analysis_motion_figure};
 use crate::report::answer::Context;
 use crate::report::answer::facts::{Fact, Meaning, fact_blocks, provenance_of};
+use crate::report::answer::stills::simulation_stills;
 use crate::report::answer::tyre_marks::computed_marks;
 use crate::report::answer::vehicle_inputs::vehicle_rows;
+use crate::report::answer::zone_inputs::zone_rows;
 use crate::report::method::Method;
 use crate::report::numbers::{Wording, fill};
 use crate::report::parts::{Part, PartPicture};
 use crate::report::{Block, Table};
-use crate::study::{FrictionZoneReport, SimulateAnswer, SimulateReport, Trust, VehicleUncertainty};
+use crate::study::{
+    FrictionZoneReport, SimulateAnswer, SimulateReport, SimulateRequest, Trust, VehicleUncertainty,
+};
 use crate::units::Quantity;
 
 /// What a simulation contributes.
-pub(super) fn part(answer: &SimulateAnswer, context: Context<'_>) -> Part {
+pub(super) fn part(
+    request: &SimulateRequest,
+    answer: &SimulateAnswer,
+    context: Context<'_>,
+) -> Part {
     let (report, wording) = (&answer.report, context.wording);
     let words = wording.words;
     let asked = [("name", &*report.name), ("vehicle", &*report.vehicle)];
@@ -37,8 +47,12 @@ pub(super) fn part(answer: &SimulateAnswer, context: Context<'_>) -> Part {
         kind: words.title_simulate.to_owned(),
         title: format!("{}: {}", words.title_simulate, report.name),
         answer: blocks,
-        pictures: pictures(answer, wording),
-        inputs: vehicle_rows(&answer.analysis.vehicle, words.struck_vehicle, wording),
+        pictures: pictures(request.site.as_deref(), answer, wording),
+        inputs: [
+            vehicle_rows(&answer.analysis.vehicle, words.struck_vehicle, wording),
+            zone_rows(&answer.analysis.friction_zones, wording),
+        ]
+        .concat(),
         sensitivity,
         badges: report.badges.clone(),
         assumptions: report.assumptions.clone(),
@@ -168,18 +182,17 @@ pub(super) fn sensitivity_table(shares: &[Sensitivity], wording: &Wording) -> Op
     (!table.rows.is_empty()).then_some(Block::Table(table))
 }
 
-fn pictures(answer: &SimulateAnswer, wording: &Wording) -> Vec<PartPicture> {
+fn pictures(site: Option<&Path>, answer: &SimulateAnswer, wording: &Wording) -> Vec<PartPicture> {
     let (words, units) = (wording.words, wording.units);
     let (report, analysis) = (&answer.report, &answer.analysis);
     let trust = Trust::new(&report.badges, &report.assumptions);
     let name = [("name", &*report.name)];
-    let picture = |caption, figure| PartPicture { caption: fill(caption, &name), figure };
+    let picture = |caption, figure| PartPicture::figure(fill(caption, &name), figure);
     let end_s = report.rest.as_ref().map_or(report.duration_s, |rest| rest.time_s);
-    let mut pictures = Vec::new();
-    if analysis.simulation.is_some() || analysis.reference.is_some() {
-        let scene = analysis_scene_figure((analysis, &trust), end_s, units);
-        pictures.push(picture(words.scene_picture, scene));
-    }
+    let has_motion = analysis.simulation.is_some() || analysis.reference.is_some();
+    let contact_end_s = report.force.as_ref().and_then(|force| force.contact_end_s);
+    let moments = [contact_end_s.filter(|_| has_motion), has_motion.then_some(end_s)];
+    let mut pictures = simulation_stills((analysis, &trust), site, moments, wording);
     let force = analysis_force_figure((analysis, &trust), None, &[], units).ok().flatten();
     pictures.extend(force.map(|figure| picture(words.force_picture, figure)));
     let yaw_rate = analysis_motion_figure((analysis, &trust), Channel::YawRate, units);

@@ -103,6 +103,7 @@ pub(super) const WORDS: Words = Words {
     integrator: "Integrationsverfahren",
     road_friction: "Reibbeiwert der Fahrbahn",
     friction_zones: "Bereiche mit eigenem Reibbeiwert",
+    zone_value: "Reibbeiwert {friction}; Ecken (X | Y) {corners}",
     duration: "Dauer",
     force_file: "Kraftdatei",
     peak_force: "größte Stoßkraft",
@@ -137,6 +138,8 @@ pub(super) const WORDS: Words = Words {
     sensitivity_caption: "Linearer Anteil jedes Schätzwerts an der Varianz des Endes; Anteile, die Zufall sein \
         können, fehlen",
     scene_picture: "Simulation von „{name}“ von oben, Fahrzeuge am Ende",
+    contact_picture: "Simulation von „{name}“ in Perspektive, Fahrzeuge am Ende des Kontakts",
+    ground_not_drawn: "; das Gelände ist nicht gezeichnet: {why}",
     force_picture: "Stoßkraft von „{name}“ über der Zeit",
     yaw_rate_picture: "Gierrate von „{name}“ über der Zeit",
     vehicles_drawn: "gezogene Fahrzeuge:",
@@ -198,6 +201,10 @@ pub(super) const WORDS: Words = Words {
     simulated_motions: "simulierte Bewegungen:",
     ess: "effektiver Stichprobenumfang:",
     log_evidence: "logarithmierte Evidenz:",
+    zones_reconstructed: "Jedes Rad steht auf dem Reibbeiwert des Bereichs, in dem es sich befindet, und sonst auf dem der \
+                          Fahrbahn: {zones}.",
+    reconstruction_cars: "Rekonstruktion von „{name}“ von oben: das gestoßene Fahrzeug in der Endlage einer Bewegung mit \
+                          mittlerer Geschwindigkeit, mit seinen Reifenspuren, über dem Gefundenen",
     reconstruction_picture: "Rekonstruktion von „{name}“ von oben: Bahnen über den Spuren",
     marginal_picture: "„{name}“: {quantity} vor und nach Berücksichtigung der Spuren",
     budget_picture: "„{name}“: was weitere Messungen brächten",
@@ -437,6 +444,7 @@ pub(super) const WORDS: Words = Words {
     no_log: "Der Fall hat kein Protokoll.",
     no_pictures: "Keine Antwort hat ein Bild.",
     not_drawn: "Dieses Programm zeichnet keine Bilder: {caption}",
+    scene_alt: "{title}. Fahrzeuge auf dem Boden. Dargestellt: {names}.",
     axes_alt: "{title}. Waagerechte Achse: {x}. Senkrechte Achse: {y}. Dargestellt: {names}.",
     picture_elsewhere: "Das Bild steht im PDF dieses Berichts.",
     noted: "Hinweis: {note}.",

@@ -100,6 +100,10 @@ pub(super) const TERMS: &[(&str, &str)] = &[
     ("cornering coefficient front", "bezogene Schräglaufsteifigkeit vorn"),
     ("cornering coefficient rear", "bezogene Schräglaufsteifigkeit hinten"),
     ("site", "Gelände"),
+    (
+        "friction of the zones over that of the site",
+        "Reibbeiwert der Bereiche gegenüber dem der Geländedatei",
+    ),
     ("wheel radius", "Radhalbmesser"),
     ("wheel inertia", "Trägheit eines Rades"),
     ("drag area", "Luftwiderstandsfläche"),

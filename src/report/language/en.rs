@@ -100,6 +100,7 @@ pub(super) const WORDS: Words = Words {
     integrator: "integration",
     road_friction: "friction of the road",
     friction_zones: "zones of their own friction",
+    zone_value: "friction {friction}; corners (X | Y) {corners}",
     duration: "duration",
     force_file: "file of the force",
     peak_force: "peak force",
@@ -134,6 +135,8 @@ pub(super) const WORDS: Words = Words {
     sensitivity_caption: "Linear share of each estimate in the variance of the end; shares that may be chance are \
         left out",
     scene_picture: "Simulation of “{name}” from above, vehicles at the end",
+    contact_picture: "Simulation of “{name}” in perspective, vehicles at the end of the contact",
+    ground_not_drawn: "; the ground is not drawn: {why}",
     force_picture: "Contact force of “{name}” over time",
     yaw_rate_picture: "Yaw rate of “{name}” over time",
     vehicles_drawn: "vehicles drawn:",
@@ -193,6 +196,10 @@ pub(super) const WORDS: Words = Words {
     simulated_motions: "simulated motions:",
     ess: "effective sample size:",
     log_evidence: "log evidence:",
+    zones_reconstructed: "Each wheel stands on the friction of the zone of the ground in which it is, and elsewhere on \
+                          that of the road: {zones}.",
+    reconstruction_cars: "Reconstruction of “{name}” from above: the struck car as a particle of median speed leaves it \
+                          at rest, and its tyre marks, over what was found",
     reconstruction_picture: "Reconstruction of “{name}” from above: paths over what was found",
     marginal_picture: "“{name}”: {quantity} before and after the evidence",
     budget_picture: "“{name}”: what further evidence would bring",
@@ -423,6 +430,7 @@ pub(super) const WORDS: Words = Words {
     no_log: "The case has no log.",
     no_pictures: "No answer has a picture.",
     not_drawn: "This build draws no pictures: {caption}",
+    scene_alt: "{title}. Cars on the ground. Shown: {names}.",
     axes_alt: "{title}. Horizontal axis: {x}. Vertical axis: {y}. Shown: {names}.",
     picture_elsewhere: "The picture is in the PDF of this report.",
     noted: "Note: {note}.",

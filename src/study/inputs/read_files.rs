@@ -40,6 +40,7 @@ impl Request {
                 }
                 files.vehicle(&asked.vehicle);
                 files.vehicle(&asked.striking);
+                files.site(asked.site.as_deref());
             }
             Self::TrainForce(asked) => {
                 files.paths(std::iter::once(&asked.data).chain(&asked.extra));
@@ -147,7 +148,14 @@ impl Files {
         }
         self.vehicle(&asked.vehicle);
         self.vehicle(&asked.bullet);
-        self.paths(&asked.site);
-        self.paths(&asked.site.as_deref().map(Site::files_named_by).unwrap_or_default());
+        self.site(asked.site.as_deref());
+    }
+
+    /// A site file with the files that it names.
+    fn site(&mut self, site: Option<&Path>) {
+        if let Some(site) = site {
+            self.path(site);
+            self.paths(&Site::files_named_by(site));
+        }
     }
 }

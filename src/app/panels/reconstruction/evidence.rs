@@ -118,6 +118,13 @@ fn case_ui(
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         ui.weak(format!("as in {name}")).on_hover_text(path.display().to_string());
     }
+    if let Some(site) = &project.site {
+        let name = site.file_name().unwrap_or_default().to_string_lossy();
+        let text = format!("The wheels stand on the friction zones of {name}");
+        ui.add(egui::Label::new(egui::RichText::new(text).weak()).wrap()).on_hover_text(
+            "Its axes are those of the evidence. To leave the zones out, take the ground away in the Scene",
+        );
+    }
 }
 
 /// Draws the settings of the run, the button that starts it, and its progress.

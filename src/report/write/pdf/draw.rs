@@ -71,7 +71,7 @@ fn pictures(
     let drawn = all.into_par_iter().map(|picture| {
         let number = picture.number;
         let failed = |why| PdfError::Picture { number, why };
-        let pixels = drawing(&picture.figure).map_err(failed)?;
+        let pixels = drawing(&picture.content).map_err(failed)?;
         let [width, height] = pixels.size_px;
         let bytes = u64::from(width) * u64::from(height) * 4;
         if bytes == 0 || bytes != pixels.rgba.len() as u64 {

@@ -1,9 +1,9 @@
 //! What stands on a page, before it is drawn.
 
-use crate::figure::Figure;
+use crate::report::PictureContent;
 
-/// Draws a figure into pixels: width, height, RGBA row by row. An error says why it cannot.
-pub type Drawing<'a> = dyn Fn(&Figure) -> Result<Pixels, String> + Sync + 'a;
+/// Draws a picture into pixels: width, height, RGBA row by row. An error says why it cannot.
+pub type Drawing<'a> = dyn Fn(&PictureContent) -> Result<Pixels, String> + Sync + 'a;
 
 /// A picture.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,0 +1,116 @@
+//! Stills of scenes in a report: the cars on the ground at a moment.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use crate::analysis::{Analysis, DensityMap};
+use crate::error_chain;
+use crate::figure::{ReconstructedPaths, ReconstructionScene};
+use crate::report::numbers::{Wording, fill};
+use crate::report::parts::PartPicture;
+use crate::scene::{
+    ForecastScene, LoadedGround, ReconstructionParts, Scene, SceneStill, SimulationScene, ViewKind,
+    add_forecast, reconstruction_scene, simulation_scene,
+};
+use crate::study::{PredictMotionAnswer, PredictMotionRequest, ReconstructAnswer, Trust};
+
+/// Paths that are drawn from a forecast, as ghosts.
+const N_GHOSTS: usize = 30;
+
+/// Distance of the camera from the struck car at the end of the contact, m: both cars fill the picture.
+const NEAR_M: f64 = 16.0;
+
+/// Stills of a simulation: from above at the end of the motion, and in perspective at the end of the
+/// contact if a striking vehicle is there.
+///
+/// - `site`: file of the ground below it;
+/// - `[contact_end_s, end_s]`: the moments, s; no contact if it is `None`.
+pub(super) fn simulation_stills(
+    (analysis, trust): (&Analysis, &Trust),
+    site: Option<&Path>,
+    [contact_end_s, end_s]: [Option<f64>; 2],
+    wording: &Wording,
+) -> Vec<PartPicture> {
+    let words = wording.words;
+    let input = SimulationScene { analysis, others: &[], units: wording.units, trust };
+    let (scene, note) = on_ground(simulation_scene(&input), site, wording);
+    let still = |caption, time_s, view, near_m| {
+        let caption = fill(caption, &[("name", &analysis.name)]) + &note;
+        PartPicture::still(caption, SceneStill { scene: Arc::clone(&scene), time_s, view, near_m })
+    };
+    let contact_s = contact_end_s.filter(|_| scene.striking().is_some());
+    let near = contact_s
+        .map(|at_s| still(words.contact_picture, at_s, ViewKind::Perspective, Some(NEAR_M)));
+    let whole = end_s.map(|at_s| still(words.scene_picture, at_s, ViewKind::Above, None));
+    whole.into_iter().chain(near).collect()
+}
+
+/// The still of a forecast from above: its draws as ghosts, density and regions at a moment.
+///
+pub(super) fn forecast_still(
+    (request, answer): (&PredictMotionRequest, &PredictMotionAnswer),
+    (density, trust): (&Arc<DensityMap>, &Trust),
+    wording: &Wording,
+) -> PartPicture {
+    let (analysis, report) = (&answer.analysis, &answer.report);
+    let input = SimulationScene { analysis, others: &[], units: wording.units, trust };
+    let mut scene = simulation_scene(&input);
+    add_forecast(
+        &mut scene,
+        &ForecastScene {
+            analysis,
+            forecast: &answer.forecast,
+            density: Some(density),
+            n_ghosts: N_GHOSTS,
+            seed: request.seed,
+        },
+    );
+    let (scene, note) = on_ground(scene, request.motion.site.as_deref(), wording);
+    let time_s = report.outcome.time_s;
+    let caption = fill(wording.words.forecast_scene_picture, &[("name", &report.scenario)]);
+    let still = SceneStill { scene, time_s, view: ViewKind::Above, near_m: None };
+    PartPicture::still(caption + &note, still)
+}
+
+/// The still of a reconstruction from above: the car of a particle of median speed at rest, over what was
+/// found.
+///
+/// - `site`: file of the ground below it.
+pub(super) fn reconstruction_still(
+    (answer, paths): (&ReconstructAnswer, &ReconstructedPaths),
+    site: Option<&Path>,
+    trust: &Trust,
+    wording: &Wording,
+) -> Option<PartPicture> {
+    let of = ReconstructionScene::of(answer, paths);
+    let followed = of.followed.map(|of| (of.name, of.path));
+    followed?;
+    let scene = reconstruction_scene(&ReconstructionParts {
+        evidence: of.evidence,
+        cars: of.cars,
+        drawn: of.drawn,
+        followed,
+        marks: of.marks,
+        units: wording.units,
+        trust,
+    });
+    let caption = fill(wording.words.reconstruction_cars, &[("name", &answer.report.case)]);
+    let (scene, note) = on_ground(scene, site, wording);
+    let time_s = scene.end_s;
+    let still = SceneStill { scene, time_s, view: ViewKind::Above, near_m: None };
+    Some(PartPicture::still(caption + &note, still))
+}
+
+/// A scene with its ground, and what a caption says where that cannot be read.
+fn on_ground(mut scene: Scene, site: Option<&Path>, wording: &Wording) -> (Arc<Scene>, String) {
+    let mut note = String::new();
+    match site.map(LoadedGround::load) {
+        None => {}
+        Some(Ok(loaded)) => scene.ground = Some(loaded.ground),
+        Some(Err(error)) => {
+            let why = wording.quoted(&error_chain(&error));
+            note = fill(wording.words.ground_not_drawn, &[("why", &why)]);
+        }
+    }
+    (Arc::new(scene), note)
+}

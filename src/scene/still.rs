@@ -1,0 +1,70 @@
+//! A scene at a moment, as it is to be seen: what a picture of it is drawn from.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use crate::scene::Scene;
+
+/// How a scene is seen.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ViewKind {
+    /// From above, to scale: X to the right, Y up.
+    #[default]
+    Above,
+    /// In perspective.
+    Perspective,
+}
+
+impl ViewKind {
+    /// The view in a sentence.
+    pub fn phrase(self) -> &'static str {
+        match self {
+            Self::Above => "from above",
+            Self::Perspective => "in perspective",
+        }
+    }
+}
+
+/// A scene at a moment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneStill {
+    /// The scene.
+    pub scene: Arc<Scene>,
+    /// The moment, s.
+    pub time_s: f64,
+    /// How it is seen.
+    pub view: ViewKind,
+    /// Distance of the camera from the struck car, m; `None` to see all of the scene.
+    pub near_m: Option<f64>,
+}
+
+impl SceneStill {
+    /// What it shows.
+    pub fn title(&self) -> String {
+        self.scene.heading(self.view.phrase(), self.time_s)
+    }
+
+    /// What can be seen, each name once: cars, paths, marks and everything else that has a name.
+    pub fn names(&self) -> Vec<&str> {
+        let scene = &*self.scene;
+        let cars = scene.cars.iter().map(|of| &of.name);
+        let paths = scene.paths.iter().map(|of| &of.name);
+        let lines = scene.lines.iter().map(|of| &of.name);
+        let marks = scene.marks.iter().map(|of| &of.name);
+        let crushes = scene.crushes.iter().map(|of| &of.name);
+        let points = scene.points.iter().map(|of| &of.name);
+        let arrows = scene.arrows.iter().map(|of| &of.name);
+        let crosses = scene.crosses.iter().map(|of| &of.name);
+        let density = scene.density.iter().map(|of| &of.name);
+        let all = cars.chain(paths).chain(lines).chain(marks).chain(crushes).chain(points);
+        let mut names: Vec<&str> = Vec::new();
+        for name in all.chain(arrows).chain(crosses).chain(density) {
+            if !name.is_empty() && !names.contains(&name.as_str()) {
+                names.push(name);
+            }
+        }
+        names
+    }
+}
