@@ -39,7 +39,7 @@ pub struct ReportDocument {
 pub enum SectionKind {
     /// What was asked, and what came out.
     Answers,
-    /// Scenes from above, and curves.
+    /// Scenes, and curves.
     Pictures,
     /// What was given, measured, estimated by rule and assumed.
     Inputs,

@@ -22,6 +22,7 @@ mod layering;
 mod model_budgets;
 mod ranges;
 mod report;
+mod report_stills;
 mod report_tables;
 mod response_model;
 mod validation_collision;

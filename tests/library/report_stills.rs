@@ -1,0 +1,111 @@
+//! The stills of scenes in a report: what they show, and the ground below them.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use impactlab::analysis::PulseSetup;
+use impactlab::case_file::{CaseFile, Variant};
+use impactlab::report::{Picture, PictureContent, ReportDocument};
+use impactlab::scene::{SceneStill, ViewKind};
+use impactlab::study::{
+    EvidenceChoice, MotionSource, ReconstructRequest, Request, ScenarioChoice, SimulateRequest,
+};
+
+use crate::report::{english, report};
+
+fn case_of(name: &str, question: impl Into<Request>) -> CaseFile {
+    let questions = vec![question.into()];
+    CaseFile::new(name, Variant { name: name.to_owned(), questions, ..Variant::default() })
+}
+
+/// The simulation of the shipped scenario on a ground.
+fn on_ground(site: PathBuf) -> CaseFile {
+    let scenario = ScenarioChoice::File(PathBuf::from("pit-right-rear"));
+    let source = MotionSource::Scenario { scenario, pulse: PulseSetup::default() };
+    let question =
+        SimulateRequest { vehicle_draws: 0, site: Some(site), ..SimulateRequest::new(source) };
+    case_of("pit", question)
+}
+
+/// The pictures of a document that show a scene.
+fn stills(document: &ReportDocument) -> Vec<(&Picture, &SceneStill)> {
+    let still = |picture| match picture {
+        Picture { content: PictureContent::Scene(still), .. } => Some((picture, still)),
+        _ => None,
+    };
+    document.pictures().filter_map(still).collect()
+}
+
+/// The friction zones in the table of inputs, each with its value.
+fn zones(document: &ReportDocument) -> Vec<String> {
+    let markdown = document.to_markdown();
+    let is_zone = |line: &&str| line.contains("friction") && line.contains("corners");
+    markdown.lines().filter(is_zone).map(str::to_owned).collect()
+}
+
+fn road() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/sites/country-road/site.toml")
+}
+
+#[test]
+fn a_simulation_is_seen_at_its_end_and_at_its_contact_on_its_ground() {
+    let (document, answers) = report(&on_ground(road()), &english());
+    assert!(answers.is_clean());
+    let stills = stills(&document);
+    let seen: Vec<_> =
+        stills.iter().map(|(_, still)| (still.view, still.near_m.is_some())).collect();
+    assert_eq!(seen, [(ViewKind::Above, false), (ViewKind::Perspective, true)]);
+    for (picture, still) in &stills {
+        let ground = still.scene.ground.as_ref().expect("the road");
+        assert!(ground.picture.is_some(), "its orthophoto");
+        assert!(still.scene.struck().is_some() && still.scene.striking().is_some());
+        assert!(picture.alt.contains("striking vehicle"), "{}", picture.alt);
+        assert!(!picture.caption.contains("not drawn"), "{}", picture.caption);
+    }
+    let [end_s, contact_s] = [0, 1].map(|idx: usize| stills[idx].1.time_s);
+    assert!(contact_s < 0.2 && end_s > 3.0, "{contact_s} s, {end_s} s");
+    let zones = zones(&document);
+    assert_eq!(zones.len(), 2, "{zones:?}");
+    assert!(zones[0].contains("0.45") && zones[0].contains("(94.00 | -12.00)"), "{zones:?}");
+}
+
+#[test]
+fn a_ground_that_cannot_be_drawn_is_said() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let site = folder.path().join("site.toml");
+    let text = "name = \"lost\"\n[orthophoto]\nfile = \"gone.png\"\npoints_px = [[0, 0], [9, 0]]\n\
+                distance_m = 9\n";
+    fs::write(&site, text).expect("written");
+    let (document, _) = report(&on_ground(site), &english());
+    let stills = stills(&document);
+    assert_eq!(stills.len(), 2);
+    for (picture, still) in stills {
+        assert!(still.scene.ground.is_none());
+        let said = picture.caption.contains("the ground is not drawn")
+            && picture.caption.contains("gone.png");
+        assert!(said, "{}", picture.caption);
+    }
+}
+
+#[test]
+fn a_reconstruction_is_seen_on_the_ground_whose_zones_it_uses() {
+    let evidence = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/staged/evidence/s05.toml");
+    let question = ReconstructRequest {
+        particles: 60,
+        site: Some(road()),
+        ..ReconstructRequest::new(EvidenceChoice::File(evidence))
+    };
+    let (document, _) = report(&case_of("found", question), &english());
+    let stills = stills(&document);
+    let [(picture, still)] = &stills[..] else { panic!("one still: {stills:?}") };
+    assert!(still.scene.ground.is_some() && still.scene.struck().is_some());
+    assert!(picture.alt.contains("particles"), "{}", picture.alt);
+    assert_eq!(zones(&document).len(), 2);
+    let markdown = document.to_markdown();
+    for text in [
+        "grass verge, right 0.45; grass verge, left 0.45",
+        "friction of the zones over that of the site",
+    ] {
+        assert!(markdown.contains(text), "{text}");
+    }
+}
