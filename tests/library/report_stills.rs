@@ -29,11 +29,11 @@ fn on_ground(site: PathBuf) -> CaseFile {
 
 /// The pictures of a document that show a scene.
 fn stills(document: &ReportDocument) -> Vec<(&Picture, &SceneStill)> {
-    let still = |picture| match picture {
-        Picture { content: PictureContent::Scene(still), .. } => Some((picture, still)),
-        _ => None,
-    };
-    document.pictures().filter_map(still).collect()
+    let all = document.pictures().filter_map(|picture| match &picture.content {
+        PictureContent::Scene(still) => Some((picture, still)),
+        PictureContent::Figure(_) => None,
+    });
+    all.collect()
 }
 
 /// The friction zones in the table of inputs, each with its value.
