@@ -63,7 +63,7 @@ fn pictures() {
 /// before it can be given a limit.
 #[test]
 fn tiff_pictures() {
-    pictures_of(("tiff", "road.tif"), &[ImageFormat::Tiff], 128 << 20);
+    pictures_of(("tiff", "road.tif"), &[ImageFormat::Tiff], 256 << 20);
 }
 
 /// - `fixed_bytes`: memory that the decoder takes whatever the size of the file, bytes.

@@ -15,7 +15,7 @@ pub(super) fn zone_rows(zones: &[FrictionZone], wording: &Wording) -> Vec<InputR
     let unit = Quantity::Length.display_unit(wording.units);
     let corner = |[x, y]: &[f64; 2]| {
         let [x, y] = [x, y].map(|si| wording.fixed(unit.from_si(*si), 2));
-        format!("({x} | {y})")
+        format!("({x}; {y})")
     };
     let row = |zone: &FrictionZone| {
         let listed = zone.border_m.iter().take(MAX_LISTED).map(corner);

@@ -103,7 +103,7 @@ pub(super) const WORDS: Words = Words {
     integrator: "Integrationsverfahren",
     road_friction: "Reibbeiwert der Fahrbahn",
     friction_zones: "Bereiche mit eigenem Reibbeiwert",
-    zone_value: "Reibbeiwert {friction}; Ecken (X | Y) {corners}",
+    zone_value: "Reibbeiwert {friction}; Ecken (X; Y) {corners}",
     duration: "Dauer",
     force_file: "Kraftdatei",
     peak_force: "größte Stoßkraft",

@@ -100,7 +100,7 @@ pub(super) const WORDS: Words = Words {
     integrator: "integration",
     road_friction: "friction of the road",
     friction_zones: "zones of their own friction",
-    zone_value: "friction {friction}; corners (X | Y) {corners}",
+    zone_value: "friction {friction}; corners (X; Y) {corners}",
     duration: "duration",
     force_file: "file of the force",
     peak_force: "peak force",
