@@ -133,6 +133,6 @@ fn a_way_over_ice_is_no_sign_of_a_high_speed() {
     assert!(said, "{:?}", report.assumptions);
     let without = ReconstructRequest { site: None, evidence: inline(&evidence), ..asked };
     let (blind, report) = speed(&without);
-    assert!(blind.interval_95[0] > true_m_s, "{true_m_s} m/s, {blind:?}");
+    assert!(blind.median > 1.2 * true_m_s, "{true_m_s} m/s, {blind:?}");
     assert!(report.friction_zones.is_empty());
 }

@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use egui::Pos2;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use impactlab::app::{App, Command, Measure, Pane};
+use impactlab::app::{App, Command, GroundCommand, Measure, Pane, ReconstructionCommand, State};
 use impactlab::units::UnitSystem;
 
 use crate::harness::{apply, is_idle, open, step_until};
 use crate::pictures::save;
+use crate::reconstruct::evidence_in;
 
 const SITE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/sites/country-road/site.toml");
 
@@ -69,8 +70,7 @@ fn a_site_file_is_opened_drawn_and_asked_with() {
     harness.get_by_label("From above").click();
     apply(&mut harness, Command::Undo);
     harness.run_steps(4);
-    let remove = impactlab::app::GroundCommand::Remove;
-    apply(&mut harness, Command::Ground(remove));
+    apply(&mut harness, Command::Ground(GroundCommand::Remove));
     step_until(&mut harness, "no ground", |state| {
         state.session.ground.shown().is_none() && is_idle(state)
     });
@@ -198,4 +198,62 @@ fn a_ground_that_cannot_be_read_is_said() {
     step_until(&mut harness, "the error", |state| state.session.ground.problem.is_some());
     let problem = harness.state().state().session.ground.problem.clone().expect("an error");
     assert!(problem.contains("none.png: does not exist"), "{problem}");
+}
+
+/// The wheels of a reconstruction stand on the zones of the ground that is shown, and on nothing that is
+/// not.
+#[test]
+fn a_reconstruction_stands_on_the_zones_of_the_ground() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = evidence_in(folder.path());
+    let mut harness = open(&[path.to_str().expect("a plain name")]);
+    harness.run_steps(4);
+    let asked = |harness: &Harness<'_, App>| {
+        harness.state().state().project.reconstruction.request().expect("a question").site
+    };
+    assert_eq!(asked(&harness), None);
+    let n_priors = |harness: &Harness<'_, App>| {
+        harness.state().state().session.reconstruction.preview.as_ref().map(|of| of.priors.len())
+    };
+    let without = n_priors(&harness).expect("a prior");
+    harness.state_mut().state_mut().project.reconstruction.particles = 60;
+    apply(&mut harness, Command::Reconstruct(ReconstructionCommand::Run));
+    let is_answered = |state: &State| {
+        let of = &state.session.reconstruction;
+        !of.run.is_running() && of.answer().is_some()
+    };
+    step_until(&mut harness, "the speeds", is_answered);
+    let is_outdated = |harness: &Harness<'_, App>| {
+        let State { project, session, .. } = harness.state().state();
+        session.reconstruction.is_outdated(&project.reconstruction)
+    };
+    assert!(!is_outdated(&harness));
+
+    apply(&mut harness, Command::Open(vec![SITE.into()]));
+    step_until(&mut harness, "the zones", |state| state.project.reconstruction.site.is_some());
+    apply(&mut harness, Command::Show(Pane::Evidence));
+    harness.run_steps(4);
+    assert_eq!(asked(&harness).as_deref(), Some(Path::new(SITE)));
+    assert!(is_outdated(&harness), "the speeds are those without the zones");
+    assert_eq!(n_priors(&harness), Some(without + 1));
+    assert!(harness.query_by_label_contains("friction zones of site.toml").is_some());
+
+    apply(&mut harness, Command::Ground(GroundCommand::Remove));
+    harness.run_steps(4);
+    assert_eq!(asked(&harness), None);
+    assert!(!is_outdated(&harness));
+}
+
+/// A ground without zones, such as an orthophoto, changes no answer.
+#[test]
+fn an_orthophoto_leaves_the_reconstruction_as_it_is() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let evidence = evidence_in(folder.path());
+    let picture = bare_picture(folder.path());
+    let mut harness = open(&[evidence.to_str().expect("a plain name")]);
+    harness.run_steps(4);
+    apply(&mut harness, Command::Open(vec![picture]));
+    step_until(&mut harness, "the ground", |state| state.session.ground.shown().is_some());
+    harness.run_steps(2);
+    assert_eq!(harness.state().state().project.reconstruction.site, None);
 }

@@ -73,17 +73,16 @@ fn a_simulation_is_seen_at_its_end_and_at_its_contact_on_its_ground() {
 fn a_ground_that_cannot_be_drawn_is_said() {
     let folder = tempfile::tempdir().expect("a folder");
     let site = folder.path().join("site.toml");
-    let text = "name = \"torn\"\n[orthophoto]\nfile = \"torn.png\"\npoints_px = [[0, 0], [9, 0]]\n\
-                distance_m = 9\n";
-    fs::write(&site, text).expect("written");
-    fs::write(folder.path().join("torn.png"), "no picture").expect("written");
+    fs::write(&site, "name = \"torn\"\n[dxf]\nfile = \"torn.dxf\"\nunit = \"m\"\n")
+        .expect("written");
+    fs::write(folder.path().join("torn.dxf"), "no drawing").expect("written");
     let (document, _) = report(&on_ground(site), &english());
     let stills = stills(&document);
     assert_eq!(stills.len(), 2);
     for (picture, still) in stills {
         assert!(still.scene.ground.is_none());
         let said = picture.caption.contains("the ground is not drawn")
-            && picture.caption.contains("torn.png");
+            && picture.caption.contains("torn.dxf");
         assert!(said, "{}", picture.caption);
     }
 }
