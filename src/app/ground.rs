@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::app::command::wake;
 use crate::app::panes::Pane;
 use crate::app::state::{Session, State};
+use crate::app::workspaces::Workspace;
 use crate::data::{Existing, Severity, write_atomically};
 use crate::error_chain;
 use crate::jobs::{Job, Update};
@@ -139,7 +140,11 @@ impl State {
         self.project.site = Some(SiteChoice { file: path, map: None });
         self.ask_again();
         self.session.shows_doors = false;
-        self.view.workspaces.show_pane(Pane::Scene);
+        match self.view.workspaces.shown {
+            // It lies below the cars there, too.
+            Workspace::Reconstruct => self.view.reconstruction.shows_cars = true,
+            _ => self.view.workspaces.show_pane(Pane::Scene),
+        }
     }
 
     /// Reads the ground of the project where that has changed.

@@ -6,6 +6,7 @@ use crate::case_file::{CaseError, CaseFile, CaseReport};
 use crate::data::Outcome;
 use crate::error_chain;
 use crate::figure::FigureElement;
+use crate::report::answer::stills::Grounds;
 use crate::report::answer::{Context, part_of};
 use crate::report::document::{Picture, Section, SectionKind};
 use crate::report::method::{Method, method_blocks};
@@ -42,7 +43,8 @@ pub fn report_case(
     observer: &mut Observer<'_>,
 ) -> Result<Outcome<(ReportDocument, CaseReport)>, CaseError> {
     let (wording, paths) = (Wording::new(settings), ShownPaths::of(case));
-    let context = Context { wording: &wording, paths: &paths };
+    let grounds = Grounds::default();
+    let context = Context { wording: &wording, paths: &paths, grounds: &grounds };
     let mut parts: Vec<VariantParts> = Vec::new();
     let outcome =
         case.ask_each((variants, library), observer, &mut |variant, request, answer| {
@@ -221,27 +223,22 @@ impl Builder<'_> {
     /// What a picture shows, for those who cannot see it.
     fn alt(&self, picture: &PartPicture) -> String {
         let words = self.wording.words;
-        let figure = match &picture.content {
-            PictureContent::Figure(figure) => figure,
+        match &picture.content {
             PictureContent::Scene(still) => {
-                let names = still.names().join(", ");
-                let values = [("title", &*picture.caption), ("names", &*names)];
-                return fill(words.scene_alt, &values);
+                let values = [("title", &*picture.caption), ("names", &*listed(still.names()))];
+                fill(words.scene_alt, &values)
             }
-        };
-        let mut names: Vec<&str> = Vec::new();
-        for name in figure.elements.iter().map(FigureElement::name) {
-            if !name.is_empty() && !names.contains(&name) {
-                names.push(name);
+            PictureContent::Figure(figure) => {
+                let names = figure.elements.iter().map(FigureElement::name);
+                let values = [
+                    ("title", &*picture.caption),
+                    ("x", &*figure.x.text()),
+                    ("y", &*figure.y.text()),
+                    ("names", &*listed(names)),
+                ];
+                fill(words.axes_alt, &values)
             }
         }
-        let values = [
-            ("title", &*picture.caption),
-            ("x", &*figure.x.text()),
-            ("y", &*figure.y.text()),
-            ("names", &*names.join(", ")),
-        ];
-        fill(words.axes_alt, &values)
     }
 
     /// The inputs of each variant, of the later ones only what the first does not have.
@@ -371,6 +368,17 @@ fn distinct(variants: &[VariantParts], of: impl Fn(&Part) -> &Vec<Block>) -> Vec
 /// Blocks, or a sentence if there are none.
 fn or(blocks: Vec<Block>, otherwise: &str) -> Vec<Block> {
     if blocks.is_empty() { vec![Block::paragraph(otherwise)] } else { blocks }
+}
+
+/// Names, each once.
+fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let mut each: Vec<&str> = Vec::new();
+    for name in names {
+        if !name.is_empty() && !each.contains(&name) {
+            each.push(name);
+        }
+    }
+    each.join(", ")
 }
 
 fn section_title(kind: SectionKind, wording: &Wording) -> &'static str {

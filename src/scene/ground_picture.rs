@@ -11,11 +11,19 @@ pub const TILE: usize = 128;
 
 /// A picture of the ground. Its levels halve in size, each pixel of one being the mean of four of the
 /// level before, so that distant ground neither flickers nor is read pixel by pixel.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct GroundPicture {
     /// Where the pixels of the first level lie.
     pub map: PixelMap,
     levels: Arc<[PictureLevel]>,
+}
+
+impl PartialEq for GroundPicture {
+    /// Pixels that are shared are not compared one by one.
+    fn eq(&self, other: &Self) -> bool {
+        let is_shared = Arc::ptr_eq(&self.levels, &other.levels);
+        self.map == other.map && (is_shared || self.levels == other.levels)
+    }
 }
 
 /// Smaller copies, the picture itself counted, at most: the smallest is 1/256 as wide.

@@ -46,8 +46,8 @@ impl SceneStill {
         self.scene.heading(self.view.phrase(), self.time_s)
     }
 
-    /// What can be seen, each name once: cars, paths, marks and everything else that has a name.
-    pub fn names(&self) -> Vec<&str> {
+    /// Names of what can be seen: cars, paths, marks and everything else that has a name.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
         let scene = &*self.scene;
         let cars = scene.cars.iter().map(|of| &of.name);
         let paths = scene.paths.iter().map(|of| &of.name);
@@ -58,13 +58,7 @@ impl SceneStill {
         let arrows = scene.arrows.iter().map(|of| &of.name);
         let crosses = scene.crosses.iter().map(|of| &of.name);
         let density = scene.density.iter().map(|of| &of.name);
-        let all = cars.chain(paths).chain(lines).chain(marks).chain(crushes).chain(points);
-        let mut names: Vec<&str> = Vec::new();
-        for name in all.chain(arrows).chain(crosses).chain(density) {
-            if !name.is_empty() && !names.contains(&name.as_str()) {
-                names.push(name);
-            }
-        }
-        names
+        let moving = cars.chain(paths).chain(lines).chain(marks).chain(crushes);
+        moving.chain(points).chain(arrows).chain(crosses).chain(density).map(String::as_str)
     }
 }

@@ -15,7 +15,7 @@ fn group_or(group: String, kind: &str) -> String {
 
 /// Adds what the question says, in front of what the answer found out.
 pub(super) fn with_request(mut part: Part, request: &Request, context: Context<'_>) -> Part {
-    let Context { wording, paths } = context;
+    let Context { wording, paths, .. } = context;
     let words = wording.words;
     let mut question = serde_json::to_value(request).unwrap_or_default();
     if let Value::Object(fields) = &mut question {

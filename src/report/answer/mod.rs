@@ -26,8 +26,9 @@ mod evidence_inputs;
 
 mod tyre_marks;
 
-mod stills;
+pub(super) mod stills;
 
+use crate::report::answer::stills::Grounds;
 use crate::report::numbers::Wording;
 use crate::report::parts::Part;
 use crate::report::paths::ShownPaths;
@@ -40,6 +41,8 @@ pub(super) struct Context<'a> {
     pub wording: &'a Wording,
     /// Files by their names.
     pub paths: &'a ShownPaths,
+    /// The grounds that scenes of the report lie on.
+    pub grounds: &'a Grounds,
 }
 
 /// What an answer contributes. A kind of answer that has no text of its own is told as a table of all

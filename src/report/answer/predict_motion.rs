@@ -43,7 +43,7 @@ pub(super) fn part(
         kind: words.title_motion.to_owned(),
         title: format!("{}: {}", words.title_motion, report.scenario),
         answer: blocks,
-        pictures: pictures(request, answer, wording),
+        pictures: pictures(request, answer, context),
         inputs: vehicle_rows(&answer.analysis.vehicle, words.struck_vehicle, wording),
         sensitivity: sensitivity_table(&report.sensitivity, wording).into_iter().collect(),
         domain: domain(report, wording),
@@ -116,15 +116,16 @@ fn domain(report: &PredictMotionReport, wording: &Wording) -> Vec<String> {
 fn pictures(
     request: &PredictMotionRequest,
     answer: &PredictMotionAnswer,
-    wording: &Wording,
+    context: Context<'_>,
 ) -> Vec<PartPicture> {
+    let Context { wording, .. } = context;
     let (words, report) = (wording.words, &answer.report);
     let (forecast, analysis) = (&answer.forecast, &answer.analysis);
     let at_s = report.outcome.time_s;
     let density = Arc::new(DensityTask::new(&forecast.distribution, [at_s; 2]).on_cpu());
     let bands = MotionBands::of(&forecast.distribution, BAND_STRIDE);
     let trust = Trust::new(&report.badges, &report.assumptions);
-    let still = forecast_still((request, answer), (&density, &trust), wording);
+    let still = forecast_still((request, answer), (&density, &trust), context);
     let shown = (at_s, wording.units);
     let input = MotionForecastFigure {
         components: true,

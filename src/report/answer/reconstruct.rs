@@ -65,7 +65,7 @@ pub(super) fn part(
         kind: words.title_reconstruct.to_owned(),
         title: format!("{}: {}", words.title_reconstruct, report.case),
         answer: blocks,
-        pictures: pictures(request.site.as_deref(), answer, wording),
+        pictures: pictures(request.site.as_deref(), answer, context),
         inputs: evidence_rows(request, answer, wording),
         evidence: evidence_blocks(report, wording),
         sensitivity: vec![
@@ -150,8 +150,9 @@ fn budget(report: &ReconstructReport, wording: &Wording) -> Table {
 fn pictures(
     site: Option<&Path>,
     answer: &ReconstructAnswer,
-    wording: &Wording,
+    context: Context<'_>,
 ) -> Vec<PartPicture> {
+    let Context { wording, .. } = context;
     let (words, units, report) = (wording.words, wording.units, &answer.report);
     let trust = Trust::new(&report.badges, &report.assumptions);
     let name = ("name", &*report.case);
@@ -161,7 +162,7 @@ fn pictures(
         fill(words.reconstruction_picture, &[name]),
         reconstruction_scene_figure(&scene, &trust, units),
     );
-    let still = reconstruction_still((answer, &paths), site, &trust, wording);
+    let still = reconstruction_still((answer, &paths), site, &trust, context);
     let mut pictures: Vec<PartPicture> = still.into_iter().chain([plan]).collect();
     for quantity in DRAWN {
         let prior = prior_values(&answer.target, quantity);

@@ -47,7 +47,7 @@ pub(super) fn part(
         kind: words.title_simulate.to_owned(),
         title: format!("{}: {}", words.title_simulate, report.name),
         answer: blocks,
-        pictures: pictures(request.site.as_deref(), answer, wording),
+        pictures: pictures(request.site.as_deref(), answer, context),
         inputs: [
             vehicle_rows(&answer.analysis.vehicle, words.struck_vehicle, wording),
             zone_rows(&answer.analysis.friction_zones, wording),
@@ -182,8 +182,12 @@ pub(super) fn sensitivity_table(shares: &[Sensitivity], wording: &Wording) -> Op
     (!table.rows.is_empty()).then_some(Block::Table(table))
 }
 
-fn pictures(site: Option<&Path>, answer: &SimulateAnswer, wording: &Wording) -> Vec<PartPicture> {
-    let (words, units) = (wording.words, wording.units);
+fn pictures(
+    site: Option<&Path>,
+    answer: &SimulateAnswer,
+    context: Context<'_>,
+) -> Vec<PartPicture> {
+    let (words, units) = (context.wording.words, context.wording.units);
     let (report, analysis) = (&answer.report, &answer.analysis);
     let trust = Trust::new(&report.badges, &report.assumptions);
     let name = [("name", &*report.name)];
@@ -192,7 +196,7 @@ fn pictures(site: Option<&Path>, answer: &SimulateAnswer, wording: &Wording) -> 
     let has_motion = analysis.simulation.is_some() || analysis.reference.is_some();
     let contact_end_s = report.force.as_ref().and_then(|force| force.contact_end_s);
     let moments = [contact_end_s.filter(|_| has_motion), has_motion.then_some(end_s)];
-    let mut pictures = simulation_stills((analysis, &trust), site, moments, wording);
+    let mut pictures = simulation_stills((analysis, &trust), site, moments, context);
     let force = analysis_force_figure((analysis, &trust), None, &[], units).ok().flatten();
     pictures.extend(force.map(|figure| picture(words.force_picture, figure)));
     let yaw_rate = analysis_motion_figure((analysis, &trust), Channel::YawRate, units);

@@ -1,16 +1,19 @@
 //! Stills of scenes in a report: the cars on the ground at a moment.
 
-use std::path::Path;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::analysis::{Analysis, DensityMap};
 use crate::error_chain;
 use crate::figure::{ReconstructedPaths, ReconstructionScene};
-use crate::report::numbers::{Wording, fill};
+use crate::report::answer::Context;
+use crate::report::numbers::fill;
 use crate::report::parts::PartPicture;
 use crate::scene::{
-    ForecastScene, LoadedGround, ReconstructionParts, Scene, SceneStill, SimulationScene, ViewKind,
-    add_forecast, reconstruction_scene, simulation_scene,
+    ForecastScene, LoadedGround, ReconstructionParts, Scene, SceneGround, SceneStill,
+    SimulationScene, ViewKind, add_forecast, reconstruction_scene, simulation_scene,
 };
 use crate::study::{PredictMotionAnswer, PredictMotionRequest, ReconstructAnswer, Trust};
 
@@ -29,11 +32,12 @@ pub(super) fn simulation_stills(
     (analysis, trust): (&Analysis, &Trust),
     site: Option<&Path>,
     [contact_end_s, end_s]: [Option<f64>; 2],
-    wording: &Wording,
+    context: Context<'_>,
 ) -> Vec<PartPicture> {
+    let Context { wording, .. } = context;
     let words = wording.words;
     let input = SimulationScene { analysis, others: &[], units: wording.units, trust };
-    let (scene, note) = on_ground(simulation_scene(&input), site, wording);
+    let (scene, note) = on_ground(simulation_scene(&input), site, context);
     let still = |caption, time_s, view, near_m| {
         let caption = fill(caption, &[("name", &analysis.name)]) + &note;
         PartPicture::still(caption, SceneStill { scene: Arc::clone(&scene), time_s, view, near_m })
@@ -50,8 +54,9 @@ pub(super) fn simulation_stills(
 pub(super) fn forecast_still(
     (request, answer): (&PredictMotionRequest, &PredictMotionAnswer),
     (density, trust): (&Arc<DensityMap>, &Trust),
-    wording: &Wording,
+    context: Context<'_>,
 ) -> PartPicture {
+    let Context { wording, .. } = context;
     let (analysis, report) = (&answer.analysis, &answer.report);
     let input = SimulationScene { analysis, others: &[], units: wording.units, trust };
     let mut scene = simulation_scene(&input);
@@ -65,7 +70,7 @@ pub(super) fn forecast_still(
             seed: request.seed,
         },
     );
-    let (scene, note) = on_ground(scene, request.motion.site.as_deref(), wording);
+    let (scene, note) = on_ground(scene, request.motion.site.as_deref(), context);
     let time_s = report.outcome.time_s;
     let caption = fill(wording.words.forecast_scene_picture, &[("name", &report.scenario)]);
     let still = SceneStill { scene, time_s, view: ViewKind::Above, near_m: None };
@@ -80,8 +85,9 @@ pub(super) fn reconstruction_still(
     (answer, paths): (&ReconstructAnswer, &ReconstructedPaths),
     site: Option<&Path>,
     trust: &Trust,
-    wording: &Wording,
+    context: Context<'_>,
 ) -> Option<PartPicture> {
+    let Context { wording, .. } = context;
     let of = ReconstructionScene::of(answer, paths);
     let followed = of.followed.map(|of| (of.name, of.path));
     followed?;
@@ -95,22 +101,42 @@ pub(super) fn reconstruction_still(
         trust,
     });
     let caption = fill(wording.words.reconstruction_cars, &[("name", &answer.report.case)]);
-    let (scene, note) = on_ground(scene, site, wording);
+    let (scene, note) = on_ground(scene, site, context);
     let time_s = scene.end_s;
     let still = SceneStill { scene, time_s, view: ViewKind::Above, near_m: None };
     Some(PartPicture::still(caption + &note, still))
 }
 
 /// A scene with its ground, and what a caption says where that cannot be read.
-fn on_ground(mut scene: Scene, site: Option<&Path>, wording: &Wording) -> (Arc<Scene>, String) {
+fn on_ground(
+    mut scene: Scene,
+    site: Option<&Path>,
+    Context { wording, paths, grounds }: Context<'_>,
+) -> (Arc<Scene>, String) {
     let mut note = String::new();
-    match site.map(LoadedGround::load) {
+    match site.map(|site| grounds.of(site)) {
         None => {}
-        Some(Ok(loaded)) => scene.ground = Some(loaded.ground),
-        Some(Err(error)) => {
-            let why = wording.quoted(&error_chain(&error));
+        Some(Ok(ground)) => scene.ground = Some(ground),
+        Some(Err(why)) => {
+            let why = wording.quoted(&paths.shown(&why));
             note = fill(wording.words.ground_not_drawn, &[("why", &why)]);
         }
     }
     (Arc::new(scene), note)
+}
+
+/// The grounds of a report by their site files. Each is read once, since orthophotos are large.
+#[derive(Default)]
+pub(in crate::report) struct Grounds(RefCell<BTreeMap<PathBuf, Result<Arc<SceneGround>, String>>>);
+
+impl Grounds {
+    /// A ground, or why it cannot be read.
+    fn of(&self, site: &Path) -> Result<Arc<SceneGround>, String> {
+        let mut read = self.0.borrow_mut();
+        let ground = read.entry(site.to_owned()).or_insert_with(|| {
+            let loaded = LoadedGround::load(site).map_err(|error| error_chain(&error))?;
+            Ok(loaded.ground)
+        });
+        ground.clone()
+    }
 }
