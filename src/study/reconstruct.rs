@@ -19,12 +19,13 @@ use crate::reconstruct::{
 };
 use crate::site::Site;
 use crate::study::checks::check_count;
-use crate::study::reconstruction_domain::{check_damage, of_road, of_vehicles};
+use crate::study::reconstruction_domain::{check_damage, of_road, of_vehicles, of_zones};
 use crate::study::{
     AssumedQuantity, Assumption, Event, FrictionZoneReport, Library, Observer, Provenance,
     Question, Sampling, StudyError, VehicleChoice, badges,
 };
 use crate::uncertainty::{Badge, BadgeKind};
+use crate::vehicle::FrictionZone;
 
 /// Effective sample size below which intervals are not to be relied on.
 const LEAST_ESS: f64 = 400.0;
@@ -258,6 +259,7 @@ impl Question for ReconstructRequest {
         })?;
         let mut outside = of_vehicles(cars);
         outside.extend(of_road(evidence.friction));
+        outside.extend(of_zones(model.zones()));
         let checkpoint = self.checkpoint(&evidence, &model)?;
         let friction_zones = model.zones().iter().map(FrictionZoneReport::of).collect();
         let target = ReconstructionTarget::new(evidence, model, Discrepancy::default());
@@ -285,7 +287,7 @@ impl Question for ReconstructRequest {
         let mut badges = of_particles(&particles);
         badges.extend(outside);
         badges.extend(of_fit(&fit));
-        badges.push(of_validation());
+        badges.push(of_validation(target.model().zones()));
         badges.extend(badges::of_assumptions(&assumptions));
         let quantities = posterior.quantities();
         let report = ReconstructReport {
@@ -361,9 +363,15 @@ fn of_particles(particles: &Particles) -> Vec<Badge> {
 }
 
 /// What the intervals have been tried on, as long as that is not enough.
-fn of_validation() -> Badge {
-    let text = "intervals were tried on 40 simulated collisions of one make of car and on no real one; \
-                how often they held is in docs/guide/limits.md";
+fn of_validation(zones: &[FrictionZone]) -> Badge {
+    let on_zones = match zones.is_empty() {
+        true => "",
+        false => ", all of which stood on one friction",
+    };
+    let text = format!(
+        "intervals were tried on 40 simulated collisions of one make of car{on_zones} and on no real \
+         one; how often they held is in docs/guide/limits.md"
+    );
     Badge::new(BadgeKind::HardlyValidated, text)
 }
 

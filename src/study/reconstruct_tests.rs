@@ -128,6 +128,9 @@ fn a_way_over_ice_is_no_sign_of_a_high_speed() {
     let true_m_s = truth.impact.target_speed_m_s;
     assert!((known.median / true_m_s - 1.0).abs() < 0.25, "{true_m_s} m/s, {known:?}");
     assert_eq!(report.friction_zones[0].name, "ice");
+    for part in ["friction of the zone \"ice\" is 0.15", "all of which stood on one friction"] {
+        assert!(report.badges.iter().any(|badge| badge.text.contains(part)), "{part}");
+    }
     assert!(report.priors.iter().any(|of| of.latent == Latent::ZoneFrictionFactor));
     let said = report.assumptions.iter().any(|of| of.value.contains("zones of the site"));
     assert!(said, "{:?}", report.assumptions);

@@ -5,7 +5,7 @@ use crate::reconstruct::evidence::{Damage, Measured};
 use crate::reconstruct::{Car, Cars};
 use crate::uncertainty::{Badge, BadgeKind};
 use crate::units::{STANDARD_GRAVITY_M_S2, significant};
-use crate::vehicle::VehicleParameters;
+use crate::vehicle::{FrictionZone, VehicleParameters};
 
 /// A quantity of a vehicle with the range over which the rules of the data sheet were fitted and the
 /// 4DOF model was tried: the vehicles of
@@ -93,6 +93,21 @@ pub(super) fn of_road(friction: Option<Measured>) -> Option<Badge> {
         .with_value("friction of the road", value)
         .with_range(ROAD_FRICTION);
     (!(low - reach..=high + reach).contains(&value)).then_some(badge)
+}
+
+/// Zones of the ground whose friction is beyond that of the roads on which the model was tried.
+pub(super) fn of_zones(zones: &[FrictionZone]) -> impl Iterator<Item = Badge> {
+    let [low, high] = ROAD_FRICTION;
+    let outside = zones.iter().filter(move |zone| !(low..=high).contains(&zone.friction));
+    outside.map(move |zone| {
+        let text = format!(
+            "friction of the zone {:?} is {}; how a car moves is known of roads of {low} to {high}",
+            zone.name, zone.friction
+        );
+        Badge::new(BadgeKind::OutsideDomain, text)
+            .with_value(format!("friction of the zone {:?}", zone.name), zone.friction)
+            .with_range(ROAD_FRICTION)
+    })
 }
 
 /// Checks that the struck car is where the damage is said to be, within the errors of the damage.
