@@ -37,7 +37,7 @@ pub use motion_forecast::{
 };
 pub use reconstruction::{budget_figure, marginal_figure, pair_figure, prior_values};
 pub use reconstruction_scene::{
-    FollowedPath, ReconstructedPaths, ReconstructionScene, STRIKING_AT_REST, STRUCK_AT_REST,
+    FollowedPath, ReconstructionScene, STRIKING_AT_REST, STRUCK_AT_REST,
     reconstruction_scene_figure,
 };
 pub use scene::{SceneFigure, SceneVehicle, pose_at, scene_figure, vehicle_outline};

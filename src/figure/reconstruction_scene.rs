@@ -6,14 +6,12 @@ use crate::collision::{Footprint, Pose, Side};
 use crate::figure::scene::vehicle_outline;
 use crate::figure::{Axis, Figure, FigureElement, LineStyle, Path, Role, Series};
 use crate::numerics::interpolate;
+use crate::reconstruct::Cars;
 use crate::reconstruct::evidence::{Evidence, RestPose};
-use crate::reconstruct::{Cars, Mode, QuantityEstimate, ReconstructionTarget};
-use crate::study::{ReconstructAnswer, Trust};
+use crate::study::{ReconstructAnswer, ReconstructedPaths, Trust};
 use crate::units::{Quantity, UnitSystem};
 use crate::vehicle::{Path as VehiclePath, PathPoint, TireMark};
 
-/// Paths that are drawn.
-const N_PATHS: usize = 40;
 /// Points of an ellipse.
 const N_ELLIPSE: usize = 48;
 /// Half axis of an ellipse that holds 90 % of a plane normal distribution, standard deviations.
@@ -23,57 +21,6 @@ const NINETY: f64 = 2.1460;
 pub const STRUCK_AT_REST: &str = "struck car at rest, 90 % ellipse";
 /// Name of the striking car at rest in the legend.
 pub const STRIKING_AT_REST: &str = "striking car at rest, 90 % ellipse";
-
-/// Paths of particles, to be drawn.
-#[derive(Debug, Clone, Default)]
-pub struct ReconstructedPaths {
-    /// Paths of the struck car, some of the particles.
-    pub drawn: Vec<VehiclePath>,
-    /// Path of the particle whose speed of the struck car is nearest to the median.
-    pub median: Option<VehiclePath>,
-    /// The marks that the tyres of the struck car leave in the motion of that particle.
-    pub marks: Vec<TireMark>,
-}
-
-impl ReconstructedPaths {
-    /// Simulates paths of an answer's particles.
-    pub fn of(answer: &ReconstructAnswer) -> Self {
-        let all: Vec<usize> = (0..answer.particles.z.len()).collect();
-        Self::among(answer, &all, &answer.report.quantities)
-    }
-
-    /// Simulates paths of the particles of one course of events.
-    pub fn of_mode(answer: &ReconstructAnswer, mode: &Mode) -> Self {
-        Self::among(answer, &mode.members, &mode.quantities)
-    }
-
-    /// Simulates paths of particles that are still moving, of which there is no median.
-    pub fn of_particles(target: &ReconstructionTarget, z: &[Vec<f64>]) -> Self {
-        let every = z.len().div_ceil(N_PATHS).max(1);
-        let chosen: Vec<Vec<f64>> = z.iter().step_by(every).cloned().collect();
-        let drawn = target.model().motions(&chosen, |motion| motion.path);
-        Self { drawn, ..Self::default() }
-    }
-
-    fn among(
-        answer: &ReconstructAnswer,
-        members: &[usize],
-        quantities: &[QuantityEstimate],
-    ) -> Self {
-        let z = &answer.particles.z;
-        let every = members.len().div_ceil(N_PATHS).max(1);
-        let some = members.iter().step_by(every);
-        let chosen: Vec<Vec<f64>> = some.filter_map(|idx| z.get(*idx).cloned()).collect();
-        let model = answer.target.model();
-        let drawn = model.motions(&chosen, |motion| motion.path);
-        let nearest = answer.posterior.nearest_to_median(members, quantities);
-        let nearest = nearest.and_then(|idx| z.get(idx)).map(std::slice::from_ref);
-        let followed =
-            nearest.map(|z| model.motions(z, |motion| (motion.tire_marks(), motion.path)));
-        let (marks, median) = followed.and_then(|mut followed| followed.pop()).unzip();
-        Self { drawn, median, marks: marks.unwrap_or_default() }
-    }
-}
 
 /// A path with the car on it.
 #[derive(Debug, Clone, Copy)]
@@ -104,7 +51,7 @@ pub struct ReconstructionScene<'a> {
 impl<'a> ReconstructionScene<'a> {
     /// The scene of an answer, with a particle of median speed at its end.
     pub fn of(answer: &'a ReconstructAnswer, paths: &'a ReconstructedPaths) -> Self {
-        let name = "a particle of median speed";
+        let name = ReconstructedPaths::MEDIAN;
         let at_end = |path: &'a VehiclePath| FollowedPath { name, path, time_s: f64::INFINITY };
         Self {
             evidence: answer.target.evidence(),

@@ -12,7 +12,7 @@ use crate::scene::{
     CarBody, CarLook, CarMotion, CarShape, Scene, SceneCar, SceneLine, ScenePath, ScenePoint,
     SceneRole,
 };
-use crate::study::Trust;
+use crate::study::{ReconstructAnswer, ReconstructedPaths, Trust};
 use crate::units::UnitSystem;
 use crate::vehicle::{Path, TireMark, VehicleParameters};
 
@@ -40,6 +40,25 @@ pub struct ReconstructionParts<'a> {
     pub units: UnitSystem,
     /// What restricts the answer.
     pub trust: &'a Trust,
+}
+
+impl<'a> ReconstructionParts<'a> {
+    /// What the scene of an answer shows, with a particle of median speed that drives.
+    pub fn of(
+        (answer, paths): (&'a ReconstructAnswer, &'a ReconstructedPaths),
+        units: UnitSystem,
+        trust: &'a Trust,
+    ) -> Self {
+        Self {
+            evidence: answer.target.evidence(),
+            cars: answer.target.model().cars(),
+            drawn: &paths.drawn,
+            followed: paths.median.as_ref().map(|path| (ReconstructedPaths::MEDIAN, path)),
+            marks: &paths.marks,
+            units,
+            trust,
+        }
+    }
 }
 
 /// The scene of a reconstruction.

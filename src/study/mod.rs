@@ -48,6 +48,7 @@ mod motion_source;
 mod predict_force;
 mod predict_motion;
 mod reconstruct;
+mod reconstructed_paths;
 mod reconstruction_domain;
 mod reconstruction_estimates;
 mod recorded_force;
@@ -103,6 +104,7 @@ pub use predict_motion::{
 pub use provenance::Provenance;
 pub use question::{Event, Observer, Question, Sampling};
 pub use reconstruct::{EvidenceChoice, ReconstructAnswer, ReconstructReport, ReconstructRequest};
+pub use reconstructed_paths::ReconstructedPaths;
 pub use recorded_force::{RecordedForceAnswer, RecordedForceRequest};
 pub use request::{Answer, Report, Request};
 pub use simulate::{DEFAULT_DURATION_S, DEFAULT_VEHICLE_DRAWS, SimulateAnswer, SimulateRequest};

@@ -461,16 +461,23 @@ fn a_reconstruction() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = evidence_in(folder.path());
     let path = path.to_str().expect("a plain name");
-    let mut harness = open(&[path]);
-    harness.run_steps(3);
-    let form = &mut harness.state_mut().state_mut().project.reconstruction;
-    (form.particles, form.seed) = (60, 3);
-    apply(&mut harness, Command::Reconstruct(ReconstructionCommand::Run));
-    step_until(&mut harness, "the speeds", |state| {
-        let run = &state.session.reconstruction.run;
-        !run.is_running() && run.latest.is_some()
-    });
-    let (question, answer) = finished(&state(&harness).session.reconstruction.run);
-    CommandLine::of(&["reconstruct", path, "--particles", "60", "--seed", "3"])
-        .compare(question.request, &answer.answer.report);
+    let site = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/sites/country-road/site.toml");
+    for ground in [&[][..], &[site]] {
+        let mut harness = open(&[&[path], ground].concat());
+        step_until(&mut harness, "the evidence on its ground", |state| {
+            let form = &state.project.reconstruction;
+            form.evidence.is_some() && form.site.is_some() != ground.is_empty()
+        });
+        let form = &mut harness.state_mut().state_mut().project.reconstruction;
+        (form.particles, form.seed) = (60, 3);
+        apply(&mut harness, Command::Reconstruct(ReconstructionCommand::Run));
+        step_until(&mut harness, "the speeds", |state| {
+            let run = &state.session.reconstruction.run;
+            !run.is_running() && run.latest.is_some()
+        });
+        let (question, answer) = finished(&state(&harness).session.reconstruction.run);
+        let mut args = vec!["reconstruct", path, "--particles", "60", "--seed", "3"];
+        args.extend(ground.iter().flat_map(|site| ["--site", site]));
+        CommandLine::of(&args).compare(question.request, &answer.answer.report);
+    }
 }

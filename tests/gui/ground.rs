@@ -238,6 +238,16 @@ fn a_reconstruction_stands_on_the_zones_of_the_ground() {
     assert_eq!(n_priors(&harness), Some(without + 1));
     assert!(harness.query_by_label_contains("friction zones of site.toml").is_some());
 
+    // Another ground, which cannot be read, leaves none of the zones of this one.
+    let torn = folder.path().join("torn.png");
+    std::fs::write(&torn, "no picture").expect("written");
+    apply(&mut harness, Command::Open(vec![torn]));
+    step_until(&mut harness, "the problem", |state| state.session.ground.problem.is_some());
+    harness.run_steps(2);
+    assert_eq!(asked(&harness), None);
+
+    apply(&mut harness, Command::Open(vec![SITE.into()]));
+    step_until(&mut harness, "the zones", |state| state.project.reconstruction.site.is_some());
     apply(&mut harness, Command::Ground(GroundCommand::Remove));
     harness.run_steps(4);
     assert_eq!(asked(&harness), None);

@@ -109,3 +109,21 @@ fn a_reconstruction_is_seen_on_the_ground_whose_zones_it_uses() {
         assert!(markdown.contains(text), "{text}");
     }
 }
+
+#[test]
+fn a_ground_that_lies_elsewhere_or_has_no_scale_is_said_below_the_picture() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| folder.path().join(name);
+    image::RgbImage::new(40, 30).save(at("photo.png")).expect("a picture");
+    let (document, _) = report(&on_ground(at("photo.png")), &english());
+    assert_eq!(stills(&document).len(), 2);
+    for (picture, _) in stills(&document) {
+        assert!(picture.caption.contains("0.05 m per pixel"), "{}", picture.caption);
+    }
+    // A world file in survey coordinates, without an origin that is subtracted.
+    fs::write(at("photo.pgw"), "0.1\n0\n0\n-0.1\n512000\n5423000\n").expect("written");
+    let (document, _) = report(&on_ground(at("photo.png")), &english());
+    for (picture, _) in stills(&document) {
+        assert!(picture.caption.contains("m away from the scene"), "{}", picture.caption);
+    }
+}

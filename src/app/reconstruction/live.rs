@@ -3,10 +3,9 @@
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
-use crate::figure::ReconstructedPaths;
 use crate::numerics::quantile_of_sorted;
 use crate::reconstruct::ReconstructedQuantity;
-use crate::study::{Event, Sampling};
+use crate::study::{Event, ReconstructedPaths, Sampling};
 
 /// Shortest time between two pictures of the particles.
 const BETWEEN: Duration = Duration::from_secs(1);

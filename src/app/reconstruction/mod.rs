@@ -21,6 +21,7 @@ use std::sync::mpsc::Receiver;
 
 use crate::app::question_job::QuestionJob;
 use crate::reconstruct::evidence::Evidence;
+use crate::study::ReconstructedPaths;
 use crate::vehicle::{Path, TireMark};
 
 /// A path that is followed in the scene.
@@ -105,7 +106,7 @@ impl ReconstructionSession {
         let paths = self.answer()?.paths_of(self.mode);
         match self.followed {
             FollowedParticle::Median => {
-                Some(("a particle of median speed".to_owned(), paths.median.as_ref()?))
+                Some((ReconstructedPaths::MEDIAN.to_owned(), paths.median.as_ref()?))
             }
             FollowedParticle::Draw(idx) => {
                 Some((format!("draw {}", idx + 1), paths.drawn.get(idx)?))

@@ -2,11 +2,11 @@
 
 use crate::app::reconstruction::KeptRuns;
 use crate::data::Outcome;
-use crate::figure::{ReconstructedPaths, prior_values};
+use crate::figure::prior_values;
 use crate::reconstruct::ReconstructedQuantity;
 use crate::study::{
     Library, Observer, Question, ReconstructAnswer, ReconstructReport, ReconstructRequest,
-    StudyError,
+    ReconstructedPaths, StudyError,
 };
 
 /// A question for a reconstruction, whose answer is prepared for drawing.

@@ -119,10 +119,13 @@ impl State {
     }
 
     /// Lets the wheels of the reconstruction stand on the friction zones of the ground that is shown. A
-    /// ground without zones changes no answer, and one that is still being read leaves everything as it is.
+    /// ground without zones changes no answer.
     fn stand_on_ground(&mut self) {
         let site = match (&self.project.site, self.session.ground.shown()) {
-            (Some(_), None) => return,
+            // The same file may be read again; the zones of another one are no longer those of the scene.
+            (Some(choice), None) => {
+                self.project.reconstruction.site.clone().filter(|site| *site == choice.file)
+            }
             (Some(choice), Some(ground)) => {
                 let has_zones = !ground.site.friction_zones.is_empty();
                 has_zones.then(|| choice.file.clone())

@@ -11,12 +11,11 @@ use crate::cli::commands::render_scene::{ShownScene, ViewArg};
 use crate::cli::console::Console;
 use crate::cli::options::EvidenceArgs;
 use crate::figure::{
-    ReconstructedPaths, ReconstructionScene, budget_figure, marginal_figure, prior_values,
-    reconstruction_scene_figure,
+    ReconstructionScene, budget_figure, marginal_figure, prior_values, reconstruction_scene_figure,
 };
 use crate::reconstruct::ReconstructedQuantity;
 use crate::scene::{LoadedGround, ReconstructionParts, Scene, reconstruction_scene};
-use crate::study::{ReconstructAnswer, ReconstructRequest, Trust};
+use crate::study::{ReconstructAnswer, ReconstructRequest, ReconstructedPaths, Trust};
 use crate::units::UnitSystem;
 
 /// The evidence, and what is drawn.
@@ -145,16 +144,8 @@ impl Reconstructed {
     }
 
     fn cars(&self, paths: &ReconstructedPaths, units: UnitSystem) -> Scene {
-        let scene = ReconstructionScene::of(&self.answer, paths);
-        let built = reconstruction_scene(&ReconstructionParts {
-            evidence: scene.evidence,
-            cars: scene.cars,
-            drawn: scene.drawn,
-            followed: scene.followed.map(|of| (of.name, of.path)),
-            marks: scene.marks,
-            units,
-            trust: &self.trust,
-        });
+        let parts = ReconstructionParts::of((&self.answer, paths), units, &self.trust);
+        let built = reconstruction_scene(&parts);
         Scene { ground: self.ground.as_ref().map(|of| Arc::clone(&of.ground)), ..built }
     }
 }

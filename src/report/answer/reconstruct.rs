@@ -3,8 +3,7 @@
 use std::path::Path;
 
 use crate::figure::{
-    ReconstructedPaths, ReconstructionScene, budget_figure, marginal_figure, prior_values,
-    reconstruction_scene_figure,
+    ReconstructionScene, budget_figure, marginal_figure, prior_values, reconstruction_scene_figure,
 };
 use crate::reconstruct::{QuantityEstimate, ReconstructedQuantity};
 use crate::report::answer::Context;
@@ -17,7 +16,8 @@ use crate::report::numbers::{Wording, fill};
 use crate::report::parts::{Part, PartPicture};
 use crate::report::{Block, Table};
 use crate::study::{
-    FrictionZoneReport, ReconstructAnswer, ReconstructReport, ReconstructRequest, Trust,
+    FrictionZoneReport, ReconstructAnswer, ReconstructReport, ReconstructRequest,
+    ReconstructedPaths, Trust,
 };
 use crate::uncertainty::BadgeKind;
 use crate::units::Quantity;

@@ -7,15 +7,16 @@ use std::sync::Arc;
 
 use crate::analysis::{Analysis, DensityMap};
 use crate::error_chain;
-use crate::figure::{ReconstructedPaths, ReconstructionScene};
 use crate::report::answer::Context;
 use crate::report::numbers::fill;
 use crate::report::parts::PartPicture;
 use crate::scene::{
-    ForecastScene, LoadedGround, ReconstructionParts, Scene, SceneGround, SceneStill,
-    SimulationScene, ViewKind, add_forecast, reconstruction_scene, simulation_scene,
+    ForecastScene, LoadedGround, ReconstructionParts, Scene, SceneStill, SimulationScene, ViewKind,
+    add_forecast, reconstruction_scene, simulation_scene,
 };
-use crate::study::{PredictMotionAnswer, PredictMotionRequest, ReconstructAnswer, Trust};
+use crate::study::{
+    PredictMotionAnswer, PredictMotionRequest, ReconstructAnswer, ReconstructedPaths, Trust,
+};
 
 /// Paths that are drawn from a forecast, as ghosts.
 const N_GHOSTS: usize = 30;
@@ -50,7 +51,6 @@ pub(super) fn simulation_stills(
 }
 
 /// The still of a forecast from above: its draws as ghosts, density and regions at a moment.
-///
 pub(super) fn forecast_still(
     (request, answer): (&PredictMotionRequest, &PredictMotionAnswer),
     (density, trust): (&Arc<DensityMap>, &Trust),
@@ -87,19 +87,10 @@ pub(super) fn reconstruction_still(
     trust: &Trust,
     context: Context<'_>,
 ) -> Option<PartPicture> {
+    paths.median.as_ref()?;
     let Context { wording, .. } = context;
-    let of = ReconstructionScene::of(answer, paths);
-    let followed = of.followed.map(|of| (of.name, of.path));
-    followed?;
-    let scene = reconstruction_scene(&ReconstructionParts {
-        evidence: of.evidence,
-        cars: of.cars,
-        drawn: of.drawn,
-        followed,
-        marks: of.marks,
-        units: wording.units,
-        trust,
-    });
+    let parts = ReconstructionParts::of((answer, paths), wording.units, trust);
+    let scene = reconstruction_scene(&parts);
     let caption = fill(wording.words.reconstruction_cars, &[("name", &answer.report.case)]);
     let (scene, note) = on_ground(scene, site, context);
     let time_s = scene.end_s;
@@ -107,36 +98,38 @@ pub(super) fn reconstruction_still(
     Some(PartPicture::still(caption + &note, still))
 }
 
-/// A scene with its ground, and what a caption says where that cannot be read.
+/// A scene with its ground, and what a caption has to say of it: that it cannot be read, is not to scale, or
+/// lies elsewhere.
 fn on_ground(
     mut scene: Scene,
     site: Option<&Path>,
     Context { wording, paths, grounds }: Context<'_>,
 ) -> (Arc<Scene>, String) {
-    let mut note = String::new();
-    match site.map(|site| grounds.of(site)) {
-        None => {}
-        Some(Ok(ground)) => scene.ground = Some(ground),
-        Some(Err(why)) => {
-            let why = wording.quoted(&paths.shown(&why));
-            note = fill(wording.words.ground_not_drawn, &[("why", &why)]);
+    let quoted = |text: &String| wording.quoted(&paths.shown(text));
+    let note = match site.map(|site| grounds.of(site)) {
+        None => String::new(),
+        Some(Err(why)) => fill(wording.words.ground_not_drawn, &[("why", &quoted(&why))]),
+        Some(Ok(loaded)) => {
+            let far = loaded.far_notes(scene.extent_m());
+            let notes = loaded.notes.iter().chain(&far);
+            scene.ground = Some(Arc::clone(&loaded.ground));
+            notes.map(|note| format!("; {}", quoted(note))).collect()
         }
-    }
+    };
     (Arc::new(scene), note)
 }
 
+/// A ground, or why it cannot be read.
+type ReadGround = Result<Arc<LoadedGround>, String>;
+
 /// The grounds of a report by their site files. Each is read once, since orthophotos are large.
 #[derive(Default)]
-pub(in crate::report) struct Grounds(RefCell<BTreeMap<PathBuf, Result<Arc<SceneGround>, String>>>);
+pub(in crate::report) struct Grounds(RefCell<BTreeMap<PathBuf, ReadGround>>);
 
 impl Grounds {
-    /// A ground, or why it cannot be read.
-    fn of(&self, site: &Path) -> Result<Arc<SceneGround>, String> {
+    fn of(&self, site: &Path) -> ReadGround {
         let mut read = self.0.borrow_mut();
-        let ground = read.entry(site.to_owned()).or_insert_with(|| {
-            let loaded = LoadedGround::load(site).map_err(|error| error_chain(&error))?;
-            Ok(loaded.ground)
-        });
-        ground.clone()
+        let load = || LoadedGround::load(site).map(Arc::new).map_err(|error| error_chain(&error));
+        read.entry(site.to_owned()).or_insert_with(load).clone()
     }
 }
