@@ -1,5 +1,6 @@
 use super::*;
 use crate::data::Channel;
+use crate::numerics::wrap_angle_rad;
 use crate::reconstruct::evidence::examples::{SPIN, read};
 use crate::reconstruct::evidence::{Mark, Measured};
 use crate::reconstruct::sampler::Target;

@@ -6,6 +6,7 @@
 //!
 //! - [`evidence`]: what was found, from a file;
 //! - `cars`: the two vehicles, from data sheets and evidence;
+//! - `latent`: the quantities that the motion depends on;
 //! - `prior`: every quantity that the motion depends on, as a transformation of one component of z;
 //! - `forward`: from z to the motion of both cars;
 //! - `likelihood`: how well a motion goes with the evidence;
@@ -25,6 +26,8 @@ mod computed_marks;
 mod distribution;
 mod forward;
 mod hand;
+mod impact_state;
+mod latent;
 mod likelihood;
 mod modes;
 mod posterior;
@@ -35,14 +38,13 @@ pub use calibration::{RankedQuantity, Ranks, ranks_of_cases};
 pub use cars::{Car, Cars};
 pub use computed_marks::MarkComparison;
 pub use distribution::Distribution;
-pub use forward::{CollisionMotion, ForwardModel, ImpactState};
+pub use forward::{CollisionMotion, ForwardModel};
 pub use hand::HandCalculation;
+pub use impact_state::ImpactState;
+pub use latent::{BLOCKED_PROBABILITY, BRAKE_PROBABILITY, Latent, LatentValues};
 pub use likelihood::{Discrepancy, EvidenceFit, EvidenceTerm, ReconstructionTarget};
 pub use modes::{ParticleMode, cluster_keys, modes_by};
 pub use posterior::{
     BudgetItem, Mode, Posterior, QuantityEstimate, ReconstructedQuantity, ShownEstimate,
 };
-pub use prior::{
-    BLOCKED_PROBABILITY, BRAKE_PROBABILITY, Latent, LatentValues, Prior, PriorComponent,
-    PriorSource,
-};
+pub use prior::{Prior, PriorComponent, PriorSource};
