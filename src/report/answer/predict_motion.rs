@@ -127,10 +127,7 @@ fn pictures(
     let trust = Trust::new(&report.badges, &report.assumptions);
     let still = forecast_still((request, answer), (&density, &trust), context);
     let shown = (at_s, wording.units);
-    let input = MotionForecastFigure {
-        components: true,
-        ..MotionForecastFigure::of(answer, (&bands, &trust), shown).with_motions(analysis)
-    };
+    let input = MotionForecastFigure::of(answer, (&bands, &trust), shown).with_motions(analysis);
     let yaw = FORECAST_CHANNELS.into_iter().find(|of| of.channel == Channel::Yaw);
     let yaw = yaw.map(|channel| {
         let caption = fill(words.forecast_yaw_picture, &[("name", &report.scenario)]);
