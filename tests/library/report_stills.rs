@@ -4,7 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use impactlab::analysis::PulseSetup;
-use impactlab::case_file::{CaseFile, Variant};
+use impactlab::case_file::{CaseFile, Variant, pack, unpack};
+use impactlab::data::Existing;
 use impactlab::report::{Picture, PictureContent, ReportDocument};
 use impactlab::scene::{SceneStill, ViewKind};
 use impactlab::study::{
@@ -41,6 +42,11 @@ fn zones(document: &ReportDocument) -> Vec<String> {
     let markdown = document.to_markdown();
     let is_zone = |line: &&str| line.contains("friction") && line.contains("corners");
     markdown.lines().filter(is_zone).map(str::to_owned).collect()
+}
+
+/// Evidence of a car that spun to rest.
+fn spin() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/evidence/spin.toml")
 }
 
 fn road() -> PathBuf {
@@ -89,11 +95,10 @@ fn a_ground_that_cannot_be_drawn_is_said() {
 
 #[test]
 fn a_reconstruction_is_seen_on_the_ground_whose_zones_it_uses() {
-    let evidence = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/staged/evidence/s05.toml");
     let question = ReconstructRequest {
         particles: 60,
         site: Some(road()),
-        ..ReconstructRequest::new(EvidenceChoice::File(evidence))
+        ..ReconstructRequest::new(EvidenceChoice::File(spin()))
     };
     let (document, _) = report(&case_of("found", question), &english());
     let stills = stills(&document);
@@ -126,4 +131,34 @@ fn a_ground_that_lies_elsewhere_or_has_no_scale_is_said_below_the_picture() {
     for (picture, _) in stills(&document) {
         assert!(picture.caption.contains("m away from the scene"), "{}", picture.caption);
     }
+}
+
+/// The site travels with its orthophoto and its drawing in the package of a case, and the report of what is
+/// unpacked elsewhere has the same answer and the same ground.
+#[test]
+fn the_ground_of_a_reconstruction_is_in_the_package_of_its_case() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let from = folder.path().join("from");
+    fs::create_dir(&from).expect("a folder");
+    for file in ["site.toml", "orthophoto.jpg", "orthophoto.jgw", "edges.dxf"] {
+        fs::copy(road().with_file_name(file), from.join(file)).expect("copied");
+    }
+    let evidence = from.join("evidence.toml");
+    fs::copy(spin(), &evidence).expect("copied");
+    let question = ReconstructRequest {
+        particles: 60,
+        site: Some(from.join("site.toml")),
+        ..ReconstructRequest::new(EvidenceChoice::File(evidence))
+    };
+    let mut case = case_of("found", question);
+    case.record_files();
+    let (first, _) = report(&case, &english());
+    let package = folder.path().join("case.zip");
+    pack(&case, &package, Existing::Refuse).expect("packed");
+    fs::remove_dir_all(&from).expect("removed");
+    let unpacked = unpack(&package, &folder.path().join("to")).expect("unpacked");
+    let (again, answers) = report(&CaseFile::load(&unpacked).expect("a case"), &english());
+    assert!(answers.is_clean(), "{:?}", answers.changes);
+    assert_eq!(stills(&again)[0].1, stills(&first)[0].1);
+    assert_eq!(again.to_markdown(), first.to_markdown());
 }
