@@ -12,6 +12,7 @@ use impactlab::units::UnitSystem;
 use tempfile::TempDir;
 
 use crate::harness::{apply, open_at, step_until};
+use crate::looks::collisions;
 use crate::pictures::save;
 
 const PIT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/examples/pit.impactlab");
@@ -83,6 +84,7 @@ fn the_report_on_screen_is_the_one_of_the_case_file() {
         apply(&mut harness, Command::Report(ReportCommand::ShowSection(section)));
         harness.run_steps(20);
         save(&mut harness, &format!("report-{section:?}.png").to_lowercase());
+        assert_eq!(collisions(&harness), [""; 0], "{section:?}");
     }
     harness.state_mut().state_mut().view.dark = true;
     harness.run_steps(2);

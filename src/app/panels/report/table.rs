@@ -79,7 +79,8 @@ fn row_ui(ui: &mut Ui, (table, widths): (&Table, &[f32]), cells: &[String], is_h
         let place = UiBuilder::new().max_rect(cell).layout(Layout::top_down(align));
         let text = RichText::new(text);
         let text = if is_header { text.strong() } else { text };
-        ui.scope_builder(place, |ui| ui.add(Label::new(text).wrap()));
+        // A child of its own: what follows the row begins below its rectangle, not below the last cell.
+        ui.new_child(place).add(Label::new(text).wrap());
         left += width;
     }
 }
