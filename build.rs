@@ -7,7 +7,7 @@ use std::{env, fs, io};
 use sha2::{Digest, Sha256};
 
 /// What the program is compiled from, relative to the folder of the crate.
-const SOURCES: [&str; 4] = ["Cargo.toml", "Cargo.lock", "assets", "src"];
+const SOURCES: [&str; 5] = ["Cargo.toml", "Cargo.lock", "assets", "crates", "src"];
 
 /// Number of characters of the digest that stand in a version: enough that no two builds share them.
 const N_CHARACTERS: usize = 12;

@@ -8,9 +8,9 @@
 
 use divan::Bencher;
 use eframe::wgpu::DeviceType;
-use impactlab::error_chain;
-use impactlab::render::DensityGpu;
-use impactlab::uncertainty::{PlanarGrid, PlanarMixture, PlanarPart};
+use impactlab_core::error_chain;
+use impactlab_core::uncertainty::{PlanarGrid, PlanarMixture, PlanarPart};
+use impactlab_draw::DensityGpu;
 
 /// Number of time steps of the trajectory.
 const N_INSTANTS: usize = 400;

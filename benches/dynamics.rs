@@ -1,7 +1,7 @@
 //! Measures the speed of the 4DOF vehicle model: one integration step, trajectories one by one and
 //! side by side in vector registers, braked and not, and one Jacobian.
 //!
-//! `cargo bench --no-default-features --bench dynamics`
+//! `cargo bench --bench dynamics`
 
 use std::hint::black_box;
 use std::ops::ControlFlow;
@@ -9,10 +9,10 @@ use std::path::Path;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use impactlab::compare::recorded_manoeuvre;
-use impactlab::data::Dataset;
-use impactlab::numerics::rk4_step;
-use impactlab::vehicle::{
+use impactlab_core::compare::recorded_manoeuvre;
+use impactlab_core::data::Dataset;
+use impactlab_core::numerics::rk4_step;
+use impactlab_core::vehicle::{
     Braking, CollisionForce, ContactPoint, Ending, Integrator, LibraryVehicle, Manoeuvre, Preset,
     SimulationRun, VehicleInput, VehicleParameters, VehicleState, simulate_batch,
 };

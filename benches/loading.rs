@@ -9,7 +9,7 @@ use std::sync::Mutex;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use impactlab::data::{
+use impactlab_core::data::{
     Channel, Dataset, Existing, TimeSeries, check_case, read_force_file, write_series_csv,
 };
 use tempfile::TempDir;

@@ -1,7 +1,7 @@
 //! Measures the duration of an epoch of the force network in its default size, without attention
 //! and in the paper's size, and of a prediction by the shipped model.
 //!
-//! `cargo bench --no-default-features --bench networks`
+//! `cargo bench --bench networks`
 
 #![allow(clippy::print_stdout)]
 
@@ -9,10 +9,10 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use divan::Bencher;
-use impactlab::force::{
+use impactlab_networks::force::{
     Centre, ForceCase, ForceConfig, ForceModel, ForceScenario, ForceTrainingSet, train,
 };
-use impactlab::learning::{ModelFile, TrainSettings};
+use impactlab_networks::learning::{ModelFile, TrainSettings};
 
 /// Number of epochs for each size, among them the first ones, which run with cold caches.
 const N_EPOCHS: usize = 20;

@@ -2,17 +2,17 @@
 //! components, one step of the joint distribution, and the distribution of a motion of 4 s. The
 //! model has three components, and the car spins.
 //!
-//! `cargo bench --no-default-features --bench response`
+//! `cargo bench --bench response`
 
 use std::ops::ControlFlow;
 use std::path::Path;
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use impactlab::data::Outcome;
-use impactlab::learning::ModelFile;
-use impactlab::response::{Predictor, ResponseCase, ResponseModel};
-use impactlab::vehicle::VehicleInput;
+use impactlab_core::data::Outcome;
+use impactlab_core::vehicle::VehicleInput;
+use impactlab_networks::learning::ModelFile;
+use impactlab_networks::response::{Predictor, ResponseCase, ResponseModel};
 
 /// Number of steps in 4 s.
 const N_STEPS: usize = 400;

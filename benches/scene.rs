@@ -13,15 +13,15 @@ use std::time::Instant;
 
 use cpu_time::{ProcessTime, ThreadTime};
 use eframe::wgpu;
-use impactlab::analysis::DensityTask;
-use impactlab::error_chain;
-use impactlab::render::scene::gpu::{GpuCanvas, SceneDevice};
-use impactlab::render::scene::{Camera, SceneCanvas, SceneLook, ViewKind};
-use impactlab::scene::{
+use impactlab_core::error_chain;
+use impactlab_core::units::UnitSystem;
+use impactlab_document::scene::{
     ForecastScene, LoadedGround, Scene, SimulationScene, add_forecast, simulation_scene,
 };
-use impactlab::study::{ForceSource, Library, MotionSource, PredictMotionRequest, Question, Trust};
-use impactlab::units::UnitSystem;
+use impactlab_draw::scene::gpu::{GpuCanvas, SceneDevice};
+use impactlab_draw::scene::{Camera, SceneCanvas, SceneLook, ViewKind};
+use impactlab_study::analysis::DensityTask;
+use impactlab_study::{ForceSource, Library, MotionSource, PredictMotionRequest, Question, Trust};
 
 /// Size of a picture, pixels.
 const SIZE: [usize; 2] = [1440, 900];

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use egui_kittest::Harness;
 use impactlab::app::{App, Command, Network, Pane, Source, State, TrainingCommand};
-use impactlab::learning::TrainingReport;
+use impactlab_networks::learning::TrainingReport;
 
 /// Time between two frames of a display at 60 Hz.
 const FRAME: Duration = Duration::from_micros(16_667);

@@ -16,8 +16,8 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use impactlab::collision::{DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION};
-use impactlab::force::{ForceCase, ForceScenario};
+use impactlab_core::collision::{DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION};
+use impactlab_networks::force::{ForceCase, ForceScenario};
 
 type Feature = fn(&ForceScenario) -> f64;
 

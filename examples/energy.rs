@@ -10,7 +10,7 @@
 //!
 //! The arguments are the number of runs, the seed, and the duration of each motion, s:
 //!
-//! `cargo run --release --no-default-features --example energy -- 100000 0 4`
+//! `cargo run --release --example energy -- 100000 0 4`
 
 #![allow(clippy::print_stdout)]
 
@@ -18,8 +18,8 @@ use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
 
-use impactlab::data::{Channel, ForceAxes, ForceHistory, Sampling, TimeSeries};
-use impactlab::vehicle::{
+use impactlab_core::data::{Channel, ForceAxes, ForceHistory, Sampling, TimeSeries};
+use impactlab_core::vehicle::{
     ContactLoad, ContactPoint, Integrator, Manoeuvre, Preset, VehicleParameters, VehicleState,
 };
 use rand::{RngExt, SeedableRng};

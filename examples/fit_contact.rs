@@ -7,7 +7,7 @@
 //!
 //! The argument is the data set:
 //!
-//! `cargo run --release --no-default-features --example fit_contact -- datasets/fea`
+//! `cargo run --release --example fit_contact -- datasets/fea`
 
 #![allow(clippy::print_stdout)]
 
@@ -15,14 +15,14 @@ use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use impactlab::collision::{
+use impactlab_core::collision::{
     ContactDistribution, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, Impact, ImpliedContact,
     RestitutionForm,
 };
-use impactlab::data::Dataset;
-use impactlab::force::ForceCase;
-use impactlab::learning::{TEST_SHARE, split};
-use impactlab::numerics::Summary;
+use impactlab_core::data::Dataset;
+use impactlab_core::numerics::Summary;
+use impactlab_networks::force::ForceCase;
+use impactlab_networks::learning::{TEST_SHARE, split};
 
 /// Steps of the grid over e and over μ_c, each from 0 to 1.
 const N_STEPS: usize = 100;

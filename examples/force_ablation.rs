@@ -6,7 +6,7 @@
 //! trained on different numbers of cases. The test cases of the data set are not used. The second
 //! argument, if there is one, is a data set whose cases are added for the second table.
 //!
-//! `cargo run --release --no-default-features --example force_ablation -- \
+//! `cargo run --release --example force_ablation -- \
 //! datasets/fea datasets/fea-wide`
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
@@ -15,16 +15,16 @@ use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use impactlab::data::{Dataset, Outcome};
-use impactlab::force::metrics::{
+use impactlab_core::data::{Dataset, Outcome};
+use impactlab_core::numerics::sha256_hex;
+use impactlab_networks::force::metrics::{
     BAND_LEVELS, CurveMetrics, PointErrors, ProbabilisticScores, ProbabilisticSettings,
 };
-use impactlab::force::{
+use impactlab_networks::force::{
     Centre, CrushConfig, CurvePrediction, ForceCase, ForceConfig, ForceModel, ForceScenario,
     NetworkConfig, TrainingConfig, fit_physics, train_around,
 };
-use impactlab::learning::{TrainSettings, TrainingSet, folds, split};
-use impactlab::nn::sha256_hex;
+use impactlab_networks::learning::{TrainSettings, TrainingSet, folds, split};
 
 type Answer<T> = Result<T, Box<dyn Error>>;
 
@@ -141,7 +141,7 @@ fn add_fold(
 }
 
 fn load(path: &str) -> Answer<Vec<ForceCase>> {
-    let go_on = &mut |_: impactlab::jobs::Progress| ControlFlow::Continue(());
+    let go_on = &mut |_: impactlab_core::jobs::Progress| ControlFlow::Continue(());
     match Dataset::load(Path::new(path), go_on)? {
         Outcome::Complete(data) => {
             Ok(data.cases.iter().filter_map(|case| ForceCase::from_case(case).ok()).collect())

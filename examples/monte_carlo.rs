@@ -4,7 +4,7 @@
 //! It prints a Markdown table of the means and standard deviations at several times over the test
 //! trajectories of a data set. The arguments are the model, the data set and the number of draws.
 //!
-//! `cargo run --release --no-default-features --example monte_carlo -- \
+//! `cargo run --release --example monte_carlo -- \
 //! assets/models/response.safetensors datasets/trajectories-fea 10000`
 
 #![allow(clippy::print_stdout)]
@@ -13,9 +13,9 @@ use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use impactlab::data::Outcome;
-use impactlab::learning::{ModelFile, TEST_SHARE, split};
-use impactlab::response::{Predictor, ResponseCase, ResponseModel, STEP_S};
+use impactlab_core::data::Outcome;
+use impactlab_networks::learning::{ModelFile, TEST_SHARE, split};
+use impactlab_networks::response::{Predictor, ResponseCase, ResponseModel, STEP_S};
 
 /// Seed of the draws and of the split, which is the default of the commands.
 const SEED: u64 = 0;

@@ -22,14 +22,14 @@ use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use impactlab::reconstruct::evidence::{Evidence, Measured, RestPose, VideoPosition};
-use impactlab::reconstruct::sampler::{SamplerSettings, sample};
-use impactlab::reconstruct::{
+use impactlab_core::site::Site;
+use impactlab_core::vehicle::FrictionZone;
+use impactlab_reconstruct::evidence::{Evidence, Measured, RestPose, VideoPosition};
+use impactlab_reconstruct::sampler::{SamplerSettings, sample};
+use impactlab_reconstruct::{
     Cars, Discrepancy, ForwardModel, RankedQuantity, Ranks, ReconstructedQuantity,
     ReconstructionTarget,
 };
-use impactlab::site::Site;
-use impactlab::vehicle::FrictionZone;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};

@@ -7,7 +7,7 @@
 //! Pre-training uses the forces of all training trajectories, but none of their motions. Each row
 //! is printed as soon as it is known.
 //!
-//! `cargo run --release --no-default-features --example response_ablation -- \
+//! `cargo run --release --example response_ablation -- \
 //! --data datasets/trajectories-fea --trajectories 20 --choices 2`
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
@@ -18,9 +18,11 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Parser;
-use impactlab::data::Outcome;
-use impactlab::learning::{TEST_SHARE, TrainSettings, TrainingReport, TrainingSet, folds, split};
-use impactlab::response::{
+use impactlab_core::data::Outcome;
+use impactlab_networks::learning::{
+    TEST_SHARE, TrainSettings, TrainingReport, TrainingSet, folds, split,
+};
+use impactlab_networks::response::{
     Correction, ImpactRecord, N_RESIDUAL, PhysicsTrend, ResponseCase, ResponseConfig,
     ResponseModel, ResponseTrainSettings, STEP_S, average_error_m, fine_tune, pretrain, rollout,
 };
@@ -290,7 +292,7 @@ fn print_four_dof(cases: &[ResponseCase]) {
 
 /// Returns the training part of the split of a data set.
 fn training_cases(path: &Path) -> Answer<Vec<ResponseCase>> {
-    let go_on = &mut |_: impactlab::jobs::Progress| ControlFlow::Continue(());
+    let go_on = &mut |_: impactlab_core::jobs::Progress| ControlFlow::Continue(());
     let Outcome::Complete(cases) = ResponseCase::load_all(path, None, go_on)? else {
         return Ok(Vec::new());
     };

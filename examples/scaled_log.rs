@@ -6,7 +6,7 @@
 //! satellite receiver and an inertial sensor. The logs and the forces are kept in the folder of
 //! `--out`.
 //!
-//! `cargo run --release --no-default-features --example scaled_log -- --out scaled-logs --vehicles
+//! `cargo run --release --example scaled_log -- --out scaled-logs --vehicles
 //! 5`
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
@@ -16,15 +16,15 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
-use impactlab::collision::{Pulse, PulseShape};
-use impactlab::data::{Channel, Existing, ForceAxes, TimeSeries, write_series_csv};
-use impactlab::learning::{ModelFile, TrainSettings, TrainingSet};
-use impactlab::response::{
+use impactlab_core::collision::{Pulse, PulseShape};
+use impactlab_core::data::{Channel, Existing, ForceAxes, TimeSeries, write_series_csv};
+use impactlab_core::vehicle::{
+    ContactLoad, ContactPoint, Integrator, Manoeuvre, Preset, VehicleParameters, VehicleState,
+};
+use impactlab_networks::learning::{ModelFile, TrainSettings, TrainingSet};
+use impactlab_networks::response::{
     LogSettings, LoggedImpact, MotionLog, N_RESIDUAL, ResponseCase, ResponseConfig, ResponseModel,
     STEP_S, Tuning, average_error_m, fine_tune, rollout,
-};
-use impactlab::vehicle::{
-    ContactLoad, ContactPoint, Integrator, Manoeuvre, Preset, VehicleParameters, VehicleState,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -16,7 +16,7 @@ use dxf::entities::{Entity, EntityType, Line};
 use dxf::enums::{AcadVersion, Units};
 use image::codecs::jpeg::JpegEncoder;
 use image::{Rgb, RgbImage};
-use impactlab::site::{PixelMap, SiteOrigin, WorldFile};
+use impactlab_core::site::{PixelMap, SiteOrigin, WorldFile};
 
 /// Width and height of the picture, pixels, and the side of a pixel, m.
 const SIZE_PX: [u32; 2] = [1680, 840];

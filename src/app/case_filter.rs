@@ -6,7 +6,7 @@
 //! that makes no sense, are errors: a list that is empty for a misspelt word would look like an answer.
 
 use crate::app::case_table::{AVERAGE_ERROR, CaseRow};
-use crate::data::{Case, Value};
+use impactlab_core::data::{Case, Value};
 
 /// A filter that was understood.
 #[derive(Debug, Clone, Default, PartialEq)]

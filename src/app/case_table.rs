@@ -9,9 +9,9 @@ use crate::app::case_filter::{CaseFilter, FilterError};
 use crate::app::replay::{ReplayStatus, Replays};
 use crate::app::source::{CheckedDataset, Source};
 use crate::app::state::View;
-use crate::compare::MotionError;
-use crate::data::{Case, DatasetKind, Flag, Value};
-use crate::units::{Quantity, UnitSystem, significant};
+use impactlab_core::compare::MotionError;
+use impactlab_core::data::{Case, DatasetKind, Flag, Value};
+use impactlab_core::units::{Quantity, UnitSystem, significant};
 
 /// A column of the case table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -265,7 +265,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::data::{Dataset, FlagKind, check_case};
+    use impactlab_core::data::{Dataset, FlagKind, check_case};
 
     fn fea() -> CheckedDataset {
         let mut report = |_| ControlFlow::Continue(());

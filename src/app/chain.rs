@@ -3,19 +3,19 @@
 
 use egui::{Button, Panel, RichText, Ui};
 
-use crate::analysis::Spread;
 use crate::app::command::Command;
 use crate::app::looks::{Icon, colored_icon};
 use crate::app::model::file_name;
 use crate::app::panes::Pane;
 use crate::app::response::MotionAnswer;
 use crate::app::state::{State, Subject};
-use crate::data::Severity;
-use crate::numerics::quantile_of_sorted;
-use crate::render::theme;
-use crate::study::SimulateReport;
-use crate::uncertainty::Badge;
-use crate::units::{Quantity, UnitSystem, percent};
+use impactlab_core::data::Severity;
+use impactlab_core::numerics::quantile_of_sorted;
+use impactlab_core::uncertainty::Badge;
+use impactlab_core::units::{Quantity, UnitSystem, percent};
+use impactlab_draw::theme;
+use impactlab_study::SimulateReport;
+use impactlab_study::analysis::Spread;
 
 /// Ends of the interval that is shown with a figure, as probabilities.
 const ENDS: [f64; 2] = [0.05, 0.95];

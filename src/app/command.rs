@@ -22,14 +22,14 @@ use crate::app::report::ReportCommand;
 use crate::app::state::{Session, State, Subject};
 use crate::app::widgets::OUTDATED;
 use crate::app::workspaces::Workspace;
-use crate::data::{ColumnMap, Existing, Severity, contact_interval};
-use crate::figure::Figure;
-use crate::reconstruct::evidence::Evidence;
-use crate::render::film::Film;
-use crate::render::scene::ScenePicture;
-use crate::report::ReportDocument;
-use crate::study::SimulateAnswer;
-use crate::vehicle::DataSheet;
+use impactlab_core::data::{ColumnMap, Existing, Severity, contact_interval};
+use impactlab_core::vehicle::DataSheet;
+use impactlab_document::figure::Figure;
+use impactlab_document::report::ReportDocument;
+use impactlab_draw::film::Film;
+use impactlab_draw::scene::ScenePicture;
+use impactlab_reconstruct::evidence::Evidence;
+use impactlab_study::SimulateAnswer;
 
 /// Time step of the left and right arrow keys in the scene, s.
 pub(in crate::app) const TIME_STEP_S: f64 = 0.05;

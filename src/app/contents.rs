@@ -7,8 +7,8 @@ use crate::app::network::TrainedModel;
 use crate::app::panes::Pane;
 use crate::app::source::{Content, Source};
 use crate::app::state::{Project, State, Subject};
-use crate::study::{DEFAULT_BULLET, DEFAULT_VEHICLE, VehicleChoice};
-use crate::units::Quantity;
+use impactlab_core::units::Quantity;
+use impactlab_study::{DEFAULT_BULLET, DEFAULT_VEHICLE, VehicleChoice};
 
 /// A part of the case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -12,10 +12,10 @@ use egui::Context;
 
 use crate::app::command::wake;
 use crate::app::state::{Session, State};
-use crate::data::Outcome;
-use crate::error_chain;
-use crate::jobs::Job;
-use crate::study::{Cost, Event, Request};
+use impactlab_core::data::Outcome;
+use impactlab_core::error_chain;
+use impactlab_core::jobs::Job;
+use impactlab_study::{Cost, Event, Request};
 
 /// Time for which the settings have to rest before they are measured.
 const REST: Duration = Duration::from_secs(1);

@@ -9,14 +9,14 @@ use rfd::AsyncFileDialog;
 use crate::app::command::{Command, ComparisonCommand};
 use crate::app::export::SceneExport;
 use crate::app::network::Network;
-use crate::case_file::{CASE_ENDING, file_stem};
-use crate::figure::Figure;
-use crate::jobs::{Job, Update};
-use crate::reconstruct::evidence::Evidence;
-use crate::render::film::Film;
-use crate::render::scene::ScenePicture;
-use crate::report::ReportDocument;
-use crate::vehicle::DataSheet;
+use impactlab_core::jobs::{Job, Update};
+use impactlab_core::vehicle::DataSheet;
+use impactlab_document::figure::Figure;
+use impactlab_document::report::ReportDocument;
+use impactlab_draw::film::Film;
+use impactlab_draw::scene::ScenePicture;
+use impactlab_reconstruct::evidence::Evidence;
+use impactlab_study::case_file::{CASE_ENDING, file_stem};
 
 /// File extension of model files.
 pub const MODEL_ENDING: &str = "safetensors";

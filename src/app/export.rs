@@ -3,15 +3,15 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::data::{Existing, write_atomically};
-use crate::error_chain;
-use crate::exchange::{DxfOptions, dxf, glb};
-use crate::figure::{Figure, write_figure_csv};
-use crate::jobs::Job;
-use crate::render::scene::{ScenePicture, scene_image};
-use crate::render::{Canvas, figure_image, report_picture, save_png};
-use crate::report::{ReportDocument, ReportFormat};
-use crate::scene::Scene;
+use impactlab_core::data::{Existing, write_atomically};
+use impactlab_core::error_chain;
+use impactlab_core::jobs::Job;
+use impactlab_document::exchange::{DxfOptions, dxf, glb};
+use impactlab_document::figure::{Figure, write_figure_csv};
+use impactlab_document::report::{ReportDocument, ReportFormat};
+use impactlab_document::scene::Scene;
+use impactlab_draw::scene::{ScenePicture, scene_image};
+use impactlab_draw::{Canvas, figure_image, report_picture, save_png};
 
 /// Starts writing a figure to a file: its numbers if the path ends in `.csv`, otherwise a PNG
 /// picture.

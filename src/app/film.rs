@@ -6,13 +6,13 @@ use egui::Context;
 
 use crate::app::command::wake;
 use crate::app::state::State;
-use crate::data::{Existing, Outcome, Severity};
-use crate::error_chain;
-use crate::jobs::Job;
-use crate::render::Canvas;
-use crate::render::film::{Film, write_film};
-use crate::render::scene::ScenePicture;
-use crate::scene::{FilmSection, FilmTiming};
+use impactlab_core::data::{Existing, Outcome, Severity};
+use impactlab_core::error_chain;
+use impactlab_core::jobs::Job;
+use impactlab_document::scene::{FilmSection, FilmTiming};
+use impactlab_draw::Canvas;
+use impactlab_draw::film::{Film, write_film};
+use impactlab_draw::scene::ScenePicture;
 
 /// Duration and speed of a part in slow motion that is added to a form, s and seconds in a second.
 const USUAL_SECTION: (f64, f64) = (0.3, 0.1);

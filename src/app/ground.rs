@@ -11,12 +11,12 @@ use crate::app::command::wake;
 use crate::app::panes::Pane;
 use crate::app::state::{Session, State};
 use crate::app::workspaces::Workspace;
-use crate::data::{Existing, Severity, write_atomically};
-use crate::error_chain;
-use crate::jobs::{Job, Update};
-use crate::ranges::SITE_DISTANCE;
-use crate::scene::LoadedGround;
-use crate::site::{PixelMap, Site, is_picture_file};
+use impactlab_core::data::{Existing, Severity, write_atomically};
+use impactlab_core::error_chain;
+use impactlab_core::jobs::{Job, Update};
+use impactlab_core::ranges::SITE_DISTANCE;
+use impactlab_core::site::{PixelMap, Site, is_picture_file};
+use impactlab_document::scene::LoadedGround;
 
 /// The site of a project.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

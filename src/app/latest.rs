@@ -9,10 +9,10 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, Instant};
 
-use crate::data::Outcome;
-use crate::error_chain;
-use crate::jobs::{Job, Progress, Update};
-use crate::study::{Event, Library, Question};
+use impactlab_core::data::Outcome;
+use impactlab_core::error_chain;
+use impactlab_core::jobs::{Job, Progress, Update};
+use impactlab_study::{Event, Library, Question};
 
 /// The shortest time for which a person sees something.
 const SEEN: Duration = Duration::from_millis(100);
@@ -220,7 +220,7 @@ impl<Q: Question> Thread<Q> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::{Observer, StudyError};
+    use impactlab_study::{Observer, StudyError};
     #[derive(Clone, PartialEq)]
     struct Halve(i32);
 

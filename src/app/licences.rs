@@ -3,7 +3,7 @@
 use egui::{ScrollArea, TextStyle, Ui};
 
 use crate::app::command::Command;
-use crate::shipped::LICENCES;
+use impactlab_networks::shipped::LICENCES;
 
 /// Size of the text that is shown at a time, logical pixels.
 const SIZE: [f32; 2] = [720.0, 480.0];

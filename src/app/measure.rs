@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::scene::{MeasureTextAt, Scene, SceneMeasure};
-use crate::units::{Quantity, UnitSystem};
+use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_document::scene::{MeasureTextAt, Scene, SceneMeasure};
 
 /// What is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -17,10 +17,10 @@ use crate::app::source::{Content, Source};
 use crate::app::state::{Session, State};
 use crate::app::widgets::duration_text;
 use crate::app::workspaces::Workspace;
-use crate::data::Severity;
-use crate::jobs::{Job, Progress};
-use crate::render::theme;
-use crate::units::UnitSystem;
+use impactlab_core::data::Severity;
+use impactlab_core::jobs::{Job, Progress};
+use impactlab_core::units::UnitSystem;
+use impactlab_draw::theme;
 
 /// Whether the project can be undone and redone.
 #[derive(Clone, Copy)]

@@ -1,7 +1,7 @@
 //! The window of the program.
 //!
 //! It edits settings, makes questions of them and shows the answers. The questions are answered by
-//! [`study`](crate::study), on threads that [`jobs`](crate::jobs) starts.
+//! [`study`](impactlab_study), on threads that [`jobs`](impactlab_core::jobs) starts.
 
 mod case;
 mod case_filter;
@@ -63,11 +63,11 @@ use egui::{Context, Ui, ViewportCommand};
 use egui_tiles::Tree;
 
 use crate::app::store::{OpenedState, Store, open_state};
-use crate::data::Severity;
-use crate::error_chain;
-use crate::render::scene::SceneView;
-use crate::render::scene::gpu::WindowDevice;
-use crate::render::{DensityGpu, theme};
+use impactlab_core::data::Severity;
+use impactlab_core::error_chain;
+use impactlab_draw::scene::SceneView;
+use impactlab_draw::scene::gpu::WindowDevice;
+use impactlab_draw::{DensityGpu, theme};
 
 pub use case::{Leaving, OpenCase, VariantCommand};
 pub use chain::Link;
@@ -158,6 +158,7 @@ impl App {
     ///   keeps its state there, or if it was written by a later version of the program, nothing is
     ///   stored either, and a message says so.
     pub fn new(cc: &CreationContext<'_>, paths: Vec<PathBuf>, state_file: Option<PathBuf>) -> Self {
+        impactlab_core::program::set_version(crate::VERSION);
         looks::install(&cc.egui_ctx);
         let data_folder = state_file.as_deref().and_then(Path::parent).map(Path::to_owned);
         let OpenedState { store, restored, message } = open_state(state_file);

@@ -6,11 +6,11 @@ use std::sync::Arc;
 
 use crate::app::kept::{KeptEntry, KeptError, KeptFolder, NOTE_ENDING, name_of};
 use crate::app::network::TrainedModel;
-use crate::data::Existing;
-use crate::error_chain;
-use crate::jobs::Job;
-use crate::shipped::ModelSource;
-use crate::study::{Library, ModelChoice};
+use impactlab_core::data::Existing;
+use impactlab_core::error_chain;
+use impactlab_core::jobs::Job;
+use impactlab_networks::shipped::ModelSource;
+use impactlab_study::{Library, ModelChoice};
 
 /// A model in use or ready for use, and its origin.
 pub struct CurrentModel<M> {
@@ -335,7 +335,7 @@ pub fn file_name(path: &Path) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::force::ForceModel;
+    use impactlab_networks::force::ForceModel;
 
     #[test]
     fn a_model_that_comes_into_use_while_another_is_written_is_not_taken_for_the_written_one() {

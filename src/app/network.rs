@@ -6,16 +6,16 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use crate::app::kept::{Fact, differences};
-use crate::data::Existing;
-use crate::error_chain;
-use crate::force::{ForceConfig, ForceModel};
-use crate::learning::{EpochRecord, EpochSummary, ModelFile};
-use crate::response::{ResponseConfig, ResponseModel};
-use crate::study::{
+use impactlab_core::data::Existing;
+use impactlab_core::error_chain;
+use impactlab_core::units::significant;
+use impactlab_networks::force::{ForceConfig, ForceModel};
+use impactlab_networks::learning::{EpochRecord, EpochSummary, ModelFile};
+use impactlab_networks::response::{ResponseConfig, ResponseModel};
+use impactlab_study::{
     Assumption, Library, ModelChoice, ResponseTrainingAnswer, ResponseTrainingReport, StudyError,
     TrainForceAnswer, TrainForceReport,
 };
-use crate::units::significant;
 
 /// One of the two networks.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -13,16 +13,16 @@ use crate::app::panes::Pane;
 use crate::app::source::{Content, Source};
 use crate::app::state::{State, Subject};
 use crate::app::workspaces::Workspace;
-use crate::case_file::is_case_file;
-use crate::collision::Scenario;
-use crate::data::{ColumnMap, Existing, Severity};
-use crate::error_chain;
-use crate::learning::ModelFile;
-use crate::nn::kind_of_file;
-use crate::reconstruct::evidence::Evidence;
-use crate::response::ResponseModel;
-use crate::study::VehicleChoice;
-use crate::vehicle::VehicleParameters;
+use impactlab_core::collision::Scenario;
+use impactlab_core::data::{ColumnMap, Existing, Severity};
+use impactlab_core::error_chain;
+use impactlab_core::vehicle::VehicleParameters;
+use impactlab_networks::learning::ModelFile;
+use impactlab_networks::nn::kind_of_file;
+use impactlab_networks::response::ResponseModel;
+use impactlab_reconstruct::evidence::Evidence;
+use impactlab_study::VehicleChoice;
+use impactlab_study::case_file::is_case_file;
 
 impl State {
     /// Opens paths by their extension: `.impactlab` is a case, `.toml` a site, evidence, a vehicle or a

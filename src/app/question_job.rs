@@ -5,10 +5,10 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use crate::app::latest::AnswerResult;
-use crate::data::Outcome;
-use crate::error_chain;
-use crate::jobs::Job;
-use crate::study::{Event, Library, Question};
+use impactlab_core::data::Outcome;
+use impactlab_core::error_chain;
+use impactlab_core::jobs::Job;
+use impactlab_study::{Event, Library, Question};
 
 /// A question with its answer, or with the reason why there is none.
 pub struct Answered<Q: Question> {

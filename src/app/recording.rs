@@ -6,7 +6,7 @@ use egui::{DragValue, Ui};
 use serde::{Deserialize, Serialize};
 
 use crate::app::source::{CheckedFile, Content, Source};
-use crate::data::{Channel, TimeSeries};
+use impactlab_core::data::{Channel, TimeSeries};
 
 /// The recording that is drawn over the motion.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

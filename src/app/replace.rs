@@ -8,14 +8,14 @@ use crate::app::command::{Command, ComparisonCommand, wake};
 use crate::app::dialogs::MODEL_ENDING;
 use crate::app::export;
 use crate::app::state::State;
-use crate::case_file::is_case_file;
-use crate::collision::Scenario;
-use crate::data::write::{MANIFEST_FILE, check_inputs};
-use crate::data::{DataError, Existing, Severity, write_atomically};
-use crate::error_chain;
-use crate::reconstruct::evidence::Evidence;
-use crate::site::Site;
-use crate::vehicle::VehicleParameters;
+use impactlab_core::collision::Scenario;
+use impactlab_core::data::write::{MANIFEST_FILE, check_inputs};
+use impactlab_core::data::{DataError, Existing, Severity, write_atomically};
+use impactlab_core::error_chain;
+use impactlab_core::site::Site;
+use impactlab_core::vehicle::VehicleParameters;
+use impactlab_reconstruct::evidence::Evidence;
+use impactlab_study::case_file::is_case_file;
 
 impl Command {
     /// The file or folder that the command writes; `None` for all other commands.

@@ -5,8 +5,10 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::app::question_job::QuestionJob;
-use crate::compare::MotionError;
-use crate::study::{Library, SimulateDatasetAnswer, SimulateDatasetReport, SimulateDatasetRequest};
+use impactlab_core::compare::MotionError;
+use impactlab_study::{
+    Library, SimulateDatasetAnswer, SimulateDatasetReport, SimulateDatasetRequest,
+};
 
 /// The simulation of a data set, running or finished.
 #[derive(Default)]

@@ -1,6 +1,6 @@
 //! Makes questions from the project.
 //!
-//! What the project leaves open stays open in the question, so that [`study`](crate::study) decides
+//! What the project leaves open stays open in the question, so that [`study`](impactlab_study) decides
 //! it as it does for the command line.
 
 use std::path::{Path, PathBuf};
@@ -10,10 +10,10 @@ use crate::app::model::CurrentModel;
 use crate::app::response::{ComparisonForm, ForceChoice, ResponseTrainingForm, TrainingMode};
 use crate::app::source::{Content, OpenDataset, Source};
 use crate::app::state::{State, Subject};
-use crate::data::{DatasetKind, FileKind};
-use crate::force::ForceScenario;
-use crate::shipped::ModelSource;
-use crate::study::{
+use impactlab_core::data::{DatasetKind, FileKind};
+use impactlab_networks::force::ForceScenario;
+use impactlab_networks::shipped::ModelSource;
+use impactlab_study::{
     CompareRequest, ConfigChoice, DEFAULT_DRAWS, DEFAULT_LOG_DURATION_S, Drive,
     EvaluateForceRequest, EvaluateResponseRequest, FineTuneRequest, ForceQuestion, ForceSource,
     ImpactRequest, Learning, ModelChoice, MotionLogs, MotionSource, PredictForceRequest,

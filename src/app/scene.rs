@@ -13,13 +13,13 @@ use crate::app::response::{DensityAnswer, DensityQuestion, MotionAnswer};
 use crate::app::source::Source;
 use crate::app::state::{Project, Session, State, View};
 use crate::app::variants::AnsweredVariant;
-use crate::render::scene::{Camera, Follow, SceneView};
-use crate::scene::{
+use impactlab_core::units::UnitSystem;
+use impactlab_document::scene::{
     ForecastScene, OtherMotion, Scene, SceneGround, SceneRole, SimulationScene, add_forecast,
     simulation_scene,
 };
-use crate::study::{PredictMotionAnswer, SimulateAnswer, Trust};
-use crate::units::UnitSystem;
+use impactlab_draw::scene::{Camera, Follow, SceneView};
+use impactlab_study::{PredictMotionAnswer, SimulateAnswer, Trust};
 
 /// From where the scene is seen, which is saved.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

@@ -8,14 +8,14 @@ use std::sync::Arc;
 use crate::app::import::{ColumnMaps, fingerprint};
 use crate::app::model::file_name;
 use crate::app::question_job::Answered;
-use crate::data::{ColumnMap, Dataset, DatasetKind, Flag, Loaded, Note, Outcome};
-use crate::error_chain;
-use crate::jobs::Job;
-use crate::study::{
+use impactlab_core::data::{ColumnMap, Dataset, DatasetKind, Flag, Loaded, Note, Outcome};
+use impactlab_core::error_chain;
+use impactlab_core::jobs::Job;
+use impactlab_core::vehicle::VehicleParameters;
+use impactlab_study::{
     CheckAnswer, CheckRequest, CheckedContent, CheckedItem, Event, Library, Observer, PathProblem,
     Question,
 };
-use crate::vehicle::VehicleParameters;
 
 /// A data set or a file that the user has opened.
 pub struct Source {

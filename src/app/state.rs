@@ -7,7 +7,6 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::PulseSetup;
 use crate::app::case::{Leaving, OpenCase, SavedCase};
 use crate::app::case_table::CaseList;
 use crate::app::command::Command;
@@ -35,16 +34,17 @@ use crate::app::unfinished::UnfinishedTrainings;
 use crate::app::variants::OtherVariants;
 use crate::app::widgets::BetweenCursors;
 use crate::app::workspaces::Workspaces;
-use crate::collision::{ChannelClass, Scenario};
-use crate::data::{Channel, Severity};
-use crate::figure::MOTION_CHANNELS;
-use crate::jobs::Job;
-use crate::study::{
+use impactlab_core::collision::{ChannelClass, Scenario};
+use impactlab_core::data::{Channel, Severity};
+use impactlab_core::jobs::Job;
+use impactlab_core::units::UnitSystem;
+use impactlab_core::vehicle::{ContactPoint, Ending, Equations, Integrator};
+use impactlab_document::figure::MOTION_CHANNELS;
+use impactlab_study::analysis::PulseSetup;
+use impactlab_study::{
     DEFAULT_DURATION_S, ImpactRequest, Library, SimulateAnswer, SimulateReport, SimulateRequest,
     Trust, VehicleChoice,
 };
-use crate::units::UnitSystem;
-use crate::vehicle::{ContactPoint, Ending, Equations, Integrator};
 
 /// Version of the format in which the state is saved. A state of another version is not read.
 const SAVED_VERSION: u32 = 1;
@@ -79,7 +79,7 @@ pub enum Subject {
 }
 
 /// Quantities that a single file does not state about the struck vehicle. For those that are left
-/// open, [`study`](crate::study) assumes a value and lists it in the report.
+/// open, [`study`](impactlab_study) assumes a value and lists it in the report.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct FileStart {

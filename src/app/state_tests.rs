@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use crate::app::state::*;
 use crate::app::{Pane, Source, Workspace, Workspaces};
-use crate::collision::ChannelClass;
-use crate::units::UnitSystem;
+use impactlab_core::collision::ChannelClass;
+use impactlab_core::units::UnitSystem;
 
 #[test]
 fn project_and_view_survive_a_restart() {

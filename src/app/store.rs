@@ -11,10 +11,10 @@ use std::time::Duration;
 use egui::Context;
 
 use crate::app::state::State;
-use crate::data::write::WriterLock;
-use crate::data::{DataError, Existing, MAX_RESULTS_BYTES, read_utf8, write_atomically};
-use crate::error_chain;
-use crate::jobs::{Job, Update};
+use impactlab_core::data::write::WriterLock;
+use impactlab_core::data::{DataError, Existing, MAX_RESULTS_BYTES, read_utf8, write_atomically};
+use impactlab_core::error_chain;
+use impactlab_core::jobs::{Job, Update};
 
 /// Time from the first change that is not written yet until it is: what is changed all the time is
 /// written as often.

@@ -9,11 +9,11 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use crate::app::unfinished::TrainingDiary;
-use crate::data::Outcome;
-use crate::error_chain;
-use crate::jobs::{Job, Progress, ProgressCallback};
-use crate::learning::TrainingReport;
-use crate::study::{Event, Library, Question};
+use impactlab_core::data::Outcome;
+use impactlab_core::error_chain;
+use impactlab_core::jobs::{Job, Progress, ProgressCallback};
+use impactlab_networks::learning::TrainingReport;
+use impactlab_study::{Event, Library, Question};
 
 /// Number of the latest epochs from whose durations the remaining time is estimated.
 const PACE_EPOCHS: usize = 10;
@@ -259,7 +259,7 @@ pub fn time_left(seconds: impl DoubleEndedIterator<Item = f64>, n_left: usize) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::jobs::Update;
+    use impactlab_core::jobs::Update;
 
     #[test]
     fn a_closed_gate_holds_until_it_is_opened() {

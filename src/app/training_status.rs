@@ -9,8 +9,8 @@ use crate::app::network::TrainedModel;
 use crate::app::training::{TrainingEnd, TrainingSlot, time_left};
 use crate::app::unfinished::{TrainingDiary, training_options};
 use crate::app::widgets::duration_text;
-use crate::learning::{EpochSummary, TrainingReport};
-use crate::study::{Library, Question, Request};
+use impactlab_networks::learning::{EpochSummary, TrainingReport};
+use impactlab_study::{Library, Question, Request};
 
 /// The training of a model of type `M`, running or finished.
 pub struct TrainingStatus<M: TrainedModel> {

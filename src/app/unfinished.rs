@@ -16,16 +16,16 @@ use crate::app::dialogs::MODEL_ENDING;
 use crate::app::kept::{KeptError, NOTE_ENDING};
 use crate::app::network::Network;
 use crate::app::state::{Session, State};
-use crate::data::write::WriterLock;
-use crate::data::{
+use impactlab_core::data::write::WriterLock;
+use impactlab_core::data::{
     Existing, MAX_RESULTS_BYTES, Severity, list_folder, read_bytes, write_atomically,
 };
-use crate::error_chain;
-use crate::force::FORCE_CHECKPOINT;
-use crate::jobs::Job;
-use crate::learning::{TrainingReport, stored_epochs};
-use crate::response::RESPONSE_CHECKPOINT;
-use crate::study::{Request, TrainingOptions};
+use impactlab_core::error_chain;
+use impactlab_core::jobs::Job;
+use impactlab_networks::force::FORCE_CHECKPOINT;
+use impactlab_networks::learning::{TrainingReport, stored_epochs};
+use impactlab_networks::response::RESPONSE_CHECKPOINT;
+use impactlab_study::{Request, TrainingOptions};
 
 /// Version of the format of notes.
 const VERSION: u32 = 1;

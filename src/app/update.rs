@@ -9,8 +9,8 @@ use egui::Context;
 use crate::app::command::{Command, wake};
 use crate::app::source::{Content, OpenedMap, OpenedPath, Source};
 use crate::app::state::{Session, State, Subject};
-use crate::data::{DatasetKind, Outcome, Severity};
-use crate::jobs::Update;
+use impactlab_core::data::{DatasetKind, Outcome, Severity};
+use impactlab_core::jobs::Update;
 
 /// Time after which the window is drawn again while an answer is awaited, so that it can be marked late.
 const WAITING_REPAINT: Duration = Duration::from_millis(120);

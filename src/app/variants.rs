@@ -9,8 +9,8 @@ use crate::app::command::wake;
 use crate::app::latest::Latest;
 use crate::app::response::{MotionAnswer, MotionQuestion};
 use crate::app::state::{Session, State};
-use crate::case_file::Variant;
-use crate::study::{PredictMotionRequest, Request, SimulateAnswer, SimulateRequest};
+use impactlab_study::case_file::Variant;
+use impactlab_study::{PredictMotionRequest, Request, SimulateAnswer, SimulateRequest};
 
 /// The answers of one variant.
 #[derive(Default)]

@@ -3,17 +3,17 @@
 use std::io;
 use std::path::PathBuf;
 
-use crate::case_file::CaseError;
-use crate::collision::FilterError;
-use crate::data::DataError;
-use crate::exchange::ExchangeError;
-use crate::force::ForceError;
-use crate::learning::LearningError;
-use crate::ranges::OutOfRange;
-use crate::report::{FormatError, WriteError};
-use crate::scene::FilmTimingError;
-use crate::site::SiteError;
-use crate::study::StudyError;
+use impactlab_core::collision::FilterError;
+use impactlab_core::data::DataError;
+use impactlab_core::ranges::OutOfRange;
+use impactlab_core::site::SiteError;
+use impactlab_document::exchange::ExchangeError;
+use impactlab_document::report::{FormatError, WriteError};
+use impactlab_document::scene::FilmTimingError;
+use impactlab_networks::force::ForceError;
+use impactlab_networks::learning::LearningError;
+use impactlab_study::StudyError;
+use impactlab_study::case_file::CaseError;
 
 /// A command that could not do its work.
 #[derive(Debug, thiserror::Error)]
@@ -168,9 +168,8 @@ pub enum CliError {
     #[error(transparent)]
     FilmTiming(#[from] FilmTimingError),
     /// A film could not be made.
-    #[cfg(feature = "gui")]
     #[error(transparent)]
-    Film(#[from] crate::render::film::FilmError),
+    Film(#[from] impactlab_draw::film::FilmError),
     /// A report is of an unknown kind.
     #[error(transparent)]
     ReportFormat(#[from] FormatError),
@@ -200,23 +199,12 @@ pub enum CliError {
     /// The clock tells no day.
     #[error("the clock of this machine tells no day; say it with --date YYYY-MM-DD")]
     NoClock,
-    /// A build without drawing is asked for a picture.
-    #[error("this build draws no pictures; --out FILE.csv writes the figure's numbers")]
-    NoDrawing,
     /// A picture could not be made.
-    #[cfg(feature = "gui")]
     #[error(transparent)]
-    Render(#[from] crate::render::RenderError),
+    Render(#[from] impactlab_draw::RenderError),
     /// A window could not be opened.
-    #[cfg(feature = "gui")]
     #[error(transparent)]
     Window(#[from] crate::app::WindowError),
-    /// A build without a window is asked for one.
-    #[error(
-        "this build has no window; use impactlab check, impact, simulate, render or vehicles \
-         (see impactlab --help)"
-    )]
-    NoWindow,
     /// Nothing can show a window.
     #[error(
         "there is no display to open a window on (DISPLAY and WAYLAND_DISPLAY are not set); \

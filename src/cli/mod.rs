@@ -6,7 +6,7 @@
 //!   error is a terminal.
 //! - Exit codes: 0 = all is well; 1 = the work failed or found problems; 2 = wrong usage.
 //!
-//! What a question leaves open is decided by [`study`](crate::study), not here.
+//! What a question leaves open is decided by [`study`](impactlab_study), not here.
 
 mod run;
 

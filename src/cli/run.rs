@@ -12,8 +12,8 @@ use crate::cli::commands::{
     predict, ranges, reconstruct, render, report, simulate, train, vehicles,
 };
 use crate::cli::console::{Console, Escaped, Targets, Verdict, within_line};
-use crate::error_chain;
-use crate::study::Library;
+use impactlab_core::error_chain;
+use impactlab_study::Library;
 
 /// What happens when one vehicle hits another, and in the second after
 #[derive(Debug, Parser)]
@@ -69,6 +69,7 @@ enum CliCommand {
 ///
 /// Returns exit code 0 (ok), 1 (the work failed or found problems) or 2 (wrong usage).
 pub fn run() -> ExitCode {
+    impactlab_core::program::set_version(crate::VERSION);
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(help_or_error) => {

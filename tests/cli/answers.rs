@@ -6,7 +6,7 @@ use std::fs;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use impactlab::study::{CompareRequest, ConfigChoice, Event, Library, ModelChoice, Question};
+use impactlab_study::{CompareRequest, ConfigChoice, Event, Library, ModelChoice, Question};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -249,7 +249,7 @@ fn compare(request: &CompareRequest) -> (Result<(), String>, usize) {
         ControlFlow::Continue(())
     };
     let answer = request.answer(&Library::default(), &mut observer);
-    (answer.map(|_| ()).map_err(|error| impactlab::error_chain(&error)), n_trained)
+    (answer.map(|_| ()).map_err(|error| impactlab_core::error_chain(&error)), n_trained)
 }
 
 #[test]

@@ -69,7 +69,7 @@ fn deep_nesting_and_large_settings_are_refused() {
         let message = refused(&["ask", text(&path)]);
         assert!(message.starts_with(&format!("{}: is no request", path.display())), "{message}");
         let path = write("comparison.json", &content);
-        assert!(impactlab::response::evaluate::Comparison::load(&path).is_err());
+        assert!(impactlab_networks::response::evaluate::Comparison::load(&path).is_err());
     }
     let key = "a.".repeat(n) + "a";
     for content in [

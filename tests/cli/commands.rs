@@ -369,7 +369,6 @@ fn figures_are_written_as_numbers() {
     assert!(ran.error_line().contains(".png or .csv"), "{}", ran.err);
 }
 
-#[cfg(feature = "gui")]
 #[test]
 fn a_scene_is_drawn_from_above_and_in_perspective() {
     let folder = TempDir::new().unwrap();
@@ -403,16 +402,7 @@ fn a_scene_is_drawn_from_above_and_in_perspective() {
     assert!(!numbers.contains("draw 4 of"));
 }
 
-#[cfg(not(feature = "gui"))]
-#[test]
-fn a_build_without_drawing_says_so() {
-    for args in [&["render", "impact", SCENARIO, "--out", "x.png"][..], &[], &["app"]] {
-        let ran = impactlab(args);
-        assert!(ran.error_line().starts_with("this build "), "{}", ran.err);
-    }
-}
-
-#[cfg(all(feature = "gui", target_os = "linux"))]
+#[cfg(target_os = "linux")]
 #[test]
 fn without_a_display_the_headless_commands_are_named() {
     let mut command = program();

@@ -162,7 +162,7 @@ fn files_of_steering_wheel_and_torques_steer_and_brake() {
     let header = "time_s,brake_fl_nm,brake_fr_nm,brake_rl_nm,brake_rr_nm";
     let brakes = file("brakes.csv", &format!("{header}\n0,600,600,600,600\n9,600,600,600,600\n"));
     let stop = answer(&[&STRAIGHT[..], &["--wheels", text(&brakes), "--until-rest"]].concat());
-    let vehicle = impactlab::vehicle::Preset::Reference.parameters();
+    let vehicle = impactlab_core::vehicle::Preset::Reference.parameters();
     let deceleration = 4.0 * 600.0 / vehicle.tires.rolling_radius_m / vehicle.mass.mass_kg;
     let (expected_m, got_m) =
         (20.0 * 20.0 / (2.0 * deceleration), stop["rest"]["distance_m"].as_f64().unwrap());
@@ -192,7 +192,7 @@ fn an_ending_in_a_question_is_checked() {
     let mut question: serde_json::Value = serde_json::from_str(&asked).unwrap();
     let toml = fs::read_to_string("assets/scenarios/pit_right_rear.toml").unwrap();
     let file = std::path::Path::new("pit.toml");
-    let scenario = impactlab::collision::Scenario::from_toml(&toml, file).unwrap();
+    let scenario = impactlab_core::collision::Scenario::from_toml(&toml, file).unwrap();
     let mut scenario = serde_json::to_value(scenario).unwrap();
     scenario["bullet_ending"] = serde_json::json!({
         "brake": {"start_s": 0.1, "share_of_friction": -5.0, "rise_s": 0.3}
@@ -337,7 +337,7 @@ fn a_forecast_goes_on_to_rest_and_says_how_far_that_is() {
         assert!(spread(key).is_sorted(), "{key}: {:?}", spread(key));
     }
     // 15 m/s with locked wheels on μ = 0.8, of which 0.72 slides: v²/2μg, less what the impact takes.
-    let vehicle = impactlab::vehicle::Preset::Reference.parameters();
+    let vehicle = impactlab_core::vehicle::Preset::Reference.parameters();
     let sliding = vehicle.tires.friction * vehicle.tires.sliding_friction_ratio;
     let expected_m = 15.0 * 15.0 / (2.0 * sliding * 9.81);
     let [low, .., median, _, high] = spread("distance_m");

@@ -102,7 +102,6 @@ fn the_zones_of_a_site_are_what_the_wheels_stand_on() {
     assert_eq!(distance_m(&["--site", &far]), dry_m, "a zone without wheels changes nothing");
 }
 
-#[cfg(feature = "gui")]
 #[test]
 fn scenes_and_reconstructions_are_drawn_on_their_ground() {
     let folder = TempDir::new().unwrap();

@@ -75,7 +75,7 @@ fn records_sites_and_cases_outlive_what_is_made_of_them() {
     ] {
         assert_refused(here, &[args, options].concat(), input);
     }
-    if cfg!(feature = "gui") {
+    {
         let scene = ["render", "scene", "pit-right-rear", "--time", "1"];
         let photo = "site/orthophoto.png";
         assert_refused(here, &[&scene[..], &on_site, &["--out", photo]].concat(), photo);

@@ -7,13 +7,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use impactlab::collision::{Pulse, PulseShape};
-use impactlab::data::{Channel, Existing, TimeSeries, write_series_csv};
-use impactlab::learning::ModelFile;
-use impactlab::response::{N_RESIDUAL, ResponseModel, STEP_S, average_error_m, rollout};
-use impactlab::vehicle::{
+use impactlab_core::collision::{Pulse, PulseShape};
+use impactlab_core::data::{Channel, Existing, TimeSeries, write_series_csv};
+use impactlab_core::vehicle::{
     ContactLoad, ContactPoint, Integrator, Manoeuvre, Preset, VehicleParameters, VehicleState,
 };
+use impactlab_networks::learning::ModelFile;
+use impactlab_networks::response::{N_RESIDUAL, ResponseModel, STEP_S, average_error_m, rollout};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;

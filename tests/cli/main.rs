@@ -11,7 +11,6 @@ mod contact;
 mod data_sheets;
 mod endings;
 mod export;
-#[cfg(feature = "gui")]
 mod film;
 mod force;
 mod ground;
@@ -25,7 +24,6 @@ mod reconstruct_absurd;
 mod reconstruct_killed;
 mod report;
 mod response;
-#[cfg(feature = "gui")]
 mod restrictions;
 mod staged;
 mod writes;

@@ -68,7 +68,7 @@ fn a_figure_shows_the_paths_a_quantity_or_the_budget() {
         let table = fs::read_to_string(&out).unwrap();
         assert!(table.contains(column), "{plot}: {}", table.lines().next().unwrap_or_default());
     }
-    if cfg!(feature = "gui") {
+    {
         let out = folder.path().join("cars.png");
         let args = ["--plot", "cars-perspective", "--particles", "60", "--json"];
         let target = ["--size", "320x240", "--scale", "1", "--out", text(&out)];

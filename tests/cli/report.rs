@@ -5,9 +5,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use impactlab::case_file::{CaseFile, Variant};
-use impactlab::data::Existing;
-use impactlab::study::{EvidenceChoice, ReconstructRequest};
+use impactlab_core::data::Existing;
+use impactlab_study::case_file::{CaseFile, Variant};
+use impactlab_study::{EvidenceChoice, ReconstructRequest};
 use tempfile::TempDir;
 
 use crate::program::{json, ok, program, text};

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
-use impactlab::response::evaluate::Comparison;
+use impactlab_networks::response::evaluate::Comparison;
 use serde_json::Value;
 use tempfile::TempDir;
 

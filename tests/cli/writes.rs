@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use impactlab::data::write::{FileDigest, sha256_hex};
+use impactlab_core::data::write::{FileDigest, sha256_hex};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -47,7 +47,6 @@ fn a_file_is_replaced_only_where_that_is_said() {
     for (name, args) in [
         ("motion.csv", &SIMULATE[..]),
         ("impact.csv", &["render", "impact", SCENARIO]),
-        #[cfg(feature = "gui")]
         ("impact.png", &["render", "impact", SCENARIO]),
     ] {
         let out = folder.path().join(name);

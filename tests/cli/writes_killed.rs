@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use impactlab::data::write::{FileDigest, OutputFolder, RunRecord};
-use impactlab::data::{Existing, write_atomically};
+use impactlab_core::data::write::{FileDigest, OutputFolder, RunRecord};
+use impactlab_core::data::{Existing, write_atomically};
 use rand::{RngExt, SeedableRng};
 use serde_json::Value;
 use tempfile::TempDir;

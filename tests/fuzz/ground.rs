@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use image::ImageFormat;
-use impactlab::site::{
+use impactlab_core::site::{
     DrawingFile, LengthUnit, PixelMap, Site, SiteOrigin, WorldFile, picture_size_px, read_drawing,
     read_picture,
 };

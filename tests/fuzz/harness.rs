@@ -84,7 +84,7 @@ pub struct Answer {
 impl Answer {
     /// The file was refused.
     pub fn refused(error: &dyn std::error::Error) -> Self {
-        Self { messages: vec![impactlab::error_chain(error)], ..Self::default() }
+        Self { messages: vec![impactlab_core::error_chain(error)], ..Self::default() }
     }
 
     /// The file was accepted as this value.

@@ -4,9 +4,9 @@ use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use impactlab::error_chain;
-use impactlab::response::evaluate::Comparison;
-use impactlab::study::{Library, Request};
+use impactlab_core::error_chain;
+use impactlab_networks::response::evaluate::Comparison;
+use impactlab_study::{Library, Request};
 
 use crate::harness::{Answer, Format, run};
 use crate::mutation::Mutator;
@@ -61,7 +61,6 @@ fn questions() {
     });
 }
 
-#[cfg(feature = "gui")]
 #[test]
 fn states_of_the_window() {
     let load = |path: &Path| {

@@ -7,16 +7,16 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::OnceLock;
 
-use impactlab::data::{Dataset, DatasetKind, Existing};
-use impactlab::force::{
+use impactlab_core::data::{Dataset, DatasetKind, Existing};
+use impactlab_core::vehicle::Preset;
+use impactlab_networks::force::{
     ForceCase, ForceConfig, ForceModel, ForceTrainSettings, ForceTrainingSet, train,
 };
-use impactlab::learning::{ModelFile, TrainingReport};
-use impactlab::response::{
+use impactlab_networks::learning::{ModelFile, TrainingReport};
+use impactlab_networks::response::{
     ImpactRecord, ResponseCase, ResponseConfig, ResponseModel, ResponseTrainSettings, pretrain,
 };
-use impactlab::study::{Library, Request};
-use impactlab::vehicle::Preset;
+use impactlab_study::{Library, Request};
 use serde_json::{Value, json};
 
 use crate::harness::{Answer, Format, run};

@@ -4,15 +4,15 @@ use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use impactlab::data::{
+use impactlab_core::data::{
     Dataset, Loaded, Opened, Outcome, check_case, check_series, contact_interval, open,
     propose_columns, read_force_file, read_motion_log, read_steer_file, read_trajectory_file,
     read_wheels_file,
 };
-use impactlab::error_chain;
-use impactlab::force::ForceCase;
-use impactlab::response::ResponseCase;
-use impactlab::vehicle::Preset;
+use impactlab_core::error_chain;
+use impactlab_core::vehicle::Preset;
+use impactlab_networks::force::ForceCase;
+use impactlab_networks::response::ResponseCase;
 
 use crate::harness::{Answer, Format, run};
 use crate::mutation::Mutator;
@@ -25,7 +25,7 @@ fn series(loaded: &Loaded) -> Answer {
     let (series, sampling) = (&loaded.series, loaded.force_sampling());
     check_series(series, sampling);
     let answer = Answer::accepted(&(loaded, series.time_s()));
-    match impactlab::data::ForceHistory::from_series(series, sampling) {
+    match impactlab_core::data::ForceHistory::from_series(series, sampling) {
         Ok(force) => {
             let impulse = force.cumulative();
             answer.and(&(impulse, force.impulse_n_s(), contact_interval(&force)))
@@ -48,7 +48,7 @@ fn text_format(
 
 fn series_format(
     name: &'static str,
-    load: fn(&Path) -> Result<Loaded, impactlab::data::DataError>,
+    load: fn(&Path) -> Result<Loaded, impactlab_core::data::DataError>,
 ) {
     text_format(name, SERIES, &|path| match load(path) {
         Ok(loaded) => series(&loaded),

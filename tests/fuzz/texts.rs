@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use impactlab::data::ColumnMap;
+use impactlab_core::data::ColumnMap;
 
 use crate::harness::{Answer, Format, run};
 use crate::mutation::Mutator;

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use impactlab::collision::Scenario;
-use impactlab::force::ForceConfig;
-use impactlab::response::ResponseConfig;
-use impactlab::vehicle::{Integrator, Manoeuvre, VehicleParameters, VehicleState};
+use impactlab_core::collision::Scenario;
+use impactlab_core::vehicle::{Integrator, Manoeuvre, VehicleParameters, VehicleState};
+use impactlab_networks::force::ForceConfig;
+use impactlab_networks::response::ResponseConfig;
 
 use crate::harness::{Answer, Format, run};
 use crate::mutation::Mutator;

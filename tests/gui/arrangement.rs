@@ -4,8 +4,8 @@
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, Group, Pane, Subject, VariantCommand, Workspace};
-use impactlab::study::VehicleChoice;
-use impactlab::vehicle::{DataSheet, LibraryVehicle, SheetQuantity};
+use impactlab_core::vehicle::{DataSheet, LibraryVehicle, SheetQuantity};
+use impactlab_study::VehicleChoice;
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
 use crate::pictures::save;

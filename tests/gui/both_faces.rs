@@ -10,7 +10,7 @@ use impactlab::app::{
     App, Command, ComparisonCommand, ForceChoice, Latest, Network, Pane, QuestionJob,
     ReconstructionCommand, State, Subject, TrainingCommand, TrainingMode,
 };
-use impactlab::study::{Question, Request, SimulateAnswer};
+use impactlab_study::{Question, Request, SimulateAnswer};
 use serde::Serialize;
 use serde_json::Value;
 

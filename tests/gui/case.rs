@@ -9,12 +9,12 @@ use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, ForceChoice, Leaving, State, Subject, VariantCommand};
-use impactlab::case_file::{CaseFile, unpack};
-use impactlab::data::Severity;
-use impactlab::study::{Library, Report};
-use impactlab::uncertainty::BadgeKind;
-use impactlab::units::{Quantity, UnitSystem};
-use impactlab::vehicle::{Braking, Ending};
+use impactlab_core::data::Severity;
+use impactlab_core::uncertainty::BadgeKind;
+use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_core::vehicle::{Braking, Ending};
+use impactlab_study::case_file::{CaseFile, unpack};
+use impactlab_study::{Library, Report};
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
 
@@ -56,7 +56,7 @@ fn asked(path: &Path) -> Vec<(String, Vec<Report>)> {
     let report = case.ask(&[], &Library::default(), &mut |_| ControlFlow::Continue(()));
     let report = report.expect("asked").complete().expect("answers");
     assert!(report.is_clean(), "{report:?}");
-    let of = |variant: &impactlab::case_file::VariantReport| {
+    let of = |variant: &impactlab_study::case_file::VariantReport| {
         (variant.name.clone(), variant.reports().cloned().collect())
     };
     report.variants.iter().map(of).collect()

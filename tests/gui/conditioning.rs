@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, Network, Pane, State, Subject, TrainingMode};
-use impactlab::data::{Channel, ForceAxes, ForceHistory, Sampling};
-use impactlab::study::VehicleChoice;
-use impactlab::vehicle::{
+use impactlab_core::data::{Channel, ForceAxes, ForceHistory, Sampling};
+use impactlab_core::vehicle::{
     ContactLoad, ContactPoint, Integrator, Manoeuvre, VehicleState, built_in_vehicle,
 };
+use impactlab_study::VehicleChoice;
 
 use crate::harness::{apply, is_idle, open_with, step_until};
 use crate::pictures::save;

@@ -4,9 +4,9 @@
 //! (`mesa-vulkan-drivers`). Without one they print that nothing was compared and pass, unless
 //! `IMPACTLAB_REQUIRE_GPU` is set.
 
-use impactlab::error_chain;
-use impactlab::render::{DensityError, DensityGpu, GpuError};
-use impactlab::uncertainty::{PlanarGrid, PlanarMixture, PlanarPart};
+use impactlab_core::error_chain;
+use impactlab_core::uncertainty::{PlanarGrid, PlanarMixture, PlanarPart};
+use impactlab_draw::{DensityError, DensityGpu, GpuError};
 
 /// Largest difference as a share of the largest density. It allows for single precision and for the
 /// inexact exponential function of the device.

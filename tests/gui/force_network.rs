@@ -7,10 +7,10 @@ use std::sync::OnceLock;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, Network, Pane, State, Subject, TrainingCommand};
-use impactlab::data::{Dataset, Existing, Severity};
-use impactlab::force::{ForceCase, ForceConfig, train};
-use impactlab::learning::{ModelFile, TrainSettings, TrainingSet};
-use impactlab::study::ForceEvaluation;
+use impactlab_core::data::{Dataset, Existing, Severity};
+use impactlab_networks::force::{ForceCase, ForceConfig, train};
+use impactlab_networks::learning::{ModelFile, TrainSettings, TrainingSet};
+use impactlab_study::ForceEvaluation;
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
 use crate::pictures::save;

@@ -6,7 +6,7 @@ use egui::Pos2;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, GroundCommand, Measure, Pane, ReconstructionCommand, State};
-use impactlab::units::UnitSystem;
+use impactlab_core::units::UnitSystem;
 
 use crate::harness::{apply, is_idle, open, step_until};
 use crate::pictures::save;
@@ -184,7 +184,7 @@ fn an_orthophoto_alone_is_scaled_by_two_points_undone_and_saved() {
         state.session.ground.shown().is_some() && is_idle(state) && state.analysis().is_some()
     });
     assert_eq!(width_m(&harness), (scaled_m, true), "read back from the file");
-    let read = impactlab::site::Site::load(&site).expect("a site file");
+    let read = impactlab_core::site::Site::load(&site).expect("a site file");
     assert_eq!(read.orthophoto.expect("an orthophoto").file, path);
 }
 

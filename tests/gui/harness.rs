@@ -8,7 +8,7 @@ use egui::{Color32, Context, FullOutput, TexturesDelta};
 use egui_kittest::{Harness, TestRenderer};
 use image::RgbaImage;
 use impactlab::app::{App, Command, State};
-use impactlab::render::SoftwareRenderer;
+use impactlab_draw::SoftwareRenderer;
 
 /// Longest time to wait for background work. Only work that hangs exceeds it.
 const PATIENCE: Duration = Duration::from_secs(600);

@@ -198,7 +198,7 @@ fn world_velocities_are_told_from_body_velocities_by_the_path() {
     });
     let content = &state(&harness).session.sources[0].content;
     let impactlab::app::Content::File(file) = content else { panic!("a file") };
-    let vy = file.loaded.series.get(impactlab::data::Channel::Vy).expect("velocities");
+    let vy = file.loaded.series.get(impactlab_core::data::Channel::Vy).expect("velocities");
     assert!(vy.iter().all(|vy| vy.abs() < 1e-6), "body axes: no lateral velocity");
 }
 
@@ -247,7 +247,7 @@ fn the_vehicle_of_a_file_is_asked_for_beside_its_curve() {
     settle(&mut harness);
     choose(&mut harness, ("Struck vehicle", 0), "target-2000");
     let chosen = &state(&harness).project.vehicle;
-    assert_eq!(*chosen, impactlab::study::VehicleChoice::Preset("target-2000".to_owned()));
+    assert_eq!(*chosen, impactlab_study::VehicleChoice::Preset("target-2000".to_owned()));
     harness.get_by_label("Open with these columns").click();
     step_until(&mut harness, "the force", |state| state.analysis().is_some() && is_idle(state));
     let report = &state(&harness).analysis().expect("it is simulated").report;

@@ -10,7 +10,7 @@ use impactlab::app::{
     App, Command, ComparisonCommand, CostPlace, KeptEntry, KeptKind, Leaving, Network, Pane, State,
     TrainingCommand, TrainingMode,
 };
-use impactlab::study::ModelChoice;
+use impactlab_study::ModelChoice;
 
 use crate::harness::{apply, is_idle, open_with, step_until};
 use crate::pictures::save;

@@ -5,17 +5,17 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use egui_kittest::image_snapshot;
-use impactlab::analysis::{ForceForecast, ForecastSettings, pulse_curves};
-use impactlab::data::Dataset;
-use impactlab::figure::{
+use impactlab_core::data::Dataset;
+use impactlab_core::uncertainty::{CurveComponent, CurveMixture, ForceCurve};
+use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_document::figure::{
     CoveragePoint, Figure, FigureElement, ForceComponent, ForecastFigure, LossCurve, ParityPoint,
     RecordedCurve, Role, coverage_figure, forecast_figure, loss_figure, parity_figure, pit_figure,
 };
-use impactlab::force::ForceCase;
-use impactlab::render::{Canvas, figure_image};
-use impactlab::study::Trust;
-use impactlab::uncertainty::{CurveComponent, CurveMixture, ForceCurve};
-use impactlab::units::{Quantity, UnitSystem};
+use impactlab_draw::{Canvas, figure_image};
+use impactlab_networks::force::ForceCase;
+use impactlab_study::Trust;
+use impactlab_study::analysis::{ForceForecast, ForecastSettings, pulse_curves};
 use nalgebra::DMatrix;
 
 fn cases() -> Vec<ForceCase> {

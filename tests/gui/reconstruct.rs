@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use impactlab::app::{App, Command, FollowedParticle, ReconstructionCommand, State, Workspace};
-use impactlab::reconstruct::evidence::Evidence;
-use impactlab::study::{EvidenceChoice, VehicleChoice};
-use impactlab::uncertainty::BadgeKind;
-use impactlab::vehicle::built_in_vehicle;
+use impactlab_core::uncertainty::BadgeKind;
+use impactlab_core::vehicle::built_in_vehicle;
+use impactlab_reconstruct::evidence::Evidence;
+use impactlab_study::{EvidenceChoice, VehicleChoice};
 
 use crate::harness::{apply, open_at, open_with, step_until};
 use crate::looks::collisions;

@@ -5,10 +5,12 @@ use std::path::PathBuf;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, MadeReport, ReportCommand, State, Workspace};
-use impactlab::case_file::CaseFile;
-use impactlab::report::{Language, ReportFormat, ReportSettings, SectionKind, report_case};
-use impactlab::study::Library;
-use impactlab::units::UnitSystem;
+use impactlab_core::units::UnitSystem;
+use impactlab_document::report::{
+    Language, ReportFormat, ReportSettings, SectionKind, report_case,
+};
+use impactlab_study::Library;
+use impactlab_study::case_file::CaseFile;
 use tempfile::TempDir;
 
 use crate::harness::{apply, open_at, step_until};
@@ -66,7 +68,7 @@ fn the_report_on_screen_is_the_one_of_the_case_file() {
     let settings = ReportSettings {
         language: Language::En,
         units: UnitSystem::Si,
-        paper: impactlab::report::Paper::A4,
+        paper: impactlab_document::report::Paper::A4,
         date: DATE.parse().expect("a day"),
     };
     let asked = (&case, std::slice::from_ref(&case.shown));
@@ -102,7 +104,7 @@ fn a_report_is_saved_as_its_ending_says_unless_the_case_has_changed() {
         apply(&mut harness, Command::SaveReport(document.clone(), path.clone()));
         step_until(&mut harness, name, |state| state.session.exports.is_empty());
         let format = ReportFormat::of(&path).expect("a format");
-        let drawing = &impactlab::render::report_picture;
+        let drawing = &impactlab_draw::report_picture;
         let expected = document.bytes(format, Some(drawing)).expect("a report");
         assert!(std::fs::read(&path).expect("a file") == expected, "{name}");
     }

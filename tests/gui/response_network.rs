@@ -58,7 +58,7 @@ fn a_recorded_case_is_forecast_with_density_and_bands() {
         let state = harness.state_mut().state_mut();
         state.view.response.density = DensityChoice::Window;
         state.view.dark = true;
-        state.view.units = impactlab::units::UnitSystem::Us;
+        state.view.units = impactlab_core::units::UnitSystem::Us;
     }
     step_until(&mut harness, "the window", |state| is_density_current(state, [0.0, 3.99]));
     harness.run_steps(4);

@@ -4,7 +4,7 @@ use egui::{Pos2, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, Pane};
-use impactlab::render::scene::{Camera, Follow, ViewKind};
+use impactlab_draw::scene::{Camera, Follow, ViewKind};
 
 use crate::harness::{apply, is_idle, open, step_until};
 use crate::pictures::save;
@@ -74,7 +74,7 @@ fn the_time_line_goes_to_start_and_end_of_the_contact() {
     harness.run_steps(2);
     let answer = harness.state().state().analysis().expect("a simulation");
     let force = answer.analysis.force.as_ref().expect("a force");
-    let (_, end_s) = impactlab::data::contact_interval(force).expect("a contact");
+    let (_, end_s) = impactlab_core::data::contact_interval(force).expect("a contact");
     // The slider has whole milliseconds.
     assert!((time_s(&harness) - end_s).abs() < 1e-3, "{} s, {end_s} s", time_s(&harness));
     assert!((0.02..0.3).contains(&end_s), "{end_s} s");
@@ -92,7 +92,7 @@ fn the_camera_follows_the_struck_car() {
         harness.run_steps(3);
         let answer = harness.state().state().analysis().expect("a simulation");
         let motion = &answer.analysis.simulation.as_ref().expect("a motion").series;
-        let pose = impactlab::figure::pose_at(motion, time_s).expect("a pose");
+        let pose = impactlab_document::figure::pose_at(motion, time_s).expect("a pose");
         let target = camera(&harness).target_m;
         assert!((target[0] - pose.x_m).hypot(target[1] - pose.y_m) < 1e-9, "at {time_s} s");
     }

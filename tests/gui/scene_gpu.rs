@@ -11,18 +11,18 @@ use std::sync::Arc;
 
 use egui::Color32;
 use image::{Rgba, RgbaImage};
-use impactlab::analysis::DensityTask;
-use impactlab::error_chain;
-use impactlab::render::GpuError;
-use impactlab::render::scene::gpu::{GpuCanvas, SceneDevice};
-use impactlab::render::scene::{Camera, SceneCanvas, SceneLook, ViewKind};
-use impactlab::scene::{
+use impactlab_core::error_chain;
+use impactlab_core::site::PixelMap;
+use impactlab_core::units::UnitSystem;
+use impactlab_document::scene::{
     ForecastScene, GroundPicture, LoadedGround, Scene, SceneGround, SimulationScene, add_forecast,
     simulation_scene,
 };
-use impactlab::site::PixelMap;
-use impactlab::study::{ForceSource, Library, MotionSource, PredictMotionRequest, Question, Trust};
-use impactlab::units::UnitSystem;
+use impactlab_draw::GpuError;
+use impactlab_draw::scene::gpu::{GpuCanvas, SceneDevice};
+use impactlab_draw::scene::{Camera, SceneCanvas, SceneLook, ViewKind};
+use impactlab_study::analysis::DensityTask;
+use impactlab_study::{ForceSource, Library, MotionSource, PredictMotionRequest, Question, Trust};
 
 use crate::snapshots::braked_pit;
 

@@ -6,21 +6,21 @@ use std::path::Path;
 use std::sync::Arc;
 
 use egui_kittest::image_snapshot;
-use impactlab::analysis::{Analysis, PulseSetup, Settings, analyse_case, analyse_scenario};
 use impactlab::app::{Measure, Measuring};
-use impactlab::collision::{ChannelClass, Scenario};
-use impactlab::data::{Channel, Dataset};
-use impactlab::figure::{
+use impactlab_core::collision::{ChannelClass, Scenario};
+use impactlab_core::data::{Channel, Dataset};
+use impactlab_core::units::UnitSystem;
+use impactlab_core::vehicle::{Braking, Ending, Integrator, Preset};
+use impactlab_document::figure::{
     Figure, analysis_force_figure, analysis_motion_figure, analysis_scene_figure, impact_figure,
 };
-use impactlab::render::scene::{
+use impactlab_document::scene::{Scene, SimulationScene, simulation_scene};
+use impactlab_draw::scene::{
     Camera, Follow, SceneCanvas, SceneLook, ScenePicture, ViewKind, scene_image,
 };
-use impactlab::render::{Canvas, figure_image};
-use impactlab::scene::{Scene, SimulationScene, simulation_scene};
-use impactlab::study::Trust;
-use impactlab::units::UnitSystem;
-use impactlab::vehicle::{Braking, Ending, Integrator, Preset};
+use impactlab_draw::{Canvas, figure_image};
+use impactlab_study::Trust;
+use impactlab_study::analysis::{Analysis, PulseSetup, Settings, analyse_case, analyse_scenario};
 
 fn analysis(dataset: &str, case: &str) -> Analysis {
     let mut report = |_| ControlFlow::Continue(());
@@ -36,7 +36,7 @@ fn settings() -> Settings {
         bullet: Preset::Bullet2000.parameters(),
         integrator: Integrator::Rk4,
         duration_s: 4.0,
-        ending: impactlab::vehicle::Ending::default(),
+        ending: impactlab_core::vehicle::Ending::default(),
         ends_at_rest: false,
         friction_zones: Vec::new(),
     }

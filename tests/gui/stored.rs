@@ -7,7 +7,7 @@ use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, ComparisonCommand, Network, Pane, State, Subject};
-use impactlab::data::Severity;
+use impactlab_core::data::Severity;
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
 

@@ -5,14 +5,14 @@ use egui::OutputCommand;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use impactlab::app::{App, Command, Pane, State};
-use impactlab::data::Severity;
-use impactlab::figure::{
+use impactlab_core::data::Severity;
+use impactlab_core::uncertainty::{Badge, BadgeKind};
+use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_document::figure::{
     Axis, Figure, FigureElement, ForceComponent, ForecastFigure, Role, forecast_figure,
 };
-use impactlab::render::{Canvas, figure_image, picture_ui, theme};
-use impactlab::study::Trust;
-use impactlab::uncertainty::{Badge, BadgeKind};
-use impactlab::units::{Quantity, UnitSystem};
+use impactlab_draw::{Canvas, figure_image, picture_ui, theme};
+use impactlab_study::Trust;
 
 use crate::harness::{apply, is_idle, open, step_until};
 

@@ -7,9 +7,9 @@ use egui::Key;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use impactlab::app::{App, Command, ReplayStatus, State};
-use impactlab::data::{DatasetKind, Severity};
-use impactlab::study::Trust;
-use impactlab::units::UnitSystem;
+use impactlab_core::data::{DatasetKind, Severity};
+use impactlab_core::units::UnitSystem;
+use impactlab_study::Trust;
 
 use crate::harness::{apply, is_idle, open, open_with, step_until};
 
@@ -162,7 +162,7 @@ fn a_dropped_file_opens_and_a_figure_is_exported() {
     step_until(&mut harness, "the file, which is selected by itself", shows("c002"));
     harness.get_by_label_contains("c002.csv · force");
     let analysis = state(&harness).analysis().unwrap().analysis.clone();
-    let figure = impactlab::figure::analysis_scene_figure(
+    let figure = impactlab_document::figure::analysis_scene_figure(
         (&analysis, &Trust::default()),
         1.0,
         UnitSystem::Si,

@@ -4,24 +4,26 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use impactlab::analysis::PulseSetup;
-use impactlab::collision::{ContactLocation, Scenario, Side};
-use impactlab::data::{Channel, Existing, Outcome};
-use impactlab::learning::{LearningError, ModelFile, TEST_SHARE, TrainingReport, TrainingSet};
-use impactlab::response::{
+use impactlab_core::collision::{ContactLocation, Scenario, Side};
+use impactlab_core::data::{Channel, Existing, Outcome};
+use impactlab_core::uncertainty::BadgeKind;
+use impactlab_core::vehicle::sheet::{SheetQuantity, VehicleClass};
+use impactlab_core::vehicle::{
+    CollisionForce, ContactPoint, DataSheet, Preset, VehicleInput, VehicleParameters, VehicleState,
+    WheelEffort,
+};
+use impactlab_networks::learning::{
+    LearningError, ModelFile, TEST_SHARE, TrainingReport, TrainingSet,
+};
+use impactlab_networks::response::{
     ResponseCase, ResponseConfig, ResponseModel, ResponseTrainSettings, STEP_S, average_error_m,
     condition, fine_tune, rollout, train_fleet,
 };
-use impactlab::shipped::ModelSource;
-use impactlab::study::{
+use impactlab_networks::shipped::ModelSource;
+use impactlab_study::analysis::PulseSetup;
+use impactlab_study::{
     Event, ForceSource, Library, MotionSource, PredictMotionReport, PredictMotionRequest, Question,
     ScenarioChoice, StudyError,
-};
-use impactlab::uncertainty::BadgeKind;
-use impactlab::vehicle::sheet::{SheetQuantity, VehicleClass};
-use impactlab::vehicle::{
-    CollisionForce, ContactPoint, DataSheet, Preset, VehicleInput, VehicleParameters, VehicleState,
-    WheelEffort,
 };
 use proptest::prelude::*;
 

@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use impactlab::case_file::{CaseError, CaseFile, Change, UsedFile, Variant, pack, unpack};
-use impactlab::data::Existing;
-use impactlab::study::{
+use impactlab_core::data::Existing;
+use impactlab_study::case_file::{CaseError, CaseFile, Change, UsedFile, Variant, pack, unpack};
+use impactlab_study::{
     Drive, Event, ImpactRequest, Library, MotionSource, Report, Request, ScenarioChoice,
     SeriesFile, SimulateRequest,
 };

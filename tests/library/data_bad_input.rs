@@ -7,7 +7,7 @@ use std::fs::{self, File};
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use impactlab::data::{
+use impactlab_core::data::{
     ColumnMap, DataError, Dataset, DatasetKind, open, propose_columns, read_any_series,
     read_force_file, read_steer_file, read_trajectory_file,
 };

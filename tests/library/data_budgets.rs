@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use impactlab::data::{Dataset, MAX_CASES, Opened, open, propose_columns, read_force_file};
+use impactlab_core::data::{Dataset, MAX_CASES, Opened, open, propose_columns, read_force_file};
 use tempfile::TempDir;
 
 /// Longest time to refuse or to read a file of less than a megabyte, on a machine that is busy. Each
@@ -219,9 +219,9 @@ fn the_files_of_a_data_set_have_a_largest_size_together() {
 /// A motion whose last instant is 9 · 10⁵ s after its first, every 10 ms of which once were allocated.
 #[test]
 fn a_motion_or_a_log_of_ten_days_is_refused() {
-    use impactlab::data::read_motion_log;
-    use impactlab::response::{LogSettings, LoggedImpact, MotionLog, ResponseCase};
-    use impactlab::vehicle::Preset;
+    use impactlab_core::data::read_motion_log;
+    use impactlab_core::vehicle::Preset;
+    use impactlab_networks::response::{LogSettings, LoggedImpact, MotionLog, ResponseCase};
     let folder = tempfile::tempdir().unwrap();
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/trajectories-fea");
     let table = fs::read_to_string(shipped.join("cases.csv")).unwrap();

@@ -5,7 +5,7 @@
 use std::fs;
 
 use approx::assert_relative_eq;
-use impactlab::data::{
+use impactlab_core::data::{
     Channel, ColumnMap, Existing, FileKind, Loaded, Note, Separator, TimeSeries,
     map_from_proposals, propose_columns, read_any_series, read_force_file, write_series_csv,
 };
@@ -176,7 +176,7 @@ fn a_failed_write_leaves_the_file_as_it_was() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("f.csv");
     fs::write(&path, "before").unwrap();
-    let error = impactlab::data::write_atomically(&path, Existing::Replace, |out| {
+    let error = impactlab_core::data::write_atomically(&path, Existing::Replace, |out| {
         out.write_all(b"half")?;
         Err(std::io::Error::other("disk full"))
     });

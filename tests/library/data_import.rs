@@ -7,7 +7,7 @@ use std::fs;
 use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
 
-use impactlab::data::{
+use impactlab_core::data::{
     Channel, ColumnMap, DataError, Dataset, FlagKind, ForceHistory, Loaded, Note, Outcome, Table,
     VelocityFit, check_file, read_any_series, velocity_fit,
 };
@@ -412,7 +412,7 @@ fn components_in_different_units_are_doubted() {
     let read = |header: &str| {
         let path = folder.path().join("f.csv");
         std::fs::write(&path, format!("{header}\n0,0,0\n0.1,40,2000\n0.2,0,0\n")).unwrap();
-        impactlab::data::read_force_file(&path, None).unwrap()
+        impactlab_core::data::read_force_file(&path, None).unwrap()
     };
     let mixed = read("Time [s],Fx [kN],Fy [N]");
     let doubts: Vec<String> =
@@ -420,5 +420,7 @@ fn components_in_different_units_are_doubted() {
     let [said] = doubts.as_slice() else { panic!("{doubts:?}") };
     let expected = "column 2 \"Fx [kN]\" is read in kN and column 3 \"Fy [N]\" in N";
     assert!(said.starts_with(expected), "{said}");
-    assert!(!read("Time [s],Fx [kN],Fy [kN]").notes.iter().any(impactlab::data::Note::is_doubt));
+    assert!(
+        !read("Time [s],Fx [kN],Fy [kN]").notes.iter().any(impactlab_core::data::Note::is_doubt)
+    );
 }

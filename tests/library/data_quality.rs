@@ -6,7 +6,7 @@ use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use impactlab::data::{
+use impactlab_core::data::{
     Case, Channel, Dataset, Flag, FlagKind, Sampling, Severity, TimeSeries, check_case,
     check_series, contact_interval,
 };

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use impactlab::data::{
+use impactlab_core::data::{
     Dataset, DatasetKind, FlagKind, ForceAttributes, Opened, TrajectoryAttributes, check_case, open,
 };
 

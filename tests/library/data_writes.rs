@@ -9,9 +9,9 @@ use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::Path;
 use std::process::Command;
 
-use impactlab::data::write::{OutputFolder, RunRecord, WriterLock};
-use impactlab::data::{Existing, check_target, write_atomically};
-use impactlab::error_chain;
+use impactlab_core::data::write::{OutputFolder, RunRecord, WriterLock};
+use impactlab_core::data::{Existing, check_target, write_atomically};
+use impactlab_core::error_chain;
 use tempfile::TempDir;
 
 fn folder() -> TempDir {

@@ -2,9 +2,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a helper of a test may fail it like the test itself")]
 
-use impactlab::data::{Channel, TimeSeries};
-use impactlab::units::STANDARD_GRAVITY_M_S2;
-use impactlab::vehicle::{
+use impactlab_core::data::{Channel, TimeSeries};
+use impactlab_core::units::STANDARD_GRAVITY_M_S2;
+use impactlab_core::vehicle::{
     Braking, DamagedWheel, DrivenAxle, Ending, EngineBraking, Integrator, Manoeuvre, Motion,
     Preset, VehicleParameters, VehicleState, Wheel,
 };

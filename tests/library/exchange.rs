@@ -6,15 +6,17 @@ use std::path::PathBuf;
 use dxf::Drawing;
 use dxf::entities::EntityType;
 use gltf::animation::util::ReadOutputs;
-use impactlab::exchange::{DxfOptions, GltfFrame, dxf, glb, hve_motion, hve_pulse};
-use impactlab::scene::{CarLook, Scene, SceneGround, SceneRole, SimulationScene, simulation_scene};
-use impactlab::site::SiteOrigin;
-use impactlab::study::{
+use impactlab_core::site::SiteOrigin;
+use impactlab_core::units::UnitSystem;
+use impactlab_core::vehicle::Wheel;
+use impactlab_document::exchange::{DxfOptions, GltfFrame, dxf, glb, hve_motion, hve_pulse};
+use impactlab_document::scene::{
+    CarLook, Scene, SceneGround, SceneRole, SimulationScene, simulation_scene,
+};
+use impactlab_study::{
     Library, MotionSource, Question, ScenarioChoice, SeriesFile, SimulateAnswer, SimulateRequest,
     Trust,
 };
-use impactlab::units::UnitSystem;
-use impactlab::vehicle::Wheel;
 
 /// The shipped scenario, simulated, and its scene.
 fn case() -> (SimulateAnswer, Scene) {
@@ -291,7 +293,7 @@ fn tables_for_hve_have_its_units_and_signs() {
     assert_eq!(motion.len(), series.n_samples());
     let last = motion.last().expect("rows");
     let end = |channel| *series.get(channel).and_then(|v| v.last()).expect("a channel");
-    use impactlab::data::Channel::{X, Y, Yaw};
+    use impactlab_core::data::Channel::{X, Y, Yaw};
     assert!((last[1] * 0.3048 - end(X)).abs() < 1e-3, "{last:?}");
     assert!((last[2] * 0.3048 + end(Y)).abs() < 1e-3, "{last:?}");
     assert!((last[3] + end(Yaw).to_degrees()).abs() < 1e-3, "{last:?}");

@@ -4,12 +4,12 @@
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use impactlab::data::{Dataset, Outcome};
-use impactlab::force::{
+use impactlab_core::data::{Dataset, Outcome};
+use impactlab_networks::force::{
     ColumnSet, CurvePrediction, Evaluation, EvaluationError, EvaluationSettings, ForceCase,
     evaluate,
 };
-use impactlab::learning::{TEST_SHARE, split};
+use impactlab_networks::learning::{TEST_SHARE, split};
 
 fn shipped_cases() -> Vec<ForceCase> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("datasets/fea");

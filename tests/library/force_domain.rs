@@ -6,11 +6,11 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use impactlab::collision::contact_work_j;
-use impactlab::data::StruckSide;
-use impactlab::force::{ForceCase, ForceModel, ForcePrediction, ForceScenario};
-use impactlab::shipped::ModelSource;
-use impactlab::uncertainty::{BadgeKind, CurveQuantities};
+use impactlab_core::collision::contact_work_j;
+use impactlab_core::data::StruckSide;
+use impactlab_core::uncertainty::{BadgeKind, CurveQuantities};
+use impactlab_networks::force::{ForceCase, ForceModel, ForcePrediction, ForceScenario};
+use impactlab_networks::shipped::ModelSource;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 

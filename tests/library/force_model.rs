@@ -7,14 +7,14 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use candle_core::Tensor;
-use impactlab::data::Existing;
-use impactlab::error_chain;
-use impactlab::force::{
+use impactlab_core::data::Existing;
+use impactlab_core::error_chain;
+use impactlab_networks::force::{
     Centre, ForceCase, ForceConfig, ForceError, ForceModel, ForceScenario, ForceTrainSettings,
     ForceTrainingSet, train,
 };
-use impactlab::learning::{ModelFile, TrainingReport};
-use impactlab::nn::{Checkpoint, ModelKind};
+use impactlab_networks::learning::{ModelFile, TrainingReport};
+use impactlab_networks::nn::{Checkpoint, ModelKind};
 
 const N_CASES: usize = 16;
 const EPOCHS: usize = 6;

@@ -18,7 +18,6 @@ mod exchange;
 mod force_baselines;
 mod force_domain;
 mod force_model;
-mod layering;
 mod model_budgets;
 mod ranges;
 mod report;

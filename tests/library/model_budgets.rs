@@ -8,12 +8,12 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use candle_core::{Device, Tensor};
-use impactlab::data::Existing;
-use impactlab::error_chain;
-use impactlab::force::ForceModel;
-use impactlab::learning::ModelFile;
-use impactlab::nn::{Checkpoint, NnError, kind_of_file};
-use impactlab::response::ResponseModel;
+use impactlab_core::data::Existing;
+use impactlab_core::error_chain;
+use impactlab_networks::force::ForceModel;
+use impactlab_networks::learning::ModelFile;
+use impactlab_networks::nn::{Checkpoint, NnError, kind_of_file};
+use impactlab_networks::response::ResponseModel;
 use serde_json::{Value, json};
 
 /// Longest time to refuse a model, on a machine that is busy.

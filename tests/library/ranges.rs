@@ -10,26 +10,26 @@ use std::path::Path;
 
 use toml::Value;
 
-use impactlab::analysis::PulseSetup;
-use impactlab::collision::{ContactLocation, Scenario};
-use impactlab::data::{Dataset, DatasetKind, read_any_series};
-use impactlab::force::{ForceConfig, ForceScenario};
-use impactlab::learning::check_settings;
-use impactlab::ranges::{
+use impactlab_core::collision::{ContactLocation, Scenario};
+use impactlab_core::data::{Dataset, DatasetKind, read_any_series};
+use impactlab_core::ranges::{
     CG_HEIGHT, CHOICES, CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, CORNERING_COEFFICIENT, DRAWS, EPOCHS,
     FOLDS, FORCE_SAMPLE, FORCE_SETTINGS, FORECAST_DURATION, FRICTION_LIMIT, INSTANT, LOG_DURATION,
     PULSE_DURATION, RESPONSE_SETTINGS, RESTITUTION, ROAD_FRICTION, ROLL_DAMPING, Range, RangeGroup,
     SAMPLES, SIMULATED_DURATION, SLIDING_FRICTION_RATIO, SPEED, STEER_ANGLE, TEST_SHARE, TIME_STEP,
     TRACK_WIDTH, TRAJECTORIES, YAW_RATE,
 };
-use impactlab::response::ResponseConfig;
-use impactlab::shipped::ModelSource;
-use impactlab::study::{
+use impactlab_core::vehicle::{ContactPoint, Preset, VehicleParameters};
+use impactlab_networks::force::{ForceConfig, ForceScenario};
+use impactlab_networks::learning::check_settings;
+use impactlab_networks::response::ResponseConfig;
+use impactlab_networks::shipped::ModelSource;
+use impactlab_study::analysis::PulseSetup;
+use impactlab_study::{
     CompareRequest, Drive, EvaluateForceRequest, FineTuneRequest, ForceQuestion, ForceSource,
     ModelChoice, MotionLogs, MotionSource, PredictForceRequest, PredictMotionRequest, Question,
     ScenarioChoice, SimulateRequest, TrainForceRequest, TrainingOptions,
 };
-use impactlab::vehicle::{ContactPoint, Preset, VehicleParameters};
 
 /// Behind the name of a setting: how many numbers it has.
 const NUMBER_OF: &str = " (number)";
@@ -165,9 +165,9 @@ fn scenario_files_are_checked() {
     let text = fs::read_to_string("assets/scenarios/pit_right_rear.toml").unwrap();
     let text = text.replacen("speed_km_h = 54", "speed_m_s = 15\nyaw_rate_rad_s = 0", 1);
     for (key, range) in [
-        ("mass_kg", impactlab::ranges::BODY_MASS),
-        ("yaw_inertia_kg_m2", impactlab::ranges::BODY_YAW_INERTIA),
-        ("width_m", impactlab::ranges::BODY_WIDTH),
+        ("mass_kg", impactlab_core::ranges::BODY_MASS),
+        ("yaw_inertia_kg_m2", impactlab_core::ranges::BODY_YAW_INERTIA),
+        ("width_m", impactlab_core::ranges::BODY_WIDTH),
         ("speed_m_s", SPEED),
         ("yaw_rate_rad_s", YAW_RATE),
         ("restitution", RESTITUTION),
@@ -339,7 +339,7 @@ fn collisions_in_numbers_are_checked() {
             seed: 0,
         })
     };
-    probe("mass", &impactlab::ranges::BODY_MASS, |mass| {
+    probe("mass", &impactlab_core::ranges::BODY_MASS, |mass| {
         ask(ForceScenario { mass_kg: [mass, 2000.0], ..numbers.clone() })
     });
     probe("speed", &SPEED, |speed| {

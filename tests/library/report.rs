@@ -6,17 +6,17 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use impactlab::case_file::{CaseFile, CaseReport, Variant, pack, unpack};
-use impactlab::data::Existing;
-use impactlab::report::{
+use impactlab_core::data::Existing;
+use impactlab_core::uncertainty::Badge;
+use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_document::report::{
     Block, Language, Paper, PictureContent, Pixels, ReportDate, ReportDocument, ReportSettings,
     SectionKind, VALIDATION_TABLES, pdf, report_case,
 };
-use impactlab::study::{
+use impactlab_study::case_file::{CaseFile, CaseReport, Variant, pack, unpack};
+use impactlab_study::{
     EvidenceChoice, ImpactRequest, Library, ReconstructRequest, Report, ScenarioChoice,
 };
-use impactlab::uncertainty::Badge;
-use impactlab::units::{Quantity, UnitSystem};
 
 /// Particles of a reconstruction that is asked only for the look of its report.
 const FEW_PARTICLES: usize = 60;
@@ -31,7 +31,7 @@ pub fn english() -> ReportSettings {
 }
 
 pub fn report(case: &CaseFile, settings: &ReportSettings) -> (ReportDocument, CaseReport) {
-    let mut go_on = |_: impactlab::study::Event<'_>| ControlFlow::Continue(());
+    let mut go_on = |_: impactlab_study::Event<'_>| ControlFlow::Continue(());
     let outcome = report_case((case, &[]), settings, &Library::default(), &mut go_on);
     outcome.expect("a case").complete().expect("nobody cancels")
 }

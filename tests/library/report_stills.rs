@@ -3,12 +3,12 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use impactlab::analysis::PulseSetup;
-use impactlab::case_file::{CaseFile, Variant, pack, unpack};
-use impactlab::data::Existing;
-use impactlab::report::{Picture, PictureContent, ReportDocument};
-use impactlab::scene::{SceneStill, ViewKind};
-use impactlab::study::{
+use impactlab_core::data::Existing;
+use impactlab_document::report::{Picture, PictureContent, ReportDocument};
+use impactlab_document::scene::{SceneStill, ViewKind};
+use impactlab_study::analysis::PulseSetup;
+use impactlab_study::case_file::{CaseFile, Variant, pack, unpack};
+use impactlab_study::{
     EvidenceChoice, MotionSource, ReconstructRequest, Request, ScenarioChoice, SimulateRequest,
 };
 

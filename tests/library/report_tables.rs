@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use impactlab::analysis::PulseSetup;
-use impactlab::case_file::{CaseFile, CaseReport, Variant};
-use impactlab::report::Block;
-use impactlab::report::{Language, Paper, ReportDocument, Table};
-use impactlab::study::{MotionSource, Report, ScenarioChoice, SimulateReport, SimulateRequest};
-use impactlab::units::{Quantity, UnitSystem};
-use impactlab::vehicle::{Braking, Ending};
+use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_core::vehicle::{Braking, Ending};
+use impactlab_document::report::Block;
+use impactlab_document::report::{Language, Paper, ReportDocument, Table};
+use impactlab_study::analysis::PulseSetup;
+use impactlab_study::case_file::{CaseFile, CaseReport, Variant};
+use impactlab_study::{MotionSource, Report, ScenarioChoice, SimulateReport, SimulateRequest};
 
 use crate::report::{english, impact_case, report, settings, staged};
 

@@ -3,14 +3,14 @@
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-use impactlab::data::Existing;
-use impactlab::learning::{LearningError, ModelFile, TrainSettings, TrainingReport};
-use impactlab::response::evaluate::{MotionModel, evaluate_motion_model};
-use impactlab::response::{
+use impactlab_core::data::Existing;
+use impactlab_core::vehicle::{Preset, VehicleInput, VehicleState};
+use impactlab_networks::learning::{LearningError, ModelFile, TrainSettings, TrainingReport};
+use impactlab_networks::response::evaluate::{MotionModel, evaluate_motion_model};
+use impactlab_networks::response::{
     Correction, ImpactRecord, ResponseCase, ResponseConfig, ResponseModel, ResponseStage,
     ResponseTrainSettings, ResponseTrainingSet, average_error_m, fine_tune, pretrain, rollout,
 };
-use impactlab::vehicle::{Preset, VehicleInput, VehicleState};
 
 /// Returns the motion of a car with an initial yaw rate, whose tyres differ from its data sheet.
 fn case(yaw_rate_rad_s: f64) -> ResponseCase {

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use impactlab::collision::{
+use impactlab_core::collision::{
     ContactDistribution, ContactSurface, Footprint, FrictionModel, Impact, ImpactBody, ImpactCase,
     ImpactSolution, PrincipalDirectionOfForce, Regime, RestitutionForm, Scenario,
 };
-use impactlab::units::{Quantity, Unit};
+use impactlab_core::units::{Quantity, Unit};
 
 fn unit(quantity: Quantity, symbol: &str) -> Unit {
     *quantity.units().iter().find(|unit| unit.symbol == symbol).expect("a unit of the table")

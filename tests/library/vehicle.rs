@@ -1,13 +1,14 @@
 //! Properties that the 4DOF vehicle must have for all parameters: symmetry, energy, rest,
 //! closed-form solutions and exact derivatives.
 
-use impactlab::data::{ForceAxes, ForceHistory, Sampling};
-use impactlab::numerics::{Stage, rk4_step};
-use impactlab::vehicle::{
+use impactlab_core::data::Channel;
+use impactlab_core::data::{ForceAxes, ForceHistory, Sampling};
+use impactlab_core::numerics::{Stage, rk4_step};
+use impactlab_core::units::STANDARD_GRAVITY_M_S2;
+use impactlab_core::vehicle::{
     CollisionForce, ContactLoad, ContactPoint, Controls, Integrator, Manoeuvre, Preset,
     SteerHistory, VehicleInput, VehicleParameters, VehicleState,
 };
-use impactlab::{data::Channel, units::STANDARD_GRAVITY_M_S2};
 use nalgebra::SVector;
 use proptest::prelude::*;
 
@@ -235,7 +236,7 @@ fn the_step_of_the_reference_is_fine_enough() {
     let manoeuvre = pit(40e3, CONTACT, 20.0, 4.0);
     let at_1_ms = vehicle.simulate(&manoeuvre, Integrator::Rk4).unwrap();
     let at_10_ms = vehicle.simulate(&manoeuvre, Integrator::Euler).unwrap();
-    let end = |motion: &impactlab::vehicle::Motion| {
+    let end = |motion: &impactlab_core::vehicle::Motion| {
         let last = |channel| *motion.series.require(channel).unwrap().last().unwrap();
         [last(Channel::X), last(Channel::Y)]
     };

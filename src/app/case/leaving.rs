@@ -6,7 +6,7 @@ use egui::{Context, Ui, ViewportCommand};
 
 use crate::app::command::Command;
 use crate::app::state::{Session, State};
-use crate::data::Existing;
+use impactlab_core::data::Existing;
 
 /// Where the user goes.
 #[derive(Debug, Clone, PartialEq, Eq)]

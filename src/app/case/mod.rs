@@ -11,9 +11,9 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use crate::app::state::Project;
-use crate::case_file::{CaseFile, Variant};
-use crate::data::write::sha256_hex;
-use crate::study::SeriesFile;
+use impactlab_core::data::write::sha256_hex;
+use impactlab_study::SeriesFile;
+use impactlab_study::case_file::{CaseFile, Variant};
 
 pub use bar::case_bar_ui;
 pub use leaving::{Leaving, leaving_ui};

@@ -10,12 +10,12 @@ use crate::app::panes::Pane;
 use crate::app::source::Source;
 use crate::app::state::{Project, Session, State, Subject};
 use crate::app::workspaces::Workspace;
-use crate::case_file::{CaseFile, UsedModel, pack};
-use crate::data::write::{ModelDigest, sha256_hex};
-use crate::data::{Existing, MAX_RESULTS_BYTES, Severity, read_utf8};
-use crate::error_chain;
-use crate::jobs::{Job, Update};
-use crate::study::{Request, SeriesFile};
+use impactlab_core::data::write::{ModelDigest, sha256_hex};
+use impactlab_core::data::{Existing, MAX_RESULTS_BYTES, Severity, read_utf8};
+use impactlab_core::error_chain;
+use impactlab_core::jobs::{Job, Update};
+use impactlab_study::case_file::{CaseFile, UsedModel, pack};
+use impactlab_study::{Request, SeriesFile};
 
 /// The finished example case.
 const EXAMPLE: &str = include_str!("../../../assets/examples/pit.impactlab");
@@ -403,7 +403,7 @@ impl State {
                     Request::PredictMotion(of) => Some(&of.response_model),
                     _ => None,
                 };
-                matches!(model, Some(crate::study::ModelChoice::Held { .. }))
+                matches!(model, Some(impactlab_study::ModelChoice::Held { .. }))
             });
         if is_held {
             let why = "a network of this case was trained here and is in no file: save it (File, Save … model) so that the case can be run elsewhere";

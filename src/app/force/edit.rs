@@ -1,9 +1,9 @@
 //! Changes of one quantity of a collision, with the changes of other quantities that follow from
 //! it.
 
-use crate::collision::Scenario;
-use crate::data::StruckSide;
-use crate::force::ForceScenario;
+use impactlab_core::collision::Scenario;
+use impactlab_core::data::StruckSide;
+use impactlab_networks::force::ForceScenario;
 
 /// Position of the first contact along the target, from its CG, that is proposed when the contact
 /// point becomes known, m. It is near the rear axle, where a PIT manoeuvre begins.

@@ -1,7 +1,7 @@
 //! The collision of the force prediction follows the scenario from which it was taken.
 
 use crate::app::state::State;
-use crate::force::ForceScenario;
+use impactlab_networks::force::ForceScenario;
 
 /// The collision of the scenario pane, and the variant of the case that it belongs to.
 #[derive(Debug, Clone, PartialEq)]

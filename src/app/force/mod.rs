@@ -17,8 +17,8 @@ use crate::app::latest::Latest;
 use crate::app::model::ModelStatus;
 use crate::app::question_job::QuestionJob;
 use crate::app::training_status::TrainingStatus;
-use crate::force::ForceModel;
-use crate::study::{EvaluateForceRequest, PredictForceRequest};
+use impactlab_networks::force::ForceModel;
+use impactlab_study::{EvaluateForceRequest, PredictForceRequest};
 
 /// The data and the running work of the force network, which are not saved.
 #[derive(Default)]

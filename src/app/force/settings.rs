@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::collision::Scenario;
-use crate::data::StruckSide;
-use crate::figure::ForceComponent;
-use crate::force::ForceScenario;
-use crate::study::{BadCases, EvaluatedCases};
+use impactlab_core::collision::Scenario;
+use impactlab_core::data::StruckSide;
+use impactlab_document::figure::ForceComponent;
+use impactlab_networks::force::ForceScenario;
+use impactlab_study::{BadCases, EvaluatedCases};
 
 /// What the user works on with the force network.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -65,7 +65,7 @@ pub struct ForceView {
     /// Seed of the random curves.
     pub seed: u64,
     /// Names of the loss terms that are drawn, see
-    /// [`LossTerms::named`](crate::force::LossTerms::named).
+    /// [`LossTerms::named`](impactlab_networks::force::LossTerms::named).
     pub loss_terms: Vec<String>,
     /// Whether the axis of the losses is logarithmic.
     pub log_losses: bool,

@@ -10,11 +10,11 @@ use crate::app::kept::{KeptEntry, keep_trained};
 use crate::app::network::Network;
 use crate::app::source::{OpenDataset, Source, chosen_dataset, open_datasets};
 use crate::app::state::{State, Subject};
-use crate::data::{DatasetKind, Severity};
-use crate::error_chain;
-use crate::force::{ForceCase, ForceScenario};
-use crate::study::{EvaluateForceRequest, PredictForceAnswer, Request};
-use crate::uncertainty::ForceCurve;
+use impactlab_core::data::{DatasetKind, Severity};
+use impactlab_core::error_chain;
+use impactlab_core::uncertainty::ForceCurve;
+use impactlab_networks::force::{ForceCase, ForceScenario};
+use impactlab_study::{EvaluateForceRequest, PredictForceAnswer, Request};
 
 /// The selected case with its recorded force.
 pub struct RecordedCase {

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::data::{
+use impactlab_core::data::{
     Channel, ColumnMap, ColumnProposal, ColumnRef, ColumnSource, ReadSettings, SignedColumn,
 };
-use crate::units::{Quantity, Unit};
+use impactlab_core::units::{Quantity, Unit};
 
 /// The choice for one column.
 pub(super) struct ColumnChoice {

@@ -3,9 +3,9 @@
 use egui::{ComboBox, RichText, Ui};
 
 use crate::app::import::choices::ColumnChoice;
-use crate::data::{Channel, Severity};
-use crate::render::theme;
-use crate::units::Quantity;
+use impactlab_core::data::{Channel, Severity};
+use impactlab_core::units::Quantity;
+use impactlab_draw::theme;
 
 /// The channels that can be assigned to a column, in the order of the dialog's lists, with what they
 /// are.

@@ -14,15 +14,15 @@ use crate::app::looks;
 use crate::app::model::file_name;
 use crate::app::panels::{file_vehicle_ui, start_fields};
 use crate::app::state::FileStart;
-use crate::data::{
+use impactlab_core::data::{
     Channel, ColumnMap, FileKind, HeaderLine, ReadSettings, Severity, Sheet, SheetRef, Table,
     VelocityAxes, VelocityFit, proposals,
 };
-use crate::error_chain;
-use crate::jobs::{Job, Update};
-use crate::render::{FigureOptions, figure_ui, theme};
-use crate::study::VehicleChoice;
-use crate::units::UnitSystem;
+use impactlab_core::error_chain;
+use impactlab_core::jobs::{Job, Update};
+use impactlab_core::units::UnitSystem;
+use impactlab_draw::{FigureOptions, figure_ui, theme};
+use impactlab_study::VehicleChoice;
 
 /// Size of the dialog and of its parts, points.
 const WIDTH: f32 = 1060.0;

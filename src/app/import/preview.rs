@@ -1,13 +1,13 @@
 //! The curve as a file will be read with the choices of the import dialog, and its main numbers.
 
-use crate::data::{
+use impactlab_core::data::{
     Channel, ColumnMap, DataError, FileKind, Flag, ForceHistory, Loaded, Severity, Table,
     TimeSeries, VelocityFit, check_file, contact_interval, series_of_table, velocity_fit,
 };
-use crate::figure::{Axis, Figure, FigureElement, ForceFigure, Role, force_figure};
-use crate::numerics::quantile_of_sorted;
-use crate::study::Trust;
-use crate::units::{Quantity, UnitSystem, significant};
+use impactlab_core::numerics::quantile_of_sorted;
+use impactlab_core::units::{Quantity, UnitSystem, significant};
+use impactlab_document::figure::{Axis, Figure, FigureElement, ForceFigure, Role, force_figure};
+use impactlab_study::Trust;
 
 /// Time from the first row over which the first speed of a path is taken, s.
 const FIRST_SPEED_OVER_S: f64 = 0.1;

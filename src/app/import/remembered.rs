@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::data::{ColumnMap, Table};
+use impactlab_core::data::{ColumnMap, Table};
 
 /// Number of maps that are kept; the oldest ones are forgotten.
 const KEPT: usize = 100;

@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use crate::app::kept::Fact;
-use crate::study::{Learning, Request};
+use impactlab_study::{Learning, Request};
 
 /// Returns in words how the answer of a question is made, such as “fine-tuned from shipped”.
 pub fn how_it_was_made(question: &Request) -> String {
@@ -61,7 +61,7 @@ fn collect(name: String, (value, usual): (&Value, Option<&Value>), found: &mut V
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::force::ForceConfig;
+    use impactlab_networks::force::ForceConfig;
 
     #[test]
     fn settings_that_differ_are_named_as_in_a_file() {

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::app::network::Network;
 use crate::app::panes::Pane;
-use crate::study::Request;
+use impactlab_study::Request;
 
 /// Version of the format of notes.
 pub(super) const VERSION: u32 = 1;

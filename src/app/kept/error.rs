@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::data::DataError;
+use impactlab_core::data::DataError;
 
 /// The reason why something is not kept, or why what was kept cannot be used.
 #[derive(Debug, thiserror::Error)]

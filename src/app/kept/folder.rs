@@ -8,8 +8,10 @@ use serde::Deserialize;
 use crate::app::dialogs::MODEL_ENDING;
 use crate::app::kept::entry::VERSION;
 use crate::app::kept::{KeptEntry, KeptError, KeptKind};
-use crate::data::write::FileDigest;
-use crate::data::{Existing, MAX_RESULTS_BYTES, list_folder, read_bytes, write_atomically};
+use impactlab_core::data::write::FileDigest;
+use impactlab_core::data::{
+    Existing, MAX_RESULTS_BYTES, list_folder, read_bytes, write_atomically,
+};
 
 /// The ending of notes.
 pub const NOTE_ENDING: &str = "note";
@@ -209,8 +211,8 @@ fn note_at(path: &Path) -> Result<KeptEntry, KeptError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::write::sha256_hex;
-    use crate::study::{EvaluateForceRequest, ModelChoice, Request};
+    use impactlab_core::data::write::sha256_hex;
+    use impactlab_study::{EvaluateForceRequest, ModelChoice, Request};
 
     fn draft(content: &[u8], name: &str) -> KeptEntry {
         let question = EvaluateForceRequest::new(ModelChoice::default(), "data");

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use crate::app::kept::{KeptEntry, KeptError, KeptFolder, KeptList};
 use crate::app::model::file_name;
-use crate::data::write::sha256_hex;
-use crate::data::{Existing, write_atomically};
-use crate::error_chain;
-use crate::jobs::Job;
-use crate::shipped::ModelSource;
-use crate::study::{CompareReport, EvaluateForceReport, ModelChoice, Request};
+use impactlab_core::data::write::sha256_hex;
+use impactlab_core::data::{Existing, write_atomically};
+use impactlab_core::error_chain;
+use impactlab_core::jobs::Job;
+use impactlab_networks::shipped::ModelSource;
+use impactlab_study::{CompareReport, EvaluateForceReport, ModelChoice, Request};
 
 /// Files that are to be removed together, after a question.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -15,16 +15,16 @@ use crate::app::question_job::Answered;
 use crate::app::reconstruction::KeptRuns;
 use crate::app::state::State;
 use crate::app::training_status::TrainingStatus;
-use crate::data::{Existing, MAX_MODEL_BYTES, Severity, read_bytes, write_atomically};
-use crate::error_chain;
-use crate::figure::model_name;
-use crate::jobs::Job;
-use crate::shipped::ModelSource;
-use crate::study::{
+use impactlab_core::data::{Existing, MAX_MODEL_BYTES, Severity, read_bytes, write_atomically};
+use impactlab_core::error_chain;
+use impactlab_core::jobs::Job;
+use impactlab_core::units::{percent, significant};
+use impactlab_document::figure::model_name;
+use impactlab_networks::shipped::ModelSource;
+use impactlab_study::{
     CompareAnswer, CompareReport, EvaluateForceAnswer, EvaluateForceReport, ForceEvaluation,
     ModelChoice, Request,
 };
-use crate::units::{percent, significant};
 
 /// Disk space of everything that is kept from which on the user is asked to remove something, bytes.
 pub(in crate::app) const LIMIT_BYTES: u64 = 2_000_000_000;

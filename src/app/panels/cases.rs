@@ -7,8 +7,8 @@ use crate::app::case_table::{CaseColumn, CaseRow, CaseTable, listed_in};
 use crate::app::command::Command;
 use crate::app::panes::PaneContext;
 use crate::app::state::{Subject, View};
-use crate::render::theme;
-use crate::units::UnitSystem;
+use impactlab_core::units::UnitSystem;
+use impactlab_draw::theme;
 
 /// Height of a row of the table, points.
 const ROW_HEIGHT: f32 = 20.0;

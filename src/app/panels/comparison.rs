@@ -8,11 +8,11 @@ use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
 use crate::app::widgets::{assumptions_ui, badges_ui, value_row};
-use crate::compare::{ErrorSummary, HORIZONS_S, MotionError};
-use crate::data::DatasetKind;
-use crate::numerics::Summary;
-use crate::study::{SimulateDatasetReport, SimulateReport};
-use crate::units::{Quantity, UnitSystem, significant};
+use impactlab_core::compare::{ErrorSummary, HORIZONS_S, MotionError};
+use impactlab_core::data::DatasetKind;
+use impactlab_core::numerics::Summary;
+use impactlab_core::units::{Quantity, UnitSystem, significant};
+use impactlab_study::{SimulateDatasetReport, SimulateReport};
 
 /// Draws the errors of the selected subject, and below them those of the whole data set with the
 /// button that starts its simulation.

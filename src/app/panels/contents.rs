@@ -6,8 +6,8 @@ use crate::app::command::Command;
 use crate::app::contents::{ContentsEntry, Group};
 use crate::app::looks::{self, Icon};
 use crate::app::panes::PaneContext;
-use crate::data::Severity;
-use crate::render::theme;
+use impactlab_core::data::Severity;
+use impactlab_draw::theme;
 
 /// Draws the parts of the case; a click on one shows the panel in which it is changed.
 pub fn contents_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {

@@ -10,9 +10,9 @@ use crate::app::panes::PaneContext;
 use crate::app::shipped_datasets;
 use crate::app::source::{CheckedDataset, CheckedFile, Content, Source};
 use crate::app::state::{Project, Subject, View};
-use crate::data::{DatasetKind, FileKind, Severity};
-use crate::error_chain;
-use crate::render::theme;
+use impactlab_core::data::{DatasetKind, FileKind, Severity};
+use impactlab_core::error_chain;
+use impactlab_draw::theme;
 
 /// Largest number of problems of one data set that are listed; of further ones the number is shown.
 const SHOWN_PROBLEMS: usize = 50;

@@ -3,12 +3,12 @@
 use egui::{CollapsingHeader, ComboBox, Grid, Ui};
 
 use crate::app::widgets::quantity_field;
-use crate::ranges::{
+use impactlab_core::ranges::{
     BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, DRIVE_TORQUE, ENGINE_BRAKING, STEER_ANGLE,
     STEERING_RATIO, STEERING_WHEEL_ANGLE,
 };
-use crate::units::UnitSystem;
-use crate::vehicle::{
+use impactlab_core::units::UnitSystem;
+use impactlab_core::vehicle::{
     Braking, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Driving, Ending, EngineBraking,
     HeldSteer, USUAL_STEERING_RATIO, Wheel,
 };

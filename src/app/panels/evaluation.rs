@@ -12,9 +12,9 @@ use crate::app::panels::evaluation_tables::tables_ui;
 use crate::app::panes::PaneContext;
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::{bad_cases_ui, badges_ui, cost_ui, dataset_choice, no_dataset_ui};
-use crate::data::{DatasetKind, Severity};
-use crate::render::theme;
-use crate::study::{EvaluateForceReport, EvaluatedCases, ForceEvaluation};
+use impactlab_core::data::{DatasetKind, Severity};
+use impactlab_draw::theme;
+use impactlab_study::{EvaluateForceReport, EvaluatedCases, ForceEvaluation};
 
 /// Draws the choice of the data set and of its cases, and the tables and plots of the last
 /// evaluation.

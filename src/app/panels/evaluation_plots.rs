@@ -3,19 +3,19 @@
 
 use egui::{Id, Ui};
 
-use crate::analysis::Estimate;
 use crate::app::command::Command;
 use crate::app::state::View;
 use crate::app::widgets::figure_frame;
-use crate::figure::{
+use impactlab_core::units::Quantity;
+use impactlab_document::figure::{
     CoveragePoint, Figure, ForceComponent, ForecastFigure, ParityPoint, RecordedCurve, Role,
     coverage_figure, forecast_figure, parity_figure, pit_figure,
 };
-use crate::force::ForceCase;
-use crate::force::metrics::{BAND_LEVELS, IntervalCoverage};
-use crate::render::FigureOptions;
-use crate::study::{EvaluateForceReport, EvaluatedForceCases};
-use crate::units::Quantity;
+use impactlab_draw::FigureOptions;
+use impactlab_networks::force::ForceCase;
+use impactlab_networks::force::metrics::{BAND_LEVELS, IntervalCoverage};
+use impactlab_study::analysis::Estimate;
+use impactlab_study::{EvaluateForceReport, EvaluatedForceCases};
 
 /// Height of a plot, points.
 const PLOT_HEIGHT: f32 = 240.0;

@@ -5,10 +5,12 @@ use egui::{Grid, Ui};
 
 use crate::app::force::{ForceView, Statistic};
 use crate::app::looks;
-use crate::force::metrics::{BAND_LEVELS, CurveMetrics, DistributionMetrics, IntervalCoverage};
-use crate::force::{Evaluation, ForceMetrics};
-use crate::numerics::Summary;
-use crate::units::{Quantity, UnitSystem, percent};
+use impactlab_core::numerics::Summary;
+use impactlab_core::units::{Quantity, UnitSystem, percent};
+use impactlab_networks::force::metrics::{
+    BAND_LEVELS, CurveMetrics, DistributionMetrics, IntervalCoverage,
+};
+use impactlab_networks::force::{Evaluation, ForceMetrics};
 
 /// Draws the tables of errors, of coverage and of errors by cluster, for the model and its three
 /// baselines, and the choice of the statistic over the cases that is shown.

@@ -13,11 +13,11 @@ use crate::app::panes::PaneContext;
 use crate::app::source::{Content, Source};
 use crate::app::state::FileStart;
 use crate::app::widgets::{quantity_field, within_view};
-use crate::data::FileKind;
-use crate::ranges::{CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, SPEED, STEERING_RATIO};
-use crate::study::{ASSUMED_CONTACT, ASSUMED_SPEED_M_S};
-use crate::units::{Quantity, UnitSystem};
-use crate::vehicle::{ContactPoint, USUAL_STEERING_RATIO};
+use impactlab_core::data::FileKind;
+use impactlab_core::ranges::{CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, SPEED, STEERING_RATIO};
+use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_core::vehicle::{ContactPoint, USUAL_STEERING_RATIO};
+use impactlab_study::{ASSUMED_CONTACT, ASSUMED_SPEED_M_S};
 
 /// Draws speed, contact point, files of steering and torques, and what happens after the impact.
 pub(super) fn file_start_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {

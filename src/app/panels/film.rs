@@ -6,13 +6,13 @@ use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
 use crate::app::film::FilmForm;
 use crate::app::widgets::{count_field, quantity_field, quantity_value};
-use crate::data::Severity;
-use crate::error_chain;
-use crate::ranges::{FILM_RATE, FILM_SIDE, FILM_SPEED, INSTANT};
-use crate::render::film::Film;
-use crate::render::theme;
-use crate::scene::FilmTiming;
-use crate::units::UnitSystem;
+use impactlab_core::data::Severity;
+use impactlab_core::error_chain;
+use impactlab_core::ranges::{FILM_RATE, FILM_SIDE, FILM_SPEED, INSTANT};
+use impactlab_core::units::UnitSystem;
+use impactlab_document::scene::FilmTiming;
+use impactlab_draw::film::Film;
+use impactlab_draw::theme;
 
 /// Sizes that are offered, pixels.
 const SIZES: [[u32; 2]; 3] = [[1280, 720], [1920, 1080], [3840, 2160]];

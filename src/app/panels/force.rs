@@ -9,12 +9,12 @@ use crate::app::panes::PaneContext;
 use crate::app::state::Project;
 use crate::app::variants::{are_others_awaited, other_simulations};
 use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, time_figure, value_row};
-use crate::collision::{ChannelClass, Pulse, PulseShape};
-use crate::data::{ForceHistory, contact_interval};
-use crate::figure::analysis_force_figure;
-use crate::render::FigureOptions;
-use crate::study::{ForceReport, SimulateAnswer, Trust};
-use crate::units::{Quantity, UnitSystem};
+use impactlab_core::collision::{ChannelClass, Pulse, PulseShape};
+use impactlab_core::data::{ForceHistory, contact_interval};
+use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_document::figure::analysis_force_figure;
+use impactlab_draw::FigureOptions;
+use impactlab_study::{ForceReport, SimulateAnswer, Trust};
 
 /// Sample interval at which the classic pulses are drawn, s.
 const PULSE_INTERVAL_S: f64 = 5e-4;

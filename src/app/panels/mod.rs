@@ -67,8 +67,8 @@ pub use vehicle::vehicle_ui;
 use egui::{RichText, Ui};
 
 use crate::app::state::Session;
-use crate::render::theme;
-use crate::study::SimulateAnswer;
+use impactlab_draw::theme;
+use impactlab_study::SimulateAnswer;
 
 /// Share of its colour that an answer keeps which is not of what is asked any more.
 const FADED: f32 = 0.35;
@@ -107,7 +107,7 @@ fn analysis_or_hint<'a>(ui: &mut Ui, session: &'a Session) -> Option<&'a Simulat
         Some(Ok(answer)) => return Some(answer),
         Some(Err(error)) => {
             let dark = ui.visuals().dark_mode;
-            let color = theme::severity_color(crate::data::Severity::Error, dark);
+            let color = theme::severity_color(impactlab_core::data::Severity::Error, dark);
             ui.colored_label(color, format!("Not computed: {error}"));
         }
         None if session.analysis.is_waiting()

@@ -14,12 +14,14 @@ use crate::app::widgets::{
     assumptions_ui, bad_cases_ui, badges_ui, cost_ui, count_field, dataset_choice, duration_text,
     no_dataset_ui,
 };
-use crate::data::{DatasetKind, Severity};
-use crate::figure::model_name;
-use crate::ranges::CHOICES;
-use crate::render::theme;
-use crate::response::evaluate::{ComparisonTable, all_tables, paper_metrics, to_markdown};
-use crate::study::{CompareReport, EvaluatedCases};
+use impactlab_core::data::{DatasetKind, Severity};
+use impactlab_core::ranges::CHOICES;
+use impactlab_document::figure::model_name;
+use impactlab_draw::theme;
+use impactlab_networks::response::evaluate::{
+    ComparisonTable, all_tables, paper_metrics, to_markdown,
+};
+use impactlab_study::{CompareReport, EvaluatedCases};
 
 /// Draws the settings and buttons, and of the last comparison the figures, the case browser and the
 /// tables.

@@ -5,16 +5,16 @@ use egui::{DragValue, Grid, ScrollArea, Ui};
 use crate::app::command::Command;
 use crate::app::state::View;
 use crate::app::widgets::figure_frame;
-use crate::figure::{
+use impactlab_core::units::{Quantity, UnitSystem, significant};
+use impactlab_document::figure::{
     CoveragePoint, Figure, Role, cluster_figure, compared_case_figure, coverage_figure,
     horizon_figure, model_name, pit_figure, ranking_figure,
 };
-use crate::render::FigureOptions;
-use crate::response::evaluate::{
+use impactlab_draw::FigureOptions;
+use impactlab_networks::response::evaluate::{
     ComparedModel, Comparison, CoverageMetrics, MeanStd, MotionModelKind, TestCase,
 };
-use crate::study::CompareReport;
-use crate::units::{Quantity, UnitSystem, significant};
+use impactlab_study::CompareReport;
 
 /// Height of a plot, points.
 const PLOT_HEIGHT: f32 = 220.0;

@@ -7,9 +7,9 @@ use crate::app::command::Command;
 use crate::app::dialogs::{MODEL_ENDING, Purpose};
 use crate::app::model::ModelStatus;
 use crate::app::network::TrainedModel;
-use crate::data::Severity;
-use crate::render::theme;
-use crate::study::ModelChoice;
+use impactlab_core::data::Severity;
+use impactlab_draw::theme;
+use impactlab_study::ModelChoice;
 
 /// Draws the state of a network that has no model: a note while one is loaded, otherwise buttons to
 /// open a model, to use the shipped one, or to train one.

@@ -3,17 +3,17 @@
 
 use egui::{Id, Ui};
 
-use crate::analysis::Analysis;
 use crate::app::command::Command;
 use crate::app::panels::analysis_or_hint;
 use crate::app::panes::PaneContext;
 use crate::app::recording::{overlaid, recording_menu_ui};
 use crate::app::variants::{are_others_awaited, other_simulations};
 use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, assumptions_ui, badges_ui, time_figure};
-use crate::data::{Channel, TimeSeries};
-use crate::figure::{analysis_motion_figure, analysis_readout, recording_line};
-use crate::render::FigureOptions;
-use crate::study::{SimulateAnswer, Trust};
+use impactlab_core::data::{Channel, TimeSeries};
+use impactlab_document::figure::{analysis_motion_figure, analysis_readout, recording_line};
+use impactlab_draw::FigureOptions;
+use impactlab_study::analysis::Analysis;
+use impactlab_study::{SimulateAnswer, Trust};
 
 /// Draws v_x, v_y, yaw rate and roll over time, with a cursor at the time of the scene. A click or
 /// a drag in a plot sets this time.
@@ -90,9 +90,11 @@ fn curves_menu_ui(ui: &mut Ui, analysis: &Analysis, chosen: &mut Vec<Channel>) {
 }
 
 /// Largest time at which a line of the figure ends, s; 0 if the figure has no line.
-fn figure_end(figure: &crate::figure::Figure) -> f64 {
+fn figure_end(figure: &impactlab_document::figure::Figure) -> f64 {
     let ends = figure.elements.iter().filter_map(|element| match element {
-        crate::figure::FigureElement::Line(series) => series.points.last().map(|point| point[0]),
+        impactlab_document::figure::FigureElement::Line(series) => {
+            series.points.last().map(|point| point[0])
+        }
         _ => None,
     });
     ends.fold(0.0, f64::max)

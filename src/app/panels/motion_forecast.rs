@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use egui::{DragValue, Id, Panel, ScrollArea, Ui};
 
-use crate::analysis::Analysis;
 use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
 use crate::app::looks;
@@ -22,15 +21,16 @@ use crate::app::response::{
 use crate::app::state::{Session, View};
 use crate::app::variants::{AnsweredVariant, are_others_awaited, other_forecasts};
 use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, count_field, figure_frame};
-use crate::data::{Severity, TimeSeries};
-use crate::figure::{
+use impactlab_core::data::{Severity, TimeSeries};
+use impactlab_core::ranges::DRAWS;
+use impactlab_core::units::UnitSystem;
+use impactlab_document::figure::{
     FORECAST_CHANNELS, MotionForecastFigure, forecast_channel_figure, forecast_readout,
     forecast_scene_figure, forecast_surroundings,
 };
-use crate::ranges::DRAWS;
-use crate::render::{FigureOptions, theme};
-use crate::study::{PredictMotionAnswer, Trust};
-use crate::units::UnitSystem;
+use impactlab_draw::{FigureOptions, theme};
+use impactlab_study::analysis::Analysis;
+use impactlab_study::{PredictMotionAnswer, Trust};
 
 /// What stands above a coarse forecast.
 const COARSE: &str =

@@ -8,7 +8,7 @@ use crate::app::response::MotionAnswer;
 use crate::app::widgets::{
     SpreadRow, assumptions_ui, badges_ui, sensitivity_ui, spread_table_ui, value_row,
 };
-use crate::units::{Quantity, UnitSystem, percent};
+use impactlab_core::units::{Quantity, UnitSystem, percent};
 
 /// Draws the time at which the vehicle comes to rest (or at which the forecast ends), the
 /// assumptions, and the state of the vehicle at that time.

@@ -3,7 +3,6 @@
 
 use egui::{Id, Panel, ScrollArea, Ui};
 
-use crate::analysis::pulse_curves;
 use crate::app::command::Command;
 use crate::app::force::ForceSession;
 use crate::app::looks;
@@ -13,12 +12,13 @@ use crate::app::panels::prediction_numbers::numbers_ui;
 use crate::app::panes::PaneContext;
 use crate::app::state::View;
 use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, count_field, figure_frame};
-use crate::data::Severity;
-use crate::figure::{ForceComponent, ForecastFigure, RecordedCurve, forecast_figure};
-use crate::force::metrics::BAND_LEVELS;
-use crate::ranges::SAMPLES;
-use crate::render::{FigureOptions, theme};
-use crate::study::{PredictForceAnswer, Trust};
+use impactlab_core::data::Severity;
+use impactlab_core::ranges::SAMPLES;
+use impactlab_document::figure::{ForceComponent, ForecastFigure, RecordedCurve, forecast_figure};
+use impactlab_draw::{FigureOptions, theme};
+use impactlab_networks::force::metrics::BAND_LEVELS;
+use impactlab_study::analysis::pulse_curves;
+use impactlab_study::{PredictForceAnswer, Trust};
 
 /// Width of the form before the user resizes it, points.
 const FORM_WIDTH: f32 = 340.0;

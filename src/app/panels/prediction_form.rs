@@ -12,10 +12,10 @@ use crate::app::force::{
 };
 use crate::app::state::{Project, View};
 use crate::app::widgets::{SliderRange, quantity_slider};
-use crate::data::StruckSide;
-use crate::force::ForceScenario;
-use crate::ranges::{BODY_MASS, CONTACT_X, HEADING, SPEED};
-use crate::units::UnitSystem;
+use impactlab_core::data::StruckSide;
+use impactlab_core::ranges::{BODY_MASS, CONTACT_X, HEADING, SPEED};
+use impactlab_core::units::UnitSystem;
+use impactlab_networks::force::ForceScenario;
 
 /// Width of a slider without its number field, points.
 const SLIDER_WIDTH: f32 = 110.0;

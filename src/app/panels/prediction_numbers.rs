@@ -3,11 +3,11 @@
 
 use egui::{Grid, Ui};
 
-use crate::analysis::Estimate;
 use crate::app::command::Command;
 use crate::app::widgets::{SpreadRow, assumptions_ui, badges_ui, spread_table_ui, value_row};
-use crate::study::PredictForceReport;
-use crate::units::{Quantity, UnitSystem, percent, significant};
+use impactlab_core::units::{Quantity, UnitSystem, percent, significant};
+use impactlab_study::PredictForceReport;
+use impactlab_study::analysis::Estimate;
 
 /// Largest number of mixture components that are listed; of further ones the number is shown.
 const SHOWN_MODES: usize = 4;

@@ -9,18 +9,18 @@ use crate::app::panels::scenario_plan::scenario_plan_ui;
 use crate::app::panes::PaneContext;
 use crate::app::state::{Project, Subject};
 use crate::app::widgets::{assumptions_ui, badges_ui, quantity_field, value_row};
-use crate::collision::{
+use impactlab_core::collision::{
     ContactLocation, PulseShape, RestitutionForm, Scenario, ScenarioContact, ScenarioVehicle, Side,
 };
-use crate::data::Severity;
-use crate::ranges::{
+use impactlab_core::data::Severity;
+use impactlab_core::ranges::{
     BODY_CG, BODY_LENGTH, BODY_MASS, BODY_WIDTH, BODY_YAW_INERTIA, CONTACT_COORDINATE,
     CONTACT_HEIGHT, CONTACT_OFFSET, FRICTION_LIMIT, FRICTION_OF_CRITICAL, HEADING, POSITION,
     PULSE_DURATION, RESTITUTION, Range, SPEED, YAW_RATE,
 };
-use crate::render::theme;
-use crate::study::{BodyReport, ImpactReport};
-use crate::units::{Quantity, UnitSystem};
+use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_draw::theme;
+use impactlab_study::{BodyReport, ImpactReport};
 
 /// Overlap of the outlines below which they just touch, m.
 const SHOWN_OVERLAP_M: f64 = 5e-4;

@@ -4,12 +4,14 @@ use egui::{Id, Ui};
 
 use crate::app::command::Command;
 use crate::app::widgets::figure_frame;
-use crate::collision::{ContactLocation, Pose, Scenario, ScenarioVehicle, Side};
-use crate::figure::{Axis, Figure, FigureElement, LineStyle, Role, impact_figure, vehicle_outline};
-use crate::ranges::{HEADING, POSITION, SPEED};
-use crate::render::FigureOptions;
-use crate::study::{ImpactAnswer, Trust};
-use crate::units::{Quantity, UnitSystem};
+use impactlab_core::collision::{ContactLocation, Pose, Scenario, ScenarioVehicle, Side};
+use impactlab_core::ranges::{HEADING, POSITION, SPEED};
+use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_document::figure::{
+    Axis, Figure, FigureElement, LineStyle, Role, impact_figure, vehicle_outline,
+};
+use impactlab_draw::FigureOptions;
+use impactlab_study::{ImpactAnswer, Trust};
 
 /// Height of the plan, points.
 const HEIGHT: f32 = 240.0;

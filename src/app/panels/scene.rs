@@ -21,11 +21,11 @@ use crate::app::scene::{SceneSession, SceneSettings, SceneSource};
 use crate::app::state::{Session, State};
 use crate::app::variants::{are_others_awaited, other_simulations};
 use crate::app::widgets::{OUTDATED, badges_ui};
-use crate::figure::{Figure, analysis_scene_figure, recording_path};
-use crate::render::scene::{Follow, ScenePicture, ViewKind, scene_view_ui};
-use crate::scene::{FilmTiming, Scene};
-use crate::study::Trust;
-use crate::units::Quantity;
+use impactlab_core::units::Quantity;
+use impactlab_document::figure::{Figure, analysis_scene_figure, recording_path};
+use impactlab_document::scene::{FilmTiming, Scene};
+use impactlab_draw::scene::{Follow, ScenePicture, ViewKind, scene_view_ui};
+use impactlab_study::Trust;
 
 /// Seconds of the motion that can be played in a second.
 const SPEEDS: [f64; 5] = [0.05, 0.1, 0.25, 0.5, 1.0];

@@ -7,9 +7,9 @@ use crate::app::dialogs::Purpose;
 use crate::app::ground::{GroundCommand, GroundSession};
 use crate::app::looks::{Icon, icon, icon_button};
 use crate::app::measure::{Measure, Measurement, Measuring};
-use crate::render::scene::{SceneView, draw_measure, draw_measure_text, measure_text_place};
-use crate::scene::Scene;
-use crate::units::{Quantity, UnitSystem};
+use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_document::scene::Scene;
+use impactlab_draw::scene::{SceneView, draw_measure, draw_measure_text, measure_text_place};
 
 /// Draws the menu of the ground.
 ///

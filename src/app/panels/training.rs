@@ -10,7 +10,7 @@ use crate::app::panels::training_parts::network_training_ui;
 use crate::app::panels::training_response::response_form_ui;
 use crate::app::panes::PaneContext;
 use crate::app::widgets::{cost_ui, no_dataset_ui};
-use crate::data::DatasetKind;
+use impactlab_core::data::DatasetKind;
 
 /// Draws the choice between the two networks and the training of the chosen one.
 pub fn training_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {

@@ -6,8 +6,8 @@ use crate::app::force::ForceTrainingForm;
 use crate::app::panels::training_parts::{optional_number_ui, settings_rows_ui};
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::dataset_choice;
-use crate::data::DatasetKind;
-use crate::ranges::EPOCHS;
+use impactlab_core::data::DatasetKind;
+use impactlab_core::ranges::EPOCHS;
 
 /// Draws the form and returns whether a force data set is open to train on.
 pub fn force_form_ui(ui: &mut Ui, form: &mut ForceTrainingForm, sources: &[Source]) -> bool {

@@ -5,10 +5,10 @@ use egui::{Grid, Ui};
 use crate::app::command::Command;
 use crate::app::network::Network;
 use crate::app::widgets::{figure_frame, value_row};
-use crate::figure::{Figure, LossCurve, balance_figure, loss_figure};
-use crate::learning::{EpochSummary, PhysicsBalance};
-use crate::render::FigureOptions;
-use crate::units::significant;
+use impactlab_core::units::significant;
+use impactlab_document::figure::{Figure, LossCurve, balance_figure, loss_figure};
+use impactlab_draw::FigureOptions;
+use impactlab_networks::learning::{EpochSummary, PhysicsBalance};
 
 /// Smallest height of a plot, points.
 const MIN_PLOT_HEIGHT: f32 = 200.0;

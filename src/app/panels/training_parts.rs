@@ -12,10 +12,10 @@ use crate::app::panels::model_row::save_model_ui;
 use crate::app::panels::training_losses::{LossView, losses_ui};
 use crate::app::training_status::TrainingStatus;
 use crate::app::widgets::{assumptions_ui, bad_cases_ui, duration_text};
-use crate::data::Severity;
-use crate::ranges::Range;
-use crate::render::theme;
-use crate::study::{Assumption, BadCases};
+use impactlab_core::data::Severity;
+use impactlab_core::ranges::Range;
+use impactlab_draw::theme;
+use impactlab_study::{Assumption, BadCases};
 
 /// Draws the buttons and the progress of a training, the current model, and the losses. The losses
 /// are those of the latest training of this session, or, if there is none, those of the training

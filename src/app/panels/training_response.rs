@@ -7,8 +7,8 @@ use crate::app::panels::training_parts::{optional_number_ui, settings_rows_ui};
 use crate::app::response::{ResponseTrainingForm, TrainingMode};
 use crate::app::source::{Source, open_datasets};
 use crate::app::widgets::dataset_choice;
-use crate::data::FileKind;
-use crate::ranges::TRAJECTORIES;
+use impactlab_core::data::FileKind;
+use impactlab_core::ranges::TRAJECTORIES;
 
 /// Draws the form and returns whether a data set or a log that suits the training mode is open.
 pub fn response_form_ui(ui: &mut Ui, form: &mut ResponseTrainingForm, sources: &[Source]) -> bool {

@@ -2,14 +2,14 @@
 
 use egui::{Grid, RichText, ScrollArea, Ui};
 
-use crate::analysis::Spread;
 use crate::app::case::VariantCommand;
 use crate::app::command::Command;
 use crate::app::panes::PaneContext;
 use crate::app::variants::AnsweredVariant;
-use crate::data::Severity;
-use crate::render::theme;
-use crate::units::{Quantity, UnitSystem};
+use impactlab_core::data::Severity;
+use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_draw::theme;
+use impactlab_study::analysis::Spread;
 
 /// The columns of the table.
 const COLUMNS: [&str; 8] = [

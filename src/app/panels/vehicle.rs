@@ -12,14 +12,14 @@ use crate::app::state::Project;
 use crate::app::widgets::{
     SpreadRow, quantity_field, sensitivity_ui, spread_table_ui, value_row, within_view,
 };
-use crate::data::Severity;
-use crate::error_chain;
-use crate::ranges::{REST_LIMIT, SIMULATED_DURATION};
-use crate::study::{DEFAULT_BULLET, DEFAULT_DURATION_S, DEFAULT_VEHICLE, VehicleChoice};
-use crate::units::Quantity;
-use crate::vehicle::{
+use impactlab_core::data::Severity;
+use impactlab_core::error_chain;
+use impactlab_core::ranges::{REST_LIMIT, SIMULATED_DURATION};
+use impactlab_core::units::Quantity;
+use impactlab_core::vehicle::{
     DataSheet, Equations, Integrator, LibraryVehicle, Preset, VehicleParameters, built_in_vehicle,
 };
+use impactlab_study::{DEFAULT_BULLET, DEFAULT_DURATION_S, DEFAULT_VEHICLE, VehicleChoice};
 
 /// Largest width of the lists of vehicles, points.
 const LIST_WIDTH: f32 = 240.0;

@@ -5,12 +5,12 @@ use egui::{CollapsingHeader, ComboBox, Grid, RichText, Ui};
 use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
 use crate::app::widgets::quantity_value;
-use crate::data::Severity;
-use crate::ranges::Range;
-use crate::render::theme;
-use crate::units::{Quantity, UnitSystem, significant};
-use crate::vehicle::sheet::{Drive, Estimate};
-use crate::vehicle::{DataSheet, SheetQuantity, VehicleClass};
+use impactlab_core::data::Severity;
+use impactlab_core::ranges::Range;
+use impactlab_core::units::{Quantity, UnitSystem, significant};
+use impactlab_core::vehicle::sheet::{Drive, Estimate};
+use impactlab_core::vehicle::{DataSheet, SheetQuantity, VehicleClass};
+use impactlab_draw::theme;
 
 /// Largest width of a label and of a value, points.
 const LABEL_WIDTH: f32 = 165.0;

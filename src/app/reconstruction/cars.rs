@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use crate::app::reconstruction::FollowedParticle;
-use crate::reconstruct::evidence::Evidence;
-use crate::render::scene::SceneView;
-use crate::scene::{ReconstructionParts, Scene, SceneGround, reconstruction_scene};
-use crate::study::Trust;
-use crate::units::UnitSystem;
+use impactlab_core::units::UnitSystem;
+use impactlab_document::scene::{ReconstructionParts, Scene, SceneGround, reconstruction_scene};
+use impactlab_draw::scene::SceneView;
+use impactlab_reconstruct::evidence::Evidence;
+use impactlab_study::Trust;
 
 /// What a scene is built from. It is built anew when this changes.
 #[derive(Debug, Clone, PartialEq)]

@@ -11,8 +11,8 @@
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use crate::data::list_folder;
-use crate::study::{ReconstructRequest, StudyError};
+use impactlab_core::data::list_folder;
+use impactlab_study::{ReconstructRequest, StudyError};
 
 /// Name of the folder in the user's data folder.
 const FOLDER: &str = "reconstructions";
@@ -81,7 +81,7 @@ impl KeptRuns {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::EvidenceChoice;
+    use impactlab_study::EvidenceChoice;
 
     #[test]
     fn the_oldest_runs_make_room_and_nothing_else_is_removed() {

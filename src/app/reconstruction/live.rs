@@ -3,9 +3,9 @@
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
-use crate::numerics::quantile_of_sorted;
-use crate::reconstruct::ReconstructedQuantity;
-use crate::study::{Event, ReconstructedPaths, Sampling};
+use impactlab_core::numerics::quantile_of_sorted;
+use impactlab_reconstruct::ReconstructedQuantity;
+use impactlab_study::{Event, ReconstructedPaths, Sampling};
 
 /// Shortest time between two pictures of the particles.
 const BETWEEN: Duration = Duration::from_secs(1);

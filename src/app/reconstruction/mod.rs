@@ -20,9 +20,9 @@ use std::path::PathBuf;
 use std::sync::mpsc::Receiver;
 
 use crate::app::question_job::QuestionJob;
-use crate::reconstruct::evidence::Evidence;
-use crate::study::ReconstructedPaths;
-use crate::vehicle::{Path, TireMark};
+use impactlab_core::vehicle::{Path, TireMark};
+use impactlab_reconstruct::evidence::Evidence;
+use impactlab_study::ReconstructedPaths;
 
 /// A path that is followed in the scene.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

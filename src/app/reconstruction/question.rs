@@ -1,10 +1,10 @@
 //! A reconstruction whose answer is prepared for drawing.
 
 use crate::app::reconstruction::KeptRuns;
-use crate::data::Outcome;
-use crate::figure::prior_values;
-use crate::reconstruct::ReconstructedQuantity;
-use crate::study::{
+use impactlab_core::data::Outcome;
+use impactlab_document::figure::prior_values;
+use impactlab_reconstruct::ReconstructedQuantity;
+use impactlab_study::{
     Library, Observer, Question, ReconstructAnswer, ReconstructReport, ReconstructRequest,
     ReconstructedPaths, StudyError,
 };

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use crate::app::scene::SceneSettings;
-use crate::reconstruct::ReconstructedQuantity;
-use crate::study::{EvidenceChoice, ReconstructRequest, VehicleChoice};
+use impactlab_reconstruct::ReconstructedQuantity;
+use impactlab_study::{EvidenceChoice, ReconstructRequest, VehicleChoice};
 
 /// What the user works on in a reconstruction.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -1,13 +1,13 @@
 //! What stands in a field until the user enters what was found. Nothing is reconstructed from it, and it
 //! is not written to a file: a place that nobody measured would be an answer that nobody could trust.
 
-use crate::collision::Side;
-use crate::reconstruct::evidence::{
+use impactlab_core::collision::Side;
+use impactlab_core::vehicle::Wheel;
+use impactlab_reconstruct::evidence::{
     After, CarEvidence, DEFAULT_EDR_SPEED_SHARE, DEFAULT_MARK_SIGMA_M, DEFAULT_REST_SIGMA_M,
     DEFAULT_VIDEO_SIGMA_M, Damage, Edr, Evidence, Mark, Measured, PriorRanges, RestPose,
     VideoPosition,
 };
-use crate::vehicle::Wheel;
 
 /// Place of rest ahead of the first contact, m.
 const REST_M: f64 = 30.0;

@@ -14,11 +14,11 @@ use crate::app::reconstruction::{
     ReconstructionQuestion, ReconstructionSession,
 };
 use crate::app::state::State;
-use crate::data::{Severity, TomlFile};
-use crate::error_chain;
-use crate::reconstruct::evidence::Evidence;
-use crate::reconstruct::{Cars, Prior, PriorComponent};
-use crate::study::{EvidenceChoice, VehicleChoice};
+use impactlab_core::data::{Severity, TomlFile};
+use impactlab_core::error_chain;
+use impactlab_reconstruct::evidence::Evidence;
+use impactlab_reconstruct::{Cars, Prior, PriorComponent};
+use impactlab_study::{EvidenceChoice, VehicleChoice};
 
 /// The evidence of the shipped example.
 const EXAMPLE: &str = include_str!("../../../assets/examples/reconstruction.toml");

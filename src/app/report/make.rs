@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use crate::case_file::{CaseFile, Change};
-use crate::data::Outcome;
-use crate::error_chain;
-use crate::jobs::{Job, Progress};
-use crate::render::report_picture;
-use crate::report::{Pixels, ReportDocument, ReportSettings, report_case};
-use crate::study::{Event, Library};
+use impactlab_core::data::Outcome;
+use impactlab_core::error_chain;
+use impactlab_core::jobs::{Job, Progress};
+use impactlab_document::report::{Pixels, ReportDocument, ReportSettings, report_case};
+use impactlab_draw::report_picture;
+use impactlab_study::case_file::{CaseFile, Change};
+use impactlab_study::{Event, Library};
 
 /// What a report was made of. Another origin gives another report.
 #[derive(Debug, Clone, PartialEq)]

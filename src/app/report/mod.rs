@@ -15,9 +15,9 @@ use egui::{ColorImage, Context, TextureHandle, TextureOptions};
 use serde::{Deserialize, Serialize};
 
 use crate::app::report::make::ReportJob;
-use crate::jobs::Job;
-use crate::report::{Language, Paper, ReportDate, ReportSettings, SectionKind};
-use crate::units::UnitSystem;
+use impactlab_core::jobs::Job;
+use impactlab_core::units::UnitSystem;
+use impactlab_document::report::{Language, Paper, ReportDate, ReportSettings, SectionKind};
 
 /// How reports are written, which is saved. Their units are those of the window.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -70,7 +70,9 @@ impl ReportView {
         match self.date.trim() {
             "" => ReportDate::of(SystemTime::now())
                 .ok_or_else(|| "the clock of this machine tells no day: type one".to_owned()),
-            text => text.parse().map_err(|error: crate::report::DateError| error.to_string()),
+            text => text
+                .parse()
+                .map_err(|error: impactlab_document::report::DateError| error.to_string()),
         }
     }
 

@@ -12,8 +12,8 @@ use crate::app::report::make::ReportJob;
 use crate::app::report::{ReportCommand, ReportOrigin};
 use crate::app::state::State;
 use crate::app::workspaces::Workspace;
-use crate::data::{Existing, Outcome, Severity};
-use crate::report::ReportDocument;
+use impactlab_core::data::{Existing, Outcome, Severity};
+use impactlab_document::report::ReportDocument;
 
 impl State {
     /// What a report would be made of now.

@@ -6,12 +6,12 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::app::question_job::QuestionJob;
-use crate::data::write::{OutputFolder, RunRecord};
-use crate::data::{DataError, Existing};
-use crate::error_chain;
-use crate::jobs::{Job, Progress};
-use crate::response::evaluate::{Comparison, write_comparison};
-use crate::study::{
+use impactlab_core::data::write::{OutputFolder, RunRecord};
+use impactlab_core::data::{DataError, Existing};
+use impactlab_core::error_chain;
+use impactlab_core::jobs::{Job, Progress};
+use impactlab_networks::response::evaluate::{Comparison, write_comparison};
+use impactlab_study::{
     CompareAnswer, CompareReport, CompareRequest, EvaluateResponseRequest, Library, Provenance,
     Question, Request,
 };

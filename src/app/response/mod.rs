@@ -18,8 +18,8 @@ use std::sync::Arc;
 use crate::app::latest::Latest;
 use crate::app::model::ModelStatus;
 use crate::app::training_status::TrainingStatus;
-use crate::render::DensityGpu;
-use crate::response::ResponseModel;
+use impactlab_draw::DensityGpu;
+use impactlab_networks::response::ResponseModel;
 
 /// The data and the running work of the response network, which are not saved.
 #[derive(Default)]

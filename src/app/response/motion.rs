@@ -3,11 +3,11 @@
 
 use std::sync::Arc;
 
-use crate::analysis::{DensityMap, DensityTask, MotionBands};
-use crate::data::Outcome;
-use crate::render::DensityGpu;
-use crate::response::STEP_S;
-use crate::study::{
+use impactlab_core::data::Outcome;
+use impactlab_draw::DensityGpu;
+use impactlab_networks::response::STEP_S;
+use impactlab_study::analysis::{DensityMap, DensityTask, MotionBands};
+use impactlab_study::{
     Library, Observer, PredictMotionAnswer, PredictMotionReport, PredictMotionRequest, Question,
     StudyError, check_window,
 };

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::data::DatasetKind;
-use crate::study::{BadCases, CompareRequest, DEFAULT_DRAWS, EvaluatedCases};
+use impactlab_core::data::DatasetKind;
+use impactlab_study::{BadCases, CompareRequest, DEFAULT_DRAWS, EvaluatedCases};
 
 /// What the user works on with the response network.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

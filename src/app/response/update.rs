@@ -14,8 +14,8 @@ use crate::app::response::{
 };
 use crate::app::source::{chosen_dataset, open_datasets};
 use crate::app::state::State;
-use crate::data::{DatasetKind, Existing, Severity};
-use crate::study::Request;
+use impactlab_core::data::{DatasetKind, Existing, Severity};
+use impactlab_study::Request;
 
 const NO_MODEL: &str = "there is no current response model";
 

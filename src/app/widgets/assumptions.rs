@@ -5,7 +5,7 @@ use egui::{CollapsingHeader, Label, RichText, Sense, Ui};
 use crate::app::command::Command;
 use crate::app::looks;
 use crate::app::panes::Pane;
-use crate::study::{AssumedQuantity, Assumption};
+use impactlab_study::{AssumedQuantity, Assumption};
 
 /// Largest number of assumptions that are listed without a click.
 const MAX_OPEN: usize = 6;

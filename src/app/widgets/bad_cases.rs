@@ -2,7 +2,7 @@
 
 use egui::Ui;
 
-use crate::study::BadCases;
+use impactlab_study::BadCases;
 
 /// Draws a checkbox: if it is set, cases that cannot be used are left out, otherwise the first of
 /// them ends the work with an error.

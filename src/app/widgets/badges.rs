@@ -3,10 +3,10 @@
 use egui::{Color32, Frame, Label, Margin, RichText, Sense, TextStyle, Ui};
 
 use crate::app::looks::{self, Icon};
-use crate::data::Severity;
-use crate::render::theme;
-use crate::uncertainty::Badge;
-use crate::units::significant;
+use impactlab_core::data::Severity;
+use impactlab_core::uncertainty::Badge;
+use impactlab_core::units::significant;
+use impactlab_draw::theme;
 
 /// Opacity of the fill of a chip, 0 to 1.
 const FILL: f32 = 0.16;
@@ -77,7 +77,7 @@ mod tests {
     use egui::{Context, RawInput};
 
     use super::*;
-    use crate::uncertainty::BadgeKind;
+    use impactlab_core::uncertainty::BadgeKind;
 
     #[test]
     fn a_chip_that_does_not_fit_begins_a_row() {

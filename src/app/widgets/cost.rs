@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use crate::app::cost::{CostPlace, Costs};
-use crate::study::Cost;
+use impactlab_study::Cost;
 
 /// Seconds up to which a time is said in seconds, and minutes up to which it is said in minutes.
 const MOST_UNITS: f64 = 90.0;
@@ -50,7 +50,7 @@ fn cost_text(cost: &Cost) -> String {
 }
 
 fn parts_text(cost: &Cost) -> String {
-    let part = |part: &crate::study::CostPart| match part.n {
+    let part = |part: &impactlab_study::CostPart| match part.n {
         1.0 => format!("{}: {:.2} s", part.what, part.seconds_each),
         n => format!("{}: {n} of {:.3} s", part.what, part.seconds_each),
     };
@@ -64,7 +64,7 @@ fn parts_text(cost: &Cost) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::CostPart;
+    use impactlab_study::CostPart;
 
     #[test]
     fn a_time_is_said_as_coarsely_as_it_is_known() {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use egui::{ComboBox, Response, Ui};
 
 use crate::app::source::{OpenDataset, chosen_dataset};
-use crate::data::DatasetKind;
+use impactlab_core::data::DatasetKind;
 
 /// Draws a drop-down list of the data sets and returns the response of its button.
 ///

@@ -5,8 +5,8 @@ use egui::{Align, Layout, RichText, Ui};
 use crate::app::command::Command;
 use crate::app::dialogs::Purpose;
 use crate::app::looks::{Icon, icon, icon_button};
-use crate::figure::Figure;
-use crate::render::{FigureOptions, FigureResponse, figure_ui};
+use impactlab_document::figure::Figure;
+use impactlab_draw::{FigureOptions, FigureResponse, figure_ui};
 
 /// Height of the heading above a plot, and smallest height of a plot with its axes, points.
 pub const TITLE_HEIGHT: f32 = 30.0;

@@ -8,10 +8,10 @@ use std::time::Duration;
 use egui::emath::Numeric;
 use egui::{DragValue, Response, RichText, Slider, SliderClamping, Ui};
 
-use crate::data::Severity;
-use crate::ranges::Range;
-use crate::render::theme;
-use crate::units::{Quantity, Unit, UnitSystem, significant};
+use impactlab_core::data::Severity;
+use impactlab_core::ranges::Range;
+use impactlab_core::units::{Quantity, Unit, UnitSystem, significant};
+use impactlab_draw::theme;
 
 /// Smallest width of a cell that ends at the edge of what can be seen, points.
 const LEAST_CELL_WIDTH: f32 = 80.0;
@@ -239,7 +239,7 @@ mod tests {
     use egui_kittest::kittest::Queryable;
 
     use super::*;
-    use crate::ranges::BODY_MASS;
+    use impactlab_core::ranges::BODY_MASS;
 
     #[test]
     fn a_number_beyond_the_range_is_kept_and_not_taken() {

@@ -2,7 +2,7 @@
 
 use egui::{Grid, Ui};
 
-use crate::analysis::Sensitivity;
+use impactlab_study::analysis::Sensitivity;
 
 /// Draws the shares of the estimates in the variance of the end, as far as they are more than chance,
 /// the largest first. Nothing if no vehicles were drawn.

@@ -2,8 +2,8 @@
 
 use egui::{Grid, Ui};
 
-use crate::analysis::Spread;
-use crate::units::{Unit, significant};
+use impactlab_core::units::{Unit, significant};
+use impactlab_study::analysis::Spread;
 
 /// Significant digits of the numbers in the table.
 const DIGITS: i32 = 3;
@@ -99,7 +99,7 @@ fn table(name: &str, rows: &[SpreadRow]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::units::{Quantity, UnitSystem};
+    use impactlab_core::units::{Quantity, UnitSystem};
 
     #[test]
     fn the_copied_table_has_a_row_a_number() {

@@ -6,9 +6,9 @@ use egui::{Grid, Modifiers, Ui, Window};
 
 use crate::app::command::Command;
 use crate::app::widgets::figure_frame;
-use crate::figure::{CurveStatistics, Figure, curve_statistics};
-use crate::render::{FigureOptions, FigureResponse};
-use crate::units::significant;
+use impactlab_core::units::significant;
+use impactlab_document::figure::{CurveStatistics, Figure, curve_statistics};
+use impactlab_draw::{FigureOptions, FigureResponse};
 
 /// The columns of the table after the name of the curve.
 const COLUMNS: [&str; 6] = ["Curve", "Mean", "Lowest", "Highest", "Change", "Integral"];

@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-#[cfg(feature = "gui")]
 use crate::app::RendererChoice;
 use crate::cli::CliError;
 use crate::cli::console::Verdict;
@@ -36,17 +35,7 @@ enum WindowRenderer {
 /// Opens the window and waits until it is closed.
 ///
 /// # Errors
-/// [`CliError::NoWindow`]: this build has none.
-#[cfg(not(feature = "gui"))]
-pub(in crate::cli) fn run(_args: AppArgs) -> Result<Verdict, CliError> {
-    Err(CliError::NoWindow)
-}
-
-/// Opens the window and waits until it is closed.
-///
-/// # Errors
 /// [`CliError::NoDisplay`], or [`CliError::Window`] with the system's reason.
-#[cfg(feature = "gui")]
 pub(in crate::cli) fn run(args: AppArgs) -> Result<Verdict, CliError> {
     if !has_display(|name| std::env::var_os(name)) {
         return Err(CliError::NoDisplay);
@@ -61,7 +50,6 @@ pub(in crate::cli) fn run(args: AppArgs) -> Result<Verdict, CliError> {
 }
 
 /// Whether a window can be shown: on Linux, whether a display server is named.
-#[cfg(any(feature = "gui", test))]
 fn has_display(variable: impl Fn(&str) -> Option<std::ffi::OsString>) -> bool {
     let is_set = |name| variable(name).is_some_and(|value| !value.is_empty());
     !cfg!(target_os = "linux") || is_set("DISPLAY") || is_set("WAYLAND_DISPLAY")

@@ -6,8 +6,8 @@ use clap::Args;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_json, under_bar};
-use crate::data::{MAX_SETTINGS_BYTES, read_utf8};
-use crate::study::Request;
+use impactlab_core::data::{MAX_SETTINGS_BYTES, read_utf8};
+use impactlab_study::Request;
 
 /// Answer a question that stands in a JSON file, as --print-request writes it
 #[derive(Debug, Args)]

@@ -6,17 +6,17 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 use serde::Serialize;
 
-use crate::case_file::{
-    AnsweredQuestion, CaseFile, CaseReport, Change, UsedFile, VariantReport, pack, unpack,
-};
 use crate::cli::CliError;
 use crate::cli::console::{
     Console, Verdict, print_badges, shown, shown_path, shown_vector, under_bar,
 };
 use crate::cli::options::{OverwriteArg, UnitsArg};
 use crate::cli::text::{print_force_prediction, print_motion_prediction, print_simulation};
-use crate::study::{ImpactReport, Report};
-use crate::units::{Quantity, UnitSystem};
+use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_study::case_file::{
+    AnsweredQuestion, CaseFile, CaseReport, Change, UsedFile, VariantReport, pack, unpack,
+};
+use impactlab_study::{ImpactReport, Report};
 
 /// Run, check, pack or unpack a case, as the window saves it
 #[derive(Debug, Args)]

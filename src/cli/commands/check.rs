@@ -7,8 +7,8 @@ use clap::Args;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::text::print_check;
-use crate::data::ColumnMap;
-use crate::study::CheckRequest;
+use impactlab_core::data::ColumnMap;
+use impactlab_study::CheckRequest;
 
 /// Say what is in files and data sets, in which units, and what is wrong with them
 #[derive(Debug, Args)]

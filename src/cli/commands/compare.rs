@@ -8,10 +8,10 @@ use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::options::{BadCasesArg, OverwriteArg, VehicleArg, count};
 use crate::cli::text::print_comparison;
-use crate::ranges::{CHOICES, TRAJECTORIES};
-use crate::response::evaluate::write_comparison;
-use crate::shipped::ModelSource;
-use crate::study::{CompareRequest, DEFAULT_CHOICES, ModelChoice};
+use impactlab_core::ranges::{CHOICES, TRAJECTORIES};
+use impactlab_networks::response::evaluate::write_comparison;
+use impactlab_networks::shipped::ModelSource;
+use impactlab_study::{CompareRequest, DEFAULT_CHOICES, ModelChoice};
 
 /// Compare response models on trajectories that none has seen
 #[derive(Debug, Args)]

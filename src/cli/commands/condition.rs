@@ -8,9 +8,9 @@ use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::options::{BadCasesArg, LearningDataArgs, OverwriteArg};
 use crate::cli::text::{Trained, print_response_training};
-use crate::learning::ModelFile;
-use crate::shipped::ModelSource;
-use crate::study::{FineTuneRequest, Learning, ModelChoice, TrainingOptions};
+use impactlab_networks::learning::ModelFile;
+use impactlab_networks::shipped::ModelSource;
+use impactlab_study::{FineTuneRequest, Learning, ModelChoice, TrainingOptions};
 
 /// Tell a network a few recorded motions of a car: its bands narrow, in seconds
 #[derive(Debug, Args)]

@@ -9,10 +9,10 @@ use crate::cli::console::{Console, Verdict};
 use crate::cli::files::write_force_evaluation;
 use crate::cli::options::{BadCasesArg, OverwriteArg, SplitArg, count};
 use crate::cli::text::print_force_evaluation;
-use crate::force::ColumnSet;
-use crate::ranges::FOLDS;
-use crate::shipped::ModelSource;
-use crate::study::{EvaluateForceRequest, ForceEvaluation};
+use impactlab_core::ranges::FOLDS;
+use impactlab_networks::force::ColumnSet;
+use impactlab_networks::shipped::ModelSource;
+use impactlab_study::{EvaluateForceRequest, ForceEvaluation};
 
 /// What is known of a scenario.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

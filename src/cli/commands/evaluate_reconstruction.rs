@@ -9,8 +9,8 @@ use crate::cli::console::{Console, Verdict};
 use crate::cli::files::{RECONSTRUCTION_EVALUATION_FILES, write_reconstruction_evaluation};
 use crate::cli::options::{OverwriteArg, UnitsArg};
 use crate::cli::text::print_reconstruction_evaluation;
-use crate::reconstruct::evaluate::{KnownEvidence, StagedSplit};
-use crate::study::{EvaluateReconstructionRequest, ReconstructRequest};
+use impactlab_reconstruct::evaluate::{KnownEvidence, StagedSplit};
+use impactlab_study::{EvaluateReconstructionRequest, ReconstructRequest};
 
 /// How much of the evidence is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -8,9 +8,9 @@ use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::options::{BadCasesArg, OverwriteArg, SplitArg, VehicleArg};
 use crate::cli::text::print_comparison;
-use crate::response::evaluate::write_comparison;
-use crate::shipped::ModelSource;
-use crate::study::EvaluateResponseRequest;
+use impactlab_networks::response::evaluate::write_comparison;
+use impactlab_networks::shipped::ModelSource;
+use impactlab_study::EvaluateResponseRequest;
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]

@@ -10,10 +10,12 @@ use crate::cli::CliError;
 use crate::cli::commands::render_scene::{BuiltScene, CaseArgs, build};
 use crate::cli::console::{Console, Verdict, print_json, shown_path};
 use crate::cli::options::{OverwriteArg, number};
-use crate::data::{write_atomically, write_restricted_series_csv};
-use crate::exchange::{DxfOptions, ExchangeError, GltfFrame, dxf, glb, hve_motion, hve_pulse};
-use crate::ranges::INSTANT;
-use crate::units::UnitSystem;
+use impactlab_core::data::{write_atomically, write_restricted_series_csv};
+use impactlab_core::ranges::INSTANT;
+use impactlab_core::units::UnitSystem;
+use impactlab_document::exchange::{
+    DxfOptions, ExchangeError, GltfFrame, dxf, glb, hve_motion, hve_pulse,
+};
 
 /// Write the scene or the motion of a case for other programs: DXF, glTF, CSV, tables for HVE
 #[derive(Debug, Args)]

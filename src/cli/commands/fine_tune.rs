@@ -6,9 +6,9 @@ use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_settings};
 use crate::cli::options::{LearningDataArgs, TrainingArgs};
 use crate::cli::text::{Trained, print_response_training};
-use crate::learning::ModelFile;
-use crate::shipped::ModelSource;
-use crate::study::{FineTuneRequest, Learning, ModelChoice};
+use impactlab_networks::learning::ModelFile;
+use impactlab_networks::shipped::ModelSource;
+use impactlab_study::{FineTuneRequest, Learning, ModelChoice};
 
 /// Fine-tune a network on data of your own
 #[derive(Debug, Args)]

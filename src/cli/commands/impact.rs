@@ -8,9 +8,9 @@ use clap::Args;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_badges, print_facts, shown, shown_vector};
 use crate::cli::options::UnitsArg;
-use crate::collision::FrictionModel;
-use crate::study::{ImpactAnswer, ImpactReport, ImpactRequest, ScenarioChoice};
-use crate::units::{Quantity, UnitSystem, percent, significant};
+use impactlab_core::collision::FrictionModel;
+use impactlab_core::units::{Quantity, UnitSystem, percent, significant};
+use impactlab_study::{ImpactAnswer, ImpactReport, ImpactRequest, ScenarioChoice};
 
 /// Solve an impact: impulse, velocities after it, delta-v, energy, direction of force
 #[derive(Debug, Args)]

@@ -5,7 +5,7 @@ use serde_json::json;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_json};
-use crate::shipped::LICENCES;
+use impactlab_networks::shipped::LICENCES;
 
 /// Print the licences of the crates and fonts that the program contains
 #[derive(Debug, Args)]

@@ -10,9 +10,9 @@ use crate::cli::console::{Console, Verdict};
 use crate::cli::files::write_force_prediction;
 use crate::cli::options::{OverwriteArg, UnitsArg, count};
 use crate::cli::text::print_force_prediction;
-use crate::ranges::SAMPLES;
-use crate::shipped::ModelSource;
-use crate::study::{ForceQuestion, PredictForceReport, PredictForceRequest, ScenarioChoice};
+use impactlab_core::ranges::SAMPLES;
+use impactlab_networks::shipped::ModelSource;
+use impactlab_study::{ForceQuestion, PredictForceReport, PredictForceRequest, ScenarioChoice};
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]

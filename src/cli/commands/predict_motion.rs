@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use clap::Args;
 use serde::Serialize;
 
-use crate::analysis::{MotionForecast, PulseSetup};
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::files::{MotionFiles, write_motion_prediction};
@@ -13,15 +12,16 @@ use crate::cli::options::{
     EndingArgs, OverwriteArg, UnitsArg, VehicleArg, contact_point, count, number, window_s,
 };
 use crate::cli::text::print_motion_prediction;
-use crate::data::{DatasetKind, Existing, write_atomically};
-use crate::ranges::{DRAWS, REST_LIMIT, ROAD_FRICTION, VEHICLE_DRAWS};
-use crate::response::STEP_S;
-use crate::shipped::ModelSource;
-use crate::study::{
+use impactlab_core::data::{DatasetKind, Existing, write_atomically};
+use impactlab_core::ranges::{DRAWS, REST_LIMIT, ROAD_FRICTION, VEHICLE_DRAWS};
+use impactlab_core::vehicle::ContactPoint;
+use impactlab_networks::response::STEP_S;
+use impactlab_networks::shipped::ModelSource;
+use impactlab_study::analysis::{MotionForecast, PulseSetup};
+use impactlab_study::{
     DEFAULT_DRAWS, DEFAULT_DURATION_S, ForceSource, MotionSource, PredictMotionReport,
     PredictMotionRequest, ScenarioChoice, SeriesFile, SimulateRequest,
 };
-use crate::vehicle::ContactPoint;
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]

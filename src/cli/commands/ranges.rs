@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_table};
-use crate::ranges::{Range, RangeGroup, TABLE};
+use impactlab_core::ranges::{Range, RangeGroup, TABLE};
 
 /// List the ranges of all numbers in files, settings, options and questions
 #[derive(Debug, Args)]

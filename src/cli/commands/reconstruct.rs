@@ -10,7 +10,7 @@ use crate::cli::console::{Console, Verdict};
 use crate::cli::files::write_reconstruction;
 use crate::cli::options::{EvidenceArgs, OverwriteArg, UnitsArg};
 use crate::cli::text::print_reconstruction;
-use crate::study::{ReconstructReport, ReconstructRequest};
+use impactlab_study::{ReconstructReport, ReconstructRequest};
 
 /// From the evidence to the speeds before the impact, as a distribution
 #[derive(Debug, Args)]

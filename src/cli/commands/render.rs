@@ -15,12 +15,14 @@ use crate::cli::console::{Console, Verdict, print_json, shown_path};
 use crate::cli::options::{
     OverwriteArg, SourceArgs, UnitsArg, VehicleArg, contact_point, number, size_px,
 };
-use crate::collision::ChannelClass;
-use crate::data::{Channel, write_atomically};
-use crate::figure::{Figure, write_figure_csv};
-use crate::ranges::{PICTURE_SCALE, SPEED};
-use crate::study::{Drive, ImpactRequest, Library, ScenarioChoice, SimulateRequest, VehicleChoice};
-use crate::vehicle::ContactPoint;
+use impactlab_core::collision::ChannelClass;
+use impactlab_core::data::{Channel, write_atomically};
+use impactlab_core::ranges::{PICTURE_SCALE, SPEED};
+use impactlab_core::vehicle::ContactPoint;
+use impactlab_document::figure::{Figure, write_figure_csv};
+use impactlab_study::{
+    Drive, ImpactRequest, Library, ScenarioChoice, SimulateRequest, VehicleChoice,
+};
 
 /// Draw a figure into a PNG, or write its numbers as CSV
 #[derive(Debug, Args)]
@@ -277,8 +279,7 @@ fn figure(args: &FigureArgs, console: &mut Console<'_>) -> Result<Verdict, CliEr
     let ending = output.out.extension().map(|end| end.to_ascii_lowercase());
     let is_picture = match ending.as_deref().and_then(|end| end.to_str()) {
         Some("csv") => false,
-        Some("png") if cfg!(feature = "gui") => true,
-        Some("png") => return Err(CliError::NoDrawing),
+        Some("png") => true,
         _ => {
             let path = output.out.clone();
             return Err(CliError::OutputKind { path });
@@ -347,35 +348,19 @@ fn write_csv(figure: &Figure, output: &OutputArgs) -> Result<(), CliError> {
     Ok(())
 }
 
-#[cfg(feature = "gui")]
-fn canvas(output: &OutputArgs) -> crate::render::Canvas {
+fn canvas(output: &OutputArgs) -> impactlab_draw::Canvas {
     let OutputArgs { size, scale, dark, .. } = *output;
-    crate::render::Canvas { size_px: size, scale: scale as f32, dark }
+    impactlab_draw::Canvas { size_px: size, scale: scale as f32, dark }
 }
 
-#[cfg(feature = "gui")]
 fn write_png(figure: &Figure, output: &OutputArgs) -> Result<(), CliError> {
-    let image = crate::render::figure_image(figure, canvas(output))?;
-    crate::render::save_png(&image, &output.out, output.overwrite.into())?;
+    let image = impactlab_draw::figure_image(figure, canvas(output))?;
+    impactlab_draw::save_png(&image, &output.out, output.overwrite.into())?;
     Ok(())
 }
 
-#[cfg(feature = "gui")]
 fn write_scene(shown: ShownScene, output: &OutputArgs) -> Result<(), CliError> {
-    let image = crate::render::scene::scene_image(&shown.picture(), canvas(output))?;
-    crate::render::save_png(&image, &output.out, output.overwrite.into())?;
+    let image = impactlab_draw::scene::scene_image(&shown.picture(), canvas(output))?;
+    impactlab_draw::save_png(&image, &output.out, output.overwrite.into())?;
     Ok(())
-}
-
-#[cfg(not(feature = "gui"))]
-fn write_png(_figure: &Figure, output: &OutputArgs) -> Result<(), CliError> {
-    // Read so that the options are the same in every build.
-    let _ = (output.size, output.scale, output.dark);
-    Err(CliError::NoDrawing)
-}
-
-#[cfg(not(feature = "gui"))]
-fn write_scene(shown: ShownScene, _output: &OutputArgs) -> Result<(), CliError> {
-    shown.not_drawn();
-    Err(CliError::NoDrawing)
 }

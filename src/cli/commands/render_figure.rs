@@ -3,15 +3,17 @@
 use crate::cli::CliError;
 use crate::cli::console::Console;
 use crate::cli::options::SourceArgs;
-use crate::collision::{ChannelClass, filter_history};
-use crate::data::{Channel, contact_interval};
-use crate::figure::{Figure, ForceFigure, analysis_motion_figure, force_figure, impact_figure};
-use crate::study::{
+use impactlab_core::collision::{ChannelClass, filter_history};
+use impactlab_core::data::{Channel, contact_interval};
+use impactlab_core::uncertainty::Badge;
+use impactlab_core::units::UnitSystem;
+use impactlab_document::figure::{
+    Figure, ForceFigure, analysis_motion_figure, force_figure, impact_figure,
+};
+use impactlab_study::{
     Assumption, Drive, ImpactRequest, RecordedForceRequest, Request, SimulateAnswer,
     SimulateRequest, StudyError, Trust,
 };
-use crate::uncertainty::Badge;
-use crate::units::UnitSystem;
 
 /// A figure and what should be said with it.
 pub(super) type Noted = (Figure, Vec<String>);

@@ -12,10 +12,10 @@ use crate::cli::console::{Console, Verdict, print_json, shown_path};
 use crate::cli::options::{
     OverwriteArg, UnitsArg, VehicleArg, count, film_section, number, size_px,
 };
-use crate::ranges::{FILM_RATE, FILM_SPEED, INSTANT, PICTURE_SCALE};
-use crate::reconstruct::evidence::Evidence;
-use crate::scene::{FilmSection, FilmTiming, Scene};
-use crate::study::{EvidenceChoice, ReconstructRequest};
+use impactlab_core::ranges::{FILM_RATE, FILM_SPEED, INSTANT, PICTURE_SCALE};
+use impactlab_document::scene::{FilmSection, FilmTiming, Scene};
+use impactlab_reconstruct::evidence::Evidence;
+use impactlab_study::{EvidenceChoice, ReconstructRequest};
 
 /// What is filmed, and how.
 #[derive(Debug, Args)]
@@ -194,7 +194,6 @@ impl FilmKind {
     fn of(path: &Path) -> Result<Self, CliError> {
         let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
         match ending.as_deref().and_then(|ending| ending.to_str()) {
-            _ if cfg!(not(feature = "gui")) => Err(CliError::NoDrawing),
             Some("mp4") => Ok(Self::Mp4),
             None => Ok(Self::Pictures),
             Some(_) => Err(CliError::FilmKind { path: path.to_owned() }),
@@ -203,17 +202,16 @@ impl FilmKind {
 }
 
 /// Draws and writes the film under a progress bar.
-#[cfg(feature = "gui")]
 fn make(
     args: &FilmArgs,
     (kind, shown, timing): (FilmKind, ShownScene, FilmTiming),
     console: &Console<'_>,
 ) -> Result<(), CliError> {
     use crate::cli::console::under_bar;
-    use crate::data::Outcome;
-    use crate::render::Canvas;
-    use crate::render::film::{Film, write_film, write_frames};
-    use crate::study::Event;
+    use impactlab_core::data::Outcome;
+    use impactlab_draw::Canvas;
+    use impactlab_draw::film::{Film, write_film, write_frames};
+    use impactlab_study::Event;
 
     let FilmArgs { size, scale, dark, .. } = *args;
     let canvas = Canvas { size_px: size, scale: scale as f32, dark };
@@ -237,16 +235,4 @@ fn make(
         }
     };
     made.complete().ok_or(CliError::Cancelled)
-}
-
-/// Reads what only a film needs, so that the options are the same in every build.
-#[cfg(not(feature = "gui"))]
-fn make(
-    args: &FilmArgs,
-    (_, shown, timing): (FilmKind, ShownScene, FilmTiming),
-    console: &Console<'_>,
-) -> Result<(), CliError> {
-    let _ = (args.size, args.scale, args.dark, args.overwrite, timing, console);
-    shown.not_drawn();
-    Err(CliError::NoDrawing)
 }

@@ -2,21 +2,21 @@
 
 use clap::{Args, ValueEnum};
 
-use crate::analysis::{DensityTask, MotionBands};
 use crate::cli::CliError;
 use crate::cli::commands::predict_motion::{check_window_end, duration_s};
 use crate::cli::commands::render::{OutputArgs, VehicleArgs};
 use crate::cli::commands::render_figure::{Noted, noted};
 use crate::cli::console::Console;
 use crate::cli::options::{SourceArgs, number, window_s};
-use crate::data::Channel;
-use crate::figure::{
+use impactlab_core::data::Channel;
+use impactlab_core::ranges::INSTANT;
+use impactlab_core::units::UnitSystem;
+use impactlab_document::figure::{
     FORECAST_CHANNELS, MotionForecastFigure, forecast_channel_figure, forecast_scene_figure,
 };
-use crate::ranges::INSTANT;
-use crate::shipped::ModelSource;
-use crate::study::{ForceSource, PredictMotionRequest, Trust};
-use crate::units::UnitSystem;
+use impactlab_networks::shipped::ModelSource;
+use impactlab_study::analysis::{DensityTask, MotionBands};
+use impactlab_study::{ForceSource, PredictMotionRequest, Trust};
 
 /// Every how many steps the bands over time have an edge.
 const BAND_STRIDE: usize = 5;

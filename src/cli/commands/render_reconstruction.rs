@@ -10,13 +10,13 @@ use crate::cli::commands::render_figure::{Noted, noted};
 use crate::cli::commands::render_scene::{ShownScene, ViewArg};
 use crate::cli::console::Console;
 use crate::cli::options::EvidenceArgs;
-use crate::figure::{
+use impactlab_core::units::UnitSystem;
+use impactlab_document::figure::{
     ReconstructionScene, budget_figure, marginal_figure, prior_values, reconstruction_scene_figure,
 };
-use crate::reconstruct::ReconstructedQuantity;
-use crate::scene::{LoadedGround, ReconstructionParts, Scene, reconstruction_scene};
-use crate::study::{ReconstructAnswer, ReconstructRequest, ReconstructedPaths, Trust};
-use crate::units::UnitSystem;
+use impactlab_document::scene::{LoadedGround, ReconstructionParts, Scene, reconstruction_scene};
+use impactlab_reconstruct::ReconstructedQuantity;
+use impactlab_study::{ReconstructAnswer, ReconstructRequest, ReconstructedPaths, Trust};
 
 /// The evidence, and what is drawn.
 #[derive(Debug, Args)]

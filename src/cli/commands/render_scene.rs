@@ -5,19 +5,21 @@ use std::sync::Arc;
 
 use clap::{Args, ValueEnum};
 
-use crate::analysis::{Analysis, DensityTask};
 use crate::cli::CliError;
 use crate::cli::commands::render::{OutputArgs, VehicleArgs};
 use crate::cli::commands::render_figure::noted;
 use crate::cli::console::Console;
 use crate::cli::options::{SourceArgs, count, number};
-use crate::figure::{self, Figure, FigureElement, LineStyle, Role, Series, analysis_scene_figure};
-use crate::ranges::{CAMERA_AZIMUTH, CAMERA_DISTANCE, CAMERA_ELEVATION, GHOSTS, INSTANT};
-use crate::scene::{
+use impactlab_core::ranges::{CAMERA_AZIMUTH, CAMERA_DISTANCE, CAMERA_ELEVATION, GHOSTS, INSTANT};
+use impactlab_core::units::UnitSystem;
+use impactlab_document::figure::{
+    self, Figure, FigureElement, LineStyle, Role, Series, analysis_scene_figure,
+};
+use impactlab_document::scene::{
     FilmTiming, ForecastScene, LoadedGround, Scene, SimulationScene, add_forecast, simulation_scene,
 };
-use crate::study::{ForceSource, PredictMotionRequest, SimulateAnswer, SimulateRequest, Trust};
-use crate::units::UnitSystem;
+use impactlab_study::analysis::{Analysis, DensityTask};
+use impactlab_study::{ForceSource, PredictMotionRequest, SimulateAnswer, SimulateRequest, Trust};
 
 #[derive(Debug, Args)]
 pub(super) struct SceneArgs {
@@ -120,9 +122,8 @@ impl ShownScene {
     }
 
     /// The picture that is drawn.
-    #[cfg(feature = "gui")]
-    pub(super) fn picture(self) -> crate::render::scene::ScenePicture {
-        use crate::render::scene::{Camera, Follow, ScenePicture, ViewKind};
+    pub(super) fn picture(self) -> impactlab_draw::scene::ScenePicture {
+        use impactlab_draw::scene::{Camera, Follow, ScenePicture, ViewKind};
         let CameraArgs { azimuth, elevation, distance, follow } = self.camera;
         let usual = Camera::default();
         ScenePicture {
@@ -145,13 +146,6 @@ impl ShownScene {
                 Some(FollowArg::Striking) => Follow::Striking,
             },
         }
-    }
-
-    /// Reads what only a picture needs, so that the options are the same in every build.
-    #[cfg(not(feature = "gui"))]
-    pub(super) fn not_drawn(self) {
-        let CameraArgs { azimuth, elevation, distance, follow } = self.camera;
-        let _ = (azimuth, elevation, distance, follow, self.scene);
     }
 }
 
@@ -295,7 +289,7 @@ fn add_ghosts(
 fn drawn_paths(scene: &Scene, figure: &Figure) -> Vec<FigureElement> {
     let shown = |[x, y]: [f64; 2]| [figure.x.unit.from_si(x), figure.y.unit.from_si(y)];
     let drawn = scene.paths.iter().filter(|path| !path.has_ticks);
-    let path = |(idx, path): (usize, &crate::scene::ScenePath)| {
+    let path = |(idx, path): (usize, &impactlab_document::scene::ScenePath)| {
         let states = path.motion.states();
         let points = states.iter().map(|state| shown([state.pose.x_m, state.pose.y_m])).collect();
         FigureElement::Path(figure::Path {

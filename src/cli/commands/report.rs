@@ -6,15 +6,15 @@ use std::time::SystemTime;
 use clap::{Args, ValueEnum};
 use serde::Serialize;
 
-use crate::case_file::{CaseFile, Change, Variant, is_case_file};
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_json, shown_path, under_bar};
 use crate::cli::options::{OverwriteArg, UnitsArg};
-use crate::data::write_atomically;
-use crate::report::{
+use impactlab_core::data::write_atomically;
+use impactlab_document::report::{
     Drawing, Language, Paper, ReportDate, ReportFormat, ReportSettings, report_case,
 };
-use crate::study::{EvidenceChoice, ReconstructRequest};
+use impactlab_study::case_file::{CaseFile, Change, Variant, is_case_file};
+use impactlab_study::{EvidenceChoice, ReconstructRequest};
 
 /// Write the report of a case: answers, inputs, evidence, method, validity, sources
 #[derive(Debug, Args)]
@@ -181,15 +181,5 @@ impl ReportArgs {
     }
 }
 
-/// Draws the pictures of a PDF; nothing in a build without drawing.
-const DRAWING: Option<&Drawing<'static>> = drawing();
-
-#[cfg(feature = "gui")]
-const fn drawing() -> Option<&'static Drawing<'static>> {
-    Some(&crate::render::report_picture)
-}
-
-#[cfg(not(feature = "gui"))]
-const fn drawing() -> Option<&'static Drawing<'static>> {
-    None
-}
+/// Draws the pictures of a PDF.
+const DRAWING: Option<&Drawing<'static>> = Some(&impactlab_draw::report_picture);

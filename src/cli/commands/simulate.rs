@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use clap::{ArgGroup, Args};
 use serde::Serialize;
 
-use crate::analysis::PulseSetup;
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict};
 use crate::cli::options::{
@@ -14,15 +13,16 @@ use crate::cli::options::{
     contact_point, count, number,
 };
 use crate::cli::text::{print_dataset_simulation, print_simulation};
-use crate::data::{ColumnMap, DatasetKind, Existing, write_restricted_series_csv};
-use crate::ranges::{
+use impactlab_core::data::{ColumnMap, DatasetKind, Existing, write_restricted_series_csv};
+use impactlab_core::ranges::{
     REST_LIMIT, ROAD_FRICTION, SIMULATED_DURATION, SPEED, VEHICLE_DRAWS, YAW_RATE,
 };
-use crate::study::{
+use impactlab_core::vehicle::{ContactPoint, Equations};
+use impactlab_study::analysis::PulseSetup;
+use impactlab_study::{
     DEFAULT_DURATION_S, DEFAULT_VEHICLE_DRAWS, Drive, MotionSource, ScenarioChoice, SeriesFile,
     SimulateDatasetRequest, SimulateRequest, Trust,
 };
-use crate::vehicle::{ContactPoint, Equations};
 
 /// Simulate the motion after an impact, or compare a whole data set with the simulation
 #[derive(Debug, Args)]

@@ -8,9 +8,9 @@ use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_settings};
 use crate::cli::options::{TrainingArgs, count};
 use crate::cli::text::{Trained, print_force_training};
-use crate::learning::ModelFile;
-use crate::ranges::EPOCHS;
-use crate::study::TrainForceRequest;
+use impactlab_core::ranges::EPOCHS;
+use impactlab_networks::learning::ModelFile;
+use impactlab_study::TrainForceRequest;
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]

@@ -8,8 +8,8 @@ use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_settings};
 use crate::cli::options::{TrainingArgs, VehicleArg};
 use crate::cli::text::{Trained, print_response_training};
-use crate::learning::ModelFile;
-use crate::study::TrainResponseRequest;
+use impactlab_networks::learning::ModelFile;
+use impactlab_study::TrainResponseRequest;
 
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]

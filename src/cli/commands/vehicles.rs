@@ -5,9 +5,9 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::console::{Console, Verdict, print_json, print_table};
-use crate::study::StudyError;
-use crate::vehicle::sheet::Estimate;
-use crate::vehicle::{LibraryVehicle, Preset, VehicleParameters};
+use impactlab_core::vehicle::sheet::Estimate;
+use impactlab_core::vehicle::{LibraryVehicle, Preset, VehicleParameters};
+use impactlab_study::StudyError;
 
 /// List the vehicles that come with the program, or print one as a file to save and edit
 ///

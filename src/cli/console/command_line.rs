@@ -7,12 +7,12 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::console::{Targets, print_json, under_bar, within_line};
-use crate::data::Existing;
-use crate::data::write::OutputFolder;
-use crate::scene::LoadedGround;
-use crate::site::Site;
-use crate::study::{Assumption, Library, Provenance, Question, Request};
-use crate::uncertainty::Badge;
+use impactlab_core::data::Existing;
+use impactlab_core::data::write::OutputFolder;
+use impactlab_core::site::Site;
+use impactlab_core::uncertainty::Badge;
+use impactlab_document::scene::LoadedGround;
+use impactlab_study::{Assumption, Library, Provenance, Question, Request};
 
 /// How a command that did not fail ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -106,7 +106,7 @@ impl Console<'_> {
     /// Says which files are about to be read without a question.
     ///
     /// # Errors
-    /// [`WriteError::IsInput`](crate::data::write::WriteError::IsInput) if one of them is to be written.
+    /// [`WriteError::IsInput`](impactlab_core::data::write::WriteError::IsInput) if one of them is to be written.
     pub(in crate::cli) fn reads(&mut self, files: &[PathBuf]) -> Result<(), CliError> {
         self.targets.read(files)
     }
@@ -133,12 +133,11 @@ impl Console<'_> {
     ///
     /// - returns the folder, and what its manifest says: what was asked and read since
     ///   [`Console::expect_folder`].
-    #[cfg(feature = "gui")]
     pub(in crate::cli) fn begin_folder(
         &self,
         folder: &Path,
         existing: Existing,
-    ) -> Result<(OutputFolder, crate::data::write::RunRecord), CliError> {
+    ) -> Result<(OutputFolder, impactlab_core::data::write::RunRecord), CliError> {
         let (record, read) = self.targets.run_record();
         Ok((OutputFolder::begin(folder, existing, &[])?.protecting(read)?, record))
     }

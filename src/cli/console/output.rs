@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::cli::CliError;
 use crate::cli::console::within_line;
-use crate::units::{Quantity, UnitSystem};
+use impactlab_core::units::{Quantity, UnitSystem};
 
 /// Number of characters of a cell that are printed.
 const MAX_CELL_CHARS: usize = 200;

@@ -6,9 +6,9 @@ use std::ops::ControlFlow;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::cli::console::within_line;
-use crate::jobs::Progress;
-use crate::learning::TrainingReport;
-use crate::study::{Event, Observer};
+use impactlab_core::jobs::Progress;
+use impactlab_networks::learning::TrainingReport;
+use impactlab_study::{Event, Observer};
 
 const TEMPLATE: &str = "{msg} {wide_bar} {pos}/{len} {eta}";
 

@@ -5,9 +5,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::cli::CliError;
-use crate::data::write::{FileDigest, RunRecord, check_inputs};
-use crate::data::{Existing, check_target};
-use crate::study::{Provenance, Request};
+use impactlab_core::data::write::{FileDigest, RunRecord, check_inputs};
+use impactlab_core::data::{Existing, check_target};
+use impactlab_study::{Provenance, Request};
 
 /// The files that a command will write, and what it has asked and read since.
 #[derive(Debug, Default)]

@@ -5,8 +5,8 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::cli::CliError;
-use crate::data::{Existing, write_atomically};
-use crate::study::ForceEvaluation;
+use impactlab_core::data::{Existing, write_atomically};
+use impactlab_study::ForceEvaluation;
 
 /// Writes an evaluation as JSON and Markdown, or a cross-validation as JSON, into a folder that
 /// exists.

@@ -5,11 +5,11 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::cli::CliError;
-use crate::data::{
+use impactlab_core::data::{
     Existing, write_atomically, write_restricted_series_csv, write_restricted_table,
 };
-use crate::study::{PredictForceAnswer, StudyError, Trust};
-use crate::uncertainty::{CurveBands, ForceCurve};
+use impactlab_core::uncertainty::{CurveBands, ForceCurve};
+use impactlab_study::{PredictForceAnswer, StudyError, Trust};
 
 /// Writes bands, mean and samples as CSV, and the report as JSON, into a folder that exists.
 pub(in crate::cli) fn write_force_prediction(

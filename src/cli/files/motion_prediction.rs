@@ -2,16 +2,18 @@
 
 use std::path::Path;
 
-use crate::analysis::{DensityMap, DensityTask, MOTION_BAND_LEVELS, MotionBands, MotionForecast};
 use crate::cli::CliError;
-use crate::data::{Existing, write_atomically, write_restricted_table};
-use crate::figure::{
+use impactlab_core::data::{Existing, write_atomically, write_restricted_table};
+use impactlab_core::units::UnitSystem;
+use impactlab_document::figure::{
     FORECAST_CHANNELS, Figure, MotionForecastFigure, forecast_channel_figure,
     forecast_scene_figure, write_figure_csv,
 };
-use crate::response::STEP_S;
-use crate::study::{PredictMotionAnswer, Trust};
-use crate::units::UnitSystem;
+use impactlab_networks::response::STEP_S;
+use impactlab_study::analysis::{
+    DensityMap, DensityTask, MOTION_BAND_LEVELS, MotionBands, MotionForecast,
+};
+use impactlab_study::{PredictMotionAnswer, Trust};
 
 /// Where the files go, and what they show.
 pub(in crate::cli) struct MotionFiles<'a> {
@@ -60,25 +62,16 @@ pub(in crate::cli) fn write_motion_prediction(
         })?;
         files.push(csv);
         let png = format!("{name}.png");
-        if write_png(figure, &path(&png))? {
-            files.push(png);
-        }
+        write_png(figure, &path(&png))?;
+        files.push(png);
     }
     Ok(files)
 }
 
-/// Whether this build draws.
-#[cfg(feature = "gui")]
-fn write_png(figure: &Figure, path: &Path) -> Result<bool, CliError> {
-    let image = crate::render::figure_image(figure, crate::render::Canvas::default())?;
-    crate::render::save_png(&image, path, Existing::Refuse)?;
-    Ok(true)
-}
-
-#[cfg(not(feature = "gui"))]
-#[allow(clippy::unnecessary_wraps, reason = "the build with a window can fail here")]
-fn write_png(_figure: &Figure, _path: &Path) -> Result<bool, CliError> {
-    Ok(false)
+fn write_png(figure: &Figure, path: &Path) -> Result<(), CliError> {
+    let image = impactlab_draw::figure_image(figure, impactlab_draw::Canvas::default())?;
+    impactlab_draw::save_png(&image, path, Existing::Refuse)?;
+    Ok(())
 }
 
 fn write_trajectory(

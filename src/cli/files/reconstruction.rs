@@ -5,9 +5,9 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::cli::CliError;
-use crate::data::{Existing, write_atomically, write_restricted_table};
-use crate::reconstruct::ReconstructedQuantity;
-use crate::study::{ReconstructAnswer, Trust};
+use impactlab_core::data::{Existing, write_atomically, write_restricted_table};
+use impactlab_reconstruct::ReconstructedQuantity;
+use impactlab_study::{ReconstructAnswer, Trust};
 
 /// Writes the particles as CSV and the report as JSON into a folder that exists.
 pub(in crate::cli) fn write_reconstruction(

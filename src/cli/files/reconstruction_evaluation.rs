@@ -4,9 +4,9 @@ use std::path::Path;
 
 use crate::cli::CliError;
 use crate::cli::files::write_json;
-use crate::data::{Existing, write_restricted_table};
-use crate::reconstruct::evaluate::{CaseScore, SPEEDS, ScoredQuantity};
-use crate::study::{EvaluateReconstructionReport, Trust, word};
+use impactlab_core::data::{Existing, write_restricted_table};
+use impactlab_reconstruct::evaluate::{CaseScore, SPEEDS, ScoredQuantity};
+use impactlab_study::{EvaluateReconstructionReport, Trust, word};
 
 /// Files that are written.
 pub(in crate::cli) const RECONSTRUCTION_EVALUATION_FILES: [&str; 2] =

@@ -5,10 +5,10 @@ use std::str::FromStr;
 
 use clap::{Args, ValueEnum};
 
-use crate::data::Sampling;
-use crate::study::{BadCases, EvaluatedCases, VehicleChoice};
-use crate::units::UnitSystem;
-use crate::vehicle::{Equations, Integrator};
+use impactlab_core::data::Sampling;
+use impactlab_core::units::UnitSystem;
+use impactlab_core::vehicle::{Equations, Integrator};
+use impactlab_study::{BadCases, EvaluatedCases, VehicleChoice};
 
 /// The units of the text.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]

@@ -5,11 +5,11 @@ use std::str::FromStr;
 use clap::{ArgGroup, Args, ValueEnum};
 
 use crate::cli::options::quantity::{QuantityError, number};
-use crate::ranges::{
+use impactlab_core::ranges::{
     BRAKE_RISE, BRAKE_SHARE, CONTROL_TIME, DRAG_SHARE, DRIVE_TORQUE, ENGINE_BRAKING, OutOfRange,
     STEER_ANGLE, STEERING_RATIO, STEERING_WHEEL_ANGLE,
 };
-use crate::vehicle::{
+use impactlab_core::vehicle::{
     Braking, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Driving, Ending, EngineBraking,
     HeldSteer, Wheel,
 };

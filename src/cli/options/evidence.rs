@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::cli::options::VehicleArg;
-use crate::study::{EvidenceChoice, ReconstructRequest};
+use impactlab_study::{EvidenceChoice, ReconstructRequest};
 
 /// The evidence, the cars, and with how many particles the speeds are sampled.
 #[derive(Debug, Args)]

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::cli::options::{VehicleArg, contact_point, count, number};
-use crate::data::ColumnMap;
-use crate::learning::TEST_SHARE;
-use crate::ranges::{INSTANT, LOG_DURATION, TEST_SHARE as SHARE_OF_TEST, TRAJECTORIES};
-use crate::study::{DEFAULT_LOG_DURATION_S, FineTuneRequest, MotionLogs};
-use crate::vehicle::ContactPoint;
+use impactlab_core::data::ColumnMap;
+use impactlab_core::ranges::{INSTANT, LOG_DURATION, TEST_SHARE as SHARE_OF_TEST, TRAJECTORIES};
+use impactlab_core::vehicle::ContactPoint;
+use impactlab_networks::learning::TEST_SHARE;
+use impactlab_study::{DEFAULT_LOG_DURATION_S, FineTuneRequest, MotionLogs};
 
 /// Which trajectories or logs are learned from.
 #[derive(Debug, Args)]

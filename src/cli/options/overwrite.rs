@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use crate::data::Existing;
+use impactlab_core::data::Existing;
 
 /// Whether files that exist may be replaced.
 #[derive(Debug, Clone, Copy, Args)]

@@ -1,12 +1,12 @@
 //! Numbers with units as arguments: `20`, `72km/h`, `30deg/s`.
 
-use crate::ranges::{
+use impactlab_core::ranges::{
     CONTACT_HEIGHT, CONTACT_X, CONTACT_Y, FILM_SPEED, INSTANT, OutOfRange, PICTURE_SIDE, Range,
     WINDOW,
 };
-use crate::scene::FilmSection;
-use crate::units::Quantity;
-use crate::vehicle::ContactPoint;
+use impactlab_core::units::Quantity;
+use impactlab_core::vehicle::ContactPoint;
+use impactlab_document::scene::FilmSection;
 
 /// An argument that is not the number it should be.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -146,7 +146,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::ranges::{DRAWS, INSTANT, SPEED, YAW_RATE};
+    use impactlab_core::ranges::{DRAWS, INSTANT, SPEED, YAW_RATE};
 
     #[test]
     fn units_are_understood_and_si_is_assumed() {

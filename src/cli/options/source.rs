@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use crate::analysis::PulseSetup;
 use crate::cli::CliError;
-use crate::collision::SCENARIO_PRESETS;
-use crate::data::{ColumnMap, DataError, DatasetKind, FileKind};
-use crate::study::{Drive, Library, MotionSource, ScenarioChoice, SeriesFile, StudyError};
+use impactlab_core::collision::SCENARIO_PRESETS;
+use impactlab_core::data::{ColumnMap, DataError, DatasetKind, FileKind};
+use impactlab_study::analysis::PulseSetup;
+use impactlab_study::{Drive, Library, MotionSource, ScenarioChoice, SeriesFile, StudyError};
 
 /// What is shown: a case, a file or a scenario.
 #[derive(Debug, Args)]

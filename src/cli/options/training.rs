@@ -7,8 +7,8 @@ use clap::Args;
 use crate::cli::CliError;
 use crate::cli::console::Console;
 use crate::cli::options::{BadCasesArg, OverwriteArg};
-use crate::data::Existing;
-use crate::study::{TrainingOptions, checkpoint_beside};
+use impactlab_core::data::Existing;
+use impactlab_study::{TrainingOptions, checkpoint_beside};
 
 /// Where a model goes and how it is trained.
 #[derive(Debug, Args)]

@@ -3,11 +3,11 @@
 use std::io::{self, Write};
 
 use crate::cli::console::{print_facts, print_table, shown, shown_path, shown_vector};
-use crate::data::Channel;
-use crate::study::{
+use impactlab_core::data::Channel;
+use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_study::{
     CaseFlag, CheckReport, ColumnReport, DatasetReport, FileReport, PathProblem, ProposedColumn,
 };
-use crate::units::{Quantity, UnitSystem};
 
 /// Prints the report for a person.
 pub(in crate::cli) fn print_check(out: &mut dyn Write, report: &CheckReport) -> io::Result<()> {

@@ -3,8 +3,8 @@
 use std::io::{self, Write};
 
 use crate::cli::console::{print_badges, print_table};
-use crate::response::evaluate::all_tables;
-use crate::study::CompareReport;
+use impactlab_networks::response::evaluate::all_tables;
+use impactlab_study::CompareReport;
 
 /// Prints the tables below each other.
 pub(in crate::cli) fn print_comparison(

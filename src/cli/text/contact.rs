@@ -1,9 +1,9 @@
 //! Restitution and friction of a contact, as a person reads them.
 
-use crate::analysis::Estimate;
 use crate::cli::console::shown_vector;
-use crate::study::{ImpliedContactReport, MomentumReport};
-use crate::units::{Quantity, UnitSystem, significant};
+use impactlab_core::units::{Quantity, UnitSystem, significant};
+use impactlab_study::analysis::Estimate;
+use impactlab_study::{ImpliedContactReport, MomentumReport};
 
 /// Names and values of the implied restitution and impulse ratio, and of the momentum solution with
 /// the collision's own values.

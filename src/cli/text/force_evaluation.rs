@@ -3,9 +3,9 @@
 use std::io::{self, Write};
 
 use crate::cli::console::{print_badges, print_table};
-use crate::force::CrossValidation;
-use crate::force::metrics::CurveMetrics;
-use crate::study::{EvaluateForceReport, ForceEvaluation};
+use impactlab_networks::force::CrossValidation;
+use impactlab_networks::force::metrics::CurveMetrics;
+use impactlab_study::{EvaluateForceReport, ForceEvaluation};
 
 /// Prints the tables below each other.
 pub(in crate::cli) fn print_force_evaluation(

@@ -2,11 +2,11 @@
 
 use std::io::{self, Write};
 
-use crate::analysis::Estimate;
 use crate::cli::console::{print_badges, print_facts, shown};
 use crate::cli::text::contact::implied_facts;
-use crate::study::PredictForceReport;
-use crate::units::{Quantity, UnitSystem};
+use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_study::PredictForceReport;
+use impactlab_study::analysis::Estimate;
 
 /// Prints medians and 90 % intervals, and where the collision lies outside what was learned from.
 pub(in crate::cli) fn print_force_prediction(

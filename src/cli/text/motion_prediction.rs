@@ -2,12 +2,12 @@
 
 use std::io::{self, Write};
 
-use crate::analysis::{RestOutcome, Spread};
 use crate::cli::console::{print_badges, print_facts, shown};
 use crate::cli::text::contact::implied_facts;
 use crate::cli::text::sensitivity::print_sensitivity;
-use crate::study::PredictMotionReport;
-use crate::units::{Quantity, UnitSystem, percent};
+use impactlab_core::units::{Quantity, UnitSystem, percent};
+use impactlab_study::PredictMotionReport;
+use impactlab_study::analysis::{RestOutcome, Spread};
 
 /// Prints how the motion ends.
 pub(in crate::cli) fn print_motion_prediction(

@@ -3,9 +3,9 @@
 use std::io::{self, Write};
 
 use crate::cli::console::{print_badges, print_table};
-use crate::reconstruct::{MarkComparison, QuantityEstimate};
-use crate::study::{FrictionZoneReport, ReconstructReport};
-use crate::units::{Quantity, UnitSystem, percent};
+use impactlab_core::units::{Quantity, UnitSystem, percent};
+use impactlab_reconstruct::{MarkComparison, QuantityEstimate};
+use impactlab_study::{FrictionZoneReport, ReconstructReport};
 
 /// Prints quantities, modes, fit and budget.
 pub(in crate::cli) fn print_reconstruction(

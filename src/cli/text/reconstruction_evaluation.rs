@@ -3,10 +3,10 @@
 use std::io::{self, Write};
 
 use crate::cli::console::{print_badges, print_table};
-use crate::reconstruct::ReconstructedQuantity;
-use crate::reconstruct::evaluate::{MethodSummary, QuantitySummary, SPEEDS, SUFFICIENT_ESS};
-use crate::study::{EvaluateReconstructionReport, word};
-use crate::units::{Quantity, UnitSystem, percent};
+use impactlab_core::units::{Quantity, UnitSystem, percent};
+use impactlab_reconstruct::ReconstructedQuantity;
+use impactlab_reconstruct::evaluate::{MethodSummary, QuantitySummary, SPEEDS, SUFFICIENT_ESS};
+use impactlab_study::{EvaluateReconstructionReport, word};
 
 /// Prints the summary of each speed, the time that it takes, and what is left out.
 pub(in crate::cli) fn print_reconstruction_evaluation(

@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
-use crate::analysis::Sensitivity;
 use crate::cli::console::print_table;
+use impactlab_study::analysis::Sensitivity;
 
 /// Prints the shares of the estimates in the variance of the end, as far as they are more than chance;
 /// nothing if there are none.

@@ -3,17 +3,17 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use crate::analysis::Spread;
 use crate::cli::console::{
     print_badges, print_facts, print_table, shown, shown_path, shown_vector,
 };
 use crate::cli::text::contact::surface;
 use crate::cli::text::motion_prediction::{rest_facts, shown_share};
 use crate::cli::text::sensitivity::print_sensitivity;
-use crate::study::{
+use impactlab_core::units::{Quantity, UnitSystem, percent};
+use impactlab_study::analysis::Spread;
+use impactlab_study::{
     ForceReport, FrictionZoneReport, RestState, SimulateReport, TyreMarkReport, VehicleUncertainty,
 };
-use crate::units::{Quantity, UnitSystem, percent};
 
 /// A name and a value.
 type Fact = (&'static str, String);

@@ -4,9 +4,9 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use crate::cli::console::{print_badges, print_table, shown_path};
-use crate::numerics::Summary;
-use crate::study::{ReplayedCaseReport, SimulateDatasetReport};
-use crate::units::{Quantity, UnitSystem};
+use impactlab_core::numerics::Summary;
+use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_study::{ReplayedCaseReport, SimulateDatasetReport};
 
 /// Prints the errors case by case and over all.
 ///

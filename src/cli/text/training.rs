@@ -6,9 +6,9 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::cli::console::{print_assumptions, print_facts, shown_path};
-use crate::force::LossTerms;
-use crate::response::{ForceOrigin, LATENT_NAMES};
-use crate::study::{LogReport, ResponseTrainingReport, TrainForceReport};
+use impactlab_networks::force::LossTerms;
+use impactlab_networks::response::{ForceOrigin, LATENT_NAMES};
+use impactlab_study::{LogReport, ResponseTrainingReport, TrainForceReport};
 
 /// A report of a training, and where its model was written.
 #[derive(Debug, Serialize)]

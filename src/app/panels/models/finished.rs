@@ -12,8 +12,8 @@ use crate::app::network::Network;
 use crate::app::panels::models::facts_ui;
 use crate::app::panes::PaneContext;
 use crate::app::state::Project;
-use crate::data::Severity;
-use crate::render::theme;
+use impactlab_core::data::Severity;
+use impactlab_draw::theme;
 
 /// Number of figures that are shown of an entry without unfolding it.
 const N_MAIN_FIGURES: usize = 4;

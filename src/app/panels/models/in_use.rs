@@ -10,8 +10,8 @@ use crate::app::panels::model_row::{model_row_ui, no_model_ui};
 use crate::app::panels::models::facts_ui;
 use crate::app::panes::PaneContext;
 use crate::app::response::ForceChoice;
-use crate::shipped::ModelSource;
-use crate::study::ModelChoice;
+use impactlab_networks::shipped::ModelSource;
+use impactlab_study::ModelChoice;
 
 /// Draws both networks beside each other.
 pub fn in_use_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {

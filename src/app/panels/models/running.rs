@@ -9,7 +9,7 @@ use crate::app::network::{Network, TrainedModel};
 use crate::app::panels::training_parts::run_progress_ui;
 use crate::app::panes::{Pane, PaneContext};
 use crate::app::training_status::TrainingStatus;
-use crate::jobs::Progress;
+use impactlab_core::jobs::Progress;
 
 /// Draws what is running; if nothing is, buttons that lead to the forms.
 pub fn running_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {

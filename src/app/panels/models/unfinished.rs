@@ -9,8 +9,8 @@ use crate::app::network::Network;
 use crate::app::panes::Pane;
 use crate::app::state::Session;
 use crate::app::unfinished::Unfinished;
-use crate::data::Severity;
-use crate::render::theme;
+use impactlab_core::data::Severity;
+use impactlab_draw::theme;
 
 /// Whether there is a training that can go on, or a checkpoint that cannot be used.
 pub fn has_something(session: &Session) -> bool {

@@ -8,21 +8,21 @@ use crate::app::panels::reconstruction::fields::{
 };
 use crate::app::panels::vehicle::{chosen_label, evidence_vehicle_ui};
 use crate::app::reconstruction::{ReconstructionCommand, stand_ins};
-use crate::collision::Side;
-use crate::ranges::{
+use impactlab_core::collision::Side;
+use impactlab_core::ranges::{
     ANGLE_SIGMA, CG_HEIGHT, CG_TO_AXLE, CONTACT_X, CONTACT_Y, EVIDENCE_HEADING, EVIDENCE_POSITION,
     EVIDENCE_SPEED, EVIDENCE_TIME, FRICTION_SIGMA, MASS_SIGMA, OUTER_LENGTH, OUTER_WIDTH,
     POSITION_SIGMA, PULSE_END, ROAD_FRICTION, SPEED, SPEED_SIGMA, TRACK_WIDTH, VEHICLE_MASS,
     VEHICLE_YAW_INERTIA,
 };
-use crate::reconstruct::evidence::{
+use impactlab_core::units::UnitSystem;
+use impactlab_core::vehicle::Wheel;
+use impactlab_reconstruct::evidence::{
     After, CarEvidence, DEFAULT_DAMAGE_SIGMA_M, DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA,
     DEFAULT_HEADING_SIGMA_RAD, Damage, DriverBraked, Edr, Evidence, Mark, MarkKind, Measured,
     RestPose, VideoPosition,
 };
-use crate::study::VehicleChoice;
-use crate::units::UnitSystem;
-use crate::vehicle::Wheel;
+use impactlab_study::VehicleChoice;
 
 /// Standard deviation of an angle that is read off the damage, rad.
 const USUAL_ANGLE_SIGMA_RAD: f64 = 0.17;

@@ -14,10 +14,10 @@ use crate::app::reconstruction::{
     EvidencePreview, ReconstructionCommand, ReconstructionProject, ReconstructionSession,
 };
 use crate::app::widgets::{count_field, duration_text};
-use crate::data::Severity;
-use crate::ranges::RECONSTRUCTION_PARTICLES;
-use crate::reconstruct::evidence::Evidence;
-use crate::study::{EvidenceChoice, VehicleChoice};
+use impactlab_core::data::Severity;
+use impactlab_core::ranges::RECONSTRUCTION_PARTICLES;
+use impactlab_reconstruct::evidence::Evidence;
+use impactlab_study::{EvidenceChoice, VehicleChoice};
 
 /// Draws the run, the cards of the evidence, and the ranges before and after it.
 pub fn evidence_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {

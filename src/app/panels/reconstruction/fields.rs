@@ -5,9 +5,9 @@
 use egui::{Response, Ui};
 
 use crate::app::widgets::quantity_value;
-use crate::ranges::Range;
-use crate::reconstruct::evidence::Measured;
-use crate::units::UnitSystem;
+use impactlab_core::ranges::Range;
+use impactlab_core::units::UnitSystem;
+use impactlab_reconstruct::evidence::Measured;
 
 /// Number of columns of the grid.
 pub const N_COLUMNS: usize = 4;

@@ -7,12 +7,12 @@ use crate::app::command::Command;
 use crate::app::looks::{self, Icon};
 use crate::app::reconstruction::ReconstructionCommand;
 use crate::app::widgets::figure_frame;
-use crate::data::Severity;
-use crate::figure::budget_figure;
-use crate::reconstruct::{BudgetItem, EvidenceFit};
-use crate::render::{FigureOptions, theme};
-use crate::study::{ReconstructAnswer, ReconstructReport, Trust};
-use crate::units::{Quantity, UnitSystem, significant};
+use impactlab_core::data::Severity;
+use impactlab_core::units::{Quantity, UnitSystem, significant};
+use impactlab_document::figure::budget_figure;
+use impactlab_draw::{FigureOptions, theme};
+use impactlab_reconstruct::{BudgetItem, EvidenceFit};
+use impactlab_study::{ReconstructAnswer, ReconstructReport, Trust};
 
 /// Height of a bar of the budget, and of its axis and heading, points.
 const BAR_HEIGHT: f32 = 24.0;

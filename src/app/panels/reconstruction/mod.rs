@@ -16,8 +16,8 @@ pub use speeds::speeds_ui;
 use egui::Ui;
 
 use crate::app::looks::{self, Icon};
-use crate::data::Severity;
-use crate::render::theme;
+use impactlab_core::data::Severity;
+use impactlab_draw::theme;
 
 /// What is said of an answer whose evidence or settings have been changed since.
 const OUTDATED: &str = "The evidence or the settings were changed since the last run: Run again";

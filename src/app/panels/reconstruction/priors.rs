@@ -5,15 +5,15 @@ use egui::{CollapsingHeader, Grid, Sense, Ui, vec2};
 
 use crate::app::panels::reconstruction::fields::{N_COLUMNS, interval_row};
 use crate::app::reconstruction::{EvidencePreview, ReconstructionProject, ReconstructionSession};
-use crate::figure::Role;
-use crate::ranges::{
+use impactlab_core::ranges::{
     BRAKE_SHARE, CONTROL_TIME, EVIDENCE_HEADING, EVIDENCE_SPEED, FRICTION_LIMIT, HEADING,
     RESTITUTION,
 };
-use crate::reconstruct::PriorComponent;
-use crate::reconstruct::evidence::PriorRanges;
-use crate::render::theme;
-use crate::units::{UnitSystem, significant};
+use impactlab_core::units::{UnitSystem, significant};
+use impactlab_document::figure::Role;
+use impactlab_draw::theme;
+use impactlab_reconstruct::PriorComponent;
+use impactlab_reconstruct::evidence::PriorRanges;
 
 /// Standard normal variable below which 95 % lie.
 const Z_95: f64 = 1.645;

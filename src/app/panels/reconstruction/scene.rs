@@ -17,14 +17,16 @@ use crate::app::reconstruction::{
 };
 use crate::app::scene::SceneSettings;
 use crate::app::widgets::{MIN_PLOT_HEIGHT, TITLE_HEIGHT, badges_ui, figure_frame};
-use crate::data::Severity;
-use crate::figure::{Figure, FollowedPath, ReconstructionScene, reconstruction_scene_figure};
-use crate::reconstruct::evidence::Evidence;
-use crate::render::FigureOptions;
-use crate::render::scene::{ScenePicture, SceneView, scene_view_ui};
-use crate::scene::{ReconstructionParts, Scene};
-use crate::study::{EvidenceChoice, ReconstructReport, Trust};
-use crate::units::{Quantity, UnitSystem, percent};
+use impactlab_core::data::Severity;
+use impactlab_core::units::{Quantity, UnitSystem, percent};
+use impactlab_document::figure::{
+    Figure, FollowedPath, ReconstructionScene, reconstruction_scene_figure,
+};
+use impactlab_document::scene::{ReconstructionParts, Scene};
+use impactlab_draw::FigureOptions;
+use impactlab_draw::scene::{ScenePicture, SceneView, scene_view_ui};
+use impactlab_reconstruct::evidence::Evidence;
+use impactlab_study::{EvidenceChoice, ReconstructReport, Trust};
 
 /// Draws the choice of what is followed, the time slider, and the plan or the cars.
 pub fn reconstructed_scene_ui(ui: &mut Ui, pane: &mut PaneContext<'_>) {

@@ -2,13 +2,13 @@
 
 use egui::{Id, TextStyle, Ui};
 
-use crate::collision::{Footprint, Pose};
-use crate::figure::{FigureElement, Role, STRIKING_AT_REST, STRUCK_AT_REST};
-use crate::ranges::{EVIDENCE_HEADING, EVIDENCE_POSITION};
-use crate::reconstruct::Cars;
-use crate::reconstruct::evidence::{Evidence, RestPose};
-use crate::render::FigureResponse;
-use crate::units::Unit;
+use impactlab_core::collision::{Footprint, Pose};
+use impactlab_core::ranges::{EVIDENCE_HEADING, EVIDENCE_POSITION};
+use impactlab_core::units::Unit;
+use impactlab_document::figure::{FigureElement, Role, STRIKING_AT_REST, STRUCK_AT_REST};
+use impactlab_draw::FigureResponse;
+use impactlab_reconstruct::Cars;
+use impactlab_reconstruct::evidence::{Evidence, RestPose};
 
 /// Distance from the pointer at which a handle is taken, points.
 const REACH: f64 = 14.0;
@@ -50,7 +50,7 @@ impl SceneEdit {
     /// - `adds_to`: the mark to which clicks add points.
     pub fn begin(ui: &Ui, (cars, adds_to): (&Cars, Option<usize>)) -> Self {
         let id = Id::unique("edit of the reconstructed scene");
-        let front = |car: &crate::reconstruct::Car| {
+        let front = |car: &impactlab_reconstruct::Car| {
             Footprint::from(&car.parameters.geometry).cg_from_front_m
         };
         Self {
@@ -205,8 +205,8 @@ mod tests {
     use egui::{Context, RawInput};
 
     use super::*;
-    use crate::data::TomlFile;
-    use crate::units::{Quantity, UnitSystem};
+    use impactlab_core::data::TomlFile;
+    use impactlab_core::units::{Quantity, UnitSystem};
 
     const EVIDENCE: &str = r#"
         case = "a"

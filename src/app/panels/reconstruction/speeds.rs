@@ -2,7 +2,6 @@
 
 use egui::{ComboBox, ScrollArea, Ui};
 
-use crate::analysis::Spread;
 use crate::app::command::Command;
 use crate::app::looks;
 use crate::app::panels::faded_if;
@@ -14,12 +13,13 @@ use crate::app::reconstruction::{PreparedReconstruction, ReconstructionView};
 use crate::app::widgets::{
     SpreadRow, badges_ui, evidence_assumptions_ui, figure_frame, spread_table_ui,
 };
-use crate::data::Severity;
-use crate::figure::{marginal_figure, pair_figure};
-use crate::reconstruct::{QuantityEstimate, ReconstructedQuantity};
-use crate::render::FigureOptions;
-use crate::study::{ReconstructReport, Trust};
-use crate::units::{Quantity, UnitSystem};
+use impactlab_core::data::Severity;
+use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_document::figure::{marginal_figure, pair_figure};
+use impactlab_draw::FigureOptions;
+use impactlab_reconstruct::{QuantityEstimate, ReconstructedQuantity};
+use impactlab_study::analysis::Spread;
+use impactlab_study::{ReconstructReport, Trust};
 
 /// Heights of the plots, points.
 const MARGINAL_HEIGHT: f32 = 190.0;

@@ -10,10 +10,10 @@ use crate::app::looks::{self, Icon, icon_button};
 use crate::app::panes::PaneContext;
 use crate::app::report::{MadeReport, ReportCommand, ReportSession, ReportView};
 use crate::app::widgets::duration_text;
-use crate::data::Severity;
-use crate::render::theme;
-use crate::report::{Language, Paper};
-use crate::units::UnitSystem;
+use impactlab_core::data::Severity;
+use impactlab_core::units::UnitSystem;
+use impactlab_document::report::{Language, Paper};
+use impactlab_draw::theme;
 
 /// Languages with their names in themselves.
 const LANGUAGES: [(Language, &str); 2] = [(Language::En, "English"), (Language::De, "Deutsch")];

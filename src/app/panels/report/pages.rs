@@ -6,9 +6,9 @@ use egui::{Align, Color32, Frame, Label, Margin, RichText, ScrollArea, Stroke, T
 use crate::app::panels::report::table::table_ui;
 use crate::app::panes::PaneContext;
 use crate::app::report::ReportSession;
-use crate::data::Severity;
-use crate::render::theme;
-use crate::report::{Block, Picture, Section};
+use impactlab_core::data::Severity;
+use impactlab_document::report::{Block, Picture, Section};
+use impactlab_draw::theme;
 
 /// Widest column of text, points.
 const WIDEST: f32 = 820.0;

@@ -8,7 +8,7 @@ use egui::{
     pos2, vec2,
 };
 
-use crate::report::{Table, column_widths};
+use impactlab_document::report::{Table, column_widths};
 
 /// Room beside and above the text of a cell, points.
 const PADDING: Vec2 = vec2(5.0, 3.0);

@@ -1,0 +1,311 @@
+//! The crush law: the parameters of the crush model, their prior values and their order in a
+//! vector.
+
+use serde::{Deserialize, Serialize};
+
+use super::outline::{N_OUTLINE_FACTORS, Nose};
+
+/// Limits of the ranges of crush depth in which the stiffness of the outer skins is constant, m.
+/// The last range has no upper limit.
+pub(super) const DEPTH_KNOTS_M: [f64; 8] = [0.0, 0.03, 0.06, 0.09, 0.105, 0.13, 0.17, 0.24];
+/// Positions along the side of the target, measured from its rear axle and positive forwards, m, at
+/// which the stiffness factor and the bulge of the skins are given. Values are linear in between
+/// and constant beyond the ends.
+pub(super) const SKIN_KNOTS_M: [f64; 8] = [-0.66, -0.36, -0.16, 0.0, 0.16, 0.34, 0.64, 1.04];
+/// Positions along the side of the target, measured from its rear axle and positive forwards, m, at
+/// which the depth of its stiff inner structure (wheel, edges of the wheel arch) is given. Values
+/// are linear in between and constant beyond the ends.
+pub(super) const TARGET_STRUCTURE_KNOTS_M: [f64; 12] =
+    [-0.8, -0.6, -0.45, -0.32, -0.2, -0.1, 0.0, 0.1, 0.2, 0.32, 0.45, 0.6];
+/// Positions along the x axis of the bullet, measured from the start of its front corner and
+/// positive forwards, m, at which the depth of its stiff inner structure (wheel behind the corner,
+/// beam in front of it) is given. Values are linear in between and constant beyond the ends.
+pub(super) const BULLET_STRUCTURE_KNOTS_M: [f64; 10] =
+    [-0.7, -0.45, -0.25, -0.1, 0.05, 0.2, 0.3, 0.38, 0.46, 0.54];
+
+/// Parameters of one kind of bullet body, which modify those that all bodies share ([`CrushLaw`]).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BodyCrush {
+    /// Name of the body in the data; empty if the data do not name the bodies.
+    pub name: String,
+    /// Outline of the front of the bullet.
+    pub nose: Nose,
+    /// Logarithm of the factor on the stiffness of the skins in each range of crush depth.
+    pub depth_log_factor: [f64; DEPTH_KNOTS_M.len()],
+    /// Logarithm of the factor on the stiffness of the skins at marks along the outline of the
+    /// bullet: rear end of the side; start, middle and end of the corner; inner end of the front.
+    pub outline_log_factor: [f64; N_OUTLINE_FACTORS],
+    /// Logarithm of the factor on the stiffness k₂ of the inner structures.
+    pub structure_log_factor: f64,
+    /// Amount that is added to the depth d_b of the inner structure of the bullet, m.
+    pub structure_depth_m: [f64; BULLET_STRUCTURE_KNOTS_M.len()],
+    /// Recovery q: ratio of the length over which the skins unload to the crush, at a crush of 0.1
+    /// m.
+    pub recovery: f64,
+    /// Amount that is added to the friction coefficient μ.
+    pub friction: f64,
+}
+
+/// The parameters of the crush model: those that all kinds of bullet bodies share, and those of
+/// each kind.
+///
+/// While the overlap d of an element of the outline grows, the force per metre of outline at the
+/// position s along the side of the target and σ along the bullet is
+///
+/// ```text
+/// p = p₁ + p₂
+/// p₁ = f(s, σ) · ∫₀^(d + b(s)) k(z) dz
+/// p₂ = k₂ · softplus(d − d_t(s) − d_b(σ) − d_θ (θ_b − 0.35))
+/// ```
+///
+/// The part p₁ is that of the outer skins of both vehicles. Their stiffness k per depth depends on
+/// the range of depth, f is a factor of position and body, and b is a bulge of the side of the
+/// target. The part p₂ is that of the stiff inner structures behind the skins: wheel and edges of
+/// the wheel arch of the target, wheel and beam of the bullet. The structures meet where the
+/// overlap exceeds the sum of their depths d_t and d_b below the skins. Softplus stands for a
+/// smooth transition, `w ln(1 + exp(x / w))` with the width w of
+/// [`CrushLaw::structure_log_softness`].
+///
+/// While the overlap is smaller than the largest overlap d_max so far, each part decreases over a
+/// length of its own:
+///
+/// ```text
+/// p₁ = p₁,max · max(0, 1 − (d_max − d) / ℓ₁)^ν₁     ℓ₁ = 0.1 m · q (d_max / 0.1 m)^a
+/// p₂ = p₂,max · max(0, 1 − (d_max − d) / ℓ₂)^ν₂
+/// ```
+///
+/// Both parts are multiplied by max(0, 1 + c v_y), where v_y is the velocity of the bullet relative
+/// to the target at the element along the y axis of the target. The normal force acts in a
+/// direction between the normals of target and bullet. The share of the inner structures in the
+/// force tilts it by −τ ∂d_t/∂s along the x axis of the target, because a structure that slides up
+/// an edge is held back by it. Friction acts perpendicular to this direction with the coefficient μ
+/// tanh(v_t / v₀), where v_t is the sliding velocity.
+///
+/// The friction coefficient μ and the share of the normal of the bullet vary linearly with the
+/// largest overlap of an element, as given by the fields.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CrushLaw {
+    /// ln k in each range of crush depth, with k in N/m² (force per metre of outline and per metre
+    /// of depth).
+    pub depth_log_stiffness: [f64; DEPTH_KNOTS_M.len()],
+    /// Logarithm of the factor on the stiffness of the skins along the side of the target.
+    pub skin_log_factor: [f64; SKIN_KNOTS_M.len()],
+    /// Bulge b of the side of the target along the side, m. A positive bulge brings the skins into
+    /// contact earlier.
+    pub skin_bulge_m: [f64; SKIN_KNOTS_M.len()],
+    /// ln k₂, with the stiffness k₂ of the inner structures in N/m².
+    pub structure_log_stiffness: f64,
+    /// Depth d_t of the inner structure of the target below its skin along the side, m.
+    pub target_structure_depth_m: [f64; TARGET_STRUCTURE_KNOTS_M.len()],
+    /// Depth d_b of the inner structure of the bullet below its skin along the x axis of the
+    /// bullet, m.
+    pub bullet_structure_depth_m: [f64; BULLET_STRUCTURE_KNOTS_M.len()],
+    /// d_θ: increase of the depth of the structures with the heading angle θ_b of the bullet,
+    /// m/rad.
+    pub structure_depth_angle_m_rad: f64,
+    /// τ: factor by which the slope of the structure of the target tilts the direction of the
+    /// normal force.
+    pub structure_tilt: f64,
+    /// Amount that is added to the friction coefficient μ where the inner structures carry the
+    /// whole force.
+    pub structure_friction: f64,
+    /// ln ℓ₂, with the unloading length ℓ₂ of the inner structures in m.
+    pub structure_log_recovery: f64,
+    /// ν₂: exponent of the unloading curve of the inner structures.
+    pub structure_unloading_exponent: f64,
+    /// Logarithm of the depth in m over which the contact of the inner structures builds up (width
+    /// of the softplus function).
+    pub structure_log_softness: f64,
+    /// a: exponent with which the unloading length ℓ₁ of the skins grows with the crush.
+    pub recovery_exponent: f64,
+    /// ν₁: exponent of the unloading curve of the skins.
+    pub unloading_exponent: f64,
+    /// Friction coefficient μ at an overlap of 0.1 m and a bullet angle θ_b of 0.35 rad.
+    pub friction: f64,
+    /// Increase of μ with the largest overlap so far, 1/m.
+    pub friction_depth_1_m: f64,
+    /// Increase of μ with the bullet angle θ_b, 1/rad.
+    pub friction_angle_1_rad: f64,
+    /// ln v₀, with the sliding velocity v₀ over which friction builds up in m/s.
+    pub friction_log_speed: f64,
+    /// Share of the normal of the bullet in the direction of the normal force, at an overlap of 0.1
+    /// m and at the rear axle of the target. The remainder is the share of the normal of the
+    /// target.
+    pub normal_share: f64,
+    /// Increase of that share with the largest overlap so far, 1/m.
+    pub normal_share_depth_1_m: f64,
+    /// Increase of that share with the position along the side of the target, positive forwards,
+    /// 1/m.
+    pub normal_share_place_1_m: f64,
+    /// c: damping coefficient, s/m.
+    pub damping_s_m: f64,
+    /// Position x of the rear axle of the target in its body axes, m, usually negative. Positions s
+    /// along the side are measured from it. It is not fitted.
+    pub rear_axle_x_m: f64,
+    /// Parameters of each kind of bullet body.
+    pub bodies: Vec<BodyCrush>,
+}
+
+impl BodyCrush {
+    /// Prior of a body: it has no corrections of the shared parameters, and its recovery q is 0.5.
+    pub fn prior(name: impl Into<String>, nose: Nose) -> Self {
+        Self {
+            name: name.into(),
+            nose,
+            depth_log_factor: [0.0; DEPTH_KNOTS_M.len()],
+            outline_log_factor: [0.0; N_OUTLINE_FACTORS],
+            structure_log_factor: 0.0,
+            structure_depth_m: [0.0; BULLET_STRUCTURE_KNOTS_M.len()],
+            recovery: 0.5,
+            friction: 0.0,
+        }
+    }
+}
+
+/// Calls `visit` with each fitted parameter, in a fixed order, and the scale over which it is
+/// expected to vary. Order and scales are defined only here. `$reference` is `&` or `&mut`.
+macro_rules! for_each_parameter {
+    ($law:expr, $visit:expr, $($reference:tt)+) => {{
+        let law = $law;
+        let mut visit = $visit;
+        for value in $($reference)+ law.depth_log_stiffness { visit(value, 0.5); }
+        for value in $($reference)+ law.skin_log_factor { visit(value, 0.4); }
+        for value in $($reference)+ law.skin_bulge_m { visit(value, 0.03); }
+        visit($($reference)+ law.structure_log_stiffness, 0.7);
+        for value in $($reference)+ law.target_structure_depth_m { visit(value, 0.04); }
+        for value in $($reference)+ law.bullet_structure_depth_m { visit(value, 0.04); }
+        visit($($reference)+ law.structure_depth_angle_m_rad, 0.1);
+        visit($($reference)+ law.structure_tilt, 0.3);
+        visit($($reference)+ law.structure_friction, 0.1);
+        visit($($reference)+ law.structure_log_recovery, 0.5);
+        visit($($reference)+ law.structure_unloading_exponent, 0.5);
+        visit($($reference)+ law.structure_log_softness, 0.4);
+        visit($($reference)+ law.recovery_exponent, 0.3);
+        visit($($reference)+ law.unloading_exponent, 0.7);
+        visit($($reference)+ law.friction, 0.1);
+        visit($($reference)+ law.friction_depth_1_m, 1.0);
+        visit($($reference)+ law.friction_angle_1_rad, 0.3);
+        visit($($reference)+ law.friction_log_speed, 0.5);
+        visit($($reference)+ law.normal_share, 0.2);
+        visit($($reference)+ law.normal_share_depth_1_m, 1.0);
+        visit($($reference)+ law.normal_share_place_1_m, 0.3);
+        visit($($reference)+ law.damping_s_m, 0.1);
+        for body in $($reference)+ law.bodies {
+            for value in $($reference)+ body.depth_log_factor { visit(value, 0.4); }
+            for value in $($reference)+ body.outline_log_factor { visit(value, 0.5); }
+            visit($($reference)+ body.structure_log_factor, 0.3);
+            for value in $($reference)+ body.structure_depth_m { visit(value, 0.03); }
+            visit($($reference)+ body.recovery, 0.15);
+            visit($($reference)+ body.friction, 0.1);
+        }
+    }};
+}
+
+impl CrushLaw {
+    /// Prior of the law before any data are used. The stiffness of the skins rises with the depth
+    /// from 0.1 to 1.2 MN/m². The inner structures lie together 0.13 m below the skins over most of
+    /// the outlines, and less where the wheel of the bullet is. Half of a crush of 0.1 m is
+    /// recovered. The friction coefficient is 0.4.
+    ///
+    /// - `bodies`: kinds of bullet bodies, at least one.
+    /// - `rear_axle_x_m`: position x of the rear axle of the target in its body axes, m.
+    pub fn prior(bodies: Vec<BodyCrush>, rear_axle_x_m: f64) -> Self {
+        Self {
+            depth_log_stiffness: [11.5, 11.8, 12.3, 13.0, 13.5, 13.5, 13.8, 14.0],
+            skin_log_factor: [0.0; SKIN_KNOTS_M.len()],
+            skin_bulge_m: [0.0; SKIN_KNOTS_M.len()],
+            structure_log_stiffness: 15.5,
+            target_structure_depth_m: [
+                0.2, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.13, 0.15, 0.2,
+            ],
+            bullet_structure_depth_m: [
+                -0.06, -0.06, -0.05, -0.02, 0.0, 0.0, 0.0, -0.03, -0.03, -0.03,
+            ],
+            structure_depth_angle_m_rad: 0.0,
+            structure_tilt: 0.5,
+            structure_friction: 0.0,
+            structure_log_recovery: -3.2,
+            structure_unloading_exponent: 1.5,
+            structure_log_softness: -4.6,
+            recovery_exponent: 0.8,
+            unloading_exponent: 2.0,
+            friction: 0.4,
+            friction_depth_1_m: 0.0,
+            friction_angle_1_rad: 0.0,
+            friction_log_speed: -1.0,
+            normal_share: 0.45,
+            normal_share_depth_1_m: 0.0,
+            normal_share_place_1_m: 0.0,
+            damping_s_m: 0.05,
+            rear_axle_x_m,
+            bodies,
+        }
+    }
+
+    /// Index of the kind of body of this name. A law with a single kind of body uses it for any
+    /// name. Otherwise `None` is returned for an unknown or missing name.
+    pub fn body_idx(&self, name: Option<&str>) -> Option<usize> {
+        match (name, self.bodies.as_slice()) {
+            (_, [_]) => Some(0),
+            (Some(name), bodies) => bodies.iter().position(|body| body.name == name),
+            (None, _) => None,
+        }
+    }
+
+    /// All fitted parameters as a vector. The outlines of the bodies and the position of the rear
+    /// axle are not fitted.
+    pub fn to_vector(&self) -> Vec<f64> {
+        let mut row = Vec::new();
+        for_each_parameter!(self, |value: &f64, _: f64| row.push(*value), &);
+        row
+    }
+
+    /// The law with the fitted parameters replaced by those of a vector in the order of
+    /// [`Self::to_vector`].
+    pub(super) fn with_vector(&self, row: &[f64]) -> Self {
+        let mut law = self.clone();
+        let mut values = row.iter();
+        for_each_parameter!(
+            &mut law,
+            |value: &mut f64, _: f64| {
+                if let Some(new) = values.next() {
+                    *value = *new;
+                }
+            },
+            &mut
+        );
+        law
+    }
+
+    /// Scale of each fitted parameter, by which its deviation from the prior is measured.
+    pub(super) fn scales(&self) -> Vec<f64> {
+        let mut row = Vec::new();
+        for_each_parameter!(self, |_: &f64, scale: f64| row.push(scale), &);
+        row
+    }
+
+    /// Whether every fitted parameter is finite.
+    pub fn is_finite(&self) -> bool {
+        self.to_vector().iter().all(|value| value.is_finite())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parameters_go_into_a_row_and_back() {
+        let bodies =
+            vec![BodyCrush::prior("A", Nose::default()), BodyCrush::prior("B", Nose::default())];
+        let law = CrushLaw::prior(bodies, -1.54);
+        let row: Vec<f64> = (0..law.to_vector().len()).map(|i| i as f64).collect();
+        assert_eq!(law.with_vector(&row).to_vector(), row);
+        assert_eq!(law.scales().len(), row.len());
+        assert_eq!(law.body_idx(Some("B")), Some(1));
+        assert_eq!(law.body_idx(Some("C")), None);
+        assert_eq!(law.body_idx(None), None);
+    }
+}

@@ -1,0 +1,385 @@
+//! Reads scenario files (`SCENARIO.toml`), whose key names contain the units.
+//!
+//! ```toml
+//! name = "rear-quarter push"
+//!
+//! [target]                    # and [bullet]
+//! vehicle = "ford-explorer-2004"  # optional: gives mass, inertia, size and CG that are not given
+//! mass_kg = 2000              # mass_lb, mass_slug, mass_t
+//! yaw_inertia_kg_m2 = 3600    # yaw_inertia_slug_ft2
+//! length_m = 4.8              # every length: _m, _mm, _ft, _in …
+//! width_m = 1.85
+//! cg_from_front_m = 2.3
+//! speed_km_h = 54             # along the heading; or vx_… and vy_… in world axes; _m_s, _mph …
+//! heading_deg = 0             # optional; heading_rad
+//! yaw_rate_deg_s = 0          # optional; yaw_rate_rad_s
+//! x_m = 0                     # optional for the target, part of the contact for the bullet
+//! y_m = 0
+//!
+//! [contact]
+//! from = "side"               # side and offset: the bullet is placed so that it touches
+//! side = "right"              # front, left, rear, right
+//! offset_m = -1.5             # from the middle of that side
+//! # from = "footprints"       # bullet.x_m and bullet.y_m say where the bullet is
+//! # from = "point"            # x_m, y_m, normal_deg in the target's axes; bullet.x_m, bullet.y_m
+//! restitution = 0.15          # optional
+//! restitution_form = "normal" # optional; or "common_velocity"
+//! friction_limit = 0.4        # optional; or friction_of_critical, friction_of_critical_percent
+//! friction_model = "limit"    # optional; or "paper"
+//!
+//! # [ending]                  # optional: what happens to the target's wheels; see Ending::read
+//! # [bullet_ending]           # optional: the same of the bullet
+//! ```
+//!
+//! Each quantity is given once, in any unit of
+//! [`Quantity::units`](crate::units::Quantity::units). The key ends in the symbol of the unit, with
+//! `_` for `/`, `·` and spaces, and with digits for powers.
+
+use std::path::Path;
+
+use crate::collision::{
+    ContactLocation, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION, FrictionModel, RestitutionForm,
+    Scenario, ScenarioContact, ScenarioVehicle, Side,
+};
+use crate::data::{TomlError, TomlFile, TomlTable};
+use crate::ranges::{
+    BODY_CG, BODY_LENGTH, BODY_MASS, BODY_WIDTH, BODY_YAW_INERTIA, CONTACT_COORDINATE,
+    CONTACT_OFFSET, FRICTION_LIMIT, FRICTION_OF_CRITICAL, HEADING, POSITION, RESTITUTION, Range,
+    SPEED, YAW_RATE,
+};
+use crate::vehicle::{Ending, VehicleParameters, built_in_vehicle};
+
+pub(super) const LOCATIONS: [&str; 3] = ["footprints", "side", "point"];
+pub(super) const FRICTION_MODELS: [&str; 2] = ["limit", "paper"];
+
+impl Scenario {
+    /// Reads a scenario file and checks every key and every range.
+    ///
+    /// # Errors
+    /// [`TomlError`] if the file cannot be read, is not valid TOML, or has a key that is missing,
+    /// unknown, contradictory or out of range. Errors in the content name line and column.
+    pub fn load(path: &Path) -> Result<Self, TomlError> {
+        Self::from_toml(&TomlFile::read(path)?, path)
+    }
+
+    /// Reads a scenario from the text of a file. The `path` serves only to name the file in errors.
+    ///
+    /// # Errors
+    /// The errors of [`Scenario::load`] except [`TomlError::File`].
+    pub fn from_toml(text: &str, path: &Path) -> Result<Self, TomlError> {
+        let file = TomlFile { path, text };
+        let root = file.parse()?;
+        let mut top = TomlTable::root(file, &root);
+        let name = top.string("name")?.unwrap_or_default();
+        let notes = top.string("notes")?.unwrap_or_default();
+        let (mut target, mut bullet) = (top.table("target")?, top.table("bullet")?);
+        let mut contact = top.table("contact")?;
+        let ending = top.optional_table("ending")?.map(Ending::read).transpose()?;
+        let bullet_ending = top.optional_table("bullet_ending")?.map(Ending::read).transpose()?;
+        top.finish()?;
+        let target_x_m = position(&mut target, "x")?.unwrap_or(0.0);
+        let target_y_m = position(&mut target, "y")?.unwrap_or(0.0);
+        let location = read_location(&mut contact, &mut bullet)?;
+        let (target_vehicle, of_target) = named_vehicle(&mut target)?;
+        let (bullet_vehicle, of_bullet) = named_vehicle(&mut bullet)?;
+        Ok(Self {
+            name,
+            notes,
+            target_x_m,
+            target_y_m,
+            target: read_vehicle(target, of_target)?,
+            bullet: read_vehicle(bullet, of_bullet)?,
+            contact: read_contact(contact, location)?,
+            ending,
+            bullet_ending,
+            target_vehicle,
+            bullet_vehicle,
+        })
+    }
+}
+
+/// The vehicle that a scenario names, and its parameters.
+fn named_vehicle(
+    section: &mut TomlTable<'_>,
+) -> Result<(Option<String>, Option<VehicleParameters>), TomlError> {
+    let Some(name) = section.string("vehicle")? else { return Ok((None, None)) };
+    match built_in_vehicle(&name) {
+        Some(vehicle) => Ok((Some(name), Some(vehicle))),
+        None => Err(section.refuse_last("a vehicle that impactlab vehicles lists")),
+    }
+}
+
+/// A number that the scenario gives, else that of the vehicle that it names.
+fn number_or(
+    section: &mut TomlTable<'_>,
+    (key, range): (&str, &Range),
+    of_vehicle: Option<f64>,
+) -> Result<f64, TomlError> {
+    match (section.number(key, range)?, of_vehicle) {
+        (Some(value), _) | (None, Some(value)) => Ok(value),
+        (None, None) => section.require(key, range),
+    }
+}
+
+fn position(section: &mut TomlTable<'_>, base: &str) -> Result<Option<f64>, TomlError> {
+    section.number(base, &POSITION)
+}
+
+fn read_vehicle(
+    mut section: TomlTable<'_>,
+    of: Option<VehicleParameters>,
+) -> Result<ScenarioVehicle, TomlError> {
+    let s = &mut section;
+    let mass_kg = number_or(s, ("mass", &BODY_MASS), of.as_ref().map(|of| of.mass.mass_kg))?;
+    // What was estimated from the mass follows the mass of the scenario.
+    let of = of.map(|of| of.with_mass(mass_kg, None));
+    let of = |value: fn(&VehicleParameters) -> f64| of.as_ref().map(value);
+    let inertia = of(|of| of.mass.yaw_inertia_kg_m2);
+    let yaw_inertia_kg_m2 = number_or(s, ("yaw_inertia", &BODY_YAW_INERTIA), inertia)?;
+    let length_m = number_or(s, ("length", &BODY_LENGTH), of(|of| of.geometry.outer_length_m))?;
+    let width_m = number_or(s, ("width", &BODY_WIDTH), of(|of| of.geometry.outer_width_m))?;
+    let cg_from_front = of(|of| of.geometry.cg_to_front_end_m).map(|m| m.min(length_m));
+    let cg_range = BODY_CG.at_most(length_m);
+    let cg_from_front_m = number_or(s, ("cg_from_front", &cg_range), cg_from_front)?;
+    let heading = s.number("heading", &HEADING)?;
+    let heading_rad = heading.unwrap_or(0.0);
+    let yaw_rate_rad_s = s.number("yaw_rate", &YAW_RATE)?.unwrap_or(0.0);
+    let speed = s.number("speed", &SPEED)?;
+    let first = s.last_key();
+    let vx = s.number("vx", &SPEED)?;
+    let vy = s.number("vy", &SPEED)?;
+    let [vx_m_s, vy_m_s] = match (speed, vx, vy) {
+        (Some(speed), None, None) => [speed * heading_rad.cos(), speed * heading_rad.sin()],
+        (None, Some(vx), Some(vy)) => [vx, vy],
+        (Some(_), _, _) => return Err(s.conflict(&first)),
+        (None, None, None) => return Err(s.missing("speed_m_s (or vx_m_s and vy_m_s)")),
+        (None, None, _) => return Err(s.missing("vx_m_s")),
+        (None, _, None) => return Err(s.missing("vy_m_s")),
+    };
+    section.finish()?;
+    Ok(ScenarioVehicle {
+        mass_kg,
+        yaw_inertia_kg_m2,
+        length_m,
+        width_m,
+        cg_from_front_m,
+        heading_rad,
+        vx_m_s,
+        vy_m_s,
+        yaw_rate_rad_s,
+    })
+}
+
+fn read_location(
+    contact: &mut TomlTable<'_>,
+    bullet: &mut TomlTable<'_>,
+) -> Result<ContactLocation, TomlError> {
+    let mut bullet_at = || -> Result<(f64, f64), TomlError> {
+        let x_m = bullet.require("x", &POSITION)?;
+        Ok((x_m, bullet.require("y", &POSITION)?))
+    };
+    match contact.choice("from", &LOCATIONS)?.ok_or_else(|| contact.missing("from"))? {
+        0 => {
+            let (bullet_x_m, bullet_y_m) = bullet_at()?;
+            Ok(ContactLocation::Footprints { bullet_x_m, bullet_y_m })
+        }
+        1 => {
+            let names = Side::ALL.map(Side::name);
+            let idx = contact.choice("side", &names)?;
+            let side = idx.and_then(|idx| Side::ALL.get(idx).copied());
+            Ok(ContactLocation::Side {
+                side: side.ok_or_else(|| contact.missing("side"))?,
+                offset_m: contact.require("offset", &CONTACT_OFFSET)?,
+            })
+        }
+        _ => {
+            let (bullet_x_m, bullet_y_m) = bullet_at()?;
+            Ok(ContactLocation::Point {
+                x_m: contact.require("x", &CONTACT_COORDINATE)?,
+                y_m: contact.require("y", &CONTACT_COORDINATE)?,
+                normal_rad: contact.require("normal", &HEADING)?,
+                bullet_x_m,
+                bullet_y_m,
+            })
+        }
+    }
+}
+
+fn read_contact(
+    mut section: TomlTable<'_>,
+    location: ContactLocation,
+) -> Result<ScenarioContact, TomlError> {
+    let s = &mut section;
+    let restitution = s.number("restitution", &RESTITUTION)?;
+    let forms = RestitutionForm::ALL.map(RestitutionForm::name);
+    let form = s.choice("restitution_form", &forms)?;
+    let friction_limit = s.number("friction_limit", &FRICTION_LIMIT)?;
+    let limit_key = s.last_key();
+    let friction_of_critical = s.number("friction_of_critical", &FRICTION_OF_CRITICAL)?;
+    if friction_limit.is_some() && friction_of_critical.is_some() {
+        return Err(s.conflict(&limit_key));
+    }
+    let friction_model = match s.choice("friction_model", &FRICTION_MODELS)? {
+        Some(1) => FrictionModel::Paper,
+        _ => FrictionModel::Limit,
+    };
+    section.finish()?;
+    Ok(ScenarioContact {
+        location,
+        restitution: restitution.unwrap_or(DEFAULT_RESTITUTION),
+        restitution_form: form
+            .and_then(|idx| RestitutionForm::ALL.get(idx).copied())
+            .unwrap_or_default(),
+        friction_limit: friction_limit.unwrap_or(DEFAULT_FRICTION_LIMIT),
+        friction_of_critical,
+        friction_model,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PIT: &str = include_str!("../../../../assets/scenarios/pit_right_rear.toml");
+
+    fn read(text: &str) -> Result<Scenario, TomlError> {
+        Scenario::from_toml(text, Path::new("scenario.toml"))
+    }
+
+    /// The error message for the shipped scenario with one line replaced.
+    fn refusal(line: &str, instead: &str) -> String {
+        assert!(PIT.contains(line), "{line}");
+        read(&PIT.replacen(line, instead, 1)).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn units_are_in_the_keys() {
+        let pit = read(PIT).unwrap();
+        assert!((pit.target.vx_m_s - 15.0).abs() < 1e-12, "{pit:?}");
+        assert!((pit.bullet.heading_rad - 18_f64.to_radians()).abs() < 1e-15, "{pit:?}");
+        let speed = pit.bullet.vx_m_s.hypot(pit.bullet.vy_m_s);
+        assert!((speed * 3.6 - 62.0).abs() < 1e-9, "{pit:?}");
+        for (key, value) in [
+            ("speed_m_s", "15"),
+            ("speed_mph", "33.554044380816"),
+            ("vy_m_s = 0\nvx_km_h", "54.0"),
+            ("speed_m_s", "0xF"),
+        ] {
+            let text = PIT.replacen("speed_km_h = 54", &format!("{key} = {value}"), 1);
+            let other = read(&text).unwrap();
+            assert!((other.target.vx_m_s - 15.0).abs() < 1e-9, "{key}: {other:?}");
+        }
+    }
+
+    #[test]
+    fn a_named_vehicle_gives_what_the_scenario_does_not() {
+        let (head, rest) = PIT.split_once("mass_kg = 2000").unwrap();
+        let (_, tail) = rest.split_once("speed_km_h").unwrap();
+        let named = "vehicle = \"toyota-camry-2018\"\n";
+        let scenario = read(&format!("{head}{named}speed_km_h{tail}")).unwrap();
+        let camry = built_in_vehicle("toyota-camry-2018").unwrap();
+        assert_eq!(scenario.target_vehicle.as_deref(), Some("toyota-camry-2018"));
+        assert_eq!(scenario.target.mass_kg, camry.mass.mass_kg);
+        assert_eq!(scenario.target.yaw_inertia_kg_m2, camry.mass.yaw_inertia_kg_m2);
+        assert_eq!(scenario.target.length_m, camry.geometry.outer_length_m);
+        assert_eq!(read(&scenario.to_toml()).unwrap(), scenario);
+        // The inertia follows the mass that the scenario gives.
+        let heavy = read(&format!("{head}{named}mass_kg = 1900\nspeed_km_h{tail}")).unwrap();
+        let ratio = heavy.target.yaw_inertia_kg_m2 / camry.mass.yaw_inertia_kg_m2;
+        assert!((ratio - 1900.0 / camry.mass.mass_kg).abs() < 1e-9, "{heavy:?}");
+        let error = read(&format!("{head}vehicle = \"camry\"\nspeed_km_h{tail}")).unwrap_err();
+        let error = error.to_string();
+        assert!(
+            error.starts_with("scenario.toml:7:11: target.vehicle is \"camry\", expected a veh")
+        );
+    }
+
+    #[test]
+    fn a_refusal_names_file_place_key_value_and_range() {
+        for (line, instead, expected) in [
+            ("mass_kg = 2000", "mass_kg = -3", "7:11: target.mass_kg is -3, expected 1 to 1e8 kg"),
+            (
+                "speed_km_h = 54",
+                "speed_mph = 1e3",
+                "13:13: target.speed_mph is 1e3, expected -335.540444 to 335.540444 mph",
+            ),
+            (
+                "cg_from_front_m = 2.35",
+                "cg_from_front_m = 5.0",
+                "11:19: target.cg_from_front_m is 5.0, expected 0 to 4.9 m",
+            ),
+            (
+                "width_m = 1.85",
+                "width_m = nan",
+                "10:11: target.width_m is nan, expected 0.05 to 20 m",
+            ),
+            (
+                "width_m = 1.85",
+                "width_m = \"wide\"",
+                "10:11: target.width_m is \"wide\", expected 0.05 to 20 m",
+            ),
+            ("length_m", "lenght_m", "6:2: target.length_m is missing"),
+            ("heading_deg", "haeding_deg", "12:1: target.haeding_deg is not known here"),
+            (
+                "speed_km_h = 54",
+                "speed_km_h = 54\nspeed_m_s = 15",
+                "13:1: target.speed_km_h and speed_m_s say the same thing, expected one",
+            ),
+            (
+                "speed_km_h = 54",
+                "speed_km_h = 54\nvx_m_s = 15",
+                "14:1: target.vx_m_s and speed_km_h say the same thing, expected one",
+            ),
+            ("speed_km_h = 54", "vx_m_s = 15", "6:2: target.vy_m_s is missing"),
+            (
+                "restitution = 0.15",
+                "restitution_form = \"newton\"",
+                "28:20: contact.restitution_form is \"newton\", expected \"normal\" or \
+                 \"common_velocity\"",
+            ),
+            (
+                "friction_limit = 0.4",
+                "friction_of_critical_percent = 101",
+                "29:32: contact.friction_of_critical_percent is 101, expected 0 to 100 %",
+            ),
+            (
+                "friction_limit = 0.4",
+                "friction_limit = 0.4\nfriction_of_critical = 0.5",
+                "30:1: contact.friction_of_critical and friction_limit say the same thing, \
+                 expected one",
+            ),
+            ("[contact]", "[kontact]", "1:1: [contact] is missing"),
+            (
+                "side = \"right\"",
+                "side = \"starboard\"",
+                "26:8: contact.side is \"starboard\", expected \"front\" or \"left\" or \"rear\" or \
+                 \"right\"",
+            ),
+            ("mass_kg = 2000", "mass_kg = ", "7:11: "),
+        ] {
+            let error = refusal(line, instead);
+            let expected = format!("scenario.toml:{expected}");
+            assert!(error.starts_with(&expected), "{error}\n{expected}");
+        }
+    }
+
+    #[test]
+    fn friction_is_a_limit_or_a_share_of_the_critical_impulse_ratio() {
+        let given =
+            read(&PIT.replacen("friction_limit = 0.4", "friction_of_critical_percent = 80", 1));
+        let given = given.unwrap();
+        assert!((given.contact.friction_of_critical.unwrap() - 0.8).abs() < 1e-12, "{given:?}");
+        let impact = given.impact().unwrap();
+        let critical = impact.critical_impulse_ratio().unwrap();
+        let solution = given.solve().unwrap();
+        let ratio = solution.impulse_tangential_n_s.abs() / solution.impulse_normal_n_s;
+        assert!((ratio / critical - 0.8).abs() < 1e-12, "{ratio} of {critical}");
+        assert_eq!(read(&given.to_toml()).unwrap(), given);
+    }
+
+    #[test]
+    fn a_file_that_is_not_there_is_named() {
+        let error = Scenario::load(Path::new("no/such/scenario.toml")).unwrap_err();
+        assert_eq!(error.to_string(), "no/such/scenario.toml: does not exist; check the name");
+    }
+}

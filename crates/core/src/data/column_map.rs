@@ -1,0 +1,325 @@
+//! A mapping of columns to channels that the user states, in the syntax of the option `--map`:
+//! `fx=Kraft X:kN,time=1:ms`.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+use crate::data::error::quoted;
+use crate::data::{Channel, ReadSettings, spelling};
+use crate::units::Unit;
+
+/// What stands for a column if a channel is zero throughout.
+const NO_COLUMN: &str = "none";
+
+/// A reference to a column of a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ColumnRef {
+    /// The number of the column, counted from 1.
+    Number(usize),
+    /// The header of the column, with or without the unit that it contains.
+    Name(String),
+    /// Columns that are added up, `2+5`, or whose sign is changed, `-3`: the forces of several
+    /// contacts between two vehicles, the force on the other vehicle.
+    Sum(Vec<SignedColumn>),
+    /// No column, `none`: the channel is zero throughout.
+    Zero,
+}
+
+/// A term of a sum of columns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SignedColumn {
+    /// The number of the column, counted from 1.
+    pub number: usize,
+    /// Whether the sign of its numbers is changed.
+    pub is_negated: bool,
+}
+
+/// The column from which a channel is read, and its unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ColumnSource {
+    /// The column.
+    pub column: ColumnRef,
+    /// The unit of the numbers. If it is `None`, the unit that the file states applies, or the SI
+    /// unit if the file states none.
+    pub unit: Option<Unit>,
+}
+
+/// The columns that the user has chosen for channels. They take precedence over what the headers
+/// suggest.
+///
+/// ```
+/// use crate::data::{Channel, ColumnMap};
+///
+/// let map: ColumnMap = "time=1:ms, fx=Kraft X:kN, fy=Kraft Y:kN".parse()?;
+/// assert_eq!(map.get(Channel::Fx).and_then(|fx| fx.unit).map(|unit| unit.symbol), Some("kN"));
+/// assert_eq!(map.to_string(), "time=1:ms,fx=Kraft X:kN,fy=Kraft Y:kN");
+/// # Ok::<(), crate::data::MapError>(())
+/// ```
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct ColumnMap {
+    sources: BTreeMap<Channel, ColumnSource>,
+    /// How the file is read, apart from its columns.
+    pub settings: Box<ReadSettings>,
+}
+
+/// The reason why the text of a mapping is refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MapError {
+    /// A part has no `=`, or nothing on one side of it.
+    #[error(
+        "{} is no mapping, expected channel=column or channel=column:unit, e.g. fx=Kraft X:kN",
+        quoted(part)
+    )]
+    Syntax {
+        /// The part of the text between two commas.
+        part: String,
+    },
+    /// The text to the left of `=` names no channel.
+    #[error("{} is no channel, expected one of {}", quoted(name), short_names())]
+    Channel {
+        /// The text to the left of `=`.
+        name: String,
+    },
+    /// The column has the number 0, but columns are counted from 1.
+    #[error("{} is taken from column 0, but columns are counted from 1", channel.short_name())]
+    ColumnZero {
+        /// The channel that is mapped.
+        channel: Channel,
+    },
+    /// The value of a setting is not one that it can have.
+    #[error("{name}={} is not understood, expected {expected}", quoted(text))]
+    Setting {
+        /// The name of the setting.
+        name: String,
+        /// The text to the right of `=`.
+        text: String,
+        /// What it can be, in words.
+        expected: &'static str,
+    },
+    /// A setting is given more than once.
+    #[error("{name} is given twice")]
+    SettingTwice {
+        /// The name of the setting.
+        name: String,
+    },
+    /// A channel is mapped more than once.
+    #[error("{} is mapped twice", channel.short_name())]
+    Twice {
+        /// The channel that is mapped.
+        channel: Channel,
+    },
+}
+
+impl ColumnMap {
+    /// Sets the column from which `channel` is read; it replaces an earlier choice.
+    pub fn insert(&mut self, channel: Channel, source: ColumnSource) {
+        self.sources.insert(channel, source);
+    }
+
+    /// The column that was chosen for a channel; `None` if none was chosen.
+    pub fn get(&self, channel: Channel) -> Option<&ColumnSource> {
+        self.sources.get(&channel)
+    }
+
+    /// Returns all chosen columns, in the order of the channels.
+    pub fn iter(&self) -> impl Iterator<Item = (Channel, &ColumnSource)> {
+        self.sources.iter().map(|(channel, source)| (*channel, source))
+    }
+}
+
+impl FromIterator<(Channel, ColumnSource)> for ColumnMap {
+    fn from_iter<I: IntoIterator<Item = (Channel, ColumnSource)>>(choices: I) -> Self {
+        let sources = choices.into_iter().collect();
+        Self { sources, settings: Box::default() }
+    }
+}
+
+impl FromStr for ColumnMap {
+    type Err = MapError;
+
+    /// Parses `channel=column[:unit]`, several of them separated by commas. A column is a number
+    /// from 1, several of them with signs, `none` or a header. The text after the last colon is the
+    /// unit if it names a unit of the channel, and otherwise part of the header. Settings
+    /// ([`ReadSettings`]) stand among them.
+    fn from_str(text: &str) -> Result<Self, MapError> {
+        let mut map = Self::default();
+        for part in text.split(',').filter(|part| !part.trim().is_empty()) {
+            let (name, value) = divided(part.trim())?;
+            if map.settings.take(name, value)? {
+                continue;
+            }
+            let (channel, source) = choice(name, value)?;
+            if map.sources.insert(channel, source).is_some() {
+                return Err(MapError::Twice { channel });
+            }
+        }
+        Ok(map)
+    }
+}
+
+fn divided(part: &str) -> Result<(&str, &str), MapError> {
+    let syntax = || MapError::Syntax { part: part.to_owned() };
+    let (name, value) = part.split_once('=').ok_or_else(syntax)?;
+    let (name, value) = (name.trim(), value.trim());
+    if name.is_empty() || value.is_empty() {
+        return Err(syntax());
+    }
+    Ok((name, value))
+}
+
+fn choice(name: &str, column: &str) -> Result<(Channel, ColumnSource), MapError> {
+    let channel =
+        spelling::channel(name).ok_or_else(|| MapError::Channel { name: name.to_owned() })?;
+    let with_unit = column.rsplit_once(':').and_then(|(column, text)| {
+        let unit = spelling::unit(channel.quantity(), text.trim())?;
+        Some((column.trim(), Some(unit)))
+    });
+    let (column, unit) = with_unit.unwrap_or((column, None));
+    let column = match (column.parse(), signed_columns(column)) {
+        (Ok(0), _) => return Err(MapError::ColumnZero { channel }),
+        (Ok(number), _) => ColumnRef::Number(number),
+        (Err(_), Some(columns)) if columns.iter().any(|of| of.number == 0) => {
+            return Err(MapError::ColumnZero { channel });
+        }
+        (Err(_), Some(columns)) => ColumnRef::Sum(columns),
+        (Err(_), None) if column == NO_COLUMN => ColumnRef::Zero,
+        (Err(_), None) => ColumnRef::Name(column.to_owned()),
+    };
+    Ok((channel, ColumnSource { column, unit }))
+}
+
+/// The terms of `2+5-7` or `-3`; `None` if the text is no such sum.
+fn signed_columns(text: &str) -> Option<Vec<SignedColumn>> {
+    let is_sign = |c: char| matches!(c, '+' | '-');
+    let signed = match text.starts_with(is_sign) {
+        true => text.to_owned(),
+        false => format!("+{text}"),
+    };
+    let starts: Vec<usize> = signed.match_indices(is_sign).map(|(at, _)| at).collect();
+    let ends = starts.iter().skip(1).copied().chain([signed.len()]);
+    let term = |(start, end): (&usize, usize)| {
+        let term = signed.get(*start..end)?;
+        let digits = term.get(1..)?.trim();
+        let is_number = digits.bytes().all(|byte| byte.is_ascii_digit());
+        let number = digits.parse().ok().filter(|_| is_number)?;
+        Some(SignedColumn { number, is_negated: term.starts_with('-') })
+    };
+    starts.iter().zip(ends).map(term).collect()
+}
+
+impl fmt::Display for ColumnRef {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Name(name) => f.write_str(name),
+            Self::Sum(columns) => columns.iter().enumerate().try_for_each(|(i, column)| {
+                let sign = match (column.is_negated, i) {
+                    (true, _) => "-",
+                    (false, 0) => "",
+                    (false, _) => "+",
+                };
+                write!(f, "{sign}{}", column.number)
+            }),
+            Self::Zero => f.write_str(NO_COLUMN),
+        }
+    }
+}
+
+impl fmt::Display for ColumnMap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let settings = self.settings.to_string();
+        f.write_str(&settings)?;
+        for (i, (channel, source)) in self.iter().enumerate() {
+            let comma = if i > 0 || !settings.is_empty() { "," } else { "" };
+            write!(f, "{comma}{}={}", channel.short_name(), source.column)?;
+            if let Some(unit) = source.unit {
+                write!(f, ":{}", unit.symbol)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl TryFrom<String> for ColumnMap {
+    type Error = MapError;
+
+    fn try_from(text: String) -> Result<Self, MapError> {
+        text.parse()
+    }
+}
+
+impl From<ColumnMap> for String {
+    fn from(map: ColumnMap) -> Self {
+        map.to_string()
+    }
+}
+
+fn short_names() -> String {
+    let names: Vec<_> = Channel::ALL.iter().map(|channel| channel.short_name()).collect();
+    format!("{}; or sheet, header, units, shift, y_axis, velocities", names.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mappings_are_read_and_mistakes_are_named() {
+        let map: ColumnMap = "yaw_rate_rad_s=Gier: Rate:deg/s".parse().unwrap();
+        let source = map.get(Channel::YawRate).unwrap();
+        assert_eq!(source.column, ColumnRef::Name("Gier: Rate".to_owned()));
+        assert_eq!(source.unit.unwrap().symbol, "deg/s");
+        for (text, message) in [
+            (
+                "fx",
+                r#""fx" is no mapping, expected channel=column or channel=column:unit, e.g. fx=Kraft X:kN"#,
+            ),
+            ("fx=0", "fx is taken from column 0, but columns are counted from 1"),
+            ("fx=1,fx=2", "fx is mapped twice"),
+        ] {
+            let error = text.parse::<ColumnMap>().unwrap_err();
+            assert_eq!(error.to_string(), message);
+        }
+        let error = "force=1".parse::<ColumnMap>().unwrap_err().to_string();
+        assert!(error.starts_with(r#""force" is no channel, expected one of time, x, y, yaw"#));
+    }
+
+    #[test]
+    fn sums_signs_and_settings_are_written_as_they_are_read() {
+        for text in [
+            "sheet=2,header=5,units=6,shift=-0.012:s,y_axis=right,velocities=world,time=1,fx=2+5-7:kN",
+            "header=none,fx=-3:kN,fy=none",
+            "sheet=Messung 2,fx=Kraft-X",
+        ] {
+            assert_eq!(text.parse::<ColumnMap>().unwrap().to_string(), text);
+        }
+        let map: ColumnMap = "fx=2+5-7,shift=-12:ms".parse().unwrap();
+        let terms = [(2, false), (5, false), (7, true)]
+            .map(|(number, is_negated)| SignedColumn { number, is_negated });
+        assert_eq!(map.get(Channel::Fx).unwrap().column, ColumnRef::Sum(terms.to_vec()));
+        assert_eq!(map.settings.time_shift_s, Some(-0.012));
+        for (text, message) in [
+            (
+                "header=x",
+                r#"header="x" is not understood, expected the number of a line or none, e.g. header=5"#,
+            ),
+            ("shift=1:kN", r#"shift="1:kN" is not understood, expected a time, e.g. shift=-12:ms"#),
+            ("units=6,units=7", "units is given twice"),
+            ("fx=2+0", "fx is taken from column 0, but columns are counted from 1"),
+        ] {
+            assert_eq!(text.parse::<ColumnMap>().unwrap_err().to_string(), message);
+        }
+    }
+
+    #[test]
+    fn a_long_mistake_is_quoted_in_part() {
+        for text in ["x".repeat(100_000), format!("{}=1", "x".repeat(100_000))] {
+            let error = text.parse::<ColumnMap>().unwrap_err().to_string();
+            assert!(error.starts_with("\"xxxx") && error.len() < 600, "{} bytes", error.len());
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! Reads and writes files. Everything foreign becomes checked time series in SI units here, and
+//! time series become files.
+//!
+//! - A delimited text file becomes a [`Table`], whose [`Dialect`] is determined from its first
+//!   lines; its columns become the channels of a [`TimeSeries`] by their headers or by a
+//!   [`ColumnMap`].
+//! - [`read_force_file`], [`read_trajectory_file`], [`read_motion_log`] and [`read_steer_file`]
+//!   read single files, [`Dataset`] reads a folder of cases, and [`open`](open()) decides what a
+//!   path holds.
+//! - [`ForceHistory`], [`contact_interval`] and [`check_case`] give impulse, contact and quality of
+//!   what was read.
+//! - [`TomlFile`] and [`TomlTable`] read settings; [`mod@write`] writes files and folders.
+
+mod attributes;
+mod budget;
+mod case_attributes;
+mod case_braking;
+mod channel;
+mod column_map;
+mod columns;
+mod contact;
+mod dataset;
+mod dialect;
+mod error;
+mod file;
+mod force_history;
+mod foreign;
+mod header;
+mod json;
+mod loose;
+mod open;
+mod quality;
+mod read_settings;
+mod rows;
+mod series;
+mod spelling;
+mod table;
+mod text;
+mod toml_file;
+mod toml_table;
+mod velocity_fit;
+mod workbook;
+pub mod write;
+
+pub use attributes::{Attributes, Value};
+pub use budget::{
+    MAX_CASE_CELLS, MAX_CASES, MAX_CASES_BYTES, MAX_CELL_BYTES, MAX_COLUMNS, MAX_DATASET_BYTES,
+    MAX_DRAWING_BYTES, MAX_DRAWING_POINTS, MAX_LINE_BYTES, MAX_MODEL_BYTES, MAX_PICTURE_BYTES,
+    MAX_PICTURE_PIXELS, MAX_PICTURE_SIDE, MAX_RESULTS_BYTES, MAX_SETTINGS_BYTES, MAX_TABLE_BYTES,
+    MAX_WORKBOOK_BYTES,
+};
+pub use case_attributes::{AttributeColumn, ForceAttributes, StruckSide, TrajectoryAttributes};
+pub use case_braking::CaseBraking;
+pub use channel::Channel;
+pub use column_map::{ColumnMap, ColumnRef, ColumnSource, MapError, SignedColumn};
+pub(crate) use columns::Columns;
+pub use columns::{
+    ColumnProposal, ColumnUse, Note, Term, map_from_proposals, proposals, propose_columns,
+};
+pub use contact::{
+    CONTACT_SHARE_OF_PEAK, ContactOutside, MIN_GAP_S, TIME_TOLERANCE_S, check_contact_within,
+    contact_interval, contact_pulses, cut_at_s,
+};
+pub use dataset::{Case, Dataset, DatasetKind, Outcome};
+pub use dialect::{Dialect, Separator};
+pub use error::DataError;
+pub use file::{list_folder, open_file, read_bytes, read_utf8};
+pub use force_history::{CumulativeImpulse, ForceAxes, ForceHistory, Sampling};
+pub use json::{finite_or_null, finite_or_nulls, null_as_nan, nulls_as_nan};
+pub use loose::{
+    FileKind, Loaded, read_any_series, read_force_file, read_motion_log, read_series,
+    read_steer_file, read_trajectory_file, read_wheels_file, series_of_table,
+};
+pub use open::{Opened, open};
+pub use quality::{Flag, FlagKind, Severity, check_case, check_file, check_series};
+pub use read_settings::{HeaderLine, ReadSettings, SheetRef, VelocityAxes};
+pub use series::{SeriesError, TimeSeries};
+pub use table::Table;
+pub use toml_file::{TomlError, TomlFile};
+pub use toml_table::{TomlTable, key_with_unit};
+pub use velocity_fit::{VelocityFit, velocity_fit};
+pub use workbook::Sheet;
+pub use write::{
+    Existing, RESTRICTIONS_COLUMN, check_target, write_atomically, write_restricted_series_csv,
+    write_restricted_table, write_series_csv,
+};

@@ -1,0 +1,34 @@
+//! Mathematics without any knowledge of vehicles: the scalar types of the equations of motion
+//! ([`Lanes`], [`Scalar`], [`Packed`]), steps of integration, interpolation, smoothing of measured
+//! motions, statistics, least squares, Gaussian processes, clusters and angles.
+
+mod angle;
+mod clustering;
+mod elementary;
+mod four;
+mod gaussian_process;
+mod interpolation;
+mod least_squares;
+mod normal;
+mod ode;
+mod packed;
+mod scalar;
+mod seed;
+mod smoother;
+mod statistics;
+
+pub use angle::wrap_angle_rad;
+pub use clustering::{ClusterError, Clusters};
+pub use four::Four;
+pub use gaussian_process::{
+    GaussianPrediction, GaussianProcess, GaussianProcessData, GaussianProcessError,
+};
+pub use interpolation::interpolate;
+pub use least_squares::{LeastSquares, levenberg_marquardt};
+pub use normal::{normal_cdf, normal_density, normal_quantile};
+pub use ode::{Stage, euler_step, rk4_step, rk4_step_from};
+pub use packed::{MAX_LANES, Packed};
+pub use scalar::{Lanes, LanesOver, Scalar};
+pub use seed::{random_stream, sha256_hex};
+pub use smoother::{MeasuredTrack, TrackPoint, TrackSample};
+pub use statistics::{Summary, quantile_of_sorted, quantile_of_weighted};

@@ -1,0 +1,122 @@
+//! Summary statistics and quantiles of a sample.
+
+use serde::{Deserialize, Serialize};
+use statrs::statistics::{Data, Distribution, Max, Min, OrderStatistics};
+
+/// Mean, standard deviation and order statistics of a sample, in the unit of its values.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Number of values.
+    pub n: usize,
+    /// Arithmetic mean.
+    pub mean: f64,
+    /// Standard deviation with the divisor n − 1; 0 for a single value.
+    pub std: f64,
+    /// Median.
+    pub median: f64,
+    /// 90th percentile.
+    pub p90: f64,
+    /// Smallest value.
+    pub min: f64,
+    /// Largest value.
+    pub max: f64,
+}
+
+impl Summary {
+    /// Computes the statistics of a sample; `None` if it is empty or contains NaN.
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+        let values: Vec<f64> = values.into_iter().collect();
+        if values.is_empty() || values.iter().any(|value| value.is_nan()) {
+            return None;
+        }
+        let n = values.len();
+        let mut data = Data::new(values);
+        Some(Self {
+            n,
+            mean: data.mean()?,
+            std: if n > 1 { data.std_dev()? } else { 0.0 },
+            median: data.median(),
+            p90: data.percentile(90),
+            min: data.min(),
+            max: data.max(),
+        })
+    }
+}
+
+/// Quantile of values in increasing order, by linear interpolation between neighbouring values: the
+/// probability 0 gives the smallest value, 1 the largest. A probability outside this range is
+/// limited to it.
+///
+/// - returns `None` if there are no values.
+///
+/// ```
+/// # use crate::numerics::quantile_of_sorted;
+/// assert_eq!(quantile_of_sorted(&[1.0, 2.0, 4.0], 0.75), Some(3.0));
+/// ```
+pub fn quantile_of_sorted(values: &[f64], probability: f64) -> Option<f64> {
+    let last = values.len().checked_sub(1)?;
+    let position = probability.clamp(0.0, 1.0) * last as f64;
+    let low = position.floor() as usize;
+    let (&below, &above) = (values.get(low)?, values.get((low + 1).min(last))?);
+    Some(below + position.fract() * (above - below))
+}
+
+/// Quantile of weighted values in increasing order, by linear interpolation. With equal weights it is
+/// that of [`quantile_of_sorted`]; a value without weight changes nothing.
+///
+/// ```text
+/// value k stands at (w_1/2 + w_2 + … + w_(k−1) + w_k/2) − w_1/2, the last one at probability 1
+/// ```
+///
+/// - returns `None` if no value has a weight.
+///
+/// ```
+/// # use crate::numerics::quantile_of_weighted;
+/// assert_eq!(quantile_of_weighted(&[1.0, 2.0, 4.0], &[1.0, 1.0, 1.0], 0.75), Some(3.0));
+/// assert_eq!(quantile_of_weighted(&[1.0, 2.0, 4.0], &[1.0, 0.0, 1.0], 0.5), Some(2.5));
+/// ```
+pub fn quantile_of_weighted(values: &[f64], weights: &[f64], probability: f64) -> Option<f64> {
+    let weighted = || values.iter().zip(weights).filter(|(_, weight)| **weight > 0.0);
+    let (first, last) = (weighted().next()?, weighted().next_back()?);
+    let total: f64 = weighted().map(|(_, weight)| weight).sum::<f64>() - (first.1 + last.1) / 2.0;
+    let goal = probability.clamp(0.0, 1.0) * total;
+    let (mut position, mut before) = (0.0, first);
+    for value in weighted().skip(1) {
+        let step = (before.1 + value.1) / 2.0;
+        if position + step >= goal {
+            return Some(before.0 + (goal - position) / step * (value.0 - before.0));
+        }
+        position += step;
+        before = value;
+    }
+    Some(*last.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_weights_give_the_quantiles_of_the_values_and_a_weight_of_two_counts_twice() {
+        let values: Vec<f64> = (0..31).map(|i| f64::from(i * i)).collect();
+        for probability in [-1.0, 0.0, 0.05, 0.33, 0.5, 0.95, 1.0, 2.0] {
+            let expected = quantile_of_sorted(&values, probability).unwrap();
+            let found = quantile_of_weighted(&values, &[0.3; 31], probability).unwrap();
+            assert!((found - expected).abs() < 1e-9, "{probability}: {found} for {expected}");
+        }
+        assert_eq!(quantile_of_weighted(&[1.0, 5.0], &[0.0, 2.0], 0.1), Some(5.0));
+        assert_eq!(quantile_of_weighted(&[1.0, 5.0], &[0.0, 0.0], 0.1), None);
+        let twice = quantile_of_weighted(&[0.0, 1.0, 2.0], &[1.0, 2.0, 1.0], 0.5).unwrap();
+        assert!((twice - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_small_sample_by_hand() {
+        let summary = Summary::of([1.0, 2.0, 3.0, 10.0]).unwrap();
+        assert_eq!((summary.n, summary.mean, summary.median), (4, 4.0, 2.5));
+        assert!((summary.std - (50.0_f64 / 3.0).sqrt()).abs() < 1e-12);
+        assert_eq!(Summary::of([5.0]).unwrap().std, 0.0);
+        assert_eq!(Summary::of([]), None);
+        assert_eq!(Summary::of([1.0, f64::NAN]), None);
+    }
+}

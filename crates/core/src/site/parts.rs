@@ -1,0 +1,268 @@
+//! What a site consists of.
+
+use std::path::{Path, PathBuf};
+
+use crate::site::{
+    DrawingSummary, PixelMap, SiteError, SiteOrigin, WorldFile, picture_size_px, world_file_beside,
+};
+use crate::units::US_SURVEY_FOOT;
+use crate::vehicle::FrictionZone;
+
+/// Side of a pixel of a picture of which nothing says where it lies, m; its middle is then at the origin.
+const ASSUMED_PIXEL_M: f64 = 0.05;
+
+/// The ground of a scene. All places are in the axes of the site.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Site {
+    /// What it is called.
+    pub name: String,
+    /// The file that it was read from.
+    pub path: PathBuf,
+    /// Where it lies in survey coordinates, if that is known.
+    pub origin: Option<SiteOrigin>,
+    /// A picture of the ground from above.
+    pub orthophoto: Option<Orthophoto>,
+    /// Lanes of roads.
+    pub lanes: Vec<Lane>,
+    /// Kerbs.
+    pub kerbs: Vec<Kerb>,
+    /// Parts of the ground with their own friction, in their order: where they overlap, the last holds.
+    pub friction_zones: Vec<FrictionZone>,
+    /// A drawing whose lines are shown.
+    pub drawing: Option<DrawingFile>,
+}
+
+/// A picture of the ground from above, to scale.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Orthophoto {
+    /// The picture.
+    pub file: PathBuf,
+    /// The world file that says where it lies, if it is one.
+    pub world_file: Option<PathBuf>,
+    /// The unit of the numbers in the world file.
+    pub world_unit: LengthUnit,
+    /// Width and height, pixels.
+    pub size_px: [u32; 2],
+    /// Where its pixels lie.
+    pub map: PixelMap,
+    /// Whether its place and scale are known. Otherwise it is shown with 0.05 m per pixel about the
+    /// origin, until somebody measures it.
+    pub is_placed: bool,
+}
+
+/// How the edge of a lane is marked.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum EdgeLine {
+    /// Not at all.
+    None,
+    /// By a line.
+    #[default]
+    Solid,
+    /// By a line with gaps.
+    Dashed,
+}
+
+impl EdgeLine {
+    /// Its words in a site file, in the order of [`EdgeLine::ALL`].
+    pub const WORDS: [&str; 3] = ["none", "solid", "dashed"];
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::None, Self::Solid, Self::Dashed];
+}
+
+/// A lane of a road.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lane {
+    /// What it is called; may be empty.
+    pub name: String,
+    /// Its left edge, seen along the lane, m.
+    pub left_m: Vec<[f64; 2]>,
+    /// Its right edge, m.
+    pub right_m: Vec<[f64; 2]>,
+    /// How the left and the right edge are marked.
+    pub edges: [EdgeLine; 2],
+}
+
+/// A kerb.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Kerb {
+    /// What it is called; may be empty.
+    pub name: String,
+    /// Its line, m.
+    pub line_m: Vec<[f64; 2]>,
+}
+
+/// A drawing in the format DXF.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DrawingFile {
+    /// The drawing.
+    pub file: PathBuf,
+    /// Its unit; that which the drawing states, if `None`.
+    pub unit: Option<LengthUnit>,
+    /// The layers that are shown; all that are switched on, if `None`.
+    pub layers: Option<Vec<String>>,
+}
+
+/// The unit of a drawing or of a world file.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum LengthUnit {
+    /// Metres.
+    #[default]
+    Metre,
+    /// Centimetres.
+    Centimetre,
+    /// Millimetres.
+    Millimetre,
+    /// Feet of 0.3048 m.
+    Foot,
+    /// Feet of the United States survey, 1200/3937 m.
+    SurveyFoot,
+    /// Inches.
+    Inch,
+}
+
+impl LengthUnit {
+    /// Their words in a site file, in the order of [`LengthUnit::ALL`]; the last one is another spelling.
+    pub const WORDS: [&str; 7] = ["m", "cm", "mm", "ft", "us_survey_ft", "in", "us-survey-ft"];
+    /// What the words mean.
+    pub const ALL: [Self; 7] = [
+        Self::Metre,
+        Self::Centimetre,
+        Self::Millimetre,
+        Self::Foot,
+        Self::SurveyFoot,
+        Self::Inch,
+        Self::SurveyFoot,
+    ];
+    /// The words for a world file, with what they mean.
+    pub const OF_WORLD_FILES: ([&str; 3], [Self; 3]) =
+        (["m", "ft", "us_survey_ft"], [Self::Metre, Self::Foot, Self::SurveyFoot]);
+
+    /// Its word.
+    pub fn word(self) -> &'static str {
+        let idx = Self::ALL.iter().position(|of| *of == self).unwrap_or_default();
+        Self::WORDS[idx]
+    }
+
+    /// Its length, m.
+    pub fn length_m(self) -> f64 {
+        match self {
+            Self::Metre => 1.0,
+            Self::Centimetre => 0.01,
+            Self::Millimetre => 0.001,
+            Self::Foot => 0.3048,
+            Self::SurveyFoot => US_SURVEY_FOOT.si_per_unit,
+            Self::Inch => 0.0254,
+        }
+    }
+}
+
+impl Site {
+    /// A site of a picture alone. Its world file says where it lies; without one it lies about the
+    /// origin, and its scale is not known.
+    ///
+    /// # Errors
+    /// [`SiteError`] if the picture or the world file cannot be read.
+    pub fn of_picture(path: &Path) -> Result<Self, SiteError> {
+        let size_px = picture_size_px(path)?;
+        let world_file = world_file_beside(path).ok();
+        let map = match &world_file {
+            Some(file) => {
+                let world = WorldFile::load(file, LengthUnit::Metre)?;
+                PixelMap::of_world_file(&world, &SiteOrigin::default())
+            }
+            None => {
+                let [width, height] = size_px.map(|side| ASSUMED_PIXEL_M * f64::from(side));
+                PixelMap {
+                    corner_m: [-width / 2.0, height / 2.0],
+                    per_column_m: [ASSUMED_PIXEL_M, 0.0],
+                    per_row_m: [0.0, -ASSUMED_PIXEL_M],
+                }
+            }
+        };
+        let is_placed = world_file.is_some();
+        let file = path.to_owned();
+        Ok(Self {
+            name: file_name(path),
+            path: file.clone(),
+            origin: None,
+            orthophoto: Some(Orthophoto {
+                file,
+                world_file,
+                world_unit: LengthUnit::Metre,
+                size_px,
+                map,
+                is_placed,
+            }),
+            lanes: Vec::new(),
+            kerbs: Vec::new(),
+            friction_zones: Vec::new(),
+            drawing: None,
+        })
+    }
+
+    /// Direction of grid north in the axes of the site, counter-clockwise from X, rad.
+    pub fn north_rad(&self) -> Option<f64> {
+        let [x, y] = self.origin?.turned([0.0, 1.0]);
+        Some(y.atan2(x))
+    }
+
+    /// What it consists of, in words.
+    ///
+    /// - `drawing`: what of its drawing was read, if that is known.
+    pub fn contents(&self, drawing: Option<&DrawingSummary>) -> Vec<String> {
+        let counted = |n: usize, what: &str| match n {
+            0 => None,
+            1 => Some(format!("1 {what}")),
+            n => Some(format!("{n} {what}s")),
+        };
+        let orthophoto = self.orthophoto.as_ref().map(|of| {
+            let [width, height] = of.size_px;
+            let [pixel_m, _] = of.map.pixel_size_m();
+            let place = match (of.is_placed, &of.world_file) {
+                (false, _) => ", place and scale not known".to_owned(),
+                (true, None) => extent_text(of.extent_m()),
+                (true, Some(_)) => {
+                    format!(
+                        "{}, world file in {}",
+                        extent_text(of.extent_m()),
+                        of.world_unit.word()
+                    )
+                }
+            };
+            format!("orthophoto of {width} x {height} pixels of {pixel_m:.4} m{place}")
+        });
+        let drawing = self.drawing.as_ref().map(|of| {
+            let said = drawing.map(|of| of.contents()).unwrap_or_default();
+            format!("drawing {}{said}", file_name(&of.file))
+        });
+        let zones = counted(self.friction_zones.len(), "friction zone");
+        let counts = [counted(self.lanes.len(), "lane"), counted(self.kerbs.len(), "kerb"), zones];
+        orthophoto.into_iter().chain(counts.into_iter().flatten()).chain(drawing).collect()
+    }
+}
+
+impl Orthophoto {
+    /// The rectangle along X and Y that holds it: smallest and largest `[X, Y]`, m.
+    pub fn extent_m(&self) -> [[f64; 2]; 2] {
+        extent_of(self.map.corners_m(self.size_px)).unwrap_or_default()
+    }
+}
+
+/// Smallest and largest coordinates of points, m; `None` without points.
+pub fn extent_of(points_m: impl IntoIterator<Item = [f64; 2]>) -> Option<[[f64; 2]; 2]> {
+    let mut points_m = points_m.into_iter();
+    let first = points_m.next()?;
+    Some(points_m.fold([first; 2], |[low, high], at| {
+        [std::array::from_fn(|i| low[i].min(at[i])), std::array::from_fn(|i| high[i].max(at[i]))]
+    }))
+}
+
+/// Where something lies, after what it is.
+pub(super) fn extent_text([low, high]: [[f64; 2]; 2]) -> String {
+    format!(", X {:.1} to {:.1} m, Y {:.1} to {:.1} m", low[0], high[0], low[1], high[1])
+}
+
+/// The name of a file without its folder.
+pub(super) fn file_name(path: &Path) -> String {
+    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+}

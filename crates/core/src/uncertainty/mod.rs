@@ -1,0 +1,56 @@
+//! Probability distributions of predictions: mixtures of normal distributions over whole force
+//! curves, over scalars and over positions in the plane, with their densities, draws, quantiles and
+//! scores; and the unscented transform. And the badges of what an answer cannot promise.
+//!
+//! ```
+//! use crate::uncertainty::{CurveComponent, CurveMixture};
+//! use nalgebra::DMatrix;
+//! use rand::SeedableRng;
+//!
+//! // Two instants: [F_x(t₁), F_x(t₂), F_y(t₁), F_y(t₂), duration]; one factor scales the curve.
+//! let mean = vec![0.0, 0.0, 10e3, 20e3, 0.1];
+//! let factors = DMatrix::from_column_slice(5, 1, &[0.0, 0.0, 1e3, 2e3, 0.0]);
+//! let variance = vec![1.0, 1.0, 1.0, 1.0, 1e-4];
+//! let lag_correlation = 0.0;
+//! let component = CurveComponent { weight: 1.0, mean, factors, variance, lag_correlation };
+//! let mixture = CurveMixture::new(vec![component])?;
+//! assert_eq!(mixture.mean().fy_n, [10e3, 20e3]);
+//! let [low, high] = mixture.impulse(1).interval(0.9);
+//! assert!(low < 30.0 && 30.0 < high);
+//! let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(7);
+//! assert_eq!(mixture.sample(20, &mut rng).len(), 20);
+//! # Ok::<(), crate::uncertainty::MixtureError>(())
+//! ```
+
+mod error;
+
+mod badge;
+
+mod curve;
+mod normal_mixture;
+
+mod mixture;
+
+mod bands;
+mod magnitude;
+mod quantiles;
+
+mod density;
+mod sample;
+mod scores;
+
+mod planar;
+mod planar_grid;
+mod unscented;
+
+pub use badge::{Badge, BadgeKind};
+pub use bands::{CurveBand, CurveBands};
+pub use curve::{CURVE_INTERVAL_S, CURVE_N_INSTANTS, ForceCurve};
+pub use error::MixtureError;
+pub use mixture::{CurveComponent, CurveMixture};
+pub use normal_mixture::{NormalMixture, NormalPart};
+pub use planar::{PlanarMixture, PlanarPart};
+pub use planar_grid::{PlanarGrid, PlanarKernel};
+pub use sample::CurveQuantities;
+pub use scores::{distance_n, energy_score_n, sample_crps};
+pub use unscented::{Unscented, UnscentedWeights};

@@ -1,0 +1,142 @@
+//! What steers, drives, brakes and locks the wheels of a vehicle over time.
+
+use crate::numerics::interpolate;
+use crate::vehicle::Wheel;
+use crate::vehicle::tire::{LOCKING_SHARE, TireParameters, WheelEffort};
+
+/// Share to which a wheel is locked from which it is said to be.
+const LOCKED_FROM: f64 = 0.5;
+
+/// Steer angle of the front road wheels over time. It is linear between samples; outside, the first
+/// or the last value holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SteerHistory {
+    /// Times of the samples, s, strictly rising.
+    pub time_s: Vec<f64>,
+    /// Steer angle δ of the front road wheels at these times, rad, positive to the left.
+    pub steer_rad: Vec<f64>,
+}
+
+/// What drives, brakes and locks each wheel over time. It is linear between samples; outside, the
+/// first or the last values hold.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WheelHistory {
+    /// Times of the samples, s, strictly rising.
+    pub time_s: Vec<f64>,
+    /// The wheels at these times, in the order of [`Wheel::ALL`](crate::vehicle::Wheel::ALL).
+    pub wheels: Vec<[WheelEffort<f64>; 4]>,
+}
+
+/// Everything that acts on the wheels over time. By default the vehicle coasts: steering wheel,
+/// throttle and brake are released, and every wheel rolls freely.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Controls {
+    /// Steer angle; with `None` it is zero.
+    pub steer: Option<SteerHistory>,
+    /// The wheels; with `None` they roll freely.
+    pub wheels: Option<WheelHistory>,
+}
+
+impl Controls {
+    /// Whether the vehicle coasts with its front wheels straight ahead.
+    pub fn is_coasting(&self) -> bool {
+        self.wheels.is_none() && !self.is_steered()
+    }
+
+    /// Whether the front wheels are turned.
+    pub fn is_steered(&self) -> bool {
+        let is_turned = |steer: &SteerHistory| steer.steer_rad.iter().any(|rad| *rad != 0.0);
+        self.steer.as_ref().is_some_and(is_turned)
+    }
+
+    /// Whether a wheel is driven.
+    pub fn is_driven(&self) -> bool {
+        let of = self.wheels.iter().flat_map(|history| history.wheels.iter().flatten());
+        of.into_iter().any(|wheel| wheel.drive_n != 0.0)
+    }
+
+    /// Whether a wheel is locked at a time, by damage or by a brake that asks for more than the road can
+    /// hold along the plane of the wheel; as in the tyre model, with the peak of the friction.
+    ///
+    /// - `velocity_m_s`: velocity of its centre along and across its own plane, m/s;
+    /// - `load_n`: its vertical load, N.
+    pub fn is_locked(
+        &self,
+        time_s: f64,
+        wheel: Wheel,
+        (velocity_m_s, load_n): ([f64; 2], f64),
+        tires: &TireParameters,
+    ) -> bool {
+        let Some(wheels) = self.wheels.as_ref().and_then(|wheels| wheels.at(time_s)) else {
+            return false;
+        };
+        let effort = wheels[wheel.index()];
+        let [u, w] = velocity_m_s;
+        let along = u.abs() / (u * u + w * w + 1e-6).sqrt();
+        let largest_n = tires.friction * tires.longitudinal_friction_ratio * load_n * along;
+        let beyond = (effort.braking_n - largest_n) / (largest_n * LOCKING_SHARE + 1e-3);
+        let by_brake = beyond.clamp(0.0, 1.0);
+        by_brake + (1.0 - by_brake) * effort.locked >= LOCKED_FROM
+    }
+}
+
+impl SteerHistory {
+    /// Steer angle at a time, rad; 0 without samples.
+    pub(super) fn at(&self, time_s: f64) -> f64 {
+        interpolate(&self.time_s, &self.steer_rad, time_s).unwrap_or(0.0)
+    }
+}
+
+impl WheelHistory {
+    /// The wheels at a time; `None` while all of them roll freely, so that the rules for a vehicle
+    /// that coasts apply.
+    pub fn at(&self, time_s: f64) -> Option<[WheelEffort<f64>; 4]> {
+        let after = self.time_s.partition_point(|&t| t <= time_s);
+        let last = self.wheels.len().checked_sub(1)?;
+        let (before, after) = (after.saturating_sub(1), after.min(last));
+        let (from, to) = (self.wheels.get(before)?, self.wheels.get(after)?);
+        let span_s = self.time_s.get(after)? - self.time_s.get(before)?;
+        let share = match span_s > 0.0 {
+            true => ((time_s - self.time_s.get(before)?) / span_s).clamp(0.0, 1.0),
+            false => 0.0,
+        };
+        let between = |i: usize| {
+            let mix = |of: fn(&WheelEffort<f64>) -> f64| {
+                of(&from[i]) + (of(&to[i]) - of(&from[i])) * share
+            };
+            WheelEffort {
+                drive_n: mix(|wheel| wheel.drive_n),
+                braking_n: mix(|wheel| wheel.braking_n),
+                locked: mix(|wheel| wheel.locked),
+            }
+        };
+        let wheels: [WheelEffort<f64>; 4] = std::array::from_fn(between);
+        wheels.iter().any(|wheel| *wheel != WheelEffort::none()).then_some(wheels)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wheels_are_linear_between_samples_and_free_where_nothing_acts() {
+        let braked = |braking_n| [WheelEffort { braking_n, ..WheelEffort::none() }; 4];
+        let history = WheelHistory {
+            time_s: vec![1.0, 2.0, 3.0],
+            wheels: vec![braked(0.0), braked(100.0), braked(50.0)],
+        };
+        for (time_s, expected) in [
+            (0.0, None),
+            (1.0, None),
+            (1.5, Some(braked(50.0))),
+            (2.0, Some(braked(100.0))),
+            (2.5, Some(braked(75.0))),
+            (3.0, Some(braked(50.0))),
+            (9.0, Some(braked(50.0))),
+        ] {
+            assert_eq!(history.at(time_s), expected, "at {time_s} s");
+        }
+        assert_eq!(WheelHistory { time_s: Vec::new(), wheels: Vec::new() }.at(1.0), None);
+    }
+}

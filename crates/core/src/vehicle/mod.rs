@@ -1,0 +1,70 @@
+//! The 4DOF vehicle model: axes, parameters, tyre forces, vertical loads, the equations of motion
+//! and their integration over time.
+
+mod constants;
+mod controlled;
+mod controls;
+mod energy;
+pub mod frames;
+mod loads;
+mod multibody_record;
+mod parameters;
+mod preset;
+mod rest;
+mod scaled_mass;
+pub mod sheet;
+mod state;
+mod tire;
+
+mod as_printed;
+mod four_dof;
+mod friction_zone;
+mod ground;
+
+mod ending;
+mod ending_file;
+mod fishhook;
+mod recorder;
+mod run;
+mod simulate;
+mod stability;
+
+mod batch;
+mod path_batch;
+
+mod tire_marks;
+
+pub use as_printed::Equations;
+pub use batch::{SimulationRun, simulate_batch};
+pub use constants::VehicleConstants;
+pub use controlled::ControlledVehicle;
+pub use controls::{Controls, SteerHistory, WheelHistory};
+pub use ending::{
+    Braking, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Driving, Ending, EngineBraking,
+    HeldSteer,
+};
+pub use energy::MAX_ENERGY_GAIN;
+pub use fishhook::{USUAL_STEERING_RATIO, angle_at_third_g_rad, fishhook, fishhook_amplitude_rad};
+pub use four_dof::{CollisionForce, ContactPoint, VehicleEvaluation, VehicleInput};
+pub use friction_zone::{FrictionZone, FrictionZoneError, MAX_BORDER_CORNERS, friction_at};
+pub use loads::Wheel;
+pub use multibody_record::MultibodyRecord;
+pub use parameters::{GeometryParameters, MassParameters, SuspensionParameters, VehicleParameters};
+pub use path_batch::{MAX_PATH_STEP_S, Path, PathEnd, PathLimit, PathPoint, simulate_paths};
+pub use preset::{Preset, built_in_vehicle};
+pub use rest::RestWatch;
+pub use rest::{REST_DURATION_S, REST_SPEED_M_S, REST_YAW_RATE_RAD_S};
+pub use sheet::{DataSheet, LibraryVehicle, SheetQuantity, VehicleClass};
+pub use simulate::{
+    ContactLoad, Integrator, Manoeuvre, Motion, MotionFlag, OUTPUT_INTERVAL_S, ROLL_LIMIT_RAD,
+    SimulationError,
+};
+pub use stability::VehicleMismatch;
+pub use state::{N_STATE, VehicleState};
+pub use tire::TIRE_WIDTH_RATIO;
+pub use tire::{TireParameters, WheelEffort, WheelSlip};
+pub use tire_marks::leaves_mark;
+pub use tire_marks::{
+    LARGEST_MARK_GAP_M, MARK_SLIP_RAD, MARK_SPEED_M_S, TireMark, TireMarkKind, TireMarkPoint,
+    tire_marks,
+};

@@ -1,0 +1,92 @@
+//! Vehicles that are part of the program, compiled in from `assets/vehicles/*.toml`.
+
+use std::path::Path;
+
+use crate::vehicle::{LibraryVehicle, VehicleParameters};
+
+macro_rules! presets {
+    ($($(#[$doc:meta])* $variant:ident: $file:literal;)+) => {
+        /// A vehicle whose data come with the program.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+        pub enum Preset {
+            $($(#[$doc])* $variant,)+
+        }
+
+        impl Preset {
+            /// All presets, in the order in which they are listed to the user.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),+];
+
+            /// Name of the preset on the command line: its file name without the extension.
+            pub fn id(self) -> &'static str {
+                match self { $(Self::$variant => $file),+ }
+            }
+
+            /// Text of the TOML file of the preset.
+            pub fn text(self) -> &'static str {
+                match self {
+                    $(Self::$variant => {
+                        include_str!(concat!("../../../../assets/vehicles/", $file, ".toml"))
+                    })+
+                }
+            }
+        }
+    };
+}
+
+presets! {
+    /// The car of the multibody model that simulated the trajectory data sets, 2000 kg.
+    Reference: "reference-2000";
+    /// The target of the finite-element runs, 2000 kg.
+    Target: "target-2000";
+    /// The lightest bullet of the finite-element runs, 1500 kg.
+    Bullet1500: "bullet-1500";
+    /// The bullet of medium mass of the finite-element runs, 2000 kg.
+    Bullet2000: "bullet-2000";
+    /// The heaviest bullet of the finite-element runs, 2500 kg.
+    Bullet2500: "bullet-2500";
+    /// The bullet of the paper on a scale of 1:4, 290 kg.
+    ScaledBullet: "scaled-bullet-290";
+    /// The target of the paper on a scale of 1:4, 100 kg.
+    ScaledTarget: "scaled-target-100";
+}
+
+impl Preset {
+    /// The preset with a given [`Preset::id`]; `None` if there is none.
+    pub fn from_id(id: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|preset| preset.id() == id)
+    }
+
+    /// Parameters of the vehicle.
+    pub fn parameters(self) -> VehicleParameters {
+        let path = Path::new("assets/vehicles").join(self.id()).with_extension("toml");
+        match VehicleParameters::parse(self.text(), &path) {
+            Ok(parameters) => parameters,
+            Err(error) => unreachable!("a shipped vehicle is bad (a test reads them all): {error}"),
+        }
+    }
+}
+
+/// Parameters of a vehicle that comes with the program, a preset or one of the library, by its id;
+/// `None` if there is none.
+pub fn built_in_vehicle(id: &str) -> Option<VehicleParameters> {
+    let preset = Preset::from_id(id).map(Preset::parameters);
+    preset.or_else(|| LibraryVehicle::from_id(id).map(LibraryVehicle::parameters))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_preset_loads_and_every_estimate_names_a_key() {
+        for &preset in Preset::ALL {
+            let vehicle = preset.parameters();
+            assert_eq!(Preset::from_id(preset.id()), Some(preset));
+            let values = toml::Table::try_from(&vehicle).unwrap();
+            for key in vehicle.estimates.keys() {
+                let (table, name) = key.split_once('.').unwrap();
+                assert!(values[table].get(name).is_some(), "{}: no {key}", preset.id());
+            }
+        }
+    }
+}

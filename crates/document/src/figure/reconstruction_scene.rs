@@ -1,0 +1,189 @@
+//! The scene of a reconstruction from above: what was found, and the paths of particles over it.
+
+use std::f64::consts::TAU;
+
+use crate::figure::scene::vehicle_outline;
+use crate::figure::{Axis, Figure, FigureElement, LineStyle, Path, Role, Series};
+use impactlab_core::collision::{Footprint, Pose, Side};
+use impactlab_core::numerics::interpolate;
+use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_core::vehicle::{Path as VehiclePath, PathPoint, TireMark};
+use impactlab_reconstruct::Cars;
+use impactlab_reconstruct::evidence::{Evidence, RestPose};
+use impactlab_study::{ReconstructAnswer, ReconstructedPaths, Trust};
+
+/// Points of an ellipse.
+const N_ELLIPSE: usize = 48;
+/// Half axis of an ellipse that holds 90 % of a plane normal distribution, standard deviations.
+const NINETY: f64 = 2.1460;
+
+/// Name of the struck car at rest in the legend.
+pub const STRUCK_AT_REST: &str = "struck car at rest, 90 % ellipse";
+/// Name of the striking car at rest in the legend.
+pub const STRIKING_AT_REST: &str = "striking car at rest, 90 % ellipse";
+
+/// A path with the car on it.
+#[derive(Debug, Clone, Copy)]
+pub struct FollowedPath<'a> {
+    /// Its name in the legend.
+    pub name: &'a str,
+    /// The path.
+    pub path: &'a VehiclePath,
+    /// Time at which the car is drawn, s after the first contact.
+    pub time_s: f64,
+}
+
+/// What the scene of a reconstruction shows.
+#[derive(Debug, Clone, Copy)]
+pub struct ReconstructionScene<'a> {
+    /// What was found.
+    pub evidence: &'a Evidence,
+    /// The vehicles, for their outlines.
+    pub cars: &'a Cars,
+    /// Paths in the background.
+    pub drawn: &'a [VehiclePath],
+    /// The path in front of them.
+    pub followed: Option<FollowedPath<'a>>,
+    /// The marks that the tyres leave along that path.
+    pub marks: &'a [TireMark],
+}
+
+impl<'a> ReconstructionScene<'a> {
+    /// The scene of an answer, with a particle of median speed at its end.
+    pub fn of(answer: &'a ReconstructAnswer, paths: &'a ReconstructedPaths) -> Self {
+        let name = ReconstructedPaths::MEDIAN;
+        let at_end = |path: &'a VehiclePath| FollowedPath { name, path, time_s: f64::INFINITY };
+        Self {
+            evidence: answer.target.evidence(),
+            cars: answer.target.model().cars(),
+            drawn: &paths.drawn,
+            followed: paths.median.as_ref().map(at_end),
+            marks: &paths.marks,
+        }
+    }
+}
+
+/// The paths of the struck car from above, over what was found.
+pub fn reconstruction_scene_figure(
+    scene: &ReconstructionScene<'_>,
+    trust: &Trust,
+    units: UnitSystem,
+) -> Figure {
+    let x = Axis::shown("X, along the heading before the impact", Quantity::Length, units);
+    let y = Axis::shown("Y, to the left", Quantity::Length, units);
+    let shown = |[px, py]: [f64; 2]| [x.unit.from_si(px), y.unit.from_si(py)];
+    let path = |(name, role): (&str, Role), path: &VehiclePath| {
+        let of = |point: &PathPoint| shown([point.x_m, point.y_m]);
+        FigureElement::Path(Path {
+            series: Series {
+                name: name.to_owned(),
+                role,
+                style: LineStyle::Solid,
+                points: path.points.iter().map(of).collect(),
+            },
+            time_s: path.points.iter().map(|point| point.time_s).collect(),
+            yaw_rad: path.points.iter().map(|point| point.yaw_rad).collect(),
+        })
+    };
+    let drawn = scene.drawn.iter().map(|of| path(("particles", Role::Muted), of));
+    let mut elements: Vec<FigureElement> = drawn.collect();
+    elements.extend(contact_elements(scene, &shown, units));
+    elements.extend(scene.marks.iter().map(|mark| {
+        let points = mark.points.iter().map(|point| shown(point.place_m)).collect();
+        FigureElement::line("tyre marks, computed", Role::Simulation, points)
+    }));
+    elements.extend(evidence_elements(scene, &shown, units));
+    if let Some(FollowedPath { name, path: followed, time_s }) = scene.followed {
+        elements.push(path((name, Role::Model), followed));
+        if let Some(pose) = pose_on(followed, time_s) {
+            let footprint = Footprint::from(&scene.cars.struck.parameters.geometry);
+            let named = (name, Role::Model, LineStyle::Solid);
+            elements.extend(vehicle_outline(named, (&footprint, &pose), x.unit));
+        }
+    }
+    let title = format!("{}: where the struck car went", scene.evidence.case);
+    Figure::new(title, [x, y], elements).plan().with_trust(trust)
+}
+
+/// Where a car is on a path at a time; beyond its ends, at the end. `None` for a path without points.
+fn pose_on(path: &VehiclePath, time_s: f64) -> Option<Pose> {
+    let last = path.points.last()?;
+    let time_s = time_s.min(last.time_s);
+    let times: Vec<f64> = path.points.iter().map(|point| point.time_s).collect();
+    let at = |of: fn(&PathPoint) -> f64| {
+        let values: Vec<f64> = path.points.iter().map(of).collect();
+        interpolate(&times, &values, time_s)
+    };
+    Some(Pose { x_m: at(|p| p.x_m)?, y_m: at(|p| p.y_m)?, yaw_rad: at(|p| p.yaw_rad)? })
+}
+
+/// The struck car at the first contact, and the place of that on its side with its 90 % interval.
+fn contact_elements(
+    scene: &ReconstructionScene<'_>,
+    shown: &impl Fn([f64; 2]) -> [f64; 2],
+    units: UnitSystem,
+) -> Vec<FigureElement> {
+    let (damage, cars) = (&scene.evidence.damage, scene.cars);
+    let footprint = Footprint::from(&cars.struck.parameters.geometry);
+    let pose = Pose { x_m: 0.0, y_m: 0.0, yaw_rad: 0.0 };
+    let unit = Quantity::Length.display_unit(units);
+    let named = ("struck car at first contact", Role::Target, LineStyle::Dashed);
+    let depth_m = damage.depth_m.unwrap_or_else(|| cars.depth_of(damage.side));
+    let at = |along_m: f64| match damage.side {
+        Side::Left | Side::Right => shown([along_m, depth_m]),
+        Side::Front | Side::Rear => shown([depth_m, along_m]),
+    };
+    let (along_m, reach_m) = (damage.along_m.value, 1.645 * damage.along_m.sigma);
+    let ends = vec![at(along_m - reach_m), at(along_m + reach_m)];
+    let name = "contact by the damage, 90 %";
+    let mut elements = Vec::from(vehicle_outline(named, (&footprint, &pose), unit));
+    elements.push(FigureElement::line(name, Role::Pulse, ends));
+    elements.push(FigureElement::points(name, Role::Pulse, vec![at(along_m)]));
+    elements
+}
+
+/// What was found: marks, positions, the rest poses with their 90 % ellipses.
+fn evidence_elements(
+    scene: &ReconstructionScene<'_>,
+    shown: &impl Fn([f64; 2]) -> [f64; 2],
+    units: UnitSystem,
+) -> Vec<FigureElement> {
+    let ReconstructionScene { evidence, cars, .. } = scene;
+    let mut elements = Vec::new();
+    for mark in &evidence.marks {
+        let name = format!("mark, {}", mark.wheel.label());
+        let points: Vec<[f64; 2]> = mark.points_m.iter().map(|at| shown(*at)).collect();
+        elements.push(FigureElement::dashed(&name, Role::Bullet, points.clone()));
+        elements.push(FigureElement::points(&name, Role::Bullet, points));
+    }
+    let positions: Vec<[f64; 2]> =
+        evidence.positions.iter().map(|at| shown([at.x_m, at.y_m])).collect();
+    if !positions.is_empty() {
+        elements.push(FigureElement::points("video", Role::Pulse, positions));
+    }
+    for (rest, car, name) in [
+        (&evidence.striking_rest, &cars.striking, STRIKING_AT_REST),
+        (&evidence.rest, &cars.struck, STRUCK_AT_REST),
+    ] {
+        let Some(rest) = rest else { continue };
+        let ellipse = (0..=N_ELLIPSE).map(|i| {
+            let (sin, cos) = (TAU * i as f64 / N_ELLIPSE as f64).sin_cos();
+            let radius = NINETY * rest.position_sigma_m;
+            shown([rest.x_m + radius * cos, rest.y_m + radius * sin])
+        });
+        elements.push(FigureElement::line(name, Role::Reference, ellipse.collect()));
+        if let Some(pose) = pose_of(rest) {
+            let unit = Quantity::Length.display_unit(units);
+            let named = (name, Role::Reference, LineStyle::Dashed);
+            let footprint = Footprint::from(&car.parameters.geometry);
+            elements.extend(vehicle_outline(named, (&footprint, &pose), unit));
+        }
+    }
+    elements
+}
+
+/// The pose at rest, where the heading is known.
+fn pose_of(rest: &RestPose) -> Option<Pose> {
+    let heading = rest.heading_rad?;
+    Some(Pose { x_m: rest.x_m, y_m: rest.y_m, yaw_rad: heading.value })
+}

@@ -1,0 +1,66 @@
+//! What each kind of answer contributes to a report.
+
+mod facts;
+
+mod generic;
+
+mod impact;
+
+mod inputs;
+
+mod vehicle_inputs;
+
+mod zone_inputs;
+
+mod simulate;
+
+mod predict_force;
+
+mod predict_motion;
+
+mod reconstruct;
+
+mod evidence;
+
+mod evidence_inputs;
+
+mod tyre_marks;
+
+pub(super) mod stills;
+
+use crate::report::answer::stills::Grounds;
+use crate::report::numbers::Wording;
+use crate::report::parts::Part;
+use crate::report::paths::ShownPaths;
+use impactlab_study::{Answer, Request};
+
+/// Language and names with which an answer is written.
+#[derive(Clone, Copy)]
+pub(super) struct Context<'a> {
+    /// Numbers and texts.
+    pub wording: &'a Wording,
+    /// Files by their names.
+    pub paths: &'a ShownPaths,
+    /// The grounds that scenes of the report lie on.
+    pub grounds: &'a Grounds,
+}
+
+/// What an answer contributes. A kind of answer that has no text of its own is told as a table of all
+/// that is in it.
+pub(super) fn part_of(request: &Request, answer: &Answer, context: Context<'_>) -> Part {
+    let part = match (request, answer) {
+        (_, Answer::Impact(answer)) => impact::part(answer, context),
+        (Request::Simulate(request), Answer::Simulate(answer)) => {
+            simulate::part(request, answer, context)
+        }
+        (_, Answer::PredictForce(answer)) => predict_force::part(answer, context),
+        (Request::PredictMotion(request), Answer::PredictMotion(answer)) => {
+            predict_motion::part(request, answer, context)
+        }
+        (Request::Reconstruct(request), Answer::Reconstruct(answer)) => {
+            reconstruct::part(request, answer, context)
+        }
+        (request, other) => generic::part(request, other, context),
+    };
+    inputs::with_request(part, request, context)
+}

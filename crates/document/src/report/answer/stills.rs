@@ -1,0 +1,135 @@
+//! Stills of scenes in a report: the cars on the ground at a moment.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::report::answer::Context;
+use crate::report::numbers::fill;
+use crate::report::parts::PartPicture;
+use crate::scene::{
+    ForecastScene, LoadedGround, ReconstructionParts, Scene, SceneStill, SimulationScene, ViewKind,
+    add_forecast, reconstruction_scene, simulation_scene,
+};
+use impactlab_core::error_chain;
+use impactlab_study::analysis::{Analysis, DensityMap};
+use impactlab_study::{
+    PredictMotionAnswer, PredictMotionRequest, ReconstructAnswer, ReconstructedPaths, Trust,
+};
+
+/// Paths that are drawn from a forecast, as ghosts.
+const N_GHOSTS: usize = 30;
+
+/// Distance of the camera from the struck car at the end of the contact, m: both cars fill the picture.
+const NEAR_M: f64 = 16.0;
+
+/// Stills of a simulation: from above at the end of the motion, and in perspective at the end of the
+/// contact if a striking vehicle is there.
+///
+/// - `site`: file of the ground below it;
+/// - `[contact_end_s, end_s]`: the moments, s; no contact if it is `None`.
+pub(super) fn simulation_stills(
+    (analysis, trust): (&Analysis, &Trust),
+    site: Option<&Path>,
+    [contact_end_s, end_s]: [Option<f64>; 2],
+    context: Context<'_>,
+) -> Vec<PartPicture> {
+    let Context { wording, .. } = context;
+    let words = wording.words;
+    let input = SimulationScene { analysis, others: &[], units: wording.units, trust };
+    let (scene, note) = on_ground(simulation_scene(&input), site, context);
+    let still = |caption, time_s, view, near_m| {
+        let caption = fill(caption, &[("name", &analysis.name)]) + &note;
+        PartPicture::still(caption, SceneStill { scene: Arc::clone(&scene), time_s, view, near_m })
+    };
+    let contact_s = contact_end_s.filter(|_| scene.striking().is_some());
+    let near = contact_s
+        .map(|at_s| still(words.contact_picture, at_s, ViewKind::Perspective, Some(NEAR_M)));
+    let whole = end_s.map(|at_s| still(words.scene_picture, at_s, ViewKind::Above, None));
+    whole.into_iter().chain(near).collect()
+}
+
+/// The still of a forecast from above: its draws as ghosts, density and regions at a moment.
+pub(super) fn forecast_still(
+    (request, answer): (&PredictMotionRequest, &PredictMotionAnswer),
+    (density, trust): (&Arc<DensityMap>, &Trust),
+    context: Context<'_>,
+) -> PartPicture {
+    let Context { wording, .. } = context;
+    let (analysis, report) = (&answer.analysis, &answer.report);
+    let input = SimulationScene { analysis, others: &[], units: wording.units, trust };
+    let mut scene = simulation_scene(&input);
+    add_forecast(
+        &mut scene,
+        &ForecastScene {
+            analysis,
+            forecast: &answer.forecast,
+            density: Some(density),
+            n_ghosts: N_GHOSTS,
+            seed: request.seed,
+        },
+    );
+    let (scene, note) = on_ground(scene, request.motion.site.as_deref(), context);
+    let time_s = report.outcome.time_s;
+    let caption = fill(wording.words.forecast_scene_picture, &[("name", &report.scenario)]);
+    let still = SceneStill { scene, time_s, view: ViewKind::Above, near_m: None };
+    PartPicture::still(caption + &note, still)
+}
+
+/// The still of a reconstruction from above: the car of a particle of median speed at rest, over what was
+/// found.
+///
+/// - `site`: file of the ground below it.
+pub(super) fn reconstruction_still(
+    (answer, paths): (&ReconstructAnswer, &ReconstructedPaths),
+    site: Option<&Path>,
+    trust: &Trust,
+    context: Context<'_>,
+) -> Option<PartPicture> {
+    paths.median.as_ref()?;
+    let Context { wording, .. } = context;
+    let parts = ReconstructionParts::of((answer, paths), wording.units, trust);
+    let scene = reconstruction_scene(&parts);
+    let caption = fill(wording.words.reconstruction_cars, &[("name", &answer.report.case)]);
+    let (scene, note) = on_ground(scene, site, context);
+    let time_s = scene.end_s;
+    let still = SceneStill { scene, time_s, view: ViewKind::Above, near_m: None };
+    Some(PartPicture::still(caption + &note, still))
+}
+
+/// A scene with its ground, and what a caption has to say of it: that it cannot be read, is not to scale, or
+/// lies elsewhere.
+fn on_ground(
+    mut scene: Scene,
+    site: Option<&Path>,
+    Context { wording, paths, grounds }: Context<'_>,
+) -> (Arc<Scene>, String) {
+    let quoted = |text: &String| wording.quoted(&paths.shown(text));
+    let note = match site.map(|site| grounds.of(site)) {
+        None => String::new(),
+        Some(Err(why)) => fill(wording.words.ground_not_drawn, &[("why", &quoted(&why))]),
+        Some(Ok(loaded)) => {
+            let far = loaded.far_notes(scene.extent_m());
+            let notes = loaded.notes.iter().chain(&far);
+            scene.ground = Some(Arc::clone(&loaded.ground));
+            notes.map(|note| format!("; {}", quoted(note))).collect()
+        }
+    };
+    (Arc::new(scene), note)
+}
+
+/// A ground, or why it cannot be read.
+type ReadGround = Result<Arc<LoadedGround>, String>;
+
+/// The grounds of a report by their site files. Each is read once, since orthophotos are large.
+#[derive(Default)]
+pub(in crate::report) struct Grounds(RefCell<BTreeMap<PathBuf, ReadGround>>);
+
+impl Grounds {
+    fn of(&self, site: &Path) -> ReadGround {
+        let mut read = self.0.borrow_mut();
+        let load = || LoadedGround::load(site).map(Arc::new).map_err(|error| error_chain(&error));
+        read.entry(site.to_owned()).or_insert_with(load).clone()
+    }
+}

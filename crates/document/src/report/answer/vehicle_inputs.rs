@@ -1,0 +1,105 @@
+//! The parameters of a vehicle, as rows of the table of inputs.
+
+use crate::report::InputClass;
+use crate::report::flatten::{FlatRow, flatten};
+use crate::report::numbers::Wording;
+use crate::report::parts::InputRow;
+use crate::report::paths::ShownPaths;
+use impactlab_core::units::Quantity;
+use impactlab_core::vehicle::VehicleParameters;
+use impactlab_core::vehicle::sheet::Estimate;
+
+/// Every parameter with its source. What follows from a data sheet is told by the estimates of that,
+/// with their intervals; what a vehicle file estimates, by its rule; what was said elsewhere, by that.
+///
+/// - `group`: what the vehicle is called in the table.
+pub(super) fn vehicle_rows(
+    vehicle: &VehicleParameters,
+    group: &str,
+    wording: &Wording,
+) -> Vec<InputRow> {
+    let told = serde_json::to_value(vehicle).unwrap_or_default();
+    let rows = flatten(&told, wording, &ShownPaths::default());
+    let is_text = |row: &&FlatRow| {
+        row.path.first().is_none_or(|name| name != "estimates" && name != "stated")
+            && row.key != "source"
+    };
+    let mut inputs: Vec<InputRow> = rows
+        .iter()
+        .filter(is_text)
+        .map(|row| {
+            let name = format!("{}.{}", row.path.join("."), row.key);
+            let rule = vehicle.estimates.get(&name);
+            let said = rule.or_else(|| vehicle.stated.get(&name)).unwrap_or(&vehicle.source);
+            InputRow {
+                group: group.to_owned(),
+                label: wording.key(&row.key),
+                value: row.value.clone(),
+                class: if rule.is_some() { InputClass::Estimated } else { InputClass::Given },
+                source: wording.quoted(said),
+            }
+        })
+        .collect();
+    let sheet = vehicle.sheet.as_ref();
+    let estimates = sheet.map_or_else(Vec::new, |sheet| sheet.estimates());
+    if !estimates.is_empty() {
+        for row in &mut inputs {
+            // Which of the parameters a rule gave is told by the rows of the estimates below.
+            row.source = wording.words.follows_from_sheet.to_owned();
+        }
+    }
+    inputs.extend(estimates.iter().map(|estimate| estimate_row(estimate, group, wording)));
+    inputs
+}
+
+/// What the rules of a data sheet say of a quantity that it leaves open.
+pub(super) fn estimate_row(estimate: &Estimate, group: &str, wording: &Wording) -> InputRow {
+    let Estimate { quantity, unit, median, ninety, rule, source } = estimate;
+    let shown = Quantity::ALL.iter().find(|of| of.si_unit().symbol == *unit && !unit.is_empty());
+    let shown = shown.map(|of| of.display_unit(wording.units));
+    let in_shown = |value: f64| shown.as_ref().map_or(value, |unit| unit.from_si(value));
+    let unit = shown.as_ref().map_or(*unit, |unit| unit.symbol);
+    let (median, ninety) = (&in_shown(*median), &ninety.map(in_shown));
+    let decimals = (ninety[1] - ninety[0]).abs();
+    let decimals = match decimals > 0.0 && decimals.is_finite() {
+        true => (1 - decimals.log10().floor() as i32).clamp(0, 6) as usize,
+        false => 3,
+    };
+    let text = |value: f64| format!("{value:.decimals$}");
+    let interval = wording.interval_of(&text(*median), &ninety.map(text), unit);
+    InputRow {
+        group: group.to_owned(),
+        label: wording.term(quantity.label()),
+        value: format!("{} (90 %: {})", interval.median, interval.range),
+        class: InputClass::Estimated,
+        source: wording.quoted(&format!("{rule}; {source}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::{Language, Paper, ReportDate, ReportSettings};
+    use impactlab_core::units::UnitSystem;
+    use impactlab_core::vehicle::Preset;
+
+    #[test]
+    fn what_another_mass_has_changed_is_not_said_to_be_of_the_file() {
+        let date = ReportDate::new(2026, 1, 2).unwrap();
+        let (language, units, paper) = (Language::En, UnitSystem::Si, Paper::A4);
+        let wording = Wording::new(&ReportSettings { language, units, paper, date });
+        let file = Preset::Reference.parameters();
+        let rows = vehicle_rows(&file.clone().with_mass(1500.0, None), "struck car", &wording);
+        let by_value = |value: &str| rows.iter().find(|row| row.value.starts_with(value)).unwrap();
+        let mass = by_value("1500");
+        assert_eq!(mass.class, InputClass::Given);
+        assert!(mass.source.contains("instead of 2000 kg"), "{}", mass.source);
+        let of_file = rows.iter().filter(|row| row.source.contains(&file.source)).count();
+        let untouched = vehicle_rows(&file, "struck car", &wording);
+        let before = untouched.iter().filter(|row| row.source.contains(&file.source)).count();
+        assert!(of_file + 7 >= before && of_file < before, "{of_file} of {before}");
+        let scaled = rows.iter().filter(|row| row.source.contains("from 2000 to 1500 kg"));
+        assert_eq!(scaled.filter(|row| row.class == InputClass::Estimated).count(), 6);
+        assert!(rows.iter().all(|row| !row.value.contains("said with")), "a note is no value");
+    }
+}

@@ -1,0 +1,402 @@
+//! Asks a case its questions and puts the report together.
+
+use std::collections::BTreeSet;
+
+use crate::figure::FigureElement;
+use crate::report::answer::stills::Grounds;
+use crate::report::answer::{Context, part_of};
+use crate::report::document::{Picture, Section, SectionKind};
+use crate::report::method::{Method, method_blocks};
+use crate::report::numbers::{Wording, fill};
+use crate::report::parts::{InputRow, Part, PartPicture};
+use crate::report::paths::ShownPaths;
+use crate::report::provenance::{change_notice, log_blocks, provenance_blocks};
+use crate::report::validation::validation_blocks;
+use crate::report::validity::validity_blocks;
+use crate::report::{
+    Block, InputClass, Language, PictureContent, ReportDocument, ReportSettings, Table,
+};
+use impactlab_core::data::Outcome;
+use impactlab_core::error_chain;
+use impactlab_core::units::UnitSystem;
+use impactlab_study::case_file::{CaseError, CaseFile, CaseReport};
+use impactlab_study::{Library, Observer};
+
+/// A variant with what its questions contribute.
+pub(super) struct VariantParts {
+    /// What it is called.
+    pub name: String,
+    /// Question by question: what it contributes, or why it has no answer.
+    pub answers: Vec<Result<Part, String>>,
+}
+
+/// Asks every question of a case once and makes the report of the answers.
+///
+/// - `variants`: names of the variants that are asked; empty for all.
+///
+/// # Errors
+/// [`CaseError::NoVariant`].
+pub fn report_case(
+    (case, variants): (&CaseFile, &[String]),
+    settings: &ReportSettings,
+    library: &Library,
+    observer: &mut Observer<'_>,
+) -> Result<Outcome<(ReportDocument, CaseReport)>, CaseError> {
+    let (wording, paths) = (Wording::new(settings), ShownPaths::of(case));
+    let grounds = Grounds::default();
+    let context = Context { wording: &wording, paths: &paths, grounds: &grounds };
+    let mut parts: Vec<VariantParts> = Vec::new();
+    let outcome =
+        case.ask_each((variants, library), observer, &mut |variant, request, answer| {
+            let part = match answer {
+                Ok(answer) => Ok(part_of(request, answer, context)),
+                Err(error) => Err(paths.shown(&error_chain(error))),
+            };
+            match parts.last_mut() {
+                Some(last) if last.name == variant.name => last.answers.push(part),
+                _ => parts.push(VariantParts { name: variant.name.clone(), answers: vec![part] }),
+            }
+        })?;
+    let Outcome::Complete(report) = outcome else { return Ok(Outcome::Cancelled) };
+    let builder = Builder { case, report: &report, settings, wording: &wording, paths: &paths };
+    let document = builder.document(&parts);
+    Ok(Outcome::Complete((document, report)))
+}
+
+struct Builder<'a> {
+    case: &'a CaseFile,
+    report: &'a CaseReport,
+    settings: &'a ReportSettings,
+    wording: &'a Wording,
+    paths: &'a ShownPaths,
+}
+
+impl Builder<'_> {
+    fn document(&self, variants: &[VariantParts]) -> ReportDocument {
+        let (settings, words) = (self.settings, self.wording.words);
+        let blocks = |kind| match kind {
+            SectionKind::Answers => self.answers(variants),
+            SectionKind::Pictures => self.pictures(variants),
+            SectionKind::Inputs => self.inputs(variants),
+            SectionKind::Evidence => {
+                or(distinct(variants, |part| &part.evidence), words.no_evidence)
+            }
+            SectionKind::Method => {
+                or(method_blocks(&methods(variants), self.wording), words.no_methods)
+            }
+            SectionKind::Validity => validity_blocks(variants, &methods(variants), self.wording),
+            SectionKind::Validation => self.validation(variants),
+            SectionKind::Sensitivity => or(self.sensitivity(variants), words.no_sensitivity),
+            SectionKind::Provenance => self.provenance(variants),
+            SectionKind::Log => log_blocks(self.case, self.wording),
+        };
+        let numbered = SectionKind::ALL.into_iter().enumerate();
+        let sections = numbered.map(|(idx, kind)| Section {
+            kind,
+            title: format!("{} {}", idx + 1, section_title(kind, self.wording)),
+            blocks: blocks(kind),
+        });
+        ReportDocument {
+            title: format!("{}: {}", words.report, self.case.name),
+            case: self.case.name.clone(),
+            date: settings.date.written(settings.language),
+            date_iso: settings.date.to_string(),
+            day: settings.date.parts(),
+            language: settings.language,
+            units: settings.units,
+            paper: settings.paper,
+            program: impactlab_core::program::version().to_owned(),
+            sections: sections.collect(),
+        }
+    }
+
+    /// What the report is about, what has changed, and every question with its answer.
+    fn answers(&self, variants: &[VariantParts]) -> Vec<Block> {
+        let (settings, words) = (self.settings, self.wording.words);
+        let date = settings.date.written(settings.language);
+        let values = [
+            ("case", &*self.case.name),
+            ("date", &*date),
+            ("version", impactlab_core::program::version()),
+        ];
+        let mut blocks = Vec::new();
+        blocks.extend(change_notice(&self.report.changes, self.wording, self.paths));
+        blocks.extend(self.unanswered(variants));
+        blocks.push(Block::paragraph(fill(words.intro, &values)));
+        blocks.push(Block::paragraph(match settings.units {
+            UnitSystem::Si => words.units_si,
+            UnitSystem::Us => words.units_us,
+        }));
+        if settings.language != Language::En {
+            blocks.push(Block::paragraph(words.language_note));
+        }
+        let notes = self.case.notes.lines().map(str::trim).filter(|line| !line.is_empty());
+        let notes: Vec<Block> = notes.map(Block::paragraph).collect();
+        if !notes.is_empty() {
+            blocks.push(Block::heading(2, words.notes));
+            blocks.extend(notes);
+        }
+        let mut told: Vec<(&str, &Part)> = Vec::new();
+        let level = if variants.len() > 1 { 3 } else { 2 };
+        for variant in variants {
+            if variants.len() > 1 {
+                blocks.push(Block::heading(2, fill(words.variant, &[("name", &variant.name)])));
+            }
+            for answer in &variant.answers {
+                match answer {
+                    Err(error) => {
+                        let error = self.wording.quoted(error);
+                        blocks.push(Block::notice(fill(words.no_answer, &[("error", &error)])));
+                    }
+                    Ok(part) => blocks.extend(self.answer(level, (&variant.name, part), &mut told)),
+                }
+            }
+        }
+        blocks
+    }
+
+    /// A question with what may be wrong with its answer, and the answer, unless both have been told
+    /// already.
+    ///
+    /// - `level`: of the heading.
+    fn answer<'b>(
+        &self,
+        level: u8,
+        (variant, part): (&'b str, &'b Part),
+        told: &mut Vec<(&'b str, &'b Part)>,
+    ) -> Vec<Block> {
+        let words = self.wording.words;
+        let mut blocks = vec![Block::heading(level, part.title.clone())];
+        let is_same = |of: &Part| {
+            (&of.title, &of.answer, &of.badges) == (&part.title, &part.answer, &part.badges)
+        };
+        if let Some((name, _)) = told.iter().find(|(_, of)| is_same(of)) {
+            blocks.push(Block::paragraph(fill(words.same_as, &[("name", name)])));
+            return blocks;
+        }
+        told.push((variant, part));
+        let warnings = part.badges.iter().filter(|badge| badge.kind.is_warning());
+        let notices = warnings.map(|badge| {
+            let label = self.wording.term(badge.kind.label());
+            let text = self.wording.quoted(&badge.text);
+            Block::notice(format!("{}: {label}: {text}", words.warning))
+        });
+        let (question, rest) = part.answer.split_at(part.answer.len().min(1));
+        blocks.extend(question.iter().cloned());
+        blocks.extend(notices);
+        blocks.extend(rest.iter().cloned());
+        blocks
+    }
+
+    /// How many questions have no answer.
+    fn unanswered(&self, variants: &[VariantParts]) -> Option<Block> {
+        let all: Vec<_> = variants.iter().flat_map(|variant| &variant.answers).collect();
+        let n = all.iter().filter(|answer| answer.is_err()).count();
+        let values = [("n", &*n.to_string()), ("all", &*all.len().to_string())];
+        (n > 0).then(|| Block::notice(fill(self.wording.words.unanswered_notice, &values)))
+    }
+
+    /// Every picture once, with its number.
+    fn pictures(&self, variants: &[VariantParts]) -> Vec<Block> {
+        let words = self.wording.words;
+        let mut drawn: Vec<&PartPicture> = Vec::new();
+        let mut blocks = Vec::new();
+        for variant in variants {
+            let mut of_variant = Vec::new();
+            for picture in parts_of(variant).flat_map(|part| &part.pictures) {
+                if drawn.iter().any(|of| of.content == picture.content) {
+                    continue;
+                }
+                drawn.push(picture);
+                let number = drawn.len();
+                of_variant.push(Block::Picture(Box::new(Picture {
+                    number,
+                    caption: format!("{} {number}: {}", words.figure, picture.caption),
+                    alt: self.alt(picture),
+                    content: picture.content.clone(),
+                })));
+            }
+            if variants.len() > 1 && !of_variant.is_empty() {
+                blocks.push(Block::heading(2, fill(words.variant, &[("name", &variant.name)])));
+            }
+            blocks.append(&mut of_variant);
+        }
+        or(blocks, words.no_pictures)
+    }
+
+    /// What a picture shows, for those who cannot see it.
+    fn alt(&self, picture: &PartPicture) -> String {
+        let words = self.wording.words;
+        match &picture.content {
+            PictureContent::Scene(still) => {
+                let values = [("title", &*picture.caption), ("names", &*listed(still.names()))];
+                fill(words.scene_alt, &values)
+            }
+            PictureContent::Figure(figure) => {
+                let names = figure.elements.iter().map(FigureElement::name);
+                let values = [
+                    ("title", &*picture.caption),
+                    ("x", &*figure.x.text()),
+                    ("y", &*figure.y.text()),
+                    ("names", &*listed(names)),
+                ];
+                fill(words.axes_alt, &values)
+            }
+        }
+    }
+
+    /// The inputs of each variant, of the later ones only what the first does not have.
+    fn inputs(&self, variants: &[VariantParts]) -> Vec<Block> {
+        let words = self.wording.words;
+        let mut blocks = vec![Block::paragraph(words.inputs_text)];
+        let mut first: Option<(&str, BTreeSet<InputRow>)> = None;
+        for variant in variants {
+            let mut seen = BTreeSet::new();
+            let all = parts_of(variant).flat_map(|part| &part.inputs);
+            let mut rows: Vec<&InputRow> = all.filter(|row| seen.insert((*row).clone())).collect();
+            if let Some((name, known)) = &first {
+                rows.retain(|row| !known.contains(row));
+                let text =
+                    if rows.is_empty() { words.inputs_all_same } else { words.inputs_same_as };
+                blocks.push(Block::heading(2, fill(words.variant, &[("name", &variant.name)])));
+                blocks.push(Block::paragraph(fill(text, &[("name", name)])));
+            }
+            blocks.extend(self.input_tables(&variant.name, &rows));
+            first.get_or_insert((&variant.name, seen));
+        }
+        blocks
+    }
+
+    /// A table for each group, in the order in which the groups are first named.
+    fn input_tables(&self, variant: &str, rows: &[&InputRow]) -> Vec<Block> {
+        let words = self.wording.words;
+        let mut groups: Vec<&str> = Vec::new();
+        for row in rows {
+            if !groups.contains(&row.group.as_str()) {
+                groups.push(&row.group);
+            }
+        }
+        let table = |group: &&str| {
+            let of_group = rows.iter().filter(|row| row.group == **group);
+            let values = [("name", variant), ("group", group)];
+            let columns = [words.quantity, words.value, words.class, words.source];
+            let rows = of_group.map(|row| self.input_row(row)).collect();
+            Block::Table(Table::new(fill(words.inputs_caption, &values), columns, rows))
+        };
+        groups.iter().map(table).collect()
+    }
+
+    fn input_row(&self, row: &InputRow) -> [String; 4] {
+        let words = self.wording.words;
+        let class = match row.class {
+            InputClass::Given => words.class_given,
+            InputClass::Measured => words.class_measured,
+            InputClass::Estimated => words.class_estimated,
+            InputClass::Assumed => words.class_assumed,
+        };
+        let InputRow { label, value, source, .. } = row.clone();
+        [label, value, class.to_owned(), source]
+    }
+
+    fn validation(&self, variants: &[VariantParts]) -> Vec<Block> {
+        let words = self.wording.words;
+        let methods = methods(variants);
+        let tables = methods.iter().flat_map(|method| validation_blocks(*method, self.wording));
+        let blocks: Vec<Block> = tables.collect();
+        if blocks.is_empty() {
+            return vec![Block::paragraph(words.no_methods)];
+        }
+        [Block::paragraph(words.validation_text)].into_iter().chain(blocks).collect()
+    }
+
+    fn sensitivity(&self, variants: &[VariantParts]) -> Vec<Block> {
+        let words = self.wording.words;
+        let mut blocks = Vec::new();
+        let mut told: Vec<&[Block]> = Vec::new();
+        for variant in variants {
+            for part in parts_of(variant).filter(|part| !part.sensitivity.is_empty()) {
+                if told.contains(&&*part.sensitivity) {
+                    continue;
+                }
+                told.push(&part.sensitivity);
+                let name = match variants.len() {
+                    1 => part.title.clone(),
+                    _ => format!(
+                        "{}; {}",
+                        fill(words.variant, &[("name", &variant.name)]),
+                        part.title
+                    ),
+                };
+                blocks.push(Block::heading(2, name));
+                blocks.extend(part.sensitivity.iter().cloned());
+            }
+        }
+        blocks
+    }
+
+    fn provenance(&self, variants: &[VariantParts]) -> Vec<Block> {
+        let mut answers = Vec::new();
+        for variant in variants {
+            for part in parts_of(variant) {
+                let name = match variants.len() {
+                    1 => part.title.clone(),
+                    _ => format!("{}: {}", variant.name, part.title),
+                };
+                answers.push((name, part.provenance.clone()));
+            }
+        }
+        provenance_blocks((self.case, self.report), &answers, (self.wording, self.paths))
+    }
+}
+
+/// The answers that there are.
+pub(super) fn parts_of(variant: &VariantParts) -> impl Iterator<Item = &Part> {
+    variant.answers.iter().filter_map(|answer| answer.as_ref().ok())
+}
+
+fn methods(variants: &[VariantParts]) -> BTreeSet<Method> {
+    variants.iter().flat_map(parts_of).flat_map(|part| &part.methods).copied().collect()
+}
+
+/// What the parts contribute, each once.
+fn distinct(variants: &[VariantParts], of: impl Fn(&Part) -> &Vec<Block>) -> Vec<Block> {
+    let mut told: Vec<&Vec<Block>> = Vec::new();
+    for blocks in variants.iter().flat_map(parts_of).map(&of) {
+        if !told.contains(&blocks) {
+            told.push(blocks);
+        }
+    }
+    told.into_iter().flatten().cloned().collect()
+}
+
+/// Blocks, or a sentence if there are none.
+fn or(blocks: Vec<Block>, otherwise: &str) -> Vec<Block> {
+    if blocks.is_empty() { vec![Block::paragraph(otherwise)] } else { blocks }
+}
+
+/// Names, each once.
+fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let mut each: Vec<&str> = Vec::new();
+    for name in names {
+        if !name.is_empty() && !each.contains(&name) {
+            each.push(name);
+        }
+    }
+    each.join(", ")
+}
+
+fn section_title(kind: SectionKind, wording: &Wording) -> &'static str {
+    let words = wording.words;
+    match kind {
+        SectionKind::Answers => words.section_answers,
+        SectionKind::Pictures => words.section_pictures,
+        SectionKind::Inputs => words.section_inputs,
+        SectionKind::Evidence => words.section_evidence,
+        SectionKind::Method => words.section_method,
+        SectionKind::Validity => words.section_validity,
+        SectionKind::Validation => words.section_validation,
+        SectionKind::Sensitivity => words.section_sensitivity,
+        SectionKind::Provenance => words.section_provenance,
+        SectionKind::Log => words.section_log,
+    }
+}

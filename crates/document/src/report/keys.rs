@@ -1,0 +1,100 @@
+//! Names in JSON and in files: what they mean and in which unit their numbers are.
+
+use crate::report::Language;
+use crate::report::language::phrase_of;
+use crate::report::numbers::Wording;
+use impactlab_core::units::Quantity;
+
+/// Names that say only how a question is written down.
+const SILENT: [&str; 7] = ["", "inline", "source", "motion", "numbers", "file", "evidence"];
+
+/// Endings of names with their quantities, the longer ones first.
+const ENDINGS: [(&str, Quantity); 13] = [
+    ("_kg_m2", Quantity::MomentOfInertia),
+    ("_rad_s", Quantity::AngularVelocity),
+    ("_n_m_s", Quantity::AngularImpulse),
+    ("_m_s2", Quantity::Acceleration),
+    ("_n_s", Quantity::Impulse),
+    ("_n_m", Quantity::Moment),
+    ("_m_s", Quantity::Speed),
+    ("_rad", Quantity::Angle),
+    ("_kg", Quantity::Mass),
+    ("_m", Quantity::Length),
+    ("_s", Quantity::Time),
+    ("_n", Quantity::Force),
+    ("_j", Quantity::Energy),
+];
+
+/// Endings of names with units that are shown as they are.
+const PLAIN_ENDINGS: [(&str, &str); 8] = [
+    ("_n_m_s_rad", "N m s/rad"),
+    ("_n_m_rad", "N m/rad"),
+    ("_n_rad", "N/rad"),
+    ("_per_rad", "1/rad"),
+    ("_deg_per_g", "deg/g"),
+    ("_deg", "deg"),
+    ("_m2", "m²"),
+    ("_hz", "Hz"),
+];
+
+/// Whether a name is left out where it stands before others.
+pub(super) fn is_silent(name: &str) -> bool {
+    SILENT.contains(&name)
+}
+
+/// The quantity, or the symbol of the unit, that the ending of a name says.
+pub(super) fn quantity_of_key(key: &str) -> Option<Result<Quantity, &'static str>> {
+    let inertia = key.ends_with("_kg_m2");
+    let plain = PLAIN_ENDINGS.iter().find(|(ending, _)| key.ends_with(ending));
+    match plain {
+        Some((_, symbol)) if !inertia => Some(Err(symbol)),
+        _ => {
+            let found = ENDINGS.iter().find(|(ending, _)| key.ends_with(ending));
+            found.map(|(_, quantity)| Ok(*quantity))
+        }
+    }
+}
+
+/// A name without the unit at its end, in words.
+fn bare(key: &str) -> String {
+    let endings = PLAIN_ENDINGS.iter().map(|(ending, _)| *ending);
+    let endings = endings.chain(ENDINGS.iter().map(|(ending, _)| *ending));
+    let longest = endings.filter(|ending| key.ends_with(ending)).max_by_key(|ending| ending.len());
+    let bare = longest.and_then(|ending| key.strip_suffix(ending)).unwrap_or(key);
+    bare.replace('_', " ")
+}
+
+impl Wording {
+    /// A name in the language of the report. In other languages than English a name without a
+    /// translation stays as it is, in quotation marks.
+    pub fn key(&self, key: &str) -> String {
+        let words = bare(key);
+        match self.language {
+            Language::En => words,
+            Language::De => {
+                phrase_of(self.language, &words).unwrap_or_else(|| format!("„{words}“"))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_longest_ending_decides() {
+        for (key, expected) in [
+            ("yaw_inertia_kg_m2", Some(Ok(Quantity::MomentOfInertia))),
+            ("vx_m_s", Some(Ok(Quantity::Speed))),
+            ("impulse_n_s", Some(Ok(Quantity::Impulse))),
+            ("roll_stiffness_n_m_rad", Some(Err("N m/rad"))),
+            ("region_90_m2", Some(Err("m²"))),
+            ("yaw_rate_rad_s", Some(Ok(Quantity::AngularVelocity))),
+            ("restitution", None),
+        ] {
+            assert_eq!(quantity_of_key(key), expected, "{key}");
+        }
+        assert_eq!(bare("cg_to_front_axle_m"), "cg to front axle");
+    }
+}

@@ -1,0 +1,65 @@
+//! Looks texts up in the language of a report.
+
+use crate::report::Language;
+use crate::report::language::words::Words;
+use crate::report::language::{de, de_terms, en};
+
+/// The texts of the report itself.
+pub(in crate::report) fn words_of(language: Language) -> &'static Words {
+    match language {
+        Language::En => &en::WORDS,
+        Language::De => &de::WORDS,
+    }
+}
+
+/// A label of the program in a language; `None` if the language has none for it.
+pub(in crate::report) fn phrase_of(language: Language, text: &str) -> Option<String> {
+    if language == Language::En || text.is_empty() {
+        return Some(text.to_owned());
+    }
+    if let Some((_, term)) = de_terms::TERMS.iter().find(|(english, _)| *english == text) {
+        return Some((*term).to_owned());
+    }
+    let beginnings = de_terms::BEGINNINGS.iter();
+    let mut found = beginnings.filter_map(|(english, german)| {
+        let rest = text.strip_prefix(english)?;
+        Some(german.replace("{}", &rest.replace("deg", "°")))
+    });
+    found.next()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::VALIDATION_TABLES;
+    use impactlab_core::vehicle::sheet::SheetQuantity;
+    use impactlab_reconstruct::{Latent, ReconstructedQuantity};
+
+    #[test]
+    fn every_label_of_the_program_has_a_german_one() {
+        let latents = Latent::ALL.iter().map(|of| of.label());
+        let asked = ReconstructedQuantity::ALL.iter().map(|of| of.label());
+        let sheet = SheetQuantity::ALL.iter().map(|of| of.label());
+        for label in latents.chain(asked).chain(sheet) {
+            assert!(phrase_of(Language::De, label).is_some(), "{label}");
+        }
+        let lines = VALIDATION_TABLES.iter().flat_map(|table| table.lines);
+        for cell in lines.flat_map(|line| line.split('|')).map(str::trim) {
+            let has_words = cell.chars().filter(|c| c.is_alphabetic()).count() > 1;
+            assert!(!has_words || phrase_of(Language::De, cell).is_some(), "{cell}");
+        }
+        for mode in ["recovers, the driver brakes", "turns left by about 180°, no wheel blocked"] {
+            for part in mode.split(", ") {
+                assert!(phrase_of(Language::De, part).is_some(), "{part}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_label_is_translated_twice() {
+        for (idx, (english, _)) in de_terms::TERMS.iter().enumerate() {
+            let others = &de_terms::TERMS[idx + 1..];
+            assert!(others.iter().all(|(other, _)| other != english), "{english}");
+        }
+    }
+}

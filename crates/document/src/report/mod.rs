@@ -1,0 +1,53 @@
+//! The report that an expert signs: from a case and its answers to a document, and from that to PDF,
+//! Markdown and JSON.
+//!
+//! ```text
+//! case ──> questions, each asked once ──┬──> answers ──> parts: answer, inputs, evidence, pictures ──> document
+//!                                       └──> changes, digests, log ─────────────────────────────────────^
+//! ```
+//!
+//! - [`report_case`] asks the questions and makes the [`ReportDocument`], which is plain data.
+//! - [`ReportDocument::to_json`], [`ReportDocument::to_markdown`] and [`pdf`] write it. Pictures are
+//!   drawn by a function that the caller passes on, since drawing needs the feature `gui`.
+//! - Numbers are formatted by [`units`](impactlab_core::units), as those in the window.
+//! - The same case, files, settings and date give the same bytes: nothing reads a clock.
+
+mod document;
+
+mod settings;
+
+mod language;
+
+mod numbers;
+
+mod keys;
+
+mod flatten;
+
+mod paths;
+
+mod method;
+
+mod validation;
+
+mod answer;
+
+mod parts;
+
+mod provenance;
+
+mod validity;
+
+mod build;
+
+mod write;
+
+pub use build::report_case;
+pub use document::{
+    Block, Column, InputClass, Picture, PictureContent, ReportDocument, Section, SectionKind, Table,
+};
+pub use settings::{DateError, Language, Paper, ReportDate, ReportSettings};
+pub use validation::{VALIDATION_TABLES, ValidationTable};
+pub use write::{
+    Drawing, FormatError, PdfError, Pixels, ReportFormat, WriteError, column_widths, pdf,
+};

@@ -1,0 +1,119 @@
+//! Where the answers come from: versions, seeds, files and networks by their content, changes, log.
+
+use crate::report::numbers::{Wording, fill};
+use crate::report::parts::PartProvenance;
+use crate::report::paths::ShownPaths;
+use crate::report::{Block, Table};
+use impactlab_study::case_file::{CaseFile, CaseReport, Change, UsedFile, UsedModel};
+
+/// What has changed since the case was saved, as one notice; none if nothing has.
+pub(super) fn change_notice(
+    changes: &[Change],
+    wording: &Wording,
+    paths: &ShownPaths,
+) -> Option<Block> {
+    let words = wording.words;
+    let text = |change: &Change| match change {
+        Change::Missing { path, .. } => fill(words.change_missing, &[("path", &paths.name(path))]),
+        Change::Changed { path } => fill(words.change_changed, &[("path", &paths.name(path))]),
+        Change::Model { network, name } => {
+            fill(words.change_model, &[("network", network), ("name", &paths.shown(name))])
+        }
+    };
+    let what: Vec<String> = changes.iter().map(text).collect();
+    let notice = || Block::notice(fill(words.changed_notice, &[("what", &what.join("; "))]));
+    (!what.is_empty()).then(notice)
+}
+
+/// Versions, seeds, files and networks.
+///
+/// - `answers`: each answer by its name, with its provenance.
+pub(super) fn provenance_blocks(
+    (case, report): (&CaseFile, &CaseReport),
+    answers: &[(String, PartProvenance)],
+    (wording, paths): (&Wording, &ShownPaths),
+) -> Vec<Block> {
+    let words = wording.words;
+    let versions = [("version", case.program()), ("now", impactlab_core::program::version())];
+    // Evidence by itself was never saved as a case.
+    let is_saved = !(case.log.is_empty() && case.files.is_empty() && case.models.is_empty());
+    let saved = is_saved.then(|| Block::paragraph(fill(words.case_saved_by, &versions)));
+    let mut blocks: Vec<Block> = saved.into_iter().collect();
+    blocks.extend(change_notice(&report.changes, wording, paths));
+    let row = |(name, of): &(String, PartProvenance)| {
+        let seeds = match of.seeds.is_empty() {
+            true => words.no_draws.to_owned(),
+            false => of.seeds.join(", "),
+        };
+        [name.clone(), of.version.clone(), seeds]
+    };
+    let rows = answers.iter().map(row).collect();
+    let columns = [words.answer, words.version, words.seeds];
+    blocks.push(Block::Table(Table::new(words.provenance_caption, columns, rows)));
+    blocks.push(files(case, (wording, paths)));
+    blocks.push(models(report, (wording, paths)));
+    blocks.push(Block::paragraph(words.reproduce_text));
+    blocks
+}
+
+/// The files as they are now, also those that were not there when the case was saved.
+fn files(case: &CaseFile, (wording, paths): (&Wording, &ShownPaths)) -> Block {
+    let words = wording.words;
+    let saved = |path: &std::path::Path| case.files.iter().find(|file| file.path == *path);
+    let mut all = case.used_paths();
+    all.extend(case.files.iter().map(|file| file.path.clone()));
+    // By name: the folders of a package are others than those of the case.
+    all.sort_by_key(|path| (paths.name(path), path.clone()));
+    all.dedup();
+    let rows: Vec<_> = all
+        .iter()
+        .map(|path| {
+            let name = paths.name(path);
+            match (UsedFile::read(path).ok(), saved(path)) {
+                (Some(now), before) => {
+                    let state = match before {
+                        Some(before) if *before == now => words.unchanged,
+                        Some(_) => words.changed,
+                        None => words.new_file,
+                    };
+                    [name, now.bytes.to_string(), now.sha256, state.to_owned()]
+                }
+                (None, before) => {
+                    let sha256 = before.map_or_else(String::new, |file| file.sha256.clone());
+                    [name, String::new(), sha256, words.missing.to_owned()]
+                }
+            }
+        })
+        .collect();
+    if rows.is_empty() {
+        return Block::paragraph(words.no_files);
+    }
+    let columns = [words.file, words.bytes, words.sha256, words.state];
+    Block::Table(Table::new(words.files_caption, columns, rows).numeric(&[1]))
+}
+
+fn models(report: &CaseReport, (wording, paths): (&Wording, &ShownPaths)) -> Block {
+    let words = wording.words;
+    let models = report.models();
+    let row = |model: &UsedModel| {
+        [wording.key(&model.network), paths.shown(&model.name), model.sha256.clone()]
+    };
+    let rows: Vec<_> = models.iter().map(row).collect();
+    if rows.is_empty() {
+        return Block::paragraph(words.no_models);
+    }
+    let columns = [words.network, words.name, words.sha256];
+    Block::Table(Table::new(words.models_caption, columns, rows))
+}
+
+/// What was done and when, and the place for the signature.
+pub(super) fn log_blocks(case: &CaseFile, wording: &Wording) -> Vec<Block> {
+    let words = wording.words;
+    let signature = Block::paragraph(words.signature);
+    if case.log.is_empty() {
+        return vec![Block::paragraph(words.no_log), signature];
+    }
+    let rows = case.log.iter().map(|entry| [entry.time.clone(), wording.quoted(&entry.event)]);
+    let table = Table::new(words.log_caption, [words.time, words.event], rows.collect());
+    vec![Block::Table(table), signature]
+}

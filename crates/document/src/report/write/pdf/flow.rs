@@ -1,0 +1,323 @@
+//! Lets a document flow over pages.
+
+use crate::report::write::pdf::PdfError;
+use crate::report::write::pdf::fonts::Fonts;
+use crate::report::write::pdf::lines::lines;
+use crate::report::write::pdf::page::{Ink, Item, OutlineEntry, Owner, PageItems};
+use crate::report::write::pdf::table::flow_table;
+use crate::report::{Block, Picture, ReportDocument};
+
+/// Distance of the text from the edges of the page, points.
+pub(super) const MARGIN_PT: f32 = 54.0;
+/// The same from top and bottom, which hold header and footer.
+const HIGH_MARGIN_PT: f32 = 62.0;
+/// Distance between base lines over the size of the font.
+pub(super) const LEADING: f32 = 1.36;
+/// Size of running text, points.
+const BODY_PT: f32 = 9.5;
+/// Size of captions, points.
+const CAPTION_PT: f32 = 8.5;
+/// Room below a heading that keeps it from the foot of a page, points.
+const KEPT_PT: f32 = 72.0;
+/// Height of a picture over its width.
+pub(super) const PICTURE_ASPECT: f32 = 0.58;
+
+/// What a part of the document is, for readers that cannot see the page.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Role {
+    Heading { level: u8, text: String },
+    Paragraph,
+    List,
+    ListItem,
+    ListBody,
+    Table { summary: String },
+    Row,
+    HeaderCell,
+    Cell,
+    Caption,
+    Figure { alt: String },
+}
+
+/// A part of the document and what it is in.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Part {
+    pub role: Role,
+    pub parent: Owner,
+}
+
+/// The pages with what they mean.
+pub(super) struct Flow<'a> {
+    pub fonts: &'a Fonts,
+    pub size_pt: [f32; 2],
+    pub pages: Vec<PageItems>,
+    pub parts: Vec<Part>,
+    pub outline: Vec<OutlineEntry>,
+    /// Where the next line begins, points from the top.
+    pub y_pt: f32,
+}
+
+/// How a text is set.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Style {
+    pub size_pt: f32,
+    pub ink: Ink,
+    pub is_bold: bool,
+    /// Distance from the left edge of the page, points.
+    pub left_pt: f32,
+}
+
+impl<'a> Flow<'a> {
+    /// Sets a document.
+    pub fn of(document: &ReportDocument, fonts: &'a Fonts) -> Result<Self, PdfError> {
+        let size_pt = document.paper.size_pt();
+        let (pages, parts, outline) = (vec![PageItems::default()], Vec::new(), Vec::new());
+        let mut flow = Self { fonts, size_pt, pages, parts, outline, y_pt: HIGH_MARGIN_PT };
+        flow.heading((1, 19.0), (&document.title, &[]));
+        for section in &document.sections {
+            flow.space(10.0);
+            flow.heading((1, 14.0), (&section.title, &section.blocks));
+            for (idx, block) in section.blocks.iter().enumerate() {
+                flow.block(block, section.blocks.get(idx + 1..).unwrap_or_default());
+            }
+        }
+        Ok(flow)
+    }
+
+    /// Width of the text, points.
+    pub fn width_pt(&self) -> f32 {
+        self.size_pt[0] - 2.0 * MARGIN_PT
+    }
+
+    /// Room that is left on the page, points.
+    pub fn room_pt(&self) -> f32 {
+        self.size_pt[1] - HIGH_MARGIN_PT - self.y_pt
+    }
+
+    /// Room of a whole page, points.
+    pub fn page_pt(&self) -> f32 {
+        self.size_pt[1] - 2.0 * HIGH_MARGIN_PT
+    }
+
+    /// Goes on with a new page.
+    pub fn new_page(&mut self) {
+        self.pages.push(PageItems::default());
+        self.y_pt = HIGH_MARGIN_PT;
+    }
+
+    /// Goes on with a new page unless there is room.
+    pub fn need(&mut self, height_pt: f32) {
+        if self.room_pt() < height_pt && self.y_pt > HIGH_MARGIN_PT {
+            self.new_page();
+        }
+    }
+
+    /// Leaves room, except at the top of a page.
+    pub fn space(&mut self, height_pt: f32) {
+        if self.y_pt > HIGH_MARGIN_PT {
+            self.y_pt += height_pt;
+        }
+    }
+
+    /// A new part of the document.
+    pub fn part(&mut self, role: Role, parent: Owner) -> Owner {
+        self.parts.push(Part { role, parent });
+        Some(self.parts.len() - 1)
+    }
+
+    /// Puts something onto the page.
+    pub fn push(&mut self, item: Item) {
+        if let Some(page) = self.pages.last_mut() {
+            page.items.push(item);
+        }
+    }
+
+    /// Sets a text line by line, over pages if need be.
+    pub fn text(&mut self, text: &str, style: Style, owner: Owner) {
+        let width_pt = self.size_pt[0] - MARGIN_PT - style.left_pt;
+        let step_pt = style.size_pt * LEADING;
+        for line in lines(text, (self.fonts, style.size_pt), width_pt) {
+            self.need(step_pt);
+            self.line(&line, style, owner);
+            self.y_pt += step_pt;
+        }
+    }
+
+    /// Sets one line without going on.
+    pub fn line(&mut self, text: &str, style: Style, owner: Owner) {
+        // A little of the leading stands above the line.
+        let base_pt = self.y_pt + style.size_pt * (0.5 * (LEADING - 1.0) + 0.8);
+        self.push(Item::Text {
+            at_pt: [style.left_pt, base_pt],
+            size_pt: style.size_pt,
+            ink: style.ink,
+            is_bold: style.is_bold,
+            text: text.to_owned(),
+            owner,
+        });
+    }
+
+    /// A heading, which stays with what follows it.
+    fn heading(&mut self, (level, size_pt): (u8, f32), (text, behind): (&str, &[Block])) {
+        self.need(size_pt * LEADING + self.kept_pt(behind));
+        let page = self.pages.len() - 1;
+        let entry = OutlineEntry { level, text: text.to_owned(), page, y_pt: self.y_pt };
+        self.outline.push(entry);
+        let owner = self.part(Role::Heading { level, text: text.to_owned() }, None);
+        let style = Style { size_pt, ink: Ink::Heading, is_bold: true, left_pt: MARGIN_PT };
+        self.text(text, style, owner);
+        self.space(3.0);
+    }
+
+    /// Room that the beginning of what follows a heading takes, further headings included.
+    fn kept_pt(&self, blocks: &[Block]) -> f32 {
+        match blocks {
+            [Block::Heading { .. }, behind @ ..] => 24.0 + self.kept_pt(behind),
+            [Block::Picture(picture), ..] => self.picture_pt(picture) + 8.0,
+            _ => KEPT_PT,
+        }
+    }
+
+    fn picture_pt(&self, picture: &Picture) -> f32 {
+        let width_pt = self.width_pt();
+        let n = lines(&picture.caption, (self.fonts, CAPTION_PT), width_pt).len();
+        width_pt * PICTURE_ASPECT + 4.0 + n as f32 * CAPTION_PT * LEADING
+    }
+
+    fn block(&mut self, block: &Block, behind: &[Block]) {
+        let body = Style { size_pt: BODY_PT, ink: Ink::Text, is_bold: false, left_pt: MARGIN_PT };
+        match block {
+            Block::Heading { level, text } => {
+                self.space(6.0);
+                let size_pt = if *level <= 2 { 11.5 } else { 10.0 };
+                self.heading((*level, size_pt), (text, behind));
+            }
+            Block::Paragraph { text } => {
+                let owner = self.part(Role::Paragraph, None);
+                self.text(text, body, owner);
+                self.space(4.0);
+            }
+            Block::Notice { text } => self.notice(text, body),
+            Block::List { items } => self.list(items, body),
+            Block::Table(table) => {
+                self.space(2.0);
+                flow_table(self, table);
+                self.space(8.0);
+            }
+            Block::Picture(picture) => self.picture(picture),
+        }
+    }
+
+    /// A text on a ground of its own, a line at a time.
+    fn notice(&mut self, text: &str, body: Style) {
+        let style = Style { ink: Ink::Warning, is_bold: true, left_pt: MARGIN_PT + 8.0, ..body };
+        let owner = self.part(Role::Paragraph, None);
+        let step_pt = style.size_pt * LEADING;
+        let width_pt = self.width_pt();
+        self.space(2.0);
+        for line in lines(text, (self.fonts, style.size_pt), width_pt - 16.0) {
+            self.need(step_pt);
+            let rect_pt = [MARGIN_PT, self.y_pt, width_pt, step_pt];
+            self.push(Item::Fill { rect_pt, ink: Ink::WarningShade });
+            self.push(Item::Fill {
+                rect_pt: [MARGIN_PT, self.y_pt, 3.0, step_pt],
+                ink: Ink::Warning,
+            });
+            self.line(&line, style, owner);
+            self.y_pt += step_pt;
+        }
+        self.space(6.0);
+    }
+
+    fn list(&mut self, items: &[String], body: Style) {
+        let list = self.part(Role::List, None);
+        for item in items {
+            let entry = self.part(Role::ListItem, list);
+            let owner = self.part(Role::ListBody, entry);
+            self.need(body.size_pt * LEADING);
+            let y_pt = self.y_pt + 0.62 * body.size_pt;
+            self.push(Item::Fill { rect_pt: [MARGIN_PT + 3.0, y_pt, 2.5, 2.5], ink: Ink::Muted });
+            self.text(item, Style { left_pt: MARGIN_PT + 12.0, ..body }, owner);
+            self.space(1.5);
+        }
+        self.space(4.0);
+    }
+
+    fn picture(&mut self, picture: &Picture) {
+        let width_pt = self.width_pt();
+        let height_pt = width_pt * PICTURE_ASPECT;
+        self.need(self.picture_pt(picture));
+        let alt = picture.alt.clone();
+        let owner = self.part(Role::Figure { alt }, None);
+        let rect_pt = [MARGIN_PT, self.y_pt, width_pt, height_pt];
+        self.push(Item::Picture { rect_pt, number: picture.number, owner });
+        self.y_pt += height_pt + 3.0;
+        let owner = self.part(Role::Paragraph, None);
+        self.text(&picture.caption, caption_style(), owner);
+        self.space(9.0);
+    }
+}
+
+/// How captions are set.
+pub(super) fn caption_style() -> Style {
+    Style { size_pt: CAPTION_PT, ink: Ink::Muted, is_bold: false, left_pt: MARGIN_PT }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::{Language, Paper, Section, SectionKind, Table};
+    use impactlab_core::units::UnitSystem;
+
+    fn document(blocks: Vec<Block>) -> ReportDocument {
+        ReportDocument {
+            title: "x".repeat(300),
+            case: "a case".to_owned(),
+            date: "2026-11-24".to_owned(),
+            date_iso: "2026-11-24".to_owned(),
+            day: (2026, 11, 24),
+            language: Language::En,
+            units: UnitSystem::Si,
+            paper: Paper::A4,
+            program: "0".to_owned(),
+            sections: vec![Section {
+                kind: SectionKind::Answers,
+                title: "Section".to_owned(),
+                blocks,
+            }],
+        }
+    }
+
+    #[test]
+    fn nothing_stands_beyond_the_margins_and_every_text_is_told_once() {
+        let long = "word ".repeat(900) + &"y".repeat(4000);
+        let row =
+            |n: usize| [format!("row {n}"), long.chars().take(n * 40).collect(), String::new()];
+        let rows = (0..120).map(row).collect();
+        let table = Table::new("A table", ["first", "second", "third"], rows).numeric(&[0]);
+        let blocks = vec![
+            Block::notice(long.clone()),
+            Block::List { items: vec![long.clone(), String::new()] },
+            Block::Table(table),
+            Block::paragraph(long.clone()),
+        ];
+        let fonts = Fonts::load().unwrap();
+        let document = document(blocks);
+        let flow = Flow::of(&document, &fonts).unwrap();
+        assert!(flow.pages.len() > 20);
+        let [width_pt, height_pt] = flow.size_pt;
+        let mut headers = 0;
+        for item in flow.pages.iter().flat_map(|page| &page.items) {
+            let (left, top, right, bottom) = match item {
+                Item::Text { at_pt: [x, y], size_pt, text, owner, .. } => {
+                    headers += usize::from(text == "second" && owner.is_none());
+                    (*x, *y - size_pt, x + size_pt * fonts.width(text), *y)
+                }
+                Item::Fill { rect_pt: [x, y, w, h], .. }
+                | Item::Picture { rect_pt: [x, y, w, h], .. } => (*x, *y, x + w, y + h),
+            };
+            assert!(left >= MARGIN_PT - 0.1 && right <= width_pt - MARGIN_PT + 0.1, "{item:?}");
+            assert!(top >= 50.0 && bottom <= height_pt - HIGH_MARGIN_PT + 1.0, "{item:?}");
+        }
+        assert!(headers > 10, "the header of the table is repeated {headers} times");
+    }
+}

@@ -1,0 +1,92 @@
+//! A forecast in the scene of a simulation: its draws as ghosts, its central path, density and regions.
+
+use std::sync::Arc;
+
+use crate::scene::simulation::{add, struck_shape};
+use crate::scene::{
+    CarLook, CarMotion, Scene, SceneCar, SceneDensity, SceneLine, ScenePath, SceneRole,
+};
+use impactlab_core::collision::Pose;
+use impactlab_networks::response::STEP_S;
+use impactlab_study::analysis::{Analysis, DensityMap, MotionForecast};
+
+/// What a forecast adds to a scene.
+#[derive(Debug, Clone, Copy)]
+pub struct ForecastScene<'a> {
+    /// The analysis whose struck vehicle the forecast is of.
+    pub analysis: &'a Analysis,
+    /// The forecast.
+    pub forecast: &'a MotionForecast,
+    /// Density of the position, with its regions; at an instant, or over a window.
+    pub density: Option<&'a Arc<DensityMap>>,
+    /// How many paths are drawn from the forecast, as ghosts.
+    pub n_ghosts: usize,
+    /// Seed of these draws.
+    pub seed: u64,
+}
+
+/// Adds a forecast to the scene of its simulation.
+pub fn add_forecast(scene: &mut Scene, input: &ForecastScene<'_>) {
+    let shape = struck_shape(input.analysis);
+    let drawn = input.forecast.distribution.draws(input.n_ghosts, input.seed);
+    let mut ghosts = Vec::new();
+    for poses in &drawn {
+        let Some(motion) = CarMotion::of_poses(poses, STEP_S, &shape.body).map(Arc::new) else {
+            continue;
+        };
+        let name = "draws of the forecast".to_owned();
+        scene.paths.push(ScenePath {
+            name: name.clone(),
+            role: SceneRole::Muted,
+            is_dashed: false,
+            has_ticks: false,
+            motion: Arc::clone(&motion),
+        });
+        ghosts.push(SceneCar {
+            name,
+            tag: String::new(),
+            role: SceneRole::Forecast,
+            look: CarLook::Ghost,
+            shape: Arc::clone(&shape),
+            motion,
+        });
+    }
+    // Behind the cars that are there already.
+    scene.cars.splice(0..0, ghosts);
+    if let Some(map) = input.density {
+        add_density(scene, map);
+    }
+    let central: Vec<Pose> = input
+        .forecast
+        .central
+        .iter()
+        .map(|state| Pose { x_m: state.x_m, y_m: state.y_m, yaw_rad: state.yaw_rad })
+        .collect();
+    let motion = CarMotion::of_poses(&central, STEP_S, &shape.body);
+    let named = ("central path of the forecast", "forecast");
+    add(scene, (named, SceneRole::Forecast, CarLook::Ghost), (&shape, motion));
+}
+
+/// Adds a density and the edges of its regions.
+fn add_density(scene: &mut Scene, map: &Arc<DensityMap>) {
+    let [from_s, to_s] = map.window_s;
+    let when = match to_s > from_s {
+        true => format!("{from_s:.2} to {to_s:.2} s"),
+        false => format!("{to_s:.2} s"),
+    };
+    let name = format!("density of the CG, {when}");
+    for region in &map.regions {
+        let lines = region.outlines.iter().map(|points_m| SceneLine {
+            name: format!("{:.0} % region", 100.0 * region.level),
+            role: SceneRole::Forecast,
+            is_dashed: region.level < 0.75,
+            is_above_cars: true,
+            points_m: points_m.clone(),
+        });
+        scene.lines.extend(lines);
+    }
+    let peak = map.values.iter().copied().fold(0.0, f64::max);
+    if peak > 0.0 {
+        scene.density = Some(SceneDensity { name, map: Arc::clone(map), peak });
+    }
+}

@@ -1,0 +1,121 @@
+//! Reads the ground of a scene from a site file and the files that it names.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use crate::scene::{GroundLineKind, GroundPicture, SceneGround};
+use impactlab_core::site::{
+    Drawing, DrawingSummary, PixelMap, Site, SiteError, extent_of, read_drawing, read_picture,
+};
+
+/// A ground that was read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadedGround {
+    /// What the site file says.
+    pub site: Site,
+    /// What is drawn of it.
+    pub ground: Arc<SceneGround>,
+    /// What was read of its drawing.
+    pub drawing: Option<DrawingSummary>,
+    /// What the reader of a picture has to know: what of a drawing is left out, what is not to scale.
+    pub notes: Vec<String>,
+}
+
+/// Distance between a scene and its orthophoto or drawing from which on they do not belong together, m.
+const FAR_M: f64 = 200.0;
+
+impl LoadedGround {
+    /// Reads a site file, or an orthophoto alone, with its picture and its drawing.
+    ///
+    /// # Errors
+    /// [`SiteError`] with the file and the place in it.
+    pub fn load(path: &Path) -> Result<Self, SiteError> {
+        let site = Site::load(path)?;
+        let picture = site.orthophoto.as_ref().map(|of| {
+            let picture = read_picture(&of.file)?;
+            Ok::<_, SiteError>(Arc::new(GroundPicture::new(&picture, of.map)))
+        });
+        let drawing = site.drawing.as_ref();
+        let drawing = drawing.map(|of| read_drawing(of, &site.origin.unwrap_or_default()));
+        let (picture, drawing) = (picture.transpose()?, drawing.transpose()?);
+        let mut notes = Vec::new();
+        if let Some(of) = site.orthophoto.as_ref().filter(|of| !of.is_placed) {
+            notes.push(format!(
+                "{}: nothing says where its pixels lie and how large they are; it is shown with 0.05 m \
+                 per pixel about the origin",
+                of.file.display()
+            ));
+        }
+        if let (Some(drawing), Some(of)) = (&drawing, &site.drawing)
+            && !drawing.left_out.is_empty()
+        {
+            let counts: Vec<String> =
+                drawing.left_out.iter().map(|(kind, n)| format!("{n} {kind}")).collect();
+            notes.push(format!("{}: not drawn: {}", of.file.display(), counts.join(", ")));
+        }
+        if let (Some(Drawing { has_unknown_frozen: true, .. }), Some(of)) =
+            (&drawing, &site.drawing)
+        {
+            notes.push(format!(
+                "{}: which layers of a binary drawing are frozen is not read; they are drawn, too, unless \
+                 [dxf] names the layers",
+                of.file.display()
+            ));
+        }
+        let ground = Arc::new(SceneGround::of(&site, picture, drawing.as_ref()));
+        let drawing = drawing.map(|of| of.summary());
+        Ok(Self { site, ground, drawing, notes })
+    }
+
+    /// What the site consists of, in words.
+    pub fn contents(&self) -> Vec<String> {
+        self.site.contents(self.drawing.as_ref())
+    }
+
+    /// What lies so far from a scene that it cannot be seen in it: an orthophoto or a drawing in survey
+    /// coordinates without an origin, or in another unit than it is said to be.
+    ///
+    /// - `scene_m`: smallest and largest `[X, Y]` of the scene, m.
+    pub fn far_notes(&self, scene_m: [[f64; 2]; 2]) -> Vec<String> {
+        let photo = self.site.orthophoto.as_ref().map(|of| {
+            let remedy = "[origin] of the site file, or unit of its world file";
+            (&of.file, gap_m(of.extent_m(), scene_m), remedy)
+        });
+        let lines = self.ground.lines.iter().filter(|line| line.kind == GroundLineKind::Drawing);
+        let sides = lines.flat_map(|line| line.points_m.windows(2));
+        let gaps = sides.filter_map(|side| Some(gap_m(extent_of(side.iter().copied())?, scene_m)));
+        let nearest_m = gaps.reduce(f64::min);
+        let drawing =
+            self.site.drawing.as_ref().zip(nearest_m).map(|(of, gap_m)| {
+                (&of.file, gap_m, "[origin] of the site file, or unit in [dxf]")
+            });
+        let far = photo.into_iter().chain(drawing).filter(|(_, gap_m, _)| *gap_m > FAR_M);
+        far.map(|(file, gap_m, remedy)| {
+            format!(
+                "{}: lies {gap_m:.0} m away from the scene, so that nothing of it is seen there; is {remedy} \
+                 missing or wrong?",
+                file.display()
+            )
+        })
+        .collect()
+    }
+
+    /// The same with the orthophoto somewhere else, of which it is known from now on that it lies there.
+    #[must_use]
+    pub fn placed(&self, map: PixelMap) -> Self {
+        let mut moved = self.clone();
+        let Some(of) = &mut moved.site.orthophoto else { return moved };
+        (of.map, of.world_file, of.is_placed) = (map, None, true);
+        let picture = self.ground.picture.as_ref().map(|picture| Arc::new(picture.placed(map)));
+        moved.ground = Arc::new(SceneGround { picture, ..(*self.ground).clone() });
+        moved.notes.retain(|note| !note.contains("nothing says where its pixels lie"));
+        moved
+    }
+}
+
+/// Distance between two rectangles along X and Y, each by its smallest and largest `[X, Y]`, m; 0 where
+/// they overlap.
+fn gap_m(a: [[f64; 2]; 2], b: [[f64; 2]; 2]) -> f64 {
+    let [x, y] = [0, 1].map(|axis| (a[0][axis] - b[1][axis]).max(b[0][axis] - a[1][axis]).max(0.0));
+    x.hypot(y)
+}

@@ -1,0 +1,208 @@
+//! The scene of a reconstruction: paths of particles over what was found.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use crate::scene::simulation::{add, add_marks, outline_m};
+use crate::scene::{
+    CarBody, CarLook, CarMotion, CarShape, Scene, SceneCar, SceneLine, ScenePath, ScenePoint,
+    SceneRole,
+};
+use impactlab_core::collision::{Footprint, Pose};
+use impactlab_core::numerics::interpolate;
+use impactlab_core::units::UnitSystem;
+use impactlab_core::vehicle::{Path, TireMark, VehicleParameters};
+use impactlab_reconstruct::Cars;
+use impactlab_reconstruct::evidence::{Evidence, RestPose};
+use impactlab_study::{ReconstructAnswer, ReconstructedPaths, Trust};
+
+/// Points of an ellipse.
+const N_ELLIPSE: usize = 48;
+/// Half axis of an ellipse that holds 90 % of a plane normal distribution, standard deviations.
+const NINETY: f64 = 2.1460;
+/// Longest interval at which the motion along a path is kept, s.
+const STEP_S: f64 = 0.05;
+
+/// What the scene of a reconstruction shows.
+#[derive(Debug, Clone, Copy)]
+pub struct ReconstructionParts<'a> {
+    /// What was found.
+    pub evidence: &'a Evidence,
+    /// The vehicles.
+    pub cars: &'a Cars,
+    /// Paths of particles.
+    pub drawn: &'a [Path],
+    /// The path that the car drives, with its name.
+    pub followed: Option<(&'a str, &'a Path)>,
+    /// The marks that tyres leave along that path.
+    pub marks: &'a [TireMark],
+    /// System of units of the labels.
+    pub units: UnitSystem,
+    /// What restricts the answer.
+    pub trust: &'a Trust,
+}
+
+impl<'a> ReconstructionParts<'a> {
+    /// What the scene of an answer shows, with a particle of median speed that drives.
+    pub fn of(
+        (answer, paths): (&'a ReconstructAnswer, &'a ReconstructedPaths),
+        units: UnitSystem,
+        trust: &'a Trust,
+    ) -> Self {
+        Self {
+            evidence: answer.target.evidence(),
+            cars: answer.target.model().cars(),
+            drawn: &paths.drawn,
+            followed: paths.median.as_ref().map(|path| (ReconstructedPaths::MEDIAN, path)),
+            marks: &paths.marks,
+            units,
+            trust,
+        }
+    }
+}
+
+/// The scene of a reconstruction.
+pub fn reconstruction_scene(input: &ReconstructionParts<'_>) -> Scene {
+    let ReconstructionParts { evidence, cars, .. } = *input;
+    let mut scene = Scene {
+        title: evidence.case.clone(),
+        units: input.units,
+        trust: input.trust.clone(),
+        ..Scene::default()
+    };
+    let shape = shape_of(&cars.struck.parameters);
+    let particles = input.drawn.iter().filter_map(|path| motion_of(path, &shape.body));
+    scene.paths.extend(particles.map(|motion| ScenePath {
+        name: "particles".to_owned(),
+        role: SceneRole::Muted,
+        is_dashed: false,
+        has_ticks: false,
+        motion: Arc::new(motion),
+    }));
+    add_marks(&mut scene, input.marks);
+    add_found(&mut scene, evidence);
+    for (rest, shape, [name, tag]) in [
+        (
+            &evidence.striking_rest,
+            shape_of(&cars.striking.parameters),
+            ["striking car at rest, 90 % ellipse", "striking, found"],
+        ),
+        (&evidence.rest, Arc::clone(&shape), ["struck car at rest, 90 % ellipse", "struck, found"]),
+    ] {
+        if let Some(rest) = rest {
+            add_rest(&mut scene, (rest, &shape), [name, tag]);
+        }
+    }
+    if let Some((name, path)) = input.followed {
+        let motion = motion_of(path, &shape.body);
+        let named = (name, "struck");
+        add(&mut scene, (named, SceneRole::Simulated, CarLook::Solid), (&shape, motion));
+    }
+    let solid = scene.cars.iter().filter(|car| car.look == CarLook::Solid);
+    scene.end_s = solid.map(|car| car.motion.end_s()).fold(0.0, f64::max);
+    scene
+}
+
+fn shape_of(vehicle: &VehicleParameters) -> Arc<CarShape> {
+    let outline = Footprint::from(&vehicle.geometry);
+    Arc::new(CarShape::new(CarBody::new(vehicle, &outline)))
+}
+
+/// The motion along a path, at even intervals of which the last one ends with the path.
+fn motion_of(path: &Path, body: &CarBody) -> Option<CarMotion> {
+    let points = &path.points;
+    let times: Vec<f64> = points.iter().map(|point| point.time_s).collect();
+    let start_s = *times.first()?;
+    let duration_s = times.last()? - start_s;
+    let n_steps = (duration_s / STEP_S).ceil().clamp(1.0, 1e5) as usize;
+    let step_s = duration_s / n_steps as f64;
+    let at = |values: &[f64], time_s| interpolate(&times, values, time_s);
+    let [x, y, yaw]: [Vec<f64>; 3] = [
+        points.iter().map(|point| point.x_m).collect(),
+        points.iter().map(|point| point.y_m).collect(),
+        points.iter().map(|point| point.yaw_rad).collect(),
+    ];
+    let pose = |step: usize| {
+        let time_s = start_s + step as f64 * step_s;
+        Some(Pose { x_m: at(&x, time_s)?, y_m: at(&y, time_s)?, yaw_rad: at(&yaw, time_s)? })
+    };
+    let poses: Option<Vec<Pose>> = (0..=n_steps).map(pose).collect();
+    Some(CarMotion::of_poses(&poses?, step_s, body)?.later_by(start_s))
+}
+
+/// Marks of tyres, and positions in a video.
+fn add_found(scene: &mut Scene, evidence: &Evidence) {
+    for mark in &evidence.marks {
+        scene.lines.push(SceneLine {
+            name: format!("mark, {}", mark.wheel.label()),
+            role: SceneRole::Evidence,
+            is_dashed: true,
+            is_above_cars: false,
+            points_m: mark.points_m.clone(),
+        });
+    }
+    scene.points.extend(evidence.positions.iter().map(|at| ScenePoint {
+        name: "video".to_owned(),
+        role: SceneRole::Evidence,
+        at_m: [at.x_m, at.y_m],
+    }));
+}
+
+/// A car as it was found at rest, with the ellipse that holds its place with 90 %.
+fn add_rest(scene: &mut Scene, (rest, shape): (&RestPose, &Arc<CarShape>), [name, tag]: [&str; 2]) {
+    let ellipse = (0..=N_ELLIPSE).map(|i| {
+        let (sin, cos) = (TAU * i as f64 / N_ELLIPSE as f64).sin_cos();
+        let radius = NINETY * rest.position_sigma_m;
+        [rest.x_m + radius * cos, rest.y_m + radius * sin]
+    });
+    let line = |name: &str, is_dashed, points_m| SceneLine {
+        name: name.to_owned(),
+        role: SceneRole::Evidence,
+        is_dashed,
+        is_above_cars: false,
+        points_m,
+    };
+    scene.lines.push(line(name, false, ellipse.collect()));
+    let Some(heading) = rest.heading_rad else { return };
+    let pose = Pose { x_m: rest.x_m, y_m: rest.y_m, yaw_rad: heading.value };
+    scene.lines.push(line("", true, outline_m(&shape.body, &pose)));
+    scene.cars.push(SceneCar {
+        name: name.to_owned(),
+        tag: tag.to_owned(),
+        role: SceneRole::Evidence,
+        look: CarLook::Ghost,
+        shape: Arc::clone(shape),
+        motion: Arc::new(CarMotion::standing(pose)),
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_core::vehicle::{PathEnd, PathPoint, Preset};
+
+    #[test]
+    fn a_motion_begins_and_ends_with_its_path() {
+        let point = |time_s: f64| PathPoint {
+            time_s,
+            x_m: 10.0 * time_s,
+            y_m: 0.0,
+            yaw_rad: 0.0,
+            vx_m_s: 10.0,
+            vy_m_s: 0.0,
+            yaw_rate_rad_s: 0.0,
+        };
+        let body = shape_of(&Preset::Reference.parameters()).body;
+        for (start_s, end_s) in [(0.0, 1.0), (0.0, 0.97), (0.2, 3.211), (0.0, 0.01)] {
+            let points = vec![point(start_s), point((start_s + end_s) / 2.0), point(end_s)];
+            let motion = motion_of(&Path { points, end: PathEnd::Rest }, &body).unwrap();
+            let first_s = motion.time_s().first().copied().unwrap();
+            assert_eq!(first_s, start_s, "{start_s} to {end_s} s");
+            assert!((motion.end_s() - end_s).abs() < 1e-12, "{} of {end_s} s", motion.end_s());
+            for time_s in [start_s, 0.5 * (start_s + end_s), end_s] {
+                let x_m = motion.at(time_s).pose.x_m;
+                assert!((x_m - 10.0 * time_s).abs() < 1e-9, "{x_m} m at {time_s} s");
+            }
+        }
+    }
+}

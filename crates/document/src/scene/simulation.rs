@@ -1,0 +1,193 @@
+//! The scene of a simulation: struck and striking vehicle, the recorded motion, the impulse.
+
+use std::sync::Arc;
+
+use crate::scene::crush_outline::add_crush;
+use crate::scene::{
+    CarBody, CarLook, CarMotion, CarShape, Scene, SceneArrow, SceneCar, SceneCross, SceneLine,
+    SceneMark, ScenePath, SceneRole,
+};
+use impactlab_core::collision::Pose;
+use impactlab_core::data::{ForceAxes, TimeSeries};
+use impactlab_core::units::{Quantity, UnitSystem};
+use impactlab_core::vehicle::frames::world_from_body;
+use impactlab_core::vehicle::{TireMark, tire_marks};
+use impactlab_study::Trust;
+use impactlab_study::analysis::{Analysis, StruckVehicle};
+
+/// Length of the arrow of an impulse that is as large as 4 m/s of a car's mass, m.
+const ARROW_PER_SPEED_S: f64 = 0.75;
+/// Shortest and longest arrow, m.
+const ARROW_LENGTHS_M: [f64; 2] = [1.2, 5.0];
+
+/// Another motion that is drawn beside the simulation: a variant of the case, or a recording.
+#[derive(Debug, Clone, Copy)]
+pub struct OtherMotion<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// Meaning of its colour.
+    pub role: SceneRole,
+    /// The motion.
+    pub motion: &'a TimeSeries,
+    /// Time of the scene at which the motion has its own time zero, s.
+    pub offset_s: f64,
+    /// The analysis whose car it is; that of the simulation if `None`.
+    pub of: Option<&'a Analysis>,
+}
+
+/// What the scene of a simulation shows.
+#[derive(Debug, Clone, Copy)]
+pub struct SimulationScene<'a> {
+    /// Motions, force and vehicles.
+    pub analysis: &'a Analysis,
+    /// Other motions beside it.
+    pub others: &'a [OtherMotion<'a>],
+    /// System of units of the labels.
+    pub units: UnitSystem,
+    /// What restricts the answer.
+    pub trust: &'a Trust,
+}
+
+/// The scene of a simulation over its whole duration.
+pub fn simulation_scene(input: &SimulationScene<'_>) -> Scene {
+    let SimulationScene { analysis, others, units, trust } = *input;
+    let mut scene =
+        Scene { title: analysis.name.clone(), units, trust: trust.clone(), ..Scene::default() };
+    add_striking(&mut scene, analysis);
+    let shape = struck_shape(analysis);
+    if let Some(series) = &analysis.reference {
+        let look = if analysis.simulation.is_some() { CarLook::Ghost } else { CarLook::Solid };
+        let motion = CarMotion::of_series(series, &shape.body, None);
+        let named =
+            ("recorded", if look == CarLook::Solid { "struck, recorded" } else { "recorded" });
+        add(&mut scene, (named, SceneRole::Recorded, look), (&shape, motion));
+    }
+    for other in others {
+        let shape = other.of.map_or_else(|| Arc::clone(&shape), struck_shape);
+        let motion = CarMotion::of_series(other.motion, &shape.body, None);
+        let motion = motion.map(|motion| motion.later_by(other.offset_s));
+        add(&mut scene, ((other.name, ""), other.role, CarLook::Ghost), (&shape, motion));
+    }
+    if let Some(simulated) = &analysis.simulation {
+        let controls = analysis.controlled();
+        add_marks(&mut scene, &tire_marks(&simulated.series, controls));
+        let motion = CarMotion::of_series(&simulated.series, &shape.body, Some(controls));
+        let named = ("4DOF simulation", "struck");
+        add(&mut scene, (named, SceneRole::Simulated, CarLook::Solid), (&shape, motion));
+    }
+    add_crush(&mut scene, analysis);
+    scene.end_s = scene.struck().map_or(0.0, |car| car.motion.end_s());
+    scene.arrows.extend(impulse_arrow(analysis, units));
+    scene.crosses.extend(analysis.second_contact.as_ref().map(|second| SceneCross {
+        name: "second contact".to_owned(),
+        at_m: second.point_m,
+        time_s: second.time_s,
+    }));
+    scene
+}
+
+/// The meshes of the struck car.
+pub(super) fn struck_shape(analysis: &Analysis) -> Arc<CarShape> {
+    Arc::new(CarShape::new(CarBody::new(&analysis.vehicle, &analysis.footprint)))
+}
+
+/// Adds the striking vehicle, if it is known.
+pub(super) fn add_striking(scene: &mut Scene, analysis: &Analysis) {
+    let Some(track) = &analysis.bullet else { return };
+    let body = CarBody::new(&track.start.vehicle, &track.footprint);
+    let controls = track.start.controlled();
+    add_marks(scene, &tire_marks(&track.motion, controls));
+    let motion = CarMotion::of_series(&track.motion, &body, Some(controls));
+    let shape = Arc::new(CarShape::new(body));
+    let named = ("striking vehicle", "striking");
+    add(scene, (named, SceneRole::Striking, CarLook::Solid), (&shape, motion));
+}
+
+/// Adds marks of tyres that are computed.
+pub(super) fn add_marks(scene: &mut Scene, marks: &[TireMark]) {
+    scene.marks.extend(marks.iter().map(|mark| SceneMark {
+        name: "tyre marks, computed".to_owned(),
+        points: mark.points.clone(),
+    }));
+}
+
+/// Adds a car with its path and where it starts, if it has a motion.
+///
+/// - `(name, tag)`: in the legend and beside the car.
+pub(super) fn add(
+    scene: &mut Scene,
+    ((name, tag), role, look): ((&str, &str), SceneRole, CarLook),
+    (shape, motion): (&Arc<CarShape>, Option<CarMotion>),
+) {
+    let Some(motion) = motion.map(Arc::new) else { return };
+    if let Some(start) = motion.states().first().filter(|_| look == CarLook::Solid) {
+        scene.lines.push(SceneLine {
+            name: String::new(),
+            role,
+            is_dashed: false,
+            is_above_cars: false,
+            points_m: outline_m(&shape.body, &start.pose),
+        });
+    }
+    scene.paths.push(ScenePath {
+        name: name.to_owned(),
+        role,
+        is_dashed: role == SceneRole::Recorded,
+        has_ticks: true,
+        motion: Arc::clone(&motion),
+    });
+    scene.cars.push(SceneCar {
+        name: name.to_owned(),
+        tag: tag.to_owned(),
+        role,
+        look,
+        shape: Arc::clone(shape),
+        motion,
+    });
+}
+
+/// The outline of a car on the ground, with a chevron that points ahead, m.
+pub(super) fn outline_m(body: &CarBody, pose: &Pose) -> Vec<[f64; 2]> {
+    let (front, rear, side) = (body.front_m, body.rear_m(), body.width_m / 2.0);
+    let shoulder = front - 0.15 * body.length_m;
+    let corners = [
+        [front, 0.0],
+        [shoulder, side],
+        [front, side],
+        [rear, side],
+        [rear, -side],
+        [front, -side],
+        [shoulder, -side],
+        [front, 0.0],
+        [front, side],
+        [front, -side],
+    ];
+    corners.map(|corner| pose.world_from_body(corner)).to_vec()
+}
+
+/// The impulse on the struck vehicle as an arrow that ends where the force acts.
+fn impulse_arrow(analysis: &Analysis, units: UnitSystem) -> Option<SceneArrow> {
+    let (force, struck) = (analysis.force.as_ref()?, analysis.struck.as_ref()?);
+    let StruckVehicle { vehicle, initial, contact, .. } = struck;
+    let own = force.impulse_n_s();
+    let impulse = match force.axes {
+        ForceAxes::World => own,
+        // The force turns with the vehicle; over the contact it hardly does.
+        ForceAxes::Body => world_from_body(initial.yaw_rad, own),
+    };
+    let size = impulse[0].hypot(impulse[1]);
+    if !(size > 0.0 && size.is_finite()) {
+        return None;
+    }
+    let [shortest, longest] = ARROW_LENGTHS_M;
+    let length_m = (ARROW_PER_SPEED_S * size / vehicle.mass.mass_kg).clamp(shortest, longest);
+    let pose = Pose { x_m: initial.x_m, y_m: initial.y_m, yaw_rad: initial.yaw_rad };
+    let tip = pose.world_from_body([contact.x_m, contact.y_m]);
+    let back = length_m / size;
+    let tail = [tip[0] - impulse[0] * back, tip[1] - impulse[1] * back];
+    Some(SceneArrow {
+        name: format!("impulse on the struck vehicle, {}", Quantity::Impulse.shown(size, units)),
+        role: SceneRole::Evidence,
+        ends_m: [tail, tip],
+    })
+}

@@ -1,0 +1,100 @@
+//! The frames of a film: pictures of a scene, one after the other.
+
+use egui::{Color32, ColorImage, Context, Pos2, RawInput, Rect, TexturesDelta, Vec2};
+
+use crate::scene::{ScenePicture, SceneView, scene_view_ui};
+use crate::trust::framed_ui;
+use crate::{Canvas, SoftwareRenderer, theme};
+use impactlab_core::ranges::{OutOfRange, PICTURE_SIDE};
+
+/// Passes after which fonts and layout of the first frame no longer change.
+const SETTLING_PASSES: usize = 4;
+/// Margin around the picture, points.
+const MARGIN: i8 = 12;
+
+/// Draws pictures of scenes off screen, each below its title and above what restricts it. What does not
+/// change from one picture to the next is kept: fonts, layout, and the ground of the scene.
+pub struct FrameRenderer {
+    canvas: Canvas,
+    context: Context,
+    renderer: SoftwareRenderer,
+    view: SceneView,
+    n_passes: usize,
+    image: ColorImage,
+}
+
+impl FrameRenderer {
+    /// A renderer of pictures of a size.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] for a width or height outside [`PICTURE_SIDE`].
+    pub fn new(canvas: Canvas) -> Result<Self, OutOfRange> {
+        for side in canvas.size_px {
+            PICTURE_SIDE.check_count(u64::from(side))?;
+        }
+        let context = Context::default();
+        context.set_visuals(theme::visuals(canvas.dark));
+        let size = canvas.size_px.map(|side| side as usize);
+        Ok(Self {
+            canvas,
+            context,
+            renderer: SoftwareRenderer::default(),
+            view: SceneView::underlaid(),
+            n_passes: 0,
+            image: ColorImage::filled(size, ground_color(canvas.dark)),
+        })
+    }
+
+    /// Draws a picture. The camera is placed for the first one and stays, but for what it follows.
+    ///
+    /// - `speed`: seconds of the scene that are played in a second, for the time stamp.
+    pub fn draw(&mut self, picture: &ScenePicture, speed: f64) -> &ColorImage {
+        self.view.set_speed(speed);
+        while self.n_passes + 1 < SETTLING_PASSES {
+            self.pass(picture, true);
+        }
+        let is_first = self.n_passes < SETTLING_PASSES;
+        let output = self.pass(picture, is_first);
+        let pixels_per_point = output.pixels_per_point;
+        let primitives = self.context.tessellate(output.shapes, pixels_per_point);
+        self.image.pixels.fill(ground_color(self.canvas.dark));
+        self.view.copy_into(&mut self.image);
+        self.renderer.draw_over(&primitives, pixels_per_point, &mut self.image);
+        &self.image
+    }
+
+    /// Lays the picture out once.
+    fn pass(&mut self, picture: &ScenePicture, places_camera: bool) -> egui::FullOutput {
+        let Self { canvas, context, renderer, view, n_passes, .. } = self;
+        let size = Vec2::from(canvas.size_px.map(|side| side as f32)) / canvas.scale;
+        let mut input = RawInput {
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, size)),
+            time: Some(*n_passes as f64),
+            ..RawInput::default()
+        };
+        if let Some(viewport) = input.viewports.get_mut(&input.viewport_id) {
+            viewport.native_pixels_per_point = Some(canvas.scale);
+        }
+        let mut output = context.run_ui(input, |ui| {
+            egui::Frame::new().inner_margin(MARGIN).show(ui, |ui| {
+                framed_ui(ui, (&picture.title(), &picture.scene.trust), |ui, height| {
+                    let height = height.unwrap_or_else(|| ui.available_height());
+                    if places_camera {
+                        view.place(picture);
+                    }
+                    let (mut camera, shown) = (picture.camera, (&picture.scene, picture.time_s));
+                    scene_view_ui(ui, shown, view, (&mut camera, picture.follow, height));
+                });
+            });
+        });
+        let mut textures: TexturesDelta = std::mem::take(&mut output.textures_delta);
+        renderer.update_textures(&mut textures);
+        *n_passes += 1;
+        output
+    }
+}
+
+/// Colour behind everything.
+fn ground_color(dark: bool) -> Color32 {
+    if dark { Color32::from_gray(27) } else { Color32::WHITE }
+}

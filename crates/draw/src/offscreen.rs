@@ -1,0 +1,105 @@
+//! Pictures of figures and user interfaces without a window.
+
+use std::path::Path;
+
+use egui::{Color32, Context, Pos2, RawInput, Rect, Ui, Vec2};
+use image::RgbaImage;
+
+use crate::{SoftwareRenderer, picture_ui, theme};
+use impactlab_core::data::{DataError, Existing, write_atomically};
+use impactlab_core::ranges::{OutOfRange, PICTURE_SIDE};
+use impactlab_document::figure::Figure;
+
+/// Number of passes after which fonts, plot bounds and layout no longer change.
+const SETTLING_PASSES: usize = 4;
+
+/// Size, scale and theme of a picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Canvas {
+    /// Width and height, pixels, each in [`PICTURE_SIDE`].
+    pub size_px: [u32; 2],
+    /// Pixels per point; 2 is suitable for print and slides.
+    pub scale: f32,
+    /// Whether the dark theme is used.
+    pub dark: bool,
+}
+
+impl Default for Canvas {
+    fn default() -> Self {
+        Self { size_px: [1600, 1000], scale: 2.0, dark: false }
+    }
+}
+
+/// Reason for which a picture could not be drawn or saved.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    /// The size of the picture is outside the permitted range.
+    #[error(transparent)]
+    Size(#[from] OutOfRange),
+    /// The file cannot be written.
+    #[error(transparent)]
+    Write(#[from] DataError),
+}
+
+/// Draws any user interface off screen on the CPU, which gives the same pixels on every machine.
+///
+/// # Errors
+/// [`RenderError::Size`] for a width or height outside [`PICTURE_SIDE`].
+pub fn draw_offscreen(
+    canvas: Canvas,
+    mut ui: impl FnMut(&mut Ui),
+) -> Result<RgbaImage, RenderError> {
+    let [width, height] = canvas.size_px;
+    PICTURE_SIDE.check_count(u64::from(width))?;
+    PICTURE_SIDE.check_count(u64::from(height))?;
+    let context = Context::default();
+    context.set_visuals(theme::visuals(canvas.dark));
+    let mut renderer = SoftwareRenderer::default();
+    let size = Vec2::new(width as f32, height as f32) / canvas.scale;
+    let mut image = RgbaImage::default();
+    for pass in 0..SETTLING_PASSES {
+        let mut input = RawInput {
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, size)),
+            time: Some(pass as f64),
+            ..RawInput::default()
+        };
+        if let Some(viewport) = input.viewports.get_mut(&input.viewport_id) {
+            viewport.native_pixels_per_point = Some(canvas.scale);
+        }
+        let mut output = context.run_ui(input, &mut ui);
+        renderer.update_textures(&mut output.textures_delta);
+        if pass + 1 == SETTLING_PASSES {
+            let primitives = context.tessellate(output.shapes, output.pixels_per_point);
+            let ground = if canvas.dark { Color32::from_gray(27) } else { Color32::WHITE };
+            image = renderer.draw(&primitives, canvas.size_px, output.pixels_per_point, ground);
+        }
+    }
+    Ok(image)
+}
+
+/// Draws a figure below its title and above what restricts it ([`picture_ui`]).
+///
+/// # Errors
+/// [`RenderError::Size`] for a width or height outside [`PICTURE_SIDE`].
+pub fn figure_image(figure: &Figure, canvas: Canvas) -> Result<RgbaImage, RenderError> {
+    draw_offscreen(canvas, |ui| {
+        let frame = egui::Frame::new().inner_margin(12.0);
+        frame.show(ui, |ui| picture_ui(ui, figure));
+    })
+}
+
+/// Saves a picture as PNG. The file is written completely or not at all.
+///
+/// - `existing`: what happens to a file that exists already.
+///
+/// # Errors
+/// [`RenderError::Write`] if the picture cannot be encoded or the file cannot be written.
+pub fn save_png(image: &RgbaImage, path: &Path, existing: Existing) -> Result<(), RenderError> {
+    let mut png = std::io::Cursor::new(Vec::new());
+    let encoded = image.write_to(&mut png, image::ImageFormat::Png);
+    write_atomically(path, existing, |file| {
+        encoded.map_err(std::io::Error::other)?;
+        file.write_all(png.get_ref())
+    })?;
+    Ok(())
+}

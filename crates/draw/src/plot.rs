@@ -1,0 +1,354 @@
+//! Draws a figure with egui_plot.
+
+use std::sync::Arc;
+
+use egui::{Color32, ColorImage, Id, Pos2, Stroke, TextureHandle, TextureOptions, Ui, Vec2, Vec2b};
+use egui_plot::{
+    Arrows, FilledArea, Legend, Line, LineStyle as PlotLineStyle, Plot, PlotBounds, PlotImage,
+    PlotPoint, PlotPoints, PlotUi, Points, Polygon, VLine,
+};
+
+use crate::legend::{emptiest_corner, has_no_place, legend_row_ui, named};
+use crate::theme;
+use crate::thin::thinned;
+use crate::ticks::{
+    X_TICK_CELLS, Y_TICK_CELLS, grid, log_grid, log_tick_label, name_grid, name_label, tick_label,
+};
+use impactlab_core::units::significant;
+use impactlab_document::figure::{Axis, Figure, FigureElement, HeatMap, LineStyle, Path, Series};
+
+/// Opacity of the largest value of a heat map.
+const HEAT_OPACITY: f32 = 0.85;
+
+/// Smallest width of the labels of the vertical axis, and width of a character of a name, points.
+const LEAST_Y_AXIS_WIDTH: f32 = 44.0;
+const CHARACTER_WIDTH: f32 = 6.5;
+
+/// Height of the labels of the horizontal axis, points, and the smallest height of a plot with them.
+const X_AXIS_HEIGHT: f32 = 36.0;
+const LEAST_HEIGHT: f32 = 2.0 * X_AXIS_HEIGHT;
+
+/// Logarithm of the zoom for each point that the wheel scrolls.
+const ZOOM_PER_POINT: f32 = 0.004;
+
+/// Number of names in a legend above which it is written in small type.
+const LONG_LEGEND: usize = 8;
+
+/// Options for the placement of a figure.
+#[derive(Debug, Clone)]
+pub struct FigureOptions {
+    /// Identifier that distinguishes the plots in a window; the title is used if it is empty.
+    pub id: String,
+    /// Group of plots that share the cursor and the horizontal axis.
+    pub link: Option<Id>,
+    /// Position of the cursor along x, in the unit of the axis.
+    pub cursor_x: Option<f64>,
+    /// Two cursors along x, in the unit of the axis.
+    pub span: Option<[f64; 2]>,
+    /// Height of the plot, points; `None` for all the space that is available.
+    pub height: Option<f32>,
+    /// Whether the view is fitted to the data again.
+    pub reset: bool,
+    /// View `[lowest, highest]` of [x, y] in the units of the axes; `None` leaves the view to the
+    /// user.
+    pub view: Option<[[f64; 2]; 2]>,
+    /// Whether a legend names the elements.
+    pub legend: bool,
+    /// Whether the primary pointer button moves the view of a figure seen from above.
+    pub pans: bool,
+}
+
+impl Default for FigureOptions {
+    fn default() -> Self {
+        let (id, link, cursor_x, span, height) = (String::new(), None, None, None, None);
+        Self {
+            id,
+            link,
+            cursor_x,
+            span,
+            height,
+            reset: false,
+            view: None,
+            legend: true,
+            pans: true,
+        }
+    }
+}
+
+/// Interaction of the user with a figure.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct FigureResponse {
+    /// Position along x at which the user presses a pointer button, in the unit of the axis, to set
+    /// the cursor.
+    pub picked_x: Option<f64>,
+    /// Where the user has pressed the primary pointer button in the figure, and where the pointer is
+    /// now, while the button is down: [x, y] in the units of the axes.
+    pub drag: Option<[[f64; 2]; 2]>,
+    /// Where the pointer is in the figure: [x, y] in the units of the axes.
+    pub pointer: Option<[f64; 2]>,
+    /// Where the user has clicked in this frame with the primary button.
+    pub clicked: Option<[f64; 2]>,
+    /// View `[lowest, highest]` of [x, y] in the units of the axes.
+    pub view: [[f64; 2]; 2],
+    /// Distance along x that a point of the screen is wide, in the unit of the axis.
+    pub x_per_point: f64,
+}
+
+/// Draws a figure into the space that is available. Hovering shows values in the units of the axes.
+pub fn figure_ui(ui: &mut Ui, figure: &Figure, options: &FigureOptions) -> FigureResponse {
+    let all = options.height.unwrap_or_else(|| ui.available_height());
+    let is_row = options.legend && has_no_place(figure, all);
+    let top = ui.cursor().top();
+    if is_row {
+        legend_row_ui(ui, figure);
+    }
+    let height = (all - (ui.cursor().top() - top)).max(LEAST_HEIGHT);
+    let y_label = label_that_fits(ui, &figure.y, height - X_AXIS_HEIGHT);
+    let mut plot = plot_with_axes(figure, options, y_label);
+    if options.legend && !is_row {
+        let legend = Legend::default().position(emptiest_corner(figure));
+        let legend = match named(figure).len() {
+            ..=LONG_LEGEND => legend,
+            _ => legend.text_style(egui::TextStyle::Small),
+        };
+        plot = plot.legend(legend.follow_insertion_order(true).background_alpha(0.6));
+    }
+    if figure.equal_aspect {
+        plot = plot.data_aspect(1.0);
+    }
+    if options.height.is_some() {
+        plot = plot.height(height);
+    }
+    if let Some(group) = options.link {
+        plot = plot
+            .link_axis(group, Vec2b::new(true, false))
+            .link_cursor(group, Vec2b::new(true, false));
+    }
+    if options.reset {
+        plot = plot.reset();
+    }
+    for element in &figure.elements {
+        // egui_plot includes only the origins of arrows when it fits the view.
+        if let FigureElement::Arrow(series) = element {
+            for [x, y] in &series.points {
+                plot = plot.include_x(*x).include_y(*y);
+            }
+        }
+    }
+    let dark = ui.visuals().dark_mode;
+    let response = plot.show(ui, |plot_ui| {
+        if let Some([low, high]) = options.view {
+            plot_ui.set_plot_bounds(PlotBounds::from_min_max(low, high));
+        }
+        for element in &figure.elements {
+            draw_element(plot_ui, element, (dark, figure.log_y));
+        }
+        if let Some(x) = options.cursor_x {
+            let stroke = Stroke::new(theme::LINE_WIDTH, theme::cursor_color(dark));
+            plot_ui.vline(VLine::new("", x).stroke(stroke).allow_hover(false));
+        }
+        for x in options.span.into_iter().flatten() {
+            let stroke = Stroke::new(theme::THIN_LINE_WIDTH, theme::cursor_color(dark));
+            let line = VLine::new("", x).stroke(stroke).style(PlotLineStyle::dashed_loose());
+            plot_ui.vline(line.allow_hover(false));
+        }
+        if figure.equal_aspect && options.pans {
+            zoom_by_wheel(plot_ui);
+        }
+        let picking = plot_ui.response().is_pointer_button_down_on();
+        plot_ui.pointer_coordinate().filter(|_| picking).map(|point| point.x)
+    });
+    let transform = response.transform;
+    let at = |point: Pos2| {
+        let value = transform.value_from_position(point);
+        [value.x, value.y]
+    };
+    let pressed = ui.input(|input| {
+        let pointer = &input.pointer;
+        let is_down = pointer.primary_down() && response.response.is_pointer_button_down_on();
+        pointer.press_origin().zip(pointer.latest_pos()).filter(|_| is_down)
+    });
+    let is_clicked = response.response.clicked();
+    FigureResponse {
+        picked_x: response.inner,
+        drag: pressed.map(|(from, to)| [at(from), at(to)]),
+        pointer: response.response.hover_pos().map(at),
+        clicked: response.response.interact_pointer_pos().filter(|_| is_clicked).map(at),
+        view: [transform.bounds().min(), transform.bounds().max()],
+        x_per_point: transform.dvalue_dpos()[0].abs(),
+    }
+}
+
+/// Zooms about the pointer as the wheel is turned, which then scrolls nothing else.
+fn zoom_by_wheel(plot: &mut PlotUi<'_>) {
+    if !plot.response().contains_pointer() {
+        return;
+    }
+    let turned = plot.ctx().input_mut(|input| {
+        let is_zoom_already = input.modifiers.command;
+        let turned = if is_zoom_already { 0.0 } else { input.smooth_scroll_delta().y };
+        if turned != 0.0 {
+            input.smooth_scroll_delta = Vec2::ZERO;
+        }
+        turned
+    });
+    if turned != 0.0 {
+        plot.zoom_bounds_around_hovered(Vec2::splat((turned * ZOOM_PER_POINT).exp()));
+    }
+}
+
+/// A plot with the labels and ticks of the axes and the text shown on hovering.
+fn plot_with_axes<'a>(figure: &Figure, options: &FigureOptions, y_label: String) -> Plot<'a> {
+    let id = if options.id.is_empty() { &figure.title } else { &options.id };
+    let (x, y, log_y) = (figure.x.clone(), figure.y.clone(), figure.log_y);
+    let readout = move |name: &str, at: PlotPoint| {
+        let head = if name.is_empty() { String::new() } else { format!("{name}\n") };
+        let value = if log_y { 10.0_f64.powf(at.y) } else { at.y };
+        let of_y = match y.names.is_empty() {
+            true => format!("\n{} {}", significant(value), y.unit.symbol),
+            // The name at the tick replaces the number.
+            false => String::new(),
+        };
+        format!("{head}{} {}{of_y}", significant(at.x), x.unit.symbol)
+    };
+    let names = figure.y.names.clone();
+    let n_names = names.len();
+    let longest = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
+    Plot::new(id.as_str())
+        .x_axis_label(figure.x.text())
+        .y_axis_label(y_label)
+        .y_axis_min_width(f32::max(LEAST_Y_AXIS_WIDTH, longest as f32 * CHARACTER_WIDTH))
+        .label_formatter(move |position| {
+            let (name, at) = match position {
+                egui_plot::HoverPosition::NearDataPoint { plot_name, position, .. } => {
+                    (*plot_name, *position)
+                }
+                egui_plot::HoverPosition::Elsewhere { position } => ("", *position),
+            };
+            Some(readout(name, at))
+        })
+        .x_grid_spacer(|input| grid(input, X_TICK_CELLS))
+        .y_grid_spacer(move |input| match (log_y, n_names) {
+            (true, _) => log_grid(input),
+            (false, 0) => grid(input, Y_TICK_CELLS),
+            (false, n) => name_grid(n),
+        })
+        .grid_fade(0.9)
+        .x_axis_formatter(|mark, _| tick_label(mark))
+        .y_axis_formatter(move |mark, _| match names.is_empty() {
+            true if log_y => log_tick_label(mark),
+            true => tick_label(mark),
+            false => name_label(mark, &names),
+        })
+        .allow_scroll(false)
+        .allow_drag(Vec2b::from(figure.equal_aspect && options.pans))
+}
+
+/// The text beside an upright axis; where it is longer than the plot is high, its unit alone, as the
+/// heading above the plot names the quantity.
+fn label_that_fits(ui: &Ui, axis: &Axis, room: f32) -> String {
+    let text = axis.text();
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let length = ui.painter().layout_no_wrap(text.clone(), font, Color32::PLACEHOLDER).size().x;
+    match length > room && !axis.unit.symbol.is_empty() {
+        true => format!("[{}]", axis.unit.symbol),
+        false => text,
+    }
+}
+
+/// The texture of a heat map, which is kept from frame to frame, and the data from which it was
+/// made.
+#[derive(Clone)]
+struct Picture {
+    values: Arc<Vec<f64>>,
+    color: Color32,
+    texture: TextureHandle,
+}
+
+/// Draws a heat map as a picture. The opacity of a cell is proportional to the square root of its
+/// value.
+fn heat_map(plot: &mut PlotUi<'_>, map: &HeatMap, color: Color32) {
+    let [width, height] = map.size;
+    let largest = map.values.iter().copied().fold(0.0, f64::max);
+    if width == 0 || height == 0 || largest <= 0.0 {
+        return;
+    }
+    let [r, g, b, _] = color.to_array();
+    // The first row of a picture is at the top.
+    let rows = map.values.chunks_exact(width).rev();
+    let pixel = |value: &f64| {
+        let opacity = (value / largest).max(0.0).sqrt() * f64::from(HEAT_OPACITY);
+        Color32::from_rgba_unmultiplied(r, g, b, (opacity * 255.0).round() as u8)
+    };
+    // The texture lives as long as its handle, which is kept until another picture replaces it.
+    let id = Id::unique(("heat map", plot.response().id));
+    let known: Option<Picture> = plot.ctx().data(|data| data.get_temp(id));
+    let known =
+        known.filter(|known| Arc::ptr_eq(&known.values, &map.values) && known.color == color);
+    let picture = known.unwrap_or_else(|| {
+        let image = ColorImage::new([width, height], rows.flatten().map(pixel).collect());
+        let texture = plot.ctx().load_texture(&map.name, image, TextureOptions::LINEAR);
+        let picture = Picture { values: Arc::clone(&map.values), color, texture };
+        plot.ctx().data_mut(|data| data.insert_temp(id, picture.clone()));
+        picture
+    });
+    let side = |axis: usize| map.step[axis] * map.size[axis] as f64;
+    let centre = |axis: usize| map.low[axis] + 0.5 * (side(axis) - map.step[axis]);
+    let at = PlotPoint::new(centre(0), centre(1));
+    let size = [side(0) as f32, side(1) as f32];
+    plot.image(PlotImage::new("", picture.texture.id(), at, size).allow_hover(false));
+    // The legend shows colours of lines only, and a line needs at least one point.
+    let point = PlotPoints::from(vec![[at.x, at.y]]);
+    plot.line(Line::new(&map.name, point).stroke(Stroke::new(0.0, color)).allow_hover(false));
+}
+
+/// Draws an element with the colours of the dark or the light theme; on a logarithmic axis y is
+/// replaced by its logarithm.
+fn draw_element<'a>(
+    plot: &mut PlotUi<'a>,
+    element: &'a FigureElement,
+    (dark, log_y): (bool, bool),
+) {
+    let color = theme::color(element.role(), dark);
+    let stroke = Stroke::new(theme::line_width(element.role()), color);
+    let style = |series: &Series| match series.style {
+        LineStyle::Solid => PlotLineStyle::Solid,
+        LineStyle::Dashed => PlotLineStyle::dashed_loose(),
+        LineStyle::Dotted => PlotLineStyle::dotted_loose(),
+    };
+    let height = |y: f64| if log_y { y.log10() } else { y };
+    let points = |series: &Series| {
+        let mut points = thinned(&series.points).into_owned();
+        points.iter_mut().for_each(|[_, y]| *y = height(*y));
+        PlotPoints::from(points)
+    };
+    match element {
+        FigureElement::Line(series) | FigureElement::Path(Path { series, .. }) => {
+            plot.line(Line::new(&series.name, points(series)).stroke(stroke).style(style(series)));
+        }
+        FigureElement::Points(series) => {
+            plot.points(Points::new(&series.name, points(series)).color(color).radius(3.0));
+        }
+        FigureElement::Polygon(series) => {
+            let fill = color.gamma_multiply(theme::FILL_OPACITY);
+            let polygon = Polygon::new(&series.name, points(series)).fill_color(fill);
+            plot.polygon(polygon.stroke(stroke).style(style(series)));
+        }
+        FigureElement::Arrow(series) => {
+            if let [from, to] = series.points[..] {
+                let (origin, tip) = (PlotPoints::from(vec![from]), PlotPoints::from(vec![to]));
+                plot.arrows(Arrows::new(&series.name, origin, tip).color(color).tip_length(10.0));
+            }
+        }
+        FigureElement::HeatMap(map) => heat_map(plot, map, color),
+        FigureElement::Band(band) => {
+            let edge = |edge: &[f64]| edge.iter().map(|y| height(*y)).collect::<Vec<_>>();
+            let (low, high) = (edge(&band.low), edge(&band.high));
+            let area = FilledArea::new(&band.name, &band.x, &low, &high);
+            plot.add(area.fill_color(color.gamma_multiply(band.opacity)));
+        }
+        FigureElement::VerticalLine { name, x, .. } => {
+            plot.vline(VLine::new(name, *x).stroke(stroke).style(PlotLineStyle::dashed_dense()));
+        }
+    }
+}

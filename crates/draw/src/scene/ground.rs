@@ -1,0 +1,334 @@
+//! What does not move: ground with its grid, density, and lines on the ground.
+
+use egui::Color32;
+
+use crate::scene::grid::Grid;
+use crate::scene::lines::{Rows, Stroke, over};
+use crate::scene::row_map::RowMap;
+use crate::scene::shade::{grid_colors, ground_color, mixed, role_color, sky_color};
+use crate::scene::underlay::{Underlay, ground_strokes};
+use crate::scene::{Projection, camera::NEAR_M};
+use impactlab_document::scene::{Scene, SceneDensity, SceneLine, SceneRole};
+
+/// Opacity of the largest density.
+pub const DENSITY_OPACITY: f32 = 0.72;
+/// Least share of the largest density that is drawn.
+pub const LEAST_DENSITY_SHARE: f32 = 0.003;
+/// Share of the colour of a role in the pale part of a line: a path that is still to come.
+const PALE: f32 = 0.45;
+/// The same over a picture of the ground.
+const PALE_OVER_PICTURE: f32 = 0.68;
+/// Opacity of the grid over a picture of the ground.
+const GRID_OVER_PICTURE: f32 = 0.3;
+/// How far the edge of a line reaches over a picture of the ground, points, and its opacity, so that
+/// lines of any colour are seen on any picture.
+const CASING_POINTS: f64 = 1.1;
+const CASING_OPACITY: f32 = 0.5;
+/// Width from which a line has such an edge, points: the edges of many thin ones would hide the picture.
+const LEAST_CASED: f64 = 1.0;
+/// Length and gap of dashes, points.
+const DASH: [f64; 2] = [8.0, 5.0];
+/// Time between the heading ticks along a path, s, and their half length, m.
+const TICK_INTERVAL_S: f64 = 0.5;
+const TICK_HALF_M: f64 = 0.9;
+/// Shortest piece of a line that is drawn by itself, pixels.
+const LEAST_PIECE: f64 = 1.2;
+
+/// What a picture of the ground is drawn with.
+pub struct Ground<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// The camera.
+    pub projection: &'a Projection,
+    /// Whether the theme is dark.
+    pub dark: bool,
+    /// Pixels per point.
+    pub points: f64,
+}
+
+impl Ground<'_> {
+    /// Fills rows with ground, grid and density.
+    pub fn fill(&self, rows: &mut Rows<'_>, underlay: &Underlay<'_>) {
+        let grid = Grid::of(self);
+        let (first, width) = (rows.first, rows.width.max(1));
+        let columns = self.covered_columns(&grid, width);
+        for (idx, row) in rows.pixels.chunks_mut(width).enumerate() {
+            let py = (first + idx) as f32 + 0.5;
+            let map = RowMap::new(grid.map, py);
+            underlay.fill_row(row, (py, &map), self.dark);
+            self.fill_row(row, (&map, &columns), &grid);
+        }
+    }
+
+    /// How far the lines of the grid across X cover each column: from above, where that is the same in
+    /// every row; else nothing.
+    fn covered_columns(&self, grid: &Grid, width: usize) -> Vec<[f32; 2]> {
+        if !self.projection.is_parallel() {
+            return Vec::new();
+        }
+        let map = RowMap::new(grid.map, 0.5);
+        let cover = |column| map.at(column).map_or([0.0; 2], |spot| grid.cover(0, &map, &spot));
+        (0..width).map(cover).collect()
+    }
+
+    /// Draws grid, density, haze and sky over a row of ground.
+    ///
+    /// - `columns`: that of [`Ground::covered_columns`].
+    fn fill_row(&self, row: &mut [Color32], (map, columns): (&RowMap, &[[f32; 2]]), grid: &Grid) {
+        let (sky, lines) = (sky_color(self.dark), grid_colors(self.dark));
+        let is_parallel = self.projection.is_parallel();
+        let opacity = self.grid_opacity();
+        let Grid { eye_m, haze_m, density_m, .. } = grid;
+        let first = map.at(0).map_or([0.0; 2], |spot| grid.cover(1, map, &spot));
+        let role = role_color(SceneRole::Forecast, self.dark);
+        for (column, pixel) in row.iter_mut().enumerate() {
+            let Some(spot) = map.at(column) else {
+                *pixel = sky;
+                continue;
+            };
+            let [x, y] = spot.place;
+            let [across_x, across_y] = match columns.get(column) {
+                Some(cover) => [*cover, first],
+                None => [0, 1].map(|axis| grid.cover(axis, map, &spot)),
+            };
+            let mut color = *pixel;
+            for (i, line) in lines.into_iter().enumerate() {
+                let share = across_x[i].max(across_y[i]);
+                if share > 0.0 {
+                    color = over(color, line, opacity * share);
+                }
+            }
+            if let (Some(density), Some([low, high])) = (&self.scene.density, density_m)
+                && (low[0]..high[0]).contains(&x)
+                && (low[1]..high[1]).contains(&y)
+            {
+                let share = density_share(density, [x - low[0], y - low[1]]);
+                if share > LEAST_DENSITY_SHARE {
+                    color = over(color, role, DENSITY_OPACITY * share);
+                }
+            }
+            if !is_parallel {
+                let (dx, dy) = (x - eye_m[0], y - eye_m[1]);
+                let far_m = (dx * dx + dy * dy).sqrt();
+                if far_m > haze_m[0] {
+                    let haze = (far_m - haze_m[0]) / (haze_m[1] - haze_m[0]);
+                    color = over(color, sky, haze.clamp(0.0, 1.0));
+                }
+            }
+            *pixel = color;
+        }
+    }
+
+    /// Opacity of the grid.
+    pub fn grid_opacity(&self) -> f32 {
+        if self.has_picture() { GRID_OVER_PICTURE } else { 1.0 }
+    }
+
+    /// Whether there is a picture of the ground.
+    pub fn has_picture(&self) -> bool {
+        self.scene.ground.as_ref().is_some_and(|site| site.has_picture())
+    }
+
+    /// The lines on the ground, in the order in which they are drawn.
+    pub fn strokes(&self) -> Vec<Stroke> {
+        let mut strokes = Vec::new();
+        if let Some(site) = &self.scene.ground {
+            ground_strokes(self, site, &mut strokes);
+        }
+        for path in &self.scene.paths {
+            let color = role_color(path.role, self.dark);
+            let share = match (path.role, self.has_picture()) {
+                (SceneRole::Muted, _) => 0.75,
+                (_, true) => PALE_OVER_PICTURE,
+                (_, false) => PALE,
+            };
+            let color = mixed(ground_color(self.dark), color, share);
+            let width = if path.role == SceneRole::Muted { 0.9 } else { 1.6 };
+            let points: Vec<[f64; 2]> =
+                path.motion.states().iter().map(|state| [state.pose.x_m, state.pose.y_m]).collect();
+            let pen = Pen { color, width, is_dashed: path.is_dashed };
+            self.line(&points, pen, &mut strokes);
+            if path.has_ticks {
+                self.ticks(path, color, &mut strokes);
+            }
+        }
+        for line in self.scene.lines.iter().filter(|line| !line.is_above_cars) {
+            self.scene_line(line, &mut strokes);
+        }
+        for point in &self.scene.points {
+            let color = role_color(point.role, self.dark);
+            let pen = Pen { color, width: 6.0, is_dashed: false };
+            self.line(&[point.at_m, point.at_m], pen, &mut strokes);
+        }
+        for arrow in &self.scene.arrows {
+            let pen =
+                Pen { color: role_color(arrow.role, self.dark), width: 2.6, is_dashed: false };
+            for line in arrow_lines(arrow.ends_m) {
+                self.line(&line, pen, &mut strokes);
+            }
+        }
+        strokes
+    }
+
+    /// Adds a line of the scene.
+    pub fn scene_line(&self, line: &SceneLine, strokes: &mut Vec<Stroke>) {
+        let color = role_color(line.role, self.dark);
+        // What has no name is help: where a car started.
+        let (color, width) = match line.name.is_empty() {
+            true => (mixed(ground_color(self.dark), color, 0.6), 1.1),
+            false => (color, 1.8),
+        };
+        self.line(&line.points_m, Pen { color, width, is_dashed: line.is_dashed }, strokes);
+    }
+
+    fn ticks(
+        &self,
+        path: &impactlab_document::scene::ScenePath,
+        color: Color32,
+        strokes: &mut Vec<Stroke>,
+    ) {
+        let motion = &path.motion;
+        let start_s = motion.time_s().first().copied().unwrap_or(0.0);
+        let n_ticks = ((motion.end_s() - start_s) / TICK_INTERVAL_S).floor().clamp(0.0, 400.0);
+        for tick in 1..=n_ticks as usize {
+            let pose = motion.at(start_s + tick as f64 * TICK_INTERVAL_S).pose;
+            let ends = [-TICK_HALF_M, TICK_HALF_M].map(|x| pose.world_from_body([x, 0.0]));
+            // The front end is thicker.
+            let front = [pose.world_from_body([0.45 * TICK_HALF_M, 0.0]), ends[1]];
+            self.line(&ends, Pen { color, width: 1.2, is_dashed: false }, strokes);
+            self.line(&front, Pen { color, width: 3.0, is_dashed: false }, strokes);
+        }
+    }
+
+    /// Adds a line on the ground; over a picture, on a pale edge.
+    pub fn line(&self, points_m: &[[f64; 2]], pen: Pen, strokes: &mut Vec<Stroke>) {
+        let first = strokes.len();
+        self.line_at((points_m, 0.0), pen, strokes);
+        if self.has_picture() && pen.width >= LEAST_CASED {
+            let edge = |stroke: &Stroke| Stroke {
+                half_width: stroke.half_width + (CASING_POINTS * self.points) as f32,
+                color: ground_color(self.dark),
+                opacity: CASING_OPACITY,
+                ..*stroke
+            };
+            let edges: Vec<Stroke> = strokes[first..].iter().map(edge).collect();
+            strokes.splice(first..first, edges);
+        }
+    }
+
+    /// Adds a level line at a height above the ground, m.
+    pub fn line_at(
+        &self,
+        (points_m, height_m): (&[[f64; 2]], f64),
+        pen: Pen,
+        strokes: &mut Vec<Stroke>,
+    ) {
+        let half_width = (pen.width * self.points / 2.0) as f32;
+        let mut push = |ends: [[f64; 2]; 2]| {
+            let ends = ends.map(|end| end.map(|value| value as f32));
+            strokes.push(Stroke { ends, half_width, color: pen.color, opacity: 1.0 });
+        };
+        let (mut along, mut held) = (0.0, None);
+        for pair in points_m.windows(2) {
+            let Some([from, to]) = self.piece([pair[0], pair[1]], height_m) else {
+                held = None;
+                continue;
+            };
+            let from: [f64; 2] = held.take().unwrap_or(from);
+            let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+            let is_single = points_m.len() == 2;
+            if length < LEAST_PIECE && !is_single {
+                held = Some(from);
+                continue;
+            }
+            if !pen.is_dashed {
+                push([from, to]);
+                continue;
+            }
+            let [dash, gap] = DASH.map(|points| points * self.points);
+            // What is far off the picture is not dashed.
+            if length >= 1e5 {
+                continue;
+            }
+            let mut done = 0.0;
+            while done < length {
+                let phase = along % (dash + gap);
+                let is_drawn = phase < dash;
+                let left = if is_drawn { dash - phase } else { dash + gap - phase };
+                let next = (done + left.max(0.25)).min(length);
+                if is_drawn {
+                    let at = |way: f64| {
+                        std::array::from_fn(|i| from[i] + (to[i] - from[i]) * way / length)
+                    };
+                    push([at(done), at(next)]);
+                }
+                (along, done) = (along + next - done, next);
+            }
+        }
+    }
+
+    /// A straight level piece in the picture, without what is behind the camera.
+    pub fn piece(&self, ends_m: [[f64; 2]; 2], height_m: f64) -> Option<[[f64; 2]; 2]> {
+        let in_camera = |[x, y]: [f64; 2]| self.projection.in_camera([x, y, height_m]);
+        let [mut from, mut to] = ends_m.map(in_camera);
+        if !self.projection.is_parallel() {
+            let near = 2.0 * NEAR_M;
+            if from[2] < near && to[2] < near {
+                return None;
+            }
+            let cut = |inside: [f64; 3], outside: [f64; 3]| {
+                let share = (inside[2] - near) / (inside[2] - outside[2]);
+                std::array::from_fn(|i| inside[i] + (outside[i] - inside[i]) * share)
+            };
+            if from[2] < near {
+                from = cut(to, from);
+            } else if to[2] < near {
+                to = cut(from, to);
+            }
+        }
+        let [from, to] = [from, to].map(|point| self.projection.in_picture(point));
+        let ends = [from?, to?].map(|[x, y, _]| [x, y]);
+        ends.iter().flatten().all(|value| value.is_finite()).then_some(ends)
+    }
+}
+
+/// With what a line is drawn.
+#[derive(Debug, Clone, Copy)]
+pub struct Pen {
+    /// Colour.
+    pub color: Color32,
+    /// Width, points.
+    pub width: f64,
+    /// Whether it is dashed.
+    pub is_dashed: bool,
+}
+
+/// Shaft and head of an arrow on the ground.
+pub fn arrow_lines([tail, tip]: [[f64; 2]; 2]) -> [[[f64; 2]; 2]; 3] {
+    let way = [tip[0] - tail[0], tip[1] - tail[1]];
+    let length = way[0].hypot(way[1]).max(1e-9);
+    let (along, head) = (way.map(|v| v / length), (0.3 * length).min(0.8));
+    let wing = |side: f64| {
+        let across = [-along[1] * side, along[0] * side];
+        std::array::from_fn(|i| tip[i] - head * along[i] + 0.45 * head * across[i])
+    };
+    [[tail, tip], [wing(1.0), tip], [wing(-1.0), tip]]
+}
+
+/// A density over its largest value.
+///
+/// - `off_m`: place off the lowest point of its grid, m, 0 or more; 0 beyond the grid.
+fn density_share(density: &SceneDensity, off_m: [f32; 2]) -> f32 {
+    let (grid, values) = (&density.map.grid, &density.map.values);
+    let [nx, ny] = grid.size;
+    let [x, y] = [0, 1].map(|axis| off_m[axis] / grid.step_m[axis] as f32);
+    let (i, j) = (x as usize, y as usize);
+    if i + 1 >= nx || j + 1 >= ny {
+        return 0.0;
+    }
+    let (fx, fy) = (x - i as f32, y - j as f32);
+    let value = |i: usize, j: usize| values.get(j * nx + i).copied().unwrap_or(0.0) as f32;
+    let row = |j: usize| value(i, j) + (value(i + 1, j) - value(i, j)) * fx;
+    let here = row(j) + (row(j + 1) - row(j)) * fy;
+    (here / density.peak as f32).clamp(0.0, 1.0)
+}

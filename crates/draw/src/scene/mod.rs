@@ -1,0 +1,32 @@
+//! Drawing of scenes, on the CPU: the same pixels in the window and off screen, without a graphics
+//! driver. Text and symbols over the scene are painted by egui in both.
+
+mod camera;
+mod canvas;
+mod cars;
+mod frame;
+pub mod gpu;
+mod grid;
+mod ground;
+mod labels;
+mod legend;
+mod lines;
+mod marks;
+mod measures;
+mod moving_lines;
+mod picture;
+mod raster;
+mod row_map;
+mod shade;
+mod shadow;
+mod underlay;
+#[cfg(test)]
+mod underlay_tests;
+mod view;
+
+pub use camera::{Camera, Projection};
+pub use canvas::{SceneCanvas, SceneLook};
+pub use impactlab_document::scene::ViewKind;
+pub use measures::{draw_measure, draw_measure_text, measure_text_place};
+pub use picture::{ScenePicture, scene_image};
+pub use view::{Follow, SceneView, scene_view_ui};

@@ -1,0 +1,48 @@
+//! The ground along a row of pixels.
+
+/// Which place of the ground is under each pixel of a row. Places are off the point that is looked at, m,
+/// for which single precision suffices.
+pub struct RowMap {
+    map: [[f32; 3]; 3],
+    start: [f32; 3],
+}
+
+/// The place under a pixel.
+#[derive(Debug, Clone, Copy)]
+pub struct Spot {
+    /// The place, off the point that is looked at, m.
+    pub place: [f32; 2],
+    per: f32,
+}
+
+impl RowMap {
+    /// - `map`: that of [`Projection::ground_map`](crate::scene::Projection::ground_map);
+    /// - `py`: the middle of the row, pixels.
+    pub fn new(map: [[f32; 3]; 3], py: f32) -> Self {
+        Self { start: map.map(|of| of[0] + of[2] * py), map }
+    }
+
+    /// The place under the middle of a pixel; `None` above the horizon.
+    pub fn at(&self, column: usize) -> Option<Spot> {
+        let px = column as f32 + 0.5;
+        let ([nx, ny, nd], [mx, my, md]) = (self.start, &self.map);
+        let d = nd + md[1] * px;
+        if d <= 1e-9 {
+            return None;
+        }
+        let per = 1.0 / d;
+        Some(Spot { place: [(nx + mx[1] * px) * per, (ny + my[1] * px) * per], per })
+    }
+
+    /// By how much a coordinate changes from a pixel to the one at its right, and to the one below, m.
+    pub fn changes(&self, spot: &Spot, axis: usize) -> [f32; 2] {
+        let (of, md, at) = (&self.map[axis], &self.map[2], spot.place[axis]);
+        [(of[1] - at * md[1]) * spot.per, (of[2] - at * md[2]) * spot.per]
+    }
+
+    /// By how much a coordinate changes over a pixel, m, more than 0.
+    pub fn change(&self, spot: &Spot, axis: usize) -> f32 {
+        let [a, b] = self.changes(spot, axis);
+        (a * a + b * b).sqrt().max(1e-9)
+    }
+}

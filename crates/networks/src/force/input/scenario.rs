@@ -1,0 +1,331 @@
+//! The scenario θ of a collision, which is the input of a force model, and its canonical form.
+//!
+//! Two symmetries hold: a mirrored scenario has the mirrored force, and a common velocity of both
+//! vehicles does not change the force, since tyre forces during the contact are neglected.
+
+use serde::{Deserialize, Serialize};
+
+use impactlab_core::collision::{Impact, ImpactCase, Scenario, ScenarioError};
+use impactlab_core::data::{Case, DataError, ForceAttributes, StruckSide, Value};
+use impactlab_core::numerics::wrap_angle_rad;
+use impactlab_core::ranges::{
+    BODY_MASS, BODY_YAW_INERTIA, BULLET_OFFSET, CONTACT_X, CONTACT_Y, HEADING, Range, SPEED,
+};
+
+/// Two vehicles at first contact, in world axes with X along the target's heading. Neither vehicle
+/// turns before the contact.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ForceScenario {
+    /// Masses of target and bullet, kg.
+    pub mass_kg: [f64; 2],
+    /// Velocity `[x, y]` of the target's CG, m/s.
+    pub target_velocity_m_s: [f64; 2],
+    /// Velocity `[x, y]` of the bullet's CG, m/s.
+    pub bullet_velocity_m_s: [f64; 2],
+    /// Heading of the bullet against the target's, rad, −π to π.
+    pub theta_b_rad: f64,
+    /// The struck side of the target.
+    pub side: StruckSide,
+    /// First contact `[x, y]` in the target's body axes from its CG, m, where it is known.
+    pub contact_m: Option<[f64; 2]>,
+    /// Direction of the contact normal, which points into the target, from the target's heading, rad,
+    /// −π to π, where it is known. The cases of a data set are blows against the side: π/2 on the right.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub normal_rad: Option<f64>,
+    /// The bullet's CG `[x, y]` from the target's CG, m, where it is known.
+    pub bullet_position_m: Option<[f64; 2]>,
+    /// Kind of bullet body, where it is known.
+    pub bullet_body: Option<String>,
+    /// Yaw inertias of target and bullet, kg m², where they are known.
+    pub yaw_inertia_kg_m2: [Option<f64>; 2],
+}
+
+impl ForceScenario {
+    /// The scenario of a case of a force data set.
+    ///
+    /// # Errors
+    /// [`DataError`] for a required column that is missing or wrong.
+    pub fn from_case(case: &Case) -> Result<Self, DataError> {
+        let attributes = ForceAttributes::read(&case.attributes)?;
+        let number = |name| case.attributes.number(name);
+        let position = number("bullet_x0_m").zip(number("bullet_y0_m"));
+        let bullet_body = case.attributes.get("bullet_body").map(|value| match value {
+            Value::Text(text) => text.clone(),
+            Value::Number(number) => number.to_string(),
+        });
+        let bullet_position_m = position.map(|(x, y)| [x, y]);
+        Ok(Self { bullet_position_m, bullet_body, ..Self::from_attributes(&attributes) })
+    }
+
+    /// The scenario of a case's attributes, without position and body of the bullet, which they do not
+    /// contain.
+    pub fn from_attributes(attributes: &ForceAttributes) -> Self {
+        let [_, contact_y_m] = attributes.contact_m;
+        let theta = attributes.theta_b_rad;
+        let approach = attributes.bullet_velocity_m_s[1] - attributes.target_velocity_m_s[1];
+        let side = || struck_side(Some(contact_y_m), theta, approach);
+        Self {
+            mass_kg: attributes.mass_kg,
+            target_velocity_m_s: attributes.target_velocity_m_s,
+            bullet_velocity_m_s: attributes.bullet_velocity_m_s,
+            theta_b_rad: theta,
+            side: attributes.side.unwrap_or_else(side),
+            contact_m: Some(attributes.contact_m),
+            normal_rad: None,
+            bullet_position_m: None,
+            bullet_body: None,
+            yaw_inertia_kg_m2: attributes.yaw_inertia_kg_m2,
+        }
+    }
+
+    /// The scenario of an impact, turned so that the target heads along X. Yaw rates before the contact
+    /// are ignored, since no force model depends on them.
+    ///
+    /// # Errors
+    /// [`ScenarioError`] if the vehicles do not meet.
+    pub fn from_scenario(scenario: &Scenario) -> Result<Self, ScenarioError> {
+        let geometry = scenario.geometry()?;
+        let (target, bullet) = (&scenario.target, &scenario.bullet);
+        let (sin, cos) = target.heading_rad.sin_cos();
+        let turned = |[x, y]: [f64; 2]| [x * cos + y * sin, y * cos - x * sin];
+        let target_velocity_m_s = turned([target.vx_m_s, target.vy_m_s]);
+        let bullet_velocity_m_s = turned([bullet.vx_m_s, bullet.vy_m_s]);
+        let contact_m = geometry.target.body_from_world(geometry.contact_point_m);
+        let theta_b_rad = wrap_angle_rad(bullet.heading_rad - target.heading_rad);
+        let approach = bullet_velocity_m_s[1] - target_velocity_m_s[1];
+        Ok(Self {
+            mass_kg: [target.mass_kg, bullet.mass_kg],
+            target_velocity_m_s,
+            bullet_velocity_m_s,
+            theta_b_rad,
+            side: struck_side(Some(contact_m[1]), theta_b_rad, approach),
+            contact_m: Some(contact_m),
+            normal_rad: Some(wrap_angle_rad(geometry.normal_angle_rad - target.heading_rad)),
+            bullet_position_m: Some(
+                geometry.target.body_from_world([geometry.bullet.x_m, geometry.bullet.y_m]),
+            ),
+            bullet_body: None,
+            yaw_inertia_kg_m2: [Some(target.yaw_inertia_kg_m2), Some(bullet.yaw_inertia_kg_m2)],
+        })
+    }
+
+    /// Every number of the scenario with its name and its range.
+    pub fn ranges(&self) -> Vec<(String, f64, Range)> {
+        let mut numbers = Vec::new();
+        let mut add = |name: &str, value: Option<f64>, range| {
+            numbers.extend(value.map(|value| (name.to_owned(), value, range)));
+        };
+        for (i, body) in ["target", "bullet"].into_iter().enumerate() {
+            add(&format!("mass_kg of the {body}"), Some(self.mass_kg[i]), BODY_MASS);
+            let inertia = self.yaw_inertia_kg_m2[i];
+            add(&format!("yaw_inertia_kg_m2 of the {body}"), inertia, BODY_YAW_INERTIA);
+        }
+        for (i, axis) in ["x", "y"].into_iter().enumerate() {
+            let [target, bullet] = [self.target_velocity_m_s[i], self.bullet_velocity_m_s[i]];
+            add(&format!("target_velocity_m_s, {axis}"), Some(target), SPEED);
+            add(&format!("bullet_velocity_m_s, {axis}"), Some(bullet), SPEED);
+            let range = [CONTACT_X, CONTACT_Y][i];
+            add(&format!("contact_m, {axis}"), self.contact_m.map(|at| at[i]), range);
+            let position = self.bullet_position_m.map(|at| at[i]);
+            add(&format!("bullet_position_m, {axis}"), position, BULLET_OFFSET);
+        }
+        add("theta_b_rad", Some(self.theta_b_rad), HEADING);
+        add("normal_rad", self.normal_rad, HEADING);
+        numbers
+    }
+
+    /// The planar impact of the collision, with the normal across the target; `None` if contact
+    /// point, position of the bullet or a yaw inertia is open, or if the contact lies on neither
+    /// side of the target.
+    ///
+    /// - `restitution`: coefficient of restitution e, 0 to 1;
+    /// - `friction_limit`: friction limit μ_c, 0 or more.
+    pub fn impact(&self, restitution: f64, friction_limit: f64) -> Option<Impact> {
+        let ([m_t_kg, m_b_kg], [izz_t, izz_b]) = (self.mass_kg, self.yaw_inertia_kg_m2);
+        let case = ImpactCase {
+            m_t_kg,
+            m_b_kg,
+            v_t_m_s: self.target_velocity_m_s,
+            v_b_m_s: self.bullet_velocity_m_s,
+            theta_b_rad: self.theta_b_rad,
+            izz_t_kg_m2: izz_t?,
+            izz_b_kg_m2: izz_b?,
+            contact_m: self.contact_m?,
+            bullet_m: self.bullet_position_m?,
+        };
+        case.to_impact(restitution, friction_limit).ok()
+    }
+
+    /// Velocity of the bullet relative to the target `v_b − v_t`, m/s.
+    pub fn relative_velocity_m_s(&self) -> [f64; 2] {
+        [0, 1].map(|i| self.bullet_velocity_m_s[i] - self.target_velocity_m_s[i])
+    }
+
+    /// The mirror image left to right.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        let mirror = |[x, y]: [f64; 2]| [x, -y];
+        Self {
+            target_velocity_m_s: mirror(self.target_velocity_m_s),
+            bullet_velocity_m_s: mirror(self.bullet_velocity_m_s),
+            theta_b_rad: -self.theta_b_rad,
+            side: match self.side {
+                StruckSide::Left => StruckSide::Right,
+                StruckSide::Right => StruckSide::Left,
+            },
+            contact_m: self.contact_m.map(mirror),
+            normal_rad: self.normal_rad.map(|normal| wrap_angle_rad(-normal)),
+            bullet_position_m: self.bullet_position_m.map(mirror),
+            ..self.clone()
+        }
+    }
+
+    /// The canonical form of this scenario, and whether it is mirrored. Of all equivalent scenarios it
+    /// is the one with the bullet on the right of the target, so that it mostly pushes along +y, and
+    /// with the target at rest.
+    #[must_use]
+    pub fn canonical(&self) -> (Self, bool) {
+        let mirrored = self.side == StruckSide::Left;
+        let right = if mirrored { self.mirrored() } else { self.clone() };
+        let bullet_velocity_m_s = right.relative_velocity_m_s();
+        (Self { target_velocity_m_s: [0.0; 2], bullet_velocity_m_s, ..right }, mirrored)
+    }
+}
+
+/// The struck side of a case that does not state it: the side of the contact point, else the side
+/// from which the bullet heads towards the target, else the side from which it moves.
+///
+/// - `approach_m_s`: lateral velocity of the bullet relative to the target.
+fn struck_side(contact_y_m: Option<f64>, theta_b_rad: f64, approach_m_s: f64) -> StruckSide {
+    let signs = [contact_y_m.unwrap_or(0.0), -theta_b_rad, -approach_m_s];
+    match signs.into_iter().find(|sign| *sign != 0.0) {
+        Some(sign) if sign > 0.0 => StruckSide::Left,
+        _ => StruckSide::Right,
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use super::*;
+    use crate::force::ForceCase;
+    use crate::force::input::shipped;
+    use crate::learning::{TEST_SHARE, split};
+    use impactlab_core::collision::{
+        ContactLocation, DEFAULT_CONTACT_CLOSING_M_S, DEFAULT_FRICTION_LIMIT, DEFAULT_RESTITUTION,
+    };
+
+    pub(crate) fn example(side: StruckSide) -> ForceScenario {
+        let right = ForceScenario {
+            mass_kg: [2000.0, 1500.0],
+            target_velocity_m_s: [15.0, 0.25],
+            bullet_velocity_m_s: [16.0, 3.5],
+            theta_b_rad: 0.5,
+            side: StruckSide::Right,
+            contact_m: Some([-1.5, -0.925]),
+            normal_rad: None,
+            bullet_position_m: Some([-2.75, -2.5]),
+            bullet_body: Some("A".to_owned()),
+            yaw_inertia_kg_m2: [Some(3600.0), None],
+        };
+        if side == StruckSide::Right { right } else { right.mirrored() }
+    }
+
+    #[test]
+    fn mirrored_twice_is_the_same() {
+        for side in [StruckSide::Left, StruckSide::Right] {
+            let scenario = example(side);
+            assert_eq!(scenario.mirrored().mirrored(), scenario);
+            assert_ne!(scenario.mirrored(), scenario);
+        }
+    }
+
+    #[test]
+    fn mirror_images_and_moving_observers_share_one_canonical_form() {
+        let (canonical, mirrored) = example(StruckSide::Right).canonical();
+        assert!(!mirrored);
+        assert_eq!(canonical.relative_velocity_m_s(), [1.0, 3.25]);
+        assert_eq!(example(StruckSide::Left).canonical(), (canonical.clone(), true));
+        assert_eq!(canonical.canonical(), (canonical.clone(), false));
+        let mut faster = example(StruckSide::Right);
+        for velocity in [&mut faster.target_velocity_m_s, &mut faster.bullet_velocity_m_s] {
+            *velocity = [velocity[0] + 8.0, velocity[1] - 0.5];
+        }
+        assert_eq!(faster.canonical().0, canonical);
+    }
+
+    #[test]
+    fn the_side_follows_from_contact_heading_and_motion() {
+        for (contact_y_m, theta_b_rad, approach_m_s, side) in [
+            (Some(-0.9), -0.3, -1.0, StruckSide::Right),
+            (Some(0.9), 0.3, 1.0, StruckSide::Left),
+            (None, 0.3, -1.0, StruckSide::Right),
+            (None, -0.3, 1.0, StruckSide::Left),
+            (None, 0.0, 1.0, StruckSide::Right),
+            (None, 0.0, -1.0, StruckSide::Left),
+            (None, 0.0, 0.0, StruckSide::Right),
+        ] {
+            let got = struck_side(contact_y_m, theta_b_rad, approach_m_s);
+            assert_eq!(got, side, "{contact_y_m:?} {theta_b_rad} {approach_m_s}");
+        }
+    }
+
+    #[test]
+    fn a_scenario_is_seen_from_the_target() {
+        let scenario = Scenario::example();
+        let seen = ForceScenario::from_scenario(&scenario).unwrap();
+        assert_eq!(seen.side, StruckSide::Right);
+        assert!(seen.contact_m.unwrap()[0] < -1.0, "{seen:?}");
+        // Turn the whole scene by a quarter: nothing changes.
+        let mut turned = scenario;
+        let turn = |[x, y]: [f64; 2]| [-y, x];
+        [turned.target_x_m, turned.target_y_m] = turn([turned.target_x_m, turned.target_y_m]);
+        for vehicle in [&mut turned.target, &mut turned.bullet] {
+            vehicle.heading_rad += FRAC_PI_2;
+            [vehicle.vx_m_s, vehicle.vy_m_s] = turn([vehicle.vx_m_s, vehicle.vy_m_s]);
+        }
+        if let ContactLocation::Footprints { bullet_x_m, bullet_y_m } = &mut turned.contact.location
+        {
+            [*bullet_x_m, *bullet_y_m] = turn([*bullet_x_m, *bullet_y_m]);
+        }
+        let again = ForceScenario::from_scenario(&turned).unwrap();
+        let numbers = |s: &ForceScenario| {
+            let pairs = [s.target_velocity_m_s, s.bullet_velocity_m_s, s.contact_m.unwrap()];
+            [pairs.concat(), s.bullet_position_m.unwrap().to_vec(), vec![s.theta_b_rad]].concat()
+        };
+        for (a, b) in numbers(&seen).into_iter().zip(numbers(&again)) {
+            assert!((a - b).abs() < 1e-9, "{seen:?}\n{again:?}");
+        }
+    }
+
+    /// Restitution and friction limit of the momentum solution are those that fit the training cases
+    /// best, to the hundredth.
+    #[test]
+    fn the_defaults_of_the_contact_are_fitted_to_the_training_cases() {
+        let cases = shipped("fea");
+        let train = split(&cases, 0, TEST_SHARE).train.into_iter().map(|idx| &cases[idx]);
+        let train: Vec<&ForceCase> = train.filter(|case| case.is_clean()).collect();
+        let mean_error = |restitution, friction_limit| {
+            let error = |case: &&ForceCase| {
+                let impact = case.scenario.impact(restitution, friction_limit).unwrap();
+                let ([px, py], [qx, qy]) = (impact.solve().unwrap().impulse_n_s, case.impulse_n_s);
+                (px - qx).hypot(py - qy) / qx.hypot(qy)
+            };
+            train.iter().map(error).sum::<f64>() / train.len() as f64
+        };
+        let fitted = mean_error(DEFAULT_RESTITUTION, DEFAULT_FRICTION_LIMIT);
+        assert!((fitted - 0.171).abs() < 1e-3, "{fitted}");
+        for (e, mu) in (0..=10).flat_map(|i| (0..=10).map(move |j| (i, j))) {
+            let [e, mu] = [f64::from(e) / 10.0, f64::from(mu) / 10.0];
+            let (e, mu) = (DEFAULT_RESTITUTION * 2.0 * e, DEFAULT_FRICTION_LIMIT * 2.0 * mu);
+            assert!(mean_error(e, mu) > fitted - 5e-4, "{e} {mu}");
+        }
+        let closing = train
+            .iter()
+            .map(|case| case.scenario.impact(0.0, 0.0).unwrap().closing_velocity_m_s()[0]);
+        let (low, high) = closing.fold((f64::MAX, 0.0_f64), |(l, h), v| (l.min(v), h.max(v)));
+        let [slowest, fastest] = DEFAULT_CONTACT_CLOSING_M_S;
+        assert!((low - slowest).abs() < 0.05 && (high - fastest).abs() < 0.05, "{low} {high}");
+    }
+}

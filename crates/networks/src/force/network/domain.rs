@@ -1,0 +1,228 @@
+//! Where a scenario lies among the training cases of a network, and how far it may be trusted there.
+//!
+//! ```text
+//! u = max(d / d₀ − 1, x − x₀, 0)          a = (1 − u)² (1 + 2 u), 0 from u = 1 on
+//! ```
+//!
+//! d is the mean distance to the three nearest training cases in the space of the scenario's features,
+//! each in standard deviations of the training cases, and d₀ the largest such distance of a training
+//! case from the others; x is how far the features lie beyond the ranges of training, in standard
+//! deviations, over all features. So a training case that is left out has a = 1, as have scenarios
+//! among the training cases, and one that lies x₀ and a standard deviation outside has a = 0. The
+//! cases fill a box nearly evenly, of 3.5 standard deviations a side.
+//!
+//! The direction of the contact normal is one more feature. All training cases are blows against the
+//! side.
+
+use std::f64::consts::FRAC_PI_2;
+
+use crate::force::network::features::{N_SCENARIO, SCENARIO_NAMES, Standardisation};
+use crate::force::network::features::{OutsideTraining, scenario_numbers};
+use crate::force::{ForceCase, ForceScenario};
+use impactlab_core::numerics::wrap_angle_rad;
+
+/// Number of nearest training cases whose mean distance counts.
+const N_NEAREST: usize = 3;
+/// x₀, the distance beyond the ranges within which the network is trusted fully: a tenth of a range
+/// that is filled evenly.
+const SLACK: f64 = 1.0 / 3.0;
+/// Standard deviation that stands for that of a feature which is alike in all training cases, as a
+/// share of the feature.
+const CONSTANT_SHARE: f64 = 0.05;
+/// Name of the direction of the normal among the features.
+const NORMAL_NAME: &str = "contact normal from across the target [rad]";
+/// Index of the bullet's heading, whose deviation is the unit of the normal as well: turning either
+/// turns the blow.
+const THETA_IDX: usize = 4;
+
+/// The training cases of a network as points in the space of the scenario's features.
+#[derive(Debug, Clone)]
+pub(crate) struct ForceDomain {
+    mean: [f64; N_SCENARIO],
+    scale: [f64; N_SCENARIO],
+    range: [[f64; 2]; N_SCENARIO],
+    points: Vec<[f64; N_SCENARIO]>,
+    /// d₀.
+    spacing: f64,
+}
+
+impl ForceDomain {
+    /// The domain of a network.
+    ///
+    /// - `standardisation`: of the network's features;
+    /// - `cases`: the training cases. Those without contact point are left out.
+    pub(crate) fn of(standardisation: &Standardisation, cases: &[ForceCase]) -> Self {
+        let at = |values: &[f64], i: usize| values.get(i).copied().unwrap_or(0.0);
+        let indices: [usize; N_SCENARIO] = std::array::from_fn(|i| i);
+        let mean = indices.map(|i| at(&standardisation.mean, i));
+        let range = indices.map(|i| standardisation.range.get(i).copied().unwrap_or([0.0; 2]));
+        let scale = indices.map(|i| {
+            let [low, high] = range[i];
+            match high - low > tolerance(high) {
+                true => at(&standardisation.std, i),
+                false => CONSTANT_SHARE * mean[i].abs().max(1.0),
+            }
+        });
+        let mut domain = Self { mean, scale, range, points: Vec::new(), spacing: 0.0 };
+        let point = |case: &ForceCase| Some(domain.point(&case.scenario, case.scenario.contact_m?));
+        domain.points = cases.iter().filter_map(point).collect();
+        let left_out = |i: usize| {
+            let others = domain.points.iter().enumerate().filter(|(j, _)| *j != i);
+            nearest(&domain.points[i], others.map(|(_, other)| other))
+        };
+        domain.spacing = (0..domain.points.len()).map(left_out).fold(0.0, f64::max);
+        domain
+    }
+
+    /// Applicability a of the network, 0 to 1.
+    ///
+    /// - `scenario`: canonical;
+    /// - `contact_m`: its contact point, or one that is tried.
+    pub(crate) fn applicability(&self, scenario: &ForceScenario, contact_m: [f64; 2]) -> f64 {
+        let numbers = scenario_numbers(scenario, contact_m);
+        let beyond = |i: usize| (beyond(numbers[i], self.range[i]) / self.scale[i]).powi(2);
+        let normal = normal_turn_rad(scenario) / self.scale[THETA_IDX];
+        let outside = ((0..N_SCENARIO).map(beyond).sum::<f64>() + normal * normal).sqrt();
+        let distance = nearest(&self.point(scenario, contact_m), self.points.iter());
+        let far = match self.spacing > 0.0 {
+            true => distance / self.spacing - 1.0,
+            false => 0.0,
+        };
+        let u = far.max(outside - SLACK).clamp(0.0, 1.0);
+        (1.0 - u).powi(2) * (1.0 + 2.0 * u)
+    }
+
+    /// The features of a canonical scenario that lie outside the range of the training cases. Features
+    /// that the scenario leaves open are never listed.
+    pub(crate) fn outside(&self, scenario: &ForceScenario) -> Vec<OutsideTraining> {
+        let numbers = scenario_numbers(scenario, scenario.contact_m.unwrap_or([f64::NAN; 2]));
+        let check = |i: usize| {
+            let (value, range) = (numbers[i], self.range[i]);
+            let beyond = beyond(value, range);
+            (beyond > tolerance(range[1])).then(|| OutsideTraining {
+                feature: SCENARIO_NAMES[i],
+                value,
+                range,
+                deviations: beyond / self.scale[i],
+            })
+        };
+        let turn = normal_turn_rad(scenario);
+        let normal = (turn.abs() > tolerance(0.0)).then(|| OutsideTraining {
+            feature: NORMAL_NAME,
+            value: turn,
+            range: [0.0; 2],
+            deviations: turn.abs() / self.scale[THETA_IDX],
+        });
+        (0..N_SCENARIO).filter_map(check).chain(normal).collect()
+    }
+
+    fn point(&self, scenario: &ForceScenario, contact_m: [f64; 2]) -> [f64; N_SCENARIO] {
+        let numbers = scenario_numbers(scenario, contact_m);
+        std::array::from_fn(|i| (numbers[i] - self.mean[i]) / self.scale[i])
+    }
+}
+
+/// How far a value lies beyond a range; zero inside and for a value that is not a number.
+fn beyond(value: f64, [low, high]: [f64; 2]) -> f64 {
+    (low - value).max(value - high).max(0.0)
+}
+
+/// A range that was never varied allows for rounding.
+fn tolerance(high: f64) -> f64 {
+    1e-6 * (1.0 + high.abs())
+}
+
+/// Angle of the normal from across the target, rad; zero where the scenario leaves it open.
+fn normal_turn_rad(scenario: &ForceScenario) -> f64 {
+    scenario.normal_rad.map_or(0.0, |normal| wrap_angle_rad(normal - FRAC_PI_2))
+}
+
+/// Mean distance to the nearest points; zero if there is none.
+fn nearest<'a>(
+    point: &[f64; N_SCENARIO],
+    others: impl Iterator<Item = &'a [f64; N_SCENARIO]>,
+) -> f64 {
+    let square = |other: &[f64; N_SCENARIO]| {
+        point.iter().zip(other).map(|(a, b)| (a - b).powi(2)).sum::<f64>()
+    };
+    let mut distances: Vec<f64> = others.map(|other| square(other).sqrt()).collect();
+    distances.sort_by(f64::total_cmp);
+    distances.truncate(N_NEAREST);
+    distances.iter().sum::<f64>() / distances.len().max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::force::input::shipped;
+
+    fn standardisation(cases: &[ForceCase]) -> Standardisation {
+        let row = |case: &ForceCase| {
+            scenario_numbers(&case.scenario, case.scenario.contact_m.unwrap()).to_vec()
+        };
+        Standardisation::of(&cases.iter().map(row).collect::<Vec<_>>())
+    }
+
+    fn of(cases: &[ForceCase]) -> ForceDomain {
+        ForceDomain::of(&standardisation(cases), cases)
+    }
+
+    /// Five folds of both data sets: cases that a domain has not seen lie within it, with 1 for nearly
+    /// all of them.
+    #[test]
+    fn training_cases_that_are_left_out_lie_in_the_domain() {
+        let cases = [shipped("fea"), shipped("fea-wide")].concat();
+        let mut applicability = Vec::new();
+        for fold in 0..5 {
+            let is_test = |i: &usize| i % 5 == fold;
+            let of_part = |test: bool| -> Vec<ForceCase> {
+                let part = (0..cases.len()).filter(|i| is_test(i) == test);
+                part.map(|i| cases[i].clone()).collect()
+            };
+            let domain = of(&of_part(false));
+            applicability.extend(of_part(true).iter().map(|case| {
+                domain.applicability(&case.scenario, case.scenario.contact_m.unwrap())
+            }));
+        }
+        let mean = applicability.iter().sum::<f64>() / applicability.len() as f64;
+        let full = applicability.iter().filter(|a| **a == 1.0).count();
+        assert!(mean > 0.99 && full >= 185, "{mean} {full} {applicability:?}");
+    }
+
+    #[test]
+    fn applicability_falls_to_zero_outside_and_the_quantity_is_named() {
+        let cases = [shipped("fea"), shipped("fea-wide")].concat();
+        let (domain, seen) = (of(&cases), cases[10].scenario.clone());
+        let contact = seen.contact_m.unwrap();
+        assert_eq!(domain.applicability(&seen, contact), 1.0);
+        assert_eq!(domain.outside(&seen), vec![]);
+        let mut before = 1.0;
+        for mass_kg in [2500.0, 2600.0, 2700.0, 2800.0, 2900.0, 3000.0, 4000.0] {
+            let heavy = ForceScenario { mass_kg: [seen.mass_kg[0], mass_kg], ..seen.clone() };
+            let now = domain.applicability(&heavy, contact);
+            assert!(now <= before, "{mass_kg}: {now} after {before}");
+            let outside = domain.outside(&heavy);
+            assert_eq!(outside.len(), usize::from(mass_kg > 2500.0), "{outside:?}");
+            assert!(outside.iter().all(|of| of.feature == "bullet mass [kg]"), "{outside:?}");
+            before = now;
+        }
+        assert_eq!(before, 0.0);
+        for (normal_rad, expected) in [(FRAC_PI_2, 1.0), (0.0, 0.0), (std::f64::consts::PI, 0.0)] {
+            let turned = ForceScenario { normal_rad: Some(normal_rad), ..seen.clone() };
+            assert_eq!(domain.applicability(&turned, contact), expected, "{normal_rad}");
+            assert_eq!(domain.outside(&turned).len(), usize::from(expected == 0.0));
+        }
+        let fast = ForceScenario { bullet_velocity_m_s: [70.0, 3.0], ..seen };
+        assert_eq!(domain.applicability(&fast, contact), 0.0);
+    }
+
+    /// A quantity that no training case varies says nothing about other values of it.
+    #[test]
+    fn a_mass_that_was_never_varied_is_the_only_one_known() {
+        let cases = shipped("fea");
+        let (domain, seen) = (of(&cases), &cases[10].scenario);
+        let light = ForceScenario { mass_kg: [1700.0, seen.mass_kg[1]], ..seen.clone() };
+        assert_eq!(domain.applicability(&light, seen.contact_m.unwrap()), 0.0);
+        assert_eq!(domain.outside(&light)[0].feature, "target mass [kg]");
+    }
+}

@@ -1,0 +1,214 @@
+//! The inputs of the network: numbers that describe a scenario and its physics.
+
+use serde::{Deserialize, Serialize};
+
+use crate::force::physics::CentreCurve;
+use crate::force::{ForceCase, ForceScenario};
+use crate::nn::{Expected, NnError, check_length, check_number, check_numbers};
+use impactlab_core::uncertainty::{Badge, BadgeKind, CURVE_N_INSTANTS};
+use impactlab_core::units::significant;
+
+/// Names of the scenario's features as shown to the user, with units.
+pub(super) const SCENARIO_NAMES: [&str; N_SCENARIO] = [
+    "target mass [kg]",
+    "bullet mass [kg]",
+    "v_bx − v_tx [m/s]",
+    "v_by − v_ty [m/s]",
+    "θ_b [rad]",
+    "contact x [m]",
+];
+pub(super) const N_SCENARIO: usize = 6;
+/// Number of features of the scenario's physics.
+const N_PHYSICS: usize = 6;
+/// Number of features of a scenario besides one for each kind of body.
+pub(crate) const N_FEATURES: usize = N_SCENARIO + N_PHYSICS;
+/// Number of features of each instant.
+pub(crate) const N_INSTANT_FEATURES: usize = 6;
+
+/// Largest number of contact points of a model, each of which a prediction computes.
+const MAX_OPEN_CONTACTS: f64 = 100.0;
+
+/// Units in which crush depth and sliding velocity enter the network.
+const DEPTH_UNIT_M: f64 = 0.1;
+const SLIP_UNIT_M_S: f64 = 2.0;
+
+/// Mean, deviation and range of every feature over the training cases.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Standardisation {
+    /// Mean of each feature.
+    pub mean: Vec<f64>,
+    /// Standard deviation of each feature; 1 where all are alike.
+    pub std: Vec<f64>,
+    /// Lowest and highest value of each feature of the scenario.
+    pub range: Vec<[f64; 2]>,
+}
+
+/// A feature of a scenario that lies outside the range of the training cases.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OutsideTraining {
+    /// Name and unit of the feature in the canonical scenario: bullet on the right, velocities relative
+    /// to the target.
+    pub feature: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// Lowest and highest value in training.
+    pub range: [f64; 2],
+    /// Distance from the range in standard deviations of the training cases.
+    pub deviations: f64,
+}
+
+impl OutsideTraining {
+    /// The badge that names the feature.
+    pub(crate) fn badge(&self) -> Badge {
+        let [low, high] = self.range.map(significant);
+        let text = format!(
+            "{} is {}, trained on {low} to {high}: {} standard deviations outside",
+            self.feature,
+            significant(self.value),
+            significant(self.deviations)
+        );
+        Badge::new(BadgeKind::OutsideDomain, text)
+            .with_value(self.feature, self.value)
+            .with_range(self.range)
+    }
+}
+
+/// The features of a canonical scenario: its numbers, then its physics, then the body.
+pub(crate) fn features(
+    scenario: &ForceScenario,
+    centre: &CentreCurve,
+    (contact_m, body_idx, n_bodies): ([f64; 2], usize, usize),
+) -> Vec<f64> {
+    let numbers = scenario_numbers(scenario, contact_m);
+    let [px, py] = centre.impulse_n_s;
+    let [mx, my] = centre.momentum_impulse_n_s;
+    let size = px.hypot(py).max(1.0);
+    let physics = [
+        size.ln(),
+        px.atan2(py),
+        (mx.hypot(my).max(1.0) / size).ln(),
+        centre.curve.duration_s.max(1e-3).ln(),
+        centre.scale_n.max(1.0).ln(),
+        centre.curve.peak().1,
+    ];
+    let body = (0..n_bodies).map(|i| f64::from(u8::from(i == body_idx)));
+    numbers.into_iter().chain(physics).chain(body).collect()
+}
+
+pub(super) fn scenario_numbers(
+    scenario: &ForceScenario,
+    [contact_x, _]: [f64; 2],
+) -> [f64; N_SCENARIO] {
+    let [vx, vy] = scenario.relative_velocity_m_s();
+    let [target_mass, bullet_mass] = scenario.mass_kg;
+    [target_mass, bullet_mass, vx, vy, scenario.theta_b_rad, contact_x]
+}
+
+/// The features of each instant, row by row, `[CURVE_N_INSTANTS, N_INSTANT_FEATURES]`.
+pub(crate) fn instant_features(centre: &CentreCurve) -> Vec<f32> {
+    let size = centre.impulse_n_s[0].hypot(centre.impulse_n_s[1]).max(1.0);
+    let magnitude = centre.curve.magnitude_n();
+    let mut impulse = 0.0;
+    (0..CURVE_N_INSTANTS)
+        .flat_map(|t| {
+            impulse += magnitude[t] * 1e-3 / size;
+            [
+                centre.curve.fx_n[t] / centre.scale_n,
+                centre.curve.fy_n[t] / centre.scale_n,
+                centre.depth_m[t] / DEPTH_UNIT_M,
+                (centre.slip_m_s[t] / SLIP_UNIT_M_S).tanh(),
+                impulse,
+                (t as f64 + 0.5) * 1e-3 / centre.curve.duration_s.max(1e-3) - 0.5,
+            ]
+            .map(|value| value as f32)
+        })
+        .collect()
+}
+
+impl Standardisation {
+    /// Checks the statistics from a file.
+    ///
+    /// # Errors
+    /// [`NnError`] with the first number or list that is refused.
+    pub(crate) fn check(&self, n_bodies: usize) -> Result<(), NnError> {
+        check_length("standardisation.mean", self.mean.len(), N_FEATURES + n_bodies)?;
+        check_length("standardisation.std", self.std.len(), N_FEATURES + n_bodies)?;
+        check_length("standardisation.range", self.range.len(), N_SCENARIO)?;
+        check_numbers("standardisation.std", &self.std, Expected::Positive)
+    }
+
+    /// Statistics over the training cases.
+    ///
+    /// - `rows`: their features, all of one length.
+    pub(crate) fn of(rows: &[Vec<f64>]) -> Self {
+        let n = rows.len().max(1) as f64;
+        let width = rows.first().map_or(0, Vec::len);
+        let column = |i: usize| rows.iter().filter_map(move |row| row.get(i).copied());
+        let mean: Vec<f64> = (0..width).map(|i| column(i).sum::<f64>() / n).collect();
+        let std = (0..width).map(|i| {
+            let variance = column(i).map(|x| (x - mean[i]).powi(2)).sum::<f64>() / n;
+            if variance.sqrt() > 1e-9 * (1.0 + mean[i].abs()) { variance.sqrt() } else { 1.0 }
+        });
+        let range = (0..N_SCENARIO.min(width)).map(|i| {
+            let low = column(i).fold(f64::INFINITY, f64::min);
+            [low, column(i).fold(f64::NEG_INFINITY, f64::max)]
+        });
+        let (std, range) = (std.collect(), range.collect());
+        Self { mean, std, range }
+    }
+
+    /// (x − mean) / deviation.
+    pub(crate) fn apply(&self, row: &[f64]) -> Vec<f32> {
+        let scaled = row.iter().zip(&self.mean).zip(&self.std);
+        scaled.map(|((x, mean), std)| ((x - mean) / std) as f32).collect()
+    }
+}
+
+/// Distribution of contact point and kind of body over the training cases, for scenarios that leave
+/// them open.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OpenFeatures {
+    /// Contact points of equal probability, target body axes, canonical, m.
+    pub contact_m: Vec<[f64; 2]>,
+    /// Probability of each body.
+    pub body: Vec<f64>,
+}
+
+impl OpenFeatures {
+    /// Checks the distribution from a file.
+    ///
+    /// # Errors
+    /// [`NnError`] with the first number or list that is refused.
+    pub(crate) fn check(&self, n_bodies: usize) -> Result<(), NnError> {
+        check_length("open.body", self.body.len(), n_bodies)?;
+        check_numbers("open.body", &self.body, Expected::Share)?;
+        if n_bodies > 1 {
+            check_number("open.body (sum)", self.body.iter().sum(), Expected::Positive)?;
+        }
+        let n_contacts = self.contact_m.len() as f64;
+        check_number("open.contact_m (number)", n_contacts, Expected::Magnitude(MAX_OPEN_CONTACTS))
+    }
+
+    /// The distribution over the training cases: contacts at the middles of `n_contacts` equal
+    /// shares of the cases ordered by x, bodies by frequency.
+    pub(crate) fn of(cases: &[ForceCase], bodies: &[String], n_contacts: usize) -> Self {
+        let mut contacts: Vec<[f64; 2]> =
+            cases.iter().filter_map(|case| case.scenario.contact_m).collect();
+        contacts.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let n = contacts.len();
+        let n_contacts = n_contacts.min(n);
+        let contact_m = (0..n_contacts)
+            .filter_map(|i| contacts.get((2 * i + 1) * n / (2 * n_contacts)).copied())
+            .collect();
+        let count = |name: &String| {
+            let is_it = |case: &&ForceCase| {
+                case.scenario.bullet_body.as_deref().unwrap_or_default() == name
+            };
+            cases.iter().filter(is_it).count() as f64
+        };
+        let body = bodies.iter().map(|name| count(name) / cases.len().max(1) as f64).collect();
+        Self { contact_m, body }
+    }
+}

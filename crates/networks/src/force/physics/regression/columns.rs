@@ -1,0 +1,129 @@
+//! The inputs of regressions and baselines: a canonical scenario as a row of numbers.
+
+use serde::{Deserialize, Serialize};
+
+use crate::force::{ForceCase, ForceScenario, MomentumModel};
+use impactlab_core::collision::ImpactSolution;
+
+/// Speed above which the scale of the lateral closing speed is logarithmic rather than linear, m/s. It
+/// is about the smallest closing speed of a PIT manoeuvre.
+const LATERAL_SPEED_SCALE_M_S: f64 = 0.5;
+
+/// The columns of a scenario that a model may use.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ColumnSet {
+    /// θ alone: masses, velocities and heading of the bullet.
+    #[default]
+    Theta,
+    /// θ, the contact point along the target, and the kind of the bullet's body.
+    ThetaContactAndBody,
+}
+
+/// Turns scenarios into rows of equal length.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FeatureMap {
+    columns: ColumnSet,
+    /// Mean contact point along the target, m, which replaces an unknown one.
+    contact_x_m: f64,
+    /// Kinds of body, sorted. The first has no column of its own.
+    bodies: Vec<String>,
+}
+
+impl ColumnSet {
+    /// Both sets of columns.
+    pub const ALL: [Self; 2] = [Self::Theta, Self::ThetaContactAndBody];
+
+    /// Name in tables.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Theta => "θ",
+            Self::ThetaContactAndBody => "θ + contact + body",
+        }
+    }
+}
+
+impl FeatureMap {
+    /// Takes mean contact point and kinds of body from training cases.
+    pub fn fit(cases: &[&ForceCase], columns: ColumnSet) -> Self {
+        let scenarios = || cases.iter().map(|case| &case.scenario);
+        let contacts: Vec<f64> = scenarios().filter_map(|s| Some(s.contact_m?[0])).collect();
+        let mut bodies: Vec<String> = scenarios().filter_map(|s| s.bullet_body.clone()).collect();
+        bodies.sort();
+        bodies.dedup();
+        let contact_x_m = contacts.iter().sum::<f64>() / contacts.len().max(1) as f64;
+        Self { columns, contact_x_m, bodies }
+    }
+
+    /// The row of a scenario: relative velocity along X; relative lateral velocity on a scale that is
+    /// logarithmic for large values, since forces and impulses are powers of it; heading; logarithms of
+    /// the masses; and, with all columns, the contact point along the target and for each kind of body
+    /// but the first a 1 if the bullet is of this kind, else a 0. For an unknown kind all of them have
+    /// the same share.
+    ///
+    /// ```text
+    /// [v_x, asinh(v_y / 0.5 m/s), θ_b, ln m_t, ln m_b (, x_c, body …)]
+    /// ```
+    pub fn row(&self, scenario: &ForceScenario) -> Vec<f64> {
+        let [vx, vy] = scenario.relative_velocity_m_s();
+        let [m_t, m_b] = scenario.mass_kg.map(f64::ln);
+        let lateral = (vy / LATERAL_SPEED_SCALE_M_S).asinh();
+        let mut row = vec![vx, lateral, scenario.theta_b_rad, m_t, m_b];
+        if self.columns == ColumnSet::ThetaContactAndBody {
+            row.push(scenario.contact_m.map_or(self.contact_x_m, |[x, _]| x));
+            let is_known = |body: &String| self.bodies.contains(body);
+            let body = scenario.bullet_body.as_ref().filter(|body| is_known(body));
+            let share = 1.0 / self.bodies.len().max(1) as f64;
+            row.extend(self.bodies.iter().skip(1).map(|kind| match body {
+                Some(body) if body == kind => 1.0,
+                Some(_) => 0.0,
+                None => share,
+            }));
+        }
+        row
+    }
+
+    /// The row of a scenario with two more columns: logarithm of the size and direction of the momentum
+    /// solution's impulse.
+    pub fn row_with_impulse(
+        &self,
+        scenario: &ForceScenario,
+        solution: &ImpactSolution,
+    ) -> Vec<f64> {
+        let [px, py] = solution.impulse_n_s;
+        let mut row = self.row(scenario);
+        row.extend([px.hypot(py).max(f64::MIN_POSITIVE).ln(), px.atan2(py)]);
+        row
+    }
+}
+
+impl ColumnSet {
+    /// The momentum solution that uses these columns.
+    pub(crate) fn fit_momentum(self, cases: &[&ForceCase]) -> MomentumModel {
+        MomentumModel::fit(cases, self == Self::ThetaContactAndBody)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::force::input::example;
+    use crate::force::input::shipped;
+    use impactlab_core::data::StruckSide;
+
+    #[test]
+    fn columns_that_must_not_be_known_change_nothing() {
+        let cases = shipped("fea");
+        let cases: Vec<&ForceCase> = cases.iter().collect();
+        let [theta, all] = ColumnSet::ALL.map(|columns| FeatureMap::fit(&cases, columns));
+        let known = example(StruckSide::Right);
+        let unknown = ForceScenario { contact_m: None, bullet_body: None, ..known.clone() };
+        assert_eq!(theta.row(&known), theta.row(&unknown));
+        assert_ne!(all.row(&known), all.row(&unknown));
+        assert_eq!(all.row(&known)[5..], [-1.5, 0.0]);
+        assert_eq!(all.row(&unknown)[6], 0.5);
+        assert!((all.row(&unknown)[5] - -1.54).abs() < 0.05);
+        assert_eq!(theta.row(&known).len(), 5);
+    }
+}

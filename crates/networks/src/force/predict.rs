@@ -1,0 +1,319 @@
+//! From a scenario to the distribution of its force history.
+
+use candle_core::DType;
+use rayon::prelude::*;
+
+use crate::force::network::{OutsideTraining, features};
+use crate::force::physics::{BareForce, CentreCurve};
+use crate::force::train::{ForceModel, network_input};
+use crate::force::{ForceError, ForceScenario};
+use impactlab_core::uncertainty::{
+    Badge, BadgeKind, CURVE_N_INSTANTS, CurveComponent, CurveMixture, ForceCurve,
+};
+use impactlab_core::units::percent;
+
+/// Largest and smallest number of pulses that stand for the physics alone, for each contact point.
+const N_BARE: [usize; 2] = [48, 8];
+
+/// The prediction for a scenario, in the axes of this scenario.
+///
+/// Outside of what the network has learned from, its distribution is mixed with that of the physics
+/// alone:
+///
+/// ```text
+/// p(F) = a p_network(F) + (1 − a) p_physics(F)
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForcePrediction {
+    /// Distribution of the force history and its duration.
+    pub mixture: CurveMixture,
+    /// The distribution under the condition that the vehicles hook, or that they do not, whichever is
+    /// more likely. Point estimates are taken from it, since a mean over both kinds of collision would
+    /// be similar to neither.
+    pub likely: CurveMixture,
+    /// The curve of the centre alone, as the mean over what the scenario leaves open; the pulse of the
+    /// physics alone where the network says nothing.
+    pub centre: ForceCurve,
+    /// Impulse of the momentum solution, N s.
+    pub momentum_impulse_n_s: [f64; 2],
+    /// Probability that the vehicles hook; `None` for a model with a single component, and where the
+    /// network says nothing.
+    pub hooking_probability: Option<f64>,
+    /// Applicability a of the network, 0 to 1: the mean over what the scenario leaves open.
+    pub applicability: f64,
+    /// Features of the scenario that lie outside the range of the training cases.
+    pub outside: Vec<OutsideTraining>,
+    /// What restricts the prediction.
+    pub badges: Vec<Badge>,
+    /// Whether the contact point was left open and drawn from its distribution.
+    pub is_contact_open: bool,
+    /// Whether the bullet's body was left open and drawn from its distribution.
+    pub is_body_open: bool,
+}
+
+/// A scenario with contact point and kind of body.
+struct Variant {
+    probability: f64,
+    contact_m: [f64; 2],
+    body_idx: usize,
+    /// Applicability of the network, 0 to 1.
+    applicability: f64,
+}
+
+/// What the network, or the physics alone, says of a canonical scenario.
+struct Said {
+    mixture: CurveMixture,
+    likely: CurveMixture,
+    centre: ForceCurve,
+    momentum_impulse_n_s: [f64; 2],
+    hooking_probability: Option<f64>,
+}
+
+impl ForceModel {
+    /// Predicts the force of a scenario in any position. The network sees its canonical form, and the
+    /// result is turned back.
+    ///
+    /// Contact point and body that the scenario leaves open are taken from their distribution over the
+    /// training cases, and the result is the mixture over it.
+    ///
+    /// # Errors
+    /// [`ForceError::Scenario`] for a number out of range, [`ForceError::UnknownBody`],
+    /// [`ForceError::Impact`].
+    pub fn predict(&self, scenario: &ForceScenario) -> Result<ForcePrediction, ForceError> {
+        check(scenario)?;
+        let (canonical, mirrored) = scenario.canonical();
+        let variants = self.variants(&canonical)?;
+        let applicability =
+            variants.iter().map(|variant| variant.probability * variant.applicability).sum::<f64>();
+        let is_inside = variants.iter().all(|variant| variant.applicability == 1.0);
+        let applicability = if is_inside { 1.0 } else { applicability.clamp(0.0, 1.0) };
+        let (said, bare) = match (is_inside, applicability > 0.0) {
+            (true, _) => (self.said_by_network(&canonical, &variants)?, None),
+            (false, true) => {
+                let network = self.said_by_network(&canonical, &variants)?;
+                let bare = self.said_by_physics(&canonical, &variants)?;
+                (network.mixed(applicability, &bare.0)?, Some(bare.1))
+            }
+            (false, false) => {
+                let (bare, is_approaching) = self.said_by_physics(&canonical, &variants)?;
+                (bare, Some(is_approaching))
+            }
+        };
+        let outside = self.domain.outside(&canonical);
+        let badges = badges(applicability, &outside, bare);
+        let turned = |mixture: CurveMixture| if mirrored { mixture.mirrored() } else { mixture };
+        let [px, py] = said.momentum_impulse_n_s;
+        Ok(ForcePrediction {
+            mixture: turned(said.mixture),
+            likely: turned(said.likely),
+            centre: if mirrored { said.centre.mirrored() } else { said.centre },
+            momentum_impulse_n_s: [px, if mirrored { -py } else { py }],
+            hooking_probability: said.hooking_probability,
+            applicability,
+            outside,
+            badges,
+            is_contact_open: canonical.contact_m.is_none(),
+            is_body_open: canonical.bullet_body.is_none() && self.bodies().len() > 1,
+        })
+    }
+
+    /// The prediction of the network alone.
+    fn said_by_network(
+        &self,
+        canonical: &ForceScenario,
+        variants: &[Variant],
+    ) -> Result<Said, ForceError> {
+        let n_bodies = self.bodies().len();
+        let centre =
+            |variant: &Variant| self.centre.curve(canonical, variant.contact_m, variant.body_idx);
+        let centres: Vec<CentreCurve> =
+            variants.par_iter().map(centre).collect::<Result<_, _>>()?;
+        let row = |(centre, variant): (&CentreCurve, &Variant)| {
+            let known = (variant.contact_m, variant.body_idx, n_bodies);
+            self.standardisation.apply(&features(canonical, centre, known))
+        };
+        let rows = centres.iter().zip(variants).map(row).collect();
+        let number_type = (&self.config.network, DType::F32);
+        let input = network_input((&centres, &self.residuals), rows, number_type)?;
+        let output = self.network.forward_frozen(&input)?;
+        let components = output.components(&centres)?.into_iter().zip(variants);
+        let components: Vec<CurveComponent> = components
+            .flat_map(|(components, variant)| {
+                components.into_iter().map(|component| CurveComponent {
+                    weight: component.weight * variant.probability,
+                    ..component
+                })
+            })
+            .collect();
+        let k = self.config.network.components;
+        // The weights come from a softmax in f32, so that they sum to one to 1e-7 only.
+        let total: f64 = components.iter().map(|c| c.weight).sum();
+        let hooking = components.iter().skip(k - 1).step_by(k).map(|c| c.weight).sum::<f64>();
+        let hooking = (hooking / total).clamp(0.0, 1.0);
+        let momentum_impulse_n_s = [0, 1].map(|axis| {
+            let part =
+                |(c, v): (&CentreCurve, &Variant)| v.probability * c.momentum_impulse_n_s[axis];
+            centres.iter().zip(variants).map(part).sum::<f64>()
+        });
+        let is_hooking = |idx: usize| k > 1 && idx % k + 1 == k;
+        let likely = components.iter().enumerate();
+        let likely = likely.filter(|(idx, _)| is_hooking(*idx) == (k > 1 && hooking > 0.5));
+        let likely = CurveMixture::new(likely.map(|(_, component)| component.clone()).collect())?;
+        let [likely, mixture] = [likely, CurveMixture::new(components)?]
+            .map(|mixture| self.record.detail.variance_factors.apply(mixture));
+        let curves = centres.iter().map(|centre| &centre.curve);
+        Ok(Said {
+            mixture,
+            likely,
+            centre: mean_curve(curves.zip(variants.iter().map(|of| of.probability))),
+            momentum_impulse_n_s,
+            hooking_probability: (k > 1).then_some(hooking),
+        })
+    }
+
+    /// What is left without the network, and whether the vehicles approach each other. The kind of
+    /// the bullet's body plays no part in it.
+    fn said_by_physics(
+        &self,
+        canonical: &ForceScenario,
+        variants: &[Variant],
+    ) -> Result<(Said, bool), ForceError> {
+        let mut contacts: Vec<([f64; 2], f64)> = Vec::new();
+        for variant in variants {
+            let share = variant.probability;
+            match contacts.iter_mut().find(|(contact_m, _)| *contact_m == variant.contact_m) {
+                Some((_, total)) => *total += share,
+                None => contacts.push((variant.contact_m, share)),
+            }
+        }
+        let [most, least] = N_BARE;
+        let n = (most / contacts.len().max(1)).max(least);
+        let bare = |(contact_m, share): &([f64; 2], f64)| {
+            Ok((self.centre.bare(canonical, *contact_m)?, *share))
+        };
+        let bare: Vec<(BareForce, f64)> =
+            contacts.iter().map(bare).collect::<Result<_, ForceError>>()?;
+        let components = bare.iter().flat_map(|(force, share)| force.components(n, *share));
+        let mixture = CurveMixture::new(components.collect())?;
+        let curves: Vec<(ForceCurve, f64)> =
+            bare.iter().map(|(force, share)| (force.curve(), *share)).collect();
+        let momentum_impulse_n_s =
+            [0, 1].map(|axis| bare.iter().map(|(of, share)| share * of.impulse_n_s[axis]).sum());
+        let said = Said {
+            likely: mixture.clone(),
+            mixture,
+            centre: mean_curve(curves.iter().map(|(curve, share)| (curve, *share))),
+            momentum_impulse_n_s,
+            hooking_probability: None,
+        };
+        Ok((said, bare.iter().any(|(of, _)| of.is_approaching)))
+    }
+
+    fn variants(&self, scenario: &ForceScenario) -> Result<Vec<Variant>, ForceError> {
+        let names = self.bodies();
+        let bodies: Vec<(usize, f64)> = match (&scenario.bullet_body, names.len()) {
+            (_, 1) => vec![(0, 1.0)],
+            (None, _) => self.open.body.iter().copied().enumerate().collect(),
+            (Some(name), _) => match names.iter().position(|known| known == name) {
+                Some(idx) => vec![(idx, 1.0)],
+                None => {
+                    return Err(ForceError::UnknownBody { name: name.clone(), known: names });
+                }
+            },
+        };
+        let contacts = match scenario.contact_m {
+            Some(contact) => vec![contact],
+            None => self.open.contact_m.clone(),
+        };
+        let share = 1.0 / contacts.len().max(1) as f64;
+        let pairs = bodies.iter().flat_map(|&(body_idx, probability)| {
+            contacts.iter().map(move |&contact_m| Variant {
+                probability: probability * share,
+                contact_m,
+                body_idx,
+                applicability: self.domain.applicability(scenario, contact_m),
+            })
+        });
+        Ok(pairs.filter(|variant| variant.probability > 0.0).collect())
+    }
+}
+
+impl Said {
+    /// What the network and the physics alone say together.
+    ///
+    /// - `share`: of the network.
+    fn mixed(self, share: f64, bare: &Self) -> Result<Self, ForceError> {
+        let mix = |network: CurveMixture, bare: &CurveMixture| {
+            CurveMixture::merge(vec![(share, network), (1.0 - share, bare.clone())])
+        };
+        Ok(Self {
+            mixture: mix(self.mixture, &bare.mixture)?,
+            likely: mix(self.likely, &bare.likely)?,
+            ..self
+        })
+    }
+}
+
+/// The badges of a prediction.
+///
+/// - `bare`: whether the vehicles approach each other, where the physics alone has a share.
+fn badges(applicability: f64, outside: &[OutsideTraining], bare: Option<bool>) -> Vec<Badge> {
+    let mut badges: Vec<Badge> = outside.iter().map(OutsideTraining::badge).collect();
+    if applicability < 1.0 {
+        let said = match applicability > 0.0 {
+            true => format!(
+                "{} of the force is that of the physics alone, with its measured errors",
+                percent(1.0 - applicability)
+            ),
+            false => "the force is that of the physics alone, the momentum solution as a pulse \
+                      with its measured errors; the network says nothing here"
+                .to_owned(),
+        };
+        let badge = Badge::new(BadgeKind::OutsideDomain, said)
+            .with_value("applicability of the force network", applicability)
+            .with_range([1.0, 1.0]);
+        badges.push(badge);
+    }
+    if bare == Some(false) {
+        let text = "the vehicles do not approach each other at the contact: no force";
+        badges.push(Badge::new(BadgeKind::ImplausibleContact, text));
+    }
+    badges
+}
+
+/// The mean of curves with weights that sum to one.
+fn mean_curve<'a>(curves: impl Iterator<Item = (&'a ForceCurve, f64)>) -> ForceCurve {
+    let mut sum = vec![0.0; 2 * CURVE_N_INSTANTS + 1];
+    for (curve, weight) in curves {
+        for (total, value) in sum.iter_mut().zip(curve.to_values()) {
+            *total += weight * value;
+        }
+    }
+    ForceCurve::from_values(&sum)
+}
+
+/// Checks the ranges within which the physics can be solved.
+fn check(scenario: &ForceScenario) -> Result<(), ForceError> {
+    let [target, bullet] = scenario.mass_kg;
+    let [vx, vy] = scenario.relative_velocity_m_s();
+    let within = |value: f64, low: f64, high: f64| (low..=high).contains(&value);
+    let [x, y] = scenario.contact_m.unwrap_or_default();
+    let checks = [
+        ("target mass [kg]", target, within(target, 1.0, 1e8), "1 to 1e8"),
+        ("bullet mass [kg]", bullet, within(bullet, 1.0, 1e8), "1 to 1e8"),
+        ("v_bx − v_tx [m/s]", vx, within(vx, -150.0, 150.0), "-150 to 150"),
+        ("v_by − v_ty [m/s]", vy, within(vy, -150.0, 150.0), "-150 to 150"),
+        (
+            "θ_b [rad]",
+            scenario.theta_b_rad,
+            within(scenario.theta_b_rad, -std::f64::consts::PI, std::f64::consts::PI),
+            "-π to π",
+        ),
+        ("contact x [m]", x, within(x, -100.0, 100.0), "-100 to 100"),
+        ("contact y [m]", y, within(y, -100.0, 100.0), "-100 to 100"),
+    ];
+    match checks.into_iter().find(|(_, _, is_good, _)| !is_good) {
+        None => Ok(()),
+        Some((name, value, _, expected)) => Err(ForceError::Scenario { name, value, expected }),
+    }
+}

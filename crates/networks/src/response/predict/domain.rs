@@ -1,0 +1,295 @@
+//! Where a model of the motion holds: the vehicles, roads and impacts that it has learned from.
+//!
+//! ```text
+//! d_q = max(low_q − q, q − high_q, 0)/s_q        s_q = max(high_q − low_q, the least of the quantity)/2
+//! D²  = Σ_q d_q²       applicability = 1/(1 + (D/0.5)⁴)
+//! ```
+//!
+//! Distance and power are chosen, not fitted. Within the ranges the applicability is 1; half of half a range beyond one of them it is a half.
+
+use serde::{Deserialize, Serialize};
+
+use crate::nn::{Expected, NnError, check_numbers};
+use crate::response::{ResponseCase, STEP_S};
+use impactlab_core::units::STANDARD_GRAVITY_M_S2;
+use impactlab_core::vehicle::{CollisionForce, VehicleInput, VehicleParameters, VehicleState};
+
+/// D at which the applicability is a half.
+const HALF_DISTANCE: f64 = 0.5;
+
+/// A quantity by which vehicles and impacts are compared with those that were learned from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct DomainQuantity {
+    /// Name with unit, for a person.
+    name: &'static str,
+    /// Smallest width of a range, by which a model of one car is compared with others.
+    least_width: Width,
+}
+
+/// A width: as it is, or a share of the middle of the range.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Width {
+    /// In thousandths of the unit.
+    Thousandths(u32),
+    /// In percent of the middle.
+    Percent(u32),
+}
+
+const fn quantity(name: &'static str, least_width: Width) -> DomainQuantity {
+    DomainQuantity { name, least_width }
+}
+
+/// Quantities of the vehicle, the friction of its road last.
+const OF_VEHICLE: [DomainQuantity; 11] = [
+    quantity("mass [kg]", Width::Percent(20)),
+    quantity("wheelbase [m]", Width::Percent(15)),
+    quantity("track width [m]", Width::Percent(15)),
+    quantity("CG height [m]", Width::Percent(20)),
+    quantity("front axle load share", Width::Thousandths(100)),
+    quantity("dynamic index", Width::Thousandths(250)),
+    quantity("front cornering coefficient [1/rad]", Width::Percent(40)),
+    quantity("rear cornering coefficient [1/rad]", Width::Percent(40)),
+    quantity("sliding friction ratio", Width::Thousandths(200)),
+    quantity("roll gradient [rad/g]", Width::Percent(60)),
+    quantity("friction", Width::Thousandths(200)),
+];
+
+/// Quantities of the impact and the motion.
+const OF_MOTION: [DomainQuantity; 5] = [
+    quantity("speed [m/s]", Width::Thousandths(15_000)),
+    quantity("sideslip speed before the impact [m/s]", Width::Thousandths(2_000)),
+    quantity("yaw rate before the impact [rad/s]", Width::Thousandths(500)),
+    quantity("velocity change by the impact [m/s]", Width::Thousandths(5_000)),
+    quantity("yaw rate change by the impact [rad/s]", Width::Thousandths(2_000)),
+];
+
+/// Numbers of a motion: those by which motions are compared, and the duration.
+const N_OF_MOTION: usize = OF_MOTION.len() + 1;
+
+/// How long the motions were that a model has learned from, where its file does not say it, s: as in
+/// the trajectory data sets of one car.
+const USUAL_DURATION_S: f64 = 4.0;
+
+/// The ranges that a model has learned from.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MotionDomain {
+    /// Smallest and largest of each quantity of the vehicle.
+    vehicle: Vec<[f64; 2]>,
+    /// Smallest and largest of each quantity of the motion, last the duration, s.
+    motion: Vec<[f64; 2]>,
+}
+
+/// A quantity that lies outside of what a model has learned from.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OutsideDomain {
+    /// The quantity, with its unit.
+    pub quantity: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// The range that the model has learned from.
+    pub range: [f64; 2],
+}
+
+/// How far a model holds for an answer.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Applicability {
+    /// 1 within what was learned from, towards 0 far from it.
+    pub value: f64,
+    /// D: distance from the ranges, in half widths.
+    #[serde(skip)]
+    pub distance: f64,
+    /// What lies outside.
+    pub outside: Vec<OutsideDomain>,
+}
+
+impl Applicability {
+    /// Everything within the ranges.
+    pub fn whole() -> Self {
+        Self::of(0.0, Vec::new())
+    }
+
+    fn of(distance: f64, outside: Vec<OutsideDomain>) -> Self {
+        let value = 1.0 / (1.0 + (distance / HALF_DISTANCE).powi(4));
+        Self { value, distance, outside }
+    }
+
+    /// Both together.
+    #[must_use]
+    pub fn and(&self, other: &Self) -> Self {
+        let outside = self.outside.iter().chain(&other.outside).cloned().collect();
+        Self::of(self.distance.hypot(other.distance), outside)
+    }
+}
+
+impl MotionDomain {
+    /// The ranges of trajectories.
+    pub(crate) fn of<'a>(cases: impl IntoIterator<Item = &'a ResponseCase>) -> Self {
+        let mut domain = Self::default();
+        for case in cases {
+            widen(&mut domain.vehicle, of_vehicle(&case.vehicle));
+            if let Some(initial) = case.states.first() {
+                widen(&mut domain.motion, of_motion(&case.vehicle, initial, &case.inputs));
+            }
+        }
+        domain
+    }
+
+    /// How long the longest motion was that the model has learned from, s.
+    pub(crate) fn duration_s(&self) -> f64 {
+        self.motion.get(OF_MOTION.len()).map_or(USUAL_DURATION_S, |[_, longest_s]| *longest_s)
+    }
+
+    /// Checks ranges from a file.
+    ///
+    /// # Errors
+    /// [`NnError::StoredNumber`].
+    pub(crate) fn check(&self) -> Result<(), NnError> {
+        for range in self.vehicle.iter().chain(&self.motion) {
+            check_numbers("domain", range, Expected::Magnitude(1e9))?;
+        }
+        Ok(())
+    }
+
+    /// How far the model holds for a vehicle.
+    pub(crate) fn of_vehicle(&self, vehicle: &VehicleParameters) -> Applicability {
+        applicability(&OF_VEHICLE, &self.vehicle, of_vehicle(vehicle))
+    }
+
+    /// How far the model holds on the road of a vehicle that it knows.
+    pub(crate) fn of_road(&self, vehicle: &VehicleParameters) -> Applicability {
+        let last = OF_VEHICLE.len() - 1;
+        let range = self.vehicle.get(last..).unwrap_or_default();
+        applicability(&[OF_VEHICLE[last]], range, [of_vehicle(vehicle)[last]])
+    }
+
+    /// How far the model holds for a motion.
+    pub(crate) fn of_motion(
+        &self,
+        vehicle: &VehicleParameters,
+        initial: &VehicleState<f64>,
+        inputs: &[VehicleInput<f64>],
+    ) -> Applicability {
+        // Beyond their duration the learned part fades along the motion, not as a whole.
+        let numbers = of_motion(vehicle, initial, inputs);
+        applicability(&OF_MOTION, &self.motion, std::array::from_fn(|i| numbers[i]))
+    }
+}
+
+fn widen<const N: usize>(ranges: &mut Vec<[f64; 2]>, values: [f64; N]) {
+    ranges.resize(N, [f64::INFINITY, f64::NEG_INFINITY]);
+    for ([low, high], value) in ranges.iter_mut().zip(values) {
+        (*low, *high) = (low.min(value), high.max(value));
+    }
+}
+
+fn applicability<const N: usize>(
+    quantities: &[DomainQuantity; N],
+    ranges: &[[f64; 2]],
+    values: [f64; N],
+) -> Applicability {
+    let (mut squares, mut outside) = (0.0, Vec::new());
+    for ((of, &[low, high]), value) in quantities.iter().zip(ranges).zip(values) {
+        let least = match of.least_width {
+            Width::Thousandths(width) => f64::from(width) / 1e3,
+            Width::Percent(share) => f64::from(share) / 1e2 * ((low + high) / 2.0).abs(),
+        };
+        let off = (low - value).max(value - high).max(0.0);
+        // Rounding of what is at the end of a range is not outside.
+        if off > 1e-9 * (1.0 + value.abs()) {
+            squares += (off / (high - low).max(least).max(1e-9) * 2.0).powi(2);
+            outside.push(OutsideDomain { quantity: of.name, value, range: [low, high] });
+        }
+    }
+    Applicability::of(squares.sqrt(), outside)
+}
+
+fn of_vehicle(vehicle: &VehicleParameters) -> [f64; OF_VEHICLE.len()] {
+    let VehicleParameters { mass, geometry, suspension, tires, .. } = vehicle;
+    let [front, rear] = [geometry.cg_to_front_axle_m, geometry.cg_to_rear_axle_m];
+    let weight_moment = mass.sprung_mass_kg * STANDARD_GRAVITY_M_S2 * suspension.roll_arm_m;
+    [
+        mass.mass_kg,
+        geometry.wheelbase_m(),
+        geometry.track_width_m,
+        geometry.cg_height_m,
+        rear / geometry.wheelbase_m(),
+        mass.yaw_inertia_kg_m2 / (mass.mass_kg * front * rear),
+        tires.cornering_coefficient_front_per_rad,
+        tires.cornering_coefficient_rear_per_rad,
+        tires.sliding_friction_ratio,
+        weight_moment / (suspension.roll_stiffness_n_m_rad - weight_moment).max(1e-9),
+        tires.friction,
+    ]
+}
+
+fn of_motion(
+    vehicle: &VehicleParameters,
+    initial: &VehicleState<f64>,
+    inputs: &[VehicleInput<f64>],
+) -> [f64; N_OF_MOTION] {
+    let (mut impulse, mut spin) = ([0.0; 2], 0.0);
+    for collision in inputs.iter().filter_map(|input| input.collision) {
+        let CollisionForce { force_n: [fx, fy], yaw_moment_n_m, contact, .. } = collision;
+        impulse = [impulse[0] + fx * STEP_S, impulse[1] + fy * STEP_S];
+        // In world axes the arm turns with the vehicle; over an impact that is little.
+        let moment = yaw_moment_n_m.unwrap_or(contact.x_m * fy - contact.y_m * fx);
+        spin += moment * STEP_S;
+    }
+    [
+        initial.vx_m_s.hypot(initial.vy_m_s),
+        initial.vy_m_s.abs(),
+        initial.yaw_rate_rad_s.abs(),
+        impulse[0].hypot(impulse[1]) / vehicle.mass.mass_kg,
+        spin.abs() / vehicle.mass.yaw_inertia_kg_m2,
+        inputs.len() as f64 * STEP_S,
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use impactlab_core::vehicle::Preset;
+
+    fn case(friction: f64, speed_m_s: f64) -> ResponseCase {
+        let vehicle = Preset::Reference.parameters().with_friction(friction);
+        let states = vec![VehicleState::driving_straight(speed_m_s); 11];
+        let inputs = vec![VehicleInput::released(); 10];
+        ResponseCase::of_motion(String::new(), vehicle, states, inputs)
+    }
+
+    #[test]
+    fn what_lies_outside_is_named_with_value_and_range() {
+        let cases = [case(0.5, 15.0), case(0.9, 25.0)];
+        let domain = MotionDomain::of(&cases);
+        let of = |case: &ResponseCase| {
+            domain.of_vehicle(&case.vehicle).and(&domain.of_motion(
+                &case.vehicle,
+                &case.states[0],
+                &case.inputs,
+            ))
+        };
+        assert_eq!(of(&case(0.7, 20.0)), Applicability::whole());
+        assert_eq!(of(&cases[1]), Applicability::whole());
+        let slick = of(&case(0.1, 20.0));
+        assert!(slick.value < 0.01, "{slick:?}");
+        let named = OutsideDomain { quantity: "friction", value: 0.1, range: [0.5, 0.9] };
+        assert_eq!(slick.outside, [named]);
+        let both = of(&case(0.45, 80.0));
+        assert!(both.value < 0.01 && both.outside.len() == 2, "{both:?}");
+        // Half of half the range beyond its end.
+        let edge = of(&case(1.0, 20.0));
+        assert!((edge.value - 0.5).abs() < 1e-9, "{edge:?}");
+    }
+
+    #[test]
+    fn a_model_of_one_car_does_not_know_others() {
+        let domain = MotionDomain::of(&[case(0.5, 15.0), case(0.9, 25.0)]);
+        let own = Preset::Reference.parameters().with_friction(0.8);
+        assert_eq!(domain.of_vehicle(&own), Applicability::whole());
+        let lighter = domain.of_vehicle(&own.clone().with_mass(1200.0, None));
+        assert!(lighter.value < 0.01 && lighter.outside[0].quantity == "mass [kg]", "{lighter:?}");
+        let little = domain.of_vehicle(&own.with_mass(1960.0, None));
+        assert!(little.value > 0.4 && little.value < 1.0, "{little:?}");
+    }
+}

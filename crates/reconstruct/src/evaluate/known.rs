@@ -1,0 +1,41 @@
+//! How much of the evidence of a case is used.
+
+use serde::{Deserialize, Serialize};
+
+use crate::evidence::Evidence;
+
+/// How much of the evidence of a case is used, so that what each part of it brings can be told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum KnownEvidence {
+    /// All of it.
+    Everything,
+    /// All but the record of the event data recorder.
+    WithoutEdr,
+    /// The rest poses with damage, masses and friction: no marks, no record, no positions, and
+    /// nothing of what driver and wheels did after the impact.
+    RestOnly,
+}
+
+impl KnownEvidence {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Everything, Self::WithoutEdr, Self::RestOnly];
+
+    /// A few words for a person.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Everything => "everything",
+            Self::WithoutEdr => "without EDR",
+            Self::RestOnly => "rest only",
+        }
+    }
+
+    /// What is used of the evidence.
+    pub fn of(self, evidence: &Evidence) -> Evidence {
+        match self {
+            Self::Everything => evidence.clone(),
+            Self::WithoutEdr => evidence.without_edr(),
+            Self::RestOnly => evidence.rest_only(),
+        }
+    }
+}

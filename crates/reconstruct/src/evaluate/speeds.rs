@@ -1,0 +1,179 @@
+//! The speeds before the impact as one method estimates them.
+
+use serde::{Deserialize, Serialize};
+
+use crate::baseline::PointOptimum;
+use crate::evidence::Measured;
+use crate::{
+    HandCalculation, Posterior, QuantityEstimate, ReconstructedQuantity, ReconstructionTarget,
+};
+use impactlab_core::numerics::quantile_of_sorted;
+use impactlab_core::uncertainty::{NormalMixture, NormalPart, sample_crps};
+
+/// The speeds that are compared with the truth.
+pub const SPEEDS: [ReconstructedQuantity; 3] = [
+    ReconstructedQuantity::TargetSpeed,
+    ReconstructedQuantity::ClosingSpeed,
+    ReconstructedQuantity::BulletSpeed,
+];
+
+/// How the speeds are estimated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ReconstructionMethod {
+    /// The particles of the posterior.
+    Reconstruction,
+    /// The [`HandCalculation`], which knows no speed of the striking car. Its closing speed is that
+    /// across the struck side.
+    Hand,
+    /// The [`PointOptimum`]: the most probable point with its curvature.
+    Swarm,
+}
+
+/// The distribution of a speed, m/s.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SpeedDistribution {
+    /// Equally likely values in increasing order.
+    Draws(Vec<f64>),
+    /// A normal distribution.
+    Normal(Measured),
+}
+
+/// A speed with its distribution.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EstimatedSpeed {
+    /// Which speed.
+    pub quantity: ReconstructedQuantity,
+    /// Its distribution, m/s.
+    pub distribution: SpeedDistribution,
+}
+
+/// The speeds of one case by one method.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SpeedEstimates {
+    /// How they are estimated.
+    pub method: ReconstructionMethod,
+    /// Time that it has taken, s.
+    pub seconds: f64,
+    /// Effective sample size, of a method that samples.
+    pub ess: Option<f64>,
+    /// Motions that were simulated.
+    pub n_simulations: usize,
+    /// The speeds that the method knows.
+    pub speeds: Vec<EstimatedSpeed>,
+}
+
+impl ReconstructionMethod {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Reconstruction, Self::Hand, Self::Swarm];
+
+    /// A few words for a person.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Reconstruction => "reconstruction",
+            Self::Hand => "by hand",
+            Self::Swarm => "swarm",
+        }
+    }
+}
+
+impl SpeedDistribution {
+    /// Equally likely values.
+    pub fn of_draws(mut draws: Vec<f64>) -> Self {
+        draws.sort_by(f64::total_cmp);
+        Self::Draws(draws)
+    }
+
+    /// The value below which the speed lies with a probability; `None` without values, and of a
+    /// normal distribution without a positive standard deviation.
+    pub fn quantile(&self, probability: f64) -> Option<f64> {
+        match self {
+            Self::Draws(sorted) => quantile_of_sorted(sorted, probability),
+            Self::Normal(measured) => Some(normal(*measured)?.quantile(probability)),
+        }
+    }
+
+    /// Continuous ranked probability score against the truth, m/s; `None` likewise.
+    pub fn crps(&self, truth_m_s: f64) -> Option<f64> {
+        match self {
+            Self::Draws(draws) => (!draws.is_empty()).then(|| sample_crps(draws, truth_m_s)),
+            Self::Normal(measured) => Some(normal(*measured)?.crps(truth_m_s)),
+        }
+    }
+
+    /// Median and intervals of a quantity that is so distributed; `None` likewise.
+    pub fn estimate(&self, quantity: ReconstructedQuantity) -> Option<QuantityEstimate> {
+        QuantityEstimate::by(quantity, |probability| self.quantile(probability))
+    }
+}
+
+fn normal(measured: Measured) -> Option<NormalMixture> {
+    let part = NormalPart { weight: 1.0, mean: measured.value, std: measured.sigma };
+    NormalMixture::new(vec![part]).ok()
+}
+
+impl SpeedEstimates {
+    /// The speeds of particles.
+    ///
+    /// - `(ess, n_simulations)`: their effective sample size, and the motions that they have cost.
+    pub fn of_posterior(
+        posterior: &Posterior,
+        (ess, n_simulations): (f64, usize),
+        seconds: f64,
+    ) -> Self {
+        let method = ReconstructionMethod::Reconstruction;
+        Self { method, seconds, ess: Some(ess), n_simulations, speeds: speeds(posterior) }
+    }
+
+    /// The speeds by hand; none where the rest position is not known.
+    pub fn by_hand(hand: Option<&HandCalculation>, seconds: f64) -> Self {
+        let of = |hand: &HandCalculation| {
+            let speed = |quantity, measured| EstimatedSpeed {
+                quantity,
+                distribution: SpeedDistribution::Normal(measured),
+            };
+            vec![
+                speed(ReconstructedQuantity::TargetSpeed, hand.target_speed_m_s),
+                speed(ReconstructedQuantity::ClosingSpeed, hand.closing_speed_m_s),
+            ]
+        };
+        let method = ReconstructionMethod::Hand;
+        Self {
+            method,
+            seconds,
+            ess: None,
+            n_simulations: 0,
+            speeds: hand.map(of).unwrap_or_default(),
+        }
+    }
+
+    /// The speeds of the most probable point, by draws from the normal distribution about it; none
+    /// where the evidence is impossible wherever the swarm has looked.
+    ///
+    /// - `(n_draws, seed)`: number and seed of the draws.
+    pub fn by_swarm(
+        target: &ReconstructionTarget,
+        found: Option<&PointOptimum>,
+        (n_draws, seed): (usize, u64),
+        seconds: f64,
+    ) -> Self {
+        let drawn = found.and_then(|found| found.draws(n_draws, seed));
+        let of = |z: Vec<Vec<f64>>| speeds(&Posterior::of_points(target.model(), &z));
+        Self {
+            method: ReconstructionMethod::Swarm,
+            seconds,
+            ess: None,
+            n_simulations: found.map_or(0, |found| found.n_evaluations),
+            speeds: drawn.map(of).unwrap_or_default(),
+        }
+    }
+}
+
+fn speeds(posterior: &Posterior) -> Vec<EstimatedSpeed> {
+    let of = |quantity: ReconstructedQuantity| EstimatedSpeed {
+        quantity,
+        distribution: SpeedDistribution::of_draws(posterior.of_quantity(quantity)),
+    };
+    SPEEDS.map(of).into()
+}

@@ -1,0 +1,155 @@
+//! A folder of staged collisions: `evidence/<case>.toml`, what is found, and `truth/<case>.toml`, what
+//! had happened.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::ReconstructedQuantity;
+use impactlab_core::data::{DataError, TomlError, TomlFile, TomlTable, list_folder};
+use impactlab_core::numerics::sha256_hex;
+use impactlab_core::ranges::{EVIDENCE_SPEED, SPEED};
+
+/// Which cases of a folder.
+///
+/// The cases are put into the order of the SHA-256 of their names in hexadecimal digits, so that the
+/// order has nothing to do with how they were made.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StagedSplit {
+    /// All of them.
+    #[default]
+    All,
+    /// The first half, rounded down: those that settings may be chosen on.
+    Tuning,
+    /// The others: those whose figures are reported.
+    Reported,
+}
+
+/// A folder of staged collisions.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StagedCollisions {
+    root: PathBuf,
+    names: Vec<String>,
+}
+
+impl StagedCollisions {
+    /// Lists the cases of a folder. No file is read.
+    ///
+    /// # Errors
+    /// [`DataError`] if the folder or its folder `evidence` cannot be listed.
+    pub fn open(root: &Path) -> Result<Self, DataError> {
+        let mut names: Vec<String> = list_folder(&root.join("evidence"))?
+            .iter()
+            .filter(|path| path.extension().is_some_and(|end| end == "toml"))
+            .filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned()))
+            .collect();
+        names.sort();
+        Ok(Self { root: root.to_owned(), names })
+    }
+
+    /// The names of all cases in their order.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// The names of the cases of a split in their order.
+    pub fn of_split(&self, split: StagedSplit) -> Vec<String> {
+        let mut shuffled = self.names.clone();
+        shuffled.sort_by_cached_key(|name| sha256_hex([name.as_bytes()]));
+        let (tuning, reported) = shuffled.split_at(shuffled.len() / 2);
+        let mut chosen = match split {
+            StagedSplit::All => shuffled,
+            StagedSplit::Tuning => tuning.to_vec(),
+            StagedSplit::Reported => reported.to_vec(),
+        };
+        chosen.sort();
+        chosen
+    }
+
+    /// The file that says what is found of a case.
+    pub fn evidence_file(&self, name: &str) -> PathBuf {
+        self.root.join("evidence").join(format!("{name}.toml"))
+    }
+
+    /// The file that says what had happened.
+    pub fn truth_file(&self, name: &str) -> PathBuf {
+        self.root.join("truth").join(format!("{name}.toml"))
+    }
+}
+
+/// The speeds before the impact as they were, m/s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrueSpeeds {
+    /// Of the struck car.
+    pub target_m_s: f64,
+    /// Of the striking car.
+    pub bullet_m_s: f64,
+    /// Size of the difference of both velocities.
+    pub closing_m_s: f64,
+}
+
+impl TrueSpeeds {
+    /// Reads what had happened; of both cars `speed_before_m_s` and `velocity_before_m_s`. Other keys
+    /// are not looked at.
+    ///
+    /// # Errors
+    /// [`TomlError`] with file, line and key.
+    pub fn load(path: &Path) -> Result<Self, TomlError> {
+        let text = TomlFile::read(path)?;
+        Self::from_toml(TomlFile { path, text: &text })
+    }
+
+    fn from_toml(file: TomlFile<'_>) -> Result<Self, TomlError> {
+        let root = file.parse()?;
+        let mut top = TomlTable::root(file, &root);
+        let mut car = |key| {
+            let mut car = top.table(key)?;
+            let speed_m_s = car.require("speed_before", &EVIDENCE_SPEED)?;
+            let velocity = car.point("velocity_before_m_s", &SPEED)?;
+            Ok((speed_m_s, velocity.ok_or_else(|| car.missing("velocity_before_m_s"))?))
+        };
+        let (target_m_s, target) = car("struck_car")?;
+        let (bullet_m_s, bullet) = car("striking_car")?;
+        let closing_m_s = (bullet[0] - target[0]).hypot(bullet[1] - target[1]);
+        Ok(Self { target_m_s, bullet_m_s, closing_m_s })
+    }
+
+    /// The true value of a quantity; `None` if it is no speed before the impact.
+    pub fn of(&self, quantity: ReconstructedQuantity) -> Option<f64> {
+        match quantity {
+            ReconstructedQuantity::TargetSpeed => Some(self.target_m_s),
+            ReconstructedQuantity::BulletSpeed => Some(self.bullet_m_s),
+            ReconstructedQuantity::ClosingSpeed => Some(self.closing_m_s),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_case_is_of_one_half_by_the_digest_of_its_name() {
+        // SHA-256 of a: ca97…, b: 3e23…, c: 2e7d…, d: 18ac…, e: 3f79….
+        let names = ["a", "b", "c", "d", "e"].map(str::to_owned).to_vec();
+        let staged = StagedCollisions { root: PathBuf::new(), names };
+        assert_eq!(staged.of_split(StagedSplit::Tuning), ["c", "d"]);
+        assert_eq!(staged.of_split(StagedSplit::Reported), ["a", "b", "e"]);
+        assert_eq!(staged.of_split(StagedSplit::All), staged.names());
+    }
+
+    #[test]
+    fn the_closing_speed_is_the_size_of_the_difference_of_both_velocities() {
+        let text = "case = \"x\"\n[struck_car]\nspeed_before_m_s = 10\nmass_kg = 1\n\
+                    velocity_before_m_s = [10, 0]\n[striking_car]\nspeed_before_m_s = 13.6\n\
+                    velocity_before_m_s = [13, 4]\n";
+        let truth = |text: &str| TrueSpeeds::from_toml(TomlFile { path: Path::new("t"), text });
+        let found = truth(text).unwrap();
+        assert_eq!(found, TrueSpeeds { target_m_s: 10.0, bullet_m_s: 13.6, closing_m_s: 5.0 });
+        assert_eq!(found.of(ReconstructedQuantity::RoadFriction), None);
+        let error = truth(&text.replace("velocity_before_m_s = [13, 4]", "")).unwrap_err();
+        assert!(error.to_string().contains("velocity_before_m_s is missing"), "{error}");
+    }
+}

@@ -1,0 +1,186 @@
+//! Many cases against their truths.
+
+use serde::Serialize;
+
+use crate::evaluate::{CaseScore, KnownEvidence, ReconstructionMethod, SPEEDS, ScoredQuantity};
+use impactlab_core::numerics::quantile_of_sorted;
+
+/// Effective sample size from which on intervals are relied on.
+pub const SUFFICIENT_ESS: f64 = 400.0;
+
+/// How one method does on cases of which the same is known.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MethodSummary {
+    /// How much of the evidence was used.
+    pub known: KnownEvidence,
+    /// How the speeds were estimated.
+    pub method: ReconstructionMethod,
+    /// Number of cases.
+    pub n_cases: usize,
+    /// Median of the time of a case, s.
+    pub median_seconds: f64,
+    /// Time within which 90 % of the cases are done, s.
+    pub p90_seconds: f64,
+    /// Number of cases whose effective sample size is [`SUFFICIENT_ESS`] or more, of a method that
+    /// samples.
+    pub n_sufficient_ess: Option<usize>,
+    /// The speeds that the method knows.
+    pub quantities: Vec<QuantitySummary>,
+}
+
+/// How well a quantity is estimated.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct QuantitySummary {
+    /// Name with its unit.
+    pub name: &'static str,
+    /// Symbol of the unit.
+    pub unit: &'static str,
+    /// Number of cases in which it is estimated.
+    pub n: usize,
+    /// Share of the truths in the intervals of 50 %.
+    pub coverage_50: f64,
+    /// … of 80 %.
+    pub coverage_80: f64,
+    /// … of 90 %.
+    pub coverage_90: f64,
+    /// … of 95 %.
+    pub coverage_95: f64,
+    /// Median of the absolute errors of the medians.
+    pub median_absolute_error: f64,
+    /// Median of the errors of the medians, positive where they are too large.
+    pub median_error: f64,
+    /// Median width of the intervals of 90 %.
+    pub median_width_90: f64,
+    /// Mean of the continuous ranked probability scores.
+    pub mean_crps: f64,
+}
+
+impl MethodSummary {
+    /// The summary of each method for each part of the evidence that was used.
+    pub fn of(scores: &[CaseScore]) -> Vec<Self> {
+        let methods = |known| ReconstructionMethod::ALL.map(|method| (known, method));
+        let pairs = KnownEvidence::ALL.into_iter().flat_map(methods);
+        pairs.filter_map(|pair| Self::of_method(scores, pair)).collect()
+    }
+
+    fn of_method(
+        scores: &[CaseScore],
+        (known, method): (KnownEvidence, ReconstructionMethod),
+    ) -> Option<Self> {
+        let is_of = |of: &&CaseScore| of.known == known && of.method == method;
+        let scores: Vec<&CaseScore> = scores.iter().filter(is_of).collect();
+        let seconds = sorted(scores.iter().map(|of| of.seconds));
+        let ess: Vec<f64> = scores.iter().filter_map(|of| of.ess).collect();
+        let n_sufficient = ess.iter().filter(|ess| **ess >= SUFFICIENT_ESS).count();
+        let quantities = SPEEDS.iter().filter_map(|speed| {
+            let scored: Vec<&ScoredQuantity> =
+                scores.iter().filter_map(|of| of.quantity(speed.key())).collect();
+            QuantitySummary::of(&scored)
+        });
+        Some(Self {
+            known,
+            method,
+            n_cases: scores.len(),
+            median_seconds: quantile_of_sorted(&seconds, 0.5)?,
+            p90_seconds: quantile_of_sorted(&seconds, 0.9)?,
+            n_sufficient_ess: (!ess.is_empty()).then_some(n_sufficient),
+            quantities: quantities.collect(),
+        })
+    }
+}
+
+impl QuantitySummary {
+    /// The summary of one quantity over cases; `None` without cases.
+    pub fn of(scored: &[&ScoredQuantity]) -> Option<Self> {
+        let first = scored.first()?;
+        let n = scored.len();
+        let share = |interval: fn(&ScoredQuantity) -> [f64; 2]| {
+            let holds = |of: &&&ScoredQuantity| {
+                let [low, high] = interval(of);
+                (low..=high).contains(&of.truth)
+            };
+            scored.iter().filter(holds).count() as f64 / n as f64
+        };
+        let median = |value: fn(&ScoredQuantity) -> f64| {
+            quantile_of_sorted(&sorted(scored.iter().map(|of| value(of))), 0.5)
+        };
+        Some(Self {
+            name: first.estimate.name,
+            unit: first.estimate.unit,
+            n,
+            coverage_50: share(|of| of.estimate.interval_50),
+            coverage_80: share(|of| of.estimate.interval_80),
+            coverage_90: share(|of| of.estimate.interval_90),
+            coverage_95: share(|of| of.estimate.interval_95),
+            median_absolute_error: median(|of| of.error().abs())?,
+            median_error: median(ScoredQuantity::error)?,
+            median_width_90: median(ScoredQuantity::width_90)?,
+            mean_crps: scored.iter().map(|of| of.crps).sum::<f64>() / n as f64,
+        })
+    }
+}
+
+fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ReconstructedQuantity;
+    use crate::evaluate::{EstimatedSpeed, SpeedDistribution, SpeedEstimates, TrueSpeeds};
+    use crate::evidence::Measured;
+
+    /// A case whose struck car was estimated at 20 ± 2 m/s.
+    fn score(truth_m_s: f64, seconds: f64, ess: f64) -> CaseScore {
+        let distribution = SpeedDistribution::Normal(Measured { value: 20.0, sigma: 2.0 });
+        let quantity = ReconstructedQuantity::TargetSpeed;
+        let estimates = SpeedEstimates {
+            method: ReconstructionMethod::Reconstruction,
+            seconds,
+            ess: Some(ess),
+            n_simulations: 7,
+            speeds: vec![EstimatedSpeed { quantity, distribution }],
+        };
+        let truth = TrueSpeeds { target_m_s: truth_m_s, bullet_m_s: 0.0, closing_m_s: 0.0 };
+        CaseScore::of("case", KnownEvidence::RestOnly, &estimates, &truth)
+    }
+
+    #[test]
+    fn the_summary_of_four_cases_by_hand() {
+        // 20 ± 1.349 hold 50 %, ± 2.563 80 %, ± 3.290 90 %, ± 3.920 95 %.
+        let truths = [21.0, 22.0, 17.0, 24.0];
+        let cases = truths.iter().zip([1.0, 2.0, 4.0, 8.0]).zip([399.0, 400.0, 1.0, 500.0]);
+        let scores: Vec<CaseScore> = cases.map(|((t, s), ess)| score(*t, s, ess)).collect();
+        let [summary] = MethodSummary::of(&scores).try_into().unwrap();
+        assert_eq!((summary.known, summary.n_cases), (KnownEvidence::RestOnly, 4));
+        assert_eq!((summary.median_seconds, summary.n_sufficient_ess), (3.0, Some(2)));
+        assert!((summary.p90_seconds - 6.8).abs() < 1e-12);
+        let [speed] = summary.quantities.try_into().unwrap();
+        let coverage = [speed.coverage_50, speed.coverage_80, speed.coverage_90, speed.coverage_95];
+        assert_eq!(coverage, [0.25, 0.5, 0.75, 0.75]);
+        // Errors −1, −2, 3, −4.
+        assert_eq!((speed.median_absolute_error, speed.median_error), (2.5, -1.5));
+        assert!((speed.median_width_90 - 4.0 * 1.644_853_627).abs() < 1e-6);
+        // CRPS of N(0, 1) at 0.5, 1, 1.5, 2, twice as large here.
+        let expected = 2.0 * (0.331_404 + 0.602_441 + 0.994_424 + 1.452_789) / 4.0;
+        assert!((speed.mean_crps - expected).abs() < 1e-4, "{} {expected}", speed.mean_crps);
+    }
+
+    #[test]
+    fn a_speed_without_a_distribution_is_left_out() {
+        let mut none = score(20.0, 1.0, 1.0);
+        none.quantities.clear();
+        let summary = MethodSummary::of(&[none, score(20.0, 1.0, 1.0)]);
+        assert_eq!((summary[0].n_cases, summary[0].quantities[0].n), (2, 1));
+        for distribution in [
+            SpeedDistribution::Draws(Vec::new()),
+            SpeedDistribution::Normal(Measured { value: 20.0, sigma: 0.0 }),
+            SpeedDistribution::Normal(Measured { value: 20.0, sigma: f64::NAN }),
+        ] {
+            assert_eq!((distribution.quantile(0.5), distribution.crps(1.0)), (None, None));
+        }
+    }
+}

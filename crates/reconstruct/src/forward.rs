@@ -1,0 +1,352 @@
+//! From the quantities of a particle to the motion of the cars: the planar impact, its impulse as a
+//! pulse on the struck car, and the 4DOF vehicle to rest.
+//!
+//! World axes: origin at the CG of the struck car at first contact, X along its heading, Y to the left.
+//!
+//! Assumptions: the struck car drives straight ahead before the impact; both cars are rigid during it
+//! and touch at one point; the striking car touches with the corner or the front that its heading turns
+//! towards the struck side; the contact lies 0.55 m above the road. Where the ground has zones, each wheel
+//! stands on the friction of its own.
+
+use rayon::prelude::*;
+
+use crate::evidence::Evidence;
+use crate::{Cars, ImpactState, Latent, LatentValues, Prior};
+use impactlab_core::collision::{Pulse, PulseShape, Side};
+use impactlab_core::data::{ForceAxes, ForceHistory, Sampling};
+use impactlab_core::ranges::ROAD_FRICTION;
+use impactlab_core::units::STANDARD_GRAVITY_M_S2;
+use impactlab_core::vehicle::{
+    Braking, ContactLoad, ContactPoint, DEFAULT_BRAKE_RISE_S, DamagedWheel, DrivenAxle, Ending,
+    EngineBraking, FrictionZone, HeldSteer, Manoeuvre, Path, PathLimit, SimulationRun,
+    VehicleParameters, VehicleState, Wheel, simulate_paths,
+};
+
+/// Height of the contact above the road, m: sills and bumpers of passenger cars.
+const CONTACT_HEIGHT_M: f64 = 0.55;
+
+/// When a blocked wheel is caught, s after the first contact.
+const BLOCKED_FROM_S: f64 = 0.03;
+
+/// When the front wheels are turned, s after the first contact.
+const STEERED_FROM_S: f64 = 0.1;
+
+/// Longest motion that is followed, s.
+const LONGEST_MOTION_S: f64 = 40.0;
+
+/// Longest time that wheels need to stop turning, s.
+const LONGEST_LOCK_DELAY_S: f64 = 1.0;
+
+/// Samples of a pulse.
+const PULSE_SAMPLES: f64 = 16.0;
+
+/// A collision that was followed to rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CollisionMotion {
+    /// The quantities that it follows from.
+    pub values: LatentValues,
+    /// The impact.
+    pub impact: ImpactState,
+    /// The struck car as it was simulated.
+    pub vehicle: VehicleParameters,
+    /// What was done to the struck car.
+    pub manoeuvre: Manoeuvre,
+    /// Path of the struck car.
+    pub path: Path,
+    /// Path of the striking car, where its rest pose is evidence.
+    pub bullet_path: Option<Path>,
+}
+
+/// The forward model of a case.
+#[derive(Debug, Clone)]
+pub struct ForwardModel {
+    pub(super) cars: Cars,
+    pub(super) prior: Prior,
+    pub(super) side: Side,
+    blocked: Option<Vec<Wheel>>,
+    near: [Wheel; 2],
+    pub(super) restitution: Option<[f64; 2]>,
+    follows_bullet: bool,
+    zones: Vec<FrictionZone>,
+    limit: PathLimit,
+}
+
+/// A car and what happens to it, before it is simulated.
+struct Prepared {
+    values: LatentValues,
+    impact: ImpactState,
+    vehicle: VehicleParameters,
+    manoeuvre: Manoeuvre,
+    bullet: Option<(VehicleParameters, Manoeuvre)>,
+}
+
+impl ForwardModel {
+    /// The model of a case.
+    pub fn new(evidence: &Evidence, cars: Cars) -> Self {
+        let prior = Prior::of(evidence, &cars);
+        let side = evidence.damage.side;
+        let of = |pose: &Option<_>| {
+            pose.as_ref().map(|pose: &crate::evidence::RestPose| pose.x_m.hypot(pose.y_m))
+        };
+        let marks = evidence.marks.iter().flat_map(|mark| &mark.points_m);
+        let farthest_m = marks
+            .map(|[x, y]| x.hypot(*y))
+            .chain(of(&evidence.rest))
+            .chain(of(&evidence.striking_rest))
+            .chain(evidence.positions.iter().map(|at| at.x_m.hypot(at.y_m)))
+            .fold(0.0, f64::max);
+        // Without anything that says where the cars were, they are followed to rest.
+        let distance_m = if farthest_m > 0.0 { 1.5 * farthest_m + 20.0 } else { f64::INFINITY };
+        Self {
+            prior,
+            side,
+            blocked: evidence.after.blocked_wheels.clone(),
+            near: wheels_near(side, cars.is_hit_behind_cg(evidence)),
+            restitution: evidence.prior.restitution,
+            follows_bullet: evidence.striking_rest.is_some(),
+            zones: Vec::new(),
+            limit: PathLimit { distance_m },
+            cars,
+        }
+    }
+
+    /// The same on a ground with zones of their own friction, in the axes of the evidence.
+    #[must_use]
+    pub fn on_zones(self, zones: Vec<FrictionZone>) -> Self {
+        let prior = if zones.is_empty() { self.prior } else { self.prior.with_zones() };
+        Self { prior, zones, ..self }
+    }
+
+    /// The prior of the case.
+    pub fn prior(&self) -> &Prior {
+        &self.prior
+    }
+
+    /// The vehicles of the case.
+    pub fn cars(&self) -> &Cars {
+        &self.cars
+    }
+
+    /// Parts of the ground with their own friction.
+    pub fn zones(&self) -> &[FrictionZone] {
+        &self.zones
+    }
+
+    /// Simulates the motions of particles side by side and on all cores.
+    ///
+    /// - `told`: what is kept of each motion;
+    /// - returns what is kept, in the order of the particles.
+    pub fn motions<R: Send>(
+        &self,
+        z: &[Vec<f64>],
+        told: impl Fn(CollisionMotion) -> R + Sync,
+    ) -> Vec<R> {
+        let prepared: Vec<Prepared> =
+            z.par_iter().map(|z| self.prepared(self.prior.values(z))).collect();
+        let runs: Vec<SimulationRun<'_>> = prepared
+            .iter()
+            .map(|of| SimulationRun { vehicle: &of.vehicle, manoeuvre: &of.manoeuvre })
+            .collect();
+        let bullets: Vec<SimulationRun<'_>> = prepared
+            .iter()
+            .filter_map(|of| of.bullet.as_ref())
+            .map(|(vehicle, manoeuvre)| SimulationRun { vehicle, manoeuvre })
+            .collect();
+        let bullet_paths = simulate_paths(&bullets, self.limit, |_, path| path);
+        simulate_paths(&runs, self.limit, |idx, path| {
+            let of = &prepared[idx];
+            told(CollisionMotion {
+                values: of.values,
+                impact: of.impact,
+                vehicle: of.vehicle.clone(),
+                manoeuvre: of.manoeuvre.clone(),
+                path,
+                bullet_path: bullet_paths.get(idx).cloned(),
+            })
+        })
+    }
+
+    fn prepared(&self, values: LatentValues) -> Prepared {
+        let impact = self.impact(&values);
+        let vehicle = self.vehicle(&values);
+        let ending = self.ending(&values, &vehicle);
+        let [x_m, y_m] = impact.contact_m;
+        let load = contact_load(impact.solution.impulse_n_s, &values, [x_m, y_m]);
+        let manoeuvre = Manoeuvre {
+            initial: VehicleState::driving_straight(impact.target_speed_m_s),
+            contact_load: Some(load),
+            controls: ending.controls(&vehicle),
+            duration_s: LONGEST_MOTION_S,
+            ends_at_rest: true,
+            friction_zones: self.zones_under(&values, values.get(Latent::TireFrictionFactor)),
+        };
+        let bullet = self.follows_bullet.then(|| self.bullet(&values, &impact));
+        Prepared { values, impact, vehicle, manoeuvre, bullet }
+    }
+
+    /// The struck car of a particle.
+    fn vehicle(&self, values: &LatentValues) -> VehicleParameters {
+        let sheet = &self.cars.struck.parameters;
+        let mass_kg = values.get(Latent::TargetMass);
+        let yaw_inertia = sheet.mass.yaw_inertia_kg_m2 * mass_kg / sheet.mass.mass_kg
+            * values.get(Latent::YawInertiaFactor);
+        let mut vehicle = sheet.clone().scaled_to_mass(mass_kg, Some(yaw_inertia));
+        let tires = &mut vehicle.tires;
+        tires.friction = values.get(Latent::RoadFriction) * values.get(Latent::TireFrictionFactor);
+        tires.sliding_friction_ratio = values.get(Latent::SlidingRatio);
+        tires.longitudinal_friction_ratio = values.get(Latent::LongitudinalFrictionRatio);
+        tires.rolling_resistance = values.get(Latent::RollingResistance);
+        tires.cornering_coefficient_front_per_rad *= values.get(Latent::FrontCorneringFactor);
+        tires.cornering_coefficient_rear_per_rad *= values.get(Latent::RearCorneringFactor);
+        vehicle
+    }
+
+    /// What happens to the wheels of the struck car.
+    fn ending(&self, values: &LatentValues, vehicle: &VehicleParameters) -> Ending {
+        let locked =
+            |wheel| DamagedWheel { wheel, start_s: BLOCKED_FROM_S, drag_share_of_friction: None };
+        let damage = match &self.blocked {
+            Some(wheels) => wheels.iter().copied().map(locked).collect(),
+            None => {
+                let drag = values.get(Latent::BlockedDrag);
+                let caught = |idx: usize| DamagedWheel {
+                    drag_share_of_friction: (drag < 1.0).then_some(drag),
+                    ..locked(self.near[idx])
+                };
+                values.blocked_of_two().map(caught).into_iter().collect()
+            }
+        };
+        let brake = values.brakes().then(|| {
+            let brake = Braking::new(
+                values.get(Latent::BrakeStart),
+                values.get(Latent::BrakeShare) * values.get(Latent::LongitudinalFrictionRatio),
+                values.get(Latent::BrakeRise),
+            );
+            let shift = values.get(Latent::FrontBrakeShift);
+            Braking {
+                front_share: Some(brake.ideal_front_share(vehicle) + shift),
+                lock_delay_s: lock_delay_s(vehicle, &brake, values.get(Latent::TargetSpeed)),
+                ..brake
+            }
+        });
+        let engine = brake.is_none().then(|| EngineBraking {
+            deceleration_m_s2: values.get(Latent::EngineBraking),
+            axle: DrivenAxle::All,
+        });
+        let steer = HeldSteer {
+            start_s: STEERED_FROM_S,
+            rise_s: DEFAULT_BRAKE_RISE_S,
+            road_wheel_rad: values.get(Latent::SteerAngle),
+        };
+        Ending { brake, engine, drive: None, damage, steer: Some(steer) }
+    }
+
+    /// The zones of the ground with the friction that a car has in them, within the range of a zone:
+    ///
+    /// ```text
+    /// μ = μ_site · f_zone · f_tyre
+    /// ```
+    ///
+    /// - `tire_factor`: f_tyre, friction of the tyres of the car over that which was measured.
+    fn zones_under(&self, values: &LatentValues, tire_factor: f64) -> Vec<FrictionZone> {
+        let factor = values.get(Latent::ZoneFrictionFactor) * tire_factor;
+        let under = |zone: &FrictionZone| FrictionZone {
+            friction: (zone.friction * factor).clamp(ROAD_FRICTION.low, ROAD_FRICTION.high),
+            ..zone.clone()
+        };
+        self.zones.iter().map(under).collect()
+    }
+
+    /// The striking car and what happens to it.
+    fn bullet(
+        &self,
+        values: &LatentValues,
+        impact: &ImpactState,
+    ) -> (VehicleParameters, Manoeuvre) {
+        let mass_kg = values.get(Latent::BulletMass);
+        let mut vehicle = self.cars.striking.parameters.clone().scaled_to_mass(mass_kg, None);
+        vehicle.tires.friction = values.get(Latent::RoadFriction);
+        let brake = Some(Braking::new(
+            values.get(Latent::BulletBrakeStart),
+            values.get(Latent::BulletBrakeShare),
+            DEFAULT_BRAKE_RISE_S,
+        ));
+        let (sin, cos) = impact.heading_difference_rad.sin_cos();
+        let in_body = |[x, y]: [f64; 2]| [x * cos + y * sin, y * cos - x * sin];
+        let [vx_m_s, vy_m_s] = in_body(impact.bullet_velocity_m_s);
+        let arm_m = [0, 1].map(|i| impact.contact_m[i] - impact.bullet_m[i]);
+        let impulse = impact.solution.impulse_n_s.map(|p| -p);
+        let manoeuvre = Manoeuvre {
+            initial: VehicleState {
+                vx_m_s,
+                vy_m_s,
+                yaw_rad: impact.heading_difference_rad,
+                x_m: impact.bullet_m[0],
+                y_m: impact.bullet_m[1],
+                ..VehicleState::default()
+            },
+            contact_load: Some(contact_load(impulse, values, in_body(arm_m))),
+            controls: Ending { brake, ..Ending::default() }.controls(&vehicle),
+            duration_s: LONGEST_MOTION_S,
+            ends_at_rest: true,
+            friction_zones: self.zones_under(values, 1.0),
+        };
+        (vehicle, manoeuvre)
+    }
+}
+
+/// Time that wheels need to stop turning under a force that the road cannot hold, s:
+///
+/// ```text
+/// t = 4 m_w v / (F_b − (1 − d/2) κ μ m g)        m_w = I_w/R²
+/// ```
+///
+/// d: share of the friction that is lost while the wheel goes over from turning to sliding.
+fn lock_delay_s(vehicle: &VehicleParameters, brake: &Braking, speed_m_s: f64) -> f64 {
+    let tires = &vehicle.tires;
+    let lost = 1.0 - tires.sliding_friction_ratio.min(1.0);
+    let held = tires.longitudinal_friction_ratio * (1.0 - (lost / 2.0).max(0.05));
+    let beyond = brake.share_of_friction - held;
+    if beyond <= 0.0 {
+        return 0.0;
+    }
+    let beyond_n = beyond * tires.friction * vehicle.mass.mass_kg * STANDARD_GRAVITY_M_S2;
+    (4.0 * tires.wheel_mass_kg() * speed_m_s / beyond_n).min(LONGEST_LOCK_DELAY_S)
+}
+
+/// The impulse as a half-sine pulse at a point of a car.
+///
+/// - `at_m`: from the CG, in the axes of the car.
+fn contact_load(impulse_n_s: [f64; 2], values: &LatentValues, at_m: [f64; 2]) -> ContactLoad {
+    let duration_s = values.get(Latent::PulseDuration);
+    let history = Pulse::new(PulseShape::HalfSine, impulse_n_s, 0.0, duration_s)
+        .and_then(|pulse| pulse.to_history(duration_s / PULSE_SAMPLES));
+    // Impulse and duration are finite; an empty history acts as none.
+    let force = history.unwrap_or_else(|_| ForceHistory {
+        axes: ForceAxes::World,
+        sampling: Sampling::CentredMean,
+        time_s: Vec::new(),
+        fx_n: Vec::new(),
+        fy_n: Vec::new(),
+        mz_n_m: None,
+    });
+    let [x_m, y_m] = at_m;
+    let contact = ContactPoint { x_m, y_m, height_m: CONTACT_HEIGHT_M };
+    ContactLoad { force, contact, recorded_moment: false }
+}
+
+/// The two wheels next to the damage, the nearer one first.
+fn wheels_near(side: Side, is_behind_cg: bool) -> [Wheel; 2] {
+    match (side, is_behind_cg) {
+        (Side::Left, true) => [Wheel::RearLeft, Wheel::FrontLeft],
+        (Side::Left, false) => [Wheel::FrontLeft, Wheel::RearLeft],
+        (Side::Right, true) => [Wheel::RearRight, Wheel::FrontRight],
+        (Side::Right, false) => [Wheel::FrontRight, Wheel::RearRight],
+        (Side::Front, _) => [Wheel::FrontLeft, Wheel::FrontRight],
+        (Side::Rear, _) => [Wheel::RearLeft, Wheel::RearRight],
+    }
+}
+
+#[cfg(test)]
+#[path = "forward_tests.rs"]
+mod tests;

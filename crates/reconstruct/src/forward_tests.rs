@@ -1,0 +1,270 @@
+use super::*;
+use crate::evidence::examples::{SPIN, read};
+use crate::evidence::{Mark, Measured};
+use crate::sampler::Target;
+use crate::{
+    Discrepancy, EvidenceFit, MarkComparison, PriorComponent, PriorSource, ReconstructionTarget,
+};
+use impactlab_core::data::Channel;
+use impactlab_core::numerics::wrap_angle_rad;
+use impactlab_core::vehicle::{Integrator, Preset, TireMarkKind};
+
+/// What is found beside the rest pose: a locked wheel, marks and a change of velocity.
+const FOUND: &str = r#"
+delta_v_y_min_m_s = 1.0
+delta_v_y_max_m_s = 1.5
+sensor_y_m = 0.3
+[[mark]]
+wheel = "RR"
+kind = "locked"
+points_m = [[1.0, -0.7], [10, -0.8], [20, -1.5], [40, -5.5]]
+[[mark]]
+wheel = "FL"
+points_m = [[8, 0.6], [20, -1.0], [30, -2.5]]
+"#;
+
+fn case() -> String {
+    let (before, _) = SPIN.split_once("speed_before").unwrap();
+    before.replace("blocked_wheels = []", "blocked_wheels = [\"RR\"]") + FOUND
+}
+
+fn evidence() -> Evidence {
+    read(&case())
+}
+
+fn target(evidence: &Evidence) -> ReconstructionTarget {
+    let model = ForwardModel::new(evidence, Cars::of(evidence, None, None));
+    ReconstructionTarget::new(evidence.clone(), model, Discrepancy::default())
+}
+
+/// Particles that differ in every component.
+fn particles(dim: usize) -> Vec<Vec<f64>> {
+    let at = |i: usize, k: usize| 0.9 * (1.7 * i as f64 + 2.3 * k as f64 + 0.4).sin();
+    (0..12)
+        .map(|i| {
+            let mut z: Vec<f64> = (0..dim).map(|k| at(i, k)).collect();
+            z[0] = -0.5 + 0.05 * i as f64;
+            z
+        })
+        .collect()
+}
+
+/// What was found is what the motion leaves: with its own marks it is explained to the last centimetre.
+#[test]
+fn a_motion_is_compared_with_marks_by_those_that_it_leaves() {
+    let target = target(&evidence());
+    let z = particles(target.dim()).remove(0);
+    let [motion] = &target.model().motions(&[z], |motion| motion)[..] else { panic!("one") };
+    let computed = motion.tire_marks();
+    let blocked = computed.iter().filter(|mark| mark.wheel == Wheel::RearRight);
+    let longest = blocked.max_by(|a, b| a.length_m().total_cmp(&b.length_m())).unwrap();
+    assert_eq!(longest.kind(), TireMarkKind::Locked);
+    let points_m: Vec<[f64; 2]> = longest.points.iter().map(|point| point.place_m).collect();
+    let found = Mark { wheel: Wheel::RearRight, kind: None, points_m, sigma_m: 0.1 };
+    let of = MarkComparison::all(&[found], &computed).remove(0);
+    assert!((of.found_length_m - of.computed_length_m).abs() < 1e-9, "{of:?}");
+    assert!(of.largest_distance_m.unwrap() < 1e-9, "{of:?}");
+    assert!(of.found_length_m > 5.0, "{of:?}");
+}
+
+#[test]
+fn a_particle_moves_as_the_simulation_of_its_car() {
+    let target = target(&evidence());
+    let mut z = particles(target.dim());
+    z.truncate(4);
+    for (i, motion) in target.model().motions(&z, |motion| motion).into_iter().enumerate() {
+        let reference = motion.vehicle.simulate(&motion.manoeuvre, Integrator::Rk4).unwrap();
+        let column = |channel| reference.series.require(channel).unwrap();
+        let last = motion.path.points.last().unwrap();
+        let idx = (last.time_s / 0.01).round() as usize;
+        let idx = idx.min(reference.series.n_samples() - 1);
+        let off_m = (last.x_m - column(Channel::X)[idx]).hypot(last.y_m - column(Channel::Y)[idx]);
+        // The last step may end within an interval of 10 ms of the reference.
+        let moved_m = 0.01 * last.vx_m_s.hypot(last.vy_m_s);
+        assert!(off_m < 0.05 + moved_m, "particle {i}: {off_m} m off at {} s", last.time_s);
+        let momentum = motion.impact.solution.impulse_n_s[1];
+        assert!(momentum >= 0.0, "particle {i}: pushed out of the struck side");
+    }
+}
+
+#[test]
+fn one_scale_that_weighed_both_cars_errs_for_both_alike() {
+    let mut weighed = evidence();
+    weighed.shared_scale_sigma = Some(0.01);
+    let target = target(&weighed);
+    let prior = target.model().prior();
+    let is_scale = |of: &PriorComponent| of.latent == Latent::MassScaleFactor;
+    let scale = prior.components().iter().position(is_scale).unwrap();
+    let mut z = particles(target.dim()).swap_remove(0);
+    let masses = |z: &[f64]| {
+        let values = prior.values(z);
+        [Latent::TargetMass, Latent::BulletMass].map(|mass| values.get(mass))
+    };
+    z[scale] = 0.0;
+    let before = masses(&z);
+    z[scale] = 2.0;
+    for (after, before) in masses(&z).iter().zip(before) {
+        assert!((after / before / 0.02_f64.exp() - 1.0).abs() < 1e-4, "{after} {before}");
+    }
+}
+
+#[test]
+fn every_distribution_says_who_gave_it() {
+    let source_of = |evidence: &Evidence, vehicle: Option<&VehicleParameters>, latent: Latent| {
+        let prior = Prior::of(evidence, &Cars::of(evidence, vehicle, vehicle));
+        let of_latent = prior.components().iter().find(|of| of.latent == latent);
+        of_latent.map(|of| of.source)
+    };
+    let found = evidence();
+    let mut ranged = found.clone();
+    ranged.prior.target_speed_m_s = Some([10.0, 30.0]);
+    ranged.prior.restitution = Some([0.1, 0.3]);
+    ranged.shared_scale_sigma = Some(0.01);
+    let mut unknown = found.clone();
+    (unknown.friction, unknown.struck_car.mass_kg) = (None, None);
+    let mut angled = found.clone();
+    angled.damage.angle_rad = Some(Measured { value: 0.3, sigma: 0.1 });
+    let known = Preset::Reference.parameters();
+    assert!(known.sheet.is_none(), "every parameter of it is known");
+    let any = None;
+    for (evidence, vehicle, latent, source) in [
+        (&found, any, Latent::TargetSpeed, Some(PriorSource::Assumed)),
+        (&ranged, any, Latent::TargetSpeed, Some(PriorSource::Given)),
+        (&found, any, Latent::RestitutionShare, Some(PriorSource::Assumed)),
+        (&ranged, any, Latent::RestitutionShare, Some(PriorSource::Given)),
+        (&ranged, any, Latent::MassScaleFactor, Some(PriorSource::Given)),
+        (&found, any, Latent::HeadingTowards, Some(PriorSource::Assumed)),
+        (&angled, any, Latent::HeadingTowards, Some(PriorSource::Measured)),
+        (&found, any, Latent::ContactAlong, Some(PriorSource::Measured)),
+        (&found, any, Latent::RoadFriction, Some(PriorSource::Measured)),
+        (&unknown, any, Latent::RoadFriction, Some(PriorSource::Assumed)),
+        (&found, any, Latent::TargetMass, Some(PriorSource::Measured)),
+        (&unknown, any, Latent::TargetMass, Some(PriorSource::Estimated)),
+        (&unknown, Some(&known), Latent::TargetMass, Some(PriorSource::Given)),
+        (&found, any, Latent::YawInertiaFactor, Some(PriorSource::Estimated)),
+        // What is known is not in the prior.
+        (&found, Some(&known), Latent::YawInertiaFactor, None),
+        (&found, any, Latent::BrakeStart, Some(PriorSource::Assumed)),
+    ] {
+        assert_eq!(source_of(evidence, vehicle, latent), source, "{latent:?}");
+    }
+}
+
+#[test]
+fn a_mirror_scene_has_the_mirror_likelihood() {
+    let (scene, mirror) = (target(&evidence()), target(&evidence().mirrored()));
+    let z = particles(scene.dim());
+    let steer = scene.model().prior().components();
+    let steer = steer.iter().position(|of| of.latent == Latent::SteerAngle).unwrap();
+    let mirrored: Vec<Vec<f64>> = z
+        .iter()
+        .map(|z| {
+            let mut z = z.clone();
+            z[steer] = -z[steer];
+            z
+        })
+        .collect();
+    let likelihoods = [scene.log_likelihoods(&z), mirror.log_likelihoods(&mirrored)];
+    for (i, (a, b)) in likelihoods[0].iter().zip(&likelihoods[1]).enumerate() {
+        assert!(a.is_finite() && (a - b).abs() < 1e-3 * a.abs().max(1.0), "particle {i}: {a} {b}");
+    }
+    assert!(likelihoods[0].iter().any(|a| (a - likelihoods[0][0]).abs() > 1.0));
+}
+
+#[test]
+fn evidence_of_the_own_motion_is_explained_and_other_evidence_is_not() {
+    let mut found = evidence();
+    let before = target(&found);
+    let z = vec![particles(before.dim())[3].clone()];
+    let rest = before.model().motions(&z, |motion| *motion.path.points.last().unwrap());
+    let pose = found.rest.as_mut().unwrap();
+    (pose.x_m, pose.y_m) = (rest[0].x_m, rest[0].y_m);
+    pose.heading_rad.as_mut().unwrap().value = wrap_angle_rad(rest[0].yaw_rad);
+    found.marks.clear();
+    found.edr.delta_v_y_m_s = None;
+    let fit = |found: &Evidence| {
+        let target = target(found);
+        EvidenceFit::of(&target.model().motions(&z, |motion| target.terms(&motion)))
+    };
+    let own = fit(&found);
+    let of_rest = |fit: &[EvidenceFit]| -> Vec<f64> {
+        fit.iter().filter(|item| item.evidence.starts_with("rest")).map(|item| item.p).collect()
+    };
+    assert!(of_rest(&own).iter().all(|p| *p > 0.5), "{own:?}");
+    found.rest.as_mut().unwrap().y_m += 60.0;
+    let other = fit(&found);
+    assert!(
+        other.iter().any(|item| item.evidence == "rest y" && item.is_unexplained()),
+        "{other:?}"
+    );
+}
+
+#[test]
+fn the_quantities_of_the_prior_give_a_closed_collision_at_each_side() {
+    for (side, place) in [
+        ("left", "x_m = 0.5"),
+        ("right", "x_m = 0.5"),
+        ("front", "y_m = 0.2"),
+        ("rear", "y_m = -0.3"),
+    ] {
+        let text =
+            case().replace("side = \"right\"\nx_m = -1.7", &format!("side = \"{side}\"\n{place}"));
+        let target = target(&read(&text));
+        let prior = target.model().prior();
+        let approach = particles(target.dim())
+            .iter()
+            .map(|z| target.model().impact(&prior.values(z)))
+            .filter(|impact| impact.solution.impulse_normal_n_s > 0.0)
+            .inspect(|impact| {
+                assert!(impact.solution.dissipated_energy_j >= 0.0, "{side}: {impact:?}");
+            })
+            .count();
+        assert!(approach > 0, "{side}: no particle touches");
+    }
+}
+
+#[test]
+fn cars_that_draw_apart_are_no_explanation_of_damage() {
+    let target = target(&read(SPIN));
+    let components = target.model().prior().components();
+    let inwards = |it: &PriorComponent| it.latent == Latent::SideslipTowards;
+    let idx = components.iter().position(inwards).unwrap();
+    let mut z = vec![vec![0.0; components.len()]; 2];
+    z[1][idx] = -3.0; // The striking car moves away from the struck side.
+    let is_collision = target.model().motions(&z, |motion| motion.impact.is_collision());
+    assert_eq!(is_collision, [true, false]);
+    let [of_hit, of_miss] = target.log_likelihoods(&z)[..] else { panic!("two motions") };
+    assert!(of_hit.is_finite() && of_miss == f64::NEG_INFINITY, "{of_hit} {of_miss}");
+}
+
+#[test]
+fn the_wheels_stand_on_the_zones_of_the_ground() {
+    let evidence = evidence();
+    let cars = Cars::of(&evidence, None, None);
+    let road = ForwardModel::new(&evidence, cars.clone());
+    let border_m = vec![[10.0, -40.0], [200.0, -40.0], [200.0, 40.0], [10.0, 40.0]];
+    let ice = FrictionZone { name: "ice".to_owned(), border_m, friction: 0.2 };
+    let none = road.clone().on_zones(Vec::new());
+    let icy = road.clone().on_zones(vec![ice]);
+    let n = road.prior().components().len();
+    assert_eq!(none.prior().components(), road.prior().components());
+    assert_eq!(icy.prior().components().len(), n + 1);
+    let travelled_m = |model: &ForwardModel, z: &[f64]| {
+        let [motion] = &model.motions(&[z.to_vec()], |motion| motion)[..] else { panic!("one") };
+        let pairs = motion.path.points.windows(2);
+        let way = pairs.map(|p| (p[1].x_m - p[0].x_m).hypot(p[1].y_m - p[0].y_m)).sum::<f64>();
+        (way, motion.manoeuvre.friction_zones.first().map(|zone| zone.friction))
+    };
+    // 20 m/s.
+    let mut z = vec![0.0; n + 1];
+    z[0] = -0.43;
+    let (on_road, of_road) = travelled_m(&road, &z[..n]);
+    let (on_ice, of_ice) = travelled_m(&icy, &z);
+    assert_eq!(of_road, None);
+    assert!((of_ice.unwrap() - 0.2 * 1.02).abs() < 1e-3, "tyres are a little better: {of_ice:?}");
+    assert!(on_ice > 1.5 * on_road, "{on_ice} m on ice, {on_road} m on the road");
+    // A zone that is better than the site says stops the car earlier; the friction stays in its range.
+    z[n] = 2.0;
+    let (on_better, of_better) = travelled_m(&icy, &z);
+    assert!(on_better < on_ice && of_better.unwrap() > 1.3 * of_ice.unwrap(), "{on_better}");
+}

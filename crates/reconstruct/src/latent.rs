@@ -1,0 +1,165 @@
+//! The quantities that the motion of a collision depends on, and a value of each.
+
+use serde::Serialize;
+
+use impactlab_core::units::Quantity;
+
+/// Probability that a driver brakes of whom nothing is known.
+pub const BRAKE_PROBABILITY: f64 = 0.75;
+
+/// Probability that a wheel near the damage is blocked if nobody looked.
+pub const BLOCKED_PROBABILITY: f64 = 0.2;
+
+macro_rules! latents {
+    ($($(#[$doc:meta])* $name:ident: $key:literal, $unit:literal, $label:literal;)+) => {
+        /// A quantity that the motion depends on.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+        #[serde(rename_all = "snake_case")]
+        pub enum Latent {
+            $($(#[$doc])* $name,)+
+        }
+
+        impl Latent {
+            /// All of them.
+            pub const ALL: &'static [Self] = &[$(Self::$name),+];
+
+            /// Name with its unit, as in a table of particles.
+            pub const fn key(self) -> &'static str {
+                match self { $(Self::$name => $key),+ }
+            }
+
+            /// Symbol of the unit; empty for a pure number.
+            pub const fn unit(self) -> &'static str {
+                match self { $(Self::$name => $unit),+ }
+            }
+
+            /// What it is called.
+            pub const fn label(self) -> &'static str {
+                match self { $(Self::$name => $label),+ }
+            }
+        }
+    };
+}
+
+latents! {
+    /// Speed of the struck car before the impact, m/s.
+    TargetSpeed: "target_speed_m_s", "m/s", "speed of the struck car";
+    /// Speed of the striking car before the impact, m/s, where it has a range of its own.
+    BulletSpeed: "bullet_speed_m_s", "m/s", "speed of the striking car";
+    /// Speed of the striking car beyond that of the struck car, m/s, where it has none.
+    SpeedDifference: "speed_difference_m_s", "m/s", "striking car faster by";
+    /// Heading of the striking car, rad, turned towards the struck side.
+    HeadingTowards: "heading_towards_rad", "rad", "striking car turned in by";
+    /// Direction in which the striking car moves beside its heading, rad, towards the struck side.
+    SideslipTowards: "sideslip_towards_rad", "rad", "striking car moves inwards by";
+    /// First contact along the struck side, from the CG, m.
+    ContactAlong: "contact_along_m", "m", "contact along the side";
+    /// First contact at right angles to the struck side, from the CG, m.
+    ContactAcross: "contact_across_m", "m", "contact across the side";
+    /// Place of the coefficient of restitution between its bounds, 0 to 1.
+    RestitutionShare: "restitution_share", "", "restitution within its bounds";
+    /// Friction limit of the contact.
+    ContactFriction: "contact_friction", "", "friction of the contact";
+    /// By how much the normal of the contact is turned from that of the struck side towards where the
+    /// striking car points, rad.
+    NormalTilt: "normal_tilt_rad", "rad", "normal of the contact turned by";
+    /// Duration of the contact, s.
+    PulseDuration: "pulse_duration_s", "s", "duration of the contact";
+    /// Peak friction of the road.
+    RoadFriction: "road_friction", "", "friction of the road";
+    /// Friction of the tyres of the struck car over that of the road.
+    TireFrictionFactor: "tire_friction_factor", "", "tyre friction over that of the road";
+    /// Mass of the struck car, kg.
+    TargetMass: "target_mass_kg", "kg", "mass of the struck car";
+    /// Mass of the striking car, kg.
+    BulletMass: "bullet_mass_kg", "kg", "mass of the striking car";
+    /// True weight over what the one scale that weighed both cars shows: a factor of both masses.
+    MassScaleFactor: "mass_scale_factor", "", "true weight over that of the scale";
+    /// Yaw inertia of the struck car over that of its data sheet.
+    YawInertiaFactor: "yaw_inertia_factor", "", "yaw inertia over the estimate";
+    /// Cornering coefficient of the front tyres over that of the data sheet.
+    FrontCorneringFactor: "front_cornering_factor", "", "front cornering over the estimate";
+    /// The same of the rear tyres.
+    RearCorneringFactor: "rear_cornering_factor", "", "rear cornering over the estimate";
+    /// Sliding friction over peak friction.
+    SlidingRatio: "sliding_friction_ratio", "", "sliding over peak friction";
+    /// Friction of a wheel along its plane over that across it.
+    LongitudinalFrictionRatio: "longitudinal_friction_ratio", "", "tyre friction along over across";
+    /// Rolling resistance over vertical load.
+    RollingResistance: "rolling_resistance", "", "rolling resistance";
+    /// Whether the driver brakes: below its threshold he does.
+    BrakeDecision: "brake_decision", "", "whether the driver brakes";
+    /// When he begins, s after the first contact.
+    BrakeStart: "brake_start_s", "s", "driver brakes from";
+    /// Braking force over the largest that the road can hold.
+    BrakeShare: "brake_share", "", "braking over what the road holds";
+    /// How long the braking force rises, s.
+    BrakeRise: "brake_rise_s", "s", "braking rises within";
+    /// Share of the front axle in the braking force beyond that with which both axles reach the limit
+    /// together.
+    FrontBrakeShift: "front_brake_shift", "", "front share of the brakes, beyond";
+    /// Deceleration by the engine, m/s².
+    EngineBraking: "engine_braking_m_s2", "m/s²", "engine braking";
+    /// Angle of the front wheels, rad.
+    SteerAngle: "steer_angle_rad", "rad", "angle of the front wheels";
+    /// Which wheel is blocked, where nobody looked, 0 to 1.
+    BlockedWheel: "blocked_wheel", "", "which wheel is blocked";
+    /// How far it is blocked: drag over what the road can hold; more than 1 is locked.
+    BlockedDrag: "blocked_drag", "", "drag of the blocked wheel";
+    /// When the driver of the striking car brakes, s after the first contact.
+    BulletBrakeStart: "bullet_brake_start_s", "s", "striking driver brakes from";
+    /// Its braking force over the largest that the road can hold.
+    BulletBrakeShare: "bullet_brake_share", "", "braking of the striking car";
+    /// Friction of the zones of the ground over that which the site says, in all of them alike.
+    ZoneFrictionFactor: "zone_friction_factor", "", "friction of the zones over that of the site";
+}
+
+impl Latent {
+    /// What kind of quantity it is.
+    pub fn quantity(self) -> Quantity {
+        match self.unit() {
+            "m/s" => Quantity::Speed,
+            "rad" => Quantity::Angle,
+            "m" => Quantity::Length,
+            "s" => Quantity::Time,
+            "kg" => Quantity::Mass,
+            "m/s²" => Quantity::Acceleration,
+            _ => Quantity::Ratio,
+        }
+    }
+}
+
+/// A value of each quantity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LatentValues([f64; Latent::ALL.len()]);
+
+impl LatentValues {
+    /// No value of any quantity.
+    pub(super) const NONE: Self = Self([f64::NAN; Latent::ALL.len()]);
+
+    /// Value of a quantity; NaN where the case does not have it.
+    pub fn get(&self, latent: Latent) -> f64 {
+        self.0[latent as usize]
+    }
+
+    pub(super) fn set(&mut self, latent: Latent, value: f64) {
+        self.0[latent as usize] = value;
+    }
+
+    /// Whether the driver of the struck car brakes.
+    pub fn brakes(&self) -> bool {
+        self.get(Latent::BrakeDecision) < BRAKE_PROBABILITY
+    }
+
+    /// Which of two wheels near the damage is blocked, where nobody looked.
+    pub fn blocked_of_two(&self) -> Option<usize> {
+        let at = self.get(Latent::BlockedWheel);
+        if at < BLOCKED_PROBABILITY {
+            Some(0)
+        } else if at < 2.0 * BLOCKED_PROBABILITY {
+            Some(1)
+        } else {
+            None
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! Whether the posterior explains the evidence.
+
+use serde::Serialize;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use crate::likelihood::EvidenceTerm;
+use impactlab_core::numerics::wrap_angle_rad;
+
+/// One item of the evidence against the whole posterior.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EvidenceFit {
+    /// The item.
+    pub evidence: String,
+    /// Symbol of the unit of both numbers.
+    pub unit: &'static str,
+    /// Median over the posterior of what would be found.
+    pub expected: f64,
+    /// What was found; the median over the posterior where it depends on the motion, as the distance of
+    /// a mark to the path.
+    pub found: f64,
+    /// Posterior predictive p: the probability that measurement and model err by more than they do here.
+    pub p: f64,
+}
+
+impl EvidenceFit {
+    /// Probability below which an item counts as unexplained. The mean over the particles is seldom small
+    /// by chance, since the particles follow the evidence, so that the usual level of 5 % is a careful one.
+    pub const UNEXPLAINED_BELOW: f64 = 0.05;
+
+    /// The fit of each item.
+    ///
+    /// ```text
+    /// p = mean over the particles of P(χ²_n > D)
+    /// ```
+    ///
+    /// Source: [`GelmanMengStern1996`](impactlab_core::bibliography::GelmanMengStern1996), realized
+    /// discrepancies.
+    ///
+    /// - `particles`: the terms of each particle; those of motions that could not be computed are empty.
+    pub fn of(particles: &[Vec<EvidenceTerm>]) -> Vec<Self> {
+        let of_motions: Vec<&Vec<EvidenceTerm>> =
+            particles.iter().filter(|terms| !terms.is_empty()).collect();
+        let Some(first) = of_motions.first() else { return Vec::new() };
+        let items = first.iter().enumerate();
+        items
+            .map(|(idx, item)| {
+                let all: Vec<&EvidenceTerm> =
+                    of_motions.iter().filter_map(|terms| terms.get(idx)).collect();
+                let tail = |term: &&EvidenceTerm| survival(term.distance, term.n);
+                let p = all.iter().map(tail).sum::<f64>() / all.len() as f64;
+                Self {
+                    evidence: item.name.clone(),
+                    unit: item.unit,
+                    expected: median(all.iter().map(|term| around(term.expected, item)).collect()),
+                    found: median(all.iter().map(|term| term.found).collect()),
+                    p: p.clamp(0.0, 1.0),
+                }
+            })
+            .collect()
+    }
+
+    /// Whether nothing in the posterior explains the item.
+    pub fn is_unexplained(&self) -> bool {
+        self.p < Self::UNEXPLAINED_BELOW
+    }
+}
+
+/// An angle within half a turn of what was found, so that medians of directions make sense.
+fn around(value: f64, item: &EvidenceTerm) -> f64 {
+    match item.unit {
+        "rad" => item.found + wrap_angle_rad(value - item.found),
+        _ => value,
+    }
+}
+
+fn survival(distance: f64, n: usize) -> f64 {
+    ChiSquared::new(n as f64).map_or(0.0, |chi| chi.sf(distance.min(1e6)))
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_lies_far_off_for_every_particle_is_unexplained() {
+        let term = |name: &str, distance| EvidenceTerm {
+            name: name.into(),
+            unit: "m",
+            expected: 1.0,
+            found: 2.0,
+            distance,
+            n: 1,
+        };
+        let particles = vec![vec![term("near", 0.5), term("far", 16.0)]; 3];
+        let fit = EvidenceFit::of(&particles);
+        assert!((fit[0].p - 0.4795).abs() < 1e-3 && !fit[0].is_unexplained(), "{fit:?}");
+        assert!(fit[1].p < 1e-4 && fit[1].is_unexplained(), "{fit:?}");
+        assert!(EvidenceFit::of(&[]).is_empty());
+    }
+}

@@ -1,0 +1,404 @@
+//! What the particles say: quantities with their intervals, modes, fit, and what further evidence
+//! would bring.
+
+use serde::{Deserialize, Serialize};
+
+use crate::sampler::Particles;
+use crate::{
+    EvidenceFit, ForwardModel, ImpactState, Latent, LatentValues, Narrowing, ReconstructionTarget,
+    modes_by,
+};
+use impactlab_core::numerics::quantile_of_sorted;
+use impactlab_core::units::{Quantity, UnitSystem};
+
+macro_rules! quantities {
+    ($($(#[$doc:meta])* $name:ident: $key:literal, $unit:literal, $of:expr;)+) => {
+        /// A quantity that a reconstruction asks for.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+        #[serde(rename_all = "snake_case")]
+        pub enum ReconstructedQuantity {
+            $($(#[$doc])* $name,)+
+        }
+
+        impl ReconstructedQuantity {
+            /// All of them.
+            pub const ALL: &'static [Self] = &[$(Self::$name),+];
+
+            /// Name with its unit.
+            pub const fn key(self) -> &'static str {
+                match self { $(Self::$name => $key),+ }
+            }
+
+            /// Symbol of the unit; empty for a pure number.
+            pub const fn unit(self) -> &'static str {
+                match self { $(Self::$name => $unit),+ }
+            }
+
+            /// Its value of a particle.
+            pub fn of(self, values: &LatentValues, impact: &ImpactState) -> f64 {
+                let of: fn(&LatentValues, &ImpactState) -> f64 = match self { $(Self::$name => $of),+ };
+                of(values, impact)
+            }
+        }
+    };
+}
+
+quantities! {
+    /// Speed of the struck car before the impact, m/s.
+    TargetSpeed: "target_speed_m_s", "m/s", |_, impact| impact.target_speed_m_s;
+    /// Speed of the striking car before the impact, m/s.
+    BulletSpeed: "bullet_speed_m_s", "m/s", |_, impact| impact.bullet_speed_m_s;
+    /// Size of the difference of both velocities, m/s.
+    ClosingSpeed: "closing_speed_m_s", "m/s", |_, impact| impact.closing_speed_m_s;
+    /// Heading of the striking car against that of the struck car, rad.
+    HeadingDifference: "heading_difference_rad", "rad", |_, impact| impact.heading_difference_rad;
+    /// Peak friction of the road.
+    RoadFriction: "road_friction", "", |values, _| values.get(Latent::RoadFriction);
+    /// Change of velocity of the struck car by the contact, m/s.
+    DeltaVTarget: "delta_v_target_m_s", "m/s", |_, impact| impact.delta_v_target_m_s();
+    /// Yaw rate of the struck car after the impact, rad/s.
+    TargetYawRate: "target_yaw_rate_after_rad_s", "rad/s",
+        |_, impact| impact.solution.target.yaw_rate_rad_s;
+}
+
+impl ReconstructedQuantity {
+    /// What it is called.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::TargetSpeed => "speed of the struck car",
+            Self::BulletSpeed => "speed of the striking car",
+            Self::ClosingSpeed => "closing speed",
+            Self::HeadingDifference => "relative heading of the cars",
+            Self::RoadFriction => "friction of the road",
+            Self::DeltaVTarget => "Δv of the struck car",
+            Self::TargetYawRate => "yaw rate after the impact",
+        }
+    }
+
+    /// What kind of quantity it is.
+    pub fn quantity(self) -> Quantity {
+        match self {
+            Self::TargetSpeed | Self::BulletSpeed | Self::ClosingSpeed | Self::DeltaVTarget => {
+                Quantity::Speed
+            }
+            Self::HeadingDifference => Quantity::Angle,
+            Self::RoadFriction => Quantity::Ratio,
+            Self::TargetYawRate => Quantity::AngularVelocity,
+        }
+    }
+}
+
+/// A quantity with its intervals, which leave out as much below as above.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct QuantityEstimate {
+    /// Name with its unit.
+    pub name: &'static str,
+    /// Symbol of the unit; empty for a pure number.
+    pub unit: &'static str,
+    /// Median.
+    pub median: f64,
+    /// Holds the value with a probability of 50 %.
+    pub interval_50: [f64; 2],
+    /// … of 80 %.
+    pub interval_80: [f64; 2],
+    /// … of 90 %.
+    pub interval_90: [f64; 2],
+    /// … of 95 %.
+    pub interval_95: [f64; 2],
+}
+
+/// A kind of course of events that the evidence leaves possible.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Mode {
+    /// What sets it apart.
+    pub name: String,
+    /// Its probability.
+    pub probability: f64,
+    /// Standard error of the probability by the number of particles.
+    pub standard_error: f64,
+    /// The quantities within it.
+    pub quantities: Vec<QuantityEstimate>,
+    /// Indices of its particles, which are not told.
+    #[serde(skip)]
+    pub members: Vec<usize>,
+}
+
+/// What one more piece of evidence would bring.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BudgetItem {
+    /// The quantity that would be measured, with its unit.
+    pub known: &'static str,
+    /// How well, one standard deviation in that unit.
+    pub sigma: f64,
+    /// Half the width of the 90 % interval of the struck car's speed now, m/s.
+    pub now_m_s: f64,
+    /// The same on the average with the measurement, m/s.
+    pub then_m_s: f64,
+    /// Effective number of particles that the average rests on.
+    pub ess: f64,
+    /// Whether these are enough.
+    pub believable: bool,
+}
+
+/// Particles with what follows from them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Posterior {
+    /// The quantities of each particle.
+    pub values: Vec<LatentValues>,
+    /// The impact of each particle.
+    pub impacts: Vec<ImpactState>,
+}
+
+/// Smallest probability of a mode that is told.
+const SMALLEST_MODE: f64 = 0.01;
+
+/// Motions by which the fit is judged.
+const FIT_PARTICLES: usize = 300;
+
+impl Posterior {
+    /// What follows from particles.
+    pub fn of(target: &ReconstructionTarget, particles: &Particles) -> Self {
+        Self::of_points(target.model(), &particles.z)
+    }
+
+    /// What follows from points.
+    ///
+    /// - `z`: standard normal variables of each point, `[n][dim]`.
+    pub fn of_points(model: &ForwardModel, z: &[Vec<f64>]) -> Self {
+        let values: Vec<LatentValues> = z.iter().map(|z| model.prior().values(z)).collect();
+        let impacts = values.iter().map(|values| model.impact(values)).collect();
+        Self { values, impacts }
+    }
+
+    /// Values of a quantity, one for each particle.
+    pub fn of_quantity(&self, quantity: ReconstructedQuantity) -> Vec<f64> {
+        self.values.iter().zip(&self.impacts).map(|(v, impact)| quantity.of(v, impact)).collect()
+    }
+
+    /// The interval that holds 90 % of a quantity that the motion depends on; `None` where the case does
+    /// not have it.
+    pub fn interval_90_of(&self, latent: Latent) -> Option<[f64; 2]> {
+        let mut values: Vec<f64> = self.values.iter().map(|values| values.get(latent)).collect();
+        values.sort_by(f64::total_cmp);
+        let ends = [quantile_of_sorted(&values, 0.05)?, quantile_of_sorted(&values, 0.95)?];
+        ends.iter().all(|end| end.is_finite()).then_some(ends)
+    }
+
+    /// The particle whose speed of the struck car is nearest to a median, among some of them.
+    ///
+    /// - `members`: numbers of these particles;
+    /// - `quantities`: their quantities, with the median.
+    pub fn nearest_to_median(
+        &self,
+        members: &[usize],
+        quantities: &[QuantityEstimate],
+    ) -> Option<usize> {
+        let speed = ReconstructedQuantity::TargetSpeed;
+        let median = quantities.iter().find(|of| of.name == speed.key())?.median;
+        let speeds = self.of_quantity(speed);
+        let off = |idx: &usize| speeds.get(*idx).map_or(f64::INFINITY, |v| (v - median).abs());
+        members.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)))
+    }
+
+    /// Every quantity with its intervals.
+    pub fn quantities(&self) -> Vec<QuantityEstimate> {
+        self.quantities_of(&(0..self.values.len()).collect::<Vec<_>>())
+    }
+
+    fn quantities_of(&self, chosen: &[usize]) -> Vec<QuantityEstimate> {
+        let of = |quantity: &ReconstructedQuantity| {
+            let value = |&idx: &usize| quantity.of(&self.values[idx], &self.impacts[idx]);
+            QuantityEstimate::of(*quantity, chosen.iter().map(value).collect())
+        };
+        ReconstructedQuantity::ALL.iter().filter_map(of).collect()
+    }
+
+    /// The kinds of courses of events, the most probable one first.
+    ///
+    /// - `turned_rad`: by how much the struck car of each particle has turned at rest, rad.
+    pub fn modes(&self, particles: &Particles, turned_rad: &[f64]) -> Vec<Mode> {
+        let name = |idx: usize| match (self.values.get(idx), turned_rad.get(idx)) {
+            (Some(values), Some(turned)) => mode_name(values, *turned),
+            _ => String::new(),
+        };
+        modes_by(particles, name)
+            .into_iter()
+            .filter(|mode| mode.probability >= SMALLEST_MODE)
+            .map(|mode| Mode {
+                name: mode.key,
+                probability: mode.probability,
+                standard_error: mode.standard_error,
+                quantities: self.quantities_of(&mode.members),
+                members: mode.members,
+            })
+            .collect()
+    }
+
+    /// What further measurements would bring, by [`Narrowing`].
+    ///
+    /// - `(ess, seed)`: effective sample size of the particles, seed of the errors of measurements.
+    pub fn budget(&self, (ess, seed): (f64, u64)) -> Vec<BudgetItem> {
+        let speeds = self.of_quantity(ReconstructedQuantity::TargetSpeed);
+        let latent = |latent: Latent| self.values.iter().map(|v| v.get(latent)).collect::<Vec<_>>();
+        let quantity = |quantity: ReconstructedQuantity| self.of_quantity(quantity);
+        [
+            ("road_friction", 0.02, latent(Latent::RoadFriction)),
+            ("tire_friction_factor", 0.02, latent(Latent::TireFrictionFactor)),
+            ("target_mass_kg", 20.0, latent(Latent::TargetMass)),
+            ("bullet_mass_kg", 20.0, latent(Latent::BulletMass)),
+            ("contact_along_m", 0.03, latent(Latent::ContactAlong)),
+            ("brake_start_s", 0.1, latent(Latent::BrakeStart)),
+            ("delta_v_target_m_s", 0.1, quantity(ReconstructedQuantity::DeltaVTarget)),
+            ("heading_difference_rad", 0.05, quantity(ReconstructedQuantity::HeadingDifference)),
+            ("target_speed_m_s", 0.9, speeds.clone()),
+        ]
+        .into_iter()
+        .filter_map(|(known, sigma, x)| {
+            if !x.iter().all(|x| x.is_finite()) {
+                return None; // The quantity is not open.
+            }
+            let narrowing = Narrowing::by(&speeds, (&x, sigma), ess, seed)?;
+            Some(BudgetItem {
+                known,
+                sigma,
+                now_m_s: narrowing.width_90_now / 2.0,
+                then_m_s: narrowing.width_90_then / 2.0,
+                ess: narrowing.ess,
+                believable: narrowing.believable(),
+            })
+        })
+        .collect()
+    }
+}
+
+impl BudgetItem {
+    /// The measurement that would give the quantity.
+    pub fn measurement(&self) -> &'static str {
+        match self.known {
+            "road_friction" => "friction test",
+            "tire_friction_factor" => "tyre test",
+            "target_mass_kg" => "struck car weighed",
+            "bullet_mass_kg" => "striking car weighed",
+            "contact_along_m" => "damage measured",
+            "brake_start_s" => "braking timed",
+            "delta_v_target_m_s" => "Δv recorded",
+            "heading_difference_rad" => "angle measured",
+            "target_speed_m_s" => "speed recorded",
+            other => other,
+        }
+    }
+
+    /// What kind of quantity it is.
+    pub fn quantity(&self) -> Quantity {
+        let asked = ReconstructedQuantity::ALL.iter().find(|of| of.key() == self.known);
+        let open = Latent::ALL.iter().find(|of| of.key() == self.known);
+        let open = open.map_or(Quantity::Ratio, |latent| latent.quantity());
+        asked.map_or(open, |quantity| quantity.quantity())
+    }
+
+    /// The measurement with its standard deviation, such as `friction test, ± 0.02`.
+    pub fn shown(&self, units: UnitSystem) -> String {
+        let unit = self.quantity().display_unit(units);
+        let sigma = unit.from_si(self.sigma);
+        let decimals = (1 - sigma.log10().floor() as i32).clamp(0, 6) as usize;
+        let mut text = format!("{sigma:.decimals$}");
+        if text.contains('.') {
+            text.truncate(text.trim_end_matches('0').trim_end_matches('.').len());
+        }
+        format!("{}, ± {text} {}", self.measurement(), unit.symbol).trim_end().to_owned()
+    }
+}
+
+/// The numbers of a [`QuantityEstimate`] as they are shown, without their unit.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ShownEstimate {
+    /// Symbol of the unit of all of them; empty for a pure number.
+    pub unit: &'static str,
+    /// Median.
+    pub median: String,
+    /// Ends of the interval of 50 %.
+    pub interval_50: [String; 2],
+    /// … of 90 %.
+    pub interval_90: [String; 2],
+    /// … of 95 %.
+    pub interval_95: [String; 2],
+}
+
+impl QuantityEstimate {
+    /// The numbers for a person, on the command line and in a report.
+    pub fn shown(&self, units: UnitSystem) -> ShownEstimate {
+        let quantity = match self.unit {
+            "m/s" => Quantity::Speed,
+            "rad" => Quantity::Angle,
+            "rad/s" => Quantity::AngularVelocity,
+            _ => Quantity::Ratio,
+        };
+        let unit = quantity.display_unit(units);
+        let number = |si: f64| match quantity {
+            Quantity::Ratio => format!("{si:.3}"),
+            _ => format!("{:.1}", unit.from_si(si)),
+        };
+        ShownEstimate {
+            unit: unit.symbol,
+            median: number(self.median),
+            interval_50: self.interval_50.map(number),
+            interval_90: self.interval_90.map(number),
+            interval_95: self.interval_95.map(number),
+        }
+    }
+
+    /// Intervals of equally likely values; `None` without values.
+    fn of(quantity: ReconstructedQuantity, mut values: Vec<f64>) -> Option<Self> {
+        values.sort_by(f64::total_cmp);
+        Self::by(quantity, |share| quantile_of_sorted(&values, share))
+    }
+
+    /// Median and intervals of a distribution; `None` if it has no quantiles.
+    ///
+    /// - `at`: the value below which the quantity lies with a probability.
+    pub fn by(quantity: ReconstructedQuantity, at: impl Fn(f64) -> Option<f64>) -> Option<Self> {
+        let interval = |share: f64| Some([at((1.0 - share) / 2.0)?, at((1.0 + share) / 2.0)?]);
+        Some(Self {
+            name: quantity.key(),
+            unit: quantity.unit(),
+            median: at(0.5)?,
+            interval_50: interval(0.5)?,
+            interval_80: interval(0.8)?,
+            interval_90: interval(0.9)?,
+            interval_95: interval(0.95)?,
+        })
+    }
+}
+
+impl ReconstructionTarget {
+    /// How well the posterior explains each item of the evidence, and by how much the struck car of
+    /// each particle has turned at rest, rad.
+    pub fn fit(&self, particles: &Particles) -> (Vec<EvidenceFit>, Vec<f64>) {
+        let every = particles.z.len().div_ceil(FIT_PARTICLES).max(1);
+        let told = self.model().motions(&particles.z, |motion| {
+            let turned = motion.path.points.last().map_or(f64::NAN, |last| last.yaw_rad);
+            (self.terms(&motion), turned)
+        });
+        let turned = told.iter().map(|(_, turned)| *turned).collect();
+        let terms: Vec<_> = told.into_iter().step_by(every).map(|(terms, _)| terms).collect();
+        (EvidenceFit::of(&terms), turned)
+    }
+}
+
+/// What sets the course of events of a particle apart.
+fn mode_name(values: &LatentValues, turned_rad: f64) -> String {
+    let halves = (turned_rad / std::f64::consts::PI).round().abs();
+    let spin = match (halves as i64, turned_rad > 0.0) {
+        (0, _) => "recovers".to_owned(),
+        (halves, true) => format!("turns left by about {}°", 180 * halves),
+        (halves, false) => format!("turns right by about {}°", 180 * halves),
+    };
+    let braked = if values.brakes() { "the driver brakes" } else { "the driver does not brake" };
+    let blocked = match (values.get(Latent::BlockedWheel).is_nan(), values.blocked_of_two()) {
+        (true, _) => "",
+        (false, None) => ", no wheel blocked",
+        (false, Some(0)) => ", the wheel at the damage blocked",
+        (false, Some(_)) => ", the other wheel near the damage blocked",
+    };
+    format!("{spin}, {braked}{blocked}")
+}

@@ -1,0 +1,349 @@
+//! What is taken to be likely before the motion is looked at: a distribution of each quantity that the
+//! motion depends on, as a transformation of one standard normal variable each.
+//!
+//! What was measured by itself (friction, masses, the place of the first contact) enters here with its
+//! standard deviation; what follows from the motion enters the likelihood.
+//!
+//! Defaults where the evidence file gives nothing, each with its source:
+//!
+//! | quantity | default | source |
+//! | --- | --- | --- |
+//! | speed of the struck car | uniform, 0 to 60 m/s | nothing is known |
+//! | striking car faster by | normal, 1 ± 3 m/s, hit behind the CG; else its speed uniform, 0 to 60 m/s | in a PIT manoeuvre the speeds are matched, by a car that comes from behind |
+//! | its heading, turned towards the struck side | normal, 17° ± 14°, hit behind the CG on a flank; else uniform, 0° to 110°; rear 0° ± 17°; front 180° ± 29° | PIT manoeuvre; collisions at an angle; in line |
+//! | its direction of motion beside the heading | normal, −6° ± 11° hit behind the CG, else 0° ± 11° | a car that turns in moves less to the side than it points |
+//! | restitution | uniform, 0.24 to 0.66 up to 5 m/s of approach, falling to 0 to 0.3 at 15 m/s | [`ContactDistribution`], [`Brach2011`](impactlab_core::bibliography::Brach2011) |
+//! | friction of the contact | normal, 0.28 ± 0.15 | [`ContactDistribution`] |
+//! | normal of the contact turned towards where the striking car points | normal, 9° ± 7° hit behind the CG, else 0° ± 7° | a corner that digs in: tuning cases |
+//! | friction of the tyres over that of the road | log-normal, 1.02, factor 1.09 | other tyres: tuning cases |
+//! | friction of a wheel along its plane over that across it | log-normal, 1.15, factor 1.07 | tuning cases |
+//! | duration of the contact | log-normal, 0.12 s, factor 1.35 | finite-element runs of the project |
+//! | driver brakes | 3 of 4 | assumed |
+//! | … from | log-normal, 0.9 s, factor 1.6 | assumed: reaction to a surprise |
+//! | … with a share of the largest force | log-normal, 0.8, factor 2.2 | locks the wheels in two of five |
+//! | … that rises within | log-normal, 0.4 s, factor 1.6 | usual emergency braking to half-hearted |
+//! | … more of it on the front axle than where both axles reach the limit together | normal, 0 ± 0.05 of the whole | either axle may lock first |
+//! | engine braking where he does not | uniform, 0 to 0.8 m/s² | neutral to third gear |
+//! | front wheels turned by | normal, 0 ± 0.9° | toe, play, a hand on the wheel |
+//! | each wheel near the damage blocked | 1 of 5, if nobody looked | assumed |
+//! | mass of a car of which no mass is known | log-normal, by its length and width where they are known, else 1790 kg, factor 1.19 | vehicles of the library |
+//! | one scale that weighed both cars, over what it shows | log-normal, 1, as said | [`Evidence::shared_scale_sigma`] |
+//! | friction of the zones of a site over that which the site says, in all zones alike | log-normal, 1, factor 1.16 | assumed: grass, gravel and wet patches are known less well than the road |
+//! | yaw inertia, tyre curves, sliding friction, rolling resistance | the rules of the data sheet with their scatter | [`DataSheet`](impactlab_core::vehicle::DataSheet) |
+
+use std::f64::consts::PI;
+
+use serde::Serialize;
+
+use crate::cars::{Car, Cars};
+use crate::evidence::{
+    DEFAULT_FRICTION, DEFAULT_FRICTION_SIGMA, DEFAULT_MASS_SHARE, DriverBraked, Evidence, Measured,
+};
+use crate::{Distribution, Latent, LatentValues};
+use impactlab_core::collision::{ContactDistribution, Side};
+use impactlab_core::vehicle::sheet::SheetQuantity;
+
+/// A quantity with its prior distribution.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct PriorComponent {
+    /// The quantity.
+    pub latent: Latent,
+    /// Its distribution.
+    pub distribution: Distribution,
+    /// Who says so.
+    pub source: PriorSource,
+}
+
+/// Where a distribution of the prior comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PriorSource {
+    /// Given as a range or a scatter with the evidence, or as a value of the chosen vehicle.
+    Given,
+    /// A measured value of the evidence and its standard deviation; the usual one where the evidence says
+    /// none.
+    Measured,
+    /// A rule of the data sheet with its scatter.
+    Estimated,
+    /// Nobody said it: a default of the program, in the table of [`Prior`].
+    Assumed,
+}
+
+/// The prior: independent distributions of the quantities that are open.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prior {
+    components: Vec<PriorComponent>,
+    fixed: LatentValues,
+    is_pit: bool,
+}
+
+/// Highest speed that the prior takes to be possible, m/s.
+const HIGHEST_SPEED_M_S: f64 = 60.0;
+
+/// Friction of a tyre over that which was measured on the road, and its scatter: other tyres differ.
+const TIRE_FRICTION_FACTOR: f64 = 1.02;
+const TIRE_FRICTION_SCATTER: f64 = 0.09;
+
+/// Friction of a wheel along its plane over that across it, and its scatter. The multibody cars of the
+/// tuning cases have 1.15 to 1.2 at the peak and 1.15 on locked wheels.
+const LONGITUDINAL_FRICTION_RATIO: f64 = 1.15;
+const LONGITUDINAL_FRICTION_SCATTER: f64 = 0.07;
+
+/// Scatter of the friction of a zone about that which a site says.
+const ZONE_FRICTION_SCATTER: f64 = 0.15;
+
+/// Least scatter of sliding over peak friction, for the same reason.
+const SLIDING_SCATTER: f64 = 0.08;
+
+impl Prior {
+    /// The prior of a case.
+    pub fn of(evidence: &Evidence, cars: &Cars) -> Self {
+        let is_pit = cars.is_hit_behind_cg(evidence);
+        let mut prior = Self { components: Vec::new(), fixed: LatentValues::NONE, is_pit };
+        prior.add_speeds(evidence);
+        prior.add_contact(evidence, cars);
+        prior.add_cars(evidence, cars);
+        prior.add_ending(evidence);
+        prior
+    }
+
+    /// The same for a ground on which there are zones with their own friction.
+    #[must_use]
+    pub fn with_zones(mut self) -> Self {
+        let reach = (3.0 * ZONE_FRICTION_SCATTER).exp();
+        let factor = log_normal(1.0, ZONE_FRICTION_SCATTER, 1.0 / reach, reach);
+        self.assume(Latent::ZoneFrictionFactor, factor);
+        self
+    }
+
+    /// Its components, in the order of z.
+    pub fn components(&self) -> &[PriorComponent] {
+        &self.components
+    }
+
+    /// Whether the defaults are those of a push behind the CG, as in a PIT manoeuvre.
+    pub fn is_pit(&self) -> bool {
+        self.is_pit
+    }
+
+    /// The quantities at standard normal variables.
+    pub fn values(&self, z: &[f64]) -> LatentValues {
+        let mut values = self.fixed;
+        for (component, z) in self.components.iter().zip(z) {
+            values.set(component.latent, component.distribution.at(*z));
+        }
+        let scale = values.get(Latent::MassScaleFactor);
+        if !scale.is_nan() {
+            for mass in [Latent::TargetMass, Latent::BulletMass] {
+                values.set(mass, scale * values.get(mass));
+            }
+        }
+        values
+    }
+
+    fn add(&mut self, latent: Latent, source: PriorSource, distribution: Distribution) {
+        self.components.push(PriorComponent { latent, distribution, source });
+    }
+
+    /// A default of the program.
+    fn assume(&mut self, latent: Latent, distribution: Distribution) {
+        self.add(latent, PriorSource::Assumed, distribution);
+    }
+
+    /// A range of the user, or what is known without one.
+    fn open(
+        &mut self,
+        latent: Latent,
+        range: Option<[f64; 2]>,
+        otherwise: (PriorSource, Distribution),
+    ) {
+        let of_user =
+            range.map(|[low, high]| (PriorSource::Given, Distribution::Uniform { low, high }));
+        let (source, distribution) = of_user.unwrap_or(otherwise);
+        self.add(latent, source, distribution);
+    }
+
+    fn add_speeds(&mut self, evidence: &Evidence) {
+        let ranges = &evidence.prior;
+        let any = Distribution::Uniform { low: 0.0, high: HIGHEST_SPEED_M_S };
+        let any = (PriorSource::Assumed, any);
+        self.open(Latent::TargetSpeed, ranges.target_speed_m_s, any);
+        match ranges.bullet_speed_m_s {
+            None if self.is_pit => {
+                self.assume(Latent::SpeedDifference, normal(1.0, 3.0, -20.0, 20.0));
+            }
+            range => self.open(Latent::BulletSpeed, range, any),
+        }
+        // Angles are turned towards the struck side, so that the mirror of a case is the same prior.
+        let turned = |[low, high]: [f64; 2]| match towards(evidence.damage.side) > 0.0 {
+            true => [low, high],
+            false => [-high, -low],
+        };
+        let by_side = match evidence.damage.side {
+            Side::Front => normal(PI, 0.5, PI - 1.6, PI + 1.6),
+            Side::Rear => normal(0.0, 0.3, -1.6, 1.6),
+            Side::Left | Side::Right if self.is_pit => normal(0.30, 0.25, -0.5, 1.6),
+            Side::Left | Side::Right => Distribution::Uniform { low: 0.0, high: 1.92 },
+        };
+        let by_damage = evidence.damage.angle_rad.map(|angle| {
+            let mean = angle.value * towards(evidence.damage.side);
+            (PriorSource::Measured, normal(mean, angle.sigma, mean - PI, mean + PI))
+        });
+        let by_side = (PriorSource::Assumed, by_side);
+        let heading = ranges.heading_difference_rad.map(turned);
+        self.open(Latent::HeadingTowards, heading, by_damage.unwrap_or(by_side));
+        let sideslip = ranges.bullet_sideslip_rad.map(turned);
+        let mean = if self.is_pit { -0.10 } else { 0.0 };
+        let usual = (PriorSource::Assumed, normal(mean, 0.20, -0.8, 0.8));
+        self.open(Latent::SideslipTowards, sideslip, usual);
+    }
+
+    fn add_contact(&mut self, evidence: &Evidence, cars: &Cars) {
+        let damage = &evidence.damage;
+        let Measured { value, sigma } = damage.along_m;
+        let along = normal(value, sigma, value - 2.0, value + 2.0);
+        self.add(Latent::ContactAlong, PriorSource::Measured, along);
+        let across = damage.depth_m.unwrap_or_else(|| cars.depth_of(damage.side));
+        self.fixed.set(Latent::ContactAcross, across);
+        // Its bounds are a range of the user, or those of the program.
+        let source = match evidence.prior.restitution {
+            Some(_) => PriorSource::Given,
+            None => PriorSource::Assumed,
+        };
+        self.add(Latent::RestitutionShare, source, Distribution::Uniform { low: 0.0, high: 1.0 });
+        let [low, high] = ContactDistribution::default().friction_limit;
+        let friction = normal((low + high) / 2.0, (high - low) / 2.9, 0.0, 1.0);
+        let friction = (PriorSource::Assumed, friction);
+        self.open(Latent::ContactFriction, evidence.prior.contact_friction, friction);
+        let mean = if self.is_pit { 0.15 } else { 0.0 };
+        self.assume(Latent::NormalTilt, normal(mean, 0.12, -0.5, 0.8));
+        self.assume(Latent::PulseDuration, log_normal(0.12, 0.30, 0.04, 0.30));
+    }
+
+    fn add_cars(&mut self, evidence: &Evidence, cars: &Cars) {
+        let usual = Measured { value: DEFAULT_FRICTION, sigma: DEFAULT_FRICTION_SIGMA };
+        let (source, friction) = match evidence.friction {
+            Some(measured) => (PriorSource::Measured, measured),
+            None => (PriorSource::Assumed, usual),
+        };
+        self.add(Latent::RoadFriction, source, normal(friction.value, friction.sigma, 0.03, 1.6));
+        self.assume(
+            Latent::TireFrictionFactor,
+            log_normal(TIRE_FRICTION_FACTOR, TIRE_FRICTION_SCATTER, 0.7, 1.4),
+        );
+        self.assume(
+            Latent::LongitudinalFrictionRatio,
+            log_normal(LONGITUDINAL_FRICTION_RATIO, LONGITUDINAL_FRICTION_SCATTER, 0.8, 1.5),
+        );
+        for (latent, measured, vehicle) in [
+            (Latent::TargetMass, evidence.struck_car.mass_kg, &cars.struck),
+            (Latent::BulletMass, evidence.striking_car.mass_kg, &cars.striking),
+        ] {
+            let (source, distribution) = mass_of(measured, vehicle);
+            self.add(latent, source, distribution);
+        }
+        if let Some(sigma) = evidence.shared_scale_sigma {
+            let reach = (4.0 * sigma).exp();
+            let scale = log_normal(1.0, sigma, 1.0 / reach, reach);
+            self.add(Latent::MassScaleFactor, PriorSource::Given, scale);
+        }
+        for (latent, quantity) in [
+            (Latent::YawInertiaFactor, SheetQuantity::YawInertia),
+            (Latent::FrontCorneringFactor, SheetQuantity::FrontCornering),
+            (Latent::RearCorneringFactor, SheetQuantity::RearCornering),
+        ] {
+            match cars.struck.scatter(quantity) {
+                Some(sigma) => {
+                    let reach = (3.0 * sigma).exp();
+                    let factor = log_normal(1.0, sigma, 1.0 / reach, reach);
+                    self.add(latent, PriorSource::Estimated, factor);
+                }
+                None => self.fixed.set(latent, 1.0),
+            }
+        }
+        let tires = &cars.struck.parameters.tires;
+        for (latent, quantity, value, [low, high]) in [
+            (
+                Latent::SlidingRatio,
+                SheetQuantity::SlidingRatio,
+                tires.sliding_friction_ratio,
+                [0.5, 1.0],
+            ),
+            (
+                Latent::RollingResistance,
+                SheetQuantity::RollingResistance,
+                tires.rolling_resistance,
+                [0.004, 0.05],
+            ),
+        ] {
+            match cars.struck.scatter(quantity) {
+                Some(sigma) => {
+                    let is_sliding = latent == Latent::SlidingRatio;
+                    let sigma = if is_sliding { sigma.max(SLIDING_SCATTER) } else { sigma };
+                    self.add(latent, PriorSource::Estimated, log_normal(value, sigma, low, high));
+                }
+                None => self.fixed.set(latent, value),
+            }
+        }
+    }
+
+    fn add_ending(&mut self, evidence: &Evidence) {
+        let ranges = &evidence.prior;
+        match evidence.after.driver_braked {
+            DriverBraked::Unknown => {
+                self.assume(Latent::BrakeDecision, Distribution::Uniform { low: 0.0, high: 1.0 });
+            }
+            DriverBraked::Yes => self.fixed.set(Latent::BrakeDecision, 0.0),
+            DriverBraked::No => self.fixed.set(Latent::BrakeDecision, 1.0),
+        }
+        if evidence.after.driver_braked != DriverBraked::No {
+            let start = (PriorSource::Assumed, log_normal(0.9, 0.47, 0.1, 6.0));
+            self.open(Latent::BrakeStart, ranges.brake_start_s, start);
+            self.assume(Latent::BrakeRise, log_normal(0.4, 0.5, 0.1, 1.5));
+            self.assume(Latent::FrontBrakeShift, normal(0.0, 0.05, -0.2, 0.2));
+            let share = (PriorSource::Assumed, log_normal(0.8, 0.79, 0.05, 3.0));
+            self.open(Latent::BrakeShare, ranges.brake_share, share);
+        }
+        self.assume(Latent::EngineBraking, Distribution::Uniform { low: 0.0, high: 0.8 });
+        self.assume(Latent::SteerAngle, normal(0.0, 0.015, -0.2, 0.2));
+        if evidence.after.blocked_wheels.is_none() {
+            self.assume(Latent::BlockedWheel, Distribution::Uniform { low: 0.0, high: 1.0 });
+            self.assume(Latent::BlockedDrag, Distribution::Uniform { low: 0.2, high: 1.6 });
+        }
+        if evidence.striking_rest.is_some() {
+            self.assume(Latent::BulletBrakeStart, log_normal(0.9, 0.47, 0.1, 6.0));
+            self.assume(Latent::BulletBrakeShare, log_normal(0.6, 0.8, 0.02, 3.0));
+        }
+    }
+}
+
+/// The sign of a turn to the left that is a turn towards the struck side.
+pub(super) fn towards(side: Side) -> f64 {
+    match side {
+        Side::Left | Side::Rear => -1.0,
+        Side::Right | Side::Front => 1.0,
+    }
+}
+
+/// The mass of a car: as it was weighed, by the rule of its data sheet, or that of the chosen vehicle.
+fn mass_of(measured: Option<Measured>, vehicle: &Car) -> (PriorSource, Distribution) {
+    let kg = vehicle.parameters.mass.mass_kg;
+    let weighed =
+        |Measured { value, sigma }: Measured| normal(value, sigma, 0.5 * value, 1.5 * value);
+    match (measured, vehicle.mass_scatter()) {
+        (Some(measured), _) => (PriorSource::Measured, weighed(measured)),
+        (None, Some(sigma)) => (PriorSource::Estimated, log_normal(kg, sigma, 0.5 * kg, 2.0 * kg)),
+        (None, None) => {
+            let of_sheet = Measured { value: kg, sigma: DEFAULT_MASS_SHARE * kg };
+            (PriorSource::Given, weighed(of_sheet))
+        }
+    }
+}
+
+fn normal(mean: f64, sigma: f64, low: f64, high: f64) -> Distribution {
+    Distribution::Normal { mean, sigma, low, high }
+}
+
+fn log_normal(median: f64, sigma: f64, low: f64, high: f64) -> Distribution {
+    Distribution::LogNormal { median, sigma, low, high }
+}

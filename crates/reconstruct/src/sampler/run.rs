@@ -1,0 +1,266 @@
+//! The run from the prior to the posterior.
+
+use std::ops::ControlFlow;
+
+use rand::RngExt;
+
+use super::mixture::standard_normals;
+use super::population::Population;
+use super::{
+    Particles, SamplerCheckpoint, SamplerError, SamplerReport, SamplerSettings, SamplerStage,
+    Target,
+};
+use impactlab_core::numerics::random_stream;
+
+/// Draws from the prior for each particle of the answer.
+const PRIOR_DRAWS: usize = 20;
+
+/// Largest share of the evaluations that is drawn from the prior, as a divisor.
+const MAX_PRIOR_SHARE: usize = 4;
+
+/// Number of draws from the prior that the evidence has to be possible for, before anything is fitted.
+const MIN_POSSIBLE: usize = 50;
+
+/// Draws of a round for each particle of the answer, at temperature 0 and at 1: the colder the fit, the
+/// sooner it is made anew.
+const ROUND_DRAWS: [f64; 2] = [1.0, 3.0];
+
+/// Effective sample size that a mixture is fitted to, for each particle of the answer. A fit to fewer is
+/// colder and narrower: it is worth more where it lies right and does not see what lies beside it.
+const FIT_ESS: f64 = 2.0;
+
+/// The same of every second fit where the evidence is sharp: after a part of the evaluations the
+/// posterior is not in sight.
+const SHARP_FIT_ESS: f64 = 0.25;
+
+/// That part of the evaluations, as a divisor.
+const SHARP_AFTER: usize = 3;
+
+/// Effective sample size of the posterior up to which it is not in sight.
+const IN_SIGHT_ESS: f64 = 100.0;
+
+/// Effective sample size that a mixture is fitted to at the least.
+const MIN_FIT_ESS: f64 = 200.0;
+
+/// Number of particles that the mixture is fitted to.
+const FIT_PARTICLES: usize = 4000;
+
+/// Parts of the particles of the answer that are evaluated, and shown, at a time.
+const BATCHES: usize = 8;
+
+/// Effective sample size from which particles are said to be of the posterior.
+const MIN_POSTERIOR_ESS: f64 = 20.0;
+
+/// How many times the largest number of evaluations may be exceeded until that is reached.
+const MAX_EXCESS: usize = 4;
+
+/// Growth of the number of draws after which a run is saved.
+const SAVED_GROWTH: f64 = 1.3;
+
+/// Samples the posterior of a target.
+///
+/// - `checkpoint`: where the run is saved every now and then, and resumed from.
+/// - `report`: called after each batch of evaluations. If it breaks, the sampler stops: what it
+///   returns then are particles of the temperature that was reached
+///   ([`Particles::of_posterior`] tells whether that was 1).
+///
+/// # Errors
+/// [`SamplerError`] if a setting is outside its range, if the evidence is impossible everywhere, or
+/// if the checkpoint is of another run or cannot be read or written.
+pub fn sample(
+    target: &(impl Target + ?Sized),
+    settings: &SamplerSettings,
+    checkpoint: Option<&SamplerCheckpoint>,
+    report: &mut dyn FnMut(SamplerReport<'_>) -> ControlFlow<()>,
+) -> Result<Particles, SamplerError> {
+    settings.check()?;
+    let saved = match checkpoint {
+        Some(checkpoint) => checkpoint.read(settings, target.dim())?,
+        None => None,
+    };
+    let mut run = Run { target, settings, report, population: Population::default() };
+    let mut flow = match saved {
+        Some(population) => {
+            run.population = population;
+            ControlFlow::Continue(())
+        }
+        None => run.draw_prior()?,
+    };
+    let mut n_saved = 0;
+    while flow.is_continue() && !run.is_done() {
+        flow = run.round()?;
+        let n_draws = run.population.n_draws();
+        let has_grown = n_draws as f64 >= SAVED_GROWTH * n_saved as f64 || run.is_done();
+        if let (Some(checkpoint), true, true) = (checkpoint, flow.is_continue(), has_grown) {
+            checkpoint.write(settings, &run.population)?;
+            n_saved = n_draws;
+        }
+    }
+    Ok(run.answer())
+}
+
+struct Run<'a, T: ?Sized> {
+    target: &'a T,
+    settings: &'a SamplerSettings,
+    report: &'a mut dyn FnMut(SamplerReport<'_>) -> ControlFlow<()>,
+    population: Population,
+}
+
+impl<T: Target + ?Sized> Run<'_, T> {
+    fn batch(&self) -> usize {
+        (self.settings.n_particles / BATCHES).max(BATCHES)
+    }
+
+    fn evaluate(&self, z: &[Vec<f64>]) -> Result<Vec<f64>, SamplerError> {
+        let mut values = self.target.log_likelihoods(z);
+        if values.len() != z.len() {
+            return Err(SamplerError::WrongCount { expected: z.len(), got: values.len() });
+        }
+        for value in &mut values {
+            *value = if value.is_nan() { f64::NEG_INFINITY } else { *value };
+        }
+        match values.contains(&f64::INFINITY) {
+            true => Err(SamplerError::InfiniteLikelihood),
+            false => Ok(values),
+        }
+    }
+
+    /// Draws from the prior, until the evidence is possible for some of the particles.
+    fn draw_prior(&mut self) -> Result<ControlFlow<()>, SamplerError> {
+        let (n, dim) = (self.settings.n_particles, self.target.dim());
+        let share = self.settings.max_evaluations / MAX_PRIOR_SHARE;
+        let mut rng = random_stream(self.settings.seed, "reconstruct prior", 0);
+        let mut flow = ControlFlow::Continue(());
+        let (mut n_possible, mut n_drawn) = (0, 0);
+        while flow.is_continue() {
+            let goal = match n_possible < MIN_POSSIBLE.min(n) {
+                true => n.max(share),
+                false => n.max(share.min(PRIOR_DRAWS * n)),
+            };
+            if n_drawn >= goal {
+                break;
+            }
+            let batch = self.batch().min(goal - n_drawn);
+            let z: Vec<Vec<f64>> = (0..batch).map(|_| standard_normals(dim, &mut rng)).collect();
+            let log_likelihood = self.evaluate(&z)?;
+            n_possible += log_likelihood.iter().filter(|value| value.is_finite()).count();
+            n_drawn += batch;
+            flow = (self.report)(SamplerReport {
+                stage: SamplerStage::Prior,
+                temperature: 0.0,
+                n_evaluations: n_drawn,
+                ess: None,
+                z: &z,
+                log_likelihood: &log_likelihood,
+            });
+            self.population.add_prior(z, &log_likelihood);
+        }
+        if !self.population.is_possible() {
+            return Err(SamplerError::ImpossibleEverywhere { n_evaluations: n_drawn });
+        }
+        Ok(flow)
+    }
+
+    /// Draws from a mixture that is fitted at the temperature that the weights allow.
+    fn round(&mut self) -> Result<ControlFlow<()>, SamplerError> {
+        let number = self.population.n_rounds() as u64;
+        let mut rng = random_stream(self.settings.seed, "reconstruct draws", number);
+        let temperature = self.population.temperature_of(self.fit_ess());
+        let weights = self.population.weights(temperature);
+        let mixture = self.population.mixture(&weights, FIT_PARTICLES, rng.random());
+        let shown = self.shown(temperature, &weights.resample(self.batch(), rng.random()));
+        self.population.forget_negligible(&weights);
+        let [first, last] = ROUND_DRAWS.map(|draws| draws * self.settings.n_particles as f64);
+        let n = ((first + (last - first) * temperature) as usize).max(BATCHES);
+        let z: Vec<Vec<f64>> = (0..n).map(|_| mixture.draw(&mut rng)).collect();
+        let mut log_likelihood = Vec::with_capacity(n);
+        for batch in z.chunks(self.batch()) {
+            log_likelihood.extend(self.evaluate(batch)?);
+            let n_evaluations = self.population.n_draws() + log_likelihood.len();
+            if (self.report)(shown.report(n_evaluations)).is_break() {
+                return Ok(ControlFlow::Break(()));
+            }
+        }
+        self.population.add(z, &log_likelihood, mixture);
+        Ok(ControlFlow::Continue(()))
+    }
+
+    fn shown(&self, temperature: f64, idx: &[usize]) -> Shown {
+        let particles = idx.iter().map(|idx| self.population.particle(*idx));
+        let (z, log_likelihood) = particles.map(|(z, value)| (z.clone(), value)).unzip();
+        Shown { z, log_likelihood, temperature, ess: self.posterior_ess() }
+    }
+
+    /// Effective sample size that a mixture is fitted to.
+    fn fit_ess(&self) -> f64 {
+        let is_late = self.population.n_draws() > self.settings.max_evaluations / SHARP_AFTER;
+        let is_sharp = is_late && self.posterior_ess() < IN_SIGHT_ESS;
+        let share = match is_sharp && self.population.n_rounds() % 2 == 1 {
+            true => SHARP_FIT_ESS,
+            false => FIT_ESS,
+        };
+        let wanted = (share * self.settings.n_particles as f64).max(MIN_FIT_ESS);
+        wanted.min(self.population.n_prior() as f64 / 4.0).max(1.0)
+    }
+
+    fn posterior_ess(&self) -> f64 {
+        self.population.weights(1.0).effective()
+    }
+
+    fn is_done(&self) -> bool {
+        let n_draws = self.population.n_draws();
+        if self.population.n_rounds() == 0 {
+            return false;
+        }
+        let ess = self.posterior_ess();
+        let largest = match ess < MIN_POSTERIOR_ESS.min(self.settings.least_ess) {
+            true => MAX_EXCESS.saturating_mul(self.settings.max_evaluations),
+            false => self.settings.max_evaluations,
+        };
+        ess >= self.settings.least_ess || n_draws >= largest
+    }
+
+    fn answer(&self) -> Particles {
+        let population = &self.population;
+        let least = MIN_POSTERIOR_ESS.min(self.settings.least_ess);
+        let is_drawn = population.n_rounds() > 0;
+        let temperature = if is_drawn { population.temperature_of(least) } else { 0.0 };
+        let weights = population.weights(temperature);
+        let u = random_stream(self.settings.seed, "reconstruct answer", 0).random();
+        let draw = weights.resample(self.settings.n_particles, u);
+        let particle = |idx: &usize| population.particle(*idx);
+        Particles {
+            z: draw.iter().map(|idx| particle(idx).0.clone()).collect(),
+            log_likelihood: draw.iter().map(|idx| particle(idx).1).collect(),
+            draw,
+            temperature,
+            log_evidence: weights.log_evidence,
+            ess: weights.effective().max(1.0),
+            n_evaluations: population.n_draws(),
+        }
+    }
+}
+
+/// Particles that are reported while a round is drawn.
+struct Shown {
+    z: Vec<Vec<f64>>,
+    log_likelihood: Vec<f64>,
+    temperature: f64,
+    ess: f64,
+}
+
+impl Shown {
+    fn report(&self, n_evaluations: usize) -> SamplerReport<'_> {
+        SamplerReport {
+            stage: match self.temperature < 1.0 {
+                true => SamplerStage::Tempering,
+                false => SamplerStage::Posterior,
+            },
+            temperature: self.temperature,
+            n_evaluations,
+            ess: Some(self.ess),
+            z: &self.z,
+            log_likelihood: &self.log_likelihood,
+        }
+    }
+}

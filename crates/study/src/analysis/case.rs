@@ -1,0 +1,184 @@
+//! Analysis of the cases of force and trajectory data sets.
+
+use crate::analysis::{Analysis, AnalysisError, Settings, StruckVehicle, bullet::bullet_track};
+use impactlab_core::collision::{Footprint, SecondContact};
+use impactlab_core::compare::{MotionError, ReplayError, recorded_manoeuvre};
+use impactlab_core::data::{
+    Case, DatasetKind, ForceAttributes, TrajectoryAttributes, check_contact_within,
+    contact_interval,
+};
+use impactlab_core::vehicle::{ContactLoad, ContactPoint, Manoeuvre, VehicleState};
+
+/// Analyses a case of a force or a trajectory data set.
+///
+/// # Errors
+/// [`AnalysisError`] if an attribute or a column is missing or the motion diverges.
+pub fn analyse_case(case: &Case, settings: &Settings) -> Result<Analysis, AnalysisError> {
+    match case.kind {
+        DatasetKind::Trajectory => analyse_trajectory_case(case, settings),
+        DatasetKind::Force => analyse_force_case(case, settings),
+    }
+}
+
+/// Replays a recorded trajectory from its initial state with its recorded force and friction; where
+/// friction zones are given, these hold instead.
+fn analyse_trajectory_case(case: &Case, settings: &Settings) -> Result<Analysis, AnalysisError> {
+    let recorded = recorded_manoeuvre(case, &settings.target)?;
+    let manoeuvre = Manoeuvre { friction_zones: settings.friction_zones.clone(), ..recorded };
+    let friction = TrajectoryAttributes::read(&case.attributes)?.mu;
+    let vehicle = settings.target.clone().with_friction(friction);
+    let name = || case.name.clone();
+    let motion = vehicle
+        .simulate(&manoeuvre, settings.integrator)
+        .map_err(|source| ReplayError::Simulation { case: name(), source })?;
+    let error = MotionError::between(&motion.series, &case.series)
+        .map_err(|source| ReplayError::Series { case: name(), source })?;
+    let struck = |load: &ContactLoad| StruckVehicle {
+        vehicle: vehicle.clone(),
+        initial: manoeuvre.initial,
+        contact: load.contact,
+        controls: manoeuvre.controls.clone(),
+        friction_zones: manoeuvre.friction_zones.clone(),
+    };
+    Ok(Analysis {
+        name: case.name.clone(),
+        footprint: Footprint::from(&settings.target.geometry),
+        struck: manoeuvre.contact_load.as_ref().map(struck),
+        controls: manoeuvre.controls.clone(),
+        friction_zones: settings.friction_zones.clone(),
+        force: manoeuvre.contact_load.map(|load| load.force),
+        vehicle,
+        simulation: Some(motion),
+        reference: Some(case.series.clone()),
+        second_contact: None,
+        bullet: None,
+        error: Some(error),
+        notes: Vec::new(),
+    })
+}
+
+/// Simulates the target of a force case from the origin, heading along X, with the case's
+/// velocities and under the recorded force and yaw moment. The force acts at the height of the CG
+/// if the case gives no contact height.
+fn analyse_force_case(case: &Case, settings: &Settings) -> Result<Analysis, AnalysisError> {
+    let attributes = ForceAttributes::read(&case.attributes)?;
+    let force = case.force_history()?;
+    check_contact_within(&force, settings.duration_s)?;
+    let [mass_kg, _] = attributes.mass_kg;
+    let [yaw_inertia, _] = attributes.yaw_inertia_kg_m2;
+    let vehicle = settings.target.clone().with_mass(mass_kg, yaw_inertia);
+    let [vx_m_s, vy_m_s] = attributes.target_velocity_m_s;
+    let [x_m, y_m] = attributes.contact_m;
+    let height_m = attributes.contact_height_m.unwrap_or(vehicle.geometry.cg_height_m);
+    let contact = ContactPoint { x_m, y_m, height_m };
+    let load = ContactLoad { force: force.clone(), contact, recorded_moment: true };
+    let initial = VehicleState { vx_m_s, vy_m_s, ..VehicleState::default() };
+    let controls = settings.ending.controls(&vehicle);
+    let manoeuvre = Manoeuvre {
+        initial,
+        contact_load: Some(load),
+        controls: controls.clone(),
+        duration_s: settings.duration_s,
+        ends_at_rest: settings.ends_at_rest,
+        friction_zones: settings.friction_zones.clone(),
+    };
+    let motion = vehicle.simulate(&manoeuvre, settings.integrator)?;
+    let footprint = Footprint::from(&vehicle.geometry);
+    let bullet = bullet_track(case, &attributes, settings)?;
+    let end_s = contact_interval(&force).map_or(0.0, |(_, end_s)| end_s);
+    let second_contact = bullet.as_ref().and_then(|bullet| {
+        SecondContact::find((footprint, &motion.series), (bullet.footprint, &bullet.motion), end_s)
+    });
+    let mut notes = Vec::new();
+    if attributes.separated == Some(false) {
+        notes.push("still in contact when the run ended: the force is cut there".to_owned());
+    }
+    Ok(Analysis {
+        name: case.name.clone(),
+        footprint,
+        simulation: Some(motion),
+        vehicle: vehicle.clone(),
+        force: Some(force),
+        controls: controls.clone(),
+        friction_zones: settings.friction_zones.clone(),
+        struck: Some(StruckVehicle {
+            vehicle,
+            initial,
+            contact,
+            controls,
+            friction_zones: settings.friction_zones.clone(),
+        }),
+        reference: None,
+        second_contact,
+        bullet,
+        error: None,
+        notes,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ops::ControlFlow;
+    use std::path::Path;
+
+    use super::*;
+    use impactlab_core::data::{Channel, Dataset};
+    use impactlab_core::vehicle::frames::world_from_body;
+    use impactlab_core::vehicle::{Ending, Integrator, Preset};
+
+    fn settings(target: Preset) -> Settings {
+        Settings {
+            target: target.parameters(),
+            bullet: Preset::Bullet2000.parameters(),
+            integrator: Integrator::Rk4,
+            ending: Ending::default(),
+            duration_s: 4.0,
+            ends_at_rest: false,
+            friction_zones: Vec::new(),
+        }
+    }
+
+    fn load(name: &str) -> Dataset {
+        let mut report = |_| ControlFlow::Continue(());
+        Dataset::load(&Path::new("datasets").join(name), &mut report).unwrap().complete().unwrap()
+    }
+
+    #[test]
+    fn on_ice_a_finite_element_case_ends_with_the_recorded_motion() {
+        // The finite-element runs have no tyres, so that the 4DOF model without friction must
+        // reproduce them.
+        let dataset = load("fea-wide");
+        let mut settings = settings(Preset::Target);
+        let target = &mut settings.target;
+        target.tires.friction = 1e-9;
+        target.tires.rolling_resistance = 0.0;
+        target.mass.roll_yaw_product_kg_m2 = 0.0;
+        for case in dataset.cases.iter().step_by(9) {
+            let analysis = analyse_case(case, &settings).unwrap();
+            let recorded = |name| case.attributes.number(name).unwrap();
+            let motion = analysis.simulation.unwrap().series;
+            let last = |channel| *motion.require(channel).unwrap().last().unwrap();
+            let body = [last(Channel::Vx), last(Channel::Vy)];
+            let [vx, vy] = world_from_body(last(Channel::Yaw), body);
+            for (name, got, expected) in [
+                ("v_x", vx, recorded("target_vx_end_m_s")),
+                ("v_y", vy, recorded("target_vy_end_m_s")),
+                ("r", last(Channel::YawRate), recorded("target_yaw_rate_end_rad_s")),
+            ] {
+                assert!((got - expected).abs() < 0.01, "{} {name}: {got} {expected}", case.name);
+            }
+            let bullet = analysis.bullet.unwrap().motion;
+            let end = case.series.n_samples() - 1;
+            let yaw = bullet.require(Channel::Yaw).unwrap()[end];
+            assert!((yaw - recorded("bullet_yaw_end_rad")).abs() < 1e-3, "{}: {yaw}", case.name);
+        }
+    }
+
+    #[test]
+    fn a_trajectory_case_has_reference_and_error() {
+        let dataset = load("trajectories-pulse");
+        let analysis = analyse_case(&dataset.cases[0], &settings(Preset::Reference)).unwrap();
+        assert!(analysis.reference.is_some());
+        assert!(analysis.error.unwrap().average_error_m < 1.0);
+    }
+}

@@ -1,0 +1,149 @@
+//! Analysis of one case, file or scenario: the recorded motion, the motion simulated with the
+//! four-degree-of-freedom (4DOF) vehicle model, and the difference between the two; and forecasts
+//! of the impact force and of the motion after it as probability distributions. The command line
+//! and the app show the same [`Analysis`].
+
+mod bullet;
+mod case;
+mod file;
+mod forecast;
+mod motion_bands;
+mod motion_density;
+mod motion_forecast;
+mod motion_to_rest;
+mod rest;
+mod rest_outcome;
+mod scenario;
+mod second_contacts;
+mod vehicle_draws;
+
+use impactlab_core::collision::{Footprint, PulseError, ScenarioError, SecondContact};
+use impactlab_core::compare::{MotionError, ReplayError};
+use impactlab_core::data::{ContactOutside, DataError, ForceHistory, SeriesError, TimeSeries};
+use impactlab_core::vehicle::{
+    ControlledVehicle, Controls, Ending, FrictionZone, Integrator, Motion, SimulationError,
+    VehicleParameters,
+};
+
+pub use case::analyse_case;
+pub use file::{DriveSetup, analyse_drive, analyse_recording};
+pub use forecast::{
+    Estimate, ForceForecast, ForecastSettings, Interval, Mode, Spread, pulse_curves,
+};
+pub use motion_bands::{MOTION_BAND_LEVELS, MotionBands};
+pub use motion_density::{DensityMap, DensityTask, Region};
+pub use motion_forecast::{
+    MotionForecast, MotionForecastError, MotionForecastSettings, MotionOutcome, StruckVehicle,
+    forecast_collision, forecast_forces,
+};
+pub use rest_outcome::{MotionEnd, RestOutcome};
+pub use scenario::{PulseSetup, analyse_scenario};
+pub use second_contacts::SecondContacts;
+pub use vehicle_draws::{Sensitivity, VehicleDraws};
+
+/// Vehicles and settings of the simulation of a case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// Parameters of the struck vehicle (target). A trajectory case replaces the friction
+    /// coefficient by its own; a force case and a scenario replace mass and yaw inertia.
+    pub target: VehicleParameters,
+    /// Parameters of the striking vehicle (bullet), used where it is simulated. The case or
+    /// scenario replaces its mass and yaw inertia.
+    pub bullet: VehicleParameters,
+    /// What happens to the wheels of the target after the first contact. A trajectory case has its
+    /// own, and a steer angle that is recorded takes precedence.
+    pub ending: Ending,
+    /// Integration method for the equations of motion.
+    pub integrator: Integrator,
+    /// Duration of the simulation, s. Trajectory cases and recorded motions are simulated over the
+    /// recorded duration instead.
+    pub duration_s: f64,
+    /// Whether the simulation ends before its duration where the target has come to rest. The
+    /// bullet is followed as long.
+    pub ends_at_rest: bool,
+    /// Parts of the ground with their own friction, in the axes in which the motions are simulated;
+    /// elsewhere each vehicle has the friction of its tyres. Both vehicles move over them.
+    pub friction_zones: Vec<FrictionZone>,
+}
+
+/// Outline and motion of the striking vehicle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VehicleTrack {
+    /// Outline of the vehicle.
+    pub footprint: Footprint,
+    /// Parameters, state at first contact, where the force acts, and what happens to its wheels.
+    pub start: StruckVehicle,
+    /// Motion of the vehicle, with at least the channels X, Y and yaw.
+    pub motion: TimeSeries,
+}
+
+/// Recorded and computed data of one case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Analysis {
+    /// Name of the case, file or scenario.
+    pub name: String,
+    /// Parameters with which the struck vehicle was simulated, including what the case sets.
+    pub vehicle: VehicleParameters,
+    /// Outline of the struck vehicle.
+    pub footprint: Footprint,
+    /// Contact force on the target; `None` if no force acts or none is known.
+    pub force: Option<ForceHistory>,
+    /// State of the struck vehicle at the start of the impact and the point where the force acts;
+    /// `None` without a force.
+    pub struck: Option<StruckVehicle>,
+    /// What steers, drives, brakes and locks the wheels of the struck vehicle in the simulation.
+    pub controls: Controls,
+    /// Parts of the ground with their own friction, over which the vehicles were simulated.
+    pub friction_zones: Vec<FrictionZone>,
+    /// Motion of the target simulated with the 4DOF model; `None` if it could not be simulated, for
+    /// the reason given in `notes`.
+    pub simulation: Option<Motion>,
+    /// Recorded motion of the target; `None` if there is no recording.
+    pub reference: Option<TimeSeries>,
+    /// Outline and motion of the striking vehicle, if known.
+    pub bullet: Option<VehicleTrack>,
+    /// Where the two vehicles meet again after the contact, if they do: their motions do not know of
+    /// it.
+    pub second_contact: Option<SecondContact>,
+    /// Errors of the simulated motion against the recorded one; `None` unless both exist.
+    pub error: Option<MotionError>,
+    /// Notes on the analysis for the user.
+    pub notes: Vec<String>,
+}
+
+impl Analysis {
+    /// The struck vehicle with what acts on its wheels and the ground under them.
+    pub fn controlled(&self) -> ControlledVehicle<'_> {
+        ControlledVehicle {
+            vehicle: &self.vehicle,
+            controls: &self.controls,
+            friction_zones: &self.friction_zones,
+        }
+    }
+}
+
+/// Reason for which a case cannot be analysed.
+#[derive(Debug, thiserror::Error)]
+pub enum AnalysisError {
+    /// An attribute of the case in the table of cases is missing or invalid.
+    #[error(transparent)]
+    Attributes(#[from] DataError),
+    /// A column of the case's file is missing or invalid.
+    #[error(transparent)]
+    Series(#[from] SeriesError),
+    /// The trajectory case cannot be replayed.
+    #[error(transparent)]
+    Replay(#[from] ReplayError),
+    /// The force acts outside the time of the motion.
+    #[error(transparent)]
+    ContactOutside(#[from] ContactOutside),
+    /// The simulation of the motion failed.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    /// The collision of the scenario cannot be solved.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// The shape or duration of the force pulse is invalid.
+    #[error(transparent)]
+    Pulse(#[from] PulseError),
+}

@@ -1,0 +1,202 @@
+//! The forecast of a motion to rest: draws of whole motions over forces, vehicles and what the response
+//! network leaves uncertain, each followed until the vehicle stands.
+//!
+//! The distribution over time is that of the draws: those that end near each other make a component,
+//! with their mean and covariance at each instant. A vehicle that has come to rest stays there.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use nalgebra::{SMatrix, SVector};
+use rayon::prelude::*;
+
+use crate::analysis::rest_outcome::groups;
+use crate::analysis::{MotionEnd, MotionOutcome, RestOutcome, Spread, StruckVehicle};
+use impactlab_core::data::ForceHistory;
+use impactlab_core::vehicle::VehicleState;
+use impactlab_networks::response::{
+    Applicability, ComponentMotion, MotionDistribution, Predictor, RestSearch, STEP_S,
+    SettledMotion, StateDistribution, Widths, weighted_mean,
+};
+
+/// Draws of the motion: the end of a 90 % interval is then uncertain by 1.4 % of probability.
+const N_DRAWS: usize = 240;
+/// Standard deviations of the logarithms of rolling resistance and air drag of a car on the road, of
+/// which nothing more is known: those of the rules for data sheets.
+const RESISTANCE_SCATTER: [f64; 2] = [0.15, 0.15];
+/// Share of the draws at rest with which the vehicle is said to be at rest.
+const SHARE_AT_REST: f64 = 0.95;
+
+/// What a motion is forecast from.
+pub(super) struct ToRest<'a> {
+    pub(super) forces: &'a [ForceHistory],
+    pub(super) predictors: &'a [Predictor],
+    pub(super) struck: &'a StruckVehicle,
+    /// Whether the vehicles of the predictors are drawn, with the resistance that they have.
+    pub(super) has_drawn_vehicles: bool,
+    pub(super) limit_s: f64,
+    /// Whether the motion lasts to the limit also where the vehicle has come to rest before.
+    pub(super) lasts_to_limit: bool,
+    pub(super) seed: u64,
+}
+
+/// A motion that was forecast to rest.
+pub(super) struct Settled {
+    pub(super) distribution: MotionDistribution,
+    /// The path with the latent factors at zero for each force and vehicle.
+    pub(super) paths: Vec<Vec<VehicleState<f64>>>,
+    pub(super) outcome: MotionOutcome,
+    pub(super) rest: RestOutcome,
+    pub(super) applicabilities: Vec<Applicability>,
+}
+
+/// The motions under one force and of one vehicle.
+struct Part {
+    path: Vec<VehicleState<f64>>,
+    draws: Vec<SettledMotion>,
+    applicability: Applicability,
+}
+
+impl ToRest<'_> {
+    /// Follows all draws; `None` where a motion is not finite.
+    pub(super) fn settle(&self) -> Option<Settled> {
+        let n_parts = self.forces.len().max(self.predictors.len());
+        let parts: Vec<Part> =
+            (0..n_parts).into_par_iter().filter_map(|part| self.part(part, n_parts)).collect();
+        let mut applicabilities = Vec::new();
+        let (mut paths, mut draws) = (Vec::new(), Vec::new());
+        for part in parts {
+            applicabilities.push(part.applicability);
+            paths.push(part.path);
+            draws.extend(part.draws);
+        }
+        let lengths = draws.iter().map(|draw| draw.states.len()).chain(paths.iter().map(Vec::len));
+        let n_instants = match self.lasts_to_limit {
+            true => (self.limit_s / STEP_S).round() as usize + 1,
+            false => lengths.max()?,
+        };
+        for path in &mut paths {
+            let last = *path.last()?;
+            path.resize(n_instants, last);
+        }
+        let ends: Option<Vec<MotionEnd>> = draws.iter().map(end_of).collect();
+        let ends = ends?;
+        let distribution = distribution(&draws, &ends, n_instants);
+        let rest = RestOutcome::of(&ends, self.limit_s)?;
+        let start_rad = self.struck.initial.yaw_rad;
+        let outcome = outcome((&ends, &rest), n_instants, start_rad);
+        Some(Settled { distribution, paths, outcome, rest, applicabilities })
+    }
+
+    fn part(&self, part: usize, n_parts: usize) -> Option<Part> {
+        let force = self.forces.get(part % self.forces.len())?;
+        let predictor = self.predictors.get(part % self.predictors.len())?;
+        let inputs = self.struck.inputs(force, self.limit_s);
+        let motion = (&self.struck.initial, &inputs[..]);
+        let search = RestSearch {
+            seed: self.seed,
+            resistance_scatter: match self.has_drawn_vehicles {
+                true => [0.0; 2],
+                false => RESISTANCE_SCATTER,
+            },
+        };
+        let numbers: Vec<usize> = (part..N_DRAWS.max(n_parts)).step_by(n_parts).collect();
+        Some(Part {
+            path: mean_path(&predictor.settled_paths(motion)),
+            draws: predictor.settled(motion, &numbers, &search),
+            applicability: predictor.applicability(&self.struck.initial, &inputs),
+        })
+    }
+}
+
+/// The state of a motion at an instant, at rest after its end.
+fn state_at(motion: &SettledMotion, instant: usize) -> Option<&VehicleState<f64>> {
+    motion.states.get(instant).or(motion.states.last())
+}
+
+/// Mean over the components, which come to rest at different times.
+fn mean_path(components: &[SettledMotion]) -> Vec<VehicleState<f64>> {
+    let n_instants = components.iter().map(|motion| motion.states.len()).max().unwrap_or(0);
+    let weight = 1.0 / components.len().max(1) as f64;
+    let at = |instant| {
+        let states = components.iter().filter_map(|motion| state_at(motion, instant));
+        weighted_mean(states.map(|state| (weight, state)))
+    };
+    (0..n_instants).map(at).collect()
+}
+
+/// Where a motion ends; `None` if it is not finite.
+fn end_of(motion: &SettledMotion) -> Option<MotionEnd> {
+    let at = motion.rest.unwrap_or(motion.states.len().checked_sub(1)?);
+    let state = motion.states.get(at)?;
+    let way = motion.states.get(..=at)?.windows(2);
+    let distance_m =
+        way.map(|pair| (pair[1].x_m - pair[0].x_m).hypot(pair[1].y_m - pair[0].y_m)).sum();
+    let end = MotionEnd {
+        is_at_rest: motion.rest.is_some(),
+        time_s: at as f64 * STEP_S,
+        distance_m,
+        x_m: state.x_m,
+        y_m: state.y_m,
+        yaw_rad: state.yaw_rad,
+        speed_m_s: state.vx_m_s.hypot(state.vy_m_s),
+        yaw_rate_rad_s: state.yaw_rate_rad_s,
+    };
+    let is_finite = state.to_array().iter().all(|value| value.is_finite());
+    (is_finite && end.distance_m.is_finite()).then_some(end)
+}
+
+/// The draws as a mixture: one component for those that end near each other.
+fn distribution(
+    draws: &[SettledMotion],
+    ends: &[MotionEnd],
+    n_instants: usize,
+) -> MotionDistribution {
+    let component = |group: &Vec<usize>| {
+        let members: Vec<&SettledMotion> = group.iter().filter_map(|&idx| draws.get(idx)).collect();
+        let at = |instant| moments(&members, instant);
+        let weight = members.len() as f64;
+        let states = (0..n_instants).map(at).collect();
+        ComponentMotion { weight, states, tail_ratio: Widths::NORMAL.tail_ratio }
+    };
+    MotionDistribution::new(groups(ends).par_iter().map(component).collect())
+}
+
+/// Mean and covariance of some motions at an instant.
+fn moments(motions: &[&SettledMotion], instant: usize) -> StateDistribution {
+    let states = || motions.iter().filter_map(|motion| state_at(motion, instant));
+    let weight = 1.0 / motions.len().max(1) as f64;
+    let mean = weighted_mean(states().map(|state| (weight, state)));
+    let centre = SVector::from(mean.planar());
+    let squares = |state: &VehicleState<f64>| {
+        let off = SVector::from(state.planar()) - centre;
+        off * off.transpose()
+    };
+    let sum: SMatrix<f64, 6, 6> = states().map(squares).sum();
+    let covariance = sum / (motions.len() as f64 - 1.0).max(1.0);
+    StateDistribution { mean, covariance, by_share: SVector::zeros() }
+}
+
+/// The end of the forecast, over the draws.
+fn outcome(
+    (ends, rest): (&[MotionEnd], &RestOutcome),
+    n_instants: usize,
+    start_rad: f64,
+) -> MotionOutcome {
+    let turned: Vec<f64> = ends.iter().map(|end| end.yaw_rad - start_rad).collect();
+    let share_of = |least_rad: f64| {
+        turned.iter().filter(|rad| rad.abs() >= least_rad).count() as f64 / turned.len() as f64
+    };
+    let mean = |of: fn(&MotionEnd) -> f64| ends.iter().map(of).sum::<f64>() / ends.len() as f64;
+    MotionOutcome {
+        time_s: n_instants.saturating_sub(1) as f64 * STEP_S,
+        is_at_rest: rest.share_at_rest >= SHARE_AT_REST,
+        x_m: rest.x_m,
+        y_m: rest.y_m,
+        p_quarter_turn: share_of(FRAC_PI_2),
+        p_half_turn: share_of(PI),
+        heading_change_rad: Spread::of_draws(turned),
+        speed_m_s: mean(|end| end.speed_m_s),
+        yaw_rate_rad_s: mean(|end| end.yaw_rate_rad_s.abs()),
+        region_90_m2: rest.region_90_m2,
+    }
+}

@@ -1,0 +1,134 @@
+//! Whether the two vehicles of a forecast meet again, over its draws.
+//!
+//! The struck vehicle moves on the central path of each draw, the striking one as a 4DOF vehicle of
+//! its own under the opposite of the same force. Both are followed to where they would pass through
+//! each other ([`SecondContact`]).
+//!
+//! What is left out: the scatter of the struck vehicle's motion under one force, and what is not
+//! known of the striking vehicle.
+
+use rayon::prelude::*;
+
+use crate::analysis::{MotionForecast, Spread, StruckVehicle, VehicleTrack};
+use impactlab_core::collision::{Footprint, Pose, SecondContact};
+use impactlab_core::data::{Channel, ForceAxes, ForceHistory, TimeSeries, contact_interval};
+use impactlab_core::vehicle::{ContactLoad, Integrator, Manoeuvre};
+use impactlab_networks::response::STEP_S;
+
+/// Time over which the vehicles are followed first, s: most that meet again do so by then.
+const FIRST_LOOK_S: f64 = 1.0;
+
+/// How often and where two vehicles meet again.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SecondContacts {
+    /// Draws that were followed.
+    pub n_draws: usize,
+    /// Share of them in which the vehicles meet again.
+    pub probability: f64,
+    /// When they do, s after the first contact.
+    pub time_s: Spread,
+    /// Where they do: X, m.
+    pub x_m: Spread,
+    /// Where they do: Y, m.
+    pub y_m: Spread,
+    /// How fast their overlap grows then, m/s.
+    pub closing_speed_m_s: Spread,
+    /// Share of these second contacts before which the vehicles were apart.
+    pub apart_share: f64,
+}
+
+impl SecondContacts {
+    /// Follows both vehicles through every draw of a forecast; `None` if they meet in none, or if
+    /// nothing can be followed.
+    ///
+    /// - `struck`: outline of the struck vehicle;
+    /// - `bullet`: the striking vehicle;
+    /// - `is_own`: whether the motion of the striking vehicle is that under the force of the
+    ///   forecast. If not, it is simulated.
+    pub fn of(
+        forecast: &MotionForecast,
+        (struck, bullet): (Footprint, &VehicleTrack),
+        is_own: bool,
+    ) -> Option<Self> {
+        let follow = |(part, path): (usize, &Vec<Pose>)| {
+            let force = forecast.forces.get(part % forecast.forces.len().max(1))?;
+            follow((struck, path), (bullet, is_own), force)
+        };
+        let followed: Vec<Option<SecondContact>> =
+            forecast.paths.par_iter().enumerate().filter_map(follow).collect();
+        let met: Vec<SecondContact> = followed.iter().flatten().copied().collect();
+        if met.is_empty() {
+            return None;
+        }
+        let of =
+            |value: fn(&SecondContact) -> f64| Spread::of_draws(met.iter().map(value).collect());
+        Some(Self {
+            n_draws: followed.len(),
+            probability: met.len() as f64 / followed.len() as f64,
+            time_s: of(|met| met.time_s),
+            x_m: of(|met| met.point_m[0]),
+            y_m: of(|met| met.point_m[1]),
+            closing_speed_m_s: of(|met| met.closing_speed_m_s),
+            apart_share: met.iter().filter(|met| met.was_apart).count() as f64 / met.len() as f64,
+        })
+    }
+}
+
+/// Follows one draw; the outer `None` if that is not possible.
+fn follow(
+    (footprint, path): (Footprint, &[Pose]),
+    (bullet, is_own): (&VehicleTrack, bool),
+    force: &ForceHistory,
+) -> Option<Option<SecondContact>> {
+    let target = (footprint, &series(path)?);
+    let (_, contact_end_s) = contact_interval(force)?;
+    let meet = |motion: &TimeSeries| {
+        SecondContact::find(target, (bullet.footprint, motion), contact_end_s)
+    };
+    if is_own {
+        return Some(meet(&bullet.motion));
+    }
+    let reaction = reaction(force)?;
+    let whole_s = path.len().saturating_sub(1) as f64 * STEP_S;
+    for duration_s in [whole_s.min(contact_end_s + FIRST_LOOK_S), whole_s] {
+        let motion = pushed(&bullet.start, reaction.clone(), duration_s)?;
+        if let Some(second) = meet(&motion) {
+            return Some(Some(second));
+        }
+    }
+    Some(None)
+}
+
+/// The force on the striking vehicle; `None` if its axes turn with the struck one.
+fn reaction(force: &ForceHistory) -> Option<ForceHistory> {
+    let opposite = |component: &[f64]| component.iter().map(|value| -value).collect();
+    let [fx_n, fy_n] = [&force.fx_n, &force.fy_n].map(|component| opposite(component));
+    (force.axes == ForceAxes::World).then(|| ForceHistory {
+        fx_n,
+        fy_n,
+        mz_n_m: None,
+        ..force.clone()
+    })
+}
+
+/// The motion of the striking vehicle under a force that acts where the vehicles touch.
+fn pushed(start: &StruckVehicle, force: ForceHistory, duration_s: f64) -> Option<TimeSeries> {
+    let manoeuvre = Manoeuvre {
+        initial: start.initial,
+        contact_load: Some(ContactLoad { force, contact: start.contact, recorded_moment: false }),
+        controls: start.controls.clone(),
+        duration_s,
+        ends_at_rest: false,
+        friction_zones: start.friction_zones.clone(),
+    };
+    Some(start.vehicle.simulate(&manoeuvre, Integrator::Rk4).ok()?.series)
+}
+
+fn series(path: &[Pose]) -> Option<TimeSeries> {
+    let mut series = TimeSeries::new((0..path.len()).map(|i| i as f64 * STEP_S).collect()).ok()?;
+    let of = |value: fn(&Pose) -> f64| path.iter().map(value).collect();
+    series.insert(Channel::X, of(|pose| pose.x_m)).ok()?;
+    series.insert(Channel::Y, of(|pose| pose.y_m)).ok()?;
+    series.insert(Channel::Yaw, of(|pose| pose.yaw_rad)).ok()?;
+    Some(series)
+}

@@ -1,0 +1,148 @@
+//! The case: what an analyst works on, in one text file `NAME.impactlab`.
+//!
+//! A case holds variants, each with the questions that are asked of it, the files that these name with
+//! their content by SHA-256, the trained networks that answered, notes, and a log of what was done and
+//! when. The file is JSON in a stable order, so that two versions of it can be compared line by line.
+//!
+//! - Paths of files in the file are relative to its folder and begin with `./` or `../`; in memory they
+//!   are absolute. A case and its files can be moved together.
+//! - [`CaseFile::changes`] says which files are missing or hold something else than when the case was
+//!   saved.
+//! - [`CaseFile::ask`] answers every question of every variant, as the commands of the questions do.
+//! - [`pack`] and [`unpack`] make one zip of a case and all its files, and a folder of that again.
+//!
+//! The window keeps its forms with each variant ([`Variant::forms`]); nothing else reads them.
+
+mod error;
+
+mod paths;
+
+mod used;
+
+mod store;
+
+mod package;
+
+mod run;
+
+use serde::{Deserialize, Serialize};
+
+use crate::Request;
+
+pub use error::CaseError;
+pub use package::{file_stem, pack, unpack};
+pub use run::{AnswerListener, AnsweredQuestion, CaseReport, VariantReport};
+pub use store::{CASE_ENDING, is_case_file};
+pub use used::{Change, UsedFile};
+
+/// A case.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CaseFile {
+    /// What kind of file it is; checked before anything else is read.
+    format: String,
+    /// Version of the schema.
+    version: u32,
+    /// Version of the program that saved it.
+    program: String,
+    /// What the case is called.
+    pub name: String,
+    /// What the analyst wrote about it.
+    #[serde(default)]
+    pub notes: String,
+    /// Name of the variant that the window shows.
+    pub shown: String,
+    /// The variants, each with a name of its own.
+    pub variants: Vec<Variant>,
+    /// The files that the variants name, as they were when the case was saved.
+    #[serde(default)]
+    pub files: Vec<UsedFile>,
+    /// The trained networks that answered when the case was saved.
+    #[serde(default)]
+    pub models: Vec<UsedModel>,
+    /// What was done and when.
+    #[serde(default)]
+    pub log: Vec<LogEntry>,
+}
+
+/// One way in which it may have happened.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Variant {
+    /// What it is called.
+    pub name: String,
+    /// What is asked of it.
+    #[serde(default)]
+    pub questions: Vec<Request>,
+    /// How the forms of the window are filled in.
+    #[serde(default, skip_serializing_if = "serde_json::Value::is_null")]
+    pub forms: serde_json::Value,
+}
+
+/// A trained network by the content of its file.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct UsedModel {
+    /// Which network it is: `force` or `response`.
+    pub network: String,
+    /// What questions call it.
+    pub name: String,
+    /// SHA-256 of its file.
+    pub sha256: String,
+}
+
+/// What was done and when.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LogEntry {
+    /// The time of day in UTC, RFC 3339.
+    pub time: String,
+    /// What was done.
+    pub event: String,
+}
+
+impl CaseFile {
+    /// A case with one variant.
+    pub fn new(name: impl Into<String>, variant: Variant) -> Self {
+        Self {
+            format: store::FORMAT.to_owned(),
+            version: store::VERSION,
+            program: impactlab_core::program::version().to_owned(),
+            name: name.into(),
+            notes: String::new(),
+            shown: variant.name.clone(),
+            variants: vec![variant],
+            files: Vec::new(),
+            models: Vec::new(),
+            log: Vec::new(),
+        }
+    }
+
+    /// Version of the program that saved it.
+    pub fn program(&self) -> &str {
+        &self.program
+    }
+
+    /// Writes down that something was done just now.
+    pub fn note(&mut self, event: impl Into<String>) {
+        let now = humantime::format_rfc3339_seconds(std::time::SystemTime::now());
+        self.log.push(LogEntry { time: now.to_string(), event: event.into() });
+    }
+
+    /// A variant by its name.
+    pub fn variant(&self, name: &str) -> Option<&Variant> {
+        self.variants.iter().find(|variant| variant.name == name)
+    }
+
+    /// The same, to be changed.
+    pub fn variant_mut(&mut self, name: &str) -> Option<&mut Variant> {
+        self.variants.iter_mut().find(|variant| variant.name == name)
+    }
+
+    /// The first name `NAME`, `NAME 2`, `NAME 3`, … that no variant has.
+    pub fn free_name(&self, name: &str) -> String {
+        let numbered = (2..).map(|n| format!("{name} {n}"));
+        let mut names = std::iter::once(name.to_owned()).chain(numbered);
+        names.find(|name| self.variant(name).is_none()).unwrap_or_default()
+    }
+}

@@ -1,0 +1,156 @@
+//! Asks a case its questions.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::case_file::{CaseError, CaseFile, Change, UsedModel, Variant};
+use crate::{Answer, Library, Observer, Report, Request, StudyError};
+use impactlab_core::data::Outcome;
+use impactlab_core::error_chain;
+
+/// The answers to all questions of a case.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CaseReport {
+    /// What the case is called.
+    pub name: String,
+    /// What is not as it was when the case was saved; answers may differ from those of then.
+    pub changes: Vec<Change>,
+    /// The variants with their answers.
+    pub variants: Vec<VariantReport>,
+}
+
+/// The answers to the questions of a variant.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct VariantReport {
+    /// What it is called.
+    pub name: String,
+    /// Questions with their answers, in the order of the case.
+    pub answers: Vec<AnsweredQuestion>,
+}
+
+/// A question with its answer, or why there is none.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AnsweredQuestion {
+    /// The question.
+    pub request: Request,
+    /// The answer: what the command of the question prints with `--json`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub report: Option<Report>,
+    /// Why there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<String>,
+}
+
+/// Is told of the variant, the question, and its answer or why there is none.
+pub type AnswerListener<'a> = dyn FnMut(&Variant, &Request, Result<&Answer, &StudyError>) + 'a;
+
+impl CaseFile {
+    /// Answers every question of the variants. A question without an answer does not keep the others from
+    /// being asked.
+    ///
+    /// - `variants`: names of the variants that are asked; empty for all.
+    ///
+    /// # Errors
+    /// [`CaseError::NoVariant`].
+    pub fn ask(
+        &self,
+        variants: &[String],
+        library: &Library,
+        observer: &mut Observer<'_>,
+    ) -> Result<Outcome<CaseReport>, CaseError> {
+        self.ask_each((variants, library), observer, &mut |_, _, _| {})
+    }
+
+    /// The same, and tells of each answer, with what it was made from, before the next question is
+    /// asked.
+    ///
+    /// - `told`: is called with the variant, the question, and its answer or why there is none.
+    ///
+    /// # Errors
+    /// As for [`CaseFile::ask`].
+    pub fn ask_each(
+        &self,
+        (variants, library): (&[String], &Library),
+        observer: &mut Observer<'_>,
+        told: &mut AnswerListener<'_>,
+    ) -> Result<Outcome<CaseReport>, CaseError> {
+        if let Some(name) = variants.iter().find(|name| self.variant(name).is_none()) {
+            return Err(self.no_variant(name));
+        }
+        let is_asked = |variant: &&Variant| variants.is_empty() || variants.contains(&variant.name);
+        let mut reports = Vec::new();
+        for variant in self.variants.iter().filter(is_asked) {
+            let mut answers = Vec::new();
+            for request in &variant.questions {
+                let answered = match request.answer(library, observer) {
+                    Ok(Outcome::Complete(answer)) => {
+                        told(variant, request, Ok(&answer));
+                        (Some(answer.into_report()), None)
+                    }
+                    Ok(Outcome::Cancelled) => return Ok(Outcome::Cancelled),
+                    Err(error) => {
+                        told(variant, request, Err(&error));
+                        (None, Some(error_chain(&error)))
+                    }
+                };
+                let (report, error) = answered;
+                answers.push(AnsweredQuestion { request: request.clone(), report, error });
+            }
+            reports.push(VariantReport { name: variant.name.clone(), answers });
+        }
+        let changes = self.changes().into_iter().chain(self.other_models(&reports)).collect();
+        let name = self.name.clone();
+        Ok(Outcome::Complete(CaseReport { name, changes, variants: reports }))
+    }
+
+    /// Networks that have answered and are not those that did when the case was saved.
+    fn other_models(&self, reports: &[VariantReport]) -> Vec<Change> {
+        let used = models_of(reports.iter().flat_map(VariantReport::reports));
+        let is_other = |before: &&UsedModel| {
+            let key = (before.network.clone(), before.name.clone());
+            used.get(&key).is_some_and(|sha256| *sha256 != before.sha256)
+        };
+        let change = |model: &UsedModel| Change::Model {
+            network: model.network.clone(),
+            name: model.name.clone(),
+        };
+        self.models.iter().filter(is_other).map(change).collect()
+    }
+}
+
+impl VariantReport {
+    /// The answers that there are.
+    pub fn reports(&self) -> impl Iterator<Item = &Report> {
+        self.answers.iter().filter_map(|answer| answer.report.as_ref())
+    }
+}
+
+impl CaseReport {
+    /// Whether every question has an answer and nothing has changed since the case was saved.
+    pub fn is_clean(&self) -> bool {
+        let mut answers = self.variants.iter().flat_map(|variant| &variant.answers);
+        self.changes.is_empty() && answers.all(|answer| answer.error.is_none())
+    }
+
+    /// The networks that have answered.
+    pub fn models(&self) -> Vec<UsedModel> {
+        let used = models_of(self.variants.iter().flat_map(VariantReport::reports));
+        let model = |((network, name), sha256)| UsedModel { network, name, sha256 };
+        used.into_iter().map(model).collect()
+    }
+}
+
+/// The networks that reports name, by kind and name.
+fn models_of<'a>(reports: impl Iterator<Item = &'a Report>) -> BTreeMap<(String, String), String> {
+    let mut models = BTreeMap::new();
+    for report in reports {
+        let told = serde_json::to_value(report).unwrap_or_default();
+        let digests = told.get("model_digests").cloned().unwrap_or_default();
+        let digests: Vec<UsedModel> = serde_json::from_value(digests).unwrap_or_default();
+        for UsedModel { network, name, sha256 } in digests {
+            models.insert((network, name), sha256);
+        }
+    }
+    models
+}

@@ -1,0 +1,117 @@
+//! Reads and writes the file of a case.
+
+use std::path::Path;
+
+use serde::Deserialize;
+use serde_json::Value;
+
+use crate::case_file::paths::{absolute, relative, replace_strings};
+use crate::case_file::{CaseError, CaseFile};
+use impactlab_core::data::{Existing, MAX_RESULTS_BYTES, read_utf8, write_atomically};
+
+/// Ending of the names of case files.
+pub const CASE_ENDING: &str = "impactlab";
+
+/// What every case file says that it is, and the version of its schema.
+pub(super) const FORMAT: &str = "impactlab case";
+pub(super) const VERSION: u32 = 1;
+
+/// What is read of a file before anything else.
+#[derive(Deserialize)]
+struct Header {
+    format: String,
+    version: u32,
+}
+
+/// Whether a path has the ending of a case file.
+pub fn is_case_file(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == CASE_ENDING)
+}
+
+impl CaseFile {
+    /// Reads a case. Whether its files are there is not looked at; see [`CaseFile::changes`].
+    ///
+    /// # Errors
+    /// [`CaseError`], with line and column where the text is wrong.
+    pub fn load(path: &Path) -> Result<Self, CaseError> {
+        let text = read_utf8(path, MAX_RESULTS_BYTES)?;
+        Self::parse(&text, path)
+    }
+
+    /// Reads a case from the text of its file.
+    ///
+    /// - `path`: of the file, whose folder relative paths begin at.
+    ///
+    /// # Errors
+    /// As for [`CaseFile::load`].
+    pub fn parse(text: &str, path: &Path) -> Result<Self, CaseError> {
+        let wrong = |source| CaseError::Syntax { path: path.to_owned(), source };
+        let header: Header = serde_json::from_str(text).map_err(wrong)?;
+        if header.format != FORMAT {
+            return Err(CaseError::Format { path: path.to_owned(), got: header.format });
+        }
+        if header.version > VERSION {
+            let (path, got) = (path.to_owned(), header.version);
+            return Err(CaseError::Version { path, got, expected: VERSION });
+        }
+        let case: Self = serde_json::from_str(text).map_err(wrong)?;
+        case.check_names(path)?;
+        let io = |source| CaseError::Io { path: path.to_owned(), source };
+        let folder = folder_of(&std::path::absolute(path).map_err(io)?);
+        let to_absolute = |text: &str| Some(absolute(text, &folder)?.to_str()?.to_owned());
+        case.with_paths(&to_absolute).map_err(wrong)
+    }
+
+    /// The text of the case's file.
+    ///
+    /// - `path`: of the file, absolute.
+    ///
+    /// # Errors
+    /// [`CaseError::Syntax`] if a number is not finite.
+    pub fn to_text(&self, path: &Path) -> Result<String, CaseError> {
+        let wrong = |source| CaseError::Syntax { path: path.to_owned(), source };
+        let (folder, used) = (folder_of(path), self.used_paths());
+        let to_relative = |text: &str| {
+            let path = Path::new(text);
+            let is_used = used.iter().any(|used| used == path);
+            if is_used { relative(path, &folder) } else { None }
+        };
+        let mut case = self.with_paths(&to_relative).map_err(wrong)?;
+        case.program = impactlab_core::program::version().to_owned();
+        Ok(serde_json::to_string_pretty(&case).map_err(wrong)? + "\n")
+    }
+
+    /// Writes a case, whole or not at all.
+    ///
+    /// # Errors
+    /// [`CaseError::Data`], as for [`write_atomically`].
+    pub fn save(&self, path: &Path, existing: Existing) -> Result<(), CaseError> {
+        let io = |source| CaseError::Io { path: path.to_owned(), source };
+        let path = std::path::absolute(path).map_err(io)?;
+        let text = self.to_text(&path)?;
+        Ok(write_atomically(&path, existing, |out| out.write_all(text.as_bytes()))?)
+    }
+
+    /// The same case with other paths in variants, files and models.
+    pub(super) fn with_paths(
+        &self,
+        change: &impl Fn(&str) -> Option<String>,
+    ) -> Result<Self, serde_json::Error> {
+        let mut of_variants = serde_json::to_value(&self.variants)?;
+        let mut of_files = serde_json::to_value(&self.files)?;
+        let mut of_models = serde_json::to_value(&self.models)?;
+        for value in [&mut of_variants, &mut of_files, &mut of_models] {
+            replace_strings(value, change);
+        }
+        let (variants, files, models) = (typed(of_variants)?, typed(of_files)?, typed(of_models)?);
+        Ok(Self { variants, files, models, ..self.clone() })
+    }
+}
+
+fn typed<T: for<'de> Deserialize<'de>>(value: Value) -> Result<T, serde_json::Error> {
+    serde_json::from_value(value)
+}
+
+fn folder_of(path: &Path) -> std::path::PathBuf {
+    path.parent().map(Path::to_owned).unwrap_or_default()
+}

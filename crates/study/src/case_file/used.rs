@@ -1,0 +1,206 @@
+//! The files that a case uses, and whether they are still what they were.
+
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::Request;
+use crate::case_file::paths::absolute_paths;
+use crate::case_file::{CaseError, CaseFile};
+use impactlab_core::data::write::{FileDigest, sha256_hex};
+use impactlab_core::site::{Site, is_picture_file};
+
+/// Why a file is missing that the case has no content of.
+const NOT_THERE: &str = "it was not there when the case was saved either";
+
+/// A file or a folder that a case uses, by its content.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct UsedFile {
+    /// The file or folder.
+    pub path: PathBuf,
+    /// Size of the file, or of all files in the folder, bytes.
+    pub bytes: u64,
+    /// SHA-256 of the content of a file, hexadecimal; of a folder, of a list of its files with their
+    /// names and digests. Names that begin with a point are left out.
+    pub sha256: String,
+}
+
+/// What has become of something that a case uses since it was saved.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum Change {
+    /// A file or folder is not there, or cannot be read.
+    Missing {
+        /// The file or folder.
+        path: PathBuf,
+        /// The error of the operating system.
+        why: String,
+    },
+    /// A file or folder holds something else.
+    Changed {
+        /// The file or folder.
+        path: PathBuf,
+    },
+    /// A network of the same name is another one.
+    Model {
+        /// Which network it is.
+        network: String,
+        /// What questions call it.
+        name: String,
+    },
+}
+
+impl fmt::Display for Change {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Missing { path, why } => write!(f, "{}: is missing ({why})", path.display()),
+            Self::Changed { path } => {
+                write!(f, "{}: has changed since the case was saved", path.display())
+            }
+            Self::Model { network, name } => write!(
+                f,
+                "the {network} network {name:?} is another one than when the case was saved"
+            ),
+        }
+    }
+}
+
+impl UsedFile {
+    /// Reads a file, or every file in a folder, to its end.
+    ///
+    /// # Errors
+    /// The error of the operating system.
+    pub fn read(path: &Path) -> io::Result<Self> {
+        let path = path.to_owned();
+        if !path.is_dir() {
+            let FileDigest { bytes, sha256, .. } = FileDigest::of("", &path)?;
+            return Ok(Self { path, bytes, sha256 });
+        }
+        let (mut list, mut bytes) = (String::new(), 0);
+        for name in files_in(&path)? {
+            let file = FileDigest::of(name.as_str(), &path.join(&name))?;
+            list.push_str(&format!("{}  {name}\n", file.sha256));
+            bytes += file.bytes;
+        }
+        Ok(Self { path, bytes, sha256: sha256_hex(list.as_bytes()) })
+    }
+}
+
+/// Names of all files in a folder and the folders in it, in their order, with `/` between the parts.
+/// What begins with a point is left out, and so are links to folders, which may lead round in a circle.
+pub(super) fn files_in(folder: &Path) -> io::Result<Vec<String>> {
+    let mut names = Vec::new();
+    let mut open = vec![String::new()];
+    while let Some(prefix) = open.pop() {
+        for entry in std::fs::read_dir(folder.join(&prefix))? {
+            let entry = entry?;
+            let name = entry.file_name().to_string_lossy().into_owned();
+            let (full, kind) = (format!("{prefix}{name}"), entry.file_type()?);
+            if name.starts_with('.') {
+                continue;
+            }
+            if kind.is_dir() {
+                open.push(full + "/");
+            } else if entry.path().is_file() {
+                names.push(full);
+            }
+        }
+    }
+    names.sort();
+    Ok(names)
+}
+
+/// Orthophoto, world file and drawing of a site; none for any other file.
+pub(super) fn files_of_site(path: &Path) -> Vec<PathBuf> {
+    let is_toml = path.extension().is_some_and(|end| end == "toml");
+    match is_picture_file(path) || is_toml && Site::is_meant_by(path) {
+        true => Site::files_named_by(path),
+        false => Vec::new(),
+    }
+}
+
+impl CaseFile {
+    /// The files and folders that the variants name, with those that a site names, and without those that
+    /// the program has made for itself.
+    pub fn used_paths(&self) -> Vec<PathBuf> {
+        let values = serde_json::to_value(&self.variants).unwrap_or_default();
+        let is_known = |path: &PathBuf| self.files.iter().any(|file| file.path == *path);
+        let mut paths = absolute_paths(&values);
+        let of_sites: Vec<PathBuf> = paths.iter().flat_map(|path| files_of_site(path)).collect();
+        paths.extend(of_sites);
+        paths.retain(|path| path.parent().is_some() && (path.exists() || is_known(path)));
+        paths.sort();
+        paths.dedup();
+        paths
+    }
+
+    /// Every file that an answer to the case rests on, with those within its data sets.
+    pub fn input_files(&self) -> Vec<PathBuf> {
+        let questions = self.variants.iter().flat_map(|variant| &variant.questions);
+        let mut paths = self.used_paths();
+        paths.extend(questions.flat_map(Request::files_read));
+        paths.sort();
+        paths.dedup();
+        paths
+    }
+
+    /// Reads the content of every file that the variants name, by which changes will be known. A file
+    /// that is missing keeps the content that it had.
+    pub fn record_files(&mut self) {
+        let read = |path: &PathBuf| {
+            let before = || self.files.iter().find(|file| file.path == *path).cloned();
+            UsedFile::read(path).ok().or_else(before)
+        };
+        self.files = self.used_paths().iter().filter_map(read).collect();
+    }
+
+    /// What has become of the files since the case was saved.
+    pub fn changes(&self) -> Vec<Change> {
+        let change = |file: &UsedFile| match UsedFile::read(&file.path) {
+            Err(error) => Some(Change::Missing { path: file.path.clone(), why: error.to_string() }),
+            Ok(now) if now != *file => Some(Change::Changed { path: file.path.clone() }),
+            Ok(_) => None,
+        };
+        let is_known = |path: &PathBuf| self.files.iter().any(|file| file.path == *path);
+        let missing = self.missing_inputs().into_iter().filter(|path| !is_known(path));
+        let never_there = missing.map(|path| Change::Missing { path, why: NOT_THERE.to_owned() });
+        self.files.iter().filter_map(change).chain(never_there).collect()
+    }
+
+    /// The files that questions name and that are not there, also those that never were.
+    pub(super) fn missing_inputs(&self) -> Vec<PathBuf> {
+        let questions = || self.variants.iter().flat_map(|variant| &variant.questions);
+        let value = |question| serde_json::to_value(question).unwrap_or_default();
+        // Networks are named by their paths alone; all else a question says itself.
+        let mut paths: Vec<PathBuf> =
+            questions().flat_map(|question| absolute_paths(&value(question))).collect();
+        paths.extend(questions().flat_map(Request::input_files));
+        paths.retain(|path| !path.exists());
+        paths.sort();
+        paths.dedup();
+        paths
+    }
+
+    /// Refuses a case in which two variants have the same name, or that shows none of them.
+    pub(super) fn check_names(&self, path: &Path) -> Result<(), CaseError> {
+        for (i, variant) in self.variants.iter().enumerate() {
+            if self.variants[..i].iter().any(|other| other.name == variant.name) {
+                let (path, name) = (path.to_owned(), variant.name.clone());
+                return Err(CaseError::SameName { path, name });
+            }
+        }
+        if self.variant(&self.shown).is_none() {
+            return Err(self.no_variant(&self.shown));
+        }
+        Ok(())
+    }
+
+    /// The error of a variant that is not there.
+    pub(super) fn no_variant(&self, name: &str) -> CaseError {
+        let known = self.variants.iter().map(|variant| variant.name.clone()).collect();
+        CaseError::NoVariant { name: name.to_owned(), known }
+    }
+}

@@ -1,0 +1,414 @@
+//! Why a question has no answer.
+
+use std::path::PathBuf;
+
+use crate::analysis::{AnalysisError, MotionForecastError};
+use impactlab_core::collision::{OffOutline, ScenarioError};
+use impactlab_core::compare::ReplayError;
+use impactlab_core::data::{ContactOutside, DataError, SeriesError, TomlError};
+use impactlab_core::ranges::OutOfRange;
+use impactlab_core::site::SiteError;
+use impactlab_core::vehicle::{Preset, SimulationError};
+use impactlab_networks::force::{EvaluateError, ForceError};
+use impactlab_networks::learning::{LearningError, LoadError};
+use impactlab_networks::response::LogError;
+use impactlab_reconstruct::sampler::SamplerError;
+
+/// A question that cannot be answered.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// The ground cannot be read.
+    #[error(transparent)]
+    Site(#[from] SiteError),
+    /// A number of the question is out of range.
+    #[error("{field}")]
+    OutOfRange {
+        /// Where the number stands in the question.
+        field: String,
+        /// The number and its range.
+        source: OutOfRange,
+    },
+    /// A number of the report is not finite: numbers of the question that each lie in their range
+    /// do not go together.
+    #[error(
+        "{question}: {field} of the answer is {value}, which is no number to rely on; \
+         some numbers of the question do not go together"
+    )]
+    NotFinite {
+        /// What was asked.
+        question: &'static str,
+        /// Where the number stands in the report.
+        field: String,
+        /// The number.
+        value: f64,
+    },
+    /// A window of time ends before it starts.
+    #[error("window: {from_s} s to {to_s} s, expected a start that is not after the end")]
+    Window {
+        /// Start, s.
+        from_s: f64,
+        /// End, s.
+        to_s: f64,
+    },
+    /// A contact point lies off the vehicle.
+    #[error(
+        "{name}: the force does not act on {vehicle}; correct the point or take another vehicle"
+    )]
+    ContactOffVehicle {
+        /// The file, case or scenario.
+        name: String,
+        /// The vehicle.
+        vehicle: String,
+        /// How far the point lies off.
+        source: OffOutline,
+    },
+    /// More folds are asked for than there are cases.
+    #[error(
+        "cross_validate: {n_folds} folds of {n_cases} training cases, expected at most {n_cases}"
+    )]
+    TooManyFolds {
+        /// Number of folds.
+        n_folds: usize,
+        /// Number of cases that the model was trained on.
+        n_cases: usize,
+    },
+    /// A file holds angles of a steering wheel, and the steering ratio is not said.
+    #[error(
+        "{}: holds angles of the steering wheel; say the steering ratio (--steering-ratio, 12 to \
+         20 in cars)",
+        path.display()
+    )]
+    NoSteeringRatio {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A steering ratio is said for angles of the road wheels.
+    #[error(
+        "{}: holds angles of the road wheels, to which the steering ratio does not apply; angles \
+         of the steering wheel have the header steering_wheel, or --steer-map \
+         time=1:s,steering_wheel=2:deg",
+        path.display()
+    )]
+    NoSteeringWheel {
+        /// The file.
+        path: PathBuf,
+    },
+    /// An angle of a steering wheel over the steering ratio is none of a road wheel.
+    #[error("{}: an angle of the steering wheel over the ratio {ratio}", path.display())]
+    RoadWheel {
+        /// The file.
+        path: PathBuf,
+        /// The steering ratio.
+        ratio: f64,
+        /// The angle and its range.
+        source: OutOfRange,
+    },
+    /// Two things control the vehicle alike.
+    #[error("{name}: more than one of file, fishhook and ending {what} the vehicle, expected one")]
+    TwoControls {
+        /// The file or manoeuvre.
+        name: String,
+        /// What they do.
+        what: &'static str,
+    },
+    /// The steering angle of a fishhook does not exist for a vehicle.
+    #[error(
+        "{vehicle}: the fishhook is 6.5 times the road-wheel angle at which the vehicle turns \
+         with 0.3 g at 50 mph; by its axle loads and cornering stiffnesses that is {angle_rad:.4} \
+         rad, expected more than 0 and at most 0.138"
+    )]
+    NoFishhook {
+        /// The vehicle.
+        vehicle: String,
+        /// The angle, rad.
+        angle_rad: f64,
+    },
+    /// A file or data set cannot be read.
+    #[error(transparent)]
+    Data(#[from] DataError),
+    /// A data set is not what is needed.
+    #[error(transparent)]
+    Cases(Box<LoadError>),
+    /// A data set has a case that cannot be read.
+    #[error(
+        "{problem} (in {}; leave out cases that cannot be used with --bad-cases leave-out)",
+        path.display()
+    )]
+    BadCase {
+        /// The data set.
+        path: PathBuf,
+        /// What is wrong with the first such case.
+        problem: String,
+    },
+    /// The case that is asked about cannot be read.
+    #[error("{problem}")]
+    CaseUnreadable {
+        /// The data set.
+        path: PathBuf,
+        /// What is wrong with the case.
+        problem: String,
+    },
+    /// A force network cannot be trained, opened or asked.
+    #[error(transparent)]
+    Force(Box<ForceError>),
+    /// A response network, or a training set of either network, cannot be used.
+    #[error(transparent)]
+    Learning(Box<LearningError>),
+    /// A model is not in memory.
+    #[error("there is no model {name:?}")]
+    NotHeld {
+        /// What it was called.
+        name: String,
+    },
+    /// The log of an impact cannot be used.
+    #[error(transparent)]
+    Log(Box<LogError>),
+    /// There is not a force for every log.
+    #[error("{n_forces} force files for {n_logs} logs, expected one for each or none")]
+    ForcesOfLogs {
+        /// Number of force files.
+        n_forces: usize,
+        /// Number of logs.
+        n_logs: usize,
+    },
+    /// A folder holds no logs.
+    #[error("{}: holds no file that ends in .csv", path.display())]
+    NoLogs {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A motion cannot be predicted.
+    #[error("{name}: the motion cannot be predicted")]
+    Forecast {
+        /// The scenario or case.
+        name: String,
+        /// Why.
+        source: Box<MotionForecastError>,
+    },
+    /// A model has been trained on every case that it should be evaluated on.
+    #[error(
+        "{}: the model was trained on every case; --split all evaluates them all the same",
+        path.display()
+    )]
+    NoTestCase {
+        /// The data set.
+        path: PathBuf,
+    },
+    /// No staged collision is asked about.
+    #[error("{}: no case is chosen; expected cases in evidence/ that --cases and --only both name", path.display())]
+    NoStagedCase {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// What had happened in a staged collision is not known.
+    #[error("{}: is not there, and without it the case cannot be evaluated", path.display())]
+    NoTruth {
+        /// The file.
+        path: PathBuf,
+    },
+    /// An evaluation failed.
+    #[error("the evaluation failed")]
+    Evaluation(#[source] Box<EvaluateError>),
+    /// A vehicle or scenario file cannot be read.
+    #[error(transparent)]
+    TomlFile(#[from] TomlError),
+    /// A vehicle is neither a preset, nor one of the library, nor a file.
+    #[error(
+        "{name:?} is no vehicle; expected a vehicle file, a vehicle of the library (impactlab \
+         vehicles lists them), or one of {}",
+        presets.join(", ")
+    )]
+    UnknownVehicle {
+        /// As given.
+        name: String,
+        /// The presets.
+        presets: Vec<&'static str>,
+    },
+    /// No motion goes with the evidence.
+    #[error("{name}: cannot be reconstructed")]
+    Reconstruction {
+        /// The evidence.
+        name: String,
+        /// Why.
+        source: Box<SamplerError>,
+    },
+    /// A scenario has no solution.
+    #[error("{name}: cannot be solved")]
+    Scenario {
+        /// The scenario.
+        name: String,
+        /// Why.
+        source: ScenarioError,
+    },
+    /// A file lacks a column.
+    #[error("{}: does not have what this needs", path.display())]
+    Series {
+        /// The file or data set.
+        path: PathBuf,
+        /// What it lacks.
+        source: SeriesError,
+    },
+    /// A simulation did not come to its end.
+    #[error("the simulation failed")]
+    Simulation(#[from] SimulationError),
+    /// A case cannot be simulated.
+    #[error(transparent)]
+    Replay(#[from] ReplayError),
+    /// A case or file cannot be analysed.
+    #[error("{name}: cannot be analysed")]
+    Analysis {
+        /// The file, case or scenario.
+        name: String,
+        /// Why.
+        source: Box<AnalysisError>,
+    },
+    /// A data set does not have the case.
+    #[error("{}: has no case {case:?}; its {n_cases} cases start with {first:?}", path.display())]
+    NoSuchCase {
+        /// The data set.
+        path: PathBuf,
+        /// The name asked for.
+        case: String,
+        /// How many cases there are.
+        n_cases: usize,
+        /// A name that would do.
+        first: String,
+    },
+    /// Forces are given where motions are needed, or the other way round.
+    #[error("{}: holds {got}, expected {expected}", path.display())]
+    WrongKind {
+        /// The file or data set.
+        path: PathBuf,
+        /// What it is.
+        got: String,
+        /// What is needed.
+        expected: &'static str,
+    },
+    /// A column map is given for a folder.
+    #[error("{}: is a folder; --map is for single files", path.display())]
+    MapOfFolder {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A force that is to be learned from does not say where it acts.
+    #[error(
+        "{}: has no yaw moment (mz); say where the force acts with --contact x,y,z",
+        path.display()
+    )]
+    NoYawMoment {
+        /// The force file.
+        path: PathBuf,
+    },
+    /// The contact lies outside the time of the motion.
+    #[error("{name}: {outside}")]
+    ContactOutside {
+        /// The force file, case or scenario.
+        name: String,
+        /// When the vehicles touch, and the duration of the motion.
+        outside: ContactOutside,
+    },
+    /// A recorded motion has the friction of its own case.
+    #[error(
+        "case {case}: its friction is recorded; another friction would compare the motion with \
+         another road"
+    )]
+    FrictionOfCase {
+        /// Name of the case.
+        case: String,
+    },
+    /// There is no force, so that nothing can be forecast.
+    #[error("{name}: has no force on a vehicle to forecast a motion from")]
+    NoForce {
+        /// The file or case.
+        name: String,
+    },
+    /// It is not known how the vehicles met, so that the force cannot be predicted.
+    #[error(
+        "{name}: does not say how the vehicles met, so its force cannot be predicted; its own force \
+         drives the motion with --given-force"
+    )]
+    NoCollision {
+        /// The file or case.
+        name: String,
+    },
+    /// A training was begun where another one should be.
+    #[error(
+        "{}: holds a training; --resume goes on with it, --overwrite begins anew and replaces it",
+        path.display()
+    )]
+    TrainingExists {
+        /// The state of the training that is there.
+        path: PathBuf,
+    },
+    /// A reconstruction was begun where another one should be saved.
+    #[error("{}: exists already; --resume goes on with the reconstruction in it", path.display())]
+    ReconstructionExists {
+        /// The checkpoint.
+        path: PathBuf,
+    },
+    /// Wheels are steered, braked, dragged or locked, of which the response network knows nothing.
+    #[error(
+        "{name}: wheels are steered, braked, dragged or locked, and the response network has learned \
+         from vehicles that coast; impactlab simulate takes it in, with the 4DOF model"
+    )]
+    NotCoasting {
+        /// The scenario or case.
+        name: String,
+    },
+    /// The vehicles turn so fast before the impact that a force network, which knows no turning
+    /// vehicles, does not answer the question.
+    #[error(
+        "{name}: the vehicles turn before the impact, which moves the points of contact with \
+         {turning_m_s:.1} m/s against each other, beside {moving_m_s:.1} m/s by their velocities; the \
+         force network knows vehicles that do not turn, expected less than half as much; the momentum \
+         solution takes it in: --given-force, or impactlab simulate"
+    )]
+    TurningVehicles {
+        /// The scenario.
+        name: String,
+        /// Speed of one point of contact against the other by turning, m/s.
+        turning_m_s: f64,
+        /// Speed of one vehicle against the other, m/s.
+        moving_m_s: f64,
+    },
+    /// Nothing says what should be learned from.
+    #[error("nothing to learn from: say which data set with --data, or which log with --log")]
+    NothingToLearnFrom,
+    /// What is to be learned takes a network to start from.
+    #[error("a network to start from is needed: say which with --model")]
+    NoStart,
+}
+
+impl StudyError {
+    /// The error for a name that is no vehicle.
+    pub fn unknown_vehicle(name: &str) -> Self {
+        let presets = Preset::ALL.iter().map(|preset| preset.id()).collect();
+        Self::UnknownVehicle { name: name.to_owned(), presets }
+    }
+
+    /// Whether the saved run of a reconstruction is at fault, and not the question.
+    pub fn is_of_checkpoint(&self) -> bool {
+        match self {
+            Self::Reconstruction { source, .. } => source.is_of_checkpoint(),
+            _ => false,
+        }
+    }
+}
+
+macro_rules! boxed {
+    ($($error:ty => $variant:ident,)+) => {
+        $(impl From<$error> for StudyError {
+            fn from(error: $error) -> Self {
+                Self::$variant(Box::new(error))
+            }
+        })+
+    };
+}
+
+boxed! {
+    LoadError => Cases,
+    LogError => Log,
+    LearningError => Learning,
+    ForceError => Force,
+    EvaluateError => Evaluation,
+}

@@ -1,0 +1,114 @@
+//! Which vehicles a question is about.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::{AssumedQuantity, Assumption, StudyError};
+use impactlab_core::vehicle::{DataSheet, Preset, VehicleParameters, built_in_vehicle};
+
+/// The struck vehicle where neither the question nor the data set says which it is: the car that
+/// the shipped response network has learned.
+pub const DEFAULT_VEHICLE: Preset = Preset::Reference;
+
+/// The striking vehicle where the question does not say which it is.
+pub const DEFAULT_BULLET: Preset = Preset::Bullet2000;
+
+/// Which vehicle it is.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub enum VehicleChoice {
+    /// The data set's own, else [`DEFAULT_VEHICLE`] or [`DEFAULT_BULLET`], which is then listed as
+    /// an assumption.
+    #[default]
+    Automatic,
+    /// A vehicle that comes with the program, a preset or one of the library, by its id.
+    Preset(String),
+    /// A vehicle file.
+    File(PathBuf),
+    /// A data sheet that was filled in.
+    Sheet(Box<DataSheet>),
+}
+
+impl VehicleChoice {
+    /// What a person typed: the id of a vehicle that comes with the program, else a file.
+    pub fn named(name: &str) -> Self {
+        match built_in_vehicle(name) {
+            Some(_) => Self::Preset(name.to_owned()),
+            None => Self::File(PathBuf::from(name)),
+        }
+    }
+
+    /// The vehicle that was chosen; `None` if it was left open.
+    ///
+    /// # Errors
+    /// [`StudyError`] if there is no such vehicle, or its file or sheet is wrong.
+    pub fn chosen(&self) -> Result<Option<VehicleParameters>, StudyError> {
+        match self {
+            Self::Automatic => Ok(None),
+            Self::Preset(id) => match built_in_vehicle(id) {
+                Some(vehicle) => Ok(Some(vehicle)),
+                None => Err(StudyError::unknown_vehicle(id)),
+            },
+            Self::File(path) if path.exists() => Ok(Some(VehicleParameters::load(path)?)),
+            Self::Sheet(sheet) => Ok(Some(sheet.checked_vehicle()?)),
+            Self::File(path) => Err(StudyError::unknown_vehicle(&path.display().to_string())),
+        }
+    }
+}
+
+/// What stands in for a vehicle that was left open.
+pub(crate) enum OpenVehicle<'a> {
+    /// The vehicle file of the data set that the question is about, if it has one.
+    OfDataset(Option<&'a Path>),
+    /// The vehicle that the scenario names, if it names one.
+    OfScenario(Option<&'a str>),
+    /// Nothing: the question is not about a data set.
+    Unknown,
+}
+
+/// The struck vehicle; one that nobody named is added to the assumptions.
+pub(crate) fn struck_vehicle(
+    choice: &VehicleChoice,
+    open: &OpenVehicle<'_>,
+    assumptions: &mut Vec<Assumption>,
+) -> Result<VehicleParameters, StudyError> {
+    if let Some(vehicle) = choice.chosen()? {
+        return Ok(vehicle);
+    }
+    if let OpenVehicle::OfDataset(Some(file)) = open {
+        return Ok(VehicleParameters::load(file)?);
+    }
+    if let OpenVehicle::OfScenario(Some(name)) = open {
+        return built_in_vehicle(name).ok_or_else(|| StudyError::unknown_vehicle(name));
+    }
+    let reason = match open {
+        OpenVehicle::OfDataset(_) => "the data set has no vehicle.toml",
+        OpenVehicle::OfScenario(_) | OpenVehicle::Unknown => "no vehicle was named",
+    };
+    let reason = format!(
+        "{reason}; this is the car that the shipped response network has learned; \
+         another one: --vehicle"
+    );
+    assumptions.push(Assumption::new(AssumedQuantity::Vehicle, DEFAULT_VEHICLE.id(), reason));
+    Ok(DEFAULT_VEHICLE.parameters())
+}
+
+/// The striking vehicle; one that nobody named is added to the assumptions.
+///
+/// - `named`: the vehicle that the scenario names, if it names one.
+pub(crate) fn striking_vehicle(
+    choice: &VehicleChoice,
+    named: Option<&str>,
+    assumptions: &mut Vec<Assumption>,
+) -> Result<VehicleParameters, StudyError> {
+    if let Some(vehicle) = choice.chosen()? {
+        return Ok(vehicle);
+    }
+    if let Some(name) = named {
+        return built_in_vehicle(name).ok_or_else(|| StudyError::unknown_vehicle(name));
+    }
+    let reason = "no striking vehicle was named; its mass, inertia and outline are those of the \
+                  case; another one: --bullet";
+    assumptions.push(Assumption::new(AssumedQuantity::Bullet, DEFAULT_BULLET.id(), reason));
+    Ok(DEFAULT_BULLET.parameters())
+}

@@ -1,0 +1,141 @@
+use std::ops::ControlFlow;
+
+use super::*;
+use crate::examples::spin;
+use impactlab_reconstruct::Latent;
+use impactlab_reconstruct::evidence::Measured;
+
+fn request(particles: usize) -> ReconstructRequest {
+    let evidence = EvidenceChoice::Inline(Box::new(spin()));
+    ReconstructRequest { particles, ..ReconstructRequest::new(evidence) }
+}
+
+fn answer(request: &ReconstructRequest) -> ReconstructAnswer {
+    let outcome = request.answer(&Library::default(), &mut |_| ControlFlow::Continue(()));
+    outcome.unwrap().complete().unwrap()
+}
+
+#[test]
+fn a_tiny_case_is_reconstructed_the_same_way_each_time() {
+    let request = request(60);
+    let report = answer(&request).report;
+    assert_eq!(report, answer(&request).report);
+    for name in [
+        "target_speed_m_s",
+        "bullet_speed_m_s",
+        "closing_speed_m_s",
+        "heading_difference_rad",
+        "road_friction",
+        "delta_v_target_m_s",
+    ] {
+        let of = report.quantities.iter().find(|of| of.name == name).unwrap();
+        let [low, high] = of.interval_90;
+        assert!(low <= of.median && of.median <= high && low < high, "{of:?}");
+        assert!(of.interval_95[0] <= low && high <= of.interval_95[1], "{of:?}");
+    }
+    let speed = report.quantities[0].median;
+    assert!((17.0..23.0).contains(&speed), "{speed} m/s where a recorder says 20 ± 0.8");
+    let probability: f64 = report.modes.iter().map(|mode| mode.probability).sum();
+    assert!((0.9..=1.0 + 1e-9).contains(&probability), "{:?}", report.modes);
+    assert!(report.fit.iter().all(|item| !item.is_unexplained()), "{:?}", report.fit);
+    assert!(!report.budget.is_empty() && report.n_simulations > 60);
+    // The request comes back from JSON.
+    let text = serde_json::to_string(&request).unwrap();
+    assert_eq!(serde_json::from_str::<ReconstructRequest>(&text).unwrap(), request);
+}
+
+#[test]
+fn evidence_that_contradicts_itself_is_said() {
+    let mut request = request(60);
+    let EvidenceChoice::Inline(evidence) = &mut request.evidence else { unreachable!() };
+    // The recorder says 5 m/s, and the car came 150 m far on a dry road.
+    evidence.edr.speed_before_m_s = Some(Measured { value: 5.0, sigma: 0.2 });
+    evidence.rest.as_mut().unwrap().x_m = 150.0;
+    let report = answer(&request).report;
+    let said = report.badges.iter().any(|badge| badge.kind == BadgeKind::EvidenceUnexplained);
+    assert!(said, "{:?} {:?}", report.badges, report.fit);
+}
+
+#[test]
+fn a_stop_keeps_what_was_sampled_and_says_that_it_is_not_the_posterior() {
+    let request = request(60);
+    let outcome = request.answer(&Library::default(), &mut |_| ControlFlow::Break(()));
+    let report = outcome.unwrap().complete().unwrap().report;
+    let stopped = report.badges.iter().find(|badge| badge.kind == BadgeKind::FewParticles);
+    assert!(stopped.unwrap().text.contains("stopped"), "{:?}", report.badges);
+}
+
+#[test]
+fn a_run_goes_on_from_its_checkpoint_to_the_same_answer_and_from_no_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.reconstruction");
+    let kept = ReconstructRequest { checkpoint: Some(path.clone()), ..request(60) };
+    // Some way beyond the first checkpoint.
+    let mut n_left = 20;
+    let stop = &mut |_: Event<'_>| {
+        n_left -= i32::from(path.exists());
+        if n_left < 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
+    kept.answer(&Library::default(), stop).unwrap();
+    assert!(path.exists());
+    let go_on = ReconstructRequest { resume: true, ..kept.clone() };
+    assert_eq!(answer(&go_on).report, answer(&request(60)).report);
+    let again = kept.answer(&Library::default(), &mut |_| ControlFlow::Continue(()));
+    assert!(again.unwrap_err().to_string().contains("run.reconstruction"));
+    let other = ReconstructRequest { seed: 7, ..go_on };
+    let refused = other.answer(&Library::default(), &mut |_| ControlFlow::Continue(()));
+    let refused = impactlab_core::error_chain(&refused.unwrap_err());
+    assert!(refused.contains("another seed"), "{refused}");
+}
+
+#[test]
+fn numbers_out_of_range_are_refused_before_the_work() {
+    let error = ReconstructRequest { particles: 1, ..request(60) };
+    let outcome = error.answer(&Library::default(), &mut |_| ControlFlow::Continue(()));
+    assert!(outcome.unwrap_err().to_string().starts_with("particles"));
+}
+
+/// A car whose way ends on ice: with the zone the speed is found, without it a far higher one is.
+#[test]
+fn a_way_over_ice_is_no_sign_of_a_high_speed() {
+    let folder = tempfile::tempdir().unwrap();
+    let site = folder.path().join("site.toml");
+    let ice = "name = \"lake\"\n[[friction_zone]]\nname = \"ice\"\nfriction = 0.15\n\
+               border_m = [[20, -60], [300, -60], [300, 60], [20, 60]]\n";
+    std::fs::write(&site, ice).unwrap();
+    let mut evidence = spin();
+    evidence.edr.speed_before_m_s = None;
+    let inline = |evidence: &Evidence| EvidenceChoice::Inline(Box::new(evidence.clone()));
+    let asked = ReconstructRequest { site: Some(site), ..request(100) };
+
+    // The motion of the medians at 20 m/s, of which the place of rest is found.
+    let model = asked.model(&evidence).unwrap();
+    let mut z = vec![0.0; model.prior().components().len()];
+    z[0] = -0.43;
+    let [truth] = &model.motions(&[z], |motion| motion)[..] else { panic!("one motion") };
+    let end = truth.path.points.last().unwrap();
+    let rest = evidence.rest.as_mut().unwrap();
+    (rest.x_m, rest.y_m) = (end.x_m, end.y_m);
+    rest.heading_rad.as_mut().unwrap().value = end.yaw_rad;
+    assert!(end.x_m > 30.0, "it rests on the ice: {end:?}");
+
+    let speed = |request: &ReconstructRequest| {
+        let report = answer(request).report;
+        (report.quantities[0].clone(), report)
+    };
+    let (known, report) =
+        speed(&ReconstructRequest { evidence: inline(&evidence), ..asked.clone() });
+    let true_m_s = truth.impact.target_speed_m_s;
+    assert!((known.median / true_m_s - 1.0).abs() < 0.25, "{true_m_s} m/s, {known:?}");
+    assert_eq!(report.friction_zones[0].name, "ice");
+    for part in ["friction of the zone \"ice\" is 0.15", "all of which stood on one friction"] {
+        assert!(report.badges.iter().any(|badge| badge.text.contains(part)), "{part}");
+    }
+    assert!(report.priors.iter().any(|of| of.latent == Latent::ZoneFrictionFactor));
+    let said = report.assumptions.iter().any(|of| of.value.contains("zones of the site"));
+    assert!(said, "{:?}", report.assumptions);
+    let without = ReconstructRequest { site: None, evidence: inline(&evidence), ..asked };
+    let (blind, report) = speed(&without);
+    assert!(blind.median > 1.2 * true_m_s, "{true_m_s} m/s, {blind:?}");
+    assert!(report.friction_zones.is_empty());
+}
